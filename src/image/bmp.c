@@ -48,25 +48,21 @@ static status check_kind(const unsigned char *bytes, size_t size, diagnostic *wh
     const uint32_t header = size >= FILE_HEADER + 4 ? number_at(bytes + FILE_HEADER, 4) : 0;
     if (header == OS2_HEADER || header == OS2_HEADER_2 || header == OS2_HEADER_2_SHORT)
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is one of OS/2, which is not read");
-    if (size < FILE_HEADER + INFO_HEADER || (header <= V5_HEADER && header > size - FILE_HEADER)) {
+    if (size < FILE_HEADER + INFO_HEADER || (header <= V5_HEADER && header > size - FILE_HEADER))
         return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is truncated: %zu bytes have no whole header",
                         size);
-    }
-    if (header < INFO_HEADER || header > V5_HEADER) {
+    if (header < INFO_HEADER || header > V5_HEADER)
         return diagnose(why, STATUS_BAD_INPUT, REMEDY,
                         "the header of the BMP file is damaged: it claims to have %lu bytes", (unsigned long)header);
-    }
     const uint32_t bits = number_at(bytes + 28, 2), compression = number_at(bytes + 30, 4);
     if (compression == RLE8 || compression == RLE4)
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is compressed by run lengths, which is not read");
-    if (bits != 24) {
+    if (bits != 24)
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has %lu bits a pixel; only 24 are read",
                         (unsigned long)bits);
-    }
-    if (compression != UNCOMPRESSED) {
+    if (compression != UNCOMPRESSED)
         return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has a compression of kind %lu, which is not read",
                         (unsigned long)compression);
-    }
     return STATUS_OK;
 }
 
@@ -80,17 +76,15 @@ static status read_header(const unsigned char *bytes, size_t size, bmp_header *o
                         .offset = number_at(bytes + 10, 4)};
     TRY(codec_check_size(out->width, out->height, size, why));
     out->row_bytes = ((size_t)out->width * 3 + 3) / 4 * 4;
-    if (out->offset < FILE_HEADER + number_at(bytes + FILE_HEADER, 4) || out->offset > size) {
+    if (out->offset < FILE_HEADER + number_at(bytes + FILE_HEADER, 4) || out->offset > size)
         return diagnose(why, STATUS_BAD_INPUT, DAMAGED,
                         "the BMP file is damaged: its pixels are said to begin at byte %zu of %zu", out->offset, size);
-    }
     /* sides are at most 65536: no overflow; the last row need not be padded */
     const size_t needed = out->row_bytes * (size_t)(out->height - 1) + (size_t)out->width * 3;
-    if (size - out->offset < needed) {
+    if (size - out->offset < needed)
         return diagnose(why, STATUS_BAD_INPUT, DAMAGED,
                         "the BMP file is truncated: %zu bytes of pixels where %zu should be", size - out->offset,
                         needed);
-    }
     return STATUS_OK;
 }
 

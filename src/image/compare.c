@@ -25,11 +25,10 @@ static status check_numbers(const image *picture, const char *which, diagnostic 
 
 status compare_check(const image *a, const image *b, diagnostic *why)
 {
-    if (a->width != b->width || a->height != b->height) {
+    if (a->width != b->width || a->height != b->height)
         return diagnose(why, STATUS_BAD_INPUT, "give two pictures of one size",
                         "a picture of %d x %d pixels cannot be compared with one of %d x %d", a->width, a->height,
                         b->width, b->height);
-    }
     TRY(check_numbers(a, "first", why));
     return check_numbers(b, "second", why);
 }

@@ -44,10 +44,9 @@ void convolve_add(const double *plane, int width, int height, const convolve_tap
     size_t stride = (size_t)width;
     memset(scratch, 0, stride * (size_t)height * sizeof *scratch);
     for (int y = 0; y < height; y++) {
-        for (int i = 0; i < across->count; i++) {
+        for (int i = 0; i < across->count; i++)
             add_shifted_row(plane + (size_t)y * stride, width, i - across->before, across->weight[i],
                             scratch + (size_t)y * stride);
-        }
     }
     for (int y = 0; y < height; y++) {
         for (int i = 0; i < down->count; i++) {

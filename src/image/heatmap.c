@@ -164,10 +164,9 @@ static status inspect(const double *values, size_t count, double *largest, bool 
     *largest = 0.0;
     *whole = true;
     for (size_t i = 0; i < count; i++) {
-        if (!(values[i] >= 0.0) || isinf(values[i])) {
+        if (!(values[i] >= 0.0) || isinf(values[i]))
             return diagnose(why, STATUS_BAD_INPUT, "values are finite and not negative",
                             "value %zu of the heat map cannot be drawn", i);
-        }
         *largest = values[i] > *largest ? values[i] : *largest;
         *whole = *whole && values[i] == floor(values[i]);
     }
@@ -232,10 +231,9 @@ status heatmap_create(const double *values, int width, int height, const char *t
 {
     key_scale scale;
     *out = NULL;
-    if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX) {
+    if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
                         "a heat map of %d x %d values is not possible", width, height);
-    }
     TRY(find_scale(values, (size_t)width * (size_t)height, &scale, why));
     int picture_width = width < WIDTH_MIN ? WIDTH_MIN : width;
     key_layout key = lay_out_key(picture_width);

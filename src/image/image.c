@@ -15,10 +15,9 @@
 status image_create(int width, int height, image **out, diagnostic *why)
 {
     *out = NULL;
-    if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX) {
+    if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
                         "a picture of %d x %d pixels is not possible", width, height);
-    }
     image *picture = malloc(sizeof *picture);
     float *pixel = calloc((size_t)width * (size_t)height * 3, sizeof *pixel);
     if (!picture || !pixel) {
@@ -70,14 +69,12 @@ image_format image_format_of(const char *path)
 status codec_check_size(long long width, long long height, size_t file_bytes, diagnostic *why)
 {
     bool sides = width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX;
-    if (!sides || width * height > CODEC_PIXELS_MAX) {
+    if (!sides || width * height > CODEC_PIXELS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "sides are 1 to 65536 and at most 2^28 pixels in all",
                         "the picture claims to have %lld x %lld pixels", width, height);
-    }
-    if (width * height > CODEC_PIXELS_FREE && width * height / CODEC_PIXELS_A_BYTE > (long long)file_bytes) {
+    if (width * height > CODEC_PIXELS_FREE && width * height / CODEC_PIXELS_A_BYTE > (long long)file_bytes)
         return diagnose(why, STATUS_BAD_INPUT, "a picture of a few colours needs no such size; save a smaller one",
                         "the picture claims to have %lld x %lld pixels in %zu bytes", width, height, file_bytes);
-    }
     return STATUS_OK;
 }
 

@@ -90,10 +90,9 @@ static bool write_guarded(jpeg_job *job, struct jpeg_compress_struct *cinfo, con
 
 status codec_jpeg_write(const image *picture, FILE *stream, diagnostic *why)
 {
-    if (picture->width > JPEG_MAX_DIMENSION || picture->height > JPEG_MAX_DIMENSION) {
+    if (picture->width > JPEG_MAX_DIMENSION || picture->height > JPEG_MAX_DIMENSION)
         return diagnose(why, STATUS_BAD_INPUT, "write a PNG instead", "a JPEG picture has at most %ld pixels a side",
                         JPEG_MAX_DIMENSION);
-    }
     struct jpeg_compress_struct cinfo = {0};
     jpeg_job job = {0};
     status code = STATUS_FAILURE;

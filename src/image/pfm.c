@@ -69,10 +69,9 @@ static status read_pixels(const unsigned char *bytes, int channels, bool little,
             float *pixel = picture->pixel + ((size_t)y * (size_t)picture->width + (size_t)x) * 3;
             for (int channel = 0; channel < 3; channel++) {
                 pixel[channel] = read_float(bytes + (channels == 3 ? 4 * channel : 0), little);
-                if (!isfinite(pixel[channel])) {
+                if (!isfinite(pixel[channel]))
                     return diagnose(why, STATUS_BAD_INPUT, NULL,
                                     "the pixel in column %d, row %d from the top is not a finite number", x, y);
-                }
             }
             bytes += 4 * channels;
         }
@@ -97,10 +96,9 @@ status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diag
     c.at++;
     TRY(codec_check_size(width, height, size, why));
     size_t expected = (size_t)width * (size_t)height * (size_t)channels * 4, got = (size_t)(c.end - c.at);
-    if (got != expected) {
+    if (got != expected)
         return diagnose(why, STATUS_BAD_INPUT, NULL, "the PFM file is %s: %zu bytes of pixels where %zu should be",
                         got < expected ? "truncated" : "too long", got, expected);
-    }
     image *picture;
     TRY(image_create((int)width, (int)height, &picture, why));
     status code = read_pixels(c.at, channels, scale < 0, picture, why);

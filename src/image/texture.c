@@ -15,11 +15,10 @@ static status check(const image *picture, diagnostic *why)
     }
     const size_t width = (size_t)picture->width, count = width * (size_t)picture->height;
     for (size_t i = 0; i < 3 * count; i++) {
-        if (!isfinite(picture->pixel[i])) {
+        if (!isfinite(picture->pixel[i]))
             return diagnose(why, STATUS_BAD_INPUT, NULL,
                             "the pixel in column %zu, row %zu from the top is not a finite number", i / 3 % width,
                             i / 3 / width);
-        }
     }
     return STATUS_OK;
 }

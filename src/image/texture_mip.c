@@ -41,10 +41,9 @@ void texture_build_pyramid(texture *t)
         const texture_level *from = &t->level[level - 1], *to = &t->level[level];
         for (int y = 0; y < to->height; y++) {
             cover rows = cover_of(y, from->height, to->height);
-            for (int x = 0; x < to->width; x++) {
+            for (int x = 0; x < to->width; x++)
                 to->texels[(size_t)y * (size_t)to->width + (size_t)x] =
                     mean_of(from, cover_of(x, from->width, to->width), rows);
-            }
         }
     }
 }

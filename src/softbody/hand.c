@@ -46,10 +46,9 @@ static bool is_point(vec3 v)
 
 static status check_numbers(const char *hand, const hand_key *key, diagnostic *why)
 {
-    if (!(key->time_s >= 0.0 && isfinite(key->time_s))) {
+    if (!(key->time_s >= 0.0 && isfinite(key->time_s)))
         return diagnose(why, STATUS_BAD_INPUT, "give a time from 0 on", "%s: %g is no time in seconds", hand,
                         key->time_s);
-    }
     if (key->act == HAND_MOVE && !is_point(key->by))
         return diagnose(why, STATUS_BAD_INPUT, "give three finite numbers", "%s: it moves to nowhere", hand);
     if (key->act != HAND_GRAB)
@@ -66,18 +65,15 @@ static status check_order(const char *hand, const hand_track *track, const hand_
 {
     const hand_key *last = track && track->key_count ? &track->keys[track->key_count - 1] : NULL;
     const bool holds = last && last->act != HAND_RELEASE;
-    if (last && key->time_s < last->time_s) {
+    if (last && key->time_s < last->time_s)
         return diagnose(why, STATUS_BAD_INPUT, "put what a hand does in the order of time", "%s: %g s comes after %g s",
                         hand, key->time_s, last->time_s);
-    }
-    if (key->act == HAND_GRAB && holds) {
+    if (key->act == HAND_GRAB && holds)
         return diagnose(why, STATUS_BAD_INPUT, "let it release first, or give the second grab to another hand",
                         "%s: it holds something already", hand);
-    }
-    if (key->act != HAND_GRAB && !holds) {
+    if (key->act != HAND_GRAB && !holds)
         return diagnose(why, STATUS_BAD_INPUT, "let it grab first", "%s: it %s what it does not hold", hand,
                         key->act == HAND_MOVE ? "moves" : "releases");
-    }
     return STATUS_OK;
 }
 
@@ -85,10 +81,9 @@ static status check_hand(const hand_script *s, const char *hand, const hand_trac
 {
     if (!hand[0] || strlen(hand) > HAND_NAME_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a name has 1 to 63 bytes", "'%.80s' cannot be a hand's name", hand);
-    if (!track && s->track_count == SOFTBODY_HANDS_MAX) {
+    if (!track && s->track_count == SOFTBODY_HANDS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a script has 16; one that has let go can grab again",
                         "%s is one hand too many", hand);
-    }
     return STATUS_OK;
 }
 

@@ -171,10 +171,9 @@ status mesh_child_close(mesh_child *child, const char *path, const mesh_limits *
     /* A stream that was refused although it was all there: nothing more is awaited. */
     int state = reap(child, code == STATUS_OK || child->out < 0);
     diagnostic_locate(why, path, 0, 0);
-    if (child->late) {
+    if (child->late)
         return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
                         "reading it took longer than the limit of %g s", limits->wall_s);
-    }
     if (state == -1)
         return code != STATUS_OK && repeat(child, path, why) ? STATUS_BAD_INPUT : code;
     if (WIFSIGNALED(state)) {
@@ -182,10 +181,9 @@ status mesh_child_close(mesh_child *child, const char *path, const mesh_limits *
         const char *name = sigdescr_np(signal);
         if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)
             return diagnose(why, STATUS_INTERRUPTED, NULL, "reading it was interrupted");
-        if (signal == SIGXCPU) {
+        if (signal == SIGXCPU)
             return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
                             "reading it took more processor time than the limit of %g s", limits->wall_s);
-        }
         if (signal == SIGKILL && code != STATUS_OK)
             return code;
         return diagnose(why, STATUS_BAD_INPUT, "check that the file is whole, and export it again",

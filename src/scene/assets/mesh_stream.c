@@ -60,16 +60,14 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
         return damaged(why, "the number of materials is out of range");
     if (!header->triangle_count || !header->vertex_count)
         return damaged(why, "no triangles");
-    if (header->triangle_count > limits->triangles) {
+    if (header->triangle_count > limits->triangles)
         return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail",
                         "%llu triangles are more than the limit of %zu", (unsigned long long)header->triangle_count,
                         limits->triangles);
-    }
-    if (header->vertex_count > limits->vertices) {
+    if (header->vertex_count > limits->vertices)
         return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail",
                         "%llu vertices are more than the limit of %zu", (unsigned long long)header->vertex_count,
                         limits->vertices);
-    }
     return STATUS_OK;
 }
 
@@ -90,10 +88,9 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
         if (arrays[i].size)
             TRY(source->read(source->context, arrays[i].bytes, arrays[i].size, why));
     for (size_t i = 0; m->uvs && i < m->vertex_count; i++) {
-        if (!isfinite(m->uvs[i].u) || !isfinite(m->uvs[i].v)) {
+        if (!isfinite(m->uvs[i].u) || !isfinite(m->uvs[i].v))
             return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite",
                             "vertex %zu has a texture coordinate that is no number", i);
-        }
     }
     for (size_t t = 0; t < m->triangle_count; t++)
         if (m->slots[t] >= m->slot_count)
@@ -116,10 +113,9 @@ static status read_text(const mesh_source *source, uint32_t length, char **text,
     status code = source->read(source->context, fresh, length, why);
     fresh[length] = 0;
     for (uint32_t i = 0; i < length && code == STATUS_OK; i++) {
-        if ((unsigned char)fresh[i] < 0x20 || fresh[i] == 0x7f) {
+        if ((unsigned char)fresh[i] < 0x20 || fresh[i] == 0x7f)
             code = diagnose(why, STATUS_BAD_INPUT, "rename it",
                             "the name of a material or of its picture holds a control character");
-        }
     }
     if (code != STATUS_OK) {
         free(fresh);

@@ -162,10 +162,9 @@ static status read_node(event_reader *r, yaml_event_t *event, int depth, node **
 {
     if (event->type == YAML_SCALAR_EVENT)
         return read_scalar(r, event, out);
-    if (depth > DEPTH_LIMIT) {
+    if (depth > DEPTH_LIMIT)
         return events_error(r, event->start_mark, "a scene or study needs four levels at most",
                             "nested deeper than 16 levels");
-    }
     bool map = event->type == YAML_MAPPING_START_EVENT;
     node *n = NULL;
     TRY(node_create(r, map ? NODE_MAP : NODE_LIST, event->start_mark, &n));

@@ -32,10 +32,9 @@ static status check_sky(const scene_reader *r, const node *map)
         r->scene->background.picture_line = picture->line;
         r->scene->background.picture_column = picture->column;
     }
-    if (code == STATUS_OK && shown && kind && strcmp(kind->text, "picture") != 0) {
+    if (code == STATUS_OK && shown && kind && strcmp(kind->text, "picture") != 0)
         return node_error(r->file, kind, r->why, "set it to picture, or take the picture away",
                           "background.kind is %s, and there is a picture", kind->text);
-    }
     return code;
 }
 
@@ -53,10 +52,9 @@ static status read_settings(const scene_reader *r, const char *name, param_group
 static status read_camera(const scene_reader *r, const char *name, param_group group, const node *map)
 {
     const node *target = node_get(map, "target"), *yaw = node_get(map, "yaw_deg"), *pitch = node_get(map, "pitch_deg");
-    if (target && (yaw || pitch)) {
+    if (target && (yaw || pitch))
         return node_error(r->file, yaw ? yaw : pitch, r->why, "keep the target, or the angles",
                           "the camera has a target and %s too", yaw ? "yaw_deg" : "pitch_deg");
-    }
     if (yaw || pitch) /* the angle left out is 0, not the default target's */
         r->scene->camera.aimed = 0;
     return read_settings(r, name, group, map);
@@ -88,15 +86,13 @@ static status read_sections(const scene_reader *r)
     const char *names[COUNT];
     for (size_t i = 0; i < COUNT; i++)
         names[i] = sections[i].name;
-    if (root->kind != NODE_MAP) {
+    if (root->kind != NODE_MAP)
         return node_error(r->file, root, r->why,
                           "begin with keys such as camera:, lights: and solids:", "this is not a scene");
-    }
     const node *name = node_get(root, "study");
-    if (name) {
+    if (name)
         return node_error(r->file, name, r->why, "this looks like a study; cuvette study run FILE",
                           "unknown key 'study'");
-    }
     status code = node_check_keys(r->file, root, names, COUNT, r->why);
     for (size_t i = 0; i < COUNT && code == STATUS_OK; i++) {
         const node *value = node_get(root, names[i]);

@@ -39,14 +39,12 @@ static status check_value_kind(const scene_reader *r, const param *row, const ch
     bool number = row->type == PARAM_INT || row->type == PARAM_REAL;
     char remedy[420];
     param_remedy(row, false, remedy, sizeof remedy);
-    if (value->kind == NODE_MAP || (value->kind == NODE_LIST && !vector)) {
+    if (value->kind == NODE_MAP || (value->kind == NODE_LIST && !vector))
         return node_error(r->file, value, r->why, remedy, "%.150s is a %s", path,
                           value->kind == NODE_MAP ? "map" : "list");
-    }
-    if (value->quoted && number) {
+    if (value->quoted && number)
         return node_error(r->file, value, r->why, "take the quotes away", "%.150s is a text, where a number belongs",
                           path);
-    }
     return STATUS_OK;
 }
 
@@ -56,10 +54,9 @@ static status read_value(const scene_reader *r, const char *path, const param *r
     char *text = node_value_text(value);
     if (!text && node_is_value(value))
         return out_of_memory(r->why);
-    if (!text) {
+    if (!text)
         return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
                           "%.150s holds more than plain numbers", path);
-    }
     status code = read_located(r, value, scene_set(r->scene, path, text, r->why));
     free(text);
     return code;

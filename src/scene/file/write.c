@@ -135,17 +135,15 @@ static status visit(void *context, const char *path, const param *row, const cha
 static status check_sources(const scene *s, diagnostic *why)
 {
     for (size_t i = 0; i < s->mesh_count; i++) {
-        if (s->meshes[i].source == MESH_ARRAYS) {
+        if (s->meshes[i].source == MESH_ARRAYS)
             return diagnose(why, STATUS_BAD_INPUT, "write the mesh to a file of its own, and name that",
                             "the mesh %.80s was given as arrays, which a scene file does not hold", s->meshes[i].name);
-        }
     }
     for (size_t i = 0; i < s->texture_count; i++) {
-        if (s->textures[i].data && !s->textures[i].path[0]) {
+        if (s->textures[i].data && !s->textures[i].path[0])
             return diagnose(why, STATUS_BAD_INPUT, "write the picture to a file of its own, and name that",
                             "the texture %.80s was given as pixels, which a scene file does not hold",
                             s->textures[i].name);
-        }
     }
     return STATUS_OK;
 }

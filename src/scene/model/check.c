@@ -37,11 +37,10 @@ status check_name(const char *name, diagnostic *why)
     bool right = is_letter(name[0]) && length <= SCENE_NAME_MAX;
     for (const char *c = name; right && *c; c++)
         right = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
-    if (!right) {
+    if (!right)
         return diagnose(why, STATUS_BAD_INPUT,
                         "a name is letters, digits, _ and -, begins with a letter or _, and has at most 63 of them",
                         "'%.80s' cannot be a name", name);
-    }
     if (is_reserved(name))
         return diagnose(why, STATUS_BAD_INPUT, "choose another one", "the name '%s' is a word of scene files", name);
     return STATUS_OK;
@@ -76,90 +75,77 @@ static status check_own_name(const scene *s, const char *name, diagnostic *why)
 
 static status check_render(const scene *s, diagnostic *why)
 {
-    if (s->render.width > SCENE_PIXELS_MAX / s->render.height) {
+    if (s->render.width > SCENE_PIXELS_MAX / s->render.height)
         return diagnose(why, STATUS_BAD_INPUT, "keep width times height within 268435456",
                         "a picture of %lld x %lld pixels is too large", (long long)s->render.width,
                         (long long)s->render.height);
-    }
-    if (s->render.polarisation && integrator_of(&s->render)->by_chance) {
+    if (s->render.polarisation && integrator_of(&s->render)->by_chance)
         return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
                         "the path integrator does not follow polarisation");
-    }
-    if (integrator_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL)) {
+    if (integrator_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "the depth buffer draws red, green and blue: it knows no %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
-    }
-    if (integrator_of(&s->render)->layers && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL)) {
+    if (integrator_of(&s->render)->layers && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "layers are of no light: they know no %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
-    }
-    if (s->render.polarisation && s->render.weights == WEIGHTS_CONSTANT) {
+    if (s->render.polarisation && s->render.weights == WEIGHTS_CONSTANT)
         return diagnose(why, STATUS_BAD_INPUT, "set render.weights to fresnel",
                         "constant weights know no polarisation, which Fresnel's equations give");
-    }
-    if (s->render.polarisation && s->render.transmission == TRANSMISSION_SIMPLE) {
+    if (s->render.polarisation && s->render.transmission == TRANSMISSION_SIMPLE)
         return diagnose(why, STATUS_BAD_INPUT, "set render.transmission to refract",
                         "simple transmission knows no polarisation, which Fresnel's equations give");
-    }
     return STATUS_OK;
 }
 
 static status check_light(const scene *s, const light *lamp, diagnostic *why)
 {
-    if (integrator_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0) {
+    if (integrator_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0)
         return diagnose(why, STATUS_BAD_INPUT,
                         "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
                         "%.80s: a sphere's light falls off with distance, and no reach says from where", lamp->name);
-    }
     const vec3 axis = vec3_sub(lamp->target, lamp->position);
-    if (lamp->kind != LIGHT_POINT && !(vec3_dot(axis, axis) > 0.0)) {
+    if (lamp->kind != LIGHT_POINT && !(vec3_dot(axis, axis) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move its position or its target",
                         "%.80s: the light stands at its own target", lamp->name);
-    }
     return STATUS_OK;
 }
 
 static status check_camera(const scene *s, diagnostic *why)
 {
     vec3 d = vec3_sub(s->camera.target, s->camera.position);
-    if (s->camera.aimed && !(vec3_dot(d, d) > 0.0)) {
+    if (s->camera.aimed && !(vec3_dot(d, d) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move camera.position or camera.target",
                         "the camera stands at its own target");
-    }
     return STATUS_OK;
 }
 
 static status check_background(const scene *s, diagnostic *why)
 {
-    if (s->background.kind == BACKGROUND_PICTURE && !s->background.picture_path[0]) {
+    if (s->background.kind == BACKGROUND_PICTURE && !s->background.picture_path[0])
         return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG, PFM or 24-bit BMP file",
                         "the background is a picture, but which one is not said");
-    }
     return STATUS_OK;
 }
 
 static status check_mesh(const mesh_entry *m, diagnostic *why)
 {
-    if (m->source == MESH_FILE && !m->path[0]) {
+    if (m->source == MESH_FILE && !m->path[0])
         return diagnose(why, STATUS_BAD_INPUT,
                         "give it a file, as 'file: teapot.obj', or 'generate: icosphere' and the like",
                         "%.80s: where the mesh comes from is not said", m->name);
-    }
-    if (m->source == MESH_LATHE && m->profile.count % 2 != 0) {
+    if (m->source == MESH_LATHE && m->profile.count % 2 != 0)
         return diagnose(why, STATUS_BAD_INPUT, "give radius, height, radius, height ..",
                         "%.80s: the profile has an odd number of numbers", m->name);
-    }
     return m->source == MESH_SLIME ? slime_check(m, why) : STATUS_OK;
 }
 
 static status check_texture(const texture_entry *t, diagnostic *why)
 {
-    if (!t->path[0] && !t->data) {
+    if (!t->path[0] && !t->data)
         return diagnose(why, STATUS_BAD_INPUT, "give it a file, as 'file: wood.png'",
                         "%.80s: the texture has no picture", t->name);
-    }
     return STATUS_OK;
 }
 
@@ -205,10 +191,9 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
         return unknown(s, PARAM_TEXTURE, owner->name, owner->surface.texture, why);
     if (!shape_of(&owner->shape)->triangles)
         return check_colors(s, owner, NULL, why);
-    if (!owner->mesh[0]) {
+    if (!owner->mesh[0])
         return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes",
                         "%.80s: which mesh it is is not said", owner->name);
-    }
     if (!m)
         return unknown(s, PARAM_MESH, owner->name, owner->mesh, why);
     TRY(check_colors(s, owner, m, why));
@@ -222,12 +207,11 @@ static status check_faces(const scene *s, const solid *owner, diagnostic *why)
     for (int slot = 0; slot < slots; slot++) {
         const material m = looks_face(s, owner, &owner->surface, slot).surface;
         const char *name = scene_find_mesh(s, owner->mesh)->data->slot_names[slot];
-        if (m.reflectivity + m.transparency > 1.0 + 1e-12) {
+        if (m.reflectivity + m.transparency > 1.0 + 1e-12)
             return diagnose(why, STATUS_BAD_INPUT, "lower one of them, or set render.transmission to refract",
                             "%.80s: under simple transmission its faces of %.80s have reflectivity %g + transparency "
                             "%g, more than 1",
                             owner->name, name && name[0] ? name : "no material", m.reflectivity, m.transparency);
-        }
     }
     return STATUS_OK;
 }
@@ -265,16 +249,14 @@ status check_limits(const scene *s, diagnostic *why)
     size_t primitives = 0;
     for (size_t i = 0; i < s->solid_count; i++)
         primitives += (size_t)shape_places(&s->solids[i].shape);
-    if (primitives > SCENE_PRIMITIVES_MAX) {
+    if (primitives > SCENE_PRIMITIVES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64; a cup and a torus count as two",
                         "more than 64 solids");
-    }
     if (s->light_count > SCENE_LIGHTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 lights");
-    if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX) {
+    if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64 of each", "more than 64 %s",
                         s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");
-    }
     if (s->material_count > SCENE_MATERIALS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene holds 256", "more than 256 materials");
     return STATUS_OK;

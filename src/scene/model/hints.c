@@ -43,12 +43,11 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
 {
     const material *m = &owner->surface;
     if (integrator_of(&s->render)->drawn && s->render.lighting != LIGHTING_WHITTED) {
-        if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0) {
+        if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0)
             note_give(
                 taker, "render", "lighting", "set render.lighting to whitted",
                 "%s is transparent, and without reflected and refracted light its surface is black but for highlights",
                 owner->name);
-        }
     } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
                m->reflectivity == 0.0 && m->emission == 0.0 && !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
         note_give(taker, owner->name, "ior", "set its ior",
@@ -120,35 +119,31 @@ static void hint_at_range(const scene *s, const char *where, const char *name, c
                  high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
     if (dispersion_covers(&law->law, low_nm, high_nm))
         return;
-    if (law->law.kind == DISPERSION_TABLE) {
+    if (law->law.kind == DISPERSION_TABLE)
         note_give(taker, where, "coefficients", remedy,
                   "its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond",
                   law->law.coefficient[0], law->law.coefficient[law->law.count - 2]);
-    } else {
+    else
         note_give(taker, where, "medium", remedy, "%s was measured from %g to %g nm only, and is extrapolated beyond",
                   name, law->law.low_nm, law->law.high_nm);
-    }
 }
 
 /* What is set and does nothing. */
 static void hint_at_idle(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    if (m->transparency == 0.0 && material_absorbs(m) && looks_opaque(s, owner)) {
+    if (m->transparency == 0.0 && material_absorbs(m) && looks_opaque(s, owner))
         note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m",
                   "set its transparency", "%s absorbs but is opaque", owner->name);
-    }
-    if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE)) {
+    if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE))
         note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
                   "%s has coefficients but no law for them", owner->name);
-    }
-    if (looks_waste(s, owner)) {
+    if (looks_waste(s, owner))
         note_give(taker, owner->name, "transparency",
                   "set it for the whole solid, or set render.transmission to simple",
                   "the transparency and reflectivity of the faces of %s have no effect: where light is bent they "
                   "belong to the solid",
                   owner->name);
-    }
 }
 
 static void hint_at_lights(const scene *s, const note_taker *taker)
@@ -159,13 +154,12 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
         clear |= s->solids[i].visible && s->solids[i].surface.transparency > 0.0;
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
-        if (lamp->radius > 0.0 && !path) {
+        if (lamp->radius > 0.0 && !path)
             note_give(taker, lamp->name, "radius", "set render.integrator=path, where its radius shows",
                       "%s is lit as a point", lamp->name);
-        } else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0) {
+        else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0)
             note_give(taker, lamp->name, "radius", "give it a radius and a reach",
                       "%s is a point, which random paths cannot find through clear solids: no caustics", lamp->name);
-        }
     }
 }
 
@@ -192,10 +186,9 @@ void scene_hints(const scene *s, const note_taker *taker)
     if (visible == 0)
         note_give(taker, "solids", NULL, "add solids:", "no visible solids: the picture shows the background alone");
     const bool emitters_light = shining > 0 && integrator_of(&s->render)->by_chance;
-    if (lit > 0 && s->light_count == 0 && !emitters_light) {
+    if (lit > 0 && s->light_count == 0 && !emitters_light)
         note_give(taker, "lights", NULL,
                   "add lights:", "no lights: opaque surfaces are dark but for their ambient and emitted light");
-    }
     hint_at_lights(s, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
         if (s->solids[i].visible) {

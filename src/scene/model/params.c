@@ -122,10 +122,9 @@ status scene_set(scene *s, const char *path, const char *value, diagnostic *why)
 status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
 {
     const char *equals = strchr(assignment, '=');
-    if (!equals) {
+    if (!equals)
         return diagnose(why, STATUS_BAD_INPUT, "write path=value, such as render.depth=8", "'%.80s' has no '='",
                         assignment);
-    }
     char *path = strndup(assignment, (size_t)(equals - assignment));
     if (!path)
         return out_of_memory(why);

@@ -110,12 +110,11 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
                        "material or solid, a dot "
                        "and a parameter";
     const param *setting = nearest || path->name ? NULL : nearest_setting(s, path->group);
-    if (nearest) {
+    if (nearest)
         snprintf(remedy, sizeof remedy, "did you mean '%.80s%s%.80s'?", nearest, path->name ? "." : "",
                  path->name ? path->name : "");
-    } else if (setting) {
+    else if (setting)
         snprintf(remedy, sizeof remedy, "did you mean '%s.%s'?", param_group_name(setting->group), setting->name);
-    }
     free(words);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "nothing in the scene is named '%.80s'", path->group);
 }
@@ -165,16 +164,14 @@ static status find_element(const path_words *path, place *out, diagnostic *why)
     if (!path->element)
         return STATUS_OK;
     bool color = out->row->type == PARAM_COLOR;
-    if (!color && out->row->type != PARAM_VECTOR) {
+    if (!color && out->row->type != PARAM_VECTOR)
         return diagnose(why, STATUS_BAD_INPUT, "leave out what follows the second dot", "%.80s.%.80s has no elements",
                         path->group, path->name);
-    }
     const char *letters = color ? "rgb" : "xyz", *letter = strchr(letters, path->element[0]);
-    if (!path->element[0] || path->element[1] || !letter) {
+    if (!path->element[0] || path->element[1] || !letter)
         return diagnose(why, STATUS_BAD_INPUT,
                         color ? "the elements are .r, .g and .b" : "the elements are .x, .y and .z",
                         "%.80s.%.80s has no element '%.20s'", path->group, path->name, path->element);
-    }
     out->element = (int)(letter - letters);
     return STATUS_OK;
 }
@@ -182,10 +179,9 @@ static status find_element(const path_words *path, place *out, diagnostic *why)
 status place_find(const scene *s, const char *path, place *out, diagnostic *why)
 {
     path_words words;
-    if (!split_path(path, &words)) {
+    if (!split_path(path, &words))
         return diagnose(why, STATUS_BAD_INPUT, "a path is group.name, such as render.depth",
                         "the path '%.60s...' is too long", path);
-    }
     if (!find_group(s, words.group, out))
         return unknown_group(s, &words, why);
     out->row = words.name ? param_find(out->group, words.name) : NULL;

@@ -15,10 +15,9 @@ softbody_settings slime_settings(const mesh_entry *m)
 
 static status check_steps(const mesh_entry *m, double time_s, const char *remedy, diagnostic *why)
 {
-    if (time_s / m->slime.dt_s > SLIME_STEPS_MAX) {
+    if (time_s / m->slime.dt_s > SLIME_STEPS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: %g s in steps of %g s are more than %g steps", m->name,
                         time_s, m->slime.dt_s, SLIME_STEPS_MAX);
-    }
     return STATUS_OK;
 }
 

@@ -113,10 +113,9 @@ status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, d
     const int taken = softbody_grab(m->slimes[i].x.body, place->on_mesh, reach / largest);
     if (taken == HAND_NO_MEMORY)
         return out_of_memory(why);
-    if (taken < 0) {
+    if (taken < 0)
         return diagnose(why, STATUS_BAD_INPUT, "let one release what it holds",
                         "no hand is free, or others hold all of it");
-    }
     hands[taken] = (motion_hand){.holds = true,
                                  .rotation = rotation_from_deg(shape->rotation_deg),
                                  .scale = shape->scale,

@@ -105,10 +105,9 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     place at;
     TRY(place_find_object(s, name, &at, why));
     char *copy = NULL;
-    if (!group_has_names(at.group)) {
+    if (!group_has_names(at.group))
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid",
                         "the %s has no name of its own", name);
-    }
     if (strcmp(name, new_name) == 0)
         return STATUS_OK;
     TRY(check_name(new_name, why));

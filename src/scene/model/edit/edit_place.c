@@ -136,10 +136,9 @@ static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
 {
     const mat3 turn = rotation_from_deg(degrees);
     camera *c = &s->camera;
-    if (c->aimed) {
+    if (c->aimed)
         return edit_set_vector(s, "camera", "target",
                                vec3_add(c->position, mat3_apply(turn, vec3_sub(c->target, c->position))), why);
-    }
     if (degrees.x == 0.0 && degrees.z == 0.0) { /* yaw turns as y does, z towards x */
         c->yaw_deg = wrap(c->yaw_deg + degrees.y);
         return STATUS_OK;
@@ -172,10 +171,9 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
     const bool is_many = scene_parts_named(s, name, &parts);
     if (!is_many)
         TRY(edit_find(s, name, &at, why));
-    if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z)) {
+    if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z))
         return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees",
                         "%.80s cannot be turned so far", name);
-    }
     if (is_many)
         return scene_turn_parts(s, parts, degrees, why);
     if (at.group == PARAM_CAMERA)

@@ -17,10 +17,9 @@ status scene_give_material(scene *s, const char *solid_name, const char *materia
 {
     place at;
     TRY(place_find_object(s, solid_name, &at, why));
-    if (at.group != PARAM_SOLID) {
+    if (at.group != PARAM_SOLID)
         return diagnose(why, STATUS_BAD_INPUT, "name a solid", "%.80s is a %s, which has no material", solid_name,
                         param_group_name(at.group));
-    }
     solid *owner = &s->solids[at.index];
     if (!material_name || !material_name[0]) {
         owner->material_index = -1;

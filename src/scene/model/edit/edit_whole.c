@@ -54,10 +54,9 @@ bool scene_parts_named(const scene *s, const char *name, scene_parts *out)
 status edit_find(const scene *s, const char *name, place *at, diagnostic *why)
 {
     const status code = place_find_object(s, name, at, why);
-    if (code == STATUS_BAD_INPUT && why && strncmp(why->remedy, "did you mean", 12) != 0) {
+    if (code == STATUS_BAD_INPUT && why && strncmp(why->remedy, "did you mean", 12) != 0)
         snprintf(why->remedy, sizeof why->remedy,
                  "give the name of a solid or light, or of camera, solids, lights, all, or a sum as all+camera");
-    }
     return code;
 }
 
@@ -251,17 +250,15 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
 {
     whole_edit e = {.s = s, .factor = factor, .why = why, .act = scale_parts};
     place at;
-    if (!(factor > 0.0 && factor <= 1e9)) {
+    if (!(factor > 0.0 && factor <= 1e9))
         return diagnose(why, STATUS_BAD_INPUT, "give a factor above 0, at most 1e9", "%.80s cannot be scaled by %g",
                         name, factor);
-    }
     if (scene_parts_named(s, name, &e.parts))
         return apply(&e);
     TRY(edit_find(s, name, &at, why));
-    if (at.group != PARAM_SOLID && at.group != PARAM_LIGHT) {
+    if (at.group != PARAM_SOLID && at.group != PARAM_LIGHT)
         return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or all, solids, lights",
                         "%.80s has no size of its own", name);
-    }
     e.only = name;
     return apply(&e);
 }

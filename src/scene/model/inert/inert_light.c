@@ -29,10 +29,9 @@ bool inert_light(const inert_case *c)
         return inert_say(c, "dark-lamp", inert_set("%s.intensity=1", c->name).text, "the light's intensity is 0");
     if (!of_color && is_black(l->color))
         return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
-    if ((strcmp(name, "target") == 0 || strcmp(name, "half_angle_deg") == 0) && l->kind == LIGHT_POINT) {
+    if ((strcmp(name, "target") == 0 || strcmp(name, "half_angle_deg") == 0) && l->kind == LIGHT_POINT)
         return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text,
                          "a point of light shines all around");
-    }
     if (strcmp(name, "radius") == 0 && !is_path(c->s)) {
         const inert_remedy far = inert_set("render.integrator=path and %s.reach=8", c->name);
         return inert_say(c, "sphere-lamp", l->reach > 0.0 ? "set render.integrator=path" : far.text,
@@ -88,10 +87,9 @@ static bool matches_surroundings(const scene *s, const solid *one)
 static bool surrounding_index(const inert_case *c)
 {
     const scene *s = c->s;
-    if (!first_visible(s, is_clear)) {
+    if (!first_visible(s, is_clear))
         return inert_say(c, "no-clear", inert_set_clear(first_visible(s, NULL)).text,
                          "no visible solid is transparent: no light is bent");
-    }
     return goes_straight(c) || (!follows_rays(s) && !draws_through(s) && !s->render.radiance &&
                                 !first_visible(s, matches_surroundings) && say_not_bent(c));
 }

@@ -141,10 +141,9 @@ static bool mirrors_black(const inert_case *c)
 
 static bool say_unseen(const inert_case *c)
 {
-    if (integrator_of(&c->s->render)->layers) {
+    if (integrator_of(&c->s->render)->layers)
         return inert_say(c, "unseen", "set render.integrator=whitted", "no camera ray of this image meets %s first",
                          c->owner->name);
-    }
     int64_t highest = c->owner->priority;
     for (size_t i = 0; i < c->s->solid_count; i++) {
         const solid *one = &c->s->solids[i];
@@ -177,11 +176,10 @@ static bool reflectivity_rule(const inert_case *c)
 static bool coefficients_rule(const inert_case *c)
 {
     const int64_t law = c->m->medium;
-    if (law == MEDIUM_IOR || law >= MEDIUM_CATALOGUE) {
+    if (law == MEDIUM_IOR || law >= MEDIUM_CATALOGUE)
         return inert_say(c, "no-law",
                          inert_set("%s.coefficients=1.5,0.004 and %s.medium=cauchy", c->name, c->name).text,
                          "medium %s takes no coefficients", medium_words[law]);
-    }
     return index_rule(c);
 }
 
@@ -201,10 +199,9 @@ static bool texture_rule(const inert_case *c)
 
 static bool texture_size_rule(const inert_case *c)
 {
-    if (shape_of(&c->owner->shape)->triangles) {
+    if (shape_of(&c->owner->shape)->triangles)
         return inert_say(c, "mesh-texture", "set it on a solid that is no mesh",
                          "a mesh has texture coordinates of its own");
-    }
     if (!c->m->texture[0]) {
         const inert_remedy remedy = c->s->texture_count > 0
                                         ? inert_set("%s.texture=%s", c->name, c->s->textures[0].name)

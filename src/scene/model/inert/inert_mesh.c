@@ -38,10 +38,9 @@ static bool other_maker(const inert_case *c, const mesh_entry *m)
 {
     for (size_t i = 0; i < sizeof maker_rows / sizeof *maker_rows; i++) {
         const maker_row *r = &maker_rows[i];
-        if (strcmp(r->name, c->at.row->name) == 0 && !(r->makers & MAKES(m->source))) {
+        if (strcmp(r->name, c->at.row->name) == 0 && !(r->makers & MAKES(m->source)))
             return inert_say(c, "other-body", inert_set("%s.generate=%s", c->name, r->remedy).text, "%s %s has no %s",
                              m->source == MESH_FILE ? "a mesh of a" : "generate:", maker_word(m->source), r->name);
-        }
     }
     return false;
 }
@@ -111,10 +110,9 @@ static bool unused_texture(const inert_case *c)
         dull = has ? one : dull;
         bare = !has && one->visible ? one : bare;
     }
-    if (dull) {
+    if (dull)
         return inert_say(c, "unused-texture", color_remedy(s, &dull->surface, dull->name).text,
                          "no light shows the colour of what has it");
-    }
     const inert_remedy remedy = bare ? inert_set("%s.texture=%s", bare->name, c->name) : inert_set_on(NULL, "");
     return inert_say(c, "unused-texture", remedy.text, "no visible solid has this texture");
 }

@@ -87,10 +87,9 @@ static bool lighting(const inert_case *c)
     }
     if (highlight)
         return false;
-    if (!integrator_of(&s->render)->tree) {
+    if (!integrator_of(&s->render)->tree)
         return inert_say(c, "no-highlight", WHITTED,
                          "no lamp makes a highlight, and no ray goes on under this render.integrator");
-    }
     return (nothing_goes_on(s) || (s->render.depth == 0 && is_dark_beyond(s))) &&
            inert_say(c, "no-highlight", mirror_remedy(s).text, "nothing visible has a highlight, reflects or refracts");
 }
@@ -186,10 +185,9 @@ static bool has_dispersion(const scene *s, const solid *one)
 static bool lambda(const inert_case *c)
 {
     const scene *s = c->s;
-    if (s->render.spectrum == SPECTRUM_SPECTRAL) {
+    if (s->render.spectrum == SPECTRUM_SPECTRAL)
         return inert_say(c, "rgb-only", "set render.spectrum=rgb",
                          "the spectral film takes each wavelength's own index");
-    }
     const index_law around = surrounding_index_law(&s->background);
     return no_clear(c) || (!is_dispersive(&around) && !first_visible(s, has_dispersion) &&
                            inert_say(c, "no-dispersion", inert_set_on(first_visible(s, is_clear), "medium=bk7").text,
@@ -219,10 +217,9 @@ static bool shows_texture(const scene *s, const solid *one)
 
 static bool texturing(const inert_case *c)
 {
-    if (!integrator_of(&c->s->render)->drawn) {
+    if (!integrator_of(&c->s->render)->drawn)
         return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer",
                          "rays always meet a texture in perspective");
-    }
     const solid *first = first_visible(c->s, NULL);
     const inert_remedy remedy = first && c->s->texture_count > 0
                                     ? inert_set("%s.texture=%s", first->name, c->s->textures[0].name)

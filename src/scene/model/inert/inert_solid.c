@@ -32,11 +32,10 @@ static bool priority_rule(const inert_case *c)
             return false;
         hidden = one;
     }
-    if (hidden) {
+    if (hidden)
         return inert_say(c, "both-opaque",
                          inert_set("%s.transparency=0.9 and %s.ior=1.3", hidden->name, hidden->name).text,
                          "%s overlaps %s, but both are opaque: nothing sees into them", c->name, hidden->name);
-    }
     return inert_say(c, "apart", "move it into another solid", "no other visible solid overlaps %s", c->name);
 }
 
@@ -74,10 +73,9 @@ static bool mesh_shading(const inert_case *c)
     if (textured || is_lit_by_lamps(s, c->m) || may_look_by_face(s, c->owner) ||
         (follows_rays(s) && sends_rays_on(s, c->owner)))
         return false;
-    if (integrator_of(&s->render)->layers) {
+    if (integrator_of(&s->render)->layers)
         return s->render.layer != LAYER_NORMAL &&
                inert_say(c, "no-normals", "set render.layer=normal", "the layer that the image shows has no normals");
-    }
     const inert_remedy remedy = shining_lights(s) > 0 ? inert_set("%s.diffuse=0.7", c->name) : lamp_remedy(s);
     return inert_say(c, "unshaded", remedy.text, "no lamp's light shows on it, and it sends no ray on");
 }
@@ -95,9 +93,8 @@ bool inert_solid(const inert_case *c)
     };
     inert_case own = *c;
     own.owner = &c->s->solids[c->at.index], own.m = &own.owner->surface;
-    if (!own.owner->visible) {
+    if (!own.owner->visible)
         return strcmp(c->at.row->name, "visible") != 0 &&
                inert_say(c, "invisible", inert_set("%s.visible=on", c->name).text, "the solid is not visible");
-    }
     return c->at.row->group == PARAM_MATERIAL ? inert_surface(&own) : inert_by_name(rows, &own);
 }
