@@ -35,8 +35,7 @@ static status system_error(diagnostic *why, status code, const char *path, const
     case ENOENT: remedy = "check the path"; break;
     default: break;
     }
-    diagnostic_locate(why, path, 0, 0);
-    return diagnose(why, code, remedy, "%s: %s", doing, reason ? reason : "unknown error");
+    return diagnose_at(why, path, code, remedy, "%s: %s", doing, reason ? reason : "unknown error");
 }
 
 /* Reads to the end of the file whatever fstat said: files of /proc claim to be empty. */
@@ -63,8 +62,7 @@ static status read_descriptor(int fd, const char *path, size_t limit, size_t exp
         used += (size_t)got;
         if (used > limit) {
             free(buffer);
-            diagnostic_locate(why, path, 0, 0);
-            return diagnose(why, STATUS_BAD_INPUT, NULL, "the file is larger than %zu bytes", limit);
+            return diagnose_at(why, path, STATUS_BAD_INPUT, NULL, "the file is larger than %zu bytes", limit);
         }
         if (used == capacity) {
             capacity = capacity > limit / 2 ? limit + 1 : capacity * 2 + 4096;
@@ -88,10 +86,8 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
     *text = NULL;
     *size = 0;
     int fd = below_open(path, root);
-    if (fd < 0 && errno == EXDEV) {
-        diagnostic_locate(why, path, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
-    }
+    if (fd < 0 && errno == EXDEV)
+        return diagnose_at(why, path, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
     if (fd < 0) {
         bool ours = errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == EIO;
         return system_error(why, ours ? STATUS_FAILURE : STATUS_BAD_INPUT, path, "cannot open", errno);
@@ -101,9 +97,8 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
     if (fstat(fd, &about) != 0) {
         code = system_error(why, STATUS_FAILURE, path, "cannot read", errno);
     } else if (!S_ISREG(about.st_mode)) {
-        diagnostic_locate(why, path, 0, 0);
-        code = diagnose(why, STATUS_BAD_INPUT, "name a file", "%s",
-                        S_ISDIR(about.st_mode) ? "is a folder" : "is not a regular file");
+        code = diagnose_at(why, path, STATUS_BAD_INPUT, "name a file", "%s",
+                           S_ISDIR(about.st_mode) ? "is a folder" : "is not a regular file");
     } else {
         if (limit > SIZE_MAX / 4)
             limit = SIZE_MAX / 4;
@@ -201,11 +196,9 @@ static void release(file_writer *writer)
 status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
 {
     *writer = (file_writer){0};
-    if (!*path) {
-        diagnostic_locate(why, NULL, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, "name a file, or - for standard output",
-                        "the name of the file to write is empty");
-    }
+    if (!*path)
+        return diagnose_at(why, NULL, STATUS_BAD_INPUT, "name a file, or - for standard output",
+                           "the name of the file to write is empty");
     writer->path = strdup(path);
     if (!writer->path)
         return no_room(why, path);
@@ -255,13 +248,11 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
     if (failed) {
         if (writer->temporary)
             unlink(writer->temporary);
-        if (error) {
+        if (error)
             code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error);
-        } else {
-            diagnostic_locate(why, writer->path, 0, 0);
-            code = diagnose(why, STATUS_FAILURE, "check the space that is left on the disk",
-                            "cannot write: a write failed");
-        }
+        else
+            code = diagnose_at(why, writer->path, STATUS_FAILURE, "check the space that is left on the disk",
+                               "cannot write: a write failed");
     } else if (writer->temporary) {
         file_flush_folder(writer->path);
     }
@@ -284,6 +275,14 @@ status file_writer_end(file_writer *writer, status code, diagnostic *why)
         return file_writer_commit(writer, why);
     file_writer_abandon(writer);
     return code;
+}
+
+status file_write(const char *path, const char *text, diagnostic *why)
+{
+    file_writer writer;
+    TRY(file_writer_open(&writer, path, why));
+    fputs(text, writer.stream);
+    return file_writer_commit(&writer, why);
 }
 
 static int make_one_directory(const char *path)

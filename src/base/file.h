@@ -24,6 +24,9 @@ void file_writer_abandon(file_writer *writer);
 /* One or the other: commits where code, of what was to be written, is STATUS_OK; else abandons and returns it. */
 status file_writer_end(file_writer *writer, status code, diagnostic *why);
 
+/* The whole of a text, at once. */
+status file_write(const char *path, const char *text, diagnostic *why);
+
 /* The entry of a file in its folder must reach the disk too; some file systems cannot do that, which is no error. */
 void file_flush_folder(const char *path);
 

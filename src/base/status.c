@@ -39,20 +39,26 @@ static void copy_line(char *to, size_t size, const char *from)
     make_one_line(to);
 }
 
-status diagnose(diagnostic *why, status code, const char *remedy, const char *what, ...)
+static status fill(diagnostic *why, status code, const char *remedy, const char *what, va_list arguments)
 {
     if (!why)
         return code;
     /* Through copies, because the arguments may lie in *why itself. */
     char what_text[sizeof why->what + 1], remedy_text[sizeof why->remedy];
     copy_line(remedy_text, sizeof remedy_text, remedy ? remedy : "");
-    va_list arguments;
-    va_start(arguments, what);
     if (vsnprintf(what_text, sizeof what_text, what, arguments) < 0)
         what_text[0] = 0;
-    va_end(arguments);
     copy_line(why->what, sizeof why->what, what_text);
     memcpy(why->remedy, remedy_text, sizeof remedy_text);
+    return code;
+}
+
+status diagnose(diagnostic *why, status code, const char *remedy, const char *what, ...)
+{
+    va_list arguments;
+    va_start(arguments, what);
+    fill(why, code, remedy, what, arguments);
+    va_end(arguments);
     return code;
 }
 
@@ -70,6 +76,23 @@ void diagnostic_locate(diagnostic *why, const char *file, long line, long column
     memcpy(why->file, name, sizeof name);
     why->line = line > 0 ? line : 0;
     why->column = column > 0 ? column : 0;
+}
+
+status diagnose_at(diagnostic *why, const char *place, status code, const char *remedy, const char *what, ...)
+{
+    va_list arguments;
+    va_start(arguments, what);
+    fill(why, code, remedy, what, arguments);
+    va_end(arguments);
+    diagnostic_locate(why, place, 0, 0);
+    return code;
+}
+
+status locate_failure(diagnostic *why, const char *place, status code)
+{
+    if (code != STATUS_OK)
+        diagnostic_locate(why, place, 0, 0);
+    return code;
 }
 
 char *diagnostic_text(const diagnostic *why, char *text, size_t size)

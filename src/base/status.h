@@ -46,6 +46,13 @@ status out_of_memory(diagnostic *why);
 /* Says where the trouble is. file may be NULL; line and column from 1, 0 for none. */
 void diagnostic_locate(diagnostic *why, const char *file, long line, long column);
 
+/* Both in one: diagnose, and the file, or what else stands for a place, without a line. */
+status diagnose_at(diagnostic *why, const char *place, status code, const char *remedy, const char *what, ...)
+    __attribute__((format(printf, 5, 6)));
+
+/* Hands on what a step returned; where that is not well, the trouble is at the place. */
+status locate_failure(diagnostic *why, const char *place, status code);
+
 /* Writes "file:line:column: what; remedy" (parts that are absent are left out) into text; returns text. */
 char *diagnostic_text(const diagnostic *why, char *text, size_t size);
 

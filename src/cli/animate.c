@@ -51,11 +51,10 @@ static status choose_duration(animate_request *request, const scene *s, diagnost
 static status read_scene(animate_request *request, const animate_names *names, scene **out, diagnostic *why)
 {
     status result = scene_input_read(&request->input, out, why);
-    if (result == STATUS_OK && !scene_moves(*out)) {
-        diagnostic_locate(why, request->input.path, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, "give it a mesh with 'generate: slime', or use 'cuvette render'",
-                        "nothing moves in the scene");
-    }
+    if (result == STATUS_OK && !scene_moves(*out))
+        return diagnose_at(why, request->input.path, STATUS_BAD_INPUT,
+                           "give it a mesh with 'generate: slime', or use 'cuvette render'",
+                           "nothing moves in the scene");
     if (result == STATUS_OK)
         result = set_scripts(request, *out, why);
     if (result == STATUS_OK && request->rows)

@@ -38,9 +38,8 @@ static bool show_progress(void *context, double share_done)
 static status say_interrupted(const film_job *f, diagnostic *why)
 {
     const char *remedy = f->names ? "run it again, and it goes on there" : "";
-    diagnostic_locate(why, f->request->output, 0, 0);
-    return diagnose(why, STATUS_INTERRUPTED, remedy, "interrupted at %s%s", f->label,
-                    f->stream.temporary ? ", and nothing is left of the film" : "");
+    return diagnose_at(why, f->request->output, STATUS_INTERRUPTED, remedy, "interrupted at %s%s", f->label,
+                       f->stream.temporary ? ", and nothing is left of the film" : "");
 }
 
 /* Is that frame's picture there, and its row where rows are wanted? */
@@ -169,12 +168,7 @@ static status open_stream(film_job *f, diagnostic *why)
 
 static status close_stream(film_job *f, status ended, diagnostic *why)
 {
-    if (!f->stream.stream)
-        return ended;
-    if (ended == STATUS_OK)
-        return file_writer_commit(&f->stream, why);
-    file_writer_abandon(&f->stream);
-    return ended;
+    return f->stream.stream ? file_writer_end(&f->stream, ended, why) : ended;
 }
 
 static status make_film(film_job *f, diagnostic *why)

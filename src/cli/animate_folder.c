@@ -28,8 +28,8 @@ static status open_folder(const animate_names *names, DIR **out, diagnostic *why
     *out = opendir(names->folder);
     if (*out || errno == ENOENT)
         return STATUS_OK;
-    diagnostic_locate(why, names->folder, 0, 0);
-    return diagnose(why, STATUS_FAILURE, "make the folder readable", "cannot be listed: %s", strerrordesc_np(errno));
+    return diagnose_at(why, names->folder, STATUS_FAILURE, "make the folder readable", "cannot be listed: %s",
+                       strerrordesc_np(errno));
 }
 
 static bool is_folder(DIR *in, const char *name)
@@ -49,11 +49,10 @@ static status check_frame(const animate_names *names, DIR *in, const char *name,
 {
     if (is_folder(in, name))
         return refuse(names, name, elsewhere, "is a folder, and named as a frame", why);
-    if (known < 0) {
-        diagnostic_locate(why, names->folder, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, "remove them yourself, or put this film into another folder",
-                        "there are frames of this name without a ledger that says of which film, as %.96s", name);
-    }
+    if (known < 0)
+        return diagnose_at(why, names->folder, STATUS_BAD_INPUT,
+                           "remove them yourself, or put this film into another folder",
+                           "there are frames of this name without a ledger that says of which film, as %.96s", name);
     char what[128];
     snprintf(what, sizeof what, "is named as a frame, but the film there has %" PRId64, known);
     return animate_name_frame(names, name) < known

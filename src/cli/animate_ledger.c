@@ -14,8 +14,7 @@ static const char otherwise[] = "put this film into another folder, or add --res
 
 static status refuse(const char *path, diagnostic *why, const char *what)
 {
-    diagnostic_locate(why, path, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, otherwise, "%s", what);
+    return diagnose_at(why, path, STATUS_BAD_INPUT, otherwise, "%s", what);
 }
 
 static char *ledger_path(const animate_names *names)
@@ -110,10 +109,9 @@ static status compare(const char *path, const animate_definition *d, bool restar
     char what[160];
     *count = count_of(ledger);
     if (!definition || !version || *count < 0) {
-        diagnostic_locate(why, path, 0, 0);
-        result =
-            diagnose(why, STATUS_BAD_INPUT, "put this film into another folder, or remove it and the frames yourself",
-                     "is no ledger of a film");
+        result = diagnose_at(why, path, STATUS_BAD_INPUT,
+                             "put this film into another folder, or remove it and the frames yourself",
+                             "is no ledger of a film");
     } else if (!restart && strcmp(version, CUVETTE_VERSION) != 0) {
         snprintf(what, sizeof what, "the frames there are by version %.32s of the program, this is %s", version,
                  CUVETTE_VERSION);

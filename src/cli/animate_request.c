@@ -14,18 +14,13 @@
 #define SECONDS_MAX 86400.0 /* of the parameter time_s */
 enum { FRAMES_MAX = 10000000, RATE_PART_MAX = 1000000 };
 
-static status wrong(const char *option, const char *value, const char *remedy, const char *what, diagnostic *why)
-{
-    return options_wrong(option, value, why, remedy, "%s", what);
-}
-
 static status take_seconds(const command_option *o, void *request, const char *value, diagnostic *why)
 {
     double *seconds = (double *)((char *)request + o->at);
     const bool is_time = number_parse_real(value, seconds) && *seconds >= 0 && *seconds <= SECONDS_MAX;
     char name[32];
     snprintf(name, sizeof name, "--%s", o->name);
-    return is_time ? STATUS_OK : wrong(name, value, "give seconds, from 0 to 86400", "is no such time", why);
+    return is_time ? STATUS_OK : options_wrong(name, value, why, "give seconds, from 0 to 86400", "is no such time");
 }
 
 static int64_t common_divisor(int64_t a, int64_t b)
@@ -51,8 +46,9 @@ static status take_rate(const command_option *o, void *into, const char *value, 
         right = number_parse_int(whole, &num) && (!value[length] || number_parse_int(value + length + 1, &den));
     }
     if (!right || num < 1 || den < 1 || num > RATE_PART_MAX || den > RATE_PART_MAX)
-        return wrong("--fps", value, "give an integer or a fraction of integers up to 1000000, as 25 or 30000/1001",
-                     "is no rate of frames", why);
+        return options_wrong("--fps", value, why,
+                             "give an integer or a fraction of integers up to 1000000, as 25 or 30000/1001",
+                             "is no rate of frames");
     const int64_t divisor = common_divisor(num, den);
     request->fps_num = num / divisor;
     request->fps_den = den / divisor;
@@ -83,15 +79,15 @@ static const command_option options[] = {
 static status check_output(const animate_request *request, diagnostic *why)
 {
     if (!request->output)
-        return wrong("animate", NULL, "add -o frames/%05d.png for pictures, -o NAME.y4m for a film",
-                     "nothing is asked for", why);
+        return options_wrong("animate", NULL, why, "add -o frames/%05d.png for pictures, -o NAME.y4m for a film",
+                             "nothing is asked for");
     const bool to_stdout = strcmp(request->output, "-") == 0;
     if (to_stdout && request->json)
-        return wrong("--json", "", "name a file by -o", "standard output cannot hold film and account", why);
+        return options_wrong("--json", "", why, "name a file by -o", "standard output cannot hold film and account");
     if (to_stdout && isatty(STDOUT_FILENO))
-        return wrong("-o", "-", "send it into a file or another program", "a terminal shows no films", why);
+        return options_wrong("-o", "-", why, "send it into a file or another program", "a terminal shows no films");
     if (request->restart && animate_is_stream(request))
-        return wrong("--restart", "", "leave it out", "a film in one file always begins anew", why);
+        return options_wrong("--restart", "", why, "leave it out", "a film in one file always begins anew");
     return STATUS_OK;
 }
 
@@ -112,14 +108,12 @@ static status find_script(animate_request *request, diagnostic *why)
         return STATUS_OK;
     struct stat about;
     if (stat(request->script, &about) == 0 && !S_ISREG(about.st_mode))
-        return wrong("--script", request->script, "name a regular file: a script is read more than once",
-                     "is no regular file", why);
+        return options_wrong("--script", request->script, why, "name a regular file: a script is read more than once",
+                             "is no regular file");
     request->script_path = realpath(request->script, NULL);
     if (request->script_path)
         return STATUS_OK;
-    char what[160];
-    snprintf(what, sizeof what, "cannot open: %s", strerrordesc_np(errno));
-    return wrong("--script", request->script, "check the path", what, why);
+    return options_wrong("--script", request->script, why, "check the path", "cannot open: %s", strerrordesc_np(errno));
 }
 
 static status check_request(void *asked, diagnostic *why)
@@ -177,6 +171,7 @@ status animate_check_length(const animate_request *request, diagnostic *why)
     const double frames = request->duration_s * (double)request->fps_num / (double)request->fps_den;
     if (frames <= FRAMES_MAX && request->start_s + request->duration_s <= SECONDS_MAX)
         return STATUS_OK;
-    return wrong("animate", NULL, "give a --duration with at most 10000000 frames, that ends within 86400 s",
-                 "the film is too long", why);
+    return options_wrong("animate", NULL, why,
+                         "give a --duration with at most 10000000 frames, that ends within 86400 s",
+                         "the film is too long");
 }

@@ -79,8 +79,7 @@ static void put_row(csv_line *line, const animate_row *r)
 
 static status refuse(const char *path, const char *what, diagnostic *why)
 {
-    diagnostic_locate(why, path, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "name another file by --rows, or move this one away", "%s", what);
+    return diagnose_at(why, path, STATUS_BAD_INPUT, "name another file by --rows, or move this one away", "%s", what);
 }
 
 static bool has_header(const csv *there, const char *header)
@@ -183,11 +182,10 @@ status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *
     char hash[32];
     const film_row *there = find(rows, row->frame);
     snprintf(hash, sizeof hash, "%016" PRIx64, job_account_hash(row->made));
-    if (there && strcmp(there->film_hash, hash) != 0) {
-        diagnostic_locate(why, rows->path, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, "make the film anew, with --restart and another file by --rows",
-                        "frame %" PRId64 " is film %s now, and %s in its row", row->frame, hash, there->film_hash);
-    }
+    if (there && strcmp(there->film_hash, hash) != 0)
+        return diagnose_at(why, rows->path, STATUS_BAD_INPUT,
+                           "make the film anew, with --restart and another file by --rows",
+                           "frame %" PRId64 " is film %s now, and %s in its row", row->frame, hash, there->film_hash);
     if (there)
         return STATUS_OK;
     csv_line line = {0};

@@ -39,10 +39,7 @@ static status take_parameter(const command_option *o, void *into, const char *va
     snprintf(path, sizeof path, "body.%s", o->parameter ? o->parameter : o->name);
     snprintf(name, sizeof name, "--%s", o->name);
     request->generate |= strcmp(o->name, "generate") == 0;
-    const status result = scene_set(request->around, path, value, why);
-    if (result != STATUS_OK)
-        diagnostic_locate(why, name, 0, 0);
-    return result;
+    return locate_failure(why, name, scene_set(request->around, path, value, why));
 }
 
 static const command_option options[] = {

@@ -220,8 +220,7 @@ status options_wrong(const char *where, const char *value, diagnostic *why, cons
     vsnprintf(text, sizeof text, what, arguments);
     va_end(arguments);
     snprintf(place, sizeof place, value ? "%s %s" : "%s", where ? where : "", value);
-    diagnostic_locate(why, place, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", text);
+    return diagnose_at(why, place, STATUS_BAD_INPUT, remedy, "%s", text);
 }
 
 status options_integer(const char *option, const char *value, int64_t lowest, int64_t highest, int64_t *out,

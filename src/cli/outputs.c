@@ -256,11 +256,7 @@ status outputs_write_text(const char *path, status (*write)(const void *content,
         return write(content, stdout, why);
     file_writer writer;
     TRY(file_writer_open(&writer, path, why));
-    status result = write(content, writer.stream, why);
-    if (result == STATUS_OK)
-        return file_writer_commit(&writer, why);
-    file_writer_abandon(&writer);
-    return result;
+    return file_writer_end(&writer, write(content, writer.stream, why), why);
 }
 
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why)

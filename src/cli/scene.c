@@ -25,11 +25,6 @@ typedef struct scene_request {
 
 enum { OPTIONS_MOST = 16 };
 
-static status misused(diagnostic *why, const char *remedy, const char *what)
-{
-    return options_wrong("scene", NULL, why, remedy, "%s", what);
-}
-
 static status take_edit(const command_option *o, void *into, const char *text, diagnostic *why)
 {
     scene_request *request = into;
@@ -73,14 +68,15 @@ static status check_request(const scene_request *request, diagnostic *why)
     static const char *const endings[] = {".yaml", ".yml"};
     size_t unused;
     if (!request->path && !request->begins_empty)
-        return misused(why, "name a scene file, as experiments/scenes/rod.yaml, or begin with --new",
-                       "no scene is named");
+        return options_wrong("scene", NULL, why,
+                             "name a scene file, as experiments/scenes/rod.yaml, or begin with --new",
+                             "no scene is named");
     if (request->path && request->begins_empty)
-        return misused(why, "give one of them", "a scene file and --new exclude each other");
+        return options_wrong("scene", NULL, why, "give one of them", "a scene file and --new exclude each other");
     if (request->only_checks && request->only_lists)
-        return misused(why, "give one of them", "--check and --list exclude each other");
+        return options_wrong("scene", NULL, why, "give one of them", "--check and --list exclude each other");
     if (request->output && (request->only_checks || request->only_lists))
-        return misused(why, "leave out -o FILE", "--check and --list write no scene");
+        return options_wrong("scene", NULL, why, "leave out -o FILE", "--check and --list write no scene");
     if (!request->output || strcmp(request->output, "-") == 0)
         return STATUS_OK;
     TRY(outputs_ending("-o", request->output, endings, 2, "end it in .yaml or .yml", &unused, why));

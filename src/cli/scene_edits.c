@@ -186,7 +186,5 @@ status scene_edit_apply(scene *s, const scene_edit *edit, const char *text, diag
     char where[512];
     const status result = edit->is_named ? apply_named(s, edit, text, why) : edit->apply(s, edit, NULL, text, why);
     snprintf(where, sizeof where, "%s %s", edit->option, text);
-    if (result != STATUS_OK)
-        diagnostic_locate(why, where, 0, 0);
-    return result;
+    return locate_failure(why, where, result);
 }

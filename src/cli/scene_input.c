@@ -106,10 +106,7 @@ status scene_input_load(scene *s, diagnostic *why)
 
 status scene_input_isa(isa *level, diagnostic *why)
 {
-    status result = isa_choose(level, why);
-    if (result != STATUS_OK)
-        diagnostic_locate(why, "environment", 0, 0);
-    return result;
+    return locate_failure(why, "environment", isa_choose(level, why));
 }
 
 status scene_input_job(bool measured, job **out, diagnostic *why)

@@ -159,10 +159,7 @@ static status print_summary(const study *s, const study_request *request, diagno
     text_writer writer;
     TRY(text_writer_open(&writer, why));
     status result = study_summary(s, request->results, writer.stream, why);
-    if (result == STATUS_OK)
-        result = text_writer_close(&writer, &text, NULL, why);
-    else
-        text_writer_abandon(&writer);
+    result = text_writer_end(&writer, result, &text, NULL, why);
     if (result == STATUS_OK)
         result = study_table_print(stdout, text, why);
     free(text);

@@ -107,11 +107,8 @@ status image_encode(const image *picture, image_format format, int bits, bool fa
     text_writer writer;
     *bytes = NULL;
     TRY(text_writer_open(&writer, why));
-    status code = write_as(picture, format, writer.stream, bits, fast, why);
-    if (code == STATUS_OK)
-        code = text_writer_close(&writer, &text, size, why);
-    else
-        text_writer_abandon(&writer);
+    const status code =
+        text_writer_end(&writer, write_as(picture, format, writer.stream, bits, fast, why), &text, size, why);
     *bytes = (unsigned char *)text;
     return code;
 }
@@ -119,14 +116,11 @@ status image_encode(const image *picture, image_format format, int bits, bool fa
 status image_write(const image *picture, const char *path, int bits, diagnostic *why)
 {
     image_format format = image_format_of(path);
-    if (format == IMAGE_UNKNOWN) {
-        diagnostic_locate(why, path, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, "end the name in .png, .jpg, .jpeg or .pfm", "unknown kind of picture");
-    }
-    if (format == IMAGE_PNG && bits != 8 && bits != 16) {
-        diagnostic_locate(why, path, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, "8 or 16", "a PNG picture cannot have %d bits", bits);
-    }
+    if (format == IMAGE_UNKNOWN)
+        return diagnose_at(why, path, STATUS_BAD_INPUT, "end the name in .png, .jpg, .jpeg or .pfm",
+                           "unknown kind of picture");
+    if (format == IMAGE_PNG && bits != 8 && bits != 16)
+        return diagnose_at(why, path, STATUS_BAD_INPUT, "8 or 16", "a PNG picture cannot have %d bits", bits);
     file_writer writer;
     TRY(file_writer_open(&writer, path, why));
     status code = write_as(picture, format, writer.stream, bits, false, why);

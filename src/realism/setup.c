@@ -6,8 +6,7 @@
 
 static status wrong(const scene *s, diagnostic *why, const char *remedy, const char *what)
 {
-    diagnostic_locate(why, s->path, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
+    return diagnose_at(why, s->path, STATUS_BAD_INPUT, remedy, "%s", what);
 }
 
 static bool is_turned(const solid *of)

@@ -89,9 +89,7 @@ static status nothing_fits(const param_lines *all, const char *filter, bool of_s
     else if (!of_scene && strchr(filter, '.'))
         snprintf(remedy, sizeof remedy, "name the scene before it, for the names that a scene gives");
     free(known);
-    diagnose(why, STATUS_BAD_INPUT, remedy, "no parameter fits '%.64s'", filter);
-    diagnostic_locate(why, "params", 0, 0);
-    return STATUS_BAD_INPUT;
+    return diagnose_at(why, "params", STATUS_BAD_INPUT, remedy, "no parameter fits '%.64s'", filter);
 }
 
 static status narrow(param_lines *all, const char *filter, bool of_scene, diagnostic *why)

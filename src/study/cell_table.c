@@ -118,9 +118,8 @@ static status check_metrics(void *context, const study *s, size_t cell, scene *s
     const status code = realism_check(setting, s->keep_curves, &bad);
     if (code == STATUS_OK)
         return code;
-    diagnostic_locate(why, s->path, 0, 0);
-    return diagnose(why, code, bad.remedy, "%s cannot be kept of cell %zu: %s", s->keep_curves ? "curves" : "metrics",
-                    cell, bad.what);
+    return diagnose_at(why, s->path, code, bad.remedy, "%s cannot be kept of cell %zu: %s",
+                       s->keep_curves ? "curves" : "metrics", cell, bad.what);
 }
 
 static status check_motion(void *context, const study *s, size_t cell, scene *setting, diagnostic *why)
@@ -128,9 +127,8 @@ static status check_motion(void *context, const study *s, size_t cell, scene *se
     (void)context;
     if (scene_moves(setting))
         return STATUS_OK;
-    diagnostic_locate(why, s->path, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "give a mesh 'generate: slime'",
-                    "motion cannot be kept of cell %zu: nothing moves in it", cell);
+    return diagnose_at(why, s->path, STATUS_BAD_INPUT, "give a mesh 'generate: slime'",
+                       "motion cannot be kept of cell %zu: nothing moves in it", cell);
 }
 
 status cell_tables_check(const study *s, diagnostic *why)

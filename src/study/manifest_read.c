@@ -1,5 +1,6 @@
 /* Facts as JSON beside rows; and what rows of an earlier version meant, from the manifest. */
 #include "base/file.h"
+#include "base/text.h"
 #include "study/manifest.h"
 #include <inttypes.h>
 #include <stdlib.h>
@@ -39,13 +40,9 @@ status facts_read(const char *path, const char *root, json_t **out, diagnostic *
 status facts_write(const json_t *facts, size_t flags, const char *path, diagnostic *why)
 {
     /* jansson writes reals in the C locale's form by itself. */
-    char *text = json_dumps(facts, JSON_INDENT(2) | flags);
-    file_writer writer;
-    status code = text ? file_writer_open(&writer, path, why) : out_of_memory(why);
-    if (code == STATUS_OK) {
-        fprintf(writer.stream, "%s\n", text);
-        code = file_writer_commit(&writer, why);
-    }
+    char *text = json_dumps(facts, JSON_INDENT(2) | flags), *line = text ? text_format("%s\n", text) : NULL;
+    const status code = line ? file_write(path, line, why) : out_of_memory(why);
+    free(line);
     free(text);
     return code;
 }

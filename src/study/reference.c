@@ -78,8 +78,7 @@ static uint64_t pixel_hash(const image *picture)
 
 static status damaged(const char *path, diagnostic *why)
 {
-    diagnostic_locate(why, path, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "move it away: it is rendered again", "the reference is damaged");
+    return diagnose_at(why, path, STATUS_BAD_INPUT, "move it away: it is rendered again", "the reference is damaged");
 }
 
 static status load_facts(const char *path, const char *root, reference *out, uint64_t *pixels, diagnostic *why)

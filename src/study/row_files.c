@@ -72,10 +72,9 @@ static status list_shards(const char *folder, row_kind kind, shard_name **list, 
     free(entries);
     if (!*list)
         return out_of_memory(why);
-    if (found < 0 && errno != ENOENT) {
-        diagnostic_locate(why, folder, 0, 0);
-        return diagnose(why, STATUS_FAILURE, "make the folder readable", "it cannot be read: %s", strerror(errno));
-    }
+    if (found < 0 && errno != ENOENT)
+        return diagnose_at(why, folder, STATUS_FAILURE, "make the folder readable", "it cannot be read: %s",
+                           strerror(errno));
     qsort(*list, *count, sizeof **list, compare_shards);
     return STATUS_OK;
 }

@@ -157,8 +157,7 @@ status study_summary(const study *s, const char *results, FILE *out, diagnostic 
         char remedy[256];
         snprintf(remedy, sizeof remedy,
                  "run cuvette study run %.128s first, or name the folder of its results with --results", s->path);
-        code = diagnose(why, STATUS_FAILURE, remedy, "no rows in %s/%s", results, s->name);
-        diagnostic_locate(why, s->path, 0, 0);
+        code = diagnose_at(why, s->path, STATUS_FAILURE, remedy, "no rows in %s/%s", results, s->name);
     }
     if (code == STATUS_OK && s->reference.count)
         code = row_files_read(s, results, COMPARE_ROWS, &compared, why);

@@ -129,9 +129,9 @@ static status lock(table *t, diagnostic *why)
         if (flock(t->fd, LOCK_EX | LOCK_NB) != 0) {
             if (errno != EWOULDBLOCK)
                 return failed(t->path, "locking", errno, why);
-            diagnostic_locate(why, t->path, 0, 0);
-            return diagnose(why, STATUS_BAD_INPUT, "wait for it to end, or give each process its own --shard i/N",
-                            "another process is writing these rows");
+            return diagnose_at(why, t->path, STATUS_BAD_INPUT,
+                               "wait for it to end, or give each process its own --shard i/N",
+                               "another process is writing these rows");
         }
         struct stat named, opened;
         if (fstat(t->fd, &opened) == 0 && stat(t->path, &named) == 0 && named.st_ino == opened.st_ino &&

@@ -83,12 +83,10 @@ static status check_sky(const image *sky, const char *path, diagnostic *bad)
         for (int x = 0; x < sky->width; x++) {
             const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
             for (int channel = 0; channel < 3; channel++) {
-                if (!(pixel[channel] >= 0.0F && pixel[channel] <= SCENE_SKY_MAX)) {
-                    diagnostic_locate(bad, path, 0, 0);
-                    return diagnose(bad, STATUS_BAD_INPUT, "scale the picture to 0..65536",
-                                    "pixel %d,%d is %g in channel %d, and a sky's light is from 0 to 65536", x, y,
-                                    (double)pixel[channel], channel);
-                }
+                if (!(pixel[channel] >= 0.0F && pixel[channel] <= SCENE_SKY_MAX))
+                    return diagnose_at(bad, path, STATUS_BAD_INPUT, "scale the picture to 0..65536",
+                                       "pixel %d,%d is %g in channel %d, and a sky's light is from 0 to 65536", x, y,
+                                       (double)pixel[channel], channel);
             }
         }
     }

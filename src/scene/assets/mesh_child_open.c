@@ -85,9 +85,9 @@ status mesh_child_open(mesh_child *child, const char *path, const mesh_limits *l
     status code = STATUS_OK;
     if (error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR) {
         const char *reason = strerrordesc_np(error);
-        diagnostic_locate(why, program, 0, 0);
-        code = diagnose(why, STATUS_BAD_INPUT, "install cuvette with its importer, or name that in CUVETTE_IMPORT",
-                        "cannot start the program that reads meshes: %s", reason ? reason : "unknown error");
+        code = diagnose_at(why, program, STATUS_BAD_INPUT,
+                           "install cuvette with its importer, or name that in CUVETTE_IMPORT",
+                           "cannot start the program that reads meshes: %s", reason ? reason : "unknown error");
     } else if (error) {
         diagnostic_locate(why, program, 0, 0);
         code = machine_error(why, "cannot start the program that reads meshes", error);

@@ -179,24 +179,16 @@ status scene_write_text(const scene *s, const char *path, bool all, char **text,
     text_writer writer;
     TRY(text_writer_open(&writer, why));
     scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = writer.stream, .why = why};
-    status code = put_scene(&w);
-    if (code == STATUS_OK)
-        return text_writer_close(&writer, text, NULL, why);
-    text_writer_abandon(&writer);
+    const status code = text_writer_end(&writer, put_scene(&w), text, NULL, why);
     /* Of a parameter whose text found no room, nothing has been said yet. */
-    return code == STATUS_FAILURE ? diagnose(why, code, "", "out of memory") : code;
+    return code == STATUS_FAILURE ? out_of_memory(why) : code;
 }
 
 status scene_write(const scene *s, const char *path, bool all, diagnostic *why)
 {
     char *text;
     TRY(scene_write_text(s, strcmp(path, "-") == 0 ? "" : path, all, &text, why));
-    file_writer writer;
-    status code = file_writer_open(&writer, path, why);
-    if (code == STATUS_OK) {
-        fputs(text, writer.stream);
-        code = file_writer_commit(&writer, why);
-    }
+    const status code = file_write(path, text, why);
     free(text);
     return code;
 }

@@ -116,9 +116,9 @@ static status advance_watched(slime *x, const scene *s, const mesh_entry *m, dou
         asked_s = now_s;
         if (!watch->go_on(watch->context, (x->steps + 1.0 - first) / (last - first))) {
             x->steps += 1.0;
-            diagnostic_locate(bad, scene_path(s), 0, 0);
-            return diagnose(bad, STATUS_INTERRUPTED, "", "interrupted at %.6g s of the %.6g s that the slime moves",
-                            x->steps * m->slime.dt_s, time_s);
+            return diagnose_at(bad, scene_path(s), STATUS_INTERRUPTED, "",
+                               "interrupted at %.6g s of the %.6g s that the slime moves", x->steps * m->slime.dt_s,
+                               time_s);
         }
     }
     return STATUS_OK;
@@ -135,10 +135,8 @@ status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_
         x->steps = fmax(x->steps, code == STATUS_OK ? steps_to(m, time_s) : 0.0);
     }
     x->motion_s += clock_wall_s() - begun_s;
-    if (code == STATUS_INTERRUPTED) {
-        diagnostic_locate(why, bad.file, 0, 0);
-        return diagnose(why, code, "", "%.80s: %s", m->name, bad.what);
-    }
+    if (code == STATUS_INTERRUPTED)
+        return diagnose_at(why, bad.file, code, "", "%.80s: %s", m->name, bad.what);
     return code == STATUS_OK ? code : body_error(s, m, &bad, code, why);
 }
 
