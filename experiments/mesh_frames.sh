@@ -22,8 +22,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 for set in $sets; do
-    "$cuvette" mesh --generate "${set%:*}" --count "${set#*:}" -f pov -o "$work/$set.pov"
-    "$cuvette" mesh --generate "${set%:*}" --count "${set#*:}" -f tachyon -o "$work/$set.dat"
+    "$cuvette" mesh --generate "${set%:*}" --count "${set#*:}" -f obj -o "$work/$set.obj"
+    awk -v peer=povray -f "$(dirname "$0")/peers/mesh_scene.awk" "$work/$set.obj" >"$work/$set.pov"
+    awk -v peer=tachyon -f "$(dirname "$0")/peers/mesh_scene.awk" "$work/$set.obj" >"$work/$set.dat"
 done
 
 # Rows of "round set contestant seconds".

@@ -41,14 +41,14 @@ _cuvette_value() # OPTION: completes what follows it; false when it takes nothin
     case $1 in
     -s | --set) _cuvette_parameters ;;
     --generate) _cuvette_words sparse dense sphere icosphere torus lathe box ;;
-    -f | --format) _cuvette_words obj bin pov tachyon ply ;;
+    -f | --format) _cuvette_words obj bin ply ;;
     --curve) _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges ;;
     -o | --output | --diff)
         case ${COMP_WORDS[1]-} in
         trace) _cuvette_files 'txt|json|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
         scene) _cuvette_files 'yaml|yml' ;;
-        mesh) _cuvette_files 'obj|bin|pov|dat|ply' ;;
+        mesh) _cuvette_files 'obj|bin|ply' ;;
         animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
         esac

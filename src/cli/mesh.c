@@ -3,11 +3,11 @@
 #include "cli/cli.h"
 #include "report/json.h"
 #include "report/mesh_rows.h"
+#include "report/mesh_write.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "cli/outputs.h"
 #include "scene/model/edit/edit.h"
-#include "scene/assets/mesh_write.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include <stdio.h>
@@ -60,7 +60,7 @@ static const command_option options[] = {
      .take = take_parameter},
     {"depth", 0, "D", "terrain: how deep its flat bottom lies; 0 leaves it open", .take = take_parameter},
     {"seed", 0, "N", "terrain: which hills; 1", .take = take_parameter},
-    {"format", 'f', "FORMAT", "write the triangles as obj, bin, pov, tachyon or ply; else by the ending of -o FILE",
+    {"format", 'f', "FORMAT", "write the triangles as obj, bin or ply; else by the ending of -o FILE",
      .take = take_format},
     {"output", 'o', "FILE", "write there instead of to standard output",
      OPTION_FILLS(option_text, mesh_request, output)},
@@ -78,7 +78,7 @@ static const command_form form = {
              "instead.\vFor example:\n"
              "  cuvette mesh teapot.obj\n"
              "  cuvette mesh --generate torus --minor 0.4 --around 256 --tube 128\n"
-             "  cuvette mesh --generate sparse --count 50000 -f pov -o sparse.pov\n"
+             "  cuvette mesh --generate sparse --count 50000 -f obj -o sparse.obj\n"
              "Sparse, dense and sphere are the triangle sets of the speed study, the same to the bit everywhere.",
 };
 
@@ -107,8 +107,7 @@ static status choose_format(mesh_request *request, diagnostic *why)
         }
     if (strcmp(dot, ".txt") == 0)
         return STATUS_OK;
-    return options_wrong("-o", NULL, why,
-                         "end it in .obj, .pov, .bin or .ply, give --format, or .txt for the description",
+    return options_wrong("-o", NULL, why, "end it in .obj, .bin or .ply, give --format, or .txt for the description",
                          "'%.80s' says no format", request->output);
 }
 

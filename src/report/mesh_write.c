@@ -1,10 +1,10 @@
-#include "scene/assets/mesh_write.h"
+#include "report/mesh_write.h"
 
 #include <string.h>
 
 const char *mesh_format_name(mesh_format format)
 {
-    static const char *const names[MESH_FORMAT_COUNT] = {"obj", "bin", "pov", "tachyon", "ply"};
+    static const char *const names[MESH_FORMAT_COUNT] = {"obj", "bin", "ply"};
     return names[format];
 }
 
@@ -19,44 +19,6 @@ static void write_obj(const mesh *m, FILE *stream)
         const uint32_t *corner = m->triangles[t].corner;
         fprintf(stream, "f %lu %lu %lu\n", corner[0] + 1ul, corner[1] + 1ul, corner[2] + 1ul);
     }
-}
-
-static void write_pov(const mesh *m, FILE *stream)
-{
-    const int digits = m->single ? 9 : 17;
-    fprintf(stream,
-            "#version 3.7;\nglobal_settings{assumed_gamma 1 max_trace_level 1}\nbackground{rgb 0}\n"
-            "camera{location <0,0,-3> direction z*(0.5/tan(radians(22.5))) up y right x*(4/3)}\n"
-            "light_source{<2,3,-4> rgb 1}\nmesh2{vertex_vectors{%zu",
-            m->vertex_count);
-    for (size_t v = 0; v < m->vertex_count; v++) {
-        const vec3 p = m->vertices[v];
-        fprintf(stream, ",<%.*g,%.*g,%.*g>\n", digits, p.x, digits, p.y, digits, p.z);
-    }
-    fprintf(stream, "}\nface_indices{%zu", m->triangle_count);
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        const uint32_t *corner = m->triangles[t].corner;
-        fprintf(stream, ",<%lu,%lu,%lu>\n", corner[0] + 0ul, corner[1] + 0ul, corner[2] + 0ul);
-    }
-    fputs("}\npigment{rgb 0.8} finish{ambient 0.1 diffuse 0.9}}\n", stream);
-}
-
-static void write_tachyon(const mesh *m, FILE *stream)
-{
-    fputs("BEGIN_SCENE\nRESOLUTION 800 600\nCAMERA\nZOOM 1.2071068\nASPECTRATIO 1.0\nANTIALIASING 0\nRAYDEPTH 1\n"
-          "CENTER 0.0 0.0 -3.0\nVIEWDIR 0.0 0.0 1.0\nUPDIR 0.0 1.0 0.0\nEND_CAMERA\nBACKGROUND 0.0 0.0 0.0\n"
-          "LIGHT CENTER 2.0 3.0 -4.0 RAD 0.001 COLOR 1.0 1.0 1.0\n"
-          "TEXDEF T AMBIENT 0.1 DIFFUSE 0.9 SPECULAR 0.0 OPACITY 1.0 COLOR 0.8 0.8 0.8 TEXFUNC 0\n",
-          stream);
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        fputs("TRI", stream);
-        for (int k = 0; k < 3; k++) {
-            const vec3 p = m->vertices[m->triangles[t].corner[k]];
-            fprintf(stream, m->single ? " V%d %.9f %.9f %.9f" : " V%d %.17g %.17g %.17g", k, p.x, p.y, p.z);
-        }
-        fputs(" T\n", stream);
-    }
-    fputs("END_SCENE\n", stream);
 }
 
 /* The low bytes first, whatever the machine. */
@@ -124,8 +86,6 @@ void mesh_write(const mesh *m, mesh_format format, FILE *stream)
     switch (format) {
     case MESH_OBJ: write_obj(m, stream); return;
     case MESH_BIN: write_bin(m, stream); return;
-    case MESH_POV: write_pov(m, stream); return;
-    case MESH_TACHYON: write_tachyon(m, stream); return;
     case MESH_PLY: write_ply(m, stream); return;
     case MESH_FORMAT_COUNT: return;
     }
