@@ -79,7 +79,7 @@ static void try_cases(const lint_case *cases, size_t count)
                      all.count ? all.note[0].text : "");
     }
 }
-#define TRY(cases) try_cases(cases, sizeof cases / sizeof *cases)
+#define CHECK(cases) try_cases(cases, sizeof cases / sizeof *cases)
 
 static void overlaps_of_equal_priority(void **state)
 {
@@ -124,7 +124,7 @@ static void overlaps_of_equal_priority(void **state)
          "b: {shape: cylinder, material: water, radius: 0.9, height: 1.5, position: [0, 0.1, 0]}}",
          NULL, ""}, /* in contact all around */
     };
-    TRY(cases);
+    CHECK(cases);
 }
 
 static void narrow_gaps(void **state)
@@ -168,7 +168,7 @@ static void narrow_gaps(void **state)
          "c: {shape: box, material: clay, position: [0.5, 0, 0], size: [0.5, 3, 3]}}",
          NULL, ""},
     };
-    TRY(cases);
+    CHECK(cases);
 }
 
 static void indices_of_mirrors(void **state)
@@ -185,7 +185,7 @@ static void indices_of_mirrors(void **state)
         {"solids: {a: {shape: sphere, material: clay, ior: 1.5}}", "a.ior", "has a refractive index but is opaque"},
         {"solids: {a: {shape: sphere, material: clay, reflectivity: 0.8}}", NULL, ""},
     };
-    TRY(cases);
+    CHECK(cases);
 }
 
 static void cameras_that_see_nothing(void **state)

@@ -40,6 +40,9 @@ status diagnose(diagnostic *why, status code, const char *remedy, const char *wh
             return tried_;            \
     } while (0)
 
+/* For steps that leave something to tidy up: makes the call where all went well so far, and keeps what it returned. */
+#define THEN(code, call) ((void)((code) == STATUS_OK ? ((code) = (call)) : STATUS_OK))
+
 /* STATUS_FAILURE, and the same words for all that runs out of memory. */
 status out_of_memory(diagnostic *why);
 

@@ -55,8 +55,7 @@ static status read_scene(animate_request *request, const animate_names *names, s
         return diagnose_at(why, request->input.path, STATUS_BAD_INPUT,
                            "give it a mesh with 'generate: slime', or use 'cuvette render'",
                            "nothing moves in the scene");
-    if (result == STATUS_OK)
-        result = set_scripts(request, *out, why);
+    THEN(result, set_scripts(request, *out, why));
     if (result == STATUS_OK && request->rows)
         result = outputs_check_place("--rows", request->rows, *out, why);
     if (result == STATUS_OK && animate_is_stream(request))
@@ -101,12 +100,10 @@ static status make(const animate_request *request, const animate_names *names, j
     animate_definition d = {0};
     animate_account account = {0};
     status result = scene_motion_create(s, &motion, why);
-    if (result == STATUS_OK)
-        result = animate_define(request, s, &d, why);
+    THEN(result, animate_define(request, s, &d, why));
     if (result == STATUS_OK && names)
         result = animate_ledger_check(names, &d, animate_count(request), request->restart, why);
-    if (result == STATUS_OK)
-        result = animate_film(request, names, &d, with, s, motion, &account, why);
+    THEN(result, animate_film(request, names, &d, with, s, motion, &account, why));
     if (result == STATUS_OK && request->json)
         result = print_account(request, s, &d, job_isa(with), &account, why);
     else if (result == STATUS_OK && strcmp(request->output, "-") != 0)
@@ -126,16 +123,13 @@ status command_animate(int argc, char **argv, diagnostic *why)
     const bool in_files = result == STATUS_OK && !animate_is_stream(&request);
     if (in_files)
         result = animate_names_parse(request.output, &names, why);
-    if (result == STATUS_OK)
-        result = scene_input_job(false, &with, why);
-    if (result == STATUS_OK)
-        result = read_scene(&request, in_files ? &names : NULL, &s, why);
+    THEN(result, scene_input_job(false, &with, why));
+    THEN(result, read_scene(&request, in_files ? &names : NULL, &s, why));
     if (result == STATUS_OK && !request.json)
         result = scene_input_lint(s, job_isa(with), NULL, why);
     if (result == STATUS_OK && !request.json)
         inert_note_changes(s, &request.input);
-    if (result == STATUS_OK)
-        result = make(&request, in_files ? &names : NULL, with, s, why);
+    THEN(result, make(&request, in_files ? &names : NULL, with, s, why));
     job_destroy(with);
     scene_destroy(s);
     animate_names_release(&names);

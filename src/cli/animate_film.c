@@ -98,8 +98,7 @@ static status write_picture(film_job *f, const char *path, const film *picture, 
     image *frame = NULL;
     status result = film_image(picture, &frame, why);
     errno = 0;
-    if (result == STATUS_OK)
-        result = y4m_frame(f->stream.stream, frame, why);
+    THEN(result, y4m_frame(f->stream.stream, frame, why));
     image_destroy(frame);
     return result == STATUS_OK ? flush_stream(f, why) : result;
 }
@@ -111,8 +110,7 @@ static status render_frame(film_job *f, const char *path, diagnostic *why)
     status ended = job_render(f->with, f->s, &options, &made, why);
     if (ended == STATUS_INTERRUPTED)
         ended = say_interrupted(f, why);
-    if (ended == STATUS_OK)
-        ended = write_picture(f, path, made.result->picture, why);
+    THEN(ended, write_picture(f, path, made.result->picture, why));
     if (ended == STATUS_OK && f->rows) {
         const animate_row row = {.definition = f->definition,
                                  .frame = f->frame,
@@ -138,8 +136,7 @@ static status make_frame(film_job *f, diagnostic *why)
     const bool kept = is_there(f, path);
     snprintf(f->label, sizeof f->label, "frame %" PRId64 " of %" PRId64, f->frame + 1, f->count);
     status result = show_progress(f, 0) ? STATUS_OK : say_interrupted(f, why);
-    if (result == STATUS_OK)
-        result = advance(f, animate_time_s(f->request, f->frame), !kept, why);
+    THEN(result, advance(f, animate_time_s(f->request, f->frame), !kept, why));
     if (result == STATUS_OK && kept)
         f->account->kept++;
     else if (result == STATUS_OK)
@@ -174,8 +171,7 @@ static status close_stream(film_job *f, status ended, diagnostic *why)
 static status make_film(film_job *f, diagnostic *why)
 {
     status result = f->names ? STATUS_OK : open_stream(f, why);
-    if (result == STATUS_OK)
-        result = make_frames(f, why);
+    THEN(result, make_frames(f, why));
     return close_stream(f, result, why);
 }
 
@@ -195,8 +191,7 @@ status animate_film(const animate_request *request, const animate_names *names, 
         request->rows ? animate_rows_open(request->rows, d->hash, request->restart || !names, &f.rows, why) : STATUS_OK;
     if (result == STATUS_OK && names)
         result = animate_ledger_begin(names, d, f.count, request->restart, why);
-    if (result == STATUS_OK)
-        result = make_film(&f, why);
+    THEN(result, make_film(&f, why));
     animate_rows_close(f.rows);
     return result;
 }

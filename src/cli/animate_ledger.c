@@ -131,8 +131,7 @@ status animate_ledger_check(const animate_names *names, const animate_definition
     status result = path ? STATUS_OK : out_of_memory(why);
     if (path && access(path, F_OK) == 0)
         result = compare(path, d, restart, &known, why);
-    if (result == STATUS_OK)
-        result = animate_folder_check(names, known, count, why);
+    THEN(result, animate_folder_check(names, known, count, why));
     free(path);
     return result;
 }

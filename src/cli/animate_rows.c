@@ -143,8 +143,7 @@ status animate_rows_open(const char *path, uint64_t definition, bool anew, anima
         result = take_rows(rows, path, there, header.text, definition, why);
     if (result == STATUS_OK && anew && rows->count > 0)
         result = refuse(path, "has rows already, and this film begins anew", why);
-    if (result == STATUS_OK)
-        result = open_table(path, header.text, &rows->file, why);
+    THEN(result, open_table(path, header.text, &rows->file, why));
     csv_destroy(there);
     csv_line_free(&header);
     if (result != STATUS_OK) {

@@ -63,8 +63,7 @@ static status write_map(const compare_request *request, const pair *p, diagnosti
 {
     image *map;
     status result = image_compare_map(p->pictures[0], p->pictures[1], &map, why);
-    if (result == STATUS_OK)
-        result = image_write(map, request->map, 8, why);
+    THEN(result, image_write(map, request->map, 8, why));
     image_destroy(map);
     return result;
 }
@@ -106,10 +105,8 @@ status command_compare(int argc, char **argv, diagnostic *why)
     compare_request request = {0};
     pair p = {0};
     status result = command_form_read(&form, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = check_request(&request, why);
-    if (result == STATUS_OK)
-        result = measure(&request, &p, why);
+    THEN(result, check_request(&request, why));
+    THEN(result, measure(&request, &p, why));
     if (result == STATUS_OK && request.map)
         result = write_map(&request, &p, why);
     if (result == STATUS_OK && request.json)

@@ -179,8 +179,7 @@ status fan_write_drawing(const fanned *t, FILE *out, diagnostic *why)
     svg_begin(out, outer_width, media + 14.0, t->s->title && t->s->title[0] ? t->s->title : NULL);
     write_caption(t, caption, sizeof caption);
     status result = diagram_begin(&d, out, t->p, t->s, &plane, &box, &frame, caption, why);
-    if (result == STATUS_OK)
-        result = draw_rays(&d, t, why);
+    THEN(result, draw_rays(&d, t, why));
     if (result == STATUS_OK)
         draw_caustic(&d, t->f);
     diagram_end(&d);

@@ -105,8 +105,7 @@ static status run_lab(const lab_request *request, const char *folder, const char
     if (code == STATUS_OK && settings.threads == 0 && (code = topology_create(&machine, why)) == STATUS_OK)
         settings.threads = topology_pu_count(machine);
     topology_destroy(machine);
-    if (code == STATUS_OK)
-        code = lab_start(&settings, &l, why);
+    THEN(code, lab_start(&settings, &l, why));
     if (code != STATUS_OK)
         return code;
     printf("%s\n", lab_address(l));
@@ -131,8 +130,7 @@ status command_lab(int argc, char **argv, diagnostic *why)
         results = strcmp(folder, ".") == 0 ? strdup("results") : text_format("%s/results", folder);
         code = results ? code : out_of_memory(why);
     }
-    if (code == STATUS_OK)
-        code = run_lab(&request, folder, request.results ? request.results : results, why);
+    THEN(code, run_lab(&request, folder, request.results ? request.results : results, why));
     free(chosen);
     free(results);
     return code;

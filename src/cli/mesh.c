@@ -115,10 +115,8 @@ static status choose_format(mesh_request *request, diagnostic *why)
 static status obtain(const mesh_request *request, diagnostic *why)
 {
     status result = request->file ? scene_set(request->around, "body.file", request->file, why) : STATUS_OK;
-    if (result == STATUS_OK)
-        result = scene_check(request->around, why);
-    if (result == STATUS_OK)
-        result = scene_input_load(request->around, why);
+    THEN(result, scene_check(request->around, why));
+    THEN(result, scene_input_load(request->around, why));
     if (result == STATUS_BAD_INPUT && request->generate)
         diagnostic_locate(why, "--generate", 0, 0);
     return result;
@@ -141,16 +139,11 @@ status command_mesh(int argc, char **argv, diagnostic *why)
 {
     mesh_request request = {.around = scene_create(), .format = MESH_FORMAT_COUNT};
     status result = request.around ? scene_add_mesh(request.around, "body", NULL, why) : out_of_memory(why);
-    if (result == STATUS_OK)
-        result = command_form_read(&form, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = check_request(&request, why);
-    if (result == STATUS_OK)
-        result = choose_format(&request, why);
-    if (result == STATUS_OK)
-        result = obtain(&request, why);
-    if (result == STATUS_OK)
-        result = outputs_write_text(request.output, write_to, &request, why);
+    THEN(result, command_form_read(&form, argc, argv, &request, why));
+    THEN(result, check_request(&request, why));
+    THEN(result, choose_format(&request, why));
+    THEN(result, obtain(&request, why));
+    THEN(result, outputs_write_text(request.output, write_to, &request, why));
     scene_destroy(request.around);
     return result;
 }

@@ -152,10 +152,8 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
         result = check_picture(o, file, at > 0, why);
     else if (!outputs_ends_with(file->path, ".json"))
         result = wrong(file, why, "end it in .json", "a timeline is a JSON file");
-    if (result == STATUS_OK)
-        result = check_folder(file, why);
-    if (result == STATUS_OK)
-        result = check_not_read(file, s, why);
+    THEN(result, check_folder(file, why));
+    THEN(result, check_not_read(file, s, why));
     for (size_t i = 0; i < at && result == STATUS_OK; i++)
         if (files[i].path && same_file(file->path, files[i].path))
             result = wrong(file, why, "name another file", "two results cannot go into one file");
@@ -177,8 +175,7 @@ static status check_layers(const outputs *o, const named_file *files, size_t cou
         char *path = record_layer_path(o->layers, i);
         const named_file file = {"--layers", path};
         result = path ? check_folder(&file, why) : out_of_memory(why);
-        if (result == STATUS_OK)
-            result = check_not_read(&file, s, why);
+        THEN(result, check_not_read(&file, s, why));
         for (size_t k = 0; k < count && result == STATUS_OK; k++)
             if (files[k].path && same_file(path, files[k].path))
                 result = wrong(&file, why, "give another prefix", "two results cannot go into one file");
@@ -208,8 +205,7 @@ status outputs_check_picture(const char *option, const char *path, const char *c
 {
     const named_file file = {option, path};
     status result = check_picture(&(outputs){0}, &file, false, why);
-    if (result == STATUS_OK)
-        result = check_folder(&file, why);
+    THEN(result, check_folder(&file, why));
     for (size_t i = 0; i < count && result == STATUS_OK; i++)
         if (same_file(path, read[i]))
             result = wrong(&file, why, "name another file", "one of the pictures is read from it");

@@ -82,12 +82,10 @@ status command_params(int argc, char **argv, diagnostic *why)
     params_request request = {0};
     scene *s = NULL;
     status result = command_form_read(&form, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = sort_words(&request, why);
+    THEN(result, sort_words(&request, why));
     if (result == STATUS_OK && request.scene_path)
         result = scene_read(request.scene_path, &s, why);
-    if (result == STATUS_OK)
-        result = print(&request, s, why);
+    THEN(result, print(&request, s, why));
     scene_destroy(s);
     return result;
 }

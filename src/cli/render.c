@@ -154,8 +154,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
         result = scene_input_lint(s, level, NULL, why);
         inert_note_changes(s, &request->input);
     }
-    if (result == STATUS_OK)
-        result = render_and_write(request, s, with, why);
+    THEN(result, render_and_write(request, s, with, why));
     job_destroy(with);
     return result;
 }

@@ -131,8 +131,7 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
     }
     isa level = ISA_SSE2;
     result = scene_input_isa(&level, why);
-    if (result == STATUS_OK)
-        result = scene_input_lint(s, level, NULL, why);
+    THEN(result, scene_input_lint(s, level, NULL, why));
     if (result != STATUS_OK)
         return result;
     printf("%s: right; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n",
@@ -173,12 +172,9 @@ status command_scene(int argc, char **argv, diagnostic *why)
     scene_request request = {.path = NULL};
     scene *s = NULL;
     status result = command_form_read(&form, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = check_request(&request, why);
-    if (result == STATUS_OK)
-        result = make_scene(&request, &s, why);
-    if (result == STATUS_OK)
-        result = run(&request, s, why);
+    THEN(result, check_request(&request, why));
+    THEN(result, make_scene(&request, &s, why));
+    THEN(result, run(&request, s, why));
     scene_destroy(s);
     free(request.edits);
     return result;

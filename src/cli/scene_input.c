@@ -49,10 +49,8 @@ status scene_command_run(const scene_command *command, int argc, char **argv, vo
     scene *s = NULL;
     isa level = ISA_SSE2;
     status result = scene_command_read(command, argc, argv, request, why);
-    if (result == STATUS_OK)
-        result = scene_input_isa(&level, why);
-    if (result == STATUS_OK)
-        result = scene_input_read(request, &s, why);
+    THEN(result, scene_input_isa(&level, why));
+    THEN(result, scene_input_read(request, &s, why));
     const char *output = ((scene_input *)request)->output;
     if (result == STATUS_OK && output)
         result = outputs_check_place("-o", output, s, why);
@@ -60,8 +58,7 @@ status scene_command_run(const scene_command *command, int argc, char **argv, vo
         result = command->check_scene(request, s, why);
     if (result == STATUS_OK && !command->unloaded)
         result = scene_input_load(s, why);
-    if (result == STATUS_OK)
-        result = command->run(request, s, level, why);
+    THEN(result, command->run(request, s, level, why));
     scene_destroy(s);
     scene_input_release(request);
     return result;

@@ -39,8 +39,7 @@ static status for_each_study(study_verb verb, study_action *act, int argc, char 
 {
     study_request request;
     status result = study_request_parse(verb, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = read_and_act(&request, act, why);
+    THEN(result, read_and_act(&request, act, why));
     study_request_release(&request);
     return result;
 }
@@ -94,12 +93,10 @@ static status lint(const study *s, const study_request *request, diagnostic *why
     bool moves = false;
     for (size_t i = 0; result == STATUS_OK && i < base->mesh_count; i++)
         moves |= base->meshes[i].source == MESH_SLIME;
-    if (result == STATUS_OK)
-        result = moves ? scene_load_files(base, why) : scene_load(base, why);
+    THEN(result, moves ? scene_load_files(base, why) : scene_load(base, why));
     if (result == STATUS_OK)
         result = scene_input_lint(base, level, &(lint_filter){varies, (void *)(uintptr_t)s}, why);
-    if (result == STATUS_OK)
-        result = inert_note_study(s, why);
+    THEN(result, inert_note_study(s, why));
     scene_destroy(base);
     return result;
 }
@@ -114,8 +111,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .stop = terminal_stop_asked};
     size_t rows = 0;
     status result = request->quiet ? STATUS_OK : lint(s, request, why);
-    if (result == STATUS_OK)
-        result = study_run(s, &options, &rows, why);
+    THEN(result, study_run(s, &options, &rows, why));
     if (result == STATUS_INTERRUPTED) {
         diagnose(why, STATUS_INTERRUPTED,
                  study_keeps_files(s) ? "run it again to go on; pictures are made at the end" : "run it again to go on",
@@ -160,8 +156,7 @@ static status print_summary(const study *s, const study_request *request, diagno
     TRY(text_writer_open(&writer, why));
     status result = study_summary(s, request->results, writer.stream, why);
     result = text_writer_end(&writer, result, &text, NULL, why);
-    if (result == STATUS_OK)
-        result = study_table_print(stdout, text, why);
+    THEN(result, study_table_print(stdout, text, why));
     free(text);
     return result;
 }
@@ -231,8 +226,7 @@ static status command_list(int argc, char **argv, diagnostic *why)
 {
     study_request request;
     status result = study_request_parse(STUDY_LIST, argc, argv, &request, why);
-    if (result == STATUS_OK)
-        result = list_folder(request.file_count ? request.files[0] : "experiments", why);
+    THEN(result, list_folder(request.file_count ? request.files[0] : "experiments", why));
     study_request_release(&request);
     return result;
 }

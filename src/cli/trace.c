@@ -112,8 +112,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
     probe *p = NULL;
     ray_tree tree = {0};
     status result = scene_input_probe(&request->input, s, level, &p, why);
-    if (result == STATUS_OK)
-        result = grow(request, p, &tree, why);
+    THEN(result, grow(request, p, &tree, why));
     if (result == STATUS_OK) {
         const formatted f = {{s, p, &tree, request->input.path}, request->format};
         scene_input_note_tree(s);

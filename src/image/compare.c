@@ -93,8 +93,7 @@ status image_compare(const image *a, const image *b, image_comparison *out, diag
         compare_pixels(a, b, first, second, out);
         code = compare_ssim(first, second, a->width, a->height, &out->ssim, why);
     }
-    if (code == STATUS_OK)
-        code = compare_flip(a, b, first, why);
+    THEN(code, compare_flip(a, b, first, why));
     if (code == STATUS_OK)
         out->flip = mean(first, count);
     free(first);

@@ -22,8 +22,7 @@ status image_compare_map(const image *a, const image *b, image **map, diagnostic
     double *errors = malloc(count * sizeof *errors);
     status code = errors ? image_create(a->width, a->height, &picture, why)
                          : diagnose(why, STATUS_FAILURE, NULL, "out of memory for the map of errors");
-    if (code == STATUS_OK)
-        code = compare_flip(a, b, errors, why);
+    THEN(code, compare_flip(a, b, errors, why));
     for (size_t i = 0; code == STATUS_OK && i < count; i++)
         magma(errors[i], picture->pixel + 3 * i);
     free(errors);

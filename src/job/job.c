@@ -32,8 +32,7 @@ status job_create(const job_settings *settings, job **out, diagnostic *why)
         j->level = *settings->level;
     else
         code = isa_choose(&j->level, why);
-    if (code == STATUS_OK)
-        code = renderer_create(j->level, NULL, &j->tracer, why);
+    THEN(code, renderer_create(j->level, NULL, &j->tracer, why));
     if (code == STATUS_OK)
         *out = j;
     else
@@ -154,8 +153,7 @@ static status prepare(job *j, const scene *s, const render_options *wanted, diag
     if (job_must_stop(j))
         return interrupted(why);
     status code = scene_check(s, why);
-    if (code == STATUS_OK)
-        code = check_quota(j, s, wanted, why);
+    THEN(code, check_quota(j, s, wanted, why));
     if (code == STATUS_OK && s->render.pin != PIN_RULE_NONE)
         code = job_machine(j, &machine, why);
     if (code != STATUS_OK)
@@ -279,10 +277,8 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
     const bool maps = wanted->pixel_rays || wanted->pixel_time || wanted->timeline, extra = frames > 1 && maps;
     work w = {.of = j, .wanted = wanted, .frames = frames + extra};
     status code = job_account_begin(s, j->level, frames, out, why);
-    if (code == STATUS_OK)
-        code = prepare(j, s, wanted, why);
-    if (code == STATUS_OK)
-        code = measure_all(&w, s, frames, maps && !extra, out, why);
+    THEN(code, prepare(j, s, wanted, why));
+    THEN(code, measure_all(&w, s, frames, maps && !extra, out, why));
     if (code == STATUS_OK && extra)
         code = add_maps(&w, s, out, why);
     out->whole = code == STATUS_OK;

@@ -68,8 +68,7 @@ static status lint_traced(const scene *s, isa level, const note_taker *taker, di
     scene *copy = small_copy(s);
     lint_room room = {.of = s, .level = level, .taker = taker};
     status code = copy ? plan_build(copy, &room.made, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = lint_neighbours(&room, why);
+    THEN(code, lint_neighbours(&room, why));
     if (code == STATUS_OK)
         lint_camera(&room);
     if (code == STATUS_OK && follows_rays(&s->render))

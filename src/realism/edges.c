@@ -20,8 +20,7 @@ static status traced_edges(scene *taken, const metrics *m, const double range[2]
     trial t;
     status code = trial_start(&t, taken, m->level, why);
     edge[0] = edge[1] = NAN;
-    if (code == STATUS_OK)
-        code = trial_edges(&t, m->at.rod, true, py, range, SCAN_STEPS, edge, why);
+    THEN(code, trial_edges(&t, m->at.rod, true, py, range, SCAN_STEPS, edge, why));
     trial_end(&t);
     return code;
 }

@@ -79,8 +79,7 @@ static status add_critical(const metrics *m, int which, diagnostic *why)
         trial t;
         scene *s = arrange_interface(m->traced, &m->at, from, to, &start_y);
         code = trial_start(&t, s, m->level, why);
-        if (code == STATUS_OK)
-            code = bisect_critical(&t, start_y, &measured, why);
+        THEN(code, bisect_critical(&t, start_y, &measured, why));
         trial_end(&t);
     }
     metrics_add(m, (realism_value){crossings[which].critical, exists ? critical_what[which] : none, "rad", measured,

@@ -103,8 +103,7 @@ static status deviation_at_line(const metrics *m, double lambda_nm, double *meas
     c.n_core = m->theory_at.liquid >= 0 ? medium_index(media_find("water"), lambda_nm) : c.n_around;
     *theory = offset < theory_shells_reach(&c) ? theory_shells_deviation(&c, offset) : NAN;
     code = trial_start(&t, s, m->level, why);
-    if (code == STATUS_OK)
-        code = lens_deviation(t.p, &t.tree, &m->at, offset, measured, why);
+    THEN(code, lens_deviation(t.p, &t.tree, &m->at, offset, measured, why));
     trial_end(&t);
     return code;
 }
@@ -131,10 +130,8 @@ status realism_lens(const metrics *m, diagnostic *why)
 {
     trial t;
     status code = trial_start(&t, arrange_vessel(m->traced, &m->at), m->level, why);
-    if (code == STATUS_OK)
-        code = add_deviation(m, &t, why);
-    if (code == STATUS_OK)
-        code = add_power(m, &t, why);
+    THEN(code, add_deviation(m, &t, why));
+    THEN(code, add_power(m, &t, why));
     trial_end(&t);
     return code == STATUS_OK ? add_dispersion(m, why) : code;
 }

@@ -89,8 +89,7 @@ status realism_reversal(const metrics *m, diagnostic *why)
     trial forth, back = {0};
     worst_pair ratio = {NAN, NAN, false}, miss = {NAN, NAN, false};
     status code = trial_start(&forth, arrange_vessel(m->supposed, &m->theory_at), m->level, why);
-    if (code == STATUS_OK)
-        code = trial_start(&back, arrange_vessel(m->traced, &m->at), m->level, why);
+    THEN(code, trial_start(&back, arrange_vessel(m->traced, &m->at), m->level, why));
     for (uint32_t i = 0; i < WAYS && code == STATUS_OK; i++) {
         round_trip r;
         code = trace_back(&forth, &back, &m->theory_at, i, &r, why);

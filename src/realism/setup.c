@@ -93,12 +93,10 @@ status setup_read(const scene *s, setup *out, diagnostic *why)
     const index_law around = surrounding_index_law(&s->background);
     out->n[SETUP_OUTSIDE] = out->n[SETUP_LIQUID] = index_law_at(&around, s->render.lambda_nm);
     out->liquid = find_visible(s, "liquid");
-    if (code == STATUS_OK)
-        code = index_of(s, out->vessel, &out->n[SETUP_VESSEL], why);
+    THEN(code, index_of(s, out->vessel, &out->n[SETUP_VESSEL], why));
     if (code == STATUS_OK && out->liquid >= 0) {
         code = read_liquid(s, out, why);
-        if (code == STATUS_OK)
-            code = index_of(s, out->liquid, &out->n[SETUP_LIQUID], why);
+        THEN(code, index_of(s, out->liquid, &out->n[SETUP_LIQUID], why));
     }
     return code;
 }

@@ -6,7 +6,8 @@
  *   ply  Stanford, binary, little-endian: all that the mesh has (normals nx ny nz, texture coordinates s t, slots
  *        as material_index)
  *
- * Coordinates that are floats are written with 9 significant digits, others with 17, so that they read back the same. */
+ * Coordinates that are floats are written with 9 significant digits, others with 17, so that they read back the
+ * same. */
 #ifndef CUVETTE_REPORT_MESH_WRITE_H
 #define CUVETTE_REPORT_MESH_WRITE_H
 

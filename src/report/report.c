@@ -68,8 +68,7 @@ static status add_alternatives(json_t *params, const scene *s)
         if (row->group != PARAM_CAMERA && row->group != PARAM_BACKGROUND)
             continue;
         code = scene_get(s, param_lines_path(row, path, sizeof path), &value, NULL);
-        if (code == STATUS_OK)
-            code = add_param(params, path, row, value);
+        THEN(code, add_param(params, path, row, value));
         free(value);
     }
     return code;

@@ -234,8 +234,7 @@ status trace_write_drawing(const traced *t, FILE *out, diagnostic *why)
                               why);
     const section_plane other = other_plane(t->tree, &incidence, caption, sizeof caption);
     const diagram_frame second = {full + DIAGRAM_BEFORE, DIAGRAM_ABOVE, side, side};
-    if (result == STATUS_OK)
-        result = draw_view(&a, out, &other, &second, caption, why);
+    THEN(result, draw_view(&a, out, &other, &second, caption, why));
     draw_key(out, DIAGRAM_BEFORE, foot + 14.0);
     diagram_media_key(out, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
     snprintf(caption, sizeof caption,

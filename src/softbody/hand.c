@@ -113,10 +113,8 @@ status hand_script_add(hand_script *s, const char *hand, const hand_key *key, di
 {
     hand_track *track = find_track(s, hand);
     status code = check_hand(s, hand, track, why);
-    if (code == STATUS_OK)
-        code = check_numbers(hand, key, why);
-    if (code == STATUS_OK)
-        code = check_order(hand, track, key, why);
+    THEN(code, check_numbers(hand, key, why));
+    THEN(code, check_order(hand, track, key, why));
     if (code != STATUS_OK)
         return code;
     const bool is_new = !track;

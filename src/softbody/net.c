@@ -127,12 +127,9 @@ status toy_net_create(const softbody_settings *s, toy_net *out, diagnostic *why)
                           sizeof *out->springs); /* 1.5 edges a face, as many across, and a quarter through */
     if (!unit || !out->position || !out->mass_of || !out->faces || !out->springs)
         code = diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
-    if (code == STATUS_OK)
-        code = place_masses(s, sphere, unit, out, why);
-    if (code == STATUS_OK)
-        code = add_edges(s, out, why);
-    if (code == STATUS_OK)
-        code = add_diameters(s, unit, out, why);
+    THEN(code, place_masses(s, sphere, unit, out, why));
+    THEN(code, add_edges(s, out, why));
+    THEN(code, add_diameters(s, unit, out, why));
     free(unit);
     mesh_release(sphere);
     if (code != STATUS_OK)

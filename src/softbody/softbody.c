@@ -182,8 +182,7 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
                                                                &softbody_kernels_avx512};
     *out = NULL;
     status code = softbody_check(s, why);
-    if (code == STATUS_OK)
-        code = check_net(net, why);
+    THEN(code, check_net(net, why));
     if (code != STATUS_OK)
         return code;
     softbody *b = calloc(1, sizeof *b);
@@ -206,8 +205,7 @@ status softbody_create(const softbody_settings *s, isa level, softbody **out, di
     *out = NULL;
     toy_net toy = {0};
     status code = softbody_check(s, why);
-    if (code == STATUS_OK)
-        code = toy_net_create(s, &toy, why);
+    THEN(code, toy_net_create(s, &toy, why));
     if (code != STATUS_OK)
         return code;
     double *mass_kg = malloc(toy.mass_count * sizeof *mass_kg);

@@ -10,8 +10,7 @@ static status measure_fall(const trials *t)
     softbody *b;
     bool held;
     status code = trial_one_mass(t, &s, &b);
-    if (code == STATUS_OK)
-        code = trial_run(b, steps, NULL, NULL, &held, t->why);
+    THEN(code, trial_run(b, steps, NULL, NULL, &held, t->why));
     if (code == STATUS_OK) {
         vec3 at;
         softbody_positions(b, &at);
@@ -86,8 +85,7 @@ static status bounce_of_mass(const trials *t, double *high)
     const softbody_settings s = over_floor(t, 1.0);
     softbody *b;
     status code = trial_one_mass(t, &s, &b);
-    if (code == STATUS_OK)
-        code = run_bounce(b, &s, 1.0, follow_mass, high, t->why);
+    THEN(code, run_bounce(b, &s, 1.0, follow_mass, high, t->why));
     softbody_destroy(b);
     return code;
 }
@@ -98,8 +96,7 @@ static status bounce_of_body(const trials *t, double *high)
     s.adaptive = t->set->adaptive;
     softbody *b;
     status code = softbody_create(&s, t->level, &b, t->why);
-    if (code == STATUS_OK)
-        code = run_bounce(b, &s, s.radius, follow_body, high, t->why);
+    THEN(code, run_bounce(b, &s, s.radius, follow_body, high, t->why));
     *high = (*high - s.radius) / s.radius;
     softbody_destroy(b);
     return code;
@@ -116,8 +113,7 @@ status trials_bounce(const trials *t)
         return STATUS_OK;
     double mass = NAN, body = NAN;
     status code = bounce_of_mass(t, &mass);
-    if (code == STATUS_OK)
-        code = bounce_of_body(t, &body);
+    THEN(code, bounce_of_body(t, &body));
     trial_put(t, BOUNCE_HEIGHT, mass, t->set->restitution * t->set->restitution);
     trial_put(t, BOUNCE_BODY, body, NAN);
     return code;

@@ -104,8 +104,7 @@ status trials_free(const trials *t)
         return STATUS_OK;
     energies kept = {0}, damped = {0};
     status code = follow_energy(t, 0.0, &kept);
-    if (code == STATUS_OK)
-        code = follow_energy(t, t->set->damping, &damped);
+    THEN(code, follow_energy(t, t->set->damping, &damped));
     trial_put(t, ENERGY_DRIFT, kept.off / kept.first, 0.0);
     trial_put(t, ENERGY_END, kept.now / kept.first - 1.0, 0.0);
     trial_put(t, ENERGY_RISE, damped.rise / damped.first, 0.0);

@@ -46,8 +46,7 @@ status trials_rest(const trials *t)
     softbody *b;
     bool held = false;
     status code = softbody_create(&s, t->level, &b, t->why);
-    if (code == STATUS_OK)
-        code = trial_run(b, trial_steps(&s, 3.0), NULL, NULL, &held, t->why);
+    THEN(code, trial_run(b, trial_steps(&s, 3.0), NULL, NULL, &held, t->why));
     if (code == STATUS_OK && held) {
         const softbody_account a = softbody_measure(b);
         trial_put(t, VOLUME_DRIFT, a.volume / a.volume_at_rest - 1.0, 0.0);

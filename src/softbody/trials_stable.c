@@ -58,8 +58,7 @@ static status spring_holds(const trials *t, double dt_s, bool *holds)
     bool held = false;
     softbody *b;
     status code = trial_swing(t, &s, FIRST_SWING, &b);
-    if (code == STATUS_OK)
-        code = trial_run(b, STEPS, watch_swing, &w, &held, t->why);
+    THEN(code, trial_run(b, STEPS, watch_swing, &w, &held, t->why));
     *holds = held && !w.grown;
     softbody_destroy(b);
     return code;

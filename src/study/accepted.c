@@ -33,8 +33,7 @@ static status read_parts(study *s, const document *d, const void *scene_text, di
     s->name = strdup(name->text);
     status code =
         s->name ? scene_read_text(s->scene_path, scene_text, strlen(scene_text), &s->base, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why);
+    THEN(code, read_grid(s, d, node_get(root, "set"), node_get(root, "grid"), why));
     return code == STATUS_OK ? read_reference(s, d, node_get(root, "reference"), why) : code;
 }
 

@@ -17,8 +17,7 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
 {
     image *picture = NULL;
     status code = film_image(frame->picture, &picture, why);
-    if (code == STATUS_OK)
-        code = image_compare(picture, row->against->picture, &row->lies, why);
+    THEN(code, image_compare(picture, row->against->picture, &row->lies, why));
     if (code == STATUS_OK) {
         row->error_rms = difference_rms(picture, row->against->picture);
         row->film_hash = film_hash(frame->picture);

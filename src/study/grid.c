@@ -144,8 +144,7 @@ status grid_each_cell(const study *s, grid_look *look, void *context, diagnostic
     for (size_t cell = 0, count = study_cell_count(s); code == STATUS_OK && cell < count; cell++) {
         scene *setting = NULL;
         code = study_cell_scene(s, cell, &setting, why);
-        if (code == STATUS_OK)
-            code = look(context, s, cell, setting, why);
+        THEN(code, look(context, s, cell, setting, why));
         scene_destroy(setting);
     }
     return code;

@@ -130,8 +130,7 @@ status keep_index(const study *s, const char *folder, bool renew, diagnostic *wh
         if (lock >= 0)
             flock(lock, LOCK_EX);
         code = file_writer_open(&writer, path, why);
-        if (code == STATUS_OK)
-            code = file_writer_end(&writer, list_kept(s, folder, writer.stream, why), why);
+        THEN(code, file_writer_end(&writer, list_kept(s, folder, writer.stream, why), why));
         if (lock >= 0)
             close(lock);
     }

@@ -161,8 +161,7 @@ status manifest_write(const study *s, const char *folder, const topology *machin
     int lock = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock >= 0)
         flock(lock, LOCK_EX);
-    if (code == STATUS_OK)
-        code = load(s, path, machine, &manifest, why);
+    THEN(code, load(s, path, machine, &manifest, why));
     if (code == STATUS_OK) {
         json_array_append(json_object_get(manifest, "runs"), run);
         code = facts_write(manifest, JSON_REAL_PRECISION(6), path, why);

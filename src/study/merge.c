@@ -87,8 +87,7 @@ static status join(const study *s, const char *results, row_kind kind, size_t *r
             locked_count++;
     row_files_destroy(files);
     files = NULL;
-    if (code == STATUS_OK)
-        code = row_files_read(s, results, kind, &files, why);
+    THEN(code, row_files_read(s, results, kind, &files, why));
     if (code == STATUS_OK && files->count > 1)
         code = write_joined(files, joined, header, why);
     if (code == STATUS_OK)
@@ -108,10 +107,8 @@ status study_merge(const study *s, const char *results, size_t *rows, diagnostic
     size_t joined = 0;
     /* Worker rows first: they may be there without their row, but not the other way round. */
     status code = join(s, results, WORKER_ROWS, &joined, why);
-    if (code == STATUS_OK)
-        code = join(s, results, COMPARE_ROWS, &joined, why);
-    if (code == STATUS_OK)
-        code = join(s, results, ROWS, &joined, why);
+    THEN(code, join(s, results, COMPARE_ROWS, &joined, why));
+    THEN(code, join(s, results, ROWS, &joined, why));
     if (rows)
         *rows = joined;
     return code;

@@ -111,10 +111,8 @@ static status read_interval_rule(study *s, const document *d, const node *n, dia
     status code = node_check_keys(d, n, keys, COUNT(keys), why);
     const node *min = node_get(n, "min"), *max = node_get(n, "max"), *width = node_get(n, "relative_width");
     int64_t least = 0, most = 0;
-    if (code == STATUS_OK)
-        code = read_integer(d, min, "min", 2, STUDY_REPETITIONS_MAX, &least, why);
-    if (code == STATUS_OK)
-        code = read_integer(d, max, "max", 2, STUDY_REPETITIONS_MAX, &most, why);
+    THEN(code, read_integer(d, min, "min", 2, STUDY_REPETITIONS_MAX, &least, why));
+    THEN(code, read_integer(d, max, "max", 2, STUDY_REPETITIONS_MAX, &most, why));
     if (code != STATUS_OK)
         return code;
     if (min && max && most < least)
@@ -159,10 +157,8 @@ static status read_order(study *s, const document *d, const node *warmups, const
     if (order->kind != NODE_MAP)
         return node_error(d, order, why, "write {shuffle: on, seed: 1}", "order is not a map");
     code = node_check_keys(d, order, keys, COUNT(keys), why);
-    if (code == STATUS_OK)
-        code = read_switch(d, node_get(order, "shuffle"), "shuffle", &s->shuffle, why);
-    if (code == STATUS_OK)
-        code = read_integer(d, node_get(order, "seed"), "seed", 0, INT64_MAX, &seed, why);
+    THEN(code, read_switch(d, node_get(order, "shuffle"), "shuffle", &s->shuffle, why));
+    THEN(code, read_integer(d, node_get(order, "seed"), "seed", 0, INT64_MAX, &seed, why));
     s->seed = (uint64_t)seed;
     return code;
 }
@@ -269,8 +265,7 @@ status study_parse(study *s, const char *text, size_t size, study_parts *read, c
     document *d = NULL;
     *out = NULL;
     status code = document_parse(s->path, text, size, &d, why);
-    if (code == STATUS_OK)
-        code = read(s, d, context, why);
+    THEN(code, read(s, d, context, why));
     document_destroy(d);
     if (code == STATUS_OK)
         *out = s;

@@ -116,8 +116,7 @@ static status read_values(study_axis *axis, scene *on, const document *d, const 
     for (size_t i = 0; code == STATUS_OK && i < list->count; i++) {
         study_point *point = &axis->points[axis->count++];
         code = point_reserve(point, list->items[i], 1, why);
-        if (code == STATUS_OK)
-            code = point_add(point, on, d, key, list->items[i], why);
+        THEN(code, point_add(point, on, d, key, list->items[i], why));
     }
     return code;
 }
@@ -167,8 +166,7 @@ static status read_range(study_axis *axis, scene *on, const document *d, const n
             number_format(value, text);
         study_point *point = &axis->points[axis->count++];
         code = point_reserve(point, range, 1, why);
-        if (code == STATUS_OK)
-            code = point_add(point, on, d, key, &at, why);
+        THEN(code, point_add(point, on, d, key, &at, why));
     }
     return code;
 }
@@ -184,8 +182,7 @@ static status read_points(study_axis *axis, scene *on, const document *d, const 
     for (size_t i = 0; code == STATUS_OK && i < list->count; i++) {
         study_point *point = &axis->points[axis->count++];
         code = read_point(point, on, d, list->items[i], why);
-        if (code == STATUS_OK)
-            code = align_point(point, &axis->points[0], d, list->items[i], why);
+        THEN(code, align_point(point, &axis->points[0], d, list->items[i], why));
     }
     return code;
 }

@@ -29,8 +29,7 @@ static status check_cell(void *context, const study *s, size_t cell, scene *own,
     (void)context;
     scene *other = NULL;
     status code = reference_scene(s, cell, &other, why);
-    if (code == STATUS_OK)
-        code = grid_check_kept(s, &s->reference, other, why);
+    THEN(code, grid_check_kept(s, &s->reference, other, why));
     if (code == STATUS_OK && (code = scene_check(other, why)) != STATUS_OK)
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
     if (code == STATUS_OK && (own->render.width != other->render.width || own->render.height != other->render.height)) {
@@ -103,8 +102,7 @@ status reference_load(const char *folder, const char *root, uint64_t scene_hash,
     /* The facts are written last: without them the picture is not believed. */
     if (code == STATUS_OK && access(facts, F_OK) == 0 && access(picture, F_OK) == 0) {
         code = load_facts(facts, root, out, &pixels, why);
-        if (code == STATUS_OK)
-            code = image_read_below(picture, root, &out->picture, NULL, why);
+        THEN(code, image_read_below(picture, root, &out->picture, NULL, why));
         if (code == STATUS_OK && pixel_hash(out->picture) != pixels) {
             reference_release(out);
             code = damaged(picture, why);
@@ -138,12 +136,10 @@ status reference_save(const study *s, const char *folder, const reference *of, c
     char *pfm = file_path(folder, of->scene_hash, ".pfm"), *png = file_path(folder, of->scene_hash, ".png");
     char *facts = file_path(folder, of->scene_hash, ".json");
     status code = into && pfm && png && facts ? file_make_directory(into, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = image_write(of->picture, pfm, 8, why);
+    THEN(code, image_write(of->picture, pfm, 8, why));
     if (code == STATUS_OK && s->keep_image)
         code = image_write(of->picture, png, 8, why);
-    if (code == STATUS_OK)
-        code = save_facts(of, setting, facts, why);
+    THEN(code, save_facts(of, setting, facts, why));
     free(into);
     free(pfm);
     free(png);

@@ -190,8 +190,7 @@ static status load(const study *s, const char *results, row_kind kind, row_files
     row_files *files = calloc(1, sizeof *files);
     char *folder = study_folder(s, results);
     status code = files && folder ? open_files(files, s, folder, kind, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = read_rows(files, s, folder, kind, why);
+    THEN(code, read_rows(files, s, folder, kind, why));
     free(folder);
     if (code != STATUS_OK) {
         row_files_destroy(files);
@@ -208,8 +207,7 @@ status row_files_read(const study *s, const char *results, row_kind kind, row_fi
     if (code == STATUS_OK && kind == WORKER_ROWS && (code = load(s, results, ROWS, &rows, why)) == STATUS_OK)
         row_check_drop_orphans(*out, rows);
     row_files_destroy(rows);
-    if (code == STATUS_OK)
-        code = row_check_drop_twins(*out, why);
+    THEN(code, row_check_drop_twins(*out, why));
     if (code != STATUS_OK) {
         row_files_destroy(*out);
         *out = NULL;

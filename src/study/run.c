@@ -88,10 +88,8 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
     scene *setting = NULL;
     job_account made = {.result = NULL};
     status code = study_cell_scene(r->s, cell, &setting, why);
-    if (code == STATUS_OK)
-        code = run_load(r, setting, why);
-    if (code == STATUS_OK)
-        code = run_render(r, setting, NULL, &made, why);
+    THEN(code, run_load(r, setting, why));
+    THEN(code, run_render(r, setting, NULL, &made, why));
     if (code == STATUS_OK) {
         const study_row row = {.of = r->s,
                                .cell = cell,
@@ -155,20 +153,16 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
              .line = progress_begin(s, options)};
     bool has_memory = r.folder && r.cells && r.warm && r.order && r.compared && r.line;
     status code = has_memory ? ledger_read(s, options->results, &r.done, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = run_find_compared(&r, why);
+    THEN(code, run_find_compared(&r, why));
     if (code == STATUS_OK) {
         choose_cells(&r);
         bool idle = run_complete(&r);
         if (!idle) {
             code = run_prepare(&r, why);
-            if (code == STATUS_OK)
-                code = run_rounds(&r, why);
-            if (code == STATUS_OK)
-                code = run_keep_all(&r, why);
+            THEN(code, run_rounds(&r, why));
+            THEN(code, run_keep_all(&r, why));
         }
-        if (code == STATUS_OK)
-            code = keep_index(s, r.folder, !idle, why);
+        THEN(code, keep_index(s, r.folder, !idle, why));
     }
     if (ran)
         *ran = r.ran;

@@ -40,8 +40,7 @@ static status render_reference(run *r, const scene *setting, reference *out, dia
 {
     job_account frame;
     status code = run_render(r, setting, NULL, &frame, why);
-    if (code == STATUS_OK)
-        code = film_image(frame.result->picture, &out->picture, why);
+    THEN(code, film_image(frame.result->picture, &out->picture, why));
     if (code == STATUS_OK) {
         out->film_hash = frame.film_hash;
         out->noise_rms = render_noise_rms(frame.result);
@@ -57,10 +56,8 @@ static status hold_reference(run *r, size_t cell, diagnostic *why)
     scene *setting = NULL;
     uint64_t hash = 0;
     status code = reference_scene(r->s, cell, &setting, why);
-    if (code == STATUS_OK)
-        code = run_load(r, setting, why);
-    if (code == STATUS_OK)
-        code = reference_scene_hash(setting, &hash);
+    THEN(code, run_load(r, setting, why));
+    THEN(code, reference_scene_hash(setting, &hash));
     if (code == STATUS_OK && (!r->held.picture || r->held.scene_hash != hash)) {
         reference_release(&r->held);
         code = reference_load(r->folder, scene_root(r->s->base), hash, &r->held, why);
@@ -91,12 +88,9 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
     const render_options wanted = keep_options(r->s);
     bool keeps = keep_missing(r->s, r->folder, cell), compares = lacks_comparison(r, cell);
     status code = compares ? hold_reference(r, cell, why) : STATUS_OK;
-    if (code == STATUS_OK)
-        code = study_cell_scene(r->s, cell, &setting, why);
-    if (code == STATUS_OK)
-        code = run_load(r, setting, why);
-    if (code == STATUS_OK)
-        code = run_render(r, setting, keeps ? &wanted : NULL, &frame, why);
+    THEN(code, study_cell_scene(r->s, cell, &setting, why));
+    THEN(code, run_load(r, setting, why));
+    THEN(code, run_render(r, setting, keeps ? &wanted : NULL, &frame, why));
     if (code == STATUS_OK && frame.film_hash != ledger_film(r->done, cell, frame.film_hash))
         code = diagnose(why, STATUS_FAILURE, "look for marked rows; the image must depend on the scene alone",
                         "the picture of cell %zu is not the one that its rows saw", cell);

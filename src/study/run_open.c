@@ -70,20 +70,15 @@ status run_prepare(run *r, diagnostic *why)
                                    .context = r->options->context};
     const topology *machine = NULL;
     status code = job_create(&settings, &r->with, why);
-    if (code == STATUS_OK)
-        code = file_make_directory(r->folder, why);
-    if (code == STATUS_OK)
-        code = open_tables(r, why);
+    THEN(code, file_make_directory(r->folder, why));
+    THEN(code, open_tables(r, why));
     if (code != STATUS_OK)
         return code;
     ledger_destroy(r->done);
     code = ledger_read(r->s, r->options->results, &r->done, why);
-    if (code == STATUS_OK)
-        code = run_find_compared(r, why);
-    if (code == STATUS_OK)
-        code = job_machine(r->with, &machine, why);
-    if (code == STATUS_OK)
-        code = manifest_write(r->s, r->folder, machine, job_isa(r->with), r->options->shard, r->options->shards, why);
+    THEN(code, run_find_compared(r, why));
+    THEN(code, job_machine(r->with, &machine, why));
+    THEN(code, manifest_write(r->s, r->folder, machine, job_isa(r->with), r->options->shard, r->options->shards, why));
     return code;
 }
 

@@ -163,8 +163,7 @@ status study_summary(const study *s, const char *results, FILE *out, diagnostic 
         code = row_files_read(s, results, COMPARE_ROWS, &compared, why);
     if (code == STATUS_OK)
         code = put_line(s, &(cell_rows){.header = true, .out = out}, why);
-    if (code == STATUS_OK)
-        code = put_cells(s, files, compared, out, why);
+    THEN(code, put_cells(s, files, compared, out, why));
     row_files_destroy(compared);
     row_files_destroy(files);
     return code;

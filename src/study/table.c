@@ -89,8 +89,7 @@ status table_set_aside(table *t, size_t offset, diagnostic *why)
     status code = STATUS_OK;
     if (pread(t->fd, bytes, size, (off_t)offset) != (ssize_t)size)
         code = failed(t->path, "reading the torn row", errno, why);
-    if (code == STATUS_OK)
-        code = keep_torn(t->path, bytes, size, why);
+    THEN(code, keep_torn(t->path, bytes, size, why));
     if (code == STATUS_OK && (ftruncate(t->fd, (off_t)offset) != 0 || fsync(t->fd) != 0))
         code = failed(t->path, "cutting the torn row off", errno, why);
     free(bytes);
@@ -160,10 +159,8 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
     }
     size_t end = 0;
     status code = lock(t, why);
-    if (code == STATUS_OK)
-        code = whole_lines(t, &end, why);
-    if (code == STATUS_OK)
-        code = table_set_aside(t, end, why);
+    THEN(code, whole_lines(t, &end, why));
+    THEN(code, table_set_aside(t, end, why));
     if (code == STATUS_OK && end == 0) {
         code = append(t, header, strlen(header), why);
         file_flush_folder(path);
@@ -198,8 +195,7 @@ status table_append(table *t, const char *lines, size_t size, diagnostic *why)
     if (code != STATUS_OK || !t->layout)
         return code == STATUS_OK ? append(t, lines, size, why) : code;
     code = csv_layout_place(t->layout, lines, size, &placed, why);
-    if (code == STATUS_OK)
-        code = append(t, placed.text, placed.size, why);
+    THEN(code, append(t, placed.text, placed.size, why));
     csv_line_free(&placed);
     return code;
 }

@@ -234,8 +234,7 @@ static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
             code = slime_make(s, m, watch ? &(load_watch){go_on_all, &shared} : NULL, why);
         else if (!m->data)
             code = load_mesh(s, m, why);
-        if (code == STATUS_OK)
-            code = check_triangles(s, m, why);
+        THEN(code, check_triangles(s, m, why));
         shared.before += shared.own;
     }
     return code;
@@ -259,8 +258,7 @@ status scene_load_files(scene *s, diagnostic *why)
         mesh_entry *m = &s->meshes[i];
         if (m->source == MESH_FILE && !m->data) {
             code = load_mesh(s, m, why);
-            if (code == STATUS_OK)
-                code = check_triangles(s, m, why);
+            THEN(code, check_triangles(s, m, why));
         } else if (m->source == MESH_SLIME) {
             hand_script *script;
             code = slime_read_script(s, m, &script, why);

@@ -140,15 +140,13 @@ static status read_entries(event_reader *r, yaml_event_type_t end, int depth, no
         if (n->kind == NODE_MAP) {
             code = read_key(r, &event, &key);
             yaml_event_delete(&event);
-            if (code == STATUS_OK)
-                code = events_next(r, &event);
+            THEN(code, events_next(r, &event));
         }
         if (code == STATUS_OK) {
             code = read_node(r, &event, depth + 1, &value);
             yaml_event_delete(&event);
         }
-        if (code == STATUS_OK)
-            code = node_append(r, n, key, value);
+        THEN(code, node_append(r, n, key, value));
         if (code != STATUS_OK) {
             node_destroy(key);
             node_destroy(value);

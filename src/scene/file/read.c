@@ -114,8 +114,7 @@ static status build(const document *file, scene **out, diagnostic *why)
     s->path = path;
     scene_reader r = {.file = file, .scene = s, .why = why};
     status code = read_sections(&r);
-    if (code == STATUS_OK)
-        code = read_located(&r, document_root(file), scene_check(s, why));
+    THEN(code, read_located(&r, document_root(file), scene_check(s, why)));
     if (code != STATUS_OK) {
         scene_destroy(s);
         return code;
@@ -141,8 +140,7 @@ status scene_read_below(const char *path, const char *root, scene **out, diagnos
     *out = NULL;
     document *file;
     status code = document_read_below(path, root, &file, why);
-    if (code == STATUS_OK)
-        code = build_and_release(file, out, why);
+    THEN(code, build_and_release(file, out, why));
     if (code == STATUS_OK && (code = scene_limit(*out, root, 0, why)) != STATUS_OK) {
         scene_destroy(*out);
         *out = NULL;

@@ -73,8 +73,7 @@ status read_entries(const scene_reader *r, const char *name, param_group group, 
         snprintf(path, sizeof path, "%s.%s", name, key);
         place unused;
         status code = read_located(r, map->keys[i], place_find(r->scene, path, &unused, r->why));
-        if (code == STATUS_OK)
-            code = read_value(r, path, row, map->items[i]);
+        THEN(code, read_value(r, path, row, map->items[i]));
         if (code != STATUS_OK)
             return code;
     }

@@ -45,8 +45,7 @@ static status begin_object(const scene_reader *r, param_group group, const node 
     if (group == PARAM_SOLID)
         return begin_solid(r, key, map, index);
     status code = read_located(r, key, scene_add(r->scene, group, key->text, index, r->why));
-    if (code == STATUS_OK)
-        code = read_check_keys(r, group, map);
+    THEN(code, read_check_keys(r, group, map));
     if (code == STATUS_OK && group == PARAM_MATERIAL)
         code = read_one_medium(r, map);
     const node *generate = node_get(map, "generate");
@@ -82,8 +81,7 @@ static status read_object(const scene_reader *r, param_group group, const node *
 {
     size_t index = 0;
     status code = begin_object(r, group, key, map, &index);
-    if (code == STATUS_OK)
-        code = read_entries(r, key->text, group, map);
+    THEN(code, read_entries(r, key->text, group, map));
     if (code != STATUS_OK)
         return code;
     note_places(r, group, index, map);
@@ -95,8 +93,7 @@ status read_objects(const scene_reader *r, const char *name, param_group group, 
     status code = read_expect_map(r, map, name);
     for (size_t i = 0; i < map->count && code == STATUS_OK; i++) {
         code = read_expect_map(r, map->items[i], map->keys[i]->text);
-        if (code == STATUS_OK)
-            code = read_object(r, group, map->keys[i], map->items[i]);
+        THEN(code, read_object(r, group, map->keys[i], map->items[i]));
     }
     return code;
 }

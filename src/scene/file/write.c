@@ -100,8 +100,7 @@ static status put_path(scene_writer *w, const char *label, const param *row, con
 {
     char *there = NULL;
     status code = write_moved_path(value, w->s->path, w->path, &there, w->why);
-    if (code == STATUS_OK)
-        code = write_check_text(label, there, w->why);
+    THEN(code, write_check_text(label, there, w->why));
     if (code == STATUS_OK)
         put_value(w, row, there);
     free(there);

@@ -225,8 +225,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     TRY(check_references(s, owner, why));
     index_law unused;
     code = material_index_law(&owner->surface, owner->name, &unused, why);
-    if (code == STATUS_OK)
-        code = material_absorption_check(&owner->surface, owner->name, why);
+    THEN(code, material_absorption_check(&owner->surface, owner->name, why));
     if (code != STATUS_OK)
         return code;
     /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel
@@ -290,8 +289,7 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
 status scene_check(const scene *s, diagnostic *why)
 {
     status code = check_limits(s, why);
-    if (code == STATUS_OK)
-        code = check_names(s, why);
+    THEN(code, check_names(s, why));
     for (int g = 0; g < PARAM_GROUP_COUNT; g++)
         for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
             code = check_object(s, (param_group)g, i, why);

@@ -158,8 +158,7 @@ status slime_make(const scene *s, mesh_entry *m, const load_watch *watch, diagno
     slime x;
     TRY(slime_create(s, m, &x, why));
     status code = slime_advance(&x, s, m, m->time_s, watch, why);
-    if (code == STATUS_OK)
-        code = make_skin(&x, s, m, why);
+    THEN(code, make_skin(&x, s, m, why));
     slime_destroy(&x);
     return code;
 }

@@ -45,8 +45,7 @@ static status move_skin(scene_motion *m, const moving_slime *one, diagnostic *wh
     /* Made by motion_give_skin for this scene, which alone holds it. */
     status code = softbody_move_skin(one->x.body, (mesh *)(uintptr_t)entry->data, why);
     hierarchy_moves moves = {.refitted = 0};
-    if (code == STATUS_OK)
-        code = hierarchy_follow(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why);
+    THEN(code, hierarchy_follow(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why));
     if (code != STATUS_OK) {
         mesh_entry_unload(entry); /* triangles and hierarchies that do not fit each other */
         return code;

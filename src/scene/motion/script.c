@@ -74,13 +74,11 @@ static status read_grab(const script_reader *r, const node *entry, hand_key *key
     if (code == STATUS_OK && !reach)
         return node_error(r->file, entry, r->why, "add how near the masses are that it takes, as 'reach: 0.3'",
                           "a grab, but how far the hand reaches is not said");
-    if (code == STATUS_OK)
-        code = read_vector(r, "towards", towards, &key->direction);
+    THEN(code, read_vector(r, "towards", towards, &key->direction));
     if (code == STATUS_OK && !(vec3_dot(key->direction, key->direction) > 0.0))
         return node_error(r->file, towards, r->why, "give three numbers that are not all 0",
                           "towards: it has no direction");
-    if (code == STATUS_OK)
-        code = read_number(r, "reach", reach, 0.0, FAR, &key->reach);
+    THEN(code, read_number(r, "reach", reach, 0.0, FAR, &key->reach));
     if (code == STATUS_OK && !(key->reach > 0.0))
         return node_error(r->file, reach, r->why, "give a length greater than 0", "reach: a hand that reaches nothing");
     return code;
@@ -143,10 +141,8 @@ static status read_key(const script_reader *r, const char *hand, const node *ent
         return node_error(r->file, entry, r->why, "add the time in seconds, as 'time_s: 0.5'",
                           "the entry does not say when");
     status code = read_number(r, "time_s", time, 0.0, TIME_S_MAX, &key.time_s);
-    if (code == STATUS_OK)
-        code = find_act(r, entry, &key.act);
-    if (code == STATUS_OK)
-        code = read_act(r, entry, &key);
+    THEN(code, find_act(r, entry, &key.act));
+    THEN(code, read_act(r, entry, &key));
     if (code != STATUS_OK)
         return code;
     code = hand_script_add(r->script, hand, &key, r->why);

@@ -11,8 +11,7 @@ static status add(scene *s, param_group group, shape_kind shape, const char *nam
 {
     const size_t at = place_group_size(s, group);
     status code = check_name(name, why);
-    if (code == STATUS_OK)
-        code = check_name_is_free(s, name, why);
+    THEN(code, check_name_is_free(s, name, why));
     if (code != STATUS_OK)
         return code;
     if (!object_append(s, group, name))
@@ -24,8 +23,7 @@ static status add(scene *s, param_group group, shape_kind shape, const char *nam
         new->material_index = -1;
         code = param_set_defaults(PARAM_MATERIAL, &new->surface, why);
     }
-    if (code == STATUS_OK)
-        code = check_limits(s, why);
+    THEN(code, check_limits(s, why));
     if (code != STATUS_OK)
         object_remove(s, group, at);
     else if (index)

@@ -71,8 +71,7 @@ static status put_shape(scene *s, solid *owner, const char *word, diagnostic *wh
 {
     const shape_kind before = owner->shape.kind;
     status code = scene_shape_named(word, &owner->shape.kind, why);
-    if (code == STATUS_OK)
-        code = check_limits(s, why);
+    THEN(code, check_limits(s, why));
     if (code != STATUS_OK)
         owner->shape.kind = before;
     return code;

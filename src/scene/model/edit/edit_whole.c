@@ -144,8 +144,7 @@ static status turn_camera(whole_edit *e)
         code = turn_point(e, "camera", "target", target);
     else
         code = scene_turn(s, "camera", e->by, e->why);
-    if (code == STATUS_OK)
-        code = turn_point(e, "camera", "position", eye);
+    THEN(code, turn_point(e, "camera", "position", eye));
     if (code == STATUS_OK) {
         const camera_frame level = camera_frame_level(s);
         const double roll = edit_settle_deg(elementary_atan2_deg(vec3_dot(up, level.right), vec3_dot(up, level.up)));

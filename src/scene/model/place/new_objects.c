@@ -132,10 +132,8 @@ static status add_mesh_solid(scene *s, const char *solid_name, object_name mesh_
     shape_named("mesh", &mesh_shape);
     snprintf(base, sizeof base, "%.*s-mesh", SCENE_NAME_MAX - 9, solid_name);
     status code = new_name(s, base, mesh_name, why);
-    if (code == STATUS_OK)
-        code = scene_add_mesh(s, mesh_name, NULL, why);
-    if (code == STATUS_OK)
-        code = scene_add_solid(s, solid_name, mesh_shape, NULL, why);
+    THEN(code, scene_add_mesh(s, mesh_name, NULL, why));
+    THEN(code, scene_add_solid(s, solid_name, mesh_shape, NULL, why));
     put(s, &code, why, solid_name, "mesh", "%s", mesh_name);
     return code;
 }
@@ -182,8 +180,7 @@ status new_light(scene *s, const char *wanted, object_name name, diagnostic *why
 {
     const spot where = spot_of(s);
     status code = name_for(s, wanted, "lamp", name, why);
-    if (code == STATUS_OK)
-        code = scene_add_light(s, name, NULL, why);
+    THEN(code, scene_add_light(s, name, NULL, why));
     /* To the left and in front of it, alternately to the right, so that two do not shine from one point. */
     const double side = s->light_count % 2 ? 0.5 : -0.5;
     vec3 at = vec3_add(where.looked_at, vec3_scale(where.right, side * where.distance));
@@ -202,8 +199,7 @@ status new_material(scene *s, const char *wanted, object_name name, diagnostic *
 {
     const size_t count = s->material_count;
     status code = name_for(s, wanted, "paint", name, why);
-    if (code == STATUS_OK)
-        code = scene_add_material(s, name, NULL, why);
+    THEN(code, scene_add_material(s, name, NULL, why));
     put_look(s, &code, why, name, count);
     return code;
 }
@@ -215,8 +211,7 @@ status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why
     const vec3 low = spot_free(s, &where, size);
     object_name mesh_name;
     status code = name_for(s, wanted, "slime", name, why);
-    if (code == STATUS_OK)
-        code = add_mesh_solid(s, name, mesh_name, why);
+    THEN(code, add_mesh_solid(s, name, mesh_name, why));
     if (code != STATUS_OK)
         return code;
     /* Its motion is that of the default, a ball of radius 1 on a floor at 0, whatever its size in the picture:
@@ -257,11 +252,9 @@ status new_texture(scene *s, const char *path, const char *wanted, object_name n
     object_name base;
     base_of_path(path, "picture", base);
     status code = name_for(s, wanted, base, name, why);
-    if (code == STATUS_OK)
-        code = scene_add_texture(s, name, NULL, why);
+    THEN(code, scene_add_texture(s, name, NULL, why));
     char *row = text_format("%s.file", name);
-    if (code == STATUS_OK)
-        code = row ? scene_set(s, row, path, why) : out_of_memory(why);
+    THEN(code, row ? scene_set(s, row, path, why) : out_of_memory(why));
     free(row);
     return code;
 }
@@ -286,11 +279,9 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
     object_name base, mesh_name;
     base_of_path(path, "model", base);
     status code = name_for(s, wanted, base, name, why);
-    if (code == STATUS_OK)
-        code = add_mesh_solid(s, name, mesh_name, why);
+    THEN(code, add_mesh_solid(s, name, mesh_name, why));
     char *row = code == STATUS_OK ? text_format("%s.file", mesh_name) : NULL;
-    if (code == STATUS_OK)
-        code = row ? scene_set(s, row, path, why) : out_of_memory(why);
+    THEN(code, row ? scene_set(s, row, path, why) : out_of_memory(why));
     free(row);
     /* Four digits, so that it does not stand deep in the ground or above it. */
     const double scale = spot_round(where.size / longest, 0.01 * where.size / longest);
