@@ -29,7 +29,7 @@ static inline softbody_settings default_toy(void)
 {
     scene *s = scene_create();
     assert_non_null(s);
-    assert_int_equal(scene_add_mesh(s, "toy", NULL, NULL), STATUS_OK);
+    assert_int_equal(scene_add(s, PARAM_MESH, "toy", NULL, NULL), STATUS_OK);
     const softbody_settings settings = slime_settings(&s->meshes[0]);
     scene_destroy(s);
     return settings;

@@ -242,8 +242,8 @@ static status check_naming(const room *r, const char *row, const char *path)
     assert_int_equal(new_scene(&s, NULL), STATUS_OK);
     free(s->path);
     s->path = text_format("%s/sub/scene.yaml", r->inside);
-    assert_int_equal(scene_add_mesh(s, "body", NULL, NULL), STATUS_OK);
-    assert_int_equal(scene_add_texture(s, "cloth", NULL, NULL), STATUS_OK);
+    assert_int_equal(scene_add(s, PARAM_MESH, "body", NULL, NULL), STATUS_OK);
+    assert_int_equal(scene_add(s, PARAM_TEXTURE, "cloth", NULL, NULL), STATUS_OK);
     assert_int_equal(scene_set(s, row, path, NULL), STATUS_OK);
     const status code = folder_check_scene(r->f, s, &why);
     assert_true((code == STATUS_OK) == !why.what[0]);

@@ -52,10 +52,10 @@ static void what_is_added_is_as_a_file_has_it(void **state)
         shape_kind kind;
         assert_int_equal(scene_shape_named(shapes[k], &kind, NULL), STATUS_OK);
         assert_int_equal(scene_add_solid(made, "thing", kind, &thing, NULL), STATUS_OK);
-        assert_int_equal(scene_add_light(made, "lamp", &lamp, NULL), STATUS_OK);
-        assert_int_equal(scene_add_material(made, "stuff", &stuff, NULL), STATUS_OK);
-        assert_int_equal(scene_add_mesh(made, "body", NULL, NULL), STATUS_OK);
-        assert_int_equal(scene_add_texture(made, "wood", NULL, NULL), STATUS_OK);
+        assert_int_equal(scene_add(made, PARAM_LIGHT, "lamp", &lamp, NULL), STATUS_OK);
+        assert_int_equal(scene_add(made, PARAM_MATERIAL, "stuff", &stuff, NULL), STATUS_OK);
+        assert_int_equal(scene_add(made, PARAM_MESH, "body", NULL, NULL), STATUS_OK);
+        assert_int_equal(scene_add(made, PARAM_TEXTURE, "wood", NULL, NULL), STATUS_OK);
         set_all(made, "body.generate=box wood.file=wood.png");
         if (k == SHAPE_MESH)
             set(made, "thing.mesh=body");
@@ -88,8 +88,8 @@ static void wrong_names_are_refused(void **state)
 {
     (void)state;
     scene *s = scene_from(small_scene);
-    assert_refused(s, scene_add_light(s, "lamp", NULL, &why), "the name 'lamp' is taken");
-    assert_refused(s, scene_add_material(s, "a", NULL, &why), "the name 'a' is taken");
+    assert_refused(s, scene_add(s, PARAM_LIGHT, "lamp", NULL, &why), "the name 'lamp' is taken");
+    assert_refused(s, scene_add(s, PARAM_MATERIAL, "a", NULL, &why), "the name 'a' is taken");
     assert_refused(s, scene_add_solid(s, "camera", SHAPE_BOX, NULL, &why),
                    "the name 'camera' is a word of scene files");
     assert_refused(s, scene_add_solid(s, "two words", SHAPE_BOX, NULL, &why), "'two words' cannot be a name");
@@ -208,11 +208,11 @@ static void a_scene_has_its_limits(void **state)
     for (int i = 0; i < SCENE_LIGHTS_MAX; i++) {
         char name[20];
         snprintf(name, sizeof name, "l%d", i);
-        assert_int_equal(scene_add_light(s, name, NULL, NULL), STATUS_OK);
+        assert_int_equal(scene_add(s, PARAM_LIGHT, name, NULL, NULL), STATUS_OK);
         snprintf(name, sizeof name, "s%d", i);
         assert_int_equal(scene_add_solid(s, name, SHAPE_SPHERE, NULL, NULL), STATUS_OK);
     }
-    assert_refused(s, scene_add_light(s, "more", NULL, &why), "more than 64 lights");
+    assert_refused(s, scene_add(s, PARAM_LIGHT, "more", NULL, &why), "more than 64 lights");
     assert_refused(s, scene_add_solid(s, "more", SHAPE_PLANE, NULL, &why), "more than 64 solids");
     assert_refused(s, scene_put(s, "s5.shape", "cup", &why), "more than 64 solids"); /* which is two */
     assert_int_equal(scene_remove(s, "s0", NULL), STATUS_OK);
@@ -334,7 +334,7 @@ static void a_cone_moves_with_its_target_and_turns_it(void **state)
     (void)state;
     scene *s = scene_create();
     diagnostic why = {0};
-    assert_int_equal(scene_add_light(s, "spot", NULL, &why), STATUS_OK);
+    assert_int_equal(scene_add(s, PARAM_LIGHT, "spot", NULL, &why), STATUS_OK);
     assert_int_equal(scene_set(s, "spot.kind", "cone", &why), STATUS_OK);
     assert_int_equal(scene_set(s, "spot.position", "1,2,3", &why), STATUS_OK);
     assert_int_equal(scene_set(s, "spot.target", "1,2,5", &why), STATUS_OK);
@@ -384,15 +384,15 @@ static void the_rod_in_its_vessel_is_built_by_calls_alone(void **state)
     (void)state;
     scene *s = scene_create(), *read = rod_scene("render.width=80 render.height=60");
     diagnostic why = {0};
-    worked(scene_add_material(s, "clear", NULL, &why), &why);
-    worked(scene_add_material(s, "tiles", NULL, &why), &why);
-    worked(scene_add_material(s, "plastic", NULL, &why), &why);
+    worked(scene_add(s, PARAM_MATERIAL, "clear", NULL, &why), &why);
+    worked(scene_add(s, PARAM_MATERIAL, "tiles", NULL, &why), &why);
+    worked(scene_add(s, PARAM_MATERIAL, "plastic", NULL, &why), &why);
     set_all(s, "clear.transparency=1 clear.specular=0.6 clear.shininess=80 tiles.color=0.85,0.85,0.85 "
                "tiles.checker_color=0.25,0.3,0.35");
     set_all(s, "tiles.checker=0.5 tiles.ambient=0.1 tiles.diffuse=0.7 plastic.color=0.85,0.15,0.1 plastic.ambient=0.1");
     set_all(s, "plastic.diffuse=0.7 plastic.specular=0.5 plastic.shininess=40 camera.position=0,2.75,-6 "
                "camera.target=0,1.5,0");
-    worked(scene_add_light(s, "lamp", NULL, &why), &why);
+    worked(scene_add(s, PARAM_LIGHT, "lamp", NULL, &why), &why);
     worked(scene_move(s, "lamp", vec3_make(4, -3, -5), &why), &why); /* from 0,10,0 */
     solid_with(s, "ground", SHAPE_PLANE, "tiles", "");
     solid_with(s, "vessel", SHAPE_CUP, "clear",

@@ -138,7 +138,7 @@ static status write_to(const void *content, FILE *stream, diagnostic *why)
 status command_mesh(int argc, char **argv, diagnostic *why)
 {
     mesh_request request = {.around = scene_create(), .format = MESH_FORMAT_COUNT};
-    status result = request.around ? scene_add_mesh(request.around, "body", NULL, why) : out_of_memory(why);
+    status result = request.around ? scene_add(request.around, PARAM_MESH, "body", NULL, why) : out_of_memory(why);
     THEN(result, command_form_read(&form, argc, argv, &request, why));
     THEN(result, check_request(&request, why));
     THEN(result, choose_format(&request, why));

@@ -117,12 +117,10 @@ static status add_object(scene *s, const char *kind, const char *name, const cha
         return add_solid(s, name, shape, why);
     if (shape)
         return diagnose(why, STATUS_BAD_INPUT, "leave it out", "a %.20s has no shape", kind);
-    status (*const adders[])(scene *, const char *, size_t *, diagnostic *) = {
-        NULL, scene_add_light, scene_add_material, scene_add_mesh, scene_add_texture};
+    static const param_group groups[] = {PARAM_SOLID, PARAM_LIGHT, PARAM_MATERIAL, PARAM_MESH, PARAM_TEXTURE};
     int which = 0;
-    const status result =
-        options_choice(NULL, "kind of object", kind, kinds, sizeof kinds / sizeof *kinds, &which, why);
-    return result == STATUS_OK ? adders[which](s, name, NULL, why) : result;
+    TRY(options_choice(NULL, "kind of object", kind, kinds, sizeof kinds / sizeof *kinds, &which, why));
+    return scene_add(s, groups[which], name, NULL, why);
 }
 
 /* Cuts "solid:rod=box,size=1,2,3" into its parts. */

@@ -8,13 +8,13 @@
 cuvette_status cuvette_scene_add_mesh(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
     ENGINE_CHANGE(s, name);
-    return engine_report(scene_add_mesh(s->model, name, NULL, &inner), &inner, why);
+    return engine_report(scene_add(s->model, PARAM_MESH, name, NULL, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_add_texture(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
     ENGINE_CHANGE(s, name);
-    return engine_report(scene_add_texture(s->model, name, NULL, &inner), &inner, why);
+    return engine_report(scene_add(s->model, PARAM_TEXTURE, name, NULL, &inner), &inner, why);
 }
 
 /* Element i of whichever array there is. */
@@ -89,7 +89,7 @@ cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, c
     if (code == STATUS_OK)
         code = make_mesh(triangles, &made, &inner);
     if (code == STATUS_OK)
-        code = scene_add_mesh(s->model, name, &index, &inner);
+        code = scene_add(s->model, PARAM_MESH, name, &index, &inner);
     if (code != STATUS_OK) {
         mesh_release(made);
         return engine_report(code, &inner, why);
@@ -120,7 +120,7 @@ cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int 
     }
     image_destroy(picture);
     if (code == STATUS_OK)
-        code = scene_add_texture(s->model, name, &index, &inner);
+        code = scene_add(s->model, PARAM_TEXTURE, name, &index, &inner);
     if (code != STATUS_OK) {
         texture_release(made);
         return engine_report(code, &inner, why);

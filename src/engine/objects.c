@@ -8,13 +8,13 @@
 cuvette_status cuvette_scene_add_light(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
     ENGINE_CHANGE(s, name);
-    return engine_report(scene_add_light(s->model, name, NULL, &inner), &inner, why);
+    return engine_report(scene_add(s->model, PARAM_LIGHT, name, NULL, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_add_material(cuvette_scene *s, const char *name, cuvette_diagnostic *why)
 {
     ENGINE_CHANGE(s, name);
-    return engine_report(scene_add_material(s->model, name, NULL, &inner), &inner, why);
+    return engine_report(scene_add(s->model, PARAM_MATERIAL, name, NULL, &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const char *shape, const char *of,

@@ -49,7 +49,7 @@ static status hang_lamp(scene *s, diagnostic *why)
 {
     size_t at = 0;
     s->light_count = 0;
-    TRY(scene_add_light(s, "lamp", &at, why));
+    TRY(scene_add(s, PARAM_LIGHT, "lamp", &at, why));
     light *l = &s->lights[at];
     l->position = lamp_place;
     l->intensity = 1.0;

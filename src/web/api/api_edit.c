@@ -208,7 +208,8 @@ static status load_alone(lab *l, const char *file, bool is_model, scene **out, d
     if (code == STATUS_OK && !s)
         code = out_of_memory(why);
     if (code == STATUS_OK)
-        code = is_model ? scene_add_mesh(s, "model", NULL, why) : scene_add_texture(s, "picture", NULL, why);
+        code =
+            is_model ? scene_add(s, PARAM_MESH, "model", NULL, why) : scene_add(s, PARAM_TEXTURE, "picture", NULL, why);
     if (code == STATUS_OK)
         code = scene_set(s, is_model ? "model.file" : "picture.file", path, why);
     if (code == STATUS_OK)

@@ -14,10 +14,6 @@
 /* A group that is not that of solids. */
 status scene_add(scene *s, param_group group, const char *name, size_t *index, diagnostic *why);
 status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why);
-status scene_add_light(scene *s, const char *name, size_t *index, diagnostic *why);
-status scene_add_material(scene *s, const char *name, size_t *index, diagnostic *why);
-status scene_add_mesh(scene *s, const char *name, size_t *index, diagnostic *why);
-status scene_add_texture(scene *s, const char *name, size_t *index, diagnostic *why);
 
 /* The solid refers to that material from now on, and has its values; what the solid had for itself alone is gone. NULL
  * or "" takes the material away and leaves the defaults. */

@@ -36,26 +36,6 @@ status scene_add(scene *s, param_group group, const char *name, size_t *index, d
     return add(s, group, (shape_kind){0}, name, index, why);
 }
 
-status scene_add_material(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    return scene_add(s, PARAM_MATERIAL, name, index, why);
-}
-
-status scene_add_light(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    return scene_add(s, PARAM_LIGHT, name, index, why);
-}
-
-status scene_add_mesh(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    return scene_add(s, PARAM_MESH, name, index, why);
-}
-
-status scene_add_texture(scene *s, const char *name, size_t *index, diagnostic *why)
-{
-    return scene_add(s, PARAM_TEXTURE, name, index, why);
-}
-
 status scene_add_solid(scene *s, const char *name, shape_kind shape, size_t *index, diagnostic *why)
 {
     return add(s, PARAM_SOLID, shape, name, index, why);

@@ -132,7 +132,7 @@ static status add_mesh_solid(scene *s, const char *solid_name, object_name mesh_
     shape_named("mesh", &mesh_shape);
     snprintf(base, sizeof base, "%.*s-mesh", SCENE_NAME_MAX - 9, solid_name);
     status code = new_name(s, base, mesh_name, why);
-    THEN(code, scene_add_mesh(s, mesh_name, NULL, why));
+    THEN(code, scene_add(s, PARAM_MESH, mesh_name, NULL, why));
     THEN(code, scene_add_solid(s, solid_name, mesh_shape, NULL, why));
     put(s, &code, why, solid_name, "mesh", "%s", mesh_name);
     return code;
@@ -180,7 +180,7 @@ status new_light(scene *s, const char *wanted, object_name name, diagnostic *why
 {
     const spot where = spot_of(s);
     status code = name_for(s, wanted, "lamp", name, why);
-    THEN(code, scene_add_light(s, name, NULL, why));
+    THEN(code, scene_add(s, PARAM_LIGHT, name, NULL, why));
     /* To the left and in front of it, alternately to the right, so that two do not shine from one point. */
     const double side = s->light_count % 2 ? 0.5 : -0.5;
     vec3 at = vec3_add(where.looked_at, vec3_scale(where.right, side * where.distance));
@@ -199,7 +199,7 @@ status new_material(scene *s, const char *wanted, object_name name, diagnostic *
 {
     const size_t count = s->material_count;
     status code = name_for(s, wanted, "paint", name, why);
-    THEN(code, scene_add_material(s, name, NULL, why));
+    THEN(code, scene_add(s, PARAM_MATERIAL, name, NULL, why));
     put_look(s, &code, why, name, count);
     return code;
 }
@@ -252,7 +252,7 @@ status new_texture(scene *s, const char *path, const char *wanted, object_name n
     object_name base;
     base_of_path(path, "picture", base);
     status code = name_for(s, wanted, base, name, why);
-    THEN(code, scene_add_texture(s, name, NULL, why));
+    THEN(code, scene_add(s, PARAM_TEXTURE, name, NULL, why));
     char *row = text_format("%s.file", name);
     THEN(code, row ? scene_set(s, row, path, why) : out_of_memory(why));
     free(row);
