@@ -2,7 +2,6 @@
 #include "base/number.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "scene/model/params.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>

@@ -4,7 +4,6 @@
 #include "study/rows.h"
 #include "study/table.h"
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -4,8 +4,6 @@
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { PATH_MAX_HERE = 200 };

@@ -3,7 +3,6 @@
 #include "report/media_rows.h"
 #include "cli/options.h"
 #include "base/number.h"
-#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 

@@ -5,7 +5,6 @@
 #include "realism/realism.h"
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 typedef struct realism_request {

@@ -3,7 +3,6 @@
 #include "base/text.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
-#include "study/grid.h"
 #include "scene/model/scene.h"
 #include <stdio.h>
 #include <stdlib.h>

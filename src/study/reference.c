@@ -1,7 +1,6 @@
 #include "study/reference.h"
 #include "base/file.h"
 #include "base/hash.h"
-#include "base/number.h"
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "study/grid.h"
@@ -10,7 +9,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why)

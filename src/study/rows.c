@@ -2,7 +2,6 @@
 #include "base/text.h"
 #include "scene/model/params.h"
 #include "scene/model/open.h"
-#include "scene/model/render_settings.h"
 #include "study/grid.h"
 #include <inttypes.h>
 #include <stdio.h>

@@ -7,7 +7,6 @@
 #include "study/row_files.h"
 #include "study/rows.h"
 #include "scene/model/open.h"
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

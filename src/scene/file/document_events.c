@@ -1,7 +1,6 @@
 #include "scene/file/document_events.h"
 
 #include <stdbool.h>
-#include <string.h>
 
 status events_error(event_reader *r, yaml_mark_t mark, const char *remedy, const char *what)
 {

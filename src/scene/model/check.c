@@ -8,7 +8,6 @@
 #include "scene/model/slime.h"
 #include "scene/model/scene.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* A solid is at least one primitive, so the counters' room for solids follows. */

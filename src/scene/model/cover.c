@@ -3,7 +3,6 @@
 #include "scene/model/camera.h"
 #include "scene/model/scene.h"
 
-#include <math.h>
 
 bool scene_wins(const solid *winner, const solid *loser)
 {

@@ -4,7 +4,6 @@
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
-#include <math.h>
 #include <stdio.h>
 
 static bool is_lit(const material *m)

@@ -1,7 +1,6 @@
 #include "scene/model/looks.h"
 #include "scene/model/scene.h"
 
-#include "scene/model/scene.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>

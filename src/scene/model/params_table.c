@@ -6,7 +6,6 @@
 #include "scene/model/solids.h"
 
 #include <stddef.h>
-#include <stdio.h>
 #include <string.h>
 
 static const char *const off_on[] = {"off", "on", NULL};

@@ -1,5 +1,4 @@
 #include "scene/model/open.h"
-#include "base/text.h"
 #include "scene/model/objects.h"
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"

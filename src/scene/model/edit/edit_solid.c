@@ -7,7 +7,6 @@
 #include "scene/model/objects.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
-#include "scene/model/suggest.h"
 #include "scene/model/scene.h"
 
 #include <stdio.h>

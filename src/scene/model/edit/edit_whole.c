@@ -4,7 +4,6 @@
 #include "scene/model/edit/edit_vector.h"
 #include "base/elementary.h"
 #include "base/number.h"
-#include "base/text.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/camera.h"
 #include "scene/model/params_path.h"

@@ -4,7 +4,6 @@
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
-#include <math.h>
 
 static const char *const WHITTED = "set render.integrator=whitted";
 
