@@ -50,19 +50,19 @@ static status choose_duration(animate_request *request, const scene *s, diagnost
 
 static status read_scene(animate_request *request, const animate_names *names, scene **out, diagnostic *why)
 {
-    status result = scene_input_read(&request->input, out, why);
-    if (result == STATUS_OK && !scene_moves(*out))
+    TRY(scene_input_read(&request->input, out, why));
+    if (!scene_moves(*out))
         return diagnose_at(why, request->input.path, STATUS_BAD_INPUT,
                            "give it a mesh with 'generate: slime', or use 'cuvette render'",
                            "nothing moves in the scene");
-    THEN(result, set_scripts(request, *out, why));
-    if (result == STATUS_OK && request->rows)
-        result = outputs_check_place("--rows", request->rows, *out, why);
-    if (result == STATUS_OK && animate_is_stream(request))
-        result = outputs_check_place("-o", request->output, *out, why);
-    if (result == STATUS_OK && names)
-        result = animate_names_check(names, *out, why);
-    return result == STATUS_OK ? choose_duration(request, *out, why) : result;
+    TRY(set_scripts(request, *out, why));
+    if (request->rows)
+        TRY(outputs_check_place("--rows", request->rows, *out, why));
+    if (animate_is_stream(request))
+        TRY(outputs_check_place("-o", request->output, *out, why));
+    if (names)
+        TRY(animate_names_check(names, *out, why));
+    return choose_duration(request, *out, why);
 }
 
 static void print_summary(const animate_request *request, const scene *s, const animate_account *a)

@@ -48,12 +48,9 @@ static status check_request(const compare_request *request, diagnostic *why)
 
 static status measure(const compare_request *request, pair *p, diagnostic *why)
 {
-    status result = STATUS_OK;
-    for (int i = 0; i < 2 && result == STATUS_OK; i++)
-        result = image_read(request->paths[i], &p->pictures[i], &p->bits[i], why);
-    if (result != STATUS_OK)
-        return result;
-    result = image_compare(p->pictures[0], p->pictures[1], &p->found, why);
+    for (int i = 0; i < 2; i++)
+        TRY(image_read(request->paths[i], &p->pictures[i], &p->bits[i], why));
+    status result = image_compare(p->pictures[0], p->pictures[1], &p->found, why);
     if (result == STATUS_BAD_INPUT)
         diagnostic_locate(why, request->paths[0], 0, 0);
     return result;

@@ -147,17 +147,16 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
 {
     enum { TIMELINE = 4 };
     const named_file *file = &files[at];
-    status result = STATUS_OK;
     if (at < TIMELINE)
-        result = check_picture(o, file, at > 0, why);
+        TRY(check_picture(o, file, at > 0, why));
     else if (!outputs_ends_with(file->path, ".json"))
-        result = wrong(file, why, "end it in .json", "a timeline is a JSON file");
-    THEN(result, check_folder(file, why));
-    THEN(result, check_not_read(file, s, why));
-    for (size_t i = 0; i < at && result == STATUS_OK; i++)
+        return wrong(file, why, "end it in .json", "a timeline is a JSON file");
+    TRY(check_folder(file, why));
+    TRY(check_not_read(file, s, why));
+    for (size_t i = 0; i < at; i++)
         if (files[i].path && same_file(file->path, files[i].path))
-            result = wrong(file, why, "name another file", "two results cannot go into one file");
-    return result;
+            return wrong(file, why, "name another file", "two results cannot go into one file");
+    return STATUS_OK;
 }
 
 /* Each layer's file, as if it were named. */
@@ -204,12 +203,12 @@ status outputs_check_picture(const char *option, const char *path, const char *c
                              diagnostic *why)
 {
     const named_file file = {option, path};
-    status result = check_picture(&(outputs){0}, &file, false, why);
-    THEN(result, check_folder(&file, why));
-    for (size_t i = 0; i < count && result == STATUS_OK; i++)
+    TRY(check_picture(&(outputs){0}, &file, false, why));
+    TRY(check_folder(&file, why));
+    for (size_t i = 0; i < count; i++)
         if (same_file(path, read[i]))
-            result = wrong(&file, why, "name another file", "one of the pictures is read from it");
-    return result;
+            return wrong(&file, why, "name another file", "one of the pictures is read from it");
+    return STATUS_OK;
 }
 
 status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count,
@@ -257,18 +256,15 @@ status outputs_write_text(const char *path, status (*write)(const void *content,
 
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why)
 {
-    status ended = STATUS_OK;
     if (o->picture)
-        ended = record_picture(result->picture, o->picture, o->bits == 16 ? 16 : 8, why);
-    if (ended == STATUS_OK && o->rays && result->pixel_rays)
-        ended = record_map(result->pixel_rays, result->picture, "rays per pixel", o->rays, why);
-    if (ended == STATUS_OK && o->time && result->pixel_ns)
-        ended = record_map(result->pixel_ns, result->picture, "nanoseconds per pixel", o->time, why);
-    if (ended == STATUS_OK && o->noise && result->variance)
-        ended = record_noise(result, o->noise, why);
-    if (ended == STATUS_OK && o->timeline && result->events)
-        ended = record_timeline(result, o->timeline, why);
-    if (ended == STATUS_OK && o->layers && result->layers)
-        ended = record_layers(result, o->layers, why);
-    return ended;
+        TRY(record_picture(result->picture, o->picture, o->bits == 16 ? 16 : 8, why));
+    if (o->rays && result->pixel_rays)
+        TRY(record_map(result->pixel_rays, result->picture, "rays per pixel", o->rays, why));
+    if (o->time && result->pixel_ns)
+        TRY(record_map(result->pixel_ns, result->picture, "nanoseconds per pixel", o->time, why));
+    if (o->noise && result->variance)
+        TRY(record_noise(result, o->noise, why));
+    if (o->timeline && result->events)
+        TRY(record_timeline(result, o->timeline, why));
+    return o->layers && result->layers ? record_layers(result, o->layers, why) : STATUS_OK;
 }

@@ -93,9 +93,7 @@ static void print_summary(const job_account *f, const outputs *files)
 
 static status write_results(const render_request *request, const job_account *f, diagnostic *why)
 {
-    status result = outputs_write(&request->files, f->result, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(outputs_write(&request->files, f->result, why));
     if (request->json)
         return json_print(report_create(f, request->repeat > 0), why);
     print_summary(f, &request->files);

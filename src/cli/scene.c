@@ -130,10 +130,8 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
         return result;
     }
     isa level = ISA_SSE2;
-    result = scene_input_isa(&level, why);
-    THEN(result, scene_input_lint(s, level, NULL, why));
-    if (result != STATUS_OK)
-        return result;
+    TRY(scene_input_isa(&level, why));
+    TRY(scene_input_lint(s, level, NULL, why));
     printf("%s: right; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n",
            request->path ? request->path : "--new", s->mesh_count, s->texture_count, s->material_count, s->light_count,
            s->solid_count);

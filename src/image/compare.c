@@ -81,9 +81,8 @@ static double mean(const double *values, size_t count)
 
 status image_compare(const image *a, const image *b, image_comparison *out, diagnostic *why)
 {
-    status code = compare_check(a, b, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(compare_check(a, b, why));
+    status code = STATUS_OK;
     size_t count = pixels_of(a);
     double *first = malloc(count * sizeof *first), *second = malloc(count * sizeof *second);
     if (!first || !second) {

@@ -93,26 +93,22 @@ static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, d
     const double most = p->made->solids->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
     bool affordable;
     *last = 0;
-    status code = climb(p, depth, most, &affordable, why);
-    if (code != STATUS_OK || !affordable)
-        return code;
-    code = trace_image(p, 0, why);
+    TRY(climb(p, depth, most, &affordable, why));
+    if (!affordable)
+        return STATUS_OK;
+    TRY(trace_image(p, 0, why));
     int still = 0;
-    for (int d = 1; code == STATUS_OK && d <= DEEPER_MAX && depth + d <= COUNTERS_DEPTH_MAX; d++) {
-        if (p->spent > most)
-            return code;
+    for (int d = 1; d <= DEEPER_MAX && depth + d <= COUNTERS_DEPTH_MAX && p->spent <= most; d++) {
         p->made->render.depth = depth + d;
-        code = trace_image(p, d, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(trace_image(p, d, why));
         *last = d;
         still = changed_share(p->image[d - 1], p->image[d]) <= SETTLED_PIXELS ? still + 1 : 0;
         if (still == 2) {
             *settled = true;
-            return code;
+            return STATUS_OK;
         }
     }
-    return code;
+    return STATUS_OK;
 }
 
 /* How far off the share may be: of pixels taken by chance, four standard errors; 0 where the image is the scene's own.

@@ -112,11 +112,8 @@ static status add_dispersion(const metrics *m, diagnostic *why)
 {
     const double lines[3] = {LINE_HYDROGEN_F_NM, LINE_HELIUM_D_NM, LINE_HYDROGEN_C_NM};
     double measured[3], theory[3];
-    status code = STATUS_OK;
-    for (int i = 0; i < 3 && code == STATUS_OK; i++)
-        code = deviation_at_line(m, lines[i], &measured[i], &theory[i], why);
-    if (code != STATUS_OK)
-        return code;
+    for (int i = 0; i < 3; i++)
+        TRY(deviation_at_line(m, lines[i], &measured[i], &theory[i], why));
     const char *none = isnan(theory[0] + theory[1] + theory[2]) ? "the ray does not get into the core" : NULL;
     metrics_add(m, (realism_value){"dispersion.d",
                                    none ? none : "deviation half way to the rim, water in BK7, at the d line", "rad",

@@ -112,11 +112,9 @@ static hand_track *add_track(hand_script *s, const char *hand)
 status hand_script_add(hand_script *s, const char *hand, const hand_key *key, diagnostic *why)
 {
     hand_track *track = find_track(s, hand);
-    status code = check_hand(s, hand, track, why);
-    THEN(code, check_numbers(hand, key, why));
-    THEN(code, check_order(hand, track, key, why));
-    if (code != STATUS_OK)
-        return code;
+    TRY(check_hand(s, hand, track, why));
+    TRY(check_numbers(hand, key, why));
+    TRY(check_order(hand, track, key, why));
     const bool is_new = !track;
     track = is_new ? add_track(s, hand) : track;
     hand_key *keys = track ? grow(track->keys, track->key_count, sizeof *keys) : NULL;

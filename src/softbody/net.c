@@ -116,9 +116,8 @@ status toy_net_create(const softbody_settings *s, toy_net *out, diagnostic *why)
 {
     *out = (toy_net){0};
     mesh *sphere;
-    status code = body_icosphere((int)s->level, &sphere, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(body_icosphere((int)s->level, &sphere, why));
+    status code = STATUS_OK;
     vec3 *unit = malloc(sphere->vertex_count * sizeof *unit);
     out->position = malloc(sphere->vertex_count * sizeof *out->position);
     out->mass_of = malloc(sphere->vertex_count * sizeof *out->mass_of);

@@ -181,17 +181,15 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
     static const softbody_kernels *const kernels[ISA_COUNT] = {&softbody_kernels_sse2, &softbody_kernels_avx2,
                                                                &softbody_kernels_avx512};
     *out = NULL;
-    status code = softbody_check(s, why);
-    THEN(code, check_net(net, why));
-    if (code != STATUS_OK)
-        return code;
+    TRY(softbody_check(s, why));
+    TRY(check_net(net, why));
     softbody *b = calloc(1, sizeof *b);
     if (!b)
         return out_of_memory(why);
     b->set = *s;
     b->skin_level = -1;
     b->kernels = kernels[level];
-    code = fill(b, net, why);
+    status code = fill(b, net, why);
     if (code != STATUS_OK) {
         softbody_destroy(b);
         return code;
@@ -204,10 +202,8 @@ status softbody_create(const softbody_settings *s, isa level, softbody **out, di
 {
     *out = NULL;
     toy_net toy = {0};
-    status code = softbody_check(s, why);
-    THEN(code, toy_net_create(s, &toy, why));
-    if (code != STATUS_OK)
-        return code;
+    TRY(softbody_check(s, why));
+    TRY(toy_net_create(s, &toy, why));
     double *mass_kg = malloc(toy.mass_count * sizeof *mass_kg);
     for (size_t i = 0; mass_kg && i < toy.mass_count; i++)
         mass_kg[i] = s->mass_kg / (double)toy.mass_count;
@@ -218,7 +214,7 @@ status softbody_create(const softbody_settings *s, isa level, softbody **out, di
                               .mass_kg = mass_kg,
                               .springs = toy.springs,
                               .faces = toy.faces};
-    code = mass_kg ? softbody_create_net(&net, s, level, out, why) : out_of_memory(why);
+    status code = mass_kg ? softbody_create_net(&net, s, level, out, why) : out_of_memory(why);
     if (code == STATUS_OK) {
         (*out)->mass_of = toy.mass_of;
         (*out)->skin_level = (int)s->level;

@@ -267,10 +267,9 @@ status softbody_step(softbody *b, diagnostic *why)
 status softbody_advance(softbody *b, double time_s, diagnostic *why)
 {
     const double steps = floor(time_s / b->set.dt_s + 0.5);
-    status code = STATUS_OK;
-    while (code == STATUS_OK && (double)b->steps < steps)
-        code = softbody_step(b, why);
-    return code;
+    while ((double)b->steps < steps)
+        TRY(softbody_step(b, why));
+    return STATUS_OK;
 }
 
 double softbody_stable_dt_s(const softbody *b)

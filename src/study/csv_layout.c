@@ -150,9 +150,8 @@ status csv_layout_settle(const char *path, const char *header, csv_layout **layo
     size_t size;
     *layout = NULL;
     *replaced = false;
-    status code = file_read(path, TABLE_BYTES_MAX, &text, &size, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(file_read(path, TABLE_BYTES_MAX, &text, &size, why));
+    status code = STATUS_OK;
     if (size < strlen(header) || memcmp(text, header, strlen(header)) != 0)
         code = settle(path, text, header, layout, replaced, why);
     free(text);

@@ -122,9 +122,8 @@ status grid_check_kept(const study *s, const study_point *point, const scene *se
 {
     for (size_t i = 0; i < point->count; i++) {
         char *value;
-        status code = scene_get(setting, point->paths[i], &value, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(scene_get(setting, point->paths[i], &value, why));
+        status code = STATUS_OK;
         if (strcmp(value, point->values[i]) != 0) {
             code = diagnose(why, STATUS_BAD_INPUT, "set one of the two alone, or the wider one before the narrower",
                             "%s is set to %s here, and a later parameter makes it %s", point->paths[i],

@@ -33,9 +33,8 @@ status ledger_read(const study *s, const char *results, ledger **out, diagnostic
 {
     *out = NULL;
     row_files *files;
-    status code = row_files_read(s, results, ROWS, &files, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(row_files_read(s, results, ROWS, &files, why));
+    status code = STATUS_OK;
     ledger *l = calloc(1, sizeof *l);
     if (l) {
         l->s = s;

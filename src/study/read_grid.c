@@ -206,9 +206,9 @@ static status read_axis(study_axis *axis, scene *on, const document *d, const no
     if (n->kind != NODE_MAP || n->count == 0 || (n->count > 1 && !node_get(n, "name") && !node_get(n, "points")))
         return node_error(d, n, why, form, "this is not an axis");
     bool together = n->count > 1 || strcmp(n->keys[0]->text, "points") == 0;
-    status code = together ? node_check_keys(d, n, keys, 2, why) : STATUS_OK;
-    if (code != STATUS_OK)
-        return code;
+    if (together)
+        TRY(node_check_keys(d, n, keys, 2, why));
+    status code = STATUS_OK;
     const node *list = together ? node_get(n, "points") : n->items[0];
     if (!together && list->kind == NODE_MAP) {
         code = read_range(axis, on, d, n->keys[0], list, why);

@@ -33,17 +33,12 @@ status run_append(table *to, csv_line *lines, diagnostic *why)
 static status append_row(run *r, const study_row *row, diagnostic *why)
 {
     csv_line line = {0};
-    status code = STATUS_OK;
     if (r->workers) {
         worker_rows_write(&line, row);
-        code = run_append(r->workers, &line, why);
+        TRY(run_append(r->workers, &line, why));
     }
-    if (code == STATUS_OK) {
-        row_write(&line, row);
-        code = run_append(r->rows, &line, why);
-    }
-    if (code != STATUS_OK)
-        return code;
+    row_write(&line, row);
+    TRY(run_append(r->rows, &line, why));
     r->row_number++;
     r->ran++;
     ledger_entry entry = {row->cell, row->repetition, row->warmup, row->made->film_hash, row->made->result->wall_s};
@@ -107,11 +102,8 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
 
 static status measure_warm(run *r, size_t cell, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (long i = 0; code == STATUS_OK && !r->warm[cell] && i < r->s->warmups; i++)
-        code = measure(r, cell, true, why);
-    if (code != STATUS_OK)
-        return code;
+    for (long i = 0; !r->warm[cell] && i < r->s->warmups; i++)
+        TRY(measure(r, cell, true, why));
     r->warm[cell] = true;
     return measure(r, cell, false, why);
 }

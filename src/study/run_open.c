@@ -69,17 +69,14 @@ status run_prepare(run *r, diagnostic *why)
                                    .stop = r->options->stop,
                                    .context = r->options->context};
     const topology *machine = NULL;
-    status code = job_create(&settings, &r->with, why);
-    THEN(code, file_make_directory(r->folder, why));
-    THEN(code, open_tables(r, why));
-    if (code != STATUS_OK)
-        return code;
+    TRY(job_create(&settings, &r->with, why));
+    TRY(file_make_directory(r->folder, why));
+    TRY(open_tables(r, why));
     ledger_destroy(r->done);
-    code = ledger_read(r->s, r->options->results, &r->done, why);
-    THEN(code, run_find_compared(r, why));
-    THEN(code, job_machine(r->with, &machine, why));
-    THEN(code, manifest_write(r->s, r->folder, machine, job_isa(r->with), r->options->shard, r->options->shards, why));
-    return code;
+    TRY(ledger_read(r->s, r->options->results, &r->done, why));
+    TRY(run_find_compared(r, why));
+    TRY(job_machine(r->with, &machine, why));
+    return manifest_write(r->s, r->folder, machine, job_isa(r->with), r->options->shard, r->options->shards, why);
 }
 
 void run_release(run *r)

@@ -129,9 +129,8 @@ static status read_entries(event_reader *r, yaml_event_type_t end, int depth, no
 {
     for (;;) {
         yaml_event_t event;
-        status code = events_next(r, &event);
-        if (code != STATUS_OK)
-            return code;
+        TRY(events_next(r, &event));
+        status code = STATUS_OK;
         if (event.type == end) {
             yaml_event_delete(&event);
             return n->kind == NODE_MAP ? check_unique_keys(r, n) : STATUS_OK;
@@ -180,9 +179,8 @@ static status read_stream(event_reader *r, node **root)
 {
     for (;;) {
         yaml_event_t event;
-        status code = events_next(r, &event);
-        if (code != STATUS_OK)
-            return code;
+        TRY(events_next(r, &event));
+        status code = STATUS_OK;
         yaml_event_type_t type = event.type;
         if (type == YAML_DOCUMENT_START_EVENT && *root) {
             code = events_error(r, event.start_mark, "put it into a file of its own", "a second document begins here");

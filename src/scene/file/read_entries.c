@@ -72,10 +72,8 @@ status read_entries(const scene_reader *r, const char *name, param_group group, 
         char path[2 * SCENE_NAME_MAX + 2];
         snprintf(path, sizeof path, "%s.%s", name, key);
         place unused;
-        status code = read_located(r, map->keys[i], place_find(r->scene, path, &unused, r->why));
-        THEN(code, read_value(r, path, row, map->items[i]));
-        if (code != STATUS_OK)
-            return code;
+        TRY(read_located(r, map->keys[i], place_find(r->scene, path, &unused, r->why)));
+        TRY(read_value(r, path, row, map->items[i]));
     }
     return STATUS_OK;
 }

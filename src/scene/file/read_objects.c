@@ -80,10 +80,8 @@ static void note_places(const scene_reader *r, param_group group, size_t index, 
 static status read_object(const scene_reader *r, param_group group, const node *key, const node *map)
 {
     size_t index = 0;
-    status code = begin_object(r, group, key, map, &index);
-    THEN(code, read_entries(r, key->text, group, map));
-    if (code != STATUS_OK)
-        return code;
+    TRY(begin_object(r, group, key, map, &index));
+    TRY(read_entries(r, key->text, group, map));
     note_places(r, group, index, map);
     return read_located(r, key, check_object(r->scene, group, index, r->why));
 }

@@ -223,10 +223,8 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
         return diagnose(why, code, shape.remedy, "%.80s: %s", owner->name, shape.what);
     TRY(check_references(s, owner, why));
     index_law unused;
-    code = material_index_law(&owner->surface, owner->name, &unused, why);
-    THEN(code, material_absorption_check(&owner->surface, owner->name, why));
-    if (code != STATUS_OK)
-        return code;
+    TRY(material_index_law(&owner->surface, owner->name, &unused, why));
+    TRY(material_absorption_check(&owner->surface, owner->name, why));
     /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel
      * weights R + T = 1 by themselves, and reflectivity counts for opaque surfaces alone. */
     double sum = owner->surface.reflectivity + owner->surface.transparency;

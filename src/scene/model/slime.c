@@ -106,10 +106,8 @@ static status advance_watched(slime *x, const scene *s, const mesh_entry *m, dou
 {
     const double ask_s = 0.01, first = x->steps, last = steps_to(m, time_s);
     double asked_s = clock_wall_s();
-    for (status code; x->steps < last; x->steps += 1.0) {
-        code = softbody_advance(x->body, (x->steps + 1.0) * m->slime.dt_s, bad);
-        if (code != STATUS_OK)
-            return code;
+    for (; x->steps < last; x->steps += 1.0) {
+        TRY(softbody_advance(x->body, (x->steps + 1.0) * m->slime.dt_s, bad));
         const double now_s = clock_wall_s();
         if (now_s - asked_s < ask_s)
             continue;

@@ -140,12 +140,10 @@ static status read_key(const script_reader *r, const char *hand, const node *ent
     if (!time)
         return node_error(r->file, entry, r->why, "add the time in seconds, as 'time_s: 0.5'",
                           "the entry does not say when");
-    status code = read_number(r, "time_s", time, 0.0, TIME_S_MAX, &key.time_s);
-    THEN(code, find_act(r, entry, &key.act));
-    THEN(code, read_act(r, entry, &key));
-    if (code != STATUS_OK)
-        return code;
-    code = hand_script_add(r->script, hand, &key, r->why);
+    TRY(read_number(r, "time_s", time, 0.0, TIME_S_MAX, &key.time_s));
+    TRY(find_act(r, entry, &key.act));
+    TRY(read_act(r, entry, &key));
+    status code = hand_script_add(r->script, hand, &key, r->why);
     if (code == STATUS_BAD_INPUT)
         diagnostic_locate(r->why, document_name(r->file), entry->line, entry->column);
     return code;

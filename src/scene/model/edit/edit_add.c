@@ -10,13 +10,11 @@
 static status add(scene *s, param_group group, shape_kind shape, const char *name, size_t *index, diagnostic *why)
 {
     const size_t at = place_group_size(s, group);
-    status code = check_name(name, why);
-    THEN(code, check_name_is_free(s, name, why));
-    if (code != STATUS_OK)
-        return code;
+    TRY(check_name(name, why));
+    TRY(check_name_is_free(s, name, why));
     if (!object_append(s, group, name))
         return out_of_memory(why);
-    code = param_set_defaults(group, object_values(s, group, at), why);
+    status code = param_set_defaults(group, object_values(s, group, at), why);
     if (group == PARAM_SOLID && code == STATUS_OK) {
         solid *new = &s->solids[at];
         new->shape.kind = shape;

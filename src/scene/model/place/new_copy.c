@@ -104,9 +104,8 @@ status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
 {
     place at;
     object_name base;
-    status code = place_find_object(s, of, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(place_find_object(s, of, &at, why));
+    status code = STATUS_OK;
     size_t length = strlen(strcpy(base, of));
     while (length > 1 && base[length - 1] >= '0' && base[length - 1] <= '9')
         base[--length] = 0;

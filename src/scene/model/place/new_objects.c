@@ -156,9 +156,8 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
     const spot where = spot_of(s);
     const size_t count = s->solid_count;
     const shape_rule *rule = shape_of_kind(shape);
-    status code = name_for(s, wanted, rule->triangles ? "ring" : rule->word, name, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(name_for(s, wanted, rule->triangles ? "ring" : rule->word, name, why));
+    status code = STATUS_OK;
     if (rule->triangles) {
         code = new_mesh(s, name, &where, why);
     } else if ((code = scene_add_solid(s, name, shape, NULL, why)) == STATUS_OK) {
@@ -210,10 +209,9 @@ status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why
     const double size = spot_round(where.distance / 3.0, where.distance / 3.0), radius = 0.5 * size;
     const vec3 low = spot_free(s, &where, size);
     object_name mesh_name;
-    status code = name_for(s, wanted, "slime", name, why);
-    THEN(code, add_mesh_solid(s, name, mesh_name, why));
-    if (code != STATUS_OK)
-        return code;
+    TRY(name_for(s, wanted, "slime", name, why));
+    TRY(add_mesh_solid(s, name, mesh_name, why));
+    status code = STATUS_OK;
     /* Its motion is that of the default, a ball of radius 1 on a floor at 0, whatever its size in the picture:
      * stiffness and steps go with that one. */
     put(s, &code, why, mesh_name, "generate", "slime");
