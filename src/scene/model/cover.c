@@ -3,7 +3,6 @@
 #include "scene/model/camera.h"
 #include "scene/model/scene.h"
 
-
 bool scene_wins(const solid *winner, const solid *loser)
 {
     return winner != loser && winner->visible &&

@@ -4,7 +4,6 @@
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
-
 static const char *const WHITTED = "set render.integrator=whitted";
 
 static bool path_only(const inert_case *c)
