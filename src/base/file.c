@@ -109,11 +109,15 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
     return code;
 }
 
-/* The text of path up to and with its last slash ("" when it has none), followed by name; fresh memory. */
-static char *beside(const char *path, const char *name)
+const char *file_name_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    int folder = slash ? (int)(slash - path) + 1 : 0;
+    return slash ? slash + 1 : path;
+}
+
+char *file_beside(const char *path, const char *name)
+{
+    const int folder = name[0] == '/' ? 0 : (int)(file_name_of(path) - path);
     return text_format("%.*s%s", folder, path, name);
 }
 
@@ -127,7 +131,7 @@ static char *resolve(const char *path)
         if (length < 0)
             return current;
         target[length] = 0;
-        char *next = target[0] == '/' ? strdup(target) : beside(current, target);
+        char *next = file_beside(current, target);
         free(current);
         current = next;
     }
@@ -144,7 +148,7 @@ static int open_temporary(file_writer *writer)
         char name[64];
         snprintf(name, sizeof name, ".cuvette-%ld-%u.part", (long)getpid(), n);
         free(writer->temporary);
-        writer->temporary = beside(writer->path, name);
+        writer->temporary = file_beside(writer->path, name);
         if (!writer->temporary) {
             errno = ENOMEM;
             return -1;
@@ -219,7 +223,7 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
 
 void file_flush_folder(const char *path)
 {
-    char *folder = beside(path, ".");
+    char *folder = file_beside(path, ".");
     int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
     if (fd >= 0) {
         fsync(fd);

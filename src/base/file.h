@@ -30,6 +30,12 @@ status file_write(const char *path, const char *text, diagnostic *why);
 /* The entry of a file in its folder must reach the disk too; some file systems cannot do that, which is no error. */
 void file_flush_folder(const char *path);
 
+/* The last part of a path. */
+const char *file_name_of(const char *path);
+
+/* name as it is seen from the folder of path; fresh memory, or NULL. */
+char *file_beside(const char *path, const char *name);
+
 /* Makes a directory and its parents; no error if it is there. */
 status file_make_directory(const char *path, diagnostic *why);
 

@@ -1,5 +1,6 @@
 /* What lies in the folder of a film's frames: its own, those of other films, and what the scene reads. */
 #include "cli/animate.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "cli/outputs.h"
 #include <dirent.h>
@@ -40,7 +41,7 @@ static bool is_folder(DIR *in, const char *name)
 
 static bool is_own_ledger(const animate_names *names, const char *name)
 {
-    const char *own = outputs_name_of(names->pattern);
+    const char *own = file_name_of(names->pattern);
     const size_t length = strlen(own);
     return strncmp(name, own, length) == 0 && strcmp(name + length, ".json") == 0;
 }
@@ -71,7 +72,7 @@ static bool overlaps(const animate_names *names, const char *ledger, int64_t cou
     if (pattern && animate_names_parse(pattern, &other, NULL) == STATUS_OK) {
         for (int64_t k = 0; k < frames && !same; k++) {
             char *theirs = animate_name(&other, k);
-            const int64_t ours = theirs ? animate_name_frame(names, outputs_name_of(theirs)) : -1;
+            const int64_t ours = theirs ? animate_name_frame(names, file_name_of(theirs)) : -1;
             same = ours >= 0 && ours < count;
             free(theirs);
         }
@@ -123,7 +124,7 @@ typedef struct read_search {
 
 static bool is_in_place(const animate_names *names, const char *path)
 {
-    const char *name = outputs_name_of(path);
+    const char *name = file_name_of(path);
     if (animate_name_frame(names, name) < 0 && !is_own_ledger(names, name))
         return false;
     char *folder = outputs_folder_of(path);

@@ -1,4 +1,5 @@
 #include "cli/animate.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "cli/outputs.h"
 #include "image/image.h"
@@ -54,12 +55,12 @@ static status split(const char *pattern, const char *name, animate_names *out, d
 
 status animate_names_parse(const char *pattern, animate_names *out, diagnostic *why)
 {
-    const char *slash = strrchr(pattern, '/'), *name = slash ? slash + 1 : pattern;
+    const char *name = file_name_of(pattern);
     *out = (animate_names){.pattern = pattern, .digits = -1};
     if (image_format_of(name) == IMAGE_UNKNOWN)
         return wrong(pattern, "end it in .png, .jpg or .pfm for frames, .y4m for a film",
                      "the ending names no format of pictures or films", why);
-    if (slash && memchr(pattern, '%', (size_t)(slash - pattern)))
+    if (memchr(pattern, '%', (size_t)(name - pattern)))
         return wrong(pattern, "number the files, not their folder", "a % in the folder's name", why);
     out->folder = outputs_folder_of(pattern);
     out->before = calloc(1, strlen(name) + 1);

@@ -39,20 +39,13 @@ char *outputs_folder_of(const char *path)
     return slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
 }
 
-const char *outputs_name_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* Do two paths, spelt as they may be, stand for one file? It need not exist yet. */
 static bool same_file(const char *a, const char *b)
 {
     if (strcmp(a, b) == 0 || outputs_same_entry(a, b))
         return true;
     char *first = outputs_folder_of(a), *second = outputs_folder_of(b);
-    bool same =
-        first && second && strcmp(outputs_name_of(a), outputs_name_of(b)) == 0 && outputs_same_entry(first, second);
+    bool same = first && second && strcmp(file_name_of(a), file_name_of(b)) == 0 && outputs_same_entry(first, second);
     free(first);
     free(second);
     return same;

@@ -12,9 +12,8 @@ typedef struct outputs {
     int bits;                                                      /* of a PNG picture: 8 or 16; 0 when not said */
 } outputs;
 
-/* Of a path: its folder in fresh memory, "." for a bare name, and the name in it. */
+/* The folder of a path in fresh memory, "." for a bare name. */
 char *outputs_folder_of(const char *path);
-const char *outputs_name_of(const char *path);
 bool outputs_same_entry(const char *a, const char *b);
 bool outputs_ends_with(const char *path, const char *ending); /* letter case ignored */
 

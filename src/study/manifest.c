@@ -1,4 +1,5 @@
 #include "study/manifest.h"
+#include "base/file.h"
 #include "base/hash.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -51,12 +52,6 @@ static json_t *borrowed(const char *text)
     return value ? value : json_null();
 }
 
-static const char *file_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* Now, or the time that SOURCE_DATE_EPOCH gives (reproducible-builds.org/specs/source-date-epoch). */
 static json_t *time_text(void)
 {
@@ -105,8 +100,9 @@ static json_t *study_facts(const study *s)
 {
     return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title),
                      "definition", facts_hash(s->definition_hash), "files", files_hash(s), "cells",
-                     (json_int_t)study_cell_count(s), "file", borrowed(file_name(s->path)), "text", borrowed(s->text),
-                     "scene_file", borrowed(file_name(s->scene_path)), "scene_text", borrowed(s->scene_text));
+                     (json_int_t)study_cell_count(s), "file", borrowed(file_name_of(s->path)), "text",
+                     borrowed(s->text), "scene_file", borrowed(file_name_of(s->scene_path)), "scene_text",
+                     borrowed(s->scene_text));
 }
 
 static void add_disturbance(void *list, const char *text)

@@ -1,5 +1,5 @@
 /* What a scene names and does not hold in itself: meshes, textures and the sky's picture. */
-#include "base/text.h"
+#include "base/file.h"
 #include "geometry/shapes/shape.h"
 #include "scene/assets/assets.h"
 #include "scene/model/looks.h"
@@ -71,9 +71,7 @@ status asset_error(const scene *s, const char *what, long line, long column, con
 
 char *scene_file_path(const scene *s, const char *path)
 {
-    const char *slash = strrchr(s->path, '/');
-    int folder = path[0] != '/' && slash ? (int)(slash - s->path) + 1 : 0;
-    return text_format("%.*s%s", folder, s->path, path);
+    return file_beside(s->path, path);
 }
 
 /* Light is not negative, and the film must hold it. */

@@ -1,17 +1,10 @@
 #include "scene/assets/mesh_file.h"
 
-#include "base/text.h"
+#include "base/file.h"
 #include "scene/assets/mesh_child.h"
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-/* name as seen from the folder of path; fresh memory. */
-static char *beside(const char *path, const char *name)
-{
-    const char *slash = strrchr(path, '/');
-    return name[0] == '/' || !slash ? strdup(name) : text_format("%.*s%s", (int)(slash - path) + 1, path, name);
-}
 
 /* Two ways of writing a name that are not ours: \ for / (MTL files of Windows), and %20 for a blank (the URIs of glTF).
  */
@@ -42,13 +35,13 @@ static bool is_file(const char *path)
 /* The picture's path as the caller can open it, first by the name's own spelling. */
 static status resolve_texture(const char *path, imported_material *m, diagnostic *why)
 {
-    char *found = beside(path, m->texture);
+    char *found = file_beside(path, m->texture);
     if (!is_file(found)) {
         char *respelt = strdup(m->texture);
         if (respelt) {
             respell(respelt);
             free(found);
-            found = beside(path, respelt);
+            found = file_beside(path, respelt);
         }
         free(respelt);
     }

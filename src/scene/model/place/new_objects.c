@@ -1,4 +1,5 @@
 #include "scene/model/place/new_objects.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/check.h"
@@ -232,7 +233,7 @@ status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why
 /* "models/Stanford bunny.obj": Stanford-bunny */
 static void base_of_path(const char *path, const char *otherwise, object_name base)
 {
-    const char *slash = strrchr(path, '/'), *from = slash ? slash + 1 : path, *dot = strrchr(from, '.');
+    const char *from = file_name_of(path), *dot = strrchr(from, '.');
     size_t length = 0;
     for (const char *c = from; *c && c != dot && length < 40; c++) {
         const bool right = isalnum((unsigned char)*c) || *c == '_' || *c == '-';
