@@ -1,3 +1,4 @@
+#include "base/room.h"
 #include "cli/cli.h"
 #include "cli/inert_notes.h"
 #include "cli/options.h"
@@ -28,11 +29,9 @@ enum { OPTIONS_MOST = 16 };
 static status take_edit(const command_option *o, void *into, const char *text, diagnostic *why)
 {
     scene_request *request = into;
-    asked_edit *longer = realloc(request->edits, (request->edit_count + 1) * sizeof *longer);
-    if (!longer)
+    if (!room_for_one(&request->edits, request->edit_count, sizeof *request->edits))
         return out_of_memory(why);
-    request->edits = longer;
-    longer[request->edit_count++] = (asked_edit){&scene_edits[o->at], text};
+    request->edits[request->edit_count++] = (asked_edit){&scene_edits[o->at], text};
     return STATUS_OK;
 }
 

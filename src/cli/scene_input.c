@@ -1,4 +1,5 @@
 #include "cli/scene_input.h"
+#include "base/room.h"
 #include "cli/outputs.h"
 #include "cli/terminal.h"
 #include "scene/model/hints.h"
@@ -17,11 +18,9 @@ void scene_input_release(scene_input *input)
 status option_change(const command_option *o, void *request, const char *value, diagnostic *why)
 {
     scene_input *input = request;
-    scene_change *longer = realloc(input->changes, (input->count + 1) * sizeof *longer);
-    if (!longer)
+    if (!room_for_one(&input->changes, input->count, sizeof *input->changes))
         return out_of_memory(why);
-    input->changes = longer;
-    longer[input->count++] = (scene_change){o->name, o->parameter, value};
+    input->changes[input->count++] = (scene_change){o->name, o->parameter, value};
     return STATUS_OK;
 }
 

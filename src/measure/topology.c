@@ -1,5 +1,6 @@
 #include "measure/topology.h"
 
+#include "base/room.h"
 #include "measure/topology_private.h"
 
 #include <errno.h>
@@ -55,14 +56,10 @@ static void drop_rounds(topology *machine)
 
 static bool add_round(topology *machine, hwloc_const_bitmap_t set)
 {
-    hwloc_topology_t *grown = realloc(machine->round, (size_t)(machine->rounds + 1) * sizeof *grown);
-    if (!grown)
+    if (!room_for_one(&machine->round, (size_t)machine->rounds, sizeof *machine->round) ||
+        hwloc_topology_dup(&machine->round[machine->rounds], machine->tree) != 0)
         return false;
-    machine->round = grown;
-    if (hwloc_topology_dup(&grown[machine->rounds], machine->tree) != 0)
-        return false;
-    machine->rounds++;
-    return restrict_tree(grown[machine->rounds - 1], set) == 0;
+    return restrict_tree(machine->round[machine->rounds++], set) == 0;
 }
 
 static bool make_rounds(topology *machine)

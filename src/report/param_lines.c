@@ -1,4 +1,5 @@
 #include "report/param_rows.h"
+#include "base/room.h"
 #include "base/text.h"
 #include <stdbool.h>
 #include <stdio.h>
@@ -22,17 +23,10 @@ char *param_lines_path(const param *row, char *text, size_t size)
 static status add_line(void *context, const char *path, const param *row, const char *value)
 {
     param_lines *all = context;
-    if (all->count == all->capacity) {
-        size_t capacity = all->capacity * 2 + 64;
-        param_line *larger = realloc(all->line, capacity * sizeof *larger);
-        if (!larger)
-            return STATUS_FAILURE;
-        all->line = larger;
-        all->capacity = capacity;
-    }
-    param_line *added = &all->line[all->count];
+    if (!room_for_one(&all->line, all->count, sizeof *all->line))
+        return STATUS_FAILURE;
+    param_line *added = &all->line[all->count++];
     *added = (param_line){strdup(path), strdup(value), row};
-    all->count++;
     return added->path && added->value ? STATUS_OK : STATUS_FAILURE;
 }
 

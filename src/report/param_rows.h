@@ -17,7 +17,7 @@ typedef struct param_line {
 
 typedef struct param_lines {
     param_line *line;
-    size_t count, capacity;
+    size_t count;
 } param_lines;
 
 /* filter as below; s and filter may be NULL. */

@@ -1,4 +1,5 @@
 #include "softbody/hand.h"
+#include "base/room.h"
 #include "softbody/softbody.h"
 
 #include <math.h>
@@ -87,23 +88,11 @@ static status check_hand(const hand_script *s, const char *hand, const hand_trac
     return STATUS_OK;
 }
 
-/* Room for one more element; the room is always a power of two. NULL when memory is out, the array is then as it was.
- */
-static void *grow(void *array, size_t count, size_t size)
-{
-    if ((count & (count - 1)) != 0)
-        return array;
-    const size_t room = count ? 2 * count : 1;
-    return room <= SIZE_MAX / size ? realloc(array, room * size) : NULL;
-}
-
 static hand_track *add_track(hand_script *s, const char *hand)
 {
-    hand_track *tracks = grow(s->tracks, s->track_count, sizeof *tracks);
-    if (!tracks)
+    if (!room_for_one(&s->tracks, s->track_count, sizeof *s->tracks))
         return NULL;
-    s->tracks = tracks;
-    hand_track *added = &tracks[s->track_count];
+    hand_track *added = &s->tracks[s->track_count];
     *added = (hand_track){.keys = NULL};
     strcpy(added->name, hand);
     return added; /* counted once it has a key */
@@ -117,10 +106,8 @@ status hand_script_add(hand_script *s, const char *hand, const hand_key *key, di
     TRY(check_order(hand, track, key, why));
     const bool is_new = !track;
     track = is_new ? add_track(s, hand) : track;
-    hand_key *keys = track ? grow(track->keys, track->key_count, sizeof *keys) : NULL;
-    if (!keys)
+    if (!track || !room_for_one(&track->keys, track->key_count, sizeof *track->keys))
         return out_of_memory(why);
-    track->keys = keys;
     track->keys[track->key_count++] = *key;
     s->track_count += is_new;
     return STATUS_OK;

@@ -1,4 +1,5 @@
 #include "study/ledger.h"
+#include "base/room.h"
 #include "measure/statistics.h"
 #include "study/row_files.h"
 #include <inttypes.h>
@@ -10,11 +11,9 @@ status ledger_add(ledger *l, const ledger_entry *entry, diagnostic *why)
 {
     ledger_cell *cell = &l->cells[entry->cell];
     if (!entry->warmup) {
-        double *grown = realloc(cell->wall_s, (cell->counted + 1) * sizeof *grown);
-        if (!grown)
+        if (!room_for_one(&cell->wall_s, cell->counted, sizeof *cell->wall_s))
             return out_of_memory(why);
-        cell->wall_s = grown;
-        grown[cell->counted++] = entry->wall_s;
+        cell->wall_s[cell->counted++] = entry->wall_s;
     }
     ledger_cell *film = &l->cells[study_cell_film(l->s, entry->cell)];
     film->film_expected = ledger_film(l, entry->cell, entry->film_hash);

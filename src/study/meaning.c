@@ -1,5 +1,6 @@
 #include "study/meaning.h"
 #include "base/hash.h"
+#include "base/room.h"
 #include "base/text.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
@@ -11,15 +12,7 @@
 /* Takes over both texts. */
 static status add(meaning *m, char *name, char *value)
 {
-    if (m->count == m->capacity) {
-        const size_t capacity = 2 * m->capacity + 64;
-        meaning_item *grown = realloc(m->items, capacity * sizeof *grown);
-        if (grown) {
-            m->items = grown;
-            m->capacity = capacity;
-        }
-    }
-    if (!name || !value || m->count == m->capacity) {
+    if (!name || !value || !room_for_one(&m->items, m->count, sizeof *m->items)) {
         free(name);
         free(value);
         return STATUS_FAILURE;

@@ -13,7 +13,7 @@ typedef struct meaning_item {
 } meaning_item;
 typedef struct meaning {
     meaning_item *items;
-    size_t count, capacity;
+    size_t count;
 } meaning;
 
 /* Of a scene, with or without the parameters that are how a frame is computed (param.is_how). STATUS_FAILURE when

@@ -1,6 +1,7 @@
 /* Builds the tree from events (document_events.c). What is asked of its nodes is in document_node.c. */
 #include "scene/file/document.h"
 #include "base/file.h"
+#include "base/room.h"
 #include "scene/file/document_events.h"
 
 #include <stdlib.h>
@@ -46,19 +47,9 @@ static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, nod
 static status node_append(event_reader *r, node *parent, node *key, node *value)
 {
     size_t count = parent->count;
-    if ((count & (count - 1)) == 0) { /* the room is always a power of two */
-        size_t room = count ? count * 2 : 1;
-        node **items = realloc(parent->items, room * sizeof *items);
-        if (!items)
-            return out_of_memory(r->why);
-        parent->items = items;
-        if (key) {
-            node **keys = realloc(parent->keys, room * sizeof *keys);
-            if (!keys)
-                return out_of_memory(r->why);
-            parent->keys = keys;
-        }
-    }
+    if (!room_for_one(&parent->items, count, sizeof *parent->items) ||
+        (key && !room_for_one(&parent->keys, count, sizeof *parent->keys)))
+        return out_of_memory(r->why);
     parent->items[count] = value;
     if (key)
         parent->keys[count] = key;
