@@ -257,7 +257,8 @@ static void print_keys(FILE *out, const quantity *list, size_t count, const char
 {
     for (size_t i = 0; i < count; i++) {
         const quantity *q = &list[i];
-        const char *merge = before[0] ? "" : quantity_merge_text(q->merge);
+        static const char *const merges[] = {"", "median of the frames", "over all frames", "last frame"};
+        const char *merge = before[0] ? "" : merges[q->merge];
         if (!q->json)
             continue;
         fprintf(out, ".TP\n.BR %s%s", before, q->json);

@@ -245,12 +245,6 @@ const size_t frame_quantity_count = sizeof frame_quantities / sizeof frame_quant
 const quantity worker_quantities[] = {WORKER_QUANTITIES(WORKER_ENTRY)};
 const size_t worker_quantity_count = sizeof worker_quantities / sizeof worker_quantities[0];
 
-const char *quantity_merge_text(quantity_merge merge)
-{
-    static const char *const text[] = {"", "median of the frames", "over all frames", "last frame"};
-    return text[merge];
-}
-
 const quantity *frame_quantity(const char *name)
 {
     for (size_t i = 0; i < frame_quantity_count; i++)

@@ -54,9 +54,6 @@ extern const size_t frame_quantity_count;
 extern const quantity worker_quantities[];
 extern const size_t worker_quantity_count;
 
-/* How, for people; "" for QUANTITY_SAME. */
-const char *quantity_merge_text(quantity_merge merge);
-
 /* The frame's quantity of that name, or NULL. */
 const quantity *frame_quantity(const char *name);
 

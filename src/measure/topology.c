@@ -20,7 +20,8 @@ static int units_of(hwloc_topology_t tree)
     return hwloc_get_nbobjs_by_type(tree, HWLOC_OBJ_PU);
 }
 
-hwloc_obj_type_t topology_core_type(hwloc_topology_t tree)
+/* Cores, or units where the machine shows no cores. */
+static hwloc_obj_type_t core_type(hwloc_topology_t tree)
 {
     return hwloc_get_nbobjs_by_type(tree, HWLOC_OBJ_CORE) > 0 ? HWLOC_OBJ_CORE : HWLOC_OBJ_PU;
 }
@@ -28,7 +29,7 @@ hwloc_obj_type_t topology_core_type(hwloc_topology_t tree)
 /* The r-th unit (from 0) of every core that has so many; the set is empty when none has. */
 static void units_of_round(hwloc_topology_t tree, int r, hwloc_bitmap_t set)
 {
-    hwloc_obj_type_t type = topology_core_type(tree);
+    hwloc_obj_type_t type = core_type(tree);
     hwloc_bitmap_zero(set);
     for (int i = 0; i < hwloc_get_nbobjs_by_type(tree, type); i++) {
         hwloc_obj_t core = hwloc_get_obj_by_type(tree, type, (unsigned)i);
@@ -182,7 +183,7 @@ int topology_pu_count(const topology *machine)
 
 int topology_core_count(const topology *machine)
 {
-    return hwloc_get_nbobjs_by_type(machine->tree, topology_core_type(machine->tree));
+    return hwloc_get_nbobjs_by_type(machine->tree, core_type(machine->tree));
 }
 
 int topology_package_count(const topology *machine)

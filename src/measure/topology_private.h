@@ -14,7 +14,4 @@ struct topology {
     hwloc_topology_t *round;
 };
 
-/* Cores, or units where the machine shows no cores. */
-hwloc_obj_type_t topology_core_type(hwloc_topology_t tree);
-
 #endif

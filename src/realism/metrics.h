@@ -68,10 +68,6 @@ void trial_end(trial *t);
 status attenuation_point(trial *t, const setup *at, double length, double transmittance[3], diagnostic *why);
 double attenuation_reach(const trial *t, const setup *at);
 
-/* Does the way from there, refracted where it can be, end on that solid without a reflection; through upright surfaces
- * only? A failure of the tracer goes to *code. */
-bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why);
-
 /* Index of a solid's medium relative to what surrounds all; NaN when its coefficients make no law. */
 double relative_index(const scene *s, int at, double lambda_nm);
 
@@ -84,7 +80,8 @@ double least_value(double (*f)(void *context, double x), void *context, double l
 typedef bool seen_at(void *context, double x);
 bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2]);
 
-/* The same of a solid in a line of the traced picture, as trial_meets says; NaN where it has no edges. */
+/* The same of a solid in a line of the traced picture: where the camera's way, refracted where it can be, ends on it
+ * without a reflection, through upright surfaces only where that is asked for. NaN where it has no edges. */
 status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],
                    diagnostic *why);
 

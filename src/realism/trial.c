@@ -21,7 +21,9 @@ void trial_end(trial *t)
     *t = (trial){0};
 }
 
-bool trial_meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why)
+/* Does the way from there, refracted where it can be, end on that solid without a reflection; through upright surfaces
+ * only? A failure of the tracer goes to *code. */
+static bool meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why)
 {
     if (*code == STATUS_OK)
         *code = probe_way(t->p, origin, direction, -1, &t->tree, why);
@@ -107,8 +109,8 @@ typedef struct picture_line {
 static bool traced_sees(void *context, double x)
 {
     picture_line *l = context;
-    return trial_meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->which, l->upright,
-                       &l->code, l->why);
+    return meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->which, l->upright,
+                 &l->code, l->why);
 }
 
 status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],

@@ -70,7 +70,7 @@ bool is_dark_beyond(const scene *s)
     return s->render.beyond == BEYOND_BLACK || dark_sky;
 }
 
-bool shines(const light *l)
+static bool shines(const light *l)
 {
     return l->intensity > 0.0 && !is_black(l->color);
 }
@@ -126,7 +126,7 @@ bool shows_ambient(const scene *s, const material *m)
     return !is_path(s) && m->ambient > 0.0 && has_color(m) && !is_black(s->background.ambient);
 }
 
-bool shows_diffuse(const scene *s, const material *m)
+static bool shows_diffuse(const scene *s, const material *m)
 {
     return m->diffuse > 0.0 && has_color(m) && (shining_lights(s) > 0 || (is_path(s) && material_is_opaque(m)));
 }

@@ -88,7 +88,6 @@ bool say_no_tree(const inert_case *c);
 bool is_dark_beyond(const scene *s);
 /* Lights that shine; all of them spheres, which the path integrator alone knows. */
 size_t shining_lights(const scene *s);
-bool shines(const light *l);
 bool only_spheres_shine(const scene *s);
 
 /* The faces may look as the mesh's file says, and not as the solid's surface does. */
@@ -102,7 +101,6 @@ bool shows_lamps(const scene *s, const solid *one);
 
 /* Terms of Phong's sum, and what stands for them on random paths, that are not 0. */
 bool shows_ambient(const scene *s, const material *m);
-bool shows_diffuse(const scene *s, const material *m);
 bool shows_specular(const scene *s, const material *m);
 bool shows_color(const scene *s, const material *m);
 /* Light of a lamp falls on it. */
