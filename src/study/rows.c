@@ -107,13 +107,18 @@ static void take_quantity(const quantity *q, row_column_taker *take, void *conte
         take(context, &(row_column){name, q->unit, q->meaning});
 }
 
+static void describe_judged(row_column_taker *take, void *context)
+{
+    JUDGED(DESCRIBE)
+}
+
 void row_each_column(row_column_taker *take, void *context)
 {
     WHOSE(DESCRIBE) WHEN(DESCRIBE) AXES(DESCRIBE) for (size_t i = 0; i < frame_quantity_count; i++)
     {
         take_quantity(&frame_quantities[i], take, context);
         if (i == 0)
-            JUDGED(DESCRIBE)
+            describe_judged(take, context);
     }
 }
 
@@ -156,6 +161,11 @@ void row_columns_header(csv_line *line, const study *s, row_columns *each)
     csv_end(line);
 }
 
+static void put_judged(csv_line *line, const study_row *r)
+{
+    JUDGED(PUT)
+}
+
 void row_write(csv_line *line, const study_row *r)
 {
     WHOSE(PUT) WHEN(PUT) AXES(PUT) for (size_t i = 0; i < frame_quantity_count; i++)
@@ -163,7 +173,7 @@ void row_write(csv_line *line, const study_row *r)
         if (frame_quantities[i].column)
             row_put(line, &frame_quantities[i], r->made, -1);
         if (i == 0)
-            JUDGED(PUT)
+            put_judged(line, r);
     }
     csv_end(line);
 }
