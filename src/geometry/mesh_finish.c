@@ -2,8 +2,6 @@
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
 
-#include <stdlib.h>
-
 static bool within(vec3 v, double limit)
 {
     return fabs(v.x) <= limit && fabs(v.y) <= limit && fabs(v.z) <= limit; /* false for NaN */

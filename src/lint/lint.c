@@ -5,7 +5,6 @@
 #include "scene/model/hints.h"
 #include "scene/model/scene.h"
 #include <math.h>
-#include <stdlib.h>
 
 enum { PROBE_PIXELS = 2400, PROBE_PIXELS_MESHES = 800 };
 

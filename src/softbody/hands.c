@@ -2,7 +2,6 @@
 #include "softbody/softbody_private.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 int softbody_grab(softbody *b, vec3 where, double reach)
 {

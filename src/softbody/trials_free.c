@@ -1,8 +1,6 @@
 /* The toy alone in space: what its motion keeps. */
 #include "softbody/trials_private.h"
 
-#include <stdlib.h>
-
 /* A frequency of the whole body, as far as the settings alone say: from all that holds it together, and its mass. */
 static double body_omega(const softbody_settings *s)
 {

@@ -4,7 +4,6 @@
 
 #include "optics/interface.h"
 #include "scene/model/medium.h"
-#include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

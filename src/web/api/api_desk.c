@@ -3,7 +3,6 @@
 #include "base/number.h"
 #include "base/text_writer.h"
 #include "report/json.h"
-#include "report/param_rows.h"
 #include "scene/model/inert/inert.h"
 #include "scene/model/params.h"
 #include "scene/file/write.h"
