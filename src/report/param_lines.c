@@ -1,4 +1,5 @@
 #include "report/param_rows.h"
+#include "base/grow.h"
 #include "base/text.h"
 #include <stdbool.h>
 #include <stdio.h>
@@ -22,14 +23,8 @@ char *param_lines_path(const param *row, char *text, size_t size)
 static status add_line(void *context, const char *path, const param *row, const char *value)
 {
     param_lines *all = context;
-    if (all->count == all->capacity) {
-        size_t capacity = all->capacity * 2 + 64;
-        param_line *larger = realloc(all->line, capacity * sizeof *larger);
-        if (!larger)
-            return STATUS_FAILURE;
-        all->line = larger;
-        all->capacity = capacity;
-    }
+    if (!GROW(all->line, all->capacity, all->count + 1))
+        return STATUS_FAILURE;
     param_line *added = &all->line[all->count];
     *added = (param_line){strdup(path), strdup(value), row};
     all->count++;
