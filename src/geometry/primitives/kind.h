@@ -72,7 +72,7 @@ typedef ray_span span_function(const primitive *p, bool general, local_ray r, in
 ALWAYS_INLINE void spans_in(const primitive *p, span_function *span, bool general, int bit, const ray_batch *rays,
                             ray_scratch *s)
 {
-    double *restrict in = s->in[bit], *restrict out = s->out[bit];
+    double *__restrict in = s->in[bit], *__restrict out = s->out[bit];
     const int64_t first = p->first_face;
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++) {
