@@ -113,8 +113,9 @@ void row_each_column(row_column_taker *take, void *context)
     WHOSE(DESCRIBE) WHEN(DESCRIBE) AXES(DESCRIBE) for (size_t i = 0; i < frame_quantity_count; i++)
     {
         take_quantity(&frame_quantities[i], take, context);
-        if (i == 0)
-            JUDGED(DESCRIBE)
+        if (i > 0)
+            continue;
+        JUDGED(DESCRIBE)
     }
 }
 
@@ -163,8 +164,9 @@ void row_write(csv_line *line, const study_row *r)
     {
         if (frame_quantities[i].column)
             row_put(line, &frame_quantities[i], r->made, -1);
-        if (i == 0)
-            JUDGED(PUT)
+        if (i > 0)
+            continue;
+        JUDGED(PUT)
     }
     csv_end(line);
 }
