@@ -72,3 +72,12 @@ void text_writer_abandon(text_writer *writer)
     free(writer->text);
     *writer = (text_writer){.stream = NULL};
 }
+
+status text_writer_end(text_writer *writer, status code, char **text, size_t *size, diagnostic *why)
+{
+    *text = NULL;
+    if (code == STATUS_OK)
+        return text_writer_close(writer, text, size, why);
+    text_writer_abandon(writer);
+    return code;
+}

@@ -162,11 +162,7 @@ static status print_summary(const study *s, const study_request *request, diagno
     status result = text_writer_open(&writer, why);
     if (result != STATUS_OK)
         return result;
-    result = study_summary(s, request->results, writer.stream, why);
-    if (result == STATUS_OK)
-        result = text_writer_close(&writer, &text, NULL, why);
-    else
-        text_writer_abandon(&writer);
+    result = text_writer_end(&writer, study_summary(s, request->results, writer.stream, why), &text, NULL, why);
     if (result == STATUS_OK)
         result = study_table_print(stdout, text, why);
     free(text);

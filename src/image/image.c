@@ -114,10 +114,7 @@ status image_encode(const image *picture, image_format format, int bits, bool fa
     if (code != STATUS_OK)
         return code;
     code = write_as(picture, format, writer.stream, bits, fast, why);
-    if (code == STATUS_OK)
-        code = text_writer_close(&writer, &text, size, why);
-    else
-        text_writer_abandon(&writer);
+    code = text_writer_end(&writer, code, &text, size, why);
     *bytes = (unsigned char *)text;
     return code;
 }

@@ -187,10 +187,7 @@ status scene_write_text(const scene *s, const char *path, bool all, char **text,
     if (code != STATUS_OK)
         return code;
     scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = writer.stream, .why = why};
-    code = put_scene(&w);
-    if (code == STATUS_OK)
-        return text_writer_close(&writer, text, NULL, why);
-    text_writer_abandon(&writer);
+    code = text_writer_end(&writer, put_scene(&w), text, NULL, why);
     /* Of a parameter whose text found no room, nothing has been said yet. */
     return code == STATUS_FAILURE ? diagnose(why, code, "", "out of memory") : code;
 }
