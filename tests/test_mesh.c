@@ -238,7 +238,6 @@ static void wrong_numbers_are_refused_by_name(void **state)
         m->vertices[3].z = wrong[k];
         assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
         assert_non_null(strstr(why.what, "vertex 3 "));
-        assert_int_equal(mesh_smooth(m, &why), STATUS_BAD_INPUT);
         mesh_release(m);
     }
     assert_int_equal(mesh_create(3, 1, true, true, true, &m, NULL), STATUS_OK);
@@ -283,20 +282,6 @@ static void normals_become_unit_vectors_and_missing_ones_the_triangles(void **st
     assert_true(m->normals[1].y == 1.0);
     assert_true(m->normals[2].x == 0.0 && m->normals[2].y == 0.0 && m->normals[2].z == 1.0); /* x cross y is z */
     assert_near(vec3_length(m->normals[3]), 1.0, 1e-15);
-    mesh_release(m);
-}
-
-/* Weighted by angle, a cube's corner looks along the diagonal however its faces are cut into triangles; by area or by
- * number it does not. */
-static void smooth_normals_do_not_depend_on_the_cut(void **state)
-{
-    (void)state;
-    mesh *m = cubes(1);
-    assert_int_equal(mesh_smooth(m, NULL), STATUS_OK);
-    for (size_t v = 0; v < 8; v++) {
-        const vec3 n = m->normals[v], p = m->vertices[v];
-        assert_near(vec3_length(vec3_sub(n, vec3_scale(p, 1.0 / sqrt(3.0)))), 0.0, 1e-14);
-    }
     mesh_release(m);
 }
 
@@ -356,7 +341,6 @@ int main(void)
         cmocka_unit_test(wrong_numbers_are_refused_by_name),
         cmocka_unit_test(too_large_meshes_are_refused),
         cmocka_unit_test(normals_become_unit_vectors_and_missing_ones_the_triangles),
-        cmocka_unit_test(smooth_normals_do_not_depend_on_the_cut),
         cmocka_unit_test(the_last_of_many_owners_takes_the_hierarchies_along),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

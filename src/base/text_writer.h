@@ -22,7 +22,7 @@ status text_writer_open(text_writer *writer, diagnostic *why);
  * STATUS_OK. */
 status text_writer_close(text_writer *writer, char **text, size_t *size, diagnostic *why);
 void text_writer_abandon(text_writer *writer);
-/* One or the other: closes where code, of what was to be written, is STATUS_OK; else abandons and returns it. */
+/* Closes it where code is STATUS_OK, abandons it where it is not; returns code, or why it could not be closed. */
 status text_writer_end(text_writer *writer, status code, char **text, size_t *size, diagnostic *why);
 
 #endif

@@ -1,4 +1,4 @@
-#include "base/room.h"
+#include "base/grow.h"
 #include "cli/cli.h"
 #include "cli/inert_notes.h"
 #include "cli/options.h"

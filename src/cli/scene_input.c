@@ -1,5 +1,5 @@
 #include "cli/scene_input.h"
-#include "base/room.h"
+#include "base/grow.h"
 #include "cli/outputs.h"
 #include "cli/terminal.h"
 #include "scene/model/hints.h"

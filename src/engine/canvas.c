@@ -1,4 +1,5 @@
 #include "engine/canvas.h"
+#include "base/grow.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -88,17 +89,10 @@ void canvas_fill(const canvas *c, const film *f, int x0, int y0, int x1, int y1,
 void canvas_note(canvas *c, cuvette_piece piece)
 {
     pthread_mutex_lock(&c->lock);
-    if (c->count == c->capacity) {
-        const size_t capacity = c->capacity ? 2 * c->capacity : 256;
-        cuvette_piece *grown = realloc(c->noted, capacity * sizeof *grown);
-        c->out_of_memory |= !grown;
-        if (grown) {
-            c->noted = grown;
-            c->capacity = capacity;
-        }
-    }
-    if (c->count < c->capacity)
+    if (GROW(c->noted, c->capacity, c->count + 1))
         c->noted[c->count++] = piece;
+    else
+        c->out_of_memory = true;
     pthread_mutex_unlock(&c->lock);
 }
 

@@ -4,7 +4,6 @@
 
 #include "measure/clock.h"
 #include "scene/model/scene.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

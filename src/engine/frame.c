@@ -3,7 +3,6 @@
 #include "engine/engine_private.h"
 
 #include "render/core/record.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -82,12 +82,6 @@ hierarchy_report hierarchy_describe(const hierarchy *h)
     return h->report;
 }
 
-bool hierarchy_has(hierarchy_kind kind)
-{
-    return kind >= HIERARCHY_NONE && kind < HIERARCHY_KIND_COUNT &&
-           (kind != HIERARCHY_EMBREE || hierarchy_embree_there());
-}
-
 /* Refits a hierarchy that its mesh keeps. false: it is to be built anew. */
 static bool follow_by_refit(hierarchy *h, double ratio, hierarchy_moves *moves)
 {

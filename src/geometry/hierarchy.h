@@ -40,7 +40,6 @@ typedef struct hierarchy_report {
 status hierarchy_build(const mesh *m, hierarchy_kind kind, int threads, hierarchy **out, diagnostic *why);
 void hierarchy_destroy(hierarchy *h);
 hierarchy_report hierarchy_describe(const hierarchy *h);
-bool hierarchy_has(hierarchy_kind kind); /* false for Embree where it was not there at build time */
 
 /* A mesh's hierarchy of a kind, built at its first use and kept with the mesh as long as that lives; from any thread.
  */

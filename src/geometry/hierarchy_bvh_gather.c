@@ -1,3 +1,4 @@
+#include "base/grow.h"
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>
@@ -84,14 +85,8 @@ typedef struct gathering {
 
 static bool add_place(gathering *g, bvh_branch *b, size_t node, size_t block)
 {
-    if (g->count == g->room) {
-        size_t room = g->room ? 2 * g->room : 64;
-        place *grown = realloc(g->places, room * sizeof *grown);
-        if (!grown)
-            return false;
-        g->places = grown;
-        g->room = room;
-    }
+    if (!GROW(g->places, g->room, g->count + 1))
+        return false;
     g->places[g->count++] = (place){b, node, block};
     return true;
 }

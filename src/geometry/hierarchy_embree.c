@@ -23,11 +23,6 @@ typedef struct query {
     void *visited;
 } query;
 
-bool hierarchy_embree_there(void)
-{
-    return true;
-}
-
 static int facing_of(const mesh *m, const mesh_ray *ray, uint32_t triangle)
 {
     const uint32_t *corner = m->triangles[triangle].corner;
@@ -185,11 +180,6 @@ void hierarchy_embree_destroy(hierarchy *h)
 }
 
 #else
-
-bool hierarchy_embree_there(void)
-{
-    return false;
-}
 
 void hierarchy_embree_nearest(const hierarchy *h, const mesh_ray *ray, mesh_hit *hit)
 {

@@ -71,7 +71,6 @@ status hierarchy_build_embree(hierarchy *h, int threads, diagnostic *why);
 
 /* Embree's part: hierarchy_embree.c. Where it was not there at build time it is not there, its builder says so, and
  * nothing is ever hit. */
-bool hierarchy_embree_there(void);
 void hierarchy_embree_destroy(hierarchy *h);
 void hierarchy_embree_nearest(const hierarchy *h, const mesh_ray *ray, mesh_hit *hit);
 bool hierarchy_embree_any(const hierarchy *h, const mesh_ray *ray);

@@ -72,11 +72,6 @@ void mesh_retain(const mesh *m);
 void mesh_release(const mesh *m); /* NULL is allowed */
 long mesh_owners(const mesh *m);  /* how many there are now */
 
-/* Normals by vertex where a mesh has none (one that has is left alone): the sum of the triangles' around each position,
- * weighted by the angle of each corner (Thurmer and Wuthrich, "Computing vertex normals from polygonal facets", JGT
- * 3(1), 1998). Before mesh_finish or after it, before others see the mesh. */
-status mesh_smooth(mesh *m, diagnostic *why);
-
 /* Moves the vertices of a finished mesh, and gives it these normals where it has any (they are normalised as by
  * mesh_finish): of a body that moves, between frames, when no other thread looks at it. Vertices that lay at one place
  * must do so still, for whether it is closed is not found out again. Hierarchies that were kept with it do not fit any

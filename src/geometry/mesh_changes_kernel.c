@@ -3,7 +3,6 @@
  * rank can be crossed, unseen; their bits are set right where the next change is. */
 #include "geometry/kernels.h"
 
-#include "base/lanes.h"
 #include "geometry/forest.h"
 #include <math.h>
 

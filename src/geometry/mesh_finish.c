@@ -2,8 +2,6 @@
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
 
-#include <stdlib.h>
-
 static bool within(vec3 v, double limit)
 {
     return fabs(v.x) <= limit && fabs(v.y) <= limit && fabs(v.z) <= limit; /* false for NaN */
@@ -60,15 +58,15 @@ static bool direction_of(vec3 v, vec3 *unit)
     return true;
 }
 
-bool mesh_triangle_normal(const mesh *m, size_t triangle, vec3 *normal)
+/* Unit normal of a triangle's front; a zero vector where it has none. */
+static vec3 front_of(const mesh *m, mesh_triangle triangle)
 {
-    const uint32_t *corner = m->triangles[triangle].corner;
-    const vec3 a = m->vertices[corner[0]];
-    vec3 b, c;
-    *normal = vec3_make(0.0, 0.0, 0.0);
+    const vec3 *at = m->vertices, a = at[triangle.corner[0]];
+    vec3 b, c, normal = vec3_make(0.0, 0.0, 0.0);
     /* the edges as unit vectors: the product of small ones would vanish */
-    return direction_of(vec3_sub(m->vertices[corner[1]], a), &b) &&
-           direction_of(vec3_sub(m->vertices[corner[2]], a), &c) && direction_of(vec3_cross(b, c), normal);
+    if (direction_of(vec3_sub(at[triangle.corner[1]], a), &b) && direction_of(vec3_sub(at[triangle.corner[2]], a), &c))
+        direction_of(vec3_cross(b, c), &normal);
+    return normal;
 }
 
 void mesh_normalize(mesh *m)
@@ -80,7 +78,7 @@ void mesh_normalize(mesh *m)
         for (int k = 0; k < 3; k++) {
             vec3 *normal = &m->normals[m->triangles[t].corner[k]];
             if (largest(*normal) == 0.0)
-                mesh_triangle_normal(m, t, normal);
+                *normal = front_of(m, m->triangles[t]);
         }
     }
     for (size_t v = 0; missing && v < m->vertex_count; v++)

@@ -33,9 +33,6 @@ void mesh_turn(mesh *m, size_t triangle);
 /* Six times the volume between a triangle and a point. */
 double mesh_triangle_volume6(const mesh *m, size_t triangle, vec3 origin);
 
-/* Unit normal of a triangle's front; false, and a zero vector, where it has none. */
-bool mesh_triangle_normal(const mesh *m, size_t triangle, vec3 *normal);
-
 /* Sets m->bounds and m->single from the vertices that triangles use. */
 void mesh_find_bounds(mesh *m);
 

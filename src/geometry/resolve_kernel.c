@@ -12,7 +12,6 @@
 #include "base/lanes.h"
 #include "geometry/forest.h"
 #include "geometry/primitives/primitive.h"
-#include <float.h>
 #include <math.h>
 
 /* Beyond this a crossing is never: see roots.h. */

@@ -2,7 +2,6 @@
 
 #include "base/elementary.h"
 #include "geometry/arrangement.h"
-#include <math.h>
 #include <string.h>
 
 #define SHAPE_RULE(KIND, file) [SHAPE_##KIND] = &shape_##file,

@@ -10,7 +10,6 @@
 #include "base/status.h"
 #include "base/vec3.h"
 #include "image/image.h"
-#include <stddef.h>
 #include <stdint.h>
 
 /* What the numbers in a PNG, JPEG or BMP file stand for. image_read takes all of them for sRGB: with TEXTURE_SRGB they

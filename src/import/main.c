@@ -6,7 +6,6 @@
 #include "base/number.h"
 #include <argp.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/prctl.h>

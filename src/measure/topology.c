@@ -1,6 +1,6 @@
 #include "measure/topology.h"
 
-#include "base/room.h"
+#include "base/grow.h"
 #include "measure/topology_private.h"
 
 #include <errno.h>

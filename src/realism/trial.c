@@ -1,6 +1,5 @@
 #include "realism/metrics.h"
 
-#include "optics/media.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include <math.h>

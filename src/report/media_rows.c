@@ -175,8 +175,5 @@ json_t *media_rows_json(const medium *only, double at_nm)
     for (size_t i = 0; i < media_count() && !bad; i++)
         if (!only || only == media_at(i))
             bad |= json_array_append_new(list, medium_json(media_at(i), at_nm));
-    if (!bad)
-        return json_pack("{s:i,s:o}", "schema", 1, "media", list);
-    json_decref(list);
-    return NULL;
+    return bad ? json_whole(list, false) : json_pack("{s:i,s:o}", "schema", 1, "media", list);
 }

@@ -1,5 +1,5 @@
 #include "report/param_rows.h"
-#include "base/room.h"
+#include "base/grow.h"
 #include "base/text.h"
 #include <stdbool.h>
 #include <stdio.h>

@@ -19,9 +19,7 @@ static json_t *list_of_numbers(const char *text)
         bad |= !number_parse_real(word, &number) || json_array_append_new(list, json_of_real(number));
     }
     free(copy);
-    if (bad)
-        json_decref(list);
-    return bad ? NULL : list;
+    return json_whole(list, !bad);
 }
 
 json_t *report_value(const param *row, const char *text)
@@ -78,10 +76,8 @@ static status add_alternatives(json_t *params, const scene *s)
 json_t *report_params(const scene *s)
 {
     json_t *params = json_object();
-    if (params && add_alternatives(params, s) == STATUS_OK && scene_each_param(s, add_param, params) == STATUS_OK)
-        return params;
-    json_decref(params);
-    return NULL;
+    return json_whole(params, params && add_alternatives(params, s) == STATUS_OK &&
+                                  scene_each_param(s, add_param, params) == STATUS_OK);
 }
 
 /* --- frames --- */
@@ -169,10 +165,8 @@ static json_t *workers(const job_account *a)
     json_t *list = json_array();
     for (int i = 0; list && i < a->result->worker_count; i++) {
         json_t *one = json_object();
-        if (put_all(one, worker_quantities, worker_quantity_count, a, i) | json_array_append_new(list, one)) {
-            json_decref(list);
-            return NULL;
-        }
+        if (put_all(one, worker_quantities, worker_quantity_count, a, i) | json_array_append_new(list, one))
+            return json_whole(list, false);
     }
     return list;
 }

@@ -1,5 +1,5 @@
 #include "softbody/hand.h"
-#include "base/room.h"
+#include "base/grow.h"
 #include "softbody/softbody.h"
 
 #include <math.h>

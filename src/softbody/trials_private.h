@@ -4,8 +4,6 @@
 
 #include "softbody/trials.h"
 
-#include <math.h>
-
 enum { TRIAL_STEPS_MAX = 300000 };
 
 /* What a trial measures with; out: where its values go. */

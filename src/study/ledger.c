@@ -1,5 +1,5 @@
 #include "study/ledger.h"
-#include "base/room.h"
+#include "base/grow.h"
 #include "measure/statistics.h"
 #include "study/row_files.h"
 #include <inttypes.h>

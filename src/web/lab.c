@@ -1,7 +1,6 @@
 #include "web/lab_private.h"
 #include "base/text.h"
 #include "scene/model/camera.h"
-#include "scene/model/params.h"
 #include "scene/model/place/new_scene.h"
 #include "report/json.h"
 #include "web/api/api.h"
@@ -11,7 +10,6 @@
 #include "scene/model/scene.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* As many handlers may do what takes much memory and time. */
 enum { HEAVY_AT_ONCE = 2 };

@@ -10,7 +10,6 @@
 #include "web/lab.h"
 #include "web/live/painter.h"
 #include <pthread.h>
-#include <stdint.h>
 
 typedef struct pins pins;       /* web/session/pins.h */
 typedef struct studies studies; /* web/session/studies.h */

@@ -1,34 +1,20 @@
 /* The box |x| <= half.x and so on. Faces: 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. */
 #include "geometry/primitives/kind.h"
 
-static bool is_general(const primitive *p)
+ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)
 {
-    return p->turned;
-}
-
-ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
-{
-    double *restrict in = s->in[bit], *restrict out = s->out[bit];
-    const int64_t first = p->first_face;
     const vec3 h = p->half;
-    /* VECTORISE */
-    for (int i = 0; i < rays->count; i++) {
-        local_ray r =
-            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
-        int64_t at = rays->start[i] - first;
-        slab_roots x = slab_cross(r.x, general ? inverse_of_component(r.dx) : s->inverse_x[i], -h.x, h.x,
-                                  mask_same(at, 0), mask_same(at, 1));
-        slab_roots y = slab_cross(r.y, general ? inverse_of_component(r.dy) : s->inverse_y[i], -h.y, h.y,
-                                  mask_same(at, 2), mask_same(at, 3));
-        slab_roots z = slab_cross(r.z, general ? inverse_of_component(r.dz) : s->inverse_z[i], -h.z, h.z,
-                                  mask_same(at, 4), mask_same(at, 5));
-        double near = greater(greater(x.in, y.in), z.in), far = lesser(lesser(x.out, y.out), z.out);
-        int64_t own = mask_same(rays->start[i] & ~(int64_t)(FACES_MAX - 1), first);
-        store_interval(near, far, mask_less(near, far), own, inside_mask(rays->inside[i], bit), &in[i], &out[i]);
-    }
+    slab_roots x = slab_cross(r.x, general ? inverse_of_component(r.dx) : s->inverse_x[i], -h.x, h.x, mask_same(at, 0),
+                              mask_same(at, 1));
+    slab_roots y = slab_cross(r.y, general ? inverse_of_component(r.dy) : s->inverse_y[i], -h.y, h.y, mask_same(at, 2),
+                              mask_same(at, 3));
+    slab_roots z = slab_cross(r.z, general ? inverse_of_component(r.dz) : s->inverse_z[i], -h.z, h.z, mask_same(at, 4),
+                              mask_same(at, 5));
+    double near = greater(greater(x.in, y.in), z.in), far = lesser(lesser(x.out, y.out), z.out);
+    return (ray_span){near, far, mask_less(near, far), mask_same(at & ~(int64_t)(FACES_MAX - 1), 0)};
 }
 
-ROWS_OF(loop)
+SPANS_OF(p->turned, span)
 
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
@@ -55,7 +41,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(point)
+POINTS_OF(p->turned, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

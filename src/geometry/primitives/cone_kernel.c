@@ -6,11 +6,6 @@
  */
 #include "geometry/primitives/kind.h"
 
-static bool is_general(const primitive *p)
-{
-    return p->turned;
-}
-
 ALWAYS_INLINE double cone_slope(const primitive *p)
 {
     return (p->second_radius - p->radius) / p->top;
@@ -42,25 +37,16 @@ ALWAYS_INLINE quadric_roots cone_side(const primitive *p, local_ray r, int64_t o
     return s;
 }
 
-ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
+ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)
 {
-    double *restrict in = s->in[bit], *restrict out = s->out[bit];
-    const int64_t first = p->first_face;
-    /* VECTORISE */
-    for (int i = 0; i < rays->count; i++) {
-        local_ray r =
-            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
-        int64_t on_side = mask_same(rays->start[i], first), on_bottom = mask_same(rays->start[i], first + 1),
-                on_top = mask_same(rays->start[i], first + 2);
-        quadric_roots side = cone_side(p, r, on_side);
-        slab_roots caps = slab_cross(r.y, inverse_of_component(r.dy), 0.0, p->top, on_bottom, on_top);
-        double near = greater(side.in, caps.in), far = lesser(side.out, caps.out);
-        store_interval(near, far, side.hit & mask_less(near, far), on_side | on_bottom | on_top,
-                       inside_mask(rays->inside[i], bit), &in[i], &out[i]);
-    }
+    (void)general, (void)s, (void)i;
+    int64_t on_side = mask_same(at, 0), on_bottom = mask_same(at, 1), on_top = mask_same(at, 2);
+    quadric_roots side = cone_side(p, r, on_side);
+    slab_roots caps = slab_cross(r.y, inverse_of_component(r.dy), 0.0, p->top, on_bottom, on_top);
+    return span_within(side, caps, on_side | on_bottom | on_top);
 }
 
-ROWS_OF(loop)
+SPANS_OF(p->turned, span)
 
 /* The face by the same comparisons as in the first pass. The side is reached across it; at the apex its normal is the
  * axis. */
@@ -86,7 +72,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(point)
+POINTS_OF(p->turned, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

@@ -17,29 +17,19 @@ ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z
     return quadric_cross(x * dx + p->m2 * z * dz, inverse_a, a * r2 - p->m2 * (cross * cross), own);
 }
 
-ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
+ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)
 {
-    double *restrict in = s->in[bit], *restrict out = s->out[bit];
-    const int64_t first = p->first_face;
-    /* VECTORISE */
-    for (int i = 0; i < rays->count; i++) {
-        local_ray r =
-            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
-        int64_t on_side = mask_same(rays->start[i], first), on_bottom = mask_same(rays->start[i], first + 1),
-                on_top = mask_same(rays->start[i], first + 2);
-        double dx = general ? cylinder_dx(r.dx, r.dz) : s->axial_dx[i];
-        double a = general ? cylinder_axial(dx, r.dz, p->m2) : s->axial[i]; /* upright round cylinders share it */
-        double inverse_a = general ? 1.0 / a : s->inverse_axial[i];
-        double inverse_y = general ? inverse_of_component(r.dy) : s->inverse_y[i];
-        quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, inverse_a, on_side);
-        slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, on_bottom, on_top);
-        double near = greater(side.in, caps.in), far = lesser(side.out, caps.out);
-        store_interval(near, far, side.hit & mask_less(near, far), on_side | on_bottom | on_top,
-                       inside_mask(rays->inside[i], bit), &in[i], &out[i]);
-    }
+    int64_t on_side = mask_same(at, 0), on_bottom = mask_same(at, 1), on_top = mask_same(at, 2);
+    double dx = general ? cylinder_dx(r.dx, r.dz) : s->axial_dx[i];
+    double a = general ? cylinder_axial(dx, r.dz, p->m2) : s->axial[i]; /* upright round cylinders share it */
+    double inverse_a = general ? 1.0 / a : s->inverse_axial[i];
+    double inverse_y = general ? inverse_of_component(r.dy) : s->inverse_y[i];
+    quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, inverse_a, on_side);
+    slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, on_bottom, on_top);
+    return span_within(side, caps, on_side | on_bottom | on_top);
 }
 
-ROWS_OF(loop)
+SPANS_OF(is_general(p), span)
 
 /* The same comparisons of the same roots as in the first pass: the face is the one that bounded the interval there. */
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
@@ -63,7 +53,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(point)
+POINTS_OF(is_general(p), point)
 
 static bool contains(const primitive *p, vec3 q)
 {

@@ -1,29 +1,17 @@
 /* The half-space y <= 0. Face 0. */
 #include "geometry/primitives/kind.h"
 
-static bool is_general(const primitive *p)
+ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)
 {
-    return p->turned;
+    (void)p;
+    int64_t own = mask_same(at, 0);
+    double inverse = general ? inverse_of_component(r.dy) : s->inverse_y[i];
+    double t = blend(own, 0.0, -r.y * inverse);
+    int64_t down = mask_less(inverse, 0.0);
+    return (ray_span){blend(down, t, -HUGE_VAL), blend(down, HUGE_VAL, t), -1, own};
 }
 
-ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
-{
-    double *restrict in = s->in[bit], *restrict out = s->out[bit];
-    const int64_t first = p->first_face;
-    /* VECTORISE */
-    for (int i = 0; i < rays->count; i++) {
-        local_ray r =
-            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
-        int64_t own = mask_same(rays->start[i], first);
-        double inverse = general ? inverse_of_component(r.dy) : s->inverse_y[i];
-        double t = blend(own, 0.0, -r.y * inverse);
-        int64_t down = mask_less(inverse, 0.0);
-        store_interval(blend(down, t, -HUGE_VAL), blend(down, HUGE_VAL, t), -1, own, inside_mask(rays->inside[i], bit),
-                       &in[i], &out[i]);
-    }
-}
-
-ROWS_OF(loop)
+SPANS_OF(p->turned, span)
 
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
@@ -32,7 +20,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(point)
+POINTS_OF(p->turned, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

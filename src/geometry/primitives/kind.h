@@ -53,6 +53,36 @@ ALWAYS_INLINE int64_t inside_mask(uint64_t set, int shift)
     return -(int64_t)((set & (uint64_t)1 << shift) != 0);
 }
 
+/* The one interval of a ray's line in a convex primitive; own: the ray starts on the primitive. */
+typedef struct ray_span {
+    double near, far;
+    int64_t hit, own;
+} ray_span;
+
+/* What is within the side and between the caps. */
+ALWAYS_INLINE ray_span span_within(quadric_roots side, slab_roots caps, int64_t own)
+{
+    double near = greater(side.in, caps.in), far = lesser(side.out, caps.out);
+    return (ray_span){near, far, side.hit & mask_less(near, far), own};
+}
+
+/* Of ray i, which is r here; at: the face that it starts on, from 0. */
+typedef ray_span span_function(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i);
+
+ALWAYS_INLINE void spans_in(const primitive *p, span_function *span, bool general, int bit, const ray_batch *rays,
+                            ray_scratch *s)
+{
+    double *__restrict in = s->in[bit], *__restrict out = s->out[bit];
+    const int64_t first = p->first_face;
+    /* VECTORISE */
+    for (int i = 0; i < rays->count; i++) {
+        local_ray r =
+            ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+        ray_span m = span(p, general, r, rays->start[i] - first, s, i);
+        store_interval(m.near, m.far, m.hit, m.own, inside_mask(rays->inside[i], bit), &in[i], &out[i]);
+    }
+}
+
 /* Where a line crosses a primitive that is not convex: an even number of times in all, in order. */
 enum { CROSSINGS_OF_ONE_MAX = 2 * CHORDS_MAX };
 typedef struct crossings_of_one {
@@ -140,21 +170,28 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool 
         store_point(p, put_back, general, rays, t, i, bit, s);
 }
 
-/* Defines `name`(p, ...) by body(p, ..., general, ...): the body is compiled for both answers of is_general, whether
- * rays must be turned into the primitive's frame, or it is scaled. It works on a copy, which no store can alias. */
-#define ROWS_OF(body)                                                                               \
+/* Define rows and points by a body that is compiled for both answers of is_general, an expression in p: whether rays
+ * must be turned into the primitive's frame, or it is scaled. */
+#define ROWS_OF(is_general, body)                                                                   \
     static void rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                               \
-        if (is_general(p))                                                                          \
+        if (is_general)                                                                             \
             body(p, true, bit, rays, s);                                                            \
         else                                                                                        \
             body(p, false, bit, rays, s);                                                           \
     }
-#define POINTS_OF(point)                                                                               \
+/* Of a convex primitive. */
+#define SPANS_OF(is_general, span)                                                                             \
+    ALWAYS_INLINE void spans(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s) \
+    {                                                                                                          \
+        spans_in(p, span, general, bit, rays, s);                                                              \
+    }                                                                                                          \
+    ROWS_OF(is_general, spans)
+#define POINTS_OF(is_general, point)                                                                   \
     static void points(const primitive *__restrict p, const ray_batch *rays, const double *t, int bit, \
                        surface_batch *met)                                                             \
     {                                                                                                  \
-        if (is_general(p))                                                                             \
+        if (is_general)                                                                                \
             points_on(p, point, true, rays, t, bit, met);                                              \
         else                                                                                           \
             points_on(p, point, false, rays, t, bit, met);                                             \

@@ -5,11 +5,6 @@
 
 enum { FIRST_SIDE = 2 };
 
-static bool is_general(const primitive *p)
-{
-    return p->turned;
-}
-
 /* Where a ray passes the plane of a side. -1 of enters: it comes from outside. */
 typedef struct plane_root {
     double t;
@@ -56,7 +51,7 @@ ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_bat
     }
 }
 
-ROWS_OF(loop)
+ROWS_OF(p->turned, loop)
 
 /* The face that bounds the interval, by the same roots: the last of those that are entered, or the first of those that
  * are left. A loop over faces within one over rays, which is not vectorised. */

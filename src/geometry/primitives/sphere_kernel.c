@@ -1,13 +1,6 @@
 /* The sphere x^2 + y^2 + z^2 <= radius^2. Face 0. */
 #include "geometry/primitives/kind.h"
 
-/* It is turned for its textures alone. */
-static bool is_general(const primitive *p)
-{
-    (void)p;
-    return false;
-}
-
 ALWAYS_INLINE quadric_roots sphere_cross(const primitive *p, local_ray r, int64_t own)
 {
     vec3 o = vec3_make(r.x, r.y, r.z), d = vec3_make(r.dx, r.dy, r.dz), cross = vec3_cross(o, d);
@@ -15,22 +8,16 @@ ALWAYS_INLINE quadric_roots sphere_cross(const primitive *p, local_ray r, int64_
     return quadric_cross(vec3_dot(o, d), 1.0 / a, a * (p->radius * p->radius) - vec3_dot(cross, cross), own);
 }
 
-ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
+ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)
 {
-    double *restrict in = s->in[bit], *restrict out = s->out[bit];
-    const int64_t first = p->first_face;
-    (void)general;
-    /* VECTORISE */
-    for (int i = 0; i < rays->count; i++) {
-        local_ray r =
-            ray_to_local(p, false, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
-        int64_t own = mask_same(rays->start[i], first);
-        quadric_roots q = sphere_cross(p, r, own);
-        store_interval(q.in, q.out, q.hit, own, inside_mask(rays->inside[i], bit), &in[i], &out[i]);
-    }
+    (void)general, (void)s, (void)i;
+    int64_t own = mask_same(at, 0);
+    quadric_roots q = sphere_cross(p, r, own);
+    return (ray_span){q.in, q.out, q.hit, own};
 }
 
-ROWS_OF(loop)
+/* It is turned for its textures alone. */
+SPANS_OF(false, span)
 
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
@@ -43,7 +30,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(point)
+POINTS_OF(false, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

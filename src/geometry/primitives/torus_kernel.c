@@ -12,11 +12,6 @@
  * division by t, and the root of the ray's own face is gone. */
 #include "geometry/primitives/kind.h"
 
-static bool is_general(const primitive *p)
-{
-    return p->turned;
-}
-
 /* Counted from its base: its point nearest to the torus's centre, or, on the surface, the ray's start. */
 typedef struct torus_line {
     double R, r;
@@ -192,7 +187,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(point)
+POINTS_OF(p->turned, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

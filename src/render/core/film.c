@@ -2,7 +2,6 @@
 
 #include "base/hash.h"
 #include "optics/observer.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

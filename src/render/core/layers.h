@@ -5,7 +5,6 @@
 
 #include "base/vec3.h"
 #include "scene/model/layers.h"
-#include <stdbool.h>
 #include <stdint.h>
 
 typedef struct layer_set {

@@ -4,7 +4,6 @@
 #include "render/shade/sky.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
-#include <string.h>
 
 /* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface unless it is coated
  * or shines; with constant shares, as in the report, every surface reflects whatever its index. laws: by solid,

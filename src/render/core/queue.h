@@ -3,7 +3,6 @@
 #ifndef CUVETTE_RENDER_CORE_QUEUE_H
 #define CUVETTE_RENDER_CORE_QUEUE_H
 
-#include "base/status.h"
 #include "geometry/rays.h"
 #include <stdbool.h>
 

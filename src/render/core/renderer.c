@@ -1,5 +1,6 @@
 #include "render/core/renderer.h"
 
+#include "base/grow.h"
 #include "measure/clock.h"
 #include "render/core/plan.h"
 #include "render/core/pool.h"
@@ -113,17 +114,10 @@ static double since(const frame *f)
 static void note_tile(const frame *f, worker_account *d, int worker, const span *piece, double began_s)
 {
     event_list *l = &d->events;
-    if (l->count == l->capacity) {
-        size_t capacity = l->capacity ? 2 * l->capacity : 64;
-        tile_event *grown = realloc(l->event, capacity * sizeof *grown);
-        if (!grown) {
-            d->out_of_memory = true;
-            return;
-        }
-        l->event = grown;
-        l->capacity = capacity;
-    }
-    l->event[l->count++] = (tile_event){worker, piece->x0, piece->y0, piece->x1, piece->y1, began_s, since(f)};
+    if (GROW(l->event, l->capacity, l->count + 1))
+        l->event[l->count++] = (tile_event){worker, piece->x0, piece->y0, piece->x1, piece->y1, began_s, since(f)};
+    else
+        d->out_of_memory = true;
 }
 
 /* Pieces one after another; rays that do not fill a batch at the end of one piece go on with the next. */

@@ -1,6 +1,7 @@
 #include "render/inspect/fan.h"
 
 #include "base/elementary.h"
+#include "base/grow.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,19 +55,12 @@ static void start_of(const fan *f, const fan_rule *rule, int i, fan_ray *ray, ve
 
 static status keep_nodes(fan *f, const ray_tree *way, fan_ray *ray, diagnostic *why)
 {
-    const size_t wanted = f->node_count + way->count;
-    if (wanted > f->node_capacity) {
-        const size_t capacity = 2 * wanted;
-        ray_node *more = realloc(f->node, capacity * sizeof *more);
-        if (!more)
-            return diagnose(why, STATUS_FAILURE, "give fewer rays", "out of memory");
-        f->node = more;
-        f->node_capacity = capacity;
-    }
+    if (!GROW(f->node, f->node_capacity, f->node_count + way->count))
+        return diagnose(why, STATUS_FAILURE, "give fewer rays", "out of memory");
     memcpy(f->node + f->node_count, way->node, way->count * sizeof *way->node);
     ray->first = f->node_count;
     ray->count = way->count;
-    f->node_count = wanted;
+    f->node_count += way->count;
     return STATUS_OK;
 }
 

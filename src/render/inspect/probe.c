@@ -1,7 +1,6 @@
 #include "render/inspect/probe.h"
 #include "geometry/shapes/shape.h"
 
-#include "optics/interface.h"
 #include "scene/model/medium.h"
 #include "render/inspect/probe_private.h"
 #include "scene/model/scene.h"

@@ -1,10 +1,10 @@
 /* How a tree grows: each ray goes through the tracer alone, and what the tracer leaves in its hits, its gathered group,
  * its branches and its queues is written down. */
+#include "base/grow.h"
 #include "render/inspect/probe_private.h"
 
 #include "optics/interface.h"
 #include "scene/model/medium.h"
-#include "scene/model/scene.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -82,14 +82,8 @@ static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind k
     if (tree->count >= PROBE_NODES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "lower render.depth, or set render.min_weight",
                         "the tree has more than %d rays", (int)PROBE_NODES_MAX);
-    if (tree->count == tree->capacity) {
-        const size_t capacity = tree->capacity ? 2 * tree->capacity : 64;
-        ray_node *grown = realloc(tree->node, capacity * sizeof *grown);
-        if (!grown)
-            return diagnose(why, STATUS_FAILURE, "lower render.depth", "out of memory");
-        tree->node = grown;
-        tree->capacity = capacity;
-    }
+    if (!GROW(tree->node, tree->capacity, tree->count + 1))
+        return diagnose(why, STATUS_FAILURE, "lower render.depth", "out of memory");
     *at = tree->count++;
     tree->node[*at] = (ray_node){.kind = kind,
                                  .end = RAY_END_SKY,

@@ -1,3 +1,4 @@
+#include "base/grow.h"
 #include "render/inspect/section_private.h"
 
 #include <stdlib.h>
@@ -23,26 +24,12 @@ void section_release(section *s)
     memset(s, 0, sizeof *s);
 }
 
-void *section_grown(void *memory, size_t count, size_t *capacity, size_t size)
-{
-    if (count < *capacity)
-        return memory;
-    const size_t wanted = *capacity ? 2 * *capacity : 256;
-    void *more = realloc(memory, wanted * size);
-    if (more)
-        *capacity = wanted;
-    return more;
-}
-
 void section_add_point(cutter *c, section_point at)
 {
     section *s = c->out;
-    section_point *more = section_grown(s->point, s->point_count, &s->point_capacity, sizeof *more);
-    c->failed |= !more;
-    if (!more)
-        return;
-    s->point = more;
-    s->point[s->point_count++] = at;
+    c->failed |= !GROW(s->point, s->point_capacity, s->point_count + 1);
+    if (!c->failed)
+        s->point[s->point_count++] = at;
 }
 
 section_point section_bisect(const cutter *c, section_point a, section_point b, int own)

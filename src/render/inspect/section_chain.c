@@ -1,3 +1,4 @@
+#include "base/grow.h"
 #include "render/inspect/section_private.h"
 
 #include <stdlib.h>
@@ -13,11 +14,9 @@ static void append_piece(cutter *c, const piece *one, int from)
 static void chain(cutter *c, size_t start, int from)
 {
     section *s = c->out;
-    section_line *more = section_grown(s->line, s->line_count, &s->line_capacity, sizeof *more);
-    c->failed |= !more;
-    if (!more)
+    c->failed |= !GROW(s->line, s->line_capacity, s->line_count + 1);
+    if (c->failed)
         return;
-    s->line = more;
     section_line *line = &s->line[s->line_count++];
     *line = (section_line){.first = s->point_count, .a = c->pieces[start].a, .b = c->pieces[start].b, .end = {-1, -1}};
     int at = c->pieces[start].end[from];

@@ -1,3 +1,4 @@
+#include "base/grow.h"
 #include "render/inspect/section_private.h"
 
 #include <stdlib.h>
@@ -31,11 +32,9 @@ static void refine(cutter *c, section_point from, section_point to, int a, int b
 /* The piece of a boundary between two crossings of a cell, or a crossing and a junction. */
 static void add_piece(cutter *c, int from, int to, int a, int b)
 {
-    piece *more = section_grown(c->pieces, c->piece_count, &c->piece_capacity, sizeof *more);
-    c->failed |= !more;
-    if (!more)
+    c->failed |= !GROW(c->pieces, c->piece_capacity, c->piece_count + 1);
+    if (c->failed)
         return;
-    c->pieces = more;
     const int index = (int)c->piece_count++;
     piece *one = &c->pieces[index];
     *one = (piece){.end = {from, to}, .a = a < b ? a : b, .b = a < b ? b : a, .first = c->out->point_count};

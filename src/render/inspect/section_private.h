@@ -30,8 +30,6 @@ typedef struct cutter {
     bool failed; /* out of memory */
 } cutter;
 
-/* Room for one more; NULL when memory is out, and `memory` is then as it was. */
-void *section_grown(void *memory, size_t count, size_t *capacity, size_t size);
 void section_add_point(cutter *c, section_point at);
 
 /* Where medium `own`, which is at a and not at b, ends. */

@@ -1,6 +1,7 @@
 /* What one sees through: of each point of the grid the surfaces before the nearest opaque one, in the order of their
  * depth (Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984), and of them those where the
  * medium changes, by priority as for rays. */
+#include "base/grow.h"
 #include "render/zbuffer/zbuffer_private.h"
 
 #include <stdlib.h>
@@ -8,19 +9,6 @@
 
 /* Surfaces whose depths differ by less than this share are crossed at once, as at a contact. */
 #define TOGETHER 1e-9
-
-static bool grow(drawn_fragment **all, size_t *capacity, size_t wanted)
-{
-    if (wanted <= *capacity)
-        return true;
-    const size_t more = wanted < 1024 ? 1024 : 2 * wanted;
-    drawn_fragment *grown = realloc(*all, more * sizeof *grown);
-    if (!grown)
-        return false;
-    *all = grown;
-    *capacity = more;
-    return true;
-}
 
 void zbuffer_square_begin(zbuffer_square *s)
 {
@@ -35,7 +23,7 @@ void zbuffer_square_release(zbuffer_square *s)
 
 void zbuffer_add_fragment(zbuffer *z, zbuffer_square *s, int point, double nearness, uint32_t number)
 {
-    if (s->count == INT32_MAX || !grow(&s->fragments, &s->capacity, s->count + 1)) {
+    if (s->count == INT32_MAX || !GROW(s->fragments, s->capacity, s->count + 1)) {
         atomic_store(&z->out_of_memory, true);
         return;
     }
@@ -81,7 +69,7 @@ static int collect(zbuffer *z, zbuffer_square *s, int point)
         const double contact = is_opaque(z, f) ? 0.0 : TOGETHER * f->nearness;
         if (!(f->nearness - s->nearness[point] > contact)) /* behind the opaque surface, or in contact with it */
             continue;
-        if (!grow(&s->column, &s->column_capacity, (size_t)count + 1)) {
+        if (!GROW(s->column, s->column_capacity, (size_t)count + 1)) {
             atomic_store(&z->out_of_memory, true);
             return 0;
         }

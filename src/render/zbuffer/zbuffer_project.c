@@ -1,6 +1,7 @@
 /* Triangles into the picture: corners to the grid, and the plane of inverse depths. */
 #include "render/zbuffer/zbuffer_private.h"
 
+#include "base/grow.h"
 #include "base/lanes.h"
 #include <math.h>
 #include <stdlib.h>
@@ -54,17 +55,10 @@ static void put(chunk *c, const zbuffer *z, screen_triangle *t)
         t->x[1] = t->x[2], t->y[1] = t->y[2];
         t->x[2] = x, t->y[2] = y;
     }
-    if (c->made_count == c->capacity) {
-        const size_t capacity = c->capacity ? 2 * c->capacity : 256;
-        screen_triangle *grown = realloc(c->made, capacity * sizeof *grown);
-        if (!grown) {
-            c->made_count = SIZE_MAX;
-            return;
-        }
-        c->made = grown;
-        c->capacity = capacity;
-    }
-    c->made[c->made_count++] = *t;
+    if (GROW(c->made, c->capacity, c->made_count + 1))
+        c->made[c->made_count++] = *t;
+    else
+        c->made_count = SIZE_MAX;
 }
 
 /* Are all corners beyond one edge of the picture? */

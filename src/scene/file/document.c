@@ -1,7 +1,7 @@
 /* Builds the tree from events (document_events.c). What is asked of its nodes is in document_node.c. */
 #include "scene/file/document.h"
 #include "base/file.h"
-#include "base/room.h"
+#include "base/grow.h"
 #include "scene/file/document_events.h"
 
 #include <stdlib.h>

@@ -30,10 +30,8 @@ static char *motion_parameters(const scene *s, const mesh_entry *entry)
     }
     good = good && (!entry->script_path[0] || fprintf(writer.stream, "%s\n", script) >= 0);
     free(script);
-    if (good)
-        text_writer_close(&writer, &text, NULL, NULL);
-    else if (begun)
-        text_writer_abandon(&writer);
+    if (begun)
+        text_writer_end(&writer, good ? STATUS_OK : STATUS_FAILURE, &text, NULL, NULL);
     return text;
 }
 

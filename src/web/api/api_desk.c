@@ -3,7 +3,6 @@
 #include "base/number.h"
 #include "base/text_writer.h"
 #include "report/json.h"
-#include "report/param_rows.h"
 #include "scene/model/inert/inert.h"
 #include "scene/model/params.h"
 #include "scene/file/write.h"
@@ -52,10 +51,7 @@ static char *value_text(const json_t *value)
     bool good = json_is_array(value) || put_item(writer.stream, value);
     for (size_t i = 0; i < json_array_size(value) && good; i++)
         good = (i == 0 || fputc(',', writer.stream) >= 0) && put_item(writer.stream, json_array_get(value, i));
-    if (good)
-        text_writer_close(&writer, &joined, NULL, NULL);
-    else
-        text_writer_abandon(&writer);
+    text_writer_end(&writer, good ? STATUS_OK : STATUS_BAD_INPUT, &joined, NULL, NULL);
     return joined;
 }
 

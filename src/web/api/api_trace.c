@@ -33,10 +33,7 @@ static status write_tree(trace_question *q, const scene *s, const probe *p, cons
     if (code != STATUS_OK)
         return code;
     code = q->write(&(traced){s, p, tree, q->scene_name}, writer.stream, why);
-    if (code == STATUS_OK)
-        return text_writer_close(&writer, &q->bytes, &q->size, why);
-    text_writer_abandon(&writer);
-    return code;
+    return text_writer_end(&writer, code, &q->bytes, &q->size, why);
 }
 
 static status grow_and_write(void *context, scene *s, diagnostic *why)

@@ -6,7 +6,6 @@
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -99,11 +99,7 @@ status study_json_summary(const study *s, const char *results, json_t **out, dia
     code = text_writer_open(&writer, why);
     if (code != STATUS_OK)
         return code;
-    code = study_summary(s, results, writer.stream, why);
-    if (code == STATUS_OK)
-        code = text_writer_close(&writer, &text, NULL, why);
-    else
-        text_writer_abandon(&writer);
+    code = text_writer_end(&writer, study_summary(s, results, writer.stream, why), &text, NULL, why);
     if (code == STATUS_OK && !(*out = lines_json(text)))
         code = out_of_memory(why);
     free(text);

@@ -11,7 +11,6 @@
 #include "base/vec3.h"
 #include "scene/model/open.h"
 #include <jansson.h>
-#include <stdint.h>
 
 typedef struct live live;
 

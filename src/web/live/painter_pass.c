@@ -4,8 +4,6 @@
 #include "report/report.h"
 #include "scene/model/scene.h"
 
-#include <stdlib.h>
-
 /* How often a render looks up for something newer; how long a frame of the live slime may take. */
 static const double look_up_s = 0.002, live_frame_s = 0.03;
 

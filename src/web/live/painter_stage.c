@@ -5,9 +5,6 @@
 #include "scene/motion/motion.h"
 #include "scene/model/scene.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Of a frame of the live slime, how long its motion may take. */
 static const double move_s = 0.02;
 

@@ -1,5 +1,4 @@
 #include "web/session/desk.h"
-#include "base/text.h"
 #include "scene/model/params.h"
 #include "report/json.h"
 #include "scene/model/scene.h"

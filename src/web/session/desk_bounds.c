@@ -1,6 +1,5 @@
 #include "web/session/desk.h"
 #include "web/live/passes.h"
-#include "scene/model/check.h"
 #include "scene/model/scene.h"
 
 #include <math.h>

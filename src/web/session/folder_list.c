@@ -1,6 +1,7 @@
 /* What is in the folder that the laboratory can open: told by endings, and scenes from scripts of hands by what they
  * say. Folders nearer to the top go first, so that a large one far down hides nothing above it. */
 #include "web/session/folder.h"
+#include "base/grow.h"
 #include "base/text.h"
 #include "scene/file/document.h"
 
@@ -40,15 +41,7 @@ typedef struct listing {
 /* Takes the name. */
 static void keep(listing *l, names *list, char *name)
 {
-    if (name && list->count == list->room) {
-        const size_t room = list->room ? 2 * list->room : 64;
-        char **grown = realloc(list->name, room * sizeof *grown);
-        if (grown) {
-            list->name = grown;
-            list->room = room;
-        }
-    }
-    if (!name || list->count == list->room) {
+    if (!name || !GROW(list->name, list->room, list->count + 1)) {
         free(name);
         l->out_of_memory = true;
         return;

@@ -3,7 +3,6 @@
 #include "base/text.h"
 #include "measure/clock.h"
 #include "report/json.h"
-#include "web/api/study_json.h"
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
