@@ -245,6 +245,28 @@ static void a_clear_solid_nobody_sees_changes_no_order(void **state)
     }
 }
 
+/* An opaque ball in water shines where the bent view says; a clear solid beside it, which no view meets and whose
+ * bounds alone reach the ball's, does not make another thing of it. */
+static void a_clear_solid_nobody_sees_bends_no_view(void **state)
+{
+    (void)state;
+    static const char ball[] =
+        "render: {width: 24, height: 24, integrator: zbuffer}\n"
+        "camera: {position: [0.6, 0, -3], target: [0, 0, 0.5], fov_deg: 10}\n"
+        "lights:\n  lamp: {position: [2, 1, -3]}\n"
+        "solids:\n"
+        "  water: {shape: box, size: [4, 4, 6], position: [0, 0, 1.2], transparency: 1, ior: 1.7, priority: -1}\n"
+        "  ball: {shape: sphere, radius: 0.5, position: [0, 0, 0.5], specular: 1, shininess: 40}\n";
+    static const char rod[] = "  rod: {shape: box, size: [0.02, 6, 0.02], position: [0, 2.4, 1], rotation: [45, 0, 0], "
+                              "transparency: 1, priority: 3}\n";
+    char with[2048];
+    snprintf(with, sizeof with, "%s%s", ball, rod);
+    scene *a = scene_loaded(ball, ""), *b = scene_loaded(with, "");
+    assert_true(film_hash_at(a, isa_best()) == film_hash_at(b, isa_best()));
+    scene_destroy(a);
+    scene_destroy(b);
+}
+
 static void nothing_is_lost_between_layers(void **state)
 {
     (void)state;
@@ -303,6 +325,7 @@ int main(void)
         cmocka_unit_test(the_depth_limit_ends_the_view),
         cmocka_unit_test(what_goes_straight_is_seen_as_traced),
         cmocka_unit_test(a_clear_solid_nobody_sees_changes_no_order),
+        cmocka_unit_test(a_clear_solid_nobody_sees_bends_no_view),
         cmocka_unit_test(nothing_is_lost_between_layers),
         cmocka_unit_test(the_rod_is_close_to_what_rays_show),
         cmocka_unit_test(layers_depend_on_no_order),

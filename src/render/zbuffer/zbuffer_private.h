@@ -58,7 +58,7 @@ typedef struct screen_triangle {
     uint32_t triangle, copy;
     uint16_t part;
     uint8_t piece; /* of the polygon that the planes left */
-    bool curved;   /* a piece of a curved surface; only known of layers */
+    bool curved;   /* a piece of a curved surface; only known where any are layers */
 } screen_triangle;
 
 /* Triangles of one part, numbered through its copies, and what came of them. */

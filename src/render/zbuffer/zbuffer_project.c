@@ -94,7 +94,7 @@ static void project_triangle(const zbuffer *z, chunk *c, const drawn_part *p, ui
     zbuffer_corners(z, p, copy, triangle, polygon);
     if (is_beside(z, polygon) || !depth_plane(z, p, polygon, &t))
         return;
-    t.curved = c->part >= z->first_layered_part && is_curved(z, p, triangle);
+    t.curved = z->layered && is_curved(z, p, triangle);
     const int count = zbuffer_clip(z, p, polygon);
     t.least = HUGE_VAL, t.most = 0.0;
     for (int k = 0; k < count; k++) {
