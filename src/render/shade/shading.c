@@ -72,7 +72,7 @@ static __attribute__((noinline)) void expose_sky_by_ticket(tracer *t, int64_t ti
     expose_by_ticket(t, ticket, wr * l.x, wg * l.y, wb * l.z);
 }
 
-void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+static inline void expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
 {
     const background *sky = t->target.scene->sky;
     if (t->by_ticket) {
@@ -83,12 +83,17 @@ void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, do
     expose_at(t, ticket, wr * l.x, wg * l.y, wb * l.z);
 }
 
+void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+{
+    expose_sky(t, ticket, direction, wr, wg, wb);
+}
+
 /* What lies beyond the depth limit, along a branch that it cuts off. */
-static void expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+static inline void expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
 {
     const plan *p = t->target.scene;
     if (p->render.beyond != BEYOND_MEAN) {
-        shading_expose_sky(t, ticket, direction, wr, wg, wb);
+        expose_sky(t, ticket, direction, wr, wg, wb);
         return;
     }
     vec3 l = p->sky_mean;
@@ -200,11 +205,6 @@ void local_light(tracer *t, int rank, light_terms terms)
     radiance_weigh_back(t);
 }
 
-light_terms light_terms_of(const render_settings *r)
-{
-    return (light_terms){.ambient = true, .highlights = r->lighting != LIGHTING_LAMBERT, .spheres = true};
-}
-
 void cut_branches(tracer *t)
 {
     const group *g = &t->surface.gathered;
@@ -303,8 +303,7 @@ void background_sky(tracer *t, const ray_queue *q, int first, const int *list, i
 {
     for (int k = 0; k < count; k++) {
         const int at = first + list[k];
-        shading_expose_sky(t, q->ticket[at], vec3_make(q->dx[at], q->dy[at], q->dz[at]), q->wr[at], q->wg[at],
-                           q->wb[at]);
+        expose_sky(t, q->ticket[at], vec3_make(q->dx[at], q->dy[at], q->dz[at]), q->wr[at], q->wg[at], q->wb[at]);
     }
 }
 

@@ -34,7 +34,10 @@ typedef struct light_terms {
 } light_terms;
 void local_light(tracer *t, int rank, light_terms terms);
 /* The terms of Phong's sum that render.lighting wants. */
-light_terms light_terms_of(const render_settings *r);
+static inline light_terms light_terms_of(const render_settings *r)
+{
+    return (light_terms){.ambient = true, .highlights = r->lighting != LIGHTING_LAMBERT, .spheres = true};
+}
 
 /* Branches of the gathered group at a surface, directions and weights, with total reflections counted. */
 void shading_branches(tracer *t, bool opaque);
