@@ -34,9 +34,8 @@ static status make_mesh(const cuvette_triangles *t, mesh **out, diagnostic *why)
 {
     const bool normals = t->normals || t->normals_float, uvs = t->uvs || t->uvs_float;
     mesh *m = NULL;
-    status code = mesh_create(t->vertex_count, t->triangle_count, normals, uvs, t->slots != NULL, &m, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(mesh_create(t->vertex_count, t->triangle_count, normals, uvs, t->slots != NULL, &m, why));
+    status code = STATUS_OK;
     copy_vectors(t->vertices, t->vertices_float, t->vertex_count, m->vertices);
     if (normals)
         copy_vectors(t->normals, t->normals_float, t->vertex_count, m->normals);
@@ -55,8 +54,7 @@ static status make_mesh(const cuvette_triangles *t, mesh **out, diagnostic *why)
         if (t->slot_names[i] && !(m->slot_names[i] = strdup(t->slot_names[i])))
             code = out_of_memory(why);
     }
-    if (code == STATUS_OK)
-        code = mesh_finish(m, why);
+    THEN(code, mesh_finish(m, why));
     if (code != STATUS_OK) {
         mesh_release(m);
         return code;
@@ -86,10 +84,8 @@ cuvette_status cuvette_scene_add_triangles(cuvette_scene *s, const char *name, c
     mesh *made = NULL;
     size_t index = 0;
     status code = check_arrays(triangles, &inner);
-    if (code == STATUS_OK)
-        code = make_mesh(triangles, &made, &inner);
-    if (code == STATUS_OK)
-        code = scene_add(s->model, PARAM_MESH, name, &index, &inner);
+    THEN(code, make_mesh(triangles, &made, &inner));
+    THEN(code, scene_add(s->model, PARAM_MESH, name, &index, &inner));
     if (code != STATUS_OK) {
         mesh_release(made);
         return engine_report(code, &inner, why);
@@ -119,8 +115,7 @@ cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int 
             texture_create(picture, TEXTURE_LINEAR, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &made, &inner);
     }
     image_destroy(picture);
-    if (code == STATUS_OK)
-        code = scene_add(s->model, PARAM_TEXTURE, name, &index, &inner);
+    THEN(code, scene_add(s->model, PARAM_TEXTURE, name, &index, &inner));
     if (code != STATUS_OK) {
         texture_release(made);
         return engine_report(code, &inner, why);

@@ -180,8 +180,7 @@ static status render(stage *now, const scene *s, cuvette_frame *frame, diagnosti
         code = render_preview(now, s, why);
         frame->preview_s = clock_wall_s() - began_s;
     }
-    if (code == STATUS_OK)
-        code = render_frame(now, s, frame, why);
+    THEN(code, render_frame(now, s, frame, why));
     if (code == STATUS_INTERRUPTED)
         diagnose(why, code, "", "cancelled");
     return code;
@@ -194,12 +193,9 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
     cuvette_request request;
     stage now = {.engine = engine, .request = &request, .host = host};
     status code = engine_check(s, why);
-    if (code == STATUS_OK)
-        code = engine_load(s, why);
-    if (code == STATUS_OK)
-        code = read_request(given, s->model, &request, why);
-    if (code == STATUS_OK)
-        code = canvas_open(&request, host, &now.buffers, why);
+    THEN(code, engine_load(s, why));
+    THEN(code, read_request(given, s->model, &request, why));
+    THEN(code, canvas_open(&request, host, &now.buffers, why));
     if (code != STATUS_OK)
         return code;
     frame->solid_count = s->model->solid_count;

@@ -73,8 +73,7 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
     status code = bits == 8 || bits == 16
                       ? STATUS_OK
                       : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "a picture cannot have %d bits", bits);
-    if (code == STATUS_OK)
-        code = record_picture(frame->account.result->picture, path, bits, &inner);
+    THEN(code, record_picture(frame->account.result->picture, path, bits, &inner));
     return engine_report(code, &inner, why);
 }
 

@@ -27,8 +27,7 @@ static status begin(cuvette_motion *m, diagnostic *why)
     m->slimes_changed = m->of->slimes_changed;
     pthread_mutex_lock(&m->of->loading);
     status code = scene_check(m->of->model, why);
-    if (code == STATUS_OK)
-        code = scene_motion_create(m->of->model, &m->bodies, why);
+    THEN(code, scene_motion_create(m->of->model, &m->bodies, why));
     pthread_mutex_unlock(&m->of->loading);
     if (code != STATUS_OK)
         return code;
@@ -100,8 +99,7 @@ static status advance(cuvette_motion *m, double time_s, diagnostic *why)
     pthread_mutex_lock(&m->of->loading);
     for (size_t i = 0; i < scene_motion_count(m->bodies) && code == STATUS_OK; i++)
         code = scene_motion_step_held(m->bodies, i, &m->hands[i * SOFTBODY_HANDS_MAX], time_s, why);
-    if (code == STATUS_OK)
-        code = scene_motion_advance(m->bodies, time_s, true, why);
+    THEN(code, scene_motion_advance(m->bodies, time_s, true, why));
     pthread_mutex_unlock(&m->of->loading);
     m->failed = code != STATUS_OK;
     m->time_s = time_s;
@@ -113,10 +111,8 @@ cuvette_status cuvette_motion_advance(cuvette_motion *motion, double time_s, cuv
     ENGINE_CALL(motion);
     ENGINE_TRY(engine_begin_advance(motion->of, why));
     status code = check_alive(motion, &inner);
-    if (code == STATUS_OK)
-        code = check_time(motion, time_s, &inner);
-    if (code == STATUS_OK)
-        code = advance(motion, time_s, &inner);
+    THEN(code, check_time(motion, time_s, &inner));
+    THEN(code, advance(motion, time_s, &inner));
     engine_end_advance(motion->of);
     return engine_report(code, &inner, why);
 }
@@ -137,9 +133,7 @@ status motion_find(const cuvette_motion *m, const char *name, size_t *index, int
 {
     const scene *s = m->of->model;
     place at;
-    const status code = place_find_object(s, name, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(place_find_object(s, name, &at, why));
     const bool is_solid = at.group == PARAM_SOLID && shape_of(&s->solids[at.index].shape)->triangles;
     const char *mesh_name = is_solid ? s->solids[at.index].mesh : name;
     *solid_or_none = is_solid ? (int)at.index : -1;

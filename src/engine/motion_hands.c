@@ -14,11 +14,9 @@ static status pick(const cuvette_motion *m, const char *name, const cuvette_ray 
 {
     int only;
     status code = motion_find(m, name, slime, &only, why);
-    if (code == STATUS_OK)
-        code = engine_check_ray(NULL, ray, 0, why);
-    if (code == STATUS_OK)
-        code = scene_motion_pick(m->bodies, *slime, only < 0 ? MOTION_ANY_SOLID : only, vector_of(ray->origin),
-                                 engine_unit(ray->direction), best, why);
+    THEN(code, engine_check_ray(NULL, ray, 0, why));
+    THEN(code, scene_motion_pick(m->bodies, *slime, only < 0 ? MOTION_ANY_SOLID : only, vector_of(ray->origin),
+                                 engine_unit(ray->direction), best, why));
     if (code == STATUS_OK && ray->reach > 0.0 && best->distance > ray->reach)
         best->distance = INFINITY;
     return code;
@@ -56,8 +54,7 @@ cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, con
     status code = STATUS_OK;
     if (!(reach > 0.0 && isfinite(reach)))
         code = diagnose(&inner, STATUS_BAD_INPUT, "give a length above 0", "a hand cannot reach %g", reach);
-    if (code == STATUS_OK)
-        code = pick(motion, name, ray, &slime, &found, &inner);
+    THEN(code, pick(motion, name, ray, &slime, &found, &inner));
     if (code == STATUS_OK && isfinite(found.distance))
         code = scene_motion_grab(motion->bodies, slime, &found, reach, &motion->hands[slime * SOFTBODY_HANDS_MAX],
                                  &number, &inner);

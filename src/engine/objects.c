@@ -23,8 +23,7 @@ cuvette_status cuvette_scene_add_solid(cuvette_scene *s, const char *name, const
     ENGINE_CHANGE(s, name, shape);
     shape_kind kind = {0};
     status code = scene_shape_named(shape, &kind, &inner);
-    if (code == STATUS_OK)
-        code = scene_add_solid(s->model, name, kind, NULL, &inner);
+    THEN(code, scene_add_solid(s->model, name, kind, NULL, &inner));
     if (code == STATUS_OK && of) {
         code = scene_give_material(s->model, name, of, &inner);
         if (code != STATUS_OK)

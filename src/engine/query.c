@@ -37,8 +37,7 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
     if (integrator_of(&s->render)->drawn)
         trace_trees(&without_sky.render); /* rays need the hierarchies that drawing does without */
     status code = engine_isa(instructions, &level, why);
-    if (code == STATUS_OK)
-        code = scene_check(s, why);
+    THEN(code, scene_check(s, why));
     if (code != STATUS_OK)
         return code;
     q->kernels = kernels_of(level);
@@ -59,8 +58,7 @@ cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instruct
     }
     status code =
         engine_load((cuvette_scene *)(uintptr_t)s, &inner); /* every handle was made by us, none is constant */
-    if (code == STATUS_OK)
-        code = prepare(q, s->model, instructions, &inner);
+    THEN(code, prepare(q, s->model, instructions, &inner));
     if (code != STATUS_OK) {
         cuvette_query_destroy(q);
         return engine_report(code, &inner, why);

@@ -166,11 +166,8 @@ static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *r
 
 static status begin(const cuvette_query *q, const cuvette_ray *rays, size_t count, bench **out, diagnostic *why)
 {
-    for (size_t i = 0; i < count; i++) {
-        const status code = engine_check_ray(q->ready, &rays[i], i, why);
-        if (code != STATUS_OK)
-            return code;
-    }
+    for (size_t i = 0; i < count; i++)
+        TRY(engine_check_ray(q->ready, &rays[i], i, why));
     *out = query_take_bench(q);
     return *out ? STATUS_OK : out_of_memory(why);
 }

@@ -13,9 +13,7 @@ status body_box(vec3 size, mesh **out, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "use edges greater than 0, at most 1e9", "a box of %g by %g by %g",
                         size.x, size.y, size.z);
     mesh *m;
-    status result = mesh_create(24, 12, true, true, false, &m, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(mesh_create(24, 12, true, true, false, &m, why));
     size_t triangle = 0, v = 0;
     for (int s = 0; s < 6; s++, v += 4) {
         for (size_t k = 0; k < 4; k++) {

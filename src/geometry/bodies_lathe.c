@@ -174,9 +174,8 @@ static status make(lathe *l, int around, bool closed, mesh **out, diagnostic *wh
 status body_lathe(const profile_point *profile, size_t count, int around, double crease_deg, mesh **out,
                   diagnostic *why)
 {
-    status result = check(profile, count, around, crease_deg, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(check(profile, count, around, crease_deg, why));
+    status result = STATUS_OK;
     lathe l = {
         .profile = profile, .count = count, .crease_deg = crease_deg, .ring = equal(profile[0], profile[count - 1])};
     const bool closed = l.ring || (profile[0].radius == 0.0 && profile[count - 1].radius == 0.0);

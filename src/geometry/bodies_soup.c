@@ -50,9 +50,7 @@ static float cube_root(float x)
 static status soup(size_t count, double edge, mesh **out, diagnostic *why)
 {
     mesh *m;
-    status result = mesh_create(3 * count, count, false, false, false, &m, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(mesh_create(3 * count, count, false, false, false, &m, why));
     uint64_t state = 20240101;
     for (size_t t = 0; t < count; t++) {
         double center[3], corner[3][3];
@@ -84,6 +82,6 @@ status body_sparse(size_t count, mesh **out, diagnostic *why)
 
 status body_dense(size_t count, mesh **out, diagnostic *why)
 {
-    status result = check_count(count, why);
-    return result == STATUS_OK ? soup(count, 0.5, out, why) : result;
+    TRY(check_count(count, why));
+    return soup(count, 0.5, out, why);
 }

@@ -101,9 +101,7 @@ static void place_bisected(mesh *m, size_t face, size_t f)
 static status make_sphere(size_t f, void (*place)(mesh *m, size_t face, size_t f), mesh **out, diagnostic *why)
 {
     mesh *m;
-    status result = make_grids(f, &m, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(make_grids(f, &m, why));
     for (size_t face = 0; face < 20; face++) {
         place(m, face, f);
         clothe(m, face, row_start(f + 1));

@@ -97,9 +97,8 @@ status body_height_field(const double *heights, int columns, int rows, double si
                          mesh **out, diagnostic *why)
 {
     const field f = {heights, columns > 0 ? (size_t)columns : 0, rows > 0 ? (size_t)rows : 0, size_x, size_z, depth};
-    status result = check(&f, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(check(&f, why));
+    status result = STATUS_OK;
     const bool closed = depth > 0.0;
     const size_t border = 2 * (f.columns + f.rows), top = f.columns * f.rows;
     mesh *m;

@@ -18,8 +18,7 @@ status body_torus(double major, double minor, int around, int tube, mesh **out, 
     status result = check(major, minor, around, tube, why);
     const size_t columns = (size_t)around + 1, rows = (size_t)tube + 1;
     mesh *m = NULL;
-    if (result == STATUS_OK)
-        result = mesh_create(columns * rows, 2 * (columns - 1) * (rows - 1), true, true, false, &m, why);
+    THEN(result, mesh_create(columns * rows, 2 * (columns - 1) * (rows - 1), true, true, false, &m, why));
     if (result != STATUS_OK)
         return result;
     size_t triangle = 0;

@@ -119,8 +119,7 @@ static status make_top(forest *f, diagnostic *why)
     status code = mesh_create(3 * f->instance_count, f->instance_count, false, false, false, &f->proxies, why);
     for (int i = 0; i < f->part_count && code == STATUS_OK; i++)
         span_copies(f, &f->parts[i]);
-    if (code == STATUS_OK)
-        code = mesh_finish(f->proxies, why);
+    THEN(code, mesh_finish(f->proxies, why));
     if (code == STATUS_BAD_INPUT)
         code = diagnose(why, STATUS_BAD_INPUT, "scale them down, or stand them nearer",
                         "meshes reach farther than 1e9 scene units");

@@ -80,14 +80,11 @@ static status read_triangles(const mesh *m, team *t, bvh_ref *refs, bvh_range *a
 static status build(hierarchy *h, team *t, bvh_ref *refs, diagnostic *why)
 {
     bvh_range all;
-    status code = read_triangles(h->of, t, refs, &all, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(read_triangles(h->of, t, refs, &all, why));
     h->referred = all.count;
     bvh_tree tree;
-    code = bvh_grow(&tree, t, refs, &all, why);
-    if (code == STATUS_OK)
-        code = bvh_gather(h, tree.root, refs, t, why);
+    status code = bvh_grow(&tree, t, refs, &all, why);
+    THEN(code, bvh_gather(h, tree.root, refs, t, why));
     bvh_fell(&tree);
     return code;
 }

@@ -207,9 +207,7 @@ static status make_room(hierarchy *h, size_t nodes, size_t blocks, diagnostic *w
 
 static status no_triangles(hierarchy *h, diagnostic *why)
 {
-    status code = make_room(h, 1, 0, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(make_room(h, 1, 0, why));
     memset(h->nodes, 0, sizeof *h->nodes);
     write_boxes(h->nodes, NULL, 0);
     h->report.nodes = 1;
@@ -223,9 +221,7 @@ static status gather(gathering *g, bvh_branch *root, team *t, diagnostic *why)
         return out_of_memory(why);
     team_run(t, count_place, g, g->count);
     count_tree(root, true, true);
-    status code = make_room(g->h, root->nodes, root->blocks, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(make_room(g->h, root->nodes, root->blocks, why));
     g->count = 0;
     if (!write_tree(g, root, true, 0, 0, g))
         return out_of_memory(why);

@@ -98,10 +98,10 @@ static status grow_top(growth *g, const bvh_range *range, int depth, bvh_branch 
     if (!b)
         return out_of_memory(why);
     bvh_range half[2];
-    status code = bvh_split_together(g->t, g->refs, range, depth, half, why);
-    for (int i = 0; code == STATUS_OK && i < 2; i++)
-        code = grow_top(g, &half[i], depth + 1, &b->half[i], why);
-    return code;
+    TRY(bvh_split_together(g->t, g->refs, range, depth, half, why));
+    for (int i = 0; i < 2; i++)
+        TRY(grow_top(g, &half[i], depth + 1, &b->half[i], why));
+    return STATUS_OK;
 }
 
 static void choose_top(bvh_branch *b)
@@ -115,9 +115,7 @@ static void choose_top(bvh_branch *b)
 
 static status grow_all(growth *g, const bvh_range *all, diagnostic *why)
 {
-    status code = grow_top(g, all, 0, &g->tree->root, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(grow_top(g, all, 0, &g->tree->root, why));
     team_run(g->t, grow_task, g, g->task_count);
     for (size_t i = 0; i < g->task_count; i++)
         if (!*g->tasks[i].out)

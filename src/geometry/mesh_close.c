@@ -54,9 +54,7 @@ static void sort(half_edge *edges, size_t count)
 
 static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
 {
-    status result = mesh_weld(m, &lists->same, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(mesh_weld(m, &lists->same, why));
     uint32_t *start = lists->start = calloc(m->vertex_count + 2, sizeof *start);
     half_edge *edges = lists->edges = malloc((3 * m->triangle_count + 1) * sizeof *edges);
     if (!start || !edges)

@@ -104,11 +104,9 @@ void mesh_find_bounds(mesh *m)
 
 status mesh_finish(mesh *m, diagnostic *why)
 {
-    status result = mesh_check(m, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(mesh_check(m, why));
     mesh_find_bounds(m);
-    result = mesh_close(m, why);
+    status result = mesh_close(m, why);
     if (result == STATUS_OK && m->normals)
         mesh_normalize(m);
     return result;

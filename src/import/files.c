@@ -44,10 +44,9 @@ status files_check(const request *asked, diagnostic *why)
     FILE *stream = open_regular(asked->path, asked->root, &reason, &outside);
     if (outside)
         return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
-    if (!stream) {
+    if (!stream)
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh file that can be read", "cannot open: %s",
                         reason ? reason : "unknown error");
-    }
     int first = fgetc(stream);
     fclose(stream);
     return first == EOF ? diagnose(why, STATUS_BAD_INPUT, "name a mesh file", "the file is empty") : STATUS_OK;

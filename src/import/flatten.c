@@ -40,17 +40,15 @@ static affine compose(const affine *a, const struct aiMatrix4x4 *b)
 
 static status visit_node(walk *w, const struct aiNode *node, const affine *parent, int depth)
 {
-    if (depth > DEPTH_MAX) {
+    if (depth > DEPTH_MAX)
         return diagnose(w->why, STATUS_BAD_INPUT, "flatten it where it was made",
                         "nodes lie more than %d deep within each other", DEPTH_MAX);
-    }
     affine place = compose(parent, &node->mTransformation);
-    status code = STATUS_OK;
-    for (unsigned i = 0; i < node->mNumMeshes && code == STATUS_OK; i++)
-        code = w->visit(w, w->scene->mMeshes[node->mMeshes[i]], &place);
-    for (unsigned i = 0; i < node->mNumChildren && code == STATUS_OK; i++)
-        code = visit_node(w, node->mChildren[i], &place, depth + 1);
-    return code;
+    for (unsigned i = 0; i < node->mNumMeshes; i++)
+        TRY(w->visit(w, w->scene->mMeshes[node->mMeshes[i]], &place));
+    for (unsigned i = 0; i < node->mNumChildren; i++)
+        TRY(visit_node(w, node->mChildren[i], &place, depth + 1));
+    return STATUS_OK;
 }
 
 static status visit_all(walk *w, status (*visit)(walk *, const struct aiMesh *, const affine *))
@@ -68,10 +66,9 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
     uint64_t before = w->triangles;
     for (unsigned i = 0; i < mesh->mNumFaces; i++)
         w->triangles += mesh->mFaces[i].mNumIndices == 3;
-    if (w->triangles > w->asked->triangles) {
+    if (w->triangles > w->asked->triangles)
         return diagnose(w->why, STATUS_BAD_INPUT, "take a mesh of less detail", "more triangles than the limit of %llu",
                         (unsigned long long)w->asked->triangles);
-    }
     if (w->triangles == before)
         return STATUS_OK;
     if (mesh->mMaterialIndex >= w->scene->mNumMaterials ||
@@ -91,10 +88,9 @@ static status number_slots(walk *w)
 {
     for (unsigned i = 0; i < sizeof w->slot_of / sizeof *w->slot_of; i++) {
         if (w->slot_of[i]) {
-            if (w->flat->material_count == 256) {
+            if (w->flat->material_count == 256)
                 return diagnose(w->why, STATUS_BAD_INPUT, "join materials that are equal",
                                 "more than 256 materials are in use");
-            }
             w->flat->materials[w->flat->material_count++] = i;
             w->slot_of[i] = (uint16_t)w->flat->material_count;
         }
@@ -167,10 +163,9 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
     for (unsigned f = 0; f < mesh->mNumFaces; f++) {
         const struct aiFace *face = &mesh->mFaces[f];
         for (unsigned k = 0; face->mNumIndices == 3 && k < 3; k++) {
-            if (face->mIndices[k] >= mesh->mNumVertices) {
+            if (face->mIndices[k] >= mesh->mNumVertices)
                 return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again",
                                 "a triangle names vertex %u of %u", face->mIndices[k], mesh->mNumVertices);
-            }
             index[face->mIndices[k]] = USED;
         }
     }
@@ -218,12 +213,10 @@ status flatten(const request *asked, const struct aiScene *scene, flat_mesh *fla
     walk w = {.asked = asked, .scene = scene, .flat = flat, .why = why};
     diagnostic_locate(why, asked->path, 0, 0);
     status code = scene->mRootNode ? visit_all(&w, count_mesh) : STATUS_OK;
-    if (code == STATUS_OK && w.triangles == 0) {
+    if (code == STATUS_OK && w.triangles == 0)
         code = diagnose(why, STATUS_BAD_INPUT, "points and lines are not drawn; give it faces",
                         "there are no triangles in this file");
-    }
-    if (code == STATUS_OK)
-        code = number_slots(&w);
+    THEN(code, number_slots(&w));
     if (code != STATUS_OK)
         return code;
     flat->triangles = malloc((size_t)w.triangles * sizeof *flat->triangles);

@@ -90,10 +90,9 @@ static status convert(const request *asked, diagnostic *why)
 {
     const struct aiScene *scene;
     flat_mesh flat = {0};
-    status code = read_scene(asked, &scene, why);
-    if (code == STATUS_OK)
-        code = flatten(asked, scene, &flat, why);
-    return code == STATUS_OK ? write_mesh(asked, scene, &flat, stdout, why) : code;
+    TRY(read_scene(asked, &scene, why));
+    TRY(flatten(asked, scene, &flat, why));
+    return write_mesh(asked, scene, &flat, stdout, why);
 }
 
 int main(int count, char **arguments)

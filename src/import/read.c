@@ -8,9 +8,9 @@
 
 status no_memory_for(const request *asked, diagnostic *why)
 {
-    diagnostic_locate(why, asked->path, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
-                    "the file asks for more memory than the limit of %llu MiB", (unsigned long long)asked->memory_mib);
+    return diagnose_at(why, asked->path, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
+                       "the file asks for more memory than the limit of %llu MiB",
+                       (unsigned long long)asked->memory_mib);
 }
 
 /* Where a text of JSON is wrong: assimp only says that it is. True when it is. */
@@ -34,24 +34,21 @@ static status explain(const request *asked, const file_access *access, const cha
 {
     static const char *const names[] = {"OBJ", "PLY", "STL", "glTF 2.0", "binary glTF 2.0 (glb)"};
     diagnostic_locate(why, asked->path, 0, 0);
-    if (access->outside) {
+    if (access->outside)
         return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, "needs the file '%s', which %s", access->missing,
                         access->reason);
-    }
-    if (access->missing[0]) {
+    if (access->missing[0])
         return diagnose(why, STATUS_BAD_INPUT, "put it where the mesh file says, or take the line that names it out",
                         "needs the file '%s': %s", access->missing,
                         access->reason ? access->reason : "cannot be opened");
-    }
     if (strstr(said, "bad_alloc") || strstr(said, "length_error") || strstr(said, "bad_array_new_length") ||
         strstr(said, "_M_") || strstr(said, "max_size"))
         return no_memory_for(asked, why);
     if (asked->kind == FILE_GLTF && locate_json(asked, why))
         return STATUS_BAD_INPUT;
-    if (!*said || strstr(said, "No suitable reader")) {
+    if (!*said || strstr(said, "No suitable reader"))
         return diagnose(why, STATUS_BAD_INPUT, "check that it is whole and what its name says",
                         "this is not a file of the kind %s", names[asked->kind]);
-    }
     return diagnose(why, STATUS_BAD_INPUT, "repair the file or export it again", "cannot read: %.300s", said);
 }
 
@@ -59,16 +56,11 @@ status read_scene(const request *asked, const struct aiScene **out, diagnostic *
 {
     file_access access;
     diagnostic_locate(why, asked->path, 0, 0);
-    status code = files_check(asked, why);
-    if (code != STATUS_OK)
-        return code;
-    if (asked->kind == FILE_UNKNOWN) {
+    TRY(files_check(asked, why));
+    if (asked->kind == FILE_UNKNOWN)
         return diagnose(why, STATUS_BAD_INPUT, "name a file that ends in .obj, .ply, .stl, .gltf or .glb",
                         "unknown kind of mesh");
-    }
-    code = check_whole(asked, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(check_whole(asked, why));
     files_prepare(&access, asked);
     /* Equal vertices are joined in join.c: assimp's own step moves those together that lie within 1e-5. */
     const struct aiScene *scene =

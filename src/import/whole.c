@@ -230,10 +230,9 @@ static status check_stl(const char *bytes, size_t size, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "the file is truncated; export it again",
                         "the text does not end in 'endsolid'");
     }
-    if (size < 84) {
+    if (size < 84)
         return diagnose(why, STATUS_BAD_INPUT, "check that it is whole and what its name says",
                         "this is not a file of the kind STL");
-    }
     return size > needed ? STATUS_OK : truncated(why, "facet", (size - 84) / 50, count);
 }
 

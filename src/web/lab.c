@@ -84,11 +84,9 @@ static status first_scene(const lab *l, scene **out, char **file, diagnostic *wh
     if (!l->settings.scene)
         return new_scene(out, why);
     *file = folder_name(l->files, l->settings.scene);
-    if (!*file) {
-        diagnostic_locate(why, l->settings.scene, 0, 0);
-        return diagnose(why, STATUS_BAD_INPUT, "name a scene below the folder, or another folder",
-                        "is not in the folder of the laboratory");
-    }
+    if (!*file)
+        return diagnose_at(why, l->settings.scene, STATUS_BAD_INPUT, "name a scene below the folder, or another folder",
+                           "is not in the folder of the laboratory");
     return scene_read_below(l->settings.scene, folder_real(l->files), out, why);
 }
 
@@ -120,9 +118,8 @@ static status check_results(const lab *l, diagnostic *why)
 {
     if (is_inside(l->files, l->settings.results))
         return STATUS_OK;
-    diagnostic_locate(why, l->settings.results, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "give a folder for results below the laboratory's",
-                    "is not in the folder of the laboratory");
+    return diagnose_at(why, l->settings.results, STATUS_BAD_INPUT, "give a folder for results below the laboratory's",
+                       "is not in the folder of the laboratory");
 }
 
 static status open_desk(lab *l, diagnostic *why)
@@ -151,8 +148,7 @@ static status serve(lab *l, diagnostic *why)
                                     .event_clients = 48,
                                     .timeout_s = 30,
                                     .requests_per_s = l->settings.requests_per_s};
-    if (code == STATUS_OK)
-        code = http_start(&settings, &l->server, why);
+    THEN(code, http_start(&settings, &l->server, why));
     pthread_mutex_lock(&l->publish_lock);
     l->open = code == STATUS_OK;
     pthread_mutex_unlock(&l->publish_lock);
@@ -169,18 +165,13 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
         (lab){.settings = *settings, .tell_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
     const painter_listener listener = {on_picture, on_told, l};
     status code = folder_open(settings->folder, &l->files, why);
-    if (code == STATUS_OK)
-        code = check_results(l, why);
-    if (code == STATUS_OK)
-        code = open_desk(l, why);
-    if (code == STATUS_OK)
-        code = painter_create(l->desk, settings->level, &listener, &l->painter, why);
+    THEN(code, check_results(l, why));
+    THEN(code, open_desk(l, why));
+    THEN(code, painter_create(l->desk, settings->level, &listener, &l->painter, why));
     if (code == STATUS_OK && (!(l->pins = pins_create()) || !(l->heavy = gate_create(HEAVY_AT_ONCE))))
         code = out_of_memory(why);
-    if (code == STATUS_OK)
-        code = studies_create(l, &l->studies, why);
-    if (code == STATUS_OK)
-        code = serve(l, why);
+    THEN(code, studies_create(l, &l->studies, why));
+    THEN(code, serve(l, why));
     if (code == STATUS_OK)
         *out = l;
     else

@@ -5,10 +5,9 @@ PRIMITIVE_RULE(box);
 
 static status check(const solid_shape *shape, diagnostic *why)
 {
-    status code = check_length(shape->size.x, "size.x", why);
-    if (code == STATUS_OK)
-        code = check_length(shape->size.y, "size.y", why);
-    return code == STATUS_OK ? check_length(shape->size.z, "size.z", why) : code;
+    TRY(check_length(shape->size.x, "size.x", why));
+    TRY(check_length(shape->size.y, "size.y", why));
+    return check_length(shape->size.z, "size.z", why);
 }
 
 static bool contains(const solid_shape *shape, vec3 p)

@@ -7,12 +7,10 @@ PRIMITIVE_RULE(cone);
 static status check(const solid_shape *shape, diagnostic *why)
 {
     status code = check_length(shape->radius, "radius", why);
-    if (code == STATUS_OK)
-        code = check_length(shape->height, "height", why);
-    if (code == STATUS_OK && !(shape->top_radius >= 0.0 && isfinite(shape->top_radius))) {
+    THEN(code, check_length(shape->height, "height", why));
+    if (code == STATUS_OK && !(shape->top_radius >= 0.0 && isfinite(shape->top_radius)))
         code =
             diagnose(why, STATUS_BAD_INPUT, "give a length, or 0 for a point", "top_radius is %g", shape->top_radius);
-    }
     return code;
 }
 

@@ -6,20 +6,16 @@
 static status check(const solid_shape *shape, diagnostic *why)
 {
     status code = cylinder_check(shape, why);
-    if (code == STATUS_OK)
-        code = check_length(shape->inner_radius, "inner_radius", why);
-    if (code == STATUS_OK)
-        code = check_length(shape->floor, "floor", why);
+    THEN(code, check_length(shape->inner_radius, "inner_radius", why));
+    THEN(code, check_length(shape->floor, "floor", why));
     if (code != STATUS_OK)
         return code;
-    if (shape->inner_radius >= shape->radius) {
+    if (shape->inner_radius >= shape->radius)
         return diagnose(why, STATUS_BAD_INPUT, "make inner_radius smaller than radius, or the cup has no wall",
                         "inner_radius %g is not smaller than radius %g", shape->inner_radius, shape->radius);
-    }
-    if (shape->floor >= shape->height) {
+    if (shape->floor >= shape->height)
         return diagnose(why, STATUS_BAD_INPUT, "make floor smaller than height, or the cup holds nothing",
                         "floor %g is not smaller than height %g", shape->floor, shape->height);
-    }
     return STATUS_OK;
 }
 

@@ -6,10 +6,9 @@ PRIMITIVE_RULE(cylinder);
 
 status cylinder_check(const solid_shape *shape, diagnostic *why)
 {
-    status code = check_length(shape->radius, "radius", why);
-    if (code == STATUS_OK)
-        code = check_length(shape->height, "height", why);
-    return code == STATUS_OK ? check_length(shape->m, "m", why) : code;
+    TRY(check_length(shape->radius, "radius", why));
+    TRY(check_length(shape->height, "height", why));
+    return check_length(shape->m, "m", why);
 }
 
 bool cylinder_contains(const solid_shape *shape, vec3 p)

@@ -10,10 +10,9 @@ static bool is_whole(double value)
 static status check(const solid_shape *shape, diagnostic *why)
 {
     const vec3 n = shape->copies, s = shape->scale, step = shape->spacing;
-    if (!is_whole(n.x) || !is_whole(n.y) || !is_whole(n.z) || n.x * n.y * n.z > COPIES_MAX) {
+    if (!is_whole(n.x) || !is_whole(n.y) || !is_whole(n.z) || n.x * n.y * n.z > COPIES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "give three whole numbers from 1, at most 4194304 copies in all",
                         "copies is %g, %g, %g", n.x, n.y, n.z);
-    }
     if (!(s.x > 0.0 && s.y > 0.0 && s.z > 0.0) || !vec3_is_finite(s) || !vec3_is_finite(step))
         return diagnose(why, STATUS_BAD_INPUT, "give numbers above 0", "scale is %g, %g, %g", s.x, s.y, s.z);
     return STATUS_OK;

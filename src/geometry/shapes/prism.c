@@ -11,12 +11,10 @@ PRIMITIVE_RULE(prism);
 static status check(const solid_shape *shape, diagnostic *why)
 {
     status code = check_length(shape->radius, "radius", why);
-    if (code == STATUS_OK)
-        code = check_length(shape->height, "height", why);
-    if (code == STATUS_OK && (shape->sides < 3 || shape->sides > SIDES_MAX)) {
+    THEN(code, check_length(shape->height, "height", why));
+    if (code == STATUS_OK && (shape->sides < 3 || shape->sides > SIDES_MAX))
         code = diagnose(why, STATUS_BAD_INPUT, "use 3 to 60; a cylinder is round", "a prism of %lld sides",
                         (long long)shape->sides);
-    }
     return code;
 }
 
@@ -106,9 +104,7 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
     (void)part;
     const uint32_t n = (uint32_t)shape->sides;
     mesh *m = NULL;
-    status code = mesh_create(2 * n, 4 * (size_t)n - 4, false, false, false, &m, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(mesh_create(2 * n, 4 * (size_t)n - 4, false, false, false, &m, why));
     mesh_triangle *next = m->triangles;
     for (uint32_t k = 0; k < n; k++) {
         const vec3 corner = vec3_scale(direction(shape, 2 * k), shape->radius);
@@ -122,7 +118,7 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
             *next++ = (mesh_triangle){{n, n + right, n + k}};
         }
     }
-    code = mesh_finish(m, why);
+    status code = mesh_finish(m, why);
     if (code == STATUS_OK)
         *out = m;
     else

@@ -9,12 +9,10 @@ PRIMITIVE_RULE(torus);
 static status check(const solid_shape *shape, diagnostic *why)
 {
     status code = check_length(shape->radius, "radius", why);
-    if (code == STATUS_OK)
-        code = check_length(shape->tube_radius, "tube_radius", why);
-    if (code == STATUS_OK && shape->tube_radius >= shape->radius) {
+    THEN(code, check_length(shape->tube_radius, "tube_radius", why));
+    if (code == STATUS_OK && shape->tube_radius >= shape->radius)
         code = diagnose(why, STATUS_BAD_INPUT, "make tube_radius smaller than radius, or the ring has no hole",
                         "tube_radius %g is not smaller than radius %g", shape->tube_radius, shape->radius);
-    }
     return code;
 }
 

@@ -115,9 +115,7 @@ uint64_t film_hash(const film *f)
 
 status film_image(const film *f, image **out, diagnostic *why)
 {
-    status code = image_create(f->width, f->height, out, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(image_create(f->width, f->height, out, why));
     film_read(f, 0, 0, f->width, f->height, (*out)->pixel, 3 * (size_t)f->width);
     return STATUS_OK;
 }

@@ -119,8 +119,7 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
     }
-    if (code == STATUS_OK)
-        code = arrangement_build(sources, count, 0, &p->solids, why);
+    THEN(code, arrangement_build(sources, count, 0, &p->solids, why));
     if (code == STATUS_OK && surroundings_absorb(&s->background))
         arrangement_surroundings_absorb(p->solids);
     free(shapes);
@@ -199,12 +198,9 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     status code = p && laws ? laws_of(s, laws, why) : out_of_memory(why);
     if (code == STATUS_OK)
         p->basic = scene_has_basic_radiance(&s->render);
-    if (code == STATUS_OK)
-        code = arrange(s, laws, p, why);
-    if (code == STATUS_OK)
-        code = fill_ranks(s, laws, p, why);
-    if (code == STATUS_OK)
-        code = aim_cones(s, p, why);
+    THEN(code, arrange(s, laws, p, why));
+    THEN(code, fill_ranks(s, laws, p, why));
+    THEN(code, aim_cones(s, p, why));
     free(laws);
     if (code != STATUS_OK) {
         plan_destroy(p);

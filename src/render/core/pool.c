@@ -182,11 +182,8 @@ static status run_fresh(pool *p, int count, void (*watch)(void *), double every_
 status pool_run(pool *p, int count, bool keep, pool_task *task, void (*watch)(void *), double every_s, void *context,
                 diagnostic *why)
 {
-    if (keep) {
-        status code = pool_reserve(p, count, why);
-        if (code != STATUS_OK)
-            return code;
-    }
+    if (keep)
+        TRY(pool_reserve(p, count, why));
     p->task = task;
     p->context = context;
     p->running = count;

@@ -11,8 +11,7 @@ status record_picture(const film *f, const char *path, int bits, diagnostic *why
 {
     image *picture = NULL;
     status code = film_image(f, &picture, why);
-    if (code == STATUS_OK)
-        code = image_write(picture, path, bits, why);
+    THEN(code, image_write(picture, path, bits, why));
     image_destroy(picture);
     return code;
 }
@@ -32,8 +31,7 @@ status record_map(const double *values, const film *f, const char *title, const 
     status code = image_format_of(path) == IMAGE_PFM
                       ? picture_of_values(values, f, &picture, why)
                       : heatmap_create(values, f->width, f->height, title, &picture, why);
-    if (code == STATUS_OK)
-        code = image_write(picture, path, 8, why);
+    THEN(code, image_write(picture, path, 8, why));
     image_destroy(picture);
     return code;
 }
@@ -68,8 +66,7 @@ static status record_layer(const float *values, int channels, const film *f, con
     status code = image_create(f->width, f->height, &picture, why);
     for (size_t i = 0; code == STATUS_OK && i < 3 * (size_t)f->width * (size_t)f->height; i++)
         picture->pixel[i] = values[channels == 3 ? i : i / 3];
-    if (code == STATUS_OK)
-        code = image_write(picture, path, 8, why);
+    THEN(code, image_write(picture, path, 8, why));
     image_destroy(picture);
     return code;
 }
@@ -109,9 +106,7 @@ static void write_event(FILE *stream, const tile_event *e)
 status record_timeline(const render_result *result, const char *path, diagnostic *why)
 {
     file_writer file;
-    status opened = file_writer_open(&file, path, why);
-    if (opened != STATUS_OK)
-        return opened;
+    TRY(file_writer_open(&file, path, why));
     fputs("{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n", file.stream);
     fputs("{\"name\":\"process_name\",\"ph\":\"M\",\"pid\":1,\"tid\":0,\"args\":{\"name\":\"cuvette render\"}}",
           file.stream);

@@ -353,9 +353,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         const double cpu_s = clock_process_cpu_s();
         f->began_s = clock_wall_s();
         code = run_steps(f, count, why);
-        if (code == STATUS_OK)
-            code = pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL,
-                            options && options->progress_s > 0 ? options->progress_s : 0.1, f, why);
+        THEN(code, pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL,
+                            options && options->progress_s > 0 ? options->progress_s : 0.1, f, why));
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
         if (code == STATUS_OK) {
@@ -380,13 +379,11 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
     render_result *result = NULL;
     if (code == STATUS_OK && s->background.kind == BACKGROUND_PICTURE && !s->background.picture)
         code = diagnose(why, STATUS_FAILURE, "call scene_load before", "the sky's picture is not loaded");
-    if (code == STATUS_OK)
-        code = plan_build(s, &p, why);
+    THEN(code, plan_build(s, &p, why));
     const integrator *rule = code == STATUS_OK ? integrator_for(&s->render) : NULL;
     if (rule && rule->prepare)
         code = rule->prepare(p, &kept, why);
-    if (code == STATUS_OK)
-        code = make_result(s, options, &result, why);
+    THEN(code, make_result(s, options, &result, why));
     if (code == STATUS_OK) {
         result->meshes = p->meshes;
         code = run_frame(r, s, options, p, kept, result, why);

@@ -192,8 +192,7 @@ static status follow_all(probe *p, const fan_rule *rule, fan *f, diagnostic *why
         vec3 origin, direction;
         start_of(f, rule, i, &f->ray[i], &origin, &direction);
         result = probe_way(p, origin, direction, -1, &way, why);
-        if (result == STATUS_OK)
-            result = keep_nodes(f, &way, &f->ray[i], why);
+        THEN(result, keep_nodes(f, &way, &f->ray[i], why));
         if (result == STATUS_OK)
             read_exit(f, &f->ray[i]);
     }
@@ -205,8 +204,7 @@ status fan_follow(probe *p, const fan_rule *rule, fan *out, diagnostic *why)
 {
     fan_release(out);
     status result = check_rule(rule, why);
-    if (result == STATUS_OK)
-        result = set_axes(rule, out, why);
+    THEN(result, set_axes(rule, out, why));
     if (result != STATUS_OK)
         return result;
     out->count = rule->rays;
@@ -214,9 +212,7 @@ status fan_follow(probe *p, const fan_rule *rule, fan *out, diagnostic *why)
     out->crossing = calloc((size_t)rule->rays, sizeof *out->crossing);
     if (!out->ray || !out->crossing)
         return diagnose(why, STATUS_FAILURE, "give fewer rays", "out of memory");
-    result = follow_all(p, rule, out, why);
-    if (result != STATUS_OK)
-        return result;
+    TRY(follow_all(p, rule, out, why));
     find_crossings(out);
     find_focus(out);
     return STATUS_OK;

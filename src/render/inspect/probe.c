@@ -23,10 +23,8 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
             trace_trees(r); /* all branches, not one by chance or none */
         code = scene_check(p->setting, why);
     }
-    if (code == STATUS_OK)
-        code = plan_build(p->setting, &p->scene, why);
-    if (code == STATUS_OK)
-        code = film_create(1, 1, 1, FILM_RGB, &p->picture, why);
+    THEN(code, plan_build(p->setting, &p->scene, why));
+    THEN(code, film_create(1, 1, 1, FILM_RGB, &p->picture, why));
     if (code != STATUS_OK) {
         probe_destroy(p);
         return code;
@@ -111,9 +109,8 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "count pixels from 0,0 at the top left",
                         "pixel %d,%d is outside the picture of %lld x %lld", x, y, (long long)r->width,
                         (long long)r->height);
-    status code = begin(p, tree, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(begin(p, tree, why));
+    status code = STATUS_OK;
     ray_record roots[SCENE_SAMPLES_MAX];
     const int count = tracer_camera_rays(p->rays, x, y);
     for (int i = 0; i < count; i++)
@@ -133,34 +130,27 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
 /* Begins a tree with a ray of the caller's. */
 static status begin_free(probe *p, vec3 origin, vec3 direction, ray_tree *tree, ray_record *root, diagnostic *why)
 {
-    status code = probe_check_ray(origin, direction, why);
-    if (code == STATUS_OK)
-        code = begin(p, tree, why);
-    if (code == STATUS_OK) {
-        *root = probe_free_ray(p, origin, direction);
-        p->scene->eye_rank = root->medium_rank; /* an eye stands where the ray starts */
-    }
-    return code;
+    TRY(probe_check_ray(origin, direction, why));
+    TRY(begin(p, tree, why));
+    *root = probe_free_ray(p, origin, direction);
+    p->scene->eye_rank = root->medium_rank; /* an eye stands where the ray starts */
+    return STATUS_OK;
 }
 
 status probe_ray(probe *p, vec3 origin, vec3 direction, ray_tree *tree, diagnostic *why)
 {
     ray_record root;
     size_t unused;
-    status code = begin_free(p, origin, direction, tree, &root, why);
-    if (code != STATUS_OK)
-        return code;
-    code = probe_grow(p, tree, &root, RAY_CAMERA, RAY_NONE, &unused, why);
+    TRY(begin_free(p, origin, direction, tree, &root, why));
+    status code = probe_grow(p, tree, &root, RAY_CAMERA, RAY_NONE, &unused, why);
     return finish(p, tree, code, why);
 }
 
 status probe_way(probe *p, vec3 origin, vec3 direction, int reflect_at, ray_tree *tree, diagnostic *why)
 {
     ray_record root;
-    status code = begin_free(p, origin, direction, tree, &root, why);
-    if (code != STATUS_OK)
-        return code;
-    code = probe_follow(p, tree, &root, reflect_at, why);
+    TRY(begin_free(p, origin, direction, tree, &root, why));
+    status code = probe_follow(p, tree, &root, reflect_at, why);
     return finish(p, tree, code, why);
 }
 

@@ -305,9 +305,7 @@ static void trace_node(probe *p, ray_tree *tree, size_t at, const ray_record *ra
 static status add_cut(probe *p, ray_tree *tree, int parent, const branches *b, int i, diagnostic *why)
 {
     size_t at = 0;
-    status code = add_node(p, tree, &b->record[i], b->kind[i], parent, &at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(add_node(p, tree, &b->record[i], b->kind[i], parent, &at, why));
     tree->node[at].end = b->end[i];
     hang(tree, parent, at);
     return STATUS_OK;
@@ -316,12 +314,10 @@ static status add_cut(probe *p, ray_tree *tree, int parent, const branches *b, i
 status probe_grow(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at,
                   diagnostic *why)
 {
-    status code = add_node(p, tree, ray, kind, parent, at, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(add_node(p, tree, ray, kind, parent, at, why));
     branches next;
     trace_node(p, tree, *at, ray, &next);
-    code = grow_shadows(p, tree, (int)*at, why);
+    status code = grow_shadows(p, tree, (int)*at, why);
     for (int i = 0; i < next.count && code == STATUS_OK; i++) {
         if (next.end[i] != RAY_END_HIT) {
             code = add_cut(p, tree, (int)*at, &next, i, why);
@@ -341,9 +337,7 @@ status probe_follow(probe *p, ray_tree *tree, const ray_record *ray, int reflect
     ray_kind kind = RAY_CAMERA;
     for (int parent = RAY_NONE, interface = 0;; interface++) {
         size_t at = 0;
-        status code = add_node(p, tree, &now, kind, parent, &at, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(add_node(p, tree, &now, kind, parent, &at, why));
         if (parent != RAY_NONE)
             hang(tree, parent, at);
         branches next;

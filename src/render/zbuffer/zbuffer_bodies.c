@@ -79,7 +79,6 @@ status zbuffer_cut(zbuffer *z, diagnostic *why)
 {
     status code = add_bodies(z, ~z->layered, why);
     z->first_layered_part = z->part_count;
-    if (code == STATUS_OK)
-        code = add_bodies(z, z->layered, why);
+    THEN(code, add_bodies(z, z->layered, why));
     return code;
 }

@@ -34,8 +34,8 @@ status api_pin(call *c)
 {
     const picture *newest;
     c->refused = 409;
-    const status code = take_final(c, &newest);
-    return code == STATUS_OK ? set_pin(c, newest) : code;
+    TRY(take_final(c, &newest));
+    return set_pin(c, newest);
 }
 
 status api_unpin(call *c)
@@ -107,9 +107,8 @@ status api_compare(call *c)
     pin_pair *pair;
     const picture *b;
     image_comparison found;
-    status code = take_pair(c, &pair, &b);
-    if (code != STATUS_OK)
-        return code;
+    TRY(take_pair(c, &pair, &b));
+    status code = STATUS_OK;
     const picture *a = pin_pair_a(pair);
     const bool fits = pin_pair_fits(pair);
     if (fits && (code = gate_enter(c->l->heavy, &c->why)) == STATUS_OK) {
@@ -131,9 +130,8 @@ status api_compare_map(call *c)
     const picture *b;
     const unsigned char *bytes;
     size_t size;
-    status code = take_pair(c, &pair, &b);
-    if (code != STATUS_OK)
-        return code;
+    TRY(take_pair(c, &pair, &b));
+    status code = STATUS_OK;
     if ((code = gate_enter(c->l->heavy, &c->why)) == STATUS_OK) {
         code = pin_pair_map(pair, &bytes, &size, &c->why);
         gate_leave(c->l->heavy);

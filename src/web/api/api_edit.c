@@ -171,9 +171,8 @@ static status add_file(edit *e, scene *s, diagnostic *why)
 {
     char *path;
     status code = folder_path_from(e->files, e->file, s->path, &path, why);
-    if (code == STATUS_OK)
-        code = strcmp(e->word, "model") == 0 ? new_model(s, e->loaded, path, e->wanted, e->made, why)
-                                             : new_texture(s, path, e->wanted, e->made, why);
+    THEN(code, strcmp(e->word, "model") == 0 ? new_model(s, e->loaded, path, e->wanted, e->made, why)
+                                             : new_texture(s, path, e->wanted, e->made, why));
     free(path);
     return code;
 }
@@ -210,12 +209,9 @@ static status load_alone(lab *l, const char *file, bool is_model, scene **out, d
     if (code == STATUS_OK)
         code =
             is_model ? scene_add(s, PARAM_MESH, "model", NULL, why) : scene_add(s, PARAM_TEXTURE, "picture", NULL, why);
-    if (code == STATUS_OK)
-        code = scene_set(s, is_model ? "model.file" : "picture.file", path, why);
-    if (code == STATUS_OK)
-        code = desk_limit(s, l->files, why);
-    if (code == STATUS_OK)
-        code = scene_load(s, why);
+    THEN(code, scene_set(s, is_model ? "model.file" : "picture.file", path, why));
+    THEN(code, desk_limit(s, l->files, why));
+    THEN(code, scene_load(s, why));
     free(path);
     if (code == STATUS_OK)
         *out = s;
@@ -247,12 +243,11 @@ status api_add(call *c)
     scene *loaded = NULL;
     status code = take_new(c, &e, &loaded);
     e.loaded = loaded;
-    if (code == STATUS_OK)
-        code = apply(c, &e, "add",
+    THEN(code, apply(c, &e, "add",
                      e.wanted                       ? e.wanted
                      : strcmp(e.word, "solid") == 0 ? shape_name(e.shape)
                                                     : e.word,
-                     NULL);
+                     NULL));
     scene_destroy(loaded);
     return code;
 }

@@ -77,11 +77,9 @@ status api_open(call *c)
         return STATUS_BAD_INPUT;
     if (fresh && name)
         return api_refuse(c, 400, "a new scene has no file yet", "give a file, or new");
-    status code = fresh ? new_scene(&s, &c->why) : read_scene(c, name, &s);
-    if (code != STATUS_OK)
-        return code;
+    TRY(fresh ? new_scene(&s, &c->why) : read_scene(c, name, &s));
     lab_give_threads(c->l, s);
-    code = desk_open(c->l->desk, s, name, &generation, &c->why);
+    status code = desk_open(c->l->desk, s, name, &generation, &c->why);
     return api_changed(c, code, generation);
 }
 

@@ -47,10 +47,8 @@ static status encode(lab *l, const picture *p, image_format format, int bits, un
     const double small = 1e6; /* pixels */
     if ((double)p->width * p->height <= small)
         return encode_own(p, format, bits, bytes, size, why);
-    status code = gate_enter(l->heavy, why);
-    if (code != STATUS_OK)
-        return code;
-    code = encode_own(p, format, bits, bytes, size, why);
+    TRY(gate_enter(l->heavy, why));
+    status code = encode_own(p, format, bits, bytes, size, why);
     gate_leave(l->heavy);
     return code;
 }

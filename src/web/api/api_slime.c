@@ -128,8 +128,7 @@ status api_move_hand(call *c)
     c->refused = 409;
     scene *now = desk_take(c->l->desk, NULL);
     status code = now ? live_where(toy, hand, &where, &c->why) : out_of_memory(&c->why);
-    if (code == STATUS_OK)
-        code = live_move(toy, hand, way_to(now, x, y, depth, where), &c->why);
+    THEN(code, live_move(toy, hand, way_to(now, x, y, depth, where), &c->why));
     scene_destroy(now);
     api_tell(c, json_object());
     return code;

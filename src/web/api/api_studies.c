@@ -18,8 +18,7 @@ static void add_progress(const lab *l, const study *s, json_t *told)
     study_progress progress = {0};
     diagnostic why = {.what = ""};
     status code = study_check_results(l, results, s->name, &why);
-    if (code == STATUS_OK)
-        code = study_status(s, results, &progress, &why);
+    THEN(code, study_status(s, results, &progress, &why));
     json_object_update_new(told, json_pack("{s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
                                            "rows", (json_int_t)progress.rows, "warmups", (json_int_t)progress.warmups,
                                            "marked", (json_int_t)progress.rows_marked));
@@ -85,10 +84,8 @@ static status find_study(call *c, study **s, char **file)
     status code = study_find(c->l, http_path_value(c->request, "name"), file, &c->why);
     if (code == STATUS_OK && !*file)
         return api_refuse(c, 404, "there is no study of that name", "GET /api/studies lists them");
-    if (code == STATUS_OK)
-        code = study_open(c->l, *file, s, &c->why);
-    if (code == STATUS_OK)
-        code = study_check_results(c->l, c->l->settings.results, (*s)->name, &c->why);
+    THEN(code, study_open(c->l, *file, s, &c->why));
+    THEN(code, study_check_results(c->l, c->l->settings.results, (*s)->name, &c->why));
     if (code != STATUS_OK) {
         study_destroy(*s);
         *s = NULL;
@@ -136,8 +133,8 @@ static status tell_run(call *c, status code)
 status api_study_run(call *c)
 {
     study *s;
-    const status code = take_study(c, &s);
-    return code == STATUS_OK ? tell_run(c, studies_start(c->l->studies, s, &c->why)) : code;
+    TRY(take_study(c, &s));
+    return tell_run(c, studies_start(c->l->studies, s, &c->why));
 }
 
 status api_study_stop(call *c)
@@ -155,8 +152,7 @@ status api_study_rows(call *c)
     if (text && (!number_parse_int(text, &from) || from < 0))
         return api_refuse(c, 400, "from is not a number of rows", "write ?from=N with N from 0");
     status code = take_study(c, &s);
-    if (code == STATUS_OK)
-        code = study_json_rows(s, c->l->settings.results, (size_t)from, &c->told, &c->why);
+    THEN(code, study_json_rows(s, c->l->settings.results, (size_t)from, &c->told, &c->why));
     study_destroy(s);
     return code;
 }
@@ -182,10 +178,8 @@ status api_study_compare(call *c)
     if (!with || !with[0])
         return api_refuse(c, 400, "with what is not said", "write ?with=FOLDER, one of the study's runs");
     status code = take_study(c, &s);
-    if (code == STATUS_OK)
-        code = take_run(c, with, s, &other);
-    if (code == STATUS_OK)
-        code = study_json_compare(s, c->l->settings.results, other, &c->told, &c->why);
+    THEN(code, take_run(c, with, s, &other));
+    THEN(code, study_json_compare(s, c->l->settings.results, other, &c->told, &c->why));
     free(other);
     study_destroy(s);
     return code;
@@ -226,8 +220,7 @@ status api_study_draw(call *c)
 {
     study *s;
     status code = take_study(c, &s);
-    if (code == STATUS_OK)
-        code = draw(c, s);
+    THEN(code, draw(c, s));
     study_destroy(s);
     return code;
 }

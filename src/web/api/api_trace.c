@@ -29,10 +29,8 @@ static status write_tree(trace_question *q, const scene *s, const probe *p, cons
         return diagnose(why, STATUS_BAD_INPUT, "lower render.depth or render.samples, or set render.min_weight",
                         "the pixel's tree has %zu rays, more than the %d that are sent", tree->count, TRACE_RAYS_MAX);
     text_writer writer;
-    status code = text_writer_open(&writer, why);
-    if (code != STATUS_OK)
-        return code;
-    code = q->write(&(traced){s, p, tree, q->scene_name}, writer.stream, why);
+    TRY(text_writer_open(&writer, why));
+    status code = q->write(&(traced){s, p, tree, q->scene_name}, writer.stream, why);
     return text_writer_end(&writer, code, &q->bytes, &q->size, why);
 }
 
@@ -42,10 +40,8 @@ static status grow_and_write(void *context, scene *s, diagnostic *why)
     probe *p = NULL;
     ray_tree tree = {0};
     status code = probe_create(s, q->lab->settings.level, &p, why);
-    if (code == STATUS_OK)
-        code = probe_pixel(p, q->x, q->y, &tree, why);
-    if (code == STATUS_OK)
-        code = write_tree(q, s, p, &tree, why);
+    THEN(code, probe_pixel(p, q->x, q->y, &tree, why));
+    THEN(code, write_tree(q, s, p, &tree, why));
     ray_tree_release(&tree);
     probe_destroy(p);
     return code;

@@ -71,8 +71,7 @@ static status read_again(const folder *files, const char *file, int threads, sce
 {
     diagnostic unread;
     status code = folder_path(files, file, true, path, &unread);
-    if (code == STATUS_OK)
-        code = scene_read_below(*path, folder_real(files), out, &unread);
+    THEN(code, scene_read_below(*path, folder_real(files), out, &unread));
     if (code == STATUS_OK && threads > 0 && (*out)->render.threads == 1)
         (*out)->render.threads = threads;
     return code;
@@ -116,9 +115,7 @@ status command_line(const folder *files, const char *file, const scene *s, int t
     *complete = false;
     *text = NULL;
     text_writer writer;
-    const status code = text_writer_open(&writer, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(text_writer_open(&writer, why));
     if (file && read_again(files, file, threads, &from, &path) == STATUS_OK)
         *complete = write_line(writer.stream, from, path, s);
     else

@@ -89,17 +89,13 @@ status study_json_summary(const study *s, const char *results, json_t **out, dia
 {
     study_progress progress;
     *out = NULL;
-    status code = study_status(s, results, &progress, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(study_status(s, results, &progress, why));
     if (progress.rows == 0)
         return (*out = json_null()) ? STATUS_OK : out_of_memory(why);
     char *text = NULL;
     text_writer writer;
-    code = text_writer_open(&writer, why);
-    if (code != STATUS_OK)
-        return code;
-    code = text_writer_end(&writer, study_summary(s, results, writer.stream, why), &text, NULL, why);
+    TRY(text_writer_open(&writer, why));
+    status code = text_writer_end(&writer, study_summary(s, results, writer.stream, why), &text, NULL, why);
     if (code == STATUS_OK && !(*out = lines_json(text)))
         code = out_of_memory(why);
     free(text);
@@ -123,9 +119,7 @@ status study_json_rows(const study *s, const char *results, size_t from, json_t 
 {
     row_files *files;
     *out = NULL;
-    status code = row_files_read(s, results, ROWS, &files, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(row_files_read(s, results, ROWS, &files, why));
     const csv *first = NULL;
     for (size_t i = 0; !first && i < files->count; i++)
         first = files->tables[i]->header ? files->tables[i] : NULL;

@@ -64,9 +64,7 @@ static status make_token(http_server *s, diagnostic *why)
 static status listen_and_serve(http_server *s, diagnostic *why)
 {
     int fd;
-    status code = listen_at(s->settings.port, s->settings.connections, &fd, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(listen_at(s->settings.port, s->settings.connections, &fd, why));
     struct sockaddr_in here = {0};
     socklen_t size = sizeof here;
     if (getsockname(fd, (struct sockaddr *)&here, &size) != 0) {
@@ -81,7 +79,7 @@ static status listen_and_serve(http_server *s, diagnostic *why)
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    code = http_watch_start(s, why);
+    status code = http_watch_start(s, why);
     if (code == STATUS_OK) {
         s->daemon = MHD_start_daemon(
             MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL, 0, NULL, NULL,
@@ -111,10 +109,8 @@ status http_start(const http_settings *settings, http_server **out, diagnostic *
     pthread_mutex_init(&s->event_lock, NULL);
     pthread_cond_init(&s->watch_wake, NULL);
     status code = check(&s->settings, why);
-    if (code == STATUS_OK)
-        code = make_token(s, why);
-    if (code == STATUS_OK)
-        code = listen_and_serve(s, why);
+    THEN(code, make_token(s, why));
+    THEN(code, listen_and_serve(s, why));
     if (code != STATUS_OK) {
         http_stop(s);
         return code;

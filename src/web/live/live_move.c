@@ -54,10 +54,9 @@ static void aim(live *l, double share)
 
 static status step_to(live *l, double time_s, diagnostic *why)
 {
-    status code = STATUS_OK;
-    for (size_t i = 0; i < scene_motion_count(l->motion) && code == STATUS_OK; i++)
-        code = scene_motion_step_held(l->motion, i, &l->hands[i * SOFTBODY_HANDS_MAX], time_s, why);
-    return code == STATUS_OK ? scene_motion_advance(l->motion, time_s, false, why) : code;
+    for (size_t i = 0; i < scene_motion_count(l->motion); i++)
+        TRY(scene_motion_step_held(l->motion, i, &l->hands[i * SOFTBODY_HANDS_MAX], time_s, why));
+    return scene_motion_advance(l->motion, time_s, false, why);
 }
 
 /* A script's hand that misses what others have drawn away is no trouble: it does no more. */
@@ -124,9 +123,7 @@ status live_move_on(live *l, double most_s, diagnostic *why)
     status code = go(l, before_s + fmin(elapsed_s, longest_s), most_s, why);
     if (code != STATUS_OK)
         return code; /* skins as they lay */
-    code = scene_motion_advance(l->motion, l->time_s, true, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(scene_motion_advance(l->motion, l->time_s, true, why));
     const double gone_s = l->time_s - before_s, memory_s = 0.5;
     if (goes_on && elapsed_s > 0.0)
         l->realtime += (gone_s / elapsed_s - l->realtime) * fmin(1.0, elapsed_s / memory_s);

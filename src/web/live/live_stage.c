@@ -127,9 +127,7 @@ static status pick(const live *l, const grab_request *q, size_t *index, motion_p
     *best = (motion_place){.distance = INFINITY};
     for (size_t i = 0; i < scene_motion_count(l->motion); i++) {
         motion_place met;
-        const status code = scene_motion_pick(l->motion, i, MOTION_ANY_SOLID, q->origin, q->direction, &met, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(scene_motion_pick(l->motion, i, MOTION_ANY_SOLID, q->origin, q->direction, &met, why));
         if (met.distance < best->distance) {
             *best = met;
             *index = i;
@@ -166,11 +164,9 @@ static status take_hold(live *l, grab_request *q)
         return code;
     live_hand *h = free_hand(l);
     int number = 0;
-    code = h ? scene_motion_grab(l->motion, index, &place, reach_of(l, q, index, &place),
-                                 &l->hands[index * SOFTBODY_HANDS_MAX], &number, q->why)
-             : diagnose(q->why, STATUS_BAD_INPUT, "let one release what it holds", "no hand is free");
-    if (code != STATUS_OK)
-        return code;
+    TRY(h ? scene_motion_grab(l->motion, index, &place, reach_of(l, q, index, &place),
+                              &l->hands[index * SOFTBODY_HANDS_MAX], &number, q->why)
+          : diagnose(q->why, STATUS_BAD_INPUT, "let one release what it holds", "no hand is free"));
     *h = (live_hand){.id = ++l->last_id, .slime = index, .number = number, .where = place.where};
     q->hand = h->id;
     q->where = place.where;

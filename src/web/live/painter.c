@@ -124,9 +124,8 @@ status painter_with_scene(painter *p, status (*look)(void *context, scene *s, di
                           diagnostic *why)
 {
     for (;;) {
-        status code = wait_for_scene(p, why);
-        if (code != STATUS_OK)
-            return code;
+        TRY(wait_for_scene(p, why));
+        status code = STATUS_OK;
         pthread_rwlock_rdlock(&p->stage_lock);
         const bool is_there = is_there_still(p);
         if (is_there)

@@ -76,8 +76,7 @@ void painter_renew_stage(painter *p)
         p->stage = next;
         code = live_attach(p->toy, next, &why);
     }
-    if (code == STATUS_OK)
-        code = load_stage(p, &why);
+    THEN(code, load_stage(p, &why));
     pthread_rwlock_unlock(&p->stage_lock);
     if (code == STATUS_OK && !live_is_on(p->toy))
         desk_lend(p->desk, p->stage, generation);

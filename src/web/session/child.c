@@ -97,8 +97,8 @@ status child_run(char *const *arguments, double limit_s, const atomic_bool *stop
     const int error = begin(&c, arguments);
     if (error) {
         const char *reason = strerrordesc_np(error);
-        diagnostic_locate(why, arguments[0], 0, 0);
-        return diagnose(why, STATUS_FAILURE, "", "it cannot be started: %s", reason ? reason : "unknown error");
+        return diagnose_at(why, arguments[0], STATUS_FAILURE, "", "it cannot be started: %s",
+                           reason ? reason : "unknown error");
     }
     const bool in_time = listen_to(&c, limit_s, stop);
     *exit_code = end(&c);

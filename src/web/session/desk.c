@@ -106,8 +106,7 @@ status desk_create(scene *first, const char *file, const folder *files, void (*c
 {
     *out = NULL;
     status code = first ? desk_check(first, files, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = desk_limit(first, files, why);
+    THEN(code, desk_limit(first, files, why));
     desk *d = code == STATUS_OK ? calloc(1, sizeof *d) : NULL;
     origin *from = d ? origin_create(first, 1) : NULL;
     if (!from) {
@@ -186,10 +185,8 @@ status desk_apply(desk *d, const char *what, const char *gesture, desk_change *c
     pthread_mutex_lock(&d->lock);
     scene *next = scene_clone(d->now.s);
     status code = next ? change(context, next, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = desk_check(next, d->files, why);
-    if (code == STATUS_OK)
-        code = replace(d, next, d->now.file, NULL, what, gesture, why);
+    THEN(code, desk_check(next, d->files, why));
+    THEN(code, replace(d, next, d->now.file, NULL, what, gesture, why));
     if (code != STATUS_OK)
         scene_destroy(next);
     return finish(d, code, generation);
@@ -198,8 +195,7 @@ status desk_apply(desk *d, const char *what, const char *gesture, desk_change *c
 status desk_open(desk *d, scene *s, const char *file, uint64_t *generation, diagnostic *why)
 {
     status code = desk_check(s, d->files, why);
-    if (code == STATUS_OK)
-        code = desk_limit(s, d->files, why);
+    THEN(code, desk_limit(s, d->files, why));
     origin *from = code == STATUS_OK ? origin_create(s, 0) : NULL;
     if (!from) {
         scene_destroy(s);
@@ -239,8 +235,7 @@ static status set_back(scene *s, const scene *opened, const char *path, diagnost
 {
     char *value = NULL;
     status code = scene_get(opened, path, &value, why);
-    if (code == STATUS_OK)
-        code = scene_set(s, path, value, why);
+    THEN(code, scene_set(s, path, value, why));
     free(value);
     return code;
 }
@@ -253,8 +248,7 @@ status desk_reset(desk *d, const char *const *paths, size_t count, uint64_t *gen
     status code = next ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; i < count && code == STATUS_OK; i++)
         code = set_back(next, from->s, paths[i], why);
-    if (code == STATUS_OK)
-        code = desk_check(next, d->files, why);
+    THEN(code, desk_check(next, d->files, why));
     if (code == STATUS_OK) {
         scene_borrow_meshes(next, d->now.s);
         char words[128];

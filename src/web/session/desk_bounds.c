@@ -45,8 +45,7 @@ static status check_bounds(const scene *s, diagnostic *why)
 status desk_check(const scene *s, const folder *files, diagnostic *why)
 {
     status code = scene_check(s, why);
-    if (code == STATUS_OK)
-        code = check_bounds(s, why);
+    THEN(code, check_bounds(s, why));
     return code == STATUS_OK && files ? folder_check_scene(files, s, why) : code;
 }
 

@@ -38,8 +38,7 @@ status figure_read(const lab *l, const char *name, char **svg, size_t *size, dia
     status code = name_is_fit(name) ? inner_path(l, in, name, ".svg", &path, why)
                                     : diagnose(why, STATUS_BAD_INPUT, "small letters, digits and - name a figure",
                                                "this names no figure");
-    if (code == STATUS_OK)
-        code = file_read_below(path, folder_real(l->files), SVG_MAX, svg, size, why);
+    THEN(code, file_read_below(path, folder_real(l->files), SVG_MAX, svg, size, why));
     free(path);
     free(in);
     return code;

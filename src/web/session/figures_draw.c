@@ -18,9 +18,7 @@ enum { PART_MAX = 64 << 20 };
 static status write_summary(const study *s, const char *results, const char *path, diagnostic *why)
 {
     file_writer file;
-    const status code = file_writer_open(&file, path, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(file_writer_open(&file, path, why));
     return file_writer_end(&file, study_summary(s, results, file.stream, why), why);
 }
 
@@ -34,9 +32,7 @@ static status append_part(FILE *out, const char *path, const char *root, bool *h
 {
     char *text = NULL;
     size_t size;
-    const status code = file_read_below(path, root, PART_MAX, &text, &size, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(file_read_below(path, root, PART_MAX, &text, &size, why));
     const char *line = strchr(text, '\n');
     fputs(*headed ? (line ? line + 1 : "") : text, out);
     *headed = true;
@@ -48,9 +44,8 @@ static status string_parts(const study *s, const char *results, const char *kind
 {
     file_writer file;
     bool headed = false;
-    status code = file_writer_open(&file, path, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(file_writer_open(&file, path, why));
+    status code = STATUS_OK;
     for (size_t cell = 0; code == STATUS_OK && cell < study_cell_count(s); cell++) {
         char *part = part_path(s, results, cell, kind);
         if (!part)
@@ -67,8 +62,7 @@ static status write_tables(const study *s, const char *results, diagnostic *why)
     static const char *const kinds[] = {"metrics", "curves", "motion"};
     char *tables = text_format("%s/tables", results), *path = text_format("%s/tables/%s.tsv", results, s->name);
     status code = tables && path ? file_make_directory(tables, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = write_summary(s, results, path, why);
+    THEN(code, write_summary(s, results, path, why));
     for (size_t i = 0; code == STATUS_OK && i < sizeof kinds / sizeof *kinds; i++) {
         char *first = part_path(s, results, 0, kinds[i]),
              *table = text_format("%s/tables/%s-%s.tsv", results, s->name, kinds[i]);
@@ -116,18 +110,12 @@ status figures_draw(const lab *l, const study *s, char **said, bool *whole, diag
     if (code == STATUS_OK && json_array_size(figures) == 0)
         code = diagnose(why, STATUS_BAD_INPUT, "write a script in plots/ that says `# needs: tables/NAME.tsv`",
                         "no figure is drawn from this study");
-    if (code == STATUS_OK)
-        code = folder_path(l->files, "plots/draw.sh", true, &script, why);
-    if (code == STATUS_OK)
-        code = study_check_results(l, l->settings.results, "tables", why);
-    if (code == STATUS_OK)
-        code = study_check_results(l, l->settings.results, "figures", why);
-    if (code == STATUS_OK)
-        code = study_check_results(l, l->settings.results, s->name, why);
-    if (code == STATUS_OK)
-        code = write_tables(s, l->settings.results, why);
-    if (code == STATUS_OK)
-        code = run_script(l, script, figures, said, whole, why);
+    THEN(code, folder_path(l->files, "plots/draw.sh", true, &script, why));
+    THEN(code, study_check_results(l, l->settings.results, "tables", why));
+    THEN(code, study_check_results(l, l->settings.results, "figures", why));
+    THEN(code, study_check_results(l, l->settings.results, s->name, why));
+    THEN(code, write_tables(s, l->settings.results, why));
+    THEN(code, run_script(l, script, figures, said, whole, why));
     free(script);
     json_decref(figures);
     return code;

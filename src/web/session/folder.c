@@ -178,8 +178,7 @@ status folder_path(const folder *f, const char *name, bool must_exist, char **pa
     errno = 0;
     char *real = resolve(whole);
     status code = real && below(f, real) ? STATUS_OK : errno == ENOMEM ? out_of_memory(why) : outside(name, why);
-    if (code == STATUS_OK)
-        code = check_file(real, name, must_exist, why);
+    THEN(code, check_file(real, name, must_exist, why));
     free(real);
     if (code == STATUS_OK)
         *path = whole;
@@ -224,8 +223,7 @@ status folder_check_scene(const folder *f, const scene *s, diagnostic *why)
     status code = check_named(f, s, "background.picture", s->background.picture_path, why);
     for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
         code = check_named(f, s, s->meshes[i].name, s->meshes[i].path, why);
-        if (code == STATUS_OK)
-            code = check_named(f, s, s->meshes[i].name, s->meshes[i].script_path, why);
+        THEN(code, check_named(f, s, s->meshes[i].name, s->meshes[i].script_path, why));
     }
     for (size_t i = 0; i < s->texture_count && code == STATUS_OK; i++)
         code = check_named(f, s, s->textures[i].name, s->textures[i].path, why);

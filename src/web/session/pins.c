@@ -161,8 +161,7 @@ static status draw_map(pin_pair *pair, diagnostic *why)
 {
     image *map = NULL;
     status code = image_compare_map(pair->a->linear, pair->b->linear, &map, why);
-    if (code == STATUS_OK)
-        code = image_encode(map, IMAGE_PNG, 8, true, &pair->map_bytes, &pair->map_size, why);
+    THEN(code, image_encode(map, IMAGE_PNG, 8, true, &pair->map_bytes, &pair->map_size, why));
     image_destroy(map);
     return code;
 }

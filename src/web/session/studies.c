@@ -167,9 +167,7 @@ static status begin(studies *st, study *s, diagnostic *why)
 {
     if (atomic_load(&st->ending))
         return diagnose(why, STATUS_INTERRUPTED, "start it again", "the laboratory is being closed");
-    const status code = take_place(st, s, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(take_place(st, s, why));
     join(st);
     st->s = s;
     atomic_store(&st->stop, false);

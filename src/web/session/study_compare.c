@@ -33,9 +33,7 @@ static int compare_places(const void *a, const void *b)
 static status sort_rows(const study *s, const char *results, sorted_rows *out, diagnostic *why)
 {
     *out = (sorted_rows){0};
-    const status code = row_files_read(s, results, ROWS, &out->files, why);
-    if (code != STATUS_OK)
-        return code;
+    TRY(row_files_read(s, results, ROWS, &out->files, why));
     qsort(out->files->rows, out->files->row_count, sizeof *out->files->rows, compare_places);
     out->values = malloc((out->files->row_count + 1) * sizeof *out->values);
     return out->values ? STATUS_OK : out_of_memory(why);
@@ -98,8 +96,7 @@ status study_json_compare(const study *s, const char *results, const char *other
     sorted_rows a = {0}, b = {0};
     *out = NULL;
     status code = sort_rows(s, results, &a, why);
-    if (code == STATUS_OK)
-        code = sort_rows(s, other, &b, why);
+    THEN(code, sort_rows(s, other, &b, why));
     json_t *cells = code == STATUS_OK ? json_array() : NULL;
     for (size_t cell = 0; cells && cell < study_cell_count(s) && cell < STUDY_JSON_CELLS_MAX; cell++) {
         const cell_times mine = take_cell(&a, cell), theirs = take_cell(&b, cell);

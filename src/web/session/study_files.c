@@ -95,8 +95,7 @@ status study_open(const lab *l, const char *file, study **out, diagnostic *why)
     char *path = NULL;
     *out = NULL;
     status code = folder_path(l->files, file, true, &path, why);
-    if (code == STATUS_OK)
-        code = study_read_guarded(path, &guard, out, why);
+    THEN(code, study_read_guarded(path, &guard, out, why));
     free(path);
     return code;
 }
@@ -110,9 +109,9 @@ static status check_inside(const lab *l, const char *path, diagnostic *why)
         free(name);
         return STATUS_OK;
     }
-    diagnostic_locate(why, path, 0, 0);
-    return diagnose(why, STATUS_BAD_INPUT, "let the results lie in the folder that the laboratory was started with",
-                    "it lies outside of the folder");
+    return diagnose_at(why, path, STATUS_BAD_INPUT,
+                       "let the results lie in the folder that the laboratory was started with",
+                       "it lies outside of the folder");
 }
 
 static status check_links(const lab *l, const char *path, diagnostic *why)
@@ -138,8 +137,7 @@ status study_check_results(const lab *l, const char *results, const char *name, 
 {
     char *own = text_format("%s/%s", results, name);
     status code = own ? check_inside(l, own, why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        code = check_links(l, own, why);
+    THEN(code, check_links(l, own, why));
     free(own);
     return code;
 }
