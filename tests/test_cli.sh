@@ -162,6 +162,14 @@ sum=$(tail -c $((80 * 60 * 12)) rays.pfm | od -An -v -tf4 -w12 | awk '{s += $1} 
 check "the map of rays sums to the rays" is "$sum" "$(json rays.total)"
 run render "$scene" "${small[@]}" --rays again.pfm --repeat 2 --json
 check "maps go with --repeat" cmp rays.pfm again.pfm
+run render "$scene" "${small[@]}" --layers once --set render.integrator=aov
+check "layers of what camera rays meet, one file each" is "$(ls once-*)" \
+    "$(printf 'once-%s.pfm\n' albedo depth material normal position solid)"
+# Sky, ground, vessel and rod; the liquid, the third solid, is met first nowhere.
+check "the layer of solids has each one's number" is "0 1 2 4 " \
+    "$(tail -c $((80 * 60 * 12)) once-solid.pfm | od -An -v -tf4 -w12 | awk '{print $1}' | sort -nu | tr '\n' ' ')"
+run render "$scene" "${small[@]}" --layers again --repeat 2 --json --set render.integrator=aov
+check "layers go with --repeat" cmp once-position.pfm again-position.pfm
 
 # --- parameters
 run params

@@ -193,6 +193,77 @@ static void a_glass_mesh_sphere_converges_to_the_sphere(void **state)
     assert_true(order_smooth > 1.2 && order_flat > 0.5 && psnr(smooth[LEVELS - 1]) > 80.0);
 }
 
+#define TURNED "rotation: [-20, 10, 15]"
+
+static render_result *glass(const char *meshes, const char *shape)
+{
+    scene_text t = {.length = 0};
+    add(&t, "%s%ssolids:\n  body: {%s, transparency: 1, ior: 1.5, position: [0.1, 0.2, 0]}\n", FRAME, meshes, shape);
+    scene *s = scene_with_meshes(t.at, "render.width=120 render.height=90 render.depth=6");
+    render_result *r = render(s);
+    scene_destroy(s);
+    return r;
+}
+
+/* %d: segments. */
+static double error_of_mesh(const char *generated, const char *look, int segments, const film *wanted)
+{
+    scene_text t = {.length = 0}, body = {.length = 0};
+    add(&t, "meshes: {triangles: {");
+    add(&t, generated, segments, segments);
+    add(&t, "}}\n");
+    add(&body, "shape: mesh, mesh: triangles, %s", look);
+    render_result *r = glass(t.at, body.at);
+    const double rms = rms_between(r->picture, wanted);
+    render_result_destroy(r);
+    return rms;
+}
+
+/* Rings, cones and frustums of glass, as the sphere above: what their triangles are off by falls with the square of the
+ * segments' number, and what it does to the outlines' pixels with less. */
+static void glass_meshes_converge_to_torus_cone_and_frustum(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *solid, *mesh;
+    } body[] = {
+        {"shape: torus, radius: 0.8, tube_radius: 0.35, " TURNED,
+         "generate: torus, major: 0.8, minor: 0.35, around: %d, tube: %d"},
+        {"shape: cone, radius: 0.9, height: 1.3, " TURNED,
+         "generate: lathe, profile: [0, 0, 0.9, 0, 0, 1.3], around: %d"},
+        {"shape: cone, radius: 0.9, top_radius: 0.4, height: 1, " TURNED,
+         "generate: lathe, profile: [0, 0, 0.9, 0, 0.4, 1, 0, 1], around: %d"},
+    };
+    for (size_t k = 0; k < COUNT(body); k++) {
+        render_result *wanted = glass("", body[k].solid);
+        double coarse = error_of_mesh(body[k].mesh, TURNED, 16, wanted->picture), fine = 0.0;
+        const double first = coarse;
+        for (int segments = 64; segments <= 1024; segments *= 4, coarse = fine) {
+            fine = error_of_mesh(body[k].mesh, TURNED, segments, wanted->picture);
+            print_message("%s: %d segments, %.3e (%.1f dB)\n", body[k].solid, segments, fine, psnr(fine));
+            assert_true(fine < coarse);
+        }
+        assert_true(fine < first / 10.0 && psnr(fine) > 50.0);
+        render_result_destroy(wanted);
+    }
+}
+
+/* The lathe's first corner is at +z, the prism's at -z. */
+static void a_lathe_of_few_segments_is_a_prism(void **state)
+{
+    (void)state;
+    for (int sides = 3; sides <= 8; sides++) {
+        scene_text t = {.length = 0};
+        add(&t, "shape: prism, radius: 0.8, height: 1.1, rotation: [0, 10, 15], sides: %d", sides);
+        render_result *wanted = glass("", t.at);
+        const double rms = error_of_mesh("generate: lathe, profile: [0, 0, 0.8, 0, 0.8, 1.1, 0, 1.1], around: %d",
+                                         "shading: flat, rotation: [0, 190, 15]", sides, wanted->picture);
+        print_message("%d sides: rms %.3e\n", sides, rms);
+        assert_true(rms < 1e-6);
+        render_result_destroy(wanted);
+    }
+}
+
 static void a_mesh_vessel_looks_like_the_cup(void **state)
 {
     (void)state;
@@ -220,6 +291,8 @@ int main(void)
         cmocka_unit_test(through_a_mesh_block_the_ground_is_the_ground),
         cmocka_unit_test(a_mesh_of_the_liquids_own_index_is_not_seen),
         cmocka_unit_test(a_glass_mesh_sphere_converges_to_the_sphere),
+        cmocka_unit_test(glass_meshes_converge_to_torus_cone_and_frustum),
+        cmocka_unit_test(a_lathe_of_few_segments_is_a_prism),
         cmocka_unit_test(a_mesh_vessel_looks_like_the_cup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -200,6 +200,42 @@ static void its_drawings_lie_in_its_box(void **state)
     each_bounded(drawings);
 }
 
+/* A hair behind each triangle its primitive is, and a hair before it is not: fronts look outwards, and no triangle lies
+ * off the surface by more than a round edge's segments do. The parts of a cup share its rim and are open there. */
+static void surfaces(const shape_rule *rule, const placed_shape *placed)
+{
+    const solid_shape *shape = &placed->shape;
+    const body_source source = {.shape = shape, .medium = 1, .clearness = 1.0};
+    const vec3 scale = rule->tessellation_scale ? rule->tessellation_scale(shape) : vec3_make(1, 1, 1);
+    arrangement *a = NULL;
+    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    for (int part = 0; part < rule->primitive_count && !rule->hollow; part++) {
+        mesh *m = NULL;
+        assert_int_equal(rule->tessellation(shape, part, &m, NULL), STATUS_OK);
+        assert_true(m->closed);
+        for (size_t i = 0; i < m->triangle_count; i++) {
+            vec3 corner[3];
+            for (int k = 0; k < 3; k++) {
+                const vec3 v = m->vertices[m->triangles[i].corner[k]];
+                corner[k] = vec3_make(v.x * scale.x, v.y * scale.y, v.z * scale.z);
+            }
+            const vec3 across = vec3_cross(vec3_sub(corner[1], corner[0]), vec3_sub(corner[2], corner[0]));
+            const vec3 hair = vec3_scale(vec3_normalize(across), 5e-4);
+            const vec3 middle = vec3_scale(vec3_add(corner[0], vec3_add(corner[1], corner[2])), 1.0 / 3.0);
+            assert_true(primitive_contains(&a->primitives[part], in_world(placed, vec3_sub(middle, hair))));
+            assert_false(primitive_contains(&a->primitives[part], in_world(placed, vec3_add(middle, hair))));
+        }
+        mesh_release(m);
+    }
+    arrangement_destroy(a);
+}
+
+static void its_triangles_lie_on_its_surface(void **state)
+{
+    (void)state;
+    each_bounded(surfaces);
+}
+
 static void its_flat_faces_bound_it(void **state)
 {
     (void)state;
@@ -232,6 +268,7 @@ int main(void)
         cmocka_unit_test(its_primitives_contain_what_it_contains),
         cmocka_unit_test(it_covers_points_that_it_contains),
         cmocka_unit_test(its_drawings_lie_in_its_box),
+        cmocka_unit_test(its_triangles_lie_on_its_surface),
         cmocka_unit_test(its_flat_faces_bound_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

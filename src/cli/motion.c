@@ -17,7 +17,7 @@ typedef struct motion_request {
 static const command_option options[] = {
     OPTION_SET("'toy.dt_s=0.0005'"),
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, motion_request, json)},
-    {"csv", 0, NULL, "print the table as CSV, with all digits", OPTION_FILLS(option_flag, motion_request, csv)},
+    OPTION_CSV(motion_request),
     {0},
 };
 

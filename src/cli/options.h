@@ -28,6 +28,12 @@ status option_text(const command_option *o, void *request, const char *value, di
 status option_flag(const command_option *o, void *request, const char *value, diagnostic *why);    /* bool */
 status option_integer(const command_option *o, void *request, const char *value, diagnostic *why); /* int64_t */
 
+/* Of a request of that type with a bool csv. */
+#define OPTION_CSV(type)                                                                                \
+    {                                                                                                   \
+        "csv", 0, NULL, "print the table as CSV, with all digits", OPTION_FILLS(option_flag, type, csv) \
+    }
+
 /* A command line: its options, and the words that are none, which go into a list of const char *. */
 typedef struct command_form {
     const command_option *options; /* the last has no name; NULL for none */

@@ -26,7 +26,7 @@ static status take_curve(const command_option *o, void *into, const char *value,
 static const command_option options[] = {
     OPTION_SET("'liquid.ior=1.47'"),
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, realism_request, json)},
-    {"csv", 0, NULL, "print the table as CSV, with all digits", OPTION_FILLS(option_flag, realism_request, csv)},
+    OPTION_CSV(realism_request),
     {"curve", 0, "NAME",
      "print a curve as CSV instead, x, measured, theory: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption "
      "or edges",

@@ -43,7 +43,7 @@ static const command_option options[] = {
      OPTION_FILLS(option_text, render_request, files.noise)},
     {"timeline", 0, "FILE", "write when each tile was taken by whom: .json, for chrome://tracing or Perfetto",
      OPTION_FILLS(option_text, render_request, files.timeline)},
-    {"layers", 0, "PREFIX", "write each named layer of an integrator that gives them as PREFIX-LAYER.pfm",
+    {"layers", 0, "PREFIX", "write each named layer of an integrator that gives them (aov) as PREFIX-LAYER.pfm",
      OPTION_FILLS(option_text, render_request, files.layers)},
     {"repeat", 0, "N", "render N times; wall_s and cpu_s are the medians",
      OPTION_FILLS(option_integer, render_request, repeat), .lowest = 1, .highest = 1000000},

@@ -173,6 +173,7 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
         options.pixel_rays = w->wanted->pixel_rays;
         options.pixel_time = w->wanted->pixel_time;
         options.timeline = w->wanted->timeline;
+        options.layers = w->wanted->layers;
     }
     w->begun_s = clock_wall_s();
     w->late = false;
@@ -232,6 +233,7 @@ static status add_maps(work *w, const scene *s, job_account *a, diagnostic *why)
         measured->pixel_ns = result->pixel_ns, result->pixel_ns = bare.pixel_ns;
         measured->events = result->events, result->events = bare.events;
         measured->event_count = result->event_count, result->event_count = bare.event_count;
+        measured->layers = result->layers, result->layers = bare.layers;
     }
     render_result_destroy(result);
     return code;
@@ -274,7 +276,8 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
 {
     static const render_options none = {.progress = NULL};
     const render_options *wanted = options ? options : &none;
-    const bool maps = wanted->pixel_rays || wanted->pixel_time || wanted->timeline, extra = frames > 1 && maps;
+    const bool maps = wanted->pixel_rays || wanted->pixel_time || wanted->timeline || wanted->layers;
+    const bool extra = frames > 1 && maps;
     work w = {.of = j, .wanted = wanted, .frames = frames + extra};
     status code = job_account_begin(s, j->level, frames, out, why);
     THEN(code, prepare(j, s, wanted, why));
