@@ -48,7 +48,8 @@ static scene *pond(const scene *s, const setup *at, look which)
 static status hang_lamp(scene *s, diagnostic *why)
 {
     size_t at = 0;
-    s->light_count = 0;
+    while (s->light_count > 0)
+        TRY(scene_remove(s, s->lights[0].name, why));
     TRY(scene_add(s, PARAM_LIGHT, "lamp", &at, why));
     light *l = &s->lights[at];
     l->position = lamp_place;
