@@ -275,6 +275,31 @@ static void a_hand_wakes_what_rests(void **state)
     scene_destroy(s);
 }
 
+/* A painter that is slow lets it move in long steps, after each of which it may just be turning. */
+static void rest_is_seen_at_more_than_one_look(void **state)
+{
+    (void)state;
+    const struct timespec slow = {.tv_nsec = 200000000};
+    live *l = live_create(NULL, NULL);
+    scene *s = scene_with(toys, "");
+    attach(l, s);
+    live_give(l, LIVE_PLAY);
+    come_to_rest(l);
+    grab(l, 1, 0);
+    diagnostic why = {.what = ""};
+    assert_int_equal(live_release(l, LIVE_ALL, &why), STATUS_OK);
+    int looks = 0;
+    do {
+        nanosleep(&slow, NULL);
+        go_on(l);
+        looks++;
+    } while (live_is_moving(l));
+    assert_true(looks >= 5);
+    live_detach(l);
+    live_destroy(l);
+    scene_destroy(s);
+}
+
 /* As the painter does it when the desk has changed. */
 static scene *replace(live *l, scene *old, const char *assignments)
 {
@@ -556,6 +581,7 @@ int main(void)
         cmocka_unit_test(time_goes_on_and_stands_still),
         cmocka_unit_test(a_pull_draws_it_out_and_it_comes_back),
         cmocka_unit_test(a_hand_wakes_what_rests),
+        cmocka_unit_test(rest_is_seen_at_more_than_one_look),
         cmocka_unit_test(other_colours_leave_its_shape),
         cmocka_unit_test(another_body_begins_anew),
         cmocka_unit_test(a_body_that_blows_up_says_so_until_it_is_started_again),

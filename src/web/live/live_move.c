@@ -102,10 +102,11 @@ static bool is_quiet(const live *l)
     return quiet;
 }
 
+/* A long step is seen at its end alone, where a body that swings may just be turning: one look counts for little. */
 static void watch_rest(live *l, double gone_s)
 {
-    const double long_s = 0.25;
-    l->quiet_s = is_quiet(l) ? l->quiet_s + gone_s : 0.0;
+    const double long_s = 0.25, look_s = long_s / 8.0;
+    l->quiet_s = is_quiet(l) ? l->quiet_s + fmin(gone_s, look_s) : 0.0;
     if (l->quiet_s < long_s)
         return;
     pthread_mutex_lock(&l->lock);
