@@ -75,7 +75,7 @@ static void draw_triangle(zbuffer *z, uint32_t number, const window *w, zbuffer_
         uint32_t *seen = z->seen + (size_t)y * (size_t)z->width + b.x0;
         for (int64_t k = from; k <= to && layered; k++) {
             const double near = lesser(greater(a * ((double)(b.x0 + k) + 0.5) + row, least), most);
-            if (near > nearness[k])
+            if (near >= nearness[k])
                 zbuffer_add_fragment(z, square, row_at + (int)k, near, number);
         }
         for (int64_t k = from; k <= to && !layered; k++) {

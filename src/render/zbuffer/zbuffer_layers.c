@@ -59,15 +59,24 @@ static bool is_opaque(const zbuffer *z, const drawn_fragment *f)
     return z->scene->solids->bodies[z->parts[f->part].at.rank].opaque;
 }
 
-/* The point's fragments before its nearest opaque surface, the nearest first; how many. Of two opaque ones the nearer
- * is seen however close they are, as where nothing clear is drawn. */
-static int collect(zbuffer *z, zbuffer_square *s, int point)
+/* Is it before the opaque surface that is drawn without layers? Of two opaque ones the nearer is seen however close they
+ * are, and of two equally near that of the higher rank, as where nothing clear is drawn. */
+static bool is_in_front(const zbuffer *z, const drawn_fragment *f, double nearness, uint32_t seen)
+{
+    if (!is_opaque(z, f))
+        return f->nearness - nearness > TOGETHER * f->nearness;
+    if (f->nearness != nearness)
+        return f->nearness > nearness;
+    return z->parts[f->part].at.rank > z->parts[z->triangles[seen - 1].part].at.rank;
+}
+
+/* The point's fragments before its nearest opaque surface, the nearest first; how many. */
+static int collect(zbuffer *z, zbuffer_square *s, int point, uint32_t seen)
 {
     int count = 0;
     for (int32_t k = s->newest[point]; k >= 0; k = s->fragments[k].next) {
         const drawn_fragment *f = &s->fragments[k];
-        const double contact = is_opaque(z, f) ? 0.0 : TOGETHER * f->nearness;
-        if (!(f->nearness - s->nearness[point] > contact)) /* behind the opaque surface, or in contact with it */
+        if (!is_in_front(z, f, s->nearness[point], seen))
             continue;
         if (!GROW(s->column, s->column_capacity, (size_t)count + 1)) {
             atomic_store(&z->out_of_memory, true);
@@ -189,14 +198,26 @@ static drawn_layer *room_for(zbuffer *z, zbuffer_square *s, int count, uint32_t 
     return s->block + s->used - count;
 }
 
-/* What is seen at a point: an opaque surface alone stays as it is. */
+/* Is one thing all that shows, through nothing but the surroundings? Whether its solid is drawn as layers or not then
+ * makes no difference. */
+static bool shows_alone(const zbuffer *z, const layer_list *l)
+{
+    const drawn_layer *f = &l->layer[0];
+    if (l->count != 1 || !f->ends || f->before != 0)
+        return false;
+    return f->number == 0 || z->parts[z->triangles[f->number - 1].part].at.rank == f->surface;
+}
+
+/* What is seen at a point. */
 static void resolve_point(zbuffer *z, zbuffer_square *s, int point, uint32_t *seen, size_t *listed)
 {
     layer_list l;
-    const int count = collect(z, s, point);
+    const int count = collect(z, s, point, *seen);
     list_layers(z, s->column, count, *seen, &l);
-    if (l.count == 1 && l.layer[0].number == *seen && l.layer[0].before == 0)
+    if (shows_alone(z, &l)) {
+        *seen = l.layer[0].number;
         return;
+    }
     uint32_t place;
     drawn_layer *to = room_for(z, s, l.count, &place);
     if (!to) {
