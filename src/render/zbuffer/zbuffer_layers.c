@@ -59,8 +59,8 @@ static bool is_opaque(const zbuffer *z, const drawn_fragment *f)
     return z->scene->solids->bodies[z->parts[f->part].at.rank].opaque;
 }
 
-/* Is it before the opaque surface that is drawn without layers? Of two opaque ones the nearer is seen however close they
- * are, and of two equally near that of the higher rank, as where nothing clear is drawn. */
+/* Is it before the opaque surface that is drawn without layers? Of two opaque ones the nearer is seen however close
+ * they are, and of two equally near that of the higher rank, as where nothing clear is drawn. */
 static bool is_in_front(const zbuffer *z, const drawn_fragment *f, double nearness, uint32_t seen)
 {
     if (!is_opaque(z, f))
