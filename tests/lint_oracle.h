@@ -49,11 +49,29 @@ static inline double solid_angle(quad3 a, quad3 b, quad3 c)
     return 2.0 * atan2((double)up, (double)down) / (4.0 * M_PI);
 }
 
+/* May the point be within the first copy? Not beyond all of its vertices along an axis. */
+static inline bool mesh_comes_near(const solid_shape *s, const mesh *m, vec3 p)
+{
+    const double margin = 1e-9; /* of doubles */
+    vec3 low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    for (size_t i = 0; i < m->vertex_count; i++) {
+        const vec3 v = m->vertices[i];
+        low = vec3_make(fmin(low.x, v.x), fmin(low.y, v.y), fmin(low.z, v.z));
+        high = vec3_make(fmax(high.x, v.x), fmax(high.y, v.y), fmax(high.z, v.z));
+    }
+    return p.x >= low.x * s->scale.x - margin && p.x <= high.x * s->scale.x + margin &&
+           p.y >= low.y * s->scale.y - margin && p.y <= high.y * s->scale.y + margin &&
+           p.z >= low.z * s->scale.z - margin && p.z <= high.z * s->scale.z + margin;
+}
+
 static inline bool mesh_holds(const oracle *o, const solid *x, quad3 point)
 {
     const mesh *m = oracle_mesh(o, x);
     const quad3 p = quad3_turn(quad3_sub(point, quad3_from(x->shape.position)), x->shape.rotation_deg, 1);
+    const vec3 near = vec3_make((double)p.x, (double)p.y, (double)p.z);
     for (int copy = 0; m->closed && copy < copy_count(&x->shape); copy++) {
+        if (!mesh_comes_near(&x->shape, m, vec3_sub(near, copy_offset(&x->shape, copy))))
+            continue;
         double turns = 0.0;
         for (size_t t = 0; t < m->triangle_count; t++)
             turns += solid_angle(quad3_sub(mesh_corner(&x->shape, m, t, 0, copy), p),

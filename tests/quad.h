@@ -124,16 +124,26 @@ static inline quad_rotation quad_rotation_make(vec3 degrees)
     return r;
 }
 
-/* v turned; backwards: the inverse. The last rotation is kept, because its sines cost much more than the turn. */
+/* The last few rotations are kept, because their sines cost much more than a turn. */
+static inline const quad_rotation *quad_rotation_of(vec3 degrees)
+{
+    enum { KEPT = 16 };
+    static _Thread_local quad_rotation kept[KEPT];
+    static _Thread_local int count;
+    const int known = count < KEPT ? count : KEPT;
+    for (int k = 0; k < known; k++)
+        if (kept[k].degrees.x == degrees.x && kept[k].degrees.y == degrees.y && kept[k].degrees.z == degrees.z)
+            return &kept[k];
+    quad_rotation *next = &kept[count % KEPT];
+    count = count < 2 * KEPT - 1 ? count + 1 : KEPT;
+    *next = quad_rotation_make(degrees);
+    return next;
+}
+
+/* v turned; backwards: the inverse. */
 static inline quad3 quad3_turn(quad3 v, vec3 degrees, int backwards)
 {
-    static _Thread_local quad_rotation last;
-    static _Thread_local int known;
-    if (!known || last.degrees.x != degrees.x || last.degrees.y != degrees.y || last.degrees.z != degrees.z) {
-        last = quad_rotation_make(degrees);
-        known = 1;
-    }
-    const quad3 *r = last.row;
+    const quad3 *r = quad_rotation_of(degrees)->row;
     if (!backwards)
         return quad3_make(quad3_dot(r[0], v), quad3_dot(r[1], v), quad3_dot(r[2], v));
     return quad3_add(quad3_add(quad3_scale(r[0], v.x), quad3_scale(r[1], v.y)), quad3_scale(r[2], v.z));
