@@ -1,7 +1,6 @@
 /* Shipped scenes, made small, and films of them with one parameter changed. Errors are told in the outcome, so that
  * threads may use it. Ownership: acts_open gives, acts_close releases. */
-#ifndef CUVETTE_TESTS_ACTS_FIXTURE_H
-#define CUVETTE_TESTS_ACTS_FIXTURE_H
+#pragma once
 
 #include "acts_values.h"
 
@@ -178,5 +177,3 @@ static inline acts_outcome acts_try_sizes(acts *a, const char *path, const acts_
         o = acts_try(a, path, v, size, enough);
     return o;
 }
-
-#endif

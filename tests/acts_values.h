@@ -1,8 +1,7 @@
 /* Other legal values of a parameter, chosen by its row alone (type, range, unit): a few that lie near the value of now,
  * and a few far away, so that a parameter that acts at all shows it. A new parameter needs no line here. Ownership:
  * acts_values fills an array of the caller's. */
-#ifndef CUVETTE_TESTS_ACTS_VALUES_H
-#define CUVETTE_TESTS_ACTS_VALUES_H
+#pragma once
 
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
@@ -149,5 +148,3 @@ static inline void acts_values_of(const scene *s, const param *row, const char *
     case PARAM_WORD: acts_names(s, row, now, v); break;
     }
 }
-
-#endif

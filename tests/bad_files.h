@@ -1,7 +1,6 @@
 /* A folder of files that are wrong, and expected.txt with the one line that each is refused with: "NAME:LINE:COLUMN:
  * what; remedy". */
-#ifndef CUVETTE_TESTS_BAD_FILES_H
-#define CUVETTE_TESTS_BAD_FILES_H
+#pragma once
 
 #include "base/status.h"
 
@@ -60,5 +59,3 @@ static inline void assert_bad_files(const char *folder, read_bad_file *read, siz
     assert_int_equal(count, count_bad_files(folder));
     assert_true(count >= least);
 }
-
-#endif

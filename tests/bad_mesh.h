@@ -1,6 +1,5 @@
 /* Hostile mesh files for test_bad_meshes.c: small ones as text, the others as makers. */
-#ifndef CUVETTE_TESTS_BAD_MESH_H
-#define CUVETTE_TESTS_BAD_MESH_H
+#pragma once
 
 typedef struct bad_mesh {
     const char *name, *text;
@@ -218,5 +217,3 @@ static const bad_mesh companions[] = {
     {"color_negative.mtl", "newmtl a\nKd -1 0 0\n"},           {"opacity_of_two.mtl", "newmtl a\nd 2\n"},
     {"shininess_negative.mtl", "newmtl a\nNs -5\n"},
 };
-
-#endif

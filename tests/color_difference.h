@@ -2,8 +2,7 @@
  * "The CIEDE2000 Color-Difference Formula: Implementation Notes, Supplementary Test Data, and Mathematical
  * Observations", Color Research and Application 30(1), 2005; kL = kC = kH = 1). For tests alone: libm is free to differ
  * in the last place. Pure; cannot fail. */
-#ifndef CUVETTE_TESTS_COLOR_DIFFERENCE_H
-#define CUVETTE_TESTS_COLOR_DIFFERENCE_H
+#pragma once
 
 #include "optics/observer.h"
 #include <math.h>
@@ -70,5 +69,3 @@ static inline double color_difference_2000(const double lab1[3], const double la
     double l_part = d_l / s_l, c_part = d_c / s_c, h_part = d_h / s_h;
     return sqrt(l_part * l_part + c_part * c_part + h_part * h_part + r_t * c_part * h_part); /* 22 */
 }
-
-#endif

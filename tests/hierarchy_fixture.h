@@ -1,6 +1,5 @@
 /* Meshes and hierarchies for tests of the builders. A fixture owns both; fixture_free releases it. */
-#ifndef CUVETTE_TESTS_HIERARCHY_FIXTURE_H
-#define CUVETTE_TESTS_HIERARCHY_FIXTURE_H
+#pragma once
 
 #include "geometry/hierarchy_private.h"
 
@@ -60,5 +59,3 @@ static inline void fixture_free(fixture *f)
     free(f->m.vertices);
     free(f->m.triangles);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Meshes and rays that make trouble for hierarchies, from fixed streams of random numbers. Ownership: a mesh is the
  * caller's, who releases it. */
-#ifndef CUVETTE_TESTS_HIERARCHY_SCENES_H
-#define CUVETTE_TESTS_HIERARCHY_SCENES_H
+#pragma once
 
 #include "base/single.h"
 #include "geometry/bodies.h"
@@ -117,5 +116,3 @@ static inline mesh_ray random_ray(const mesh *m, uint64_t *seed)
         r.skip = (uint32_t)(random_bits(seed) % m->triangle_count);
     return r;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A client over plain sockets for tests of web/http/http.h. Ownership: texts are fresh memory; sockets are the
  * caller's. A server that never answers shows as a reply of "" after READ_LIMIT_S, not as a test that hangs. */
-#ifndef CUVETTE_TESTS_HTTP_FIXTURE_H
-#define CUVETTE_TESTS_HTTP_FIXTURE_H
+#pragma once
 
 #include "base/text.h"
 #include "web/http/http_private.h"
@@ -134,5 +133,3 @@ static inline void echo(void *context, const http_request *q, http_reply *r)
     memcpy(copy, q->body ? q->body : "", q->body_size + 1);
     http_reply_bytes(r, 200, "text/plain", copy, q->body_size);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A laboratory in a folder of its own, for tests of web/lab.h, and a client of it. Ownership: room_open gives,
  * room_close stops the laboratory and removes the folder; texts and JSON that come back are the caller's. */
-#ifndef CUVETTE_TESTS_LAB_FIXTURE_H
-#define CUVETTE_TESTS_LAB_FIXTURE_H
+#pragma once
 
 #include "base/file.h"
 #include "http_fixture.h"
@@ -131,5 +130,3 @@ static inline char *room_film(const lab_room *room)
     json_decref(state);
     return copy;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A laboratory with a tiny study, for tests of web/session/studies.h and what came of studies. Include http_fixture.h's
  * needs (cmocka) first. */
-#ifndef CUVETTE_TESTS_LAB_STUDY_FIXTURE_H
-#define CUVETTE_TESTS_LAB_STUDY_FIXTURE_H
+#pragma once
 
 #include "lab_fixture.h"
 
@@ -83,5 +82,3 @@ static inline void run_to_the_end(const lab_room *room)
     assert_true(json_is_null(json_object_get(ended, "error")));
     json_decref(ended);
 }
-
-#endif

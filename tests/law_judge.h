@@ -1,7 +1,6 @@
 /* Whether a pair of scenes keeps its law: what is compared, and within what. Ownership: a judge is made by judge_open
  * and released by judge_close. */
-#ifndef CUVETTE_TESTS_LAW_JUDGE_H
-#define CUVETTE_TESTS_LAW_JUDGE_H
+#pragma once
 
 #include "law_pairs.h"
 #include "reversal_fixture.h"
@@ -350,5 +349,3 @@ static inline law_pair law_shrink(judge *j, law_pair p)
     law_judge(j, &p);
     return p;
 }
-
-#endif

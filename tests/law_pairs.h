@@ -1,7 +1,6 @@
 /* The laws, each as a change of a scene that must not be seen: a pair of scenes whose images are to be compared.
  * Ownership: values. */
-#ifndef CUVETTE_TESTS_LAW_PAIRS_H
-#define CUVETTE_TESTS_LAW_PAIRS_H
+#pragma once
 
 #include "law_scene.h"
 
@@ -428,5 +427,3 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
     }
     return true;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Random scenes for the laws (test_laws.c): solids of all shapes that overlap, touch, lie within one another or stand
  * apart by next to nothing, as values that can be changed, and as scene files. Ownership: values. */
-#ifndef CUVETTE_TESTS_LAW_SCENE_H
-#define CUVETTE_TESTS_LAW_SCENE_H
+#pragma once
 
 #include "random_scene.h"
 
@@ -384,5 +383,3 @@ static inline bool may_touch(const law_solid *a, const law_solid *b)
     const ball p = ball_around(a), q = ball_around(b);
     return !(vec3_length(vec3_sub(p.middle, q.middle)) > 1.0001 * (p.radius + q.radius));
 }
-
-#endif

@@ -2,8 +2,7 @@
  * their definitions in quadruple precision (solid_reference.h), meshes by their solid angle (van Oosterom and
  * Strackee, IEEE Trans. Biomed. Eng. 30, 1983), and what lies along random lines is asked at the middle of each
  * piece between two crossings. Ownership: the scene is borrowed. */
-#ifndef CUVETTE_TESTS_LINT_ORACLE_H
-#define CUVETTE_TESTS_LINT_ORACLE_H
+#pragma once
 
 #include "law_scene.h"
 #include "scene/model/medium.h"
@@ -315,5 +314,3 @@ static inline bool oracle_bends_nothing(oracle *o, const solid *x)
     }
     return nothing;
 }
-
-#endif

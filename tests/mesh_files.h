@@ -1,6 +1,5 @@
 /* For tests of mesh files: a folder of their own, files in it, and the bytes of binary formats. */
-#ifndef CUVETTE_TESTS_MESH_FILES_H
-#define CUVETTE_TESTS_MESH_FILES_H
+#pragma once
 
 #include "base/text.h"
 #include <dirent.h>
@@ -163,5 +162,3 @@ static inline bytes tetrahedron_glb(const char *node)
     free(data.at);
     return b;
 }
-
-#endif

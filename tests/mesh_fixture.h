@@ -1,6 +1,5 @@
 /* Small meshes for tests, made from lists; and a cube to take apart. */
-#ifndef CUVETTE_TESTS_MESH_FIXTURE_H
-#define CUVETTE_TESTS_MESH_FIXTURE_H
+#pragma once
 
 #include "geometry/mesh.h"
 #include <string.h>
@@ -47,5 +46,3 @@ static inline void turn_triangle(mesh *m, size_t t)
     const mesh_triangle old = m->triangles[t];
     m->triangles[t] = (mesh_triangle){{old.corner[0], old.corner[2], old.corner[1]}};
 }
-
-#endif

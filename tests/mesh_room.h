@@ -1,8 +1,7 @@
 /* Rooms of overlapping solids some of which are meshes, at random, and what is where in them by definition: of a mesh
  * by the winding number of its triangles around the point, of the others by their shapes. Ownership: mesh_room_fill
  * gives, mesh_room_empty releases. */
-#ifndef CUVETTE_TESTS_MESH_ROOM_H
-#define CUVETTE_TESTS_MESH_ROOM_H
+#pragma once
 
 #include "geometry/bodies.h"
 #include "geometry/forest.h"
@@ -194,5 +193,3 @@ static inline void mesh_room_empty(mesh_room *m)
         free(m->triangle[i]);
     }
 }
-
-#endif

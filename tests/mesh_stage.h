@@ -1,7 +1,6 @@
 /* Scenes with meshes for tests: read, loaded and looked at; pictures made in memory as their textures. Ownership as in
  * probe_fixture.h. */
-#ifndef CUVETTE_TESTS_MESH_STAGE_H
-#define CUVETTE_TESTS_MESH_STAGE_H
+#pragma once
 
 #include "probe_fixture.h"
 #include "scene/model/scene.h"
@@ -66,5 +65,3 @@ static inline double psnr(double rms)
 {
     return -20.0 * log10(rms);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Forwards: whole Mueller matrices, which a tracer that works backwards from the eye does without. */
-#ifndef CUVETTE_TESTS_MUELLER_MATRIX_H
-#define CUVETTE_TESTS_MUELLER_MATRIX_H
+#pragma once
 
 #include "optics/mueller.h"
 
@@ -60,5 +59,3 @@ static inline stokes mueller_apply(mueller m, stokes s)
     stokes result = {out[0], out[1], out[2], out[3]};
     return result;
 }
-
-#endif

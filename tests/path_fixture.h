@@ -1,8 +1,7 @@
 /* Pictures of random paths against what they should be: within the interval that the renderer reports. Eight layers
  * give a standard error of seven degrees of freedom; Student's t, two-sided (Abramowitz and Stegun, table 26.10). Each
  * call asserts that it worked. */
-#ifndef CUVETTE_TESTS_PATH_FIXTURE_H
-#define CUVETTE_TESTS_PATH_FIXTURE_H
+#pragma once
 
 #include "scene/model/scene.h"
 #include "render_fixture.h"
@@ -69,5 +68,3 @@ static inline double agreement_off(const agreement *a)
 {
     return a->off / sqrt(a->variance);
 }
-
-#endif

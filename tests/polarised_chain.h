@@ -1,7 +1,6 @@
 /* Random chains of interfaces for the tests of polarised light: the ray from the eye step by step, and the light's
  * field the other way, as complex vectors in space that know no Stokes frame. Pure but for the seed. */
-#ifndef CUVETTE_TESTS_POLARISED_CHAIN_H
-#define CUVETTE_TESTS_POLARISED_CHAIN_H
+#pragma once
 
 #include "optics/mueller.h"
 #include "random_stream.h"
@@ -138,5 +137,3 @@ static inline field chain_field(const chain_step *c, field e)
     }
     return field_add(field_from(s, a_s * along_s), field_from(vec3_cross(c->d, s), a_p * along_p));
 }
-
-#endif

@@ -1,8 +1,7 @@
 /* Scenes written line by line, and single rays through them, for tests that look through render/inspect/probe.h. Each
  * call asserts that it worked. Ownership: stage_of gives, stage_close releases; trees belong to their stage and last
  * until its next ray. */
-#ifndef CUVETTE_TESTS_PROBE_FIXTURE_H
-#define CUVETTE_TESTS_PROBE_FIXTURE_H
+#pragma once
 
 #include "scene/model/scene.h"
 #include "optics/interface.h"
@@ -143,5 +142,3 @@ static inline double apart(vec3 a, vec3 b)
 {
     return vec3_length(vec3_sub(a, b));
 }
-
-#endif

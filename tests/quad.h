@@ -1,7 +1,6 @@
 /* Quadruple precision (113 bits) for tests to compare with: enough arithmetic for roots, rotations and Fresnel's
  * angles, written here because libquadmath is gcc's alone, and long double is a double under valgrind. Pure. */
-#ifndef CUVETTE_TESTS_QUAD_H
-#define CUVETTE_TESTS_QUAD_H
+#pragma once
 
 #include "base/vec3.h"
 #include <math.h>
@@ -148,5 +147,3 @@ static inline quad3 quad3_turn(quad3 v, vec3 degrees, int backwards)
         return quad3_make(quad3_dot(r[0], v), quad3_dot(r[1], v), quad3_dot(r[2], v));
     return quad3_add(quad3_add(quad3_scale(r[0], v.x), quad3_scale(r[1], v.y)), quad3_scale(r[2], v.z));
 }
-
-#endif

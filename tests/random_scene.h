@@ -1,7 +1,6 @@
 /* Random scenes as text, from room_fixture.h's shapes: overlapping solids of all kinds, turned, their priorities
  * shuffled and some of them equal, indices shared. Ownership: values. */
-#ifndef CUVETTE_TESTS_RANDOM_SCENE_H
-#define CUVETTE_TESTS_RANDOM_SCENE_H
+#pragma once
 
 #include "room_fixture.h"
 
@@ -69,5 +68,3 @@ static inline room random_room(uint64_t *seed, bool on_a_grid)
     m.solids = NULL;
     return m;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Random numbers for tests: SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), a fixed stream for each seed, so that a
  * failure comes back. Ownership: the seed is the caller's. */
-#ifndef CUVETTE_TESTS_RANDOM_STREAM_H
-#define CUVETTE_TESTS_RANDOM_STREAM_H
+#pragma once
 
 #include "base/vec3.h"
 #include <math.h>
@@ -44,5 +43,3 @@ static inline vec3 random_direction(uint64_t *seed)
             return vec3_normalize(v);
     }
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* One ray through the kernels of geometry/rays.h, and the arrangement of a few shapes, for tests. Ownership: what
  * arrange_shapes gives is released with arrangement_destroy. */
-#ifndef CUVETTE_TESTS_RAY_FIXTURE_H
-#define CUVETTE_TESTS_RAY_FIXTURE_H
+#pragma once
 
 #include "base/isa.h"
 #include "geometry/forest.h"
@@ -89,5 +88,3 @@ static inline arrangement *arrangement_of(const solid_shape *shapes, int count)
     assert_int_equal(arrangement_build(sources, count, 0, &a, NULL), STATUS_OK);
     return a;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Bodies that are deformed, and what hierarchies of them are compared by. Ownership: meshes and hierarchies are the
  * caller's. After cmocka.h. */
-#ifndef CUVETTE_TESTS_REFIT_FIXTURE_H
-#define CUVETTE_TESTS_REFIT_FIXTURE_H
+#pragma once
 
 #include "base/isa.h"
 #include "base/single.h"
@@ -203,5 +202,3 @@ static inline long compare(const mesh *m, const hierarchy *refitted, int batches
     hierarchy_destroy(none);
     return met;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Scenes from text and pictures of them, for tests. Each call asserts that it worked. Ownership: scene_from and
  * render give; release with scene_destroy and render_result_destroy. */
-#ifndef CUVETTE_TESTS_RENDER_FIXTURE_H
-#define CUVETTE_TESTS_RENDER_FIXTURE_H
+#pragma once
 
 #include "scene/model/scene.h"
 #include "render/core/renderer.h"
@@ -84,5 +83,3 @@ static inline vec3 look(const scene *s)
     render_result_destroy(result);
     return seen;
 }
-
-#endif

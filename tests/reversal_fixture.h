@@ -1,6 +1,5 @@
 /* A path of light there and back, for tests. Ownership as in probe_fixture.h. */
-#ifndef CUVETTE_TESTS_REVERSAL_FIXTURE_H
-#define CUVETTE_TESTS_REVERSAL_FIXTURE_H
+#pragma once
 
 #include "probe_fixture.h"
 #include "scene/model/scene.h"
@@ -98,5 +97,3 @@ static inline reversal there_and_back(stage *g, vec3 origin, vec3 direction, int
     r.direction = apart(path->node[n].direction, vec3_scale(there[0].direction, -1.0));
     return r;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Rooms of a few overlapping solids, at random, and what is where in them by definition and in quadruple precision.
  * Ownership: room_fill and room_build give m->solids; release it with arrangement_destroy. */
-#ifndef CUVETTE_TESTS_ROOM_FIXTURE_H
-#define CUVETTE_TESTS_ROOM_FIXTURE_H
+#pragma once
 
 #include "random_stream.h"
 #include "ray_fixture.h"
@@ -191,5 +190,3 @@ static inline int has_plane(const room *m)
             return 1;
     return 0;
 }
-
-#endif

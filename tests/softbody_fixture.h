@@ -1,6 +1,5 @@
 /* Small nets whose motion is known, and how to run them. */
-#ifndef CUVETTE_TESTS_SOFTBODY_FIXTURE_H
-#define CUVETTE_TESTS_SOFTBODY_FIXTURE_H
+#pragma once
 
 #include "scene/model/edit/edit.h"
 #include "scene/model/slime.h"
@@ -109,5 +108,3 @@ static inline double energy_of(const softbody *b)
     const softbody_account a = softbody_measure(b);
     return a.kinetic + a.elastic + a.compression + a.gravity;
 }
-
-#endif

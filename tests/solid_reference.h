@@ -1,8 +1,7 @@
 /* Solids in quadruple precision for tests to compare with, by the definitions at the head of geometry/solid.h and
  * nothing else: every crossing of a line with every surface of a shape, containment, and distance to the surface.
  * What lies between two crossings is found by asking its midpoint. Pure; ownership: values. */
-#ifndef CUVETTE_TESTS_SOLID_REFERENCE_H
-#define CUVETTE_TESTS_SOLID_REFERENCE_H
+#pragma once
 
 #include "geometry/solid.h"
 #include "quad.h"
@@ -263,5 +262,3 @@ static inline int reference_events(const solid_shape *s, const reference_line *l
     }
     return events;
 }
-
-#endif

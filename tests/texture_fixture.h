@@ -1,6 +1,5 @@
 /* What a texture holds, and one from a file. */
-#ifndef CUVETTE_TESTS_TEXTURE_FIXTURE_H
-#define CUVETTE_TESTS_TEXTURE_FIXTURE_H
+#pragma once
 
 #include "image/texture_parts.h"
 
@@ -35,5 +34,3 @@ static inline size_t texture_bytes(const texture *t)
 {
     return sizeof *t + t->block_bytes;
 }
-
-#endif

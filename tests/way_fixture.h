@@ -1,7 +1,6 @@
 /* Ways of a ray in closed form, to compare probe_way with: through plane layers, and through coaxial cylinders or
  * concentric spheres. Ownership: values. */
-#ifndef CUVETTE_TESTS_WAY_FIXTURE_H
-#define CUVETTE_TESTS_WAY_FIXTURE_H
+#pragma once
 
 #include "probe_fixture.h"
 
@@ -125,5 +124,3 @@ static inline known_way way_through_shells(const shells *s, double offset, doubl
     }
     return w;
 }
-
-#endif

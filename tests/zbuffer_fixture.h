@@ -1,7 +1,6 @@
 /* What the tests of the depth buffer share: a scene that is loaded, and a film that no order of the work may change.
  * Ownership: scene_loaded gives, one_film_only frees. */
-#ifndef CUVETTE_TESTS_ZBUFFER_FIXTURE_H
-#define CUVETTE_TESTS_ZBUFFER_FIXTURE_H
+#pragma once
 
 #include "scene/model/scene.h"
 #include "render_fixture.h"
@@ -44,5 +43,3 @@ static inline void one_film_only(scene *s)
     }
     scene_destroy(s);
 }
-
-#endif

@@ -1,8 +1,7 @@
 /* The rays of the mesh benches, the same for Cuvette (tests/bench_mesh.c) and for Embree (embree.c): a camera of 800 x
  * 600 before the sets of triangles, and from each point that it sees a ray to a point light. Single precision, so that
  * both start from the same bits. Pure; cannot fail. */
-#ifndef CUVETTE_PEERS_MESH_RAYS_H
-#define CUVETTE_PEERS_MESH_RAYS_H
+#pragma once
 
 #include <math.h>
 
@@ -29,5 +28,3 @@ static inline void mesh_rays_direction(int x, int y, float out[3])
     out[1] = up * scale;
     out[2] = scale;
 }
-
-#endif

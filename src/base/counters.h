@@ -2,8 +2,7 @@
  * disturbs nothing and the totals do not depend on the number of threads. A ray is a straight piece
  * between two events: its counter goes up when it is traced (not when it is spawned). A build with
  * -DCUVETTE_COUNTERS=0 leaves the per-ray counters at zero. Ownership: values. */
-#ifndef CUVETTE_BASE_COUNTERS_H
-#define CUVETTE_BASE_COUNTERS_H
+#pragma once
 
 #include "base/lanes.h"
 #include <stdint.h>
@@ -46,5 +45,3 @@ void ray_counters_add(ray_counters *into, const ray_counters *from);
 
 /* camera + reflect + refract + shadow. */
 uint64_t ray_counters_total(const ray_counters *counters);
-
-#endif

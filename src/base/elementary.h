@@ -2,8 +2,7 @@
  * free to differ in the last place between machines, and decision 5 of the design (the image is a
  * function of the scene alone) is not. Only + - * / and sqrt are used, which IEEE 754 fixes.
  * Pure; cannot fail. The stated errors are tested against libm in long double. */
-#ifndef CUVETTE_BASE_ELEMENTARY_H
-#define CUVETTE_BASE_ELEMENTARY_H
+#pragma once
 
 /* x^y for 0 <= x; 0^0 = 1. Relative error below 4e-16 (2 + |y log2 x|), so 4e-14 at x^y = 1e-30; results under
  * 2^-1000 are 0, over 2^1000 they are 2^1000. Branch-free in base/elementary_inline.h, for kernels (the one for
@@ -16,5 +15,3 @@ void elementary_sincos_deg(double degrees, double *sine, double *cosine);
 
 /* Angle of the point (x, y) in degrees, -180..180, as atan2(y, x); 0 at the origin. Absolute error below 1e-13. */
 double elementary_atan2_deg(double y, double x);
-
-#endif

@@ -2,8 +2,7 @@
  * x = 2^e m with m in [1/sqrt 2, sqrt 2); log2 m = 2 atanh((m-1)/(m+1)) / ln 2, by its Taylor series to the 21st
  * power (the 23rd is under 1e-18); 2^t by its nearest whole power and the Taylor series of e^(r ln 2) to the
  * 13th power (the 14th is under 1e-17). */
-#ifndef CUVETTE_BASE_ELEMENTARY_INLINE_H
-#define CUVETTE_BASE_ELEMENTARY_INLINE_H
+#pragma once
 
 #include "base/lanes.h"
 
@@ -64,5 +63,3 @@ static inline double elementary_pow_inline(double x, double y)
     double log2_x = blend(zero, -1e300, elementary_log2_inline(blend(zero, 1.0, x)));
     return elementary_exp2_inline(y * log2_x);
 }
-
-#endif

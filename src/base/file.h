@@ -1,7 +1,6 @@
 /* Whole files in and out. A file that is written appears whole or not at all: it is built beside its
  * place, flushed to disk and renamed over it. Ownership: read text is the caller's, release with free. */
-#ifndef CUVETTE_BASE_FILE_H
-#define CUVETTE_BASE_FILE_H
+#pragma once
 
 #include "base/status.h"
 #include <stdio.h>
@@ -38,5 +37,3 @@ char *file_beside(const char *path, const char *name);
 
 /* Makes a directory and its parents; no error if it is there. */
 status file_make_directory(const char *path, diagnostic *why);
-
-#endif

@@ -5,8 +5,7 @@
  * Environments belong to threads; a new thread begins with its creator's. gcc and clang know no FENV_ACCESS, and
  * may move arithmetic on local variables across these calls: what is computed stands in functions that are called
  * between them, in another file or never inlined. These functions allocate nothing and cannot fail. */
-#ifndef CUVETTE_BASE_FLOAT_ENVIRONMENT_H
-#define CUVETTE_BASE_FLOAT_ENVIRONMENT_H
+#pragma once
 
 #include <fenv.h>
 #include <stdbool.h>
@@ -24,5 +23,3 @@ void float_environment_set(void);
 /* The same, until the other call puts back what was there, without what was raised in between. */
 void float_environment_enter(float_environment *outer);
 void float_environment_leave(const float_environment *outer);
-
-#endif

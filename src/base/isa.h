@@ -1,8 +1,7 @@
 /* Which vector instructions the kernels use. The kernels are plain C, compiled once for each level from
  * one source; the best level that this processor has is chosen at run time, and CUVETTE_ISA forces a
  * lower one (sse2, avx2, avx512). The results are the same to the bit. */
-#ifndef CUVETTE_BASE_ISA_H
-#define CUVETTE_BASE_ISA_H
+#pragma once
 
 #include "base/status.h"
 
@@ -17,5 +16,3 @@ status isa_choose(isa *out, diagnostic *why);
 
 /* "sse2", "avx2", "avx512". */
 const char *isa_name(isa level);
-
-#endif

@@ -1,8 +1,7 @@
 /* Selects without branches, for loops that the compiler is to vectorise. A mask is 0 or -1 in 64 bits, as
  * wide as the doubles beside it: blending bits is a form that gcc and clang both vectorise where `?:`
  * in a large loop ends as control flow. Pure; cannot fail. */
-#ifndef CUVETTE_BASE_LANES_H
-#define CUVETTE_BASE_LANES_H
+#pragma once
 
 #include <stdint.h>
 #include <string.h>
@@ -58,5 +57,3 @@ static inline double magnitude(double a)
 {
     return lanes_double(lanes_bits(a) & INT64_MAX);
 }
-
-#endif

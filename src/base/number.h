@@ -1,6 +1,5 @@
 /* Numbers as text, the same in every locale. Pure; no allocation. */
-#ifndef CUVETTE_BASE_NUMBER_H
-#define CUVETTE_BASE_NUMBER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -21,5 +20,3 @@ char *number_format(double value, char text[NUMBER_TEXT_MAX]);
 
 /* The same for finite values with that many digits, 1 to 17, rounded, no trailing zeros. */
 char *number_format_digits(double value, int digits, char text[NUMBER_TEXT_MAX]);
-
-#endif

@@ -1,8 +1,7 @@
 /* Random numbers as a function of what they are for, not of when they are drawn: the counter-based generator
  * Philox4x32-10 of Random123 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
  * Pure; cannot fail. */
-#ifndef CUVETTE_BASE_RANDOM_H
-#define CUVETTE_BASE_RANDOM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -17,5 +16,3 @@ static inline double random_unit(uint32_t word)
 {
     return ((double)word + 0.5) * 0x1p-32;
 }
-
-#endif

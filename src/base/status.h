@@ -3,8 +3,7 @@
  * what is wrong and what would be right. The library never prints and never exits.
  * Ownership: a diagnostic holds its own text and needs no release. NULL is allowed for one that the
  * caller does not care about. */
-#ifndef CUVETTE_BASE_STATUS_H
-#define CUVETTE_BASE_STATUS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -58,5 +57,3 @@ status locate_failure(diagnostic *why, const char *place, status code);
 
 /* Writes "file:line:column: what; remedy" (parts that are absent are left out) into text; returns text. */
 char *diagnostic_text(const diagnostic *why, char *text, size_t size);
-
-#endif

@@ -1,8 +1,7 @@
 /* Threads that share the work of one caller: a build, a step. A team of one starts none. Where the system gives fewer
  * threads than were asked for, the team is smaller: what it works out must not depend on its size. team_start gives,
  * team_stop releases; for one caller at a time. */
-#ifndef CUVETTE_BASE_TEAM_H
-#define CUVETTE_BASE_TEAM_H
+#pragma once
 
 #include <stddef.h>
 
@@ -16,5 +15,3 @@ int team_size(const team *t);
 
 /* Calls task for each index 0 .. count - 1, in any order and by any member, and returns when all have returned. */
 void team_run(team *t, team_task *task, void *context, size_t count);
-
-#endif

@@ -1,6 +1,5 @@
 /* Small helpers for text. Pure unless said otherwise. */
-#ifndef CUVETTE_BASE_TEXT_H
-#define CUVETTE_BASE_TEXT_H
+#pragma once
 
 #include <stddef.h>
 
@@ -13,5 +12,3 @@ const char *text_nearest(const char *wrong, const char *const *words, size_t cou
 
 /* printf into fresh memory (free it), or NULL. */
 char *text_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
-
-#endif

@@ -2,8 +2,7 @@
  * what finds no room is left out, fclose returns 0, and the text can be NULL. Here a failure stays known, whatever
  * was written after it. Ownership: open, write to stream, then close or abandon; both release the writer, which
  * stays where it was opened. The text is the caller's, released with free. */
-#ifndef CUVETTE_BASE_TEXT_WRITER_H
-#define CUVETTE_BASE_TEXT_WRITER_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -24,5 +23,3 @@ status text_writer_close(text_writer *writer, char **text, size_t *size, diagnos
 void text_writer_abandon(text_writer *writer);
 /* Closes it where code is STATUS_OK, abandons it where it is not; returns code, or why it could not be closed. */
 status text_writer_end(text_writer *writer, status code, char **text, size_t *size, diagnostic *why);
-
-#endif

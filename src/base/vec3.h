@@ -1,6 +1,5 @@
 /* Vectors and rotations of three dimensions, doubles. Pure inline functions; cannot fail. */
-#ifndef CUVETTE_BASE_VEC3_H
-#define CUVETTE_BASE_VEC3_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -66,5 +65,3 @@ static inline vec3 mat3_apply_transposed(mat3 m, vec3 v)
                      m.row[0].y * v.x + m.row[1].y * v.y + m.row[2].y * v.z,
                      m.row[0].z * v.x + m.row[1].z * v.y + m.row[2].z * v.z);
 }
-
-#endif

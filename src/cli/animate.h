@@ -3,8 +3,7 @@
  * there are not rendered again, the motion is computed anew up to where they end, and so the frames are, to the bit,
  * those of a run that nobody stopped. A stream (YUV4MPEG2) begins anew. Ownership: words of the command line are
  * borrowed; *_create and *_parse give, *_release takes. Errors are located. */
-#ifndef CUVETTE_CLI_ANIMATE_H
-#define CUVETTE_CLI_ANIMATE_H
+#pragma once
 
 #include "cli/scene_input.h"
 #include "job/account.h"
@@ -124,5 +123,3 @@ typedef struct animate_account {
  * are whole. */
 status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, job *with,
                     scene *s, scene_motion *motion, animate_account *account, diagnostic *why);
-
-#endif

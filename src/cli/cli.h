@@ -2,8 +2,7 @@
  * does its work through the rooms below, and returns a status with the reason in a diagnostic; main.c alone prints
  * the error and turns the status into the exit code (0 done, 1 the machine failed, 2 wrong input, 130 interrupted).
  * Data goes to standard output, progress and errors to standard error. */
-#ifndef CUVETTE_CLI_CLI_H
-#define CUVETTE_CLI_CLI_H
+#pragma once
 
 #include "base/status.h"
 #include <stddef.h>
@@ -33,5 +32,3 @@ status command_machine(int argc, char **argv, diagnostic *why);
 /* Parses "program [OPTION...] COMMAND ..." and runs the command of the table that it names. about stands above the list
  * of commands in the help. */
 status command_dispatch(const command *table, size_t count, const char *about, int argc, char **argv, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* A fan of rays as CSV and as a drawing. Each writes all of it to a stream, whose errors are left in the stream.
  * Ownership: everything is borrowed. */
-#ifndef CUVETTE_CLI_FAN_WRITERS_H
-#define CUVETTE_CLI_FAN_WRITERS_H
+#pragma once
 
 #include "render/inspect/fan.h"
 #include <stdio.h>
@@ -23,5 +22,3 @@ static inline double fan_shown(double value)
 
 status fan_write_csv(const fanned *t, FILE *out, diagnostic *why);
 status fan_write_drawing(const fanned *t, FILE *out, diagnostic *why);
-
-#endif

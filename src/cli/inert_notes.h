@@ -1,7 +1,6 @@
 /* Notes on parameters that a person sets and that cannot act (scene/model/inert/inert.h), one line each on standard
  * error. What the linter notes of the same place is not said twice. Everything is borrowed. */
-#ifndef CUVETTE_CLI_INERT_NOTES_H
-#define CUVETTE_CLI_INERT_NOTES_H
+#pragma once
 
 #include "cli/scene_input.h"
 #include "scene/model/inert/inert.h"
@@ -19,5 +18,3 @@ void inert_note_assignment(const scene *s, const char *assignment);
 
 /* Of a study's axes and fixed parameters: what is inert in every cell. */
 status inert_note_study(const study *s, diagnostic *why);
-
-#endif

@@ -1,8 +1,7 @@
 /* argp with errors as values: argp prints two lines of its own and exits, whereas here a mistake on the command line
  * becomes a diagnostic that names the option at fault and the nearest right one. --help, --usage and --version are
  * argp's: they print and exit. Ownership: nothing is kept. */
-#ifndef CUVETTE_CLI_OPTIONS_H
-#define CUVETTE_CLI_OPTIONS_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -71,5 +70,3 @@ status options_choice(const char *where, const char *what, const char *value, co
 /* "there is no WHAT 'wrong'", with the nearest of words as the remedy, or else all of them. */
 status options_unknown_word(const char *what, const char *wrong, const char *const *words, size_t count,
                             diagnostic *why);
-
-#endif

@@ -1,8 +1,7 @@
 /* The files that a render leaves: the picture, the maps of rays and time by pixel, the timeline. Their names are
  * looked at before anything is rendered, so that an hour's work is not lost to a misspelt ending. Ownership: names
  * are borrowed. */
-#ifndef CUVETTE_CLI_OUTPUTS_H
-#define CUVETTE_CLI_OUTPUTS_H
+#pragma once
 
 #include "render/core/renderer.h"
 #include <stdio.h>
@@ -46,5 +45,3 @@ status outputs_write_text(const char *path, status (*write)(const void *content,
 
 /* Writes them all; result has what was wanted, or a part of it. */
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* The edits of `cuvette scene`, in the order in which the command line has them. Mistakes are located at the option
  * that made them. Ownership: words of the command line are borrowed. */
-#ifndef CUVETTE_CLI_SCENE_EDITS_H
-#define CUVETTE_CLI_SCENE_EDITS_H
+#pragma once
 
 #include "scene/model/open.h"
 
@@ -23,5 +22,3 @@ extern const size_t scene_edit_count;
 
 /* Does one edit, and locates what is wrong with it. */
 status scene_edit_apply(scene *s, const scene_edit *edit, const char *text, diagnostic *why);
-
-#endif

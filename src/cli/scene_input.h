@@ -1,8 +1,7 @@
 /* What commands that work on a scene share: SCENE, --set and its short forms, the instruction set. Mistakes are
  * located at the option that made them. Ownership: reading the command line gives memory, scene_input_release takes it;
  * words of the command line are borrowed. */
-#ifndef CUVETTE_CLI_SCENE_INPUT_H
-#define CUVETTE_CLI_SCENE_INPUT_H
+#pragma once
 
 #include "cli/options.h"
 #include "job/job.h"
@@ -94,5 +93,3 @@ status scene_input_isa(isa *level, diagnostic *why);
 
 /* A job that ends at SIGINT and SIGTERM. measured: as in job_settings. */
 status scene_input_job(bool measured, job **out, diagnostic *why);
-
-#endif

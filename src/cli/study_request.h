@@ -1,7 +1,6 @@
 /* The command lines of `cuvette study`. Ownership: study_request_release releases what parsing filled, also after an
  * error; words are borrowed from argv. */
-#ifndef CUVETTE_CLI_STUDY_REQUEST_H
-#define CUVETTE_CLI_STUDY_REQUEST_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -33,5 +32,3 @@ void study_request_release(study_request *request);
  * median and 95% interval of the wall time, median of the CPU time, rays and marked rows, from the text that
  * study_summary writes; tsv is cut apart in the course of it. */
 status study_table_print(FILE *out, char *tsv, diagnostic *why);
-
-#endif

@@ -1,8 +1,7 @@
 /* What the program does with the terminal and with signals: the one line of progress, colour, the wish to stop, and
  * standard output that is known to have arrived. The stop flag and the exit handler are the program's only global
  * state. */
-#ifndef CUVETTE_CLI_TERMINAL_H
-#define CUVETTE_CLI_TERMINAL_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -44,5 +43,3 @@ void progress_start(progress_line *line, const char *label);
 void progress_draw(progress_line *line, double share_done);
 /* Leaves the line as it was before. Harmless when nothing is shown. */
 void progress_erase(progress_line *line);
-
-#endif

@@ -1,8 +1,7 @@
 /* The caller's buffers, and the pieces of them that are finished: workers fill in pieces and note them, the calling
  * thread hands the notes to the caller. Ownership: canvas_open gives memory, canvas_close takes it; film and request
  * are borrowed. */
-#ifndef CUVETTE_ENGINE_CANVAS_H
-#define CUVETTE_ENGINE_CANVAS_H
+#pragma once
 
 #include "base/float_environment.h"
 #include "cuvette.h"
@@ -35,5 +34,3 @@ void canvas_hand_piece(canvas *c, const cuvette_piece *piece);
 /* A rectangle of the film as sRGB bytes; stride: bytes from one row to the next. */
 void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x1, int y1, unsigned char *srgb,
                   size_t stride);
-
-#endif

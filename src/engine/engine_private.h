@@ -1,7 +1,6 @@
 /* What the engine's handles hold, and how its files turn the library's errors into those of cuvette.h. Not seen from
  * outside. Ownership as cuvette.h says. */
-#ifndef CUVETTE_ENGINE_ENGINE_PRIVATE_H
-#define CUVETTE_ENGINE_ENGINE_PRIVATE_H
+#pragma once
 
 #include "base/vec3.h"
 #include "base/float_environment.h"
@@ -115,5 +114,3 @@ cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *
         if (needed != CUVETTE_OK)           \
             return needed;                  \
     } while (0)
-
-#endif

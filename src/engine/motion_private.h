@@ -1,7 +1,6 @@
 /* A motion, shared by motion.c (its life and its time) and motion_hands.c (what takes hold of it). Ownership as
  * cuvette.h says. */
-#ifndef CUVETTE_ENGINE_MOTION_PRIVATE_H
-#define CUVETTE_ENGINE_MOTION_PRIVATE_H
+#pragma once
 
 #include "engine/engine_private.h"
 #include "scene/motion/motion_hands.h"
@@ -20,5 +19,3 @@ cuvette_status motion_is_alive(const cuvette_motion *m, cuvette_diagnostic *why)
 
 /* The slime of that mesh, or of the solid's. at: what the name means. */
 status motion_find(const cuvette_motion *m, const char *name, size_t *index, int *solid_or_none, diagnostic *why);
-
-#endif

@@ -1,6 +1,5 @@
 /* A query and what a call works on, shared by query.c (what it is) and query_rays.c (what it is asked). */
-#ifndef CUVETTE_ENGINE_QUERY_PRIVATE_H
-#define CUVETTE_ENGINE_QUERY_PRIVATE_H
+#pragma once
 
 #include "engine/engine_private.h"
 #include "geometry/forest.h"
@@ -38,5 +37,3 @@ struct cuvette_query {
 /* From the shelf, or new; NULL when memory is out. */
 bench *query_take_bench(const cuvette_query *query);
 void query_give_bench(const cuvette_query *query, bench *b);
-
-#endif

@@ -14,8 +14,7 @@
  * Ownership: arrangement_build gives, arrangement_destroy releases; kernels borrow. Geometry knows no colour: of
  * a medium it knows a number (equal numbers, equal indices: no interface between them), whether it is opaque, and
  * whether it absorbs. */
-#ifndef CUVETTE_GEOMETRY_ARRANGEMENT_H
-#define CUVETTE_GEOMETRY_ARRANGEMENT_H
+#pragma once
 
 #include "base/status.h"
 #include "geometry/solid.h"
@@ -112,5 +111,3 @@ int arrangement_surface(const arrangement *a, int before, int after);
 
 /* The rank of the medium where a ray is in that set of primitives. */
 int arrangement_rank(const arrangement *a, uint64_t inside);
-
-#endif

@@ -1,8 +1,7 @@
 /* Meshes that are computed: the three triangle sets of the speed studies, and parametric bodies. All are in a frame of
  * their own about the origin, y up. Ownership: the caller becomes the mesh's one owner. STATUS_BAD_INPUT for numbers
  * out of range (the remedy says which are right). Only + - * / and sqrt, and elementary.h: the same bits everywhere. */
-#ifndef CUVETTE_GEOMETRY_BODIES_H
-#define CUVETTE_GEOMETRY_BODIES_H
+#pragma once
 
 #include "geometry/mesh.h"
 
@@ -43,5 +42,3 @@ status body_height_field(const double *heights, int columns, int rows, double si
 
 /* A box of edges size about the origin: 12 triangles, flat normals, each face the whole texture. */
 status body_box(vec3 size, mesh **out, diagnostic *why);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the files of geometry/bodies*.c share, and no other needs. */
-#ifndef CUVETTE_GEOMETRY_BODIES_PARTS_H
-#define CUVETTE_GEOMETRY_BODIES_PARTS_H
+#pragma once
 
 #include "geometry/bodies.h"
 
@@ -20,5 +19,3 @@ vec3 body_azimuth(int at, int around);
 
 /* Two triangles between four corners of a grid: a, then b to its right, c above b, d above a, seen from the front. */
 void body_quad(mesh *m, size_t *triangle, size_t a, size_t b, size_t c, size_t d);
-
-#endif

@@ -3,8 +3,7 @@
  *
  * A mesh's face is numbered by its primitive, copy and triangle: see mesh_face_number. Ownership: forest_build gives,
  * forest_destroy releases; meshes and their hierarchies are borrowed. */
-#ifndef CUVETTE_GEOMETRY_FOREST_H
-#define CUVETTE_GEOMETRY_FOREST_H
+#pragma once
 
 #include "geometry/hierarchy.h"
 #include "geometry/rays.h"
@@ -128,5 +127,3 @@ typedef struct forest_kernels {
 } forest_kernels;
 
 extern const forest_kernels forest_kernels_sse2, forest_kernels_avx2, forest_kernels_avx512;
-
-#endif

@@ -11,8 +11,7 @@
  *
  * A hierarchy borrows its mesh, which must outlive it; it is not changed once it is built (but for hierarchy_refit and
  * hierarchy_follow), and any number of threads may use it. */
-#ifndef CUVETTE_GEOMETRY_HIERARCHY_H
-#define CUVETTE_GEOMETRY_HIERARCHY_H
+#pragma once
 
 #include "geometry/mesh.h"
 
@@ -108,5 +107,3 @@ typedef struct hierarchy_kernels {
 } hierarchy_kernels;
 
 extern const hierarchy_kernels hierarchy_kernels_sse2, hierarchy_kernels_avx2, hierarchy_kernels_avx512;
-
-#endif

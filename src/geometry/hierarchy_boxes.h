@@ -3,8 +3,7 @@
  * more than it needs, and distances to near planes are made smaller, to far ones larger, by more than the rounding of
  * the three operations (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is left out only if it begins beyond
  * the best hit, not at it, so that the lower number of two triangles at one distance is found whichever comes first. */
-#ifndef CUVETTE_GEOMETRY_HIERARCHY_BOXES_H
-#define CUVETTE_GEOMETRY_HIERARCHY_BOXES_H
+#pragma once
 
 #include "geometry/hierarchy_query.h"
 
@@ -89,5 +88,3 @@ ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *__restri
 
 /* The way down from a child, for a ray that some way led there. */
 void KERNEL(walk_bvh_from)(const hierarchy *h, ray_query *q, const box_ray *b, enum query_mode mode, uint32_t at);
-
-#endif

@@ -8,8 +8,7 @@
  *
  * The tree depends on the set of references alone, never on their order: boxes and counts of bins do not, halves are
  * those of a complete order, and a leaf's triangles are sorted. So it is the same for any number of threads. */
-#ifndef CUVETTE_GEOMETRY_HIERARCHY_BVH_H
-#define CUVETTE_GEOMETRY_HIERARCHY_BVH_H
+#pragma once
 
 #include "geometry/hierarchy_private.h"
 #include "base/team.h"
@@ -216,5 +215,3 @@ void hierarchy_refit_nodes_avx512(hierarchy *h);
 /* Counts what becomes of a tree, and writes it to h; root NULL: no triangles. STATUS_FAILURE when memory is out or the
  * tree too large. */
 status bvh_gather(hierarchy *h, bvh_branch *root, const bvh_ref *refs, team *t, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* Vectors of eight floats and four doubles for the hierarchy kernels, in the vector extensions that gcc and clang
  * share. Pure; cannot fail. */
-#ifndef CUVETTE_GEOMETRY_HIERARCHY_LANES_H
-#define CUVETTE_GEOMETRY_HIERARCHY_LANES_H
+#pragma once
 
 #include "base/kernel.h"
 #include <stdint.h>
@@ -66,5 +65,3 @@ ALWAYS_INLINE unsigned lane_first(uint64_t set)
 }
 #endif
 #define LANES_LESS_FIRST(set) ((set) & ((set)-1))
-
-#endif

@@ -3,8 +3,7 @@
  * Triangles stand in blocks of four, as structures of arrays, so that four are tested at once; a block that is not full
  * repeats one of its triangles, which changes no hit. Where every coordinate is a float, blocks hold floats: half the
  * memory, the same bits. */
-#ifndef CUVETTE_GEOMETRY_HIERARCHY_PRIVATE_H
-#define CUVETTE_GEOMETRY_HIERARCHY_PRIVATE_H
+#pragma once
 
 #include "geometry/hierarchy.h"
 
@@ -81,5 +80,3 @@ void hierarchy_embree_all(const hierarchy *h, const mesh_ray *ray, mesh_visit *v
 size_t hierarchy_fill_blocks(hierarchy *h, const uint32_t *order, size_t count, size_t first);
 /* Memory for so many blocks and nodes, aligned; false when memory is out. */
 bool hierarchy_make_blocks(hierarchy *h, size_t count);
-
-#endif

@@ -9,8 +9,7 @@
  * A hit's t is never less than where the ray comes into the triangle's own box (by a margin of 2^-40): whatever a
  * triangle seen edge-on makes of it, no hierarchy that culls by boxes with a wider margin loses it. As t is only ever
  * made larger by this, what lies beyond the best hit before lies beyond it after, and need not be looked at. */
-#ifndef CUVETTE_GEOMETRY_HIERARCHY_QUERY_H
-#define CUVETTE_GEOMETRY_HIERARCHY_QUERY_H
+#pragma once
 
 #include "base/lanes.h"
 #include "geometry/hierarchy_lanes.h"
@@ -253,5 +252,3 @@ void KERNEL(walk_spheres)(const hierarchy *h, ray_query *q, enum query_mode mode
 /* Rays down the hierarchy `bvh` together, as far as they are alike; each has been started. Nearest or any. */
 enum { TOGETHER = 128 };
 void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int count, enum query_mode mode);
-
-#endif

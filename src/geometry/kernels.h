@@ -1,6 +1,5 @@
 /* The kernels' parts, by instruction set; for src/geometry's own *_kernel.c files. */
-#ifndef CUVETTE_GEOMETRY_KERNELS_H
-#define CUVETTE_GEOMETRY_KERNELS_H
+#pragma once
 
 #include "base/kernel.h"
 #include "geometry/forest.h"
@@ -55,5 +54,3 @@ forest_hit KERNEL(mesh_hit_between)(const arrangement *a, const ray_batch *rays,
 /* Marks the shadow rays (but settled ones) that meshes of a set are in the way of. */
 void KERNEL(mesh_shadows)(const arrangement *a, const ray_batch *rays, uint64_t wanted, int64_t *marked,
                           const int64_t *settled);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * A mesh is not changed once it is made (but for mesh_move), and is shared: mesh_retain and mesh_release count its
  * owners (from any thread). Makers and readers fill one through mesh_create, and end with mesh_finish. */
-#ifndef CUVETTE_GEOMETRY_MESH_H
-#define CUVETTE_GEOMETRY_MESH_H
+#pragma once
 
 #include "base/status.h"
 #include "base/vec3.h"
@@ -82,5 +81,3 @@ status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic 
 /* Volume enclosed by a closed mesh (negative when inside out), and surface area. */
 double mesh_volume(const mesh *m);
 double mesh_area(const mesh *m);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the files of geometry/mesh*.c share, and no other needs. */
-#ifndef CUVETTE_GEOMETRY_MESH_PARTS_H
-#define CUVETTE_GEOMETRY_MESH_PARTS_H
+#pragma once
 
 #include "geometry/mesh.h"
 
@@ -38,5 +37,3 @@ void mesh_find_bounds(mesh *m);
 
 /* Makes every normal a unit vector; a zero one becomes that of the first triangle there that has one. */
 void mesh_normalize(mesh *m);
-
-#endif

@@ -3,8 +3,7 @@
  * before it frees the mesh; and for hierarchy.c, which builds under the mutex and stores finished ones. owners and
  * hierarchies are read and written with the compiler's
  * __atomic operations alone; destroy is set under the mutex before the first hierarchy is stored. */
-#ifndef CUVETTE_GEOMETRY_MESH_SHARE_H
-#define CUVETTE_GEOMETRY_MESH_SHARE_H
+#pragma once
 
 #include "geometry/hierarchy.h"
 #include <pthread.h>
@@ -19,5 +18,3 @@ struct mesh_share {
     hierarchy *hierarchies[HIERARCHY_KIND_COUNT]; /* NULL until first used */
     void (*destroy)(hierarchy *h);                /* NULL as long as there is none */
 };
-
-#endif

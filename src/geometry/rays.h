@@ -1,7 +1,6 @@
 /* Batches of rays and what they hit, as structures of arrays. A batch is short enough for the first-level
  * cache. Ownership: the arrays of a ray_batch belong to whoever queued the rays; hits and scratch are plain values. */
-#ifndef CUVETTE_GEOMETRY_RAYS_H
-#define CUVETTE_GEOMETRY_RAYS_H
+#pragma once
 
 #include "geometry/arrangement.h"
 #include <float.h>
@@ -133,5 +132,3 @@ typedef struct geometry_kernels {
 } geometry_kernels;
 
 extern const geometry_kernels geometry_kernels_sse2, geometry_kernels_avx2, geometry_kernels_avx512;
-
-#endif

@@ -4,8 +4,7 @@
  * The root of the face that a ray starts on is zero exactly, not nearly. A component of a direction that
  * is zero is taken as 1e-300, and a line along a cylinder's axis as leaning by 1e-140: the crossings that this makes
  * lie at 1e130 and beyond, which is never, without a special case. */
-#ifndef CUVETTE_GEOMETRY_ROOTS_H
-#define CUVETTE_GEOMETRY_ROOTS_H
+#pragma once
 
 #include "base/kernel.h"
 #include "base/lanes.h"
@@ -74,5 +73,3 @@ ALWAYS_INLINE double cylinder_axial(double dx, double dz, double m2)
 {
     return dx * dx + m2 * dz * dz;
 }
-
-#endif

@@ -1,11 +1,8 @@
 /* May faces of two solids lie in one another? Pure. */
-#ifndef CUVETTE_GEOMETRY_SHARED_FACES_H
-#define CUVETTE_GEOMETRY_SHARED_FACES_H
+#pragma once
 
 #include "geometry/solid.h"
 
 /* False: no face of one lies in a face of the other, flat in flat (two planes that are one) or curved in curved. True:
  * perhaps. Meshes of many triangles each are not compared. */
 bool solid_shapes_may_share_faces(const solid_shape *a, const solid_shape *b);
-
-#endif

@@ -5,8 +5,7 @@
  * right-hand rule on the axes' names) and then moved to position.
  *
  * Pure; ownership: values; a shape borrows its mesh. */
-#ifndef CUVETTE_GEOMETRY_SOLID_H
-#define CUVETTE_GEOMETRY_SOLID_H
+#pragma once
 
 #include "base/status.h"
 #include "base/vec3.h"
@@ -59,5 +58,3 @@ bool solid_shape_contains(const solid_shape *shape, vec3 point);
 
 /* The rotation of rotation_deg: local to world. */
 mat3 rotation_from_deg(vec3 rotation_deg);
-
-#endif

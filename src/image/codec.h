@@ -2,8 +2,7 @@
  * stream and leave the stream's own errors to whoever closes it; readers decode a whole file that lies in memory.
  * Diagnostics are filled without the file's name. Ownership: a read picture is the caller's; nothing is allocated when
  * a status other than STATUS_OK comes back. */
-#ifndef CUVETTE_IMAGE_CODEC_H
-#define CUVETTE_IMAGE_CODEC_H
+#pragma once
 
 #include "image/image.h"
 #include <stdbool.h>
@@ -48,5 +47,3 @@ status codec_png_read(const unsigned char *bytes, size_t size, image **out, int 
 status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
 status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
 status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);
-
-#endif

@@ -1,11 +1,8 @@
 /* Colours of numbers from 0 to 1, from dark to light: two maps by S. van der Walt and N. Smith for matplotlib 2015
  * (CC0). Pure. */
-#ifndef CUVETTE_IMAGE_COLOR_MAP_H
-#define CUVETTE_IMAGE_COLOR_MAP_H
+#pragma once
 
 typedef enum color_map { VIRIDIS, MAGMA } color_map;
 
 /* sRGB, 0 to 255, not rounded. t outside 0..1 is its nearer end, NaN is 0. */
 void color_map_at(color_map which, double t, double rgb[3]);
-
-#endif

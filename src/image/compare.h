@@ -2,8 +2,7 @@
  * (infinities too) and sRGB-encoded, never quantised; what comes from 8 bits is what it is. Numbers are the same on
  * every machine, psnr_db up to libm's last place. Ownership: pictures are borrowed, a map is the caller's. Errors:
  * sizes that differ and a pixel that is not a number are STATUS_BAD_INPUT, with the pixel's place. */
-#ifndef CUVETTE_IMAGE_COMPARE_H
-#define CUVETTE_IMAGE_COMPARE_H
+#pragma once
 
 #include "image/image.h"
 
@@ -23,5 +22,3 @@ status image_compare(const image *a, const image *b, image_comparison *out, diag
 /* The FLIP error of each pixel in false colour (magma, black 0, pale yellow 1), of the pictures' size: linear light, so
  * that a PNG of it has the map's own colours. */
 status image_compare_map(const image *a, const image *b, image **map, diagnostic *why);
-
-#endif

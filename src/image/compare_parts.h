@@ -1,7 +1,6 @@
 /* The measures behind compare.h that look at neighbours, each in a file of its own. Their pictures and planes have
  * passed compare_check. Ownership: everything is the caller's. Errors: STATUS_FAILURE without memory. */
-#ifndef CUVETTE_IMAGE_COMPARE_PARTS_H
-#define CUVETTE_IMAGE_COMPARE_PARTS_H
+#pragma once
 
 #include "image/image.h"
 
@@ -25,5 +24,3 @@ void flip_hunt_lab(const double opponent[3], double lab[3]);
 double flip_farthest(void);
 /* The same of two colours of flip_hunt_lab, spread over 0..1. */
 double flip_color_error(const double a[3], const double b[3], double farthest);
-
-#endif

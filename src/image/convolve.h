@@ -1,8 +1,7 @@
 /* Convolution of a plane of doubles with separable filters: along the rows, then along the columns. Outside the plane
  * its border pixels go on. Pure; cannot fail. Ownership: planes are the caller's, width * height values, rows from the
  * top. */
-#ifndef CUVETTE_IMAGE_CONVOLVE_H
-#define CUVETTE_IMAGE_CONVOLVE_H
+#pragma once
 
 enum { CONVOLVE_TAPS_MAX = 32 };
 
@@ -19,5 +18,3 @@ convolve_taps convolve_gaussian(int count, double sigma);
 /* Adds scale times the filtered plane to out. The three planes do not overlap; scratch is left with the rows' sums. */
 void convolve_add(const double *plane, int width, int height, const convolve_taps *across, const convolve_taps *down,
                   double scale, double *scratch, double *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* A 5 by 7 dot-matrix font for the keys of pictures: printable ASCII. Pure; cannot fail. */
-#ifndef CUVETTE_IMAGE_FONT_H
-#define CUVETTE_IMAGE_FONT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -9,5 +8,3 @@ enum { FONT_WIDTH = 5, FONT_HEIGHT = 8, FONT_ADVANCE = 6 }; /* the eighth row is
 /* Whether the dot in this column and row of a character is set; what is not printable ASCII looks like '?',
  * dots outside the cell are unset. */
 bool font_dot(char character, int column, int row);
-
-#endif

@@ -1,7 +1,6 @@
 /* A quantity per pixel as a false-colour picture with a key: scale bar, its numbers and a title under it.
  * Ownership: the picture is the caller's. */
-#ifndef CUVETTE_IMAGE_HEATMAP_H
-#define CUVETTE_IMAGE_HEATMAP_H
+#pragma once
 
 #include "image/image.h"
 
@@ -14,5 +13,3 @@ status heatmap_create(const double *values, int width, int height, const char *t
 
 /* The map's colour for 0..1, sRGB-encoded 0..255. */
 void heatmap_color(double t, unsigned char rgb[3]);
-
-#endif

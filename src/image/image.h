@@ -1,8 +1,7 @@
 /* Pictures in memory and on disk: PNG (libpng), JPEG (libjpeg-turbo), PFM (Debevec); in alone: BMP. No time stamps, the
  * same bytes for the same picture; files appear whole or not at all. Ownership: image_create and
  * image_read give a picture to the caller, image_destroy releases it. */
-#ifndef CUVETTE_IMAGE_IMAGE_H
-#define CUVETTE_IMAGE_IMAGE_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -56,5 +55,3 @@ status image_encode(const image *picture, image_format format, int bits, bool fa
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why);
 /* The same of a file that lies below root (base/below.h). */
 status image_read_below(const char *path, const char *root, image **out, int *file_bits, diagnostic *why);
-
-#endif

@@ -4,8 +4,7 @@
  * bits everywhere. Alpha is what image_read makes of it: blended over black, then dropped. A texture is not changed
  * once it is made, and is shared: texture_retain and texture_release count its owners (from any thread); sampling needs
  * no lock. It keeps nothing of the picture that it was made from. */
-#ifndef CUVETTE_IMAGE_TEXTURE_H
-#define CUVETTE_IMAGE_TEXTURE_H
+#pragma once
 
 #include "base/status.h"
 #include "base/vec3.h"
@@ -52,5 +51,3 @@ vec3 texture_sample(const texture *t, double u, double v, double footprint);
 
 /* Goes into a fingerprint (base/hash.h): size and texels of the picture itself. */
 uint64_t texture_hash(const texture *t, uint64_t hash);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the files of image/texture.h share: how a texture lies in memory. Nobody else includes it.
  * Ownership: all texels of all levels are one block, which belongs to the texture. */
-#ifndef CUVETTE_IMAGE_TEXTURE_PARTS_H
-#define CUVETTE_IMAGE_TEXTURE_PARTS_H
+#pragma once
 
 #include "image/texture.h"
 
@@ -28,5 +27,3 @@ struct texture {
 
 /* Fills level 1 and those above it from level 0; sizes and memory are there. Cannot fail. */
 void texture_build_pyramid(texture *t);
-
-#endif

@@ -3,8 +3,7 @@
  * lines and BT.709 from there on, as players take it; chroma is the mean of its four pixels, at odd edges of those that
  * are there. Integer arithmetic: the same bytes everywhere. Ownership: streams and pictures are borrowed. Errors of the
  * stream are left to whoever closes it. */
-#ifndef CUVETTE_IMAGE_Y4M_H
-#define CUVETTE_IMAGE_Y4M_H
+#pragma once
 
 #include "image/image.h"
 #include <stdint.h>
@@ -14,5 +13,3 @@
 status y4m_begin(FILE *stream, int width, int height, int64_t fps_num, int64_t fps_den, diagnostic *why);
 /* One frame, of that size. */
 status y4m_frame(FILE *stream, const image *picture, diagnostic *why);
-
-#endif

@@ -3,8 +3,7 @@
  * or fills a reader takes nothing else down. Its parts, one file each. Ownership: what is allocated is never given
  * back; the process ends as soon as the mesh is written, and with it all of it goes. Errors: STATUS_BAD_INPUT and the
  * reason in the diagnostic; memory that is not there is the file's fault, too, because the limit on it is ours. */
-#ifndef CUVETTE_IMPORT_IMPORT_H
-#define CUVETTE_IMPORT_IMPORT_H
+#pragma once
 
 #include "base/status.h"
 #include "base/vec3.h"
@@ -86,5 +85,3 @@ enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double
 /* ---- write.c ---- */
 
 status write_mesh(const request *asked, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why);
-
-#endif

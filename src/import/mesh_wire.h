@@ -10,8 +10,7 @@
  * - slots: triangle_count x 1 byte, the index of the material;
  * - materials: material_count of record, name, texture (texts without a final 0, of the lengths in the record);
  * - MESH_WIRE_END. */
-#ifndef CUVETTE_IMPORT_MESH_WIRE_H
-#define CUVETTE_IMPORT_MESH_WIRE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -33,5 +32,3 @@ typedef struct mesh_wire_material {
     double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;
     uint32_t flags, name_length, texture_length, reserved;
 } mesh_wire_material;
-
-#endif

@@ -2,8 +2,7 @@
  * they cost the process. All that is written of a frame is read from here, by the list of job/quantities.h. Ownership:
  * an account owns its result and its lists of times, and borrows the scene; job_account_release releases them. Absent
  * numbers are NaN or -1. */
-#ifndef CUVETTE_JOB_ACCOUNT_H
-#define CUVETTE_JOB_ACCOUNT_H
+#pragma once
 
 #include "base/isa.h"
 #include "measure/usage.h"
@@ -32,5 +31,3 @@ uint64_t job_account_hash(const job_account *a);
 /* Median over the finished frames; of a frame that was broken off, what it took. */
 double job_account_wall_s(const job_account *a);
 double job_account_cpu_s(const job_account *a);
-
-#endif

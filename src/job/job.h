@@ -10,8 +10,7 @@
  * Errors: STATUS_INTERRUPTED after a wish to stop, with what was finished in the account; STATUS_BAD_INPUT for a wrong
  * scene and for a frame over the quota; STATUS_FAILURE for a frame over its time, and where memory, threads or places
  * for them are out. What is to be said of it stands in the diagnostic. */
-#ifndef CUVETTE_JOB_JOB_H
-#define CUVETTE_JOB_JOB_H
+#pragma once
 
 #include "job/account.h"
 
@@ -55,5 +54,3 @@ status job_render(job *j, const scene *s, const render_options *options, job_acc
  * further frame, which is not measured. progress hears the share of all frames. */
 status job_repeat(job *j, const scene *s, size_t frames, const render_options *options, job_account *out,
                   diagnostic *why);
-
-#endif

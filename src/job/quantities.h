@@ -3,8 +3,7 @@
  * (study/rows.c), `cuvette render --json` and the page's numbers (report/report.c), the dictionary in results/README.md
  * and the manual's part on the JSON account are all made from it (make dictionary renews the last two). A new quantity
  * is one new line in quantities.c. Ownership: constant; values borrow from the account. Nothing fails. */
-#ifndef CUVETTE_JOB_QUANTITIES_H
-#define CUVETTE_JOB_QUANTITIES_H
+#pragma once
 
 #include "job/account.h"
 
@@ -56,5 +55,3 @@ extern const size_t worker_quantity_count;
 
 /* The frame's quantity of that name, or NULL. */
 const quantity *frame_quantity(const char *name);
-
-#endif

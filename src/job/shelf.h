@@ -1,8 +1,7 @@
 /* Meshes of the scenes that were loaded last, so that one which comes again does not make its triangles and
  * hierarchies again. Ownership: a shelf owns copies of scenes, which share their meshes; shelf_clear lets go of them.
  */
-#ifndef CUVETTE_JOB_SHELF_H
-#define CUVETTE_JOB_SHELF_H
+#pragma once
 
 #include "scene/model/open.h"
 
@@ -18,5 +17,3 @@ typedef struct shelf {
 /* scene_load_until, with meshes from the shelf where it has them; what had to be made is put there. */
 status shelf_load(shelf *s, scene *setting, const load_watch *watch, diagnostic *why);
 void shelf_clear(shelf *s);
-
-#endif

@@ -1,6 +1,5 @@
 /* Where a line runs inside a body, and how large and how thick a body is. Pure. */
-#ifndef CUVETTE_LINT_LINES_H
-#define CUVETTE_LINT_LINES_H
+#pragma once
 
 #include "geometry/arrangement.h"
 #include "geometry/forest.h"
@@ -19,5 +18,3 @@ typedef struct line_spans {
 /* False where it cannot be said: an open mesh, more than SPANS_MAX, or a line through an edge of a mesh that is
  * taken for none or two. */
 bool line_through(const arrangement *a, const body *b, const line *l, line_spans *out);
-
-#endif

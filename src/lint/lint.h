@@ -5,8 +5,7 @@
  *
  * Nothing of a later frame changes: neither its film nor its counters. Ownership: the scene is borrowed, a note
  * lasts for the call. */
-#ifndef CUVETTE_LINT_LINT_H
-#define CUVETTE_LINT_LINT_H
+#pragma once
 
 #include "base/isa.h"
 #include "scene/model/inert/note.h"
@@ -22,5 +21,3 @@ typedef struct lint_filter {
     void *context;
 } lint_filter;
 status lint_scene_but(const scene *s, isa level, const lint_filter *filter, const note_taker *taker, diagnostic *why);
-
-#endif

@@ -1,6 +1,5 @@
 /* The linter's parts; for src/lint alone. Each looks at a plan and gives its notes. */
-#ifndef CUVETTE_LINT_PARTS_H
-#define CUVETTE_LINT_PARTS_H
+#pragma once
 
 #include "render/core/plan.h"
 #include "scene/model/inert/note.h"
@@ -27,5 +26,3 @@ static inline const solid *lint_solid(const lint_room *room, int rank)
 {
     return &room->of->solids[room->made->solids->bodies[rank].solid];
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Clocks, in seconds. wall: CLOCK_MONOTONIC; thread CPU: CLOCK_THREAD_CPUTIME_ID; process CPU:
  * CLOCK_PROCESS_CPUTIME_ID. Pure reads; cannot fail on Linux. */
-#ifndef CUVETTE_MEASURE_CLOCK_H
-#define CUVETTE_MEASURE_CLOCK_H
+#pragma once
 
 #include <stdint.h>
 #include <time.h>
@@ -20,5 +19,3 @@ typedef struct clock_quality {
 } clock_quality;
 clock_quality clock_wall_quality(void);
 clock_quality clock_thread_cpu_quality(void);
-
-#endif

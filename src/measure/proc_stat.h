@@ -1,7 +1,6 @@
 /* Reading of /proc/stat, apart from the file itself so that it can be tested on text of any machine. Pure; inside
  * this room. proc(5), section /proc/stat. */
-#ifndef CUVETTE_MEASURE_PROC_STAT_H
-#define CUVETTE_MEASURE_PROC_STAT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -14,5 +13,3 @@ typedef struct proc_stat {
 /* text is the file's; ticks_per_s is sysconf(_SC_CLK_TCK). False when it has no line "cpu " with four counts or more,
  * or when all of them are zero, as sandboxes give that hide the machine. */
 bool proc_stat_parse(const char *text, double ticks_per_s, proc_stat *out);
-
-#endif

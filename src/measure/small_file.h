@@ -1,6 +1,5 @@
 /* Small files of /proc and /sys, whose size is not known beforehand. Inside this room. */
-#ifndef CUVETTE_MEASURE_SMALL_FILE_H
-#define CUVETTE_MEASURE_SMALL_FILE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -12,5 +11,3 @@ bool small_file_read(const char *root, const char *path, char *text, size_t size
 
 /* The decimal integer after "key:" at the start of a line, as in /proc/meminfo; -1 if there is none. */
 int64_t small_file_field(const char *text, const char *key);
-
-#endif

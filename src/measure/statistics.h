@@ -1,6 +1,5 @@
 /* Honest summaries of repeated measurements. Pure; no allocation but where said. */
-#ifndef CUVETTE_MEASURE_STATISTICS_H
-#define CUVETTE_MEASURE_STATISTICS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -21,5 +20,3 @@ double summary_relative_width(const summary *s);
 
 /* The 97.5% quantile of Student's t (95% lie between -t and t) for 1 or more degrees of freedom, to 1e-9; NaN for 0. */
 double student_t_975(size_t degrees_of_freedom);
-
-#endif

@@ -1,8 +1,7 @@
 /* The machine's processors and where threads are put on them, through hwloc. A topology belongs to who
  * created it, and threads may read it together. The process's own CPU binding (taskset, cgroup), as it is when the
  * topology is created, is respected: only those units are used. */
-#ifndef CUVETTE_MEASURE_TOPOLOGY_H
-#define CUVETTE_MEASURE_TOPOLOGY_H
+#pragma once
 
 #include "base/status.h"
 
@@ -41,5 +40,3 @@ int topology_current_pu(void);
  * (without host name and serial numbers). Fresh memory, release with free; NULL when there is none. */
 char *topology_summary(const topology *machine);
 char *topology_xml(const topology *machine);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a topology holds. Inside this room. */
-#ifndef CUVETTE_MEASURE_TOPOLOGY_PRIVATE_H
-#define CUVETTE_MEASURE_TOPOLOGY_PRIVATE_H
+#pragma once
 
 #include "measure/topology.h"
 
@@ -13,5 +12,3 @@ struct topology {
     /* round[r]: the tree with the r-th unit of every core that has so many, and nothing else */
     hwloc_topology_t *round;
 };
-
-#endif

@@ -1,6 +1,5 @@
 /* What a stretch of work cost the process and the machine: taken before and after, then subtracted. */
-#ifndef CUVETTE_MEASURE_USAGE_H
-#define CUVETTE_MEASURE_USAGE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -41,5 +40,3 @@ void hardware_counter_destroy(hardware_counter *counter);
  * "others use 40% of the machine"). Calls line for each, never when nothing is found; sample_s seconds are spent
  * looking at the load (0: none, and nothing is said of others). */
 void usage_disturbances(double sample_s, void (*line)(void *context, const char *text), void *context);
-
-#endif

@@ -3,8 +3,7 @@
  * functions are pure, cannot fail, and want a law that it has passed.
  * Wavelengths are given in nm; L in the formulas is the wavelength in um. It is the wavelength in air, as in a
  * catalogue; read as the one in vacuum, 0.03% longer, it would move no index of the catalogue by more than 1e-4. */
-#ifndef CUVETTE_OPTICS_DISPERSION_H
-#define CUVETTE_OPTICS_DISPERSION_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -58,5 +57,3 @@ bool dispersion_covers(const dispersion *law, double low_nm, double high_nm);
 
 /* Abbe's number V_d = (n_d - 1) / (n_F - n_C); infinite for a law without dispersion between F and C. */
 double dispersion_abbe_number(const dispersion *law);
-
-#endif

@@ -2,8 +2,7 @@
  * inline and without branches, so that kernels and tests use the one formula. Pure; cannot fail.
  * Signs: the normal faces the incoming ray, so cos_i = -d.n >= 0; directions are unit vectors; n_from and
  * n_to are the indices on the ray's side and beyond. */
-#ifndef CUVETTE_OPTICS_INTERFACE_H
-#define CUVETTE_OPTICS_INTERFACE_H
+#pragma once
 
 #include "base/lanes.h"
 #include "base/vec3.h"
@@ -52,5 +51,3 @@ static inline vec3 direction_refract(vec3 d, vec3 n, double cos_i, double eta, d
 {
     return direction_tidy(vec3_add(vec3_scale(d, eta), vec3_scale(n, eta * cos_i - cos_t)));
 }
-
-#endif

@@ -7,8 +7,7 @@
  * 8 bits are within a CIEDE2000 of 3e-4 (the corners of the gamut, 5e-6), and within 0.006 one step from black, where
  * the curves are steepest.
  * Values, not objects: nothing to release. Pure; cannot fail. */
-#ifndef CUVETTE_OPTICS_LIFT_H
-#define CUVETTE_OPTICS_LIFT_H
+#pragma once
 
 #include "optics/observer.h"
 #include <math.h>
@@ -40,5 +39,3 @@ static inline double lifted_emission(const lifted *l, double lambda_nm)
 {
     return l->scale * lifted_reflectance(l, lambda_nm) * observer_d65(lambda_nm);
 }
-
-#endif

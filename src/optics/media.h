@@ -3,8 +3,7 @@
  * Ownership: all is constant and lives as long as the program. Errors: none; an unknown name is NULL.
  * A refractometer and a prism on a table compare with the air around them, and so do glass catalogues: such a law is
  * relative to air. medium_index is absolute, relative to vacuum, for all; air itself is a row. */
-#ifndef CUVETTE_OPTICS_MEDIA_H
-#define CUVETTE_OPTICS_MEDIA_H
+#pragma once
 
 #include "optics/dispersion.h"
 
@@ -45,5 +44,3 @@ const medium *media_find(const char *name);
  * Appl. Opt. 35, 1566 (1996). That the air of a laboratory at sea level is warmer and moist changes it by less than
  * 4e-5. */
 double medium_index(const medium *m, double lambda_nm);
-
-#endif

@@ -18,8 +18,7 @@
  * Transmittance is that of power, n_t cos_t / (n_i cos_i) |t|^2 = 1 - R, the same number from either side. The factor
  * n^2 that radiance takes on behind an interface is left out, as renderers commonly do: eye and lights stand in one
  * medium, where it has gone again. */
-#ifndef CUVETTE_OPTICS_MUELLER_H
-#define CUVETTE_OPTICS_MUELLER_H
+#pragma once
 
 #include "base/lanes.h"
 #include "base/vec3.h"
@@ -180,5 +179,3 @@ static inline stokes analyser_mirror(stokes row, vec3 d, vec3 n, vec3 reflected)
 {
     return analyser_across(row, d, n, reflected, sp_mirror());
 }
-
-#endif

@@ -6,8 +6,7 @@
  * products are quadratic between entries), so that white in is white out.
  * Radiance: a light of linear sRGB (1, 1, 1) has the spectrum observer_d65 and Y = 1.
  * Pure; cannot fail; only + - * / and sqrt. */
-#ifndef CUVETTE_OPTICS_OBSERVER_H
-#define CUVETTE_OPTICS_OBSERVER_H
+#pragma once
 
 enum { OBSERVER_LOW_NM = 380, OBSERVER_HIGH_NM = 780 };
 
@@ -26,5 +25,3 @@ void observer_weights(double lambda_nm, double xyz[3]);
  * clamped: colours outside the gamut have negative components. */
 void xyz_to_linear_srgb(const double xyz[3], double rgb[3]);
 void linear_srgb_to_xyz(const double rgb[3], double xyz[3]);
-
-#endif

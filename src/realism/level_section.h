@@ -2,8 +2,7 @@
  * wall of a filled vessel. Upright surfaces leave n d_y of a ray as it is, d_y the upward part of its unit direction.
  * Seen from above, a ray therefore bends at the circles as a flat one whose indices are sqrt(n^2 - (n d_y)^2): Snell's
  * law with the part along y taken off both sides. Exact. Pure; scalars only. */
-#ifndef CUVETTE_REALISM_LEVEL_SECTION_H
-#define CUVETTE_REALISM_LEVEL_SECTION_H
+#pragma once
 
 #include "realism/setup.h"
 #include "realism/view.h"
@@ -28,5 +27,3 @@ void level_section_range(const level_section *c, double px, double py, double ra
 
 /* Does the ray stay between the two heights up to the rod's far side? */
 bool level_section_stays(const level_section *c, double px, double py, double low, double high);
-
-#endif

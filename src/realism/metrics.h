@@ -1,8 +1,7 @@
 /* The room's inside: what all metrics share. A metric is a function that adds its values to the report; it adds the
  * same names for every scene, with theory NaN and the reason where the scene has no such thing. Ownership: trial_start
  * takes the scene over, trial_end releases all of it. */
-#ifndef CUVETTE_REALISM_METRICS_H
-#define CUVETTE_REALISM_METRICS_H
+#pragma once
 
 #include "realism/realism.h"
 #include "realism/setup.h"
@@ -93,5 +92,3 @@ status metrics_at_lines(const metrics *m, const char *const names[4], const char
 
 /* A copy at a wavelength, with settings that trace what such an angle needs; NULL without memory. */
 scene *arrange_at(const scene *s, double lambda_nm);
-
-#endif

@@ -15,8 +15,7 @@
  * Tolerances come from arithmetic: a unit in the last place of a double is 2.2e-16 of the value, of the film 5.7e-14;
  * the longest ways here take some ten interfaces, each of which may make such an error several times larger. None is a
  * wish. Ownership: values. Errors: STATUS_BAD_INPUT says which solid is not as it must be. */
-#ifndef CUVETTE_REALISM_REALISM_H
-#define CUVETTE_REALISM_REALISM_H
+#pragma once
 
 #include "base/isa.h"
 #include "base/status.h"
@@ -81,5 +80,3 @@ const char *realism_curve_name(realism_curve which);
 const char *realism_curve_x(realism_curve which);
 const char *realism_curve_y(realism_curve which);
 status realism_trace_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* What a scene's vessel, liquid and rod are, in the numbers that theory wants; and copies of a scene in which some of
  * its media stand in another arrangement. Ownership: arrange_* give a scene, or NULL when memory is out. */
-#ifndef CUVETTE_REALISM_SETUP_H
-#define CUVETTE_REALISM_SETUP_H
+#pragma once
 
 #include "geometry/solid.h"
 #include "realism/theory.h"
@@ -47,5 +46,3 @@ scene *arrange_shining(const scene *s, const setup *at, solid_shape slab, double
 /* Two media that meet at y = 0, a ray coming from (0, *start_y, 0); one of them may be SETUP_OUTSIDE, none a missing
  * liquid. */
 scene *arrange_interface(const scene *s, const setup *at, setup_medium from, setup_medium to, double *start_y);
-
-#endif

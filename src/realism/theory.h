@@ -1,8 +1,7 @@
 /* Closed forms of textbook optics, on scalars: written apart from the tracer's formulas (optics/interface.h,
  * geometry/), in another algebraic form where there is one, so that the two cannot share a mistake. Angles in radians;
  * n are refractive indices, any unit of length. NaN where there is no such quantity. Pure; cannot fail. */
-#ifndef CUVETTE_REALISM_THEORY_H
-#define CUVETTE_REALISM_THEORY_H
+#pragma once
 
 /* Angle of refraction; NaN under total internal reflection. Hecht, Optics, 5th ed., eq. 4.4. */
 double theory_snell(double angle, double n_from, double n_to);
@@ -42,5 +41,3 @@ double theory_shells_power(const theory_shells *c);
 /* A flat surface: the eye stands `height` above it in n_above, the point `depth` below it in n_below, `distance` away
  * horizontally. Tangent of the angle from the vertical at which the eye sees the point; NaN where no ray goes. */
 double theory_apparent_tangent(double height, double depth, double distance, double n_above, double n_below);
-
-#endif

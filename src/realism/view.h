@@ -1,8 +1,7 @@
 /* The camera in scalars: which way a point of the picture looks, and where a point of the scene lies in the picture.
  * Pinhole geometry, written apart from render/core/plan.c. Pictures count from their top left corner, px; lengths in
  * scene units. Pure. */
-#ifndef CUVETTE_REALISM_VIEW_H
-#define CUVETTE_REALISM_VIEW_H
+#pragma once
 
 #include "scene/model/open.h"
 
@@ -24,5 +23,3 @@ sight view_through(const view *v, double px, double py);
 
 /* Where a point of the scene lies in the picture; false behind the camera. */
 bool view_place(const view *v, double x, double y, double z, double *px, double *py);
-
-#endif

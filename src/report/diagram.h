@@ -3,8 +3,7 @@
  * is clipped.
  *
  * Ownership: the probe, its scene and the stream are borrowed; diagram_begin takes memory, diagram_end releases it. */
-#ifndef CUVETTE_REPORT_DIAGRAM_H
-#define CUVETTE_REPORT_DIAGRAM_H
+#pragma once
 
 #include "render/inspect/section.h"
 #include "scene/model/solids.h"
@@ -70,5 +69,3 @@ enum { DIAGRAM_ROW = 20 };
 
 /* Room to leave around a frame for its caption, numbers and names of axes. */
 enum { DIAGRAM_ABOVE = 24, DIAGRAM_BELOW = 42, DIAGRAM_BEFORE = 54, DIAGRAM_BEHIND = 14 };
-
-#endif

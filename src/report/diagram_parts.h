@@ -1,6 +1,5 @@
 /* The inside of a diagram, shared by diagram.c, diagram_axes.c and diagram_media.c. */
-#ifndef CUVETTE_REPORT_DIAGRAM_PARTS_H
-#define CUVETTE_REPORT_DIAGRAM_PARTS_H
+#pragma once
 
 #include "report/diagram.h"
 #include "report/svg.h"
@@ -19,5 +18,3 @@ void diagram_axes(const diagram *d, const char *caption);
 
 /* The areas of the media, filled, and the boundaries between them. */
 status diagram_media(diagram *d, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* JSON out: jansson builds the value, this writes it. Reals get the fewest digits that read back the same, lists of
  * plain values stand on one line, keys keep the order they were put in. Ownership: json_* return new references. */
-#ifndef CUVETTE_REPORT_JSON_H
-#define CUVETTE_REPORT_JSON_H
+#pragma once
 
 #include "base/status.h"
 #include <jansson.h>
@@ -32,5 +31,3 @@ status json_write(FILE *stream, const json_t *value, diagnostic *why);
 /* The same, and releases the value; json_print: to standard output. */
 status json_put(FILE *stream, json_t *value, diagnostic *why);
 status json_print(json_t *value, diagnostic *why);
-
-#endif

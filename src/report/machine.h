@@ -1,7 +1,6 @@
 /* What this machine is, as far as it matters to a measurement: processors, clocks, vector instructions, and what could
  * disturb now. Ownership: machine_look fills, machine_release releases, also after an error. */
-#ifndef CUVETTE_REPORT_MACHINE_H
-#define CUVETTE_REPORT_MACHINE_H
+#pragma once
 
 #include "base/isa.h"
 #include "base/status.h"
@@ -27,5 +26,3 @@ void machine_release(machine_account *a);
 
 /* What `cuvette machine --json` prints; NULL when memory is out. */
 json_t *machine_json(const machine_account *a);
-
-#endif

@@ -1,7 +1,6 @@
 /* The catalogue of media as a person and a program read it: one line each, all about one, or JSON. Ownership: the JSON
  * is a new reference. Errors of the stream are left in the stream. at_nm is a further wavelength, 0 for none. */
-#ifndef CUVETTE_REPORT_MEDIA_ROWS_H
-#define CUVETTE_REPORT_MEDIA_ROWS_H
+#pragma once
 
 #include "optics/media.h"
 #include <jansson.h>
@@ -17,5 +16,3 @@ void media_rows_details(FILE *stream, const medium *m, double at_nm);
 
 /* All media, or only one when it is not NULL; NULL without memory. */
 json_t *media_rows_json(const medium *only, double at_nm);
-
-#endif

@@ -1,7 +1,6 @@
 /* What a mesh is, as a person and as a program read it. Ownership: the JSON is a new reference, NULL without memory.
  * Errors of the stream are left in the stream. */
-#ifndef CUVETTE_REPORT_MESH_ROWS_H
-#define CUVETTE_REPORT_MESH_ROWS_H
+#pragma once
 
 #include "geometry/mesh.h"
 #include <jansson.h>
@@ -9,5 +8,3 @@
 
 void mesh_rows_text(FILE *stream, const mesh *m);
 json_t *mesh_rows_json(const mesh *m);
-
-#endif

@@ -8,8 +8,7 @@
  *
  * Coordinates that are floats are written with 9 significant digits, others with 17, so that they read back the
  * same. */
-#ifndef CUVETTE_REPORT_MESH_WRITE_H
-#define CUVETTE_REPORT_MESH_WRITE_H
+#pragma once
 
 #include "geometry/mesh.h"
 #include <stdio.h>
@@ -18,5 +17,3 @@ typedef enum mesh_format { MESH_OBJ, MESH_BIN, MESH_PLY, MESH_FORMAT_COUNT } mes
 
 const char *mesh_format_name(mesh_format format); /* "obj" */
 void mesh_write(const mesh *m, mesh_format format, FILE *stream);
-
-#endif

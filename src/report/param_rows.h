@@ -1,6 +1,5 @@
 /* The parameter table as text for people: one line a parameter, or the reference of the manual page as roff. */
-#ifndef CUVETTE_REPORT_PARAM_ROWS_H
-#define CUVETTE_REPORT_PARAM_ROWS_H
+#pragma once
 
 #include "scene/model/params.h"
 #include <jansson.h>
@@ -37,5 +36,3 @@ status param_rows_json(const scene *s, const char *filter, json_t **out, diagnos
 
 /* The parameter part of cuvette.1. */
 void param_rows_manual(FILE *stream);
-
-#endif

@@ -1,7 +1,6 @@
 /* The JSON account of a render, made from the list of job/quantities.h: what `cuvette render --json` prints, and what
  * the page shows of an image. The manual page names the keys. Ownership: new references, NULL when memory is out. */
-#ifndef CUVETTE_REPORT_REPORT_H
-#define CUVETTE_REPORT_REPORT_H
+#pragma once
 
 #include "image/compare.h"
 #include "job/quantities.h"
@@ -29,5 +28,3 @@ bool report_comparison(json_t *o, const image_comparison *c);
 
 /* The value of one parameter from its text. */
 json_t *report_value(const param *row, const char *text);
-
-#endif

@@ -1,8 +1,7 @@
 /* SVG 1.1 as text: decimals to a hundredth of a pixel, so that the same drawing is the same bytes; no scripts, no fonts
  * of its own. Colours are those of plots/style.gp: Okabe and Ito's. Errors of the stream are left in the stream.
  * Ownership: nothing is kept. */
-#ifndef CUVETTE_REPORT_SVG_H
-#define CUVETTE_REPORT_SVG_H
+#pragma once
 
 #include <stdio.h>
 
@@ -30,5 +29,3 @@ double svg_key(FILE *out, double x, double y, const char *color, const char *das
 
 /* Writes text with what XML would misread as entities, and without what it forbids. */
 void svg_escape(FILE *out, const char *text);
-
-#endif

@@ -1,7 +1,6 @@
 /* A tree of rays as text, as JSON, as a drawing. Each writes all of it to a stream, whose errors are left in the
  * stream. Ownership: everything is borrowed. */
-#ifndef CUVETTE_REPORT_TRACE_WRITERS_H
-#define CUVETTE_REPORT_TRACE_WRITERS_H
+#pragma once
 
 #include "render/inspect/probe.h"
 #include <stdio.h>
@@ -20,5 +19,3 @@ status trace_write_text(const traced *t, FILE *out, diagnostic *why);
 /* The schema is fixed: see THE JSON TREE in the manual page. */
 status trace_write_json(const traced *t, FILE *out, diagnostic *why);
 status trace_write_drawing(const traced *t, FILE *out, diagnostic *why);
-
-#endif

@@ -2,8 +2,7 @@
  * the bit. A script holds a track for each hand. Ownership: hand_script_create gives an empty one, hand_script_add
  * grows it, hand_script_destroy releases. Times of a track never fall; between a grab and a release the hand moves in
  * straight lines from key to key. */
-#ifndef CUVETTE_SOFTBODY_HAND_H
-#define CUVETTE_SOFTBODY_HAND_H
+#pragma once
 
 #include "base/status.h"
 #include "base/vec3.h"
@@ -44,5 +43,3 @@ status hand_script_add(hand_script *s, const char *hand, const hand_key *key, di
 
 /* Time of the last key of all; 0 for none. */
 double hand_script_end_s(const hand_script *s);
-
-#endif

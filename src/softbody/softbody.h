@@ -16,8 +16,7 @@
  * Ownership: *_create gives, *_destroy releases; scripts are borrowed. Errors: STATUS_BAD_INPUT for settings that make
  * no body and for one that blows up, with the step and the quantity; STATUS_FAILURE when memory is out. No global
  * state; one caller at a time for each body. */
-#ifndef CUVETTE_SOFTBODY_SOFTBODY_H
-#define CUVETTE_SOFTBODY_SOFTBODY_H
+#pragma once
 
 #include "base/isa.h"
 #include "base/status.h"
@@ -152,5 +151,3 @@ status softbody_skin(const softbody *b, mesh **out, diagnostic *why);
 /* Moves a mesh that softbody_skin made for this body to where that lies now; no one looks at it meanwhile (mesh_move).
  */
 status softbody_move_skin(const softbody *b, mesh *skin, diagnostic *why);
-
-#endif

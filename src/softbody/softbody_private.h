@@ -4,8 +4,7 @@
  * spring's. Springs stand by vertex, at both of their ends: slot s of vertex i at [s * stride + i], so that a loop over
  * vertices runs through arrays. A spring's force at one end is the exact negative of that at the other, because all
  * that goes into it only changes its sign. */
-#ifndef CUVETTE_SOFTBODY_SOFTBODY_PRIVATE_H
-#define CUVETTE_SOFTBODY_SOFTBODY_PRIVATE_H
+#pragma once
 
 #include "base/team.h"
 #include "softbody/softbody.h"
@@ -176,5 +175,3 @@ double softbody_sum(const softbody *b);
 void softbody_aim_hands(softbody *b, double dt_s);
 void softbody_land_hands(softbody *b);
 status softbody_play(softbody *b, diagnostic *why);
-
-#endif

@@ -22,8 +22,7 @@
  *
  * Ownership: values. Errors: STATUS_BAD_INPUT for settings that softbody_check refuses, STATUS_FAILURE when memory is
  * out. */
-#ifndef CUVETTE_SOFTBODY_TRIALS_H
-#define CUVETTE_SOFTBODY_TRIALS_H
+#pragma once
 
 #include "softbody/softbody.h"
 
@@ -45,5 +44,3 @@ status softbody_trials(const softbody_settings *s, isa level, softbody_trial_rep
 
 /* |measured - theory|; NaN where one of them is. */
 double softbody_trial_error(const softbody_trial *t);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the trials share. For src/softbody/trials*.c alone. */
-#ifndef CUVETTE_SOFTBODY_TRIALS_PRIVATE_H
-#define CUVETTE_SOFTBODY_TRIALS_PRIVATE_H
+#pragma once
 
 #include "softbody/trials.h"
 
@@ -88,5 +87,3 @@ status trials_bounce(const trials *t);
 status trials_free(const trials *t);
 status trials_rest(const trials *t);
 status trials_stable(const trials *t);
-
-#endif

@@ -3,8 +3,7 @@
  * when the texts of study and scene that it records too, read by this program, mean the same, and the files that they
  * name held the same. What cannot be verified is not accepted. Ownership: borrows study and folder. Errors: none;
  * accepted_why_not says what is amiss. */
-#ifndef CUVETTE_STUDY_ACCEPTED_H
-#define CUVETTE_STUDY_ACCEPTED_H
+#pragma once
 
 #include "study/study.h"
 
@@ -22,4 +21,3 @@ void accepted_start(accepted *a, const study *s, const char *folder);
 bool accepted_has(accepted *a, const char *definition, bool of_comparison);
 /* What was found out about rows that are not: "render.width is 800 there, and 640 here". */
 const char *accepted_why_not(const accepted *a);
-#endif

@@ -2,8 +2,7 @@
  * metric, or a point of a curve; and its slimes' motion (softbody/trials.h), one line a value. Each line begins with
  * study, cell and the cell's values of the grid, so that the tables of all cells can be strung together. Tab separated,
  * NA for what there is none of; results/README.md lists the columns. A file appears whole or not at all. */
-#ifndef CUVETTE_STUDY_CELL_TABLE_H
-#define CUVETTE_STUDY_CELL_TABLE_H
+#pragma once
 
 #include "base/isa.h"
 #include "study/study.h"
@@ -20,5 +19,3 @@ status cell_table_write(cell_table which, const study *s, size_t cell, const sce
 
 /* A tab and a number, with as many digits as read back the same. */
 void cell_table_number(FILE *out, double value);
-
-#endif

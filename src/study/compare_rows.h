@@ -1,8 +1,7 @@
 /* The rows of compare.csv: how far each cell's picture lies from its reference. Pictures depend on their scenes alone,
  * so there is one row a cell. results/README.md lists every column. Pure but for memory; a csv_line that ran out of it
  * has failed set. */
-#ifndef CUVETTE_STUDY_COMPARE_ROWS_H
-#define CUVETTE_STUDY_COMPARE_ROWS_H
+#pragma once
 
 #include "image/compare.h"
 #include "render/core/renderer.h"
@@ -30,5 +29,3 @@ typedef struct compare_row {
 status compare_row_measure(compare_row *row, const render_result *frame, diagnostic *why);
 
 void compare_row_write(csv_line *line, const compare_row *r);
-
-#endif

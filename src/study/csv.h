@@ -1,8 +1,7 @@
 /* Comma-separated values after RFC 4180, with the one restriction that no field holds a line break, so that a line
  * is whole exactly when its newline is there. Ownership: csv_read gives, csv_destroy releases; a csv_line is
  * released with csv_line_free. */
-#ifndef CUVETTE_STUDY_CSV_H
-#define CUVETTE_STUDY_CSV_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -55,5 +54,3 @@ int csv_column(const csv *table, const char *name);
 const char *csv_field(const csv *table, size_t row, int column);
 /* The field as a number; NaN for NA and what is no number. */
 double csv_field_real(const csv *table, size_t row, int column);
-
-#endif

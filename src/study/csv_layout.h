@@ -1,8 +1,7 @@
 /* Rows under another header: columns are known by their names, so that files of other versions of the program, which
  * have columns more, fewer or in another order, are read, joined and gone on with. Ownership: csv_layout_create gives,
  * csv_layout_destroy releases. */
-#ifndef CUVETTE_STUDY_CSV_LAYOUT_H
-#define CUVETTE_STUDY_CSV_LAYOUT_H
+#pragma once
 
 #include "study/csv.h"
 
@@ -25,5 +24,3 @@ char *csv_header_extend(const char *header, const char *more, size_t *added);
  * columns of header. *layout, the caller's, places lines under header into it; NULL when they fit as they are.
  * *replaced: another file lies there now, which is not locked. */
 status csv_layout_settle(const char *path, const char *header, csv_layout **layout, bool *replaced, diagnostic *why);
-
-#endif

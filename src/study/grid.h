@@ -1,6 +1,5 @@
 /* What a study's cells are. For study/read.c, which builds the grid, and those who walk it. */
-#ifndef CUVETTE_STUDY_GRID_H
-#define CUVETTE_STUDY_GRID_H
+#pragma once
 
 #include "study/study.h"
 
@@ -40,5 +39,3 @@ const char *study_grid_path(const study *s, size_t index);
 /* All of them, and the cell's values as the study file gives them, each behind a tab. */
 void grid_put_paths(const study *s, FILE *out);
 void grid_put_values(const study *s, size_t cell, FILE *out);
-
-#endif

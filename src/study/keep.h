@@ -1,8 +1,7 @@
 /* What a study keeps of each cell beside its rows: pictures, ray and time maps, timeline, realism metrics and curves,
  * motion, in results/<study>/images/. They come from a frame of their own after the rows, so that looking disturbs
  * nothing that is measured; its film must be that of the rows. Every file appears whole or not at all. */
-#ifndef CUVETTE_STUDY_KEEP_H
-#define CUVETTE_STUDY_KEEP_H
+#pragma once
 
 #include "job/account.h"
 #include "study/study.h"
@@ -25,5 +24,3 @@ status keep_write(const study *s, const char *folder, const kept_cell *c, diagno
 /* Writes images/index.tsv: file, cell and axis values of every kept file that is there, all shards' together. Unless
  * renew, only when it is missing. Nothing for a study that keeps nothing. */
 status keep_index(const study *s, const char *folder, bool renew, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* What has been measured so far, by cell: read from the rows on disk, kept up to date while a study runs.
  * Ownership: ledger_read gives, ledger_destroy releases. */
-#ifndef CUVETTE_STUDY_LEDGER_H
-#define CUVETTE_STUDY_LEDGER_H
+#pragma once
 
 #include "study/study.h"
 
@@ -38,5 +37,3 @@ uint64_t ledger_film(const ledger *l, size_t cell, uint64_t film_hash);
 /* Has the cell its repetitions: the most there may be, or the least there must be and an interval as narrow as
  * asked for? */
 bool ledger_cell_done(const ledger *l, size_t cell);
-
-#endif

@@ -2,8 +2,7 @@
  * whole once, when the study first runs; each later run adds itself to the list `runs`, so that every row's
  * time_utc falls into one. It holds no host name, no serial number and no path of this machine. SOURCE_DATE_EPOCH,
  * if set, stands for the time. */
-#ifndef CUVETTE_STUDY_MANIFEST_H
-#define CUVETTE_STUDY_MANIFEST_H
+#pragma once
 
 #include "base/isa.h"
 #include "measure/topology.h"
@@ -34,5 +33,3 @@ bool facts_get_hash(const json_t *facts, const char *key, uint64_t *out);
 /* A file below root (base/below.h), NULL with STATUS_OK for what is no JSON; and the whole of one. flags: jansson's. */
 status facts_read(const char *path, const char *root, json_t **out, diagnostic *why);
 status facts_write(const json_t *facts, size_t flags, const char *path, diagnostic *why);
-
-#endif

@@ -3,8 +3,7 @@
  * the same files; objects and shapes go by their names, never by a number of the program's own. For that to hold, a
  * default once published must not change, nor may a name or a word. Ownership: meaning_free releases what was
  * filled. */
-#ifndef CUVETTE_STUDY_MEANING_H
-#define CUVETTE_STUDY_MEANING_H
+#pragma once
 
 #include "study/study.h"
 
@@ -29,5 +28,3 @@ uint64_t meaning_hash(const meaning *m);
 
 /* The first item that differs, in words: "render.width is 800 there, and 640 here". False when none does. */
 bool meaning_difference(const meaning *there, const meaning *here, char *text, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* In which order cells are measured. Pure; the caller owns the array. */
-#ifndef CUVETTE_STUDY_ORDER_H
-#define CUVETTE_STUDY_ORDER_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -11,5 +10,3 @@
 /* order[0..count-1] = a permutation of 0..count-1, drawn evenly (Fisher and Yates; Durstenfeld 1964) with the
  * counter-based generator Philox4x32-10 (Salmon et al., SC11): the same for the same (seed, stream) everywhere. */
 void order_shuffle(uint64_t seed, uint64_t stream, size_t *order, size_t count);
-
-#endif

@@ -1,8 +1,7 @@
 /* How far a study is and about how long it takes: as a line on a terminal, and for whoever asked to be told
  * (study_options). With neither every call does nothing. progress_begin gives (NULL when memory is out), progress_end
  * releases; study and options are borrowed in between. */
-#ifndef CUVETTE_STUDY_PROGRESS_H
-#define CUVETTE_STUDY_PROGRESS_H
+#pragma once
 
 #include "study/ledger.h"
 
@@ -21,5 +20,3 @@ void progress_show(progress_line *line, double share_done);
 /* The same while slimes move before a frame; share_done is that of their motion. */
 void progress_moving(progress_line *line, double share_done);
 void progress_end(progress_line *line);
-
-#endif

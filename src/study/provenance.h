@@ -1,7 +1,6 @@
 /* Facts about the machine and the program that a manifest names. Fresh memory, release with free; NULL when a fact
  * is not to be had. Never fails otherwise. */
-#ifndef CUVETTE_STUDY_PROVENANCE_H
-#define CUVETTE_STUDY_PROVENANCE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,5 +18,3 @@ char *provenance_git_commit(const char *folder, bool *dirty);
 /* hwloc's XML without what tells one machine from another of its kind: host name, serial numbers, addresses,
  * control groups. Changes xml in place; NULL is allowed. */
 void provenance_anonymize(char *xml);
-
-#endif

@@ -1,6 +1,5 @@
 /* The part of a study file that names parameters: what is set, and the grid. For study/read.c. */
-#ifndef CUVETTE_STUDY_READ_GRID_H
-#define CUVETTE_STUDY_READ_GRID_H
+#pragma once
 
 #include "scene/file/document.h"
 #include "study/study.h"
@@ -20,5 +19,3 @@ status study_parse(study *s, const char *text, size_t size, study_parts *read, c
 
 /* Has the text no control characters? A row is one line. */
 bool read_grid_plain(const char *text);
-
-#endif

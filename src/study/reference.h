@@ -2,8 +2,7 @@
  * that serves several cells is rendered once and kept, as linear floats, in results/<study>/references/, named by the
  * fingerprint of its scene, with a JSON file that says which film it was. Ownership: reference_load and whoever renders
  * one give the picture, reference_release takes it. */
-#ifndef CUVETTE_STUDY_REFERENCE_H
-#define CUVETTE_STUDY_REFERENCE_H
+#pragma once
 
 #include "image/image.h"
 #include "study/study.h"
@@ -33,5 +32,3 @@ status reference_load(const char *folder, const char *root, uint64_t scene_hash,
 /* Keeps it there, with the parameters of its scene; as a PNG for the eye too when the study keeps images. */
 status reference_save(const study *s, const char *folder, const reference *of, const scene *setting, diagnostic *why);
 void reference_release(reference *of);
-
-#endif

@@ -1,6 +1,5 @@
 /* Files without what rows need, and rows that do not count, found across files. For study/row_files.c. */
-#ifndef CUVETTE_STUDY_ROW_CHECK_H
-#define CUVETTE_STUDY_ROW_CHECK_H
+#pragma once
 
 #include "study/row_files.h"
 
@@ -14,5 +13,3 @@ status row_check_drop_twins(row_files *files, diagnostic *why);
 /* Drops worker rows whose repetition has no row in the file beside theirs: a process was killed between the two
  * writes. */
 void row_check_drop_orphans(row_files *workers, const row_files *rows);
-
-#endif

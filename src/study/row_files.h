@@ -1,8 +1,7 @@
 /* All the rows of a study that are on disk: rows.csv and the shards' files, or the same of workers.csv or compare.csv,
  * read and checked. Rows that several files hold alike (after a merge) count once. Ownership: row_files_read gives,
  * row_files_destroy releases; what it gives points into it. */
-#ifndef CUVETTE_STUDY_ROW_FILES_H
-#define CUVETTE_STUDY_ROW_FILES_H
+#pragma once
 
 #include "study/csv.h"
 #include "study/study.h"
@@ -41,5 +40,3 @@ char *row_file_header(const study *s, row_kind kind);
  * has no row (a process was killed between the two) are left out. */
 status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why);
 void row_files_destroy(row_files *files);
-
-#endif

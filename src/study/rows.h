@@ -1,8 +1,7 @@
 /* The rows of a study: rows.csv and workers.csv, and the one way to write them. Their columns are a study's own and the
  * quantities of job/quantities.h; results/README.md is their dictionary. Pure but for memory; a csv_line that ran out
  * of it has failed set. */
-#ifndef CUVETTE_STUDY_ROWS_H
-#define CUVETTE_STUDY_ROWS_H
+#pragma once
 
 #include "job/quantities.h"
 #include "study/csv.h"
@@ -44,5 +43,3 @@ void row_put(csv_line *line, const quantity *q, const job_account *made, int wor
 /* "2026-01-31T12:00:00.250Z"; text holds ROW_TIME_MAX. */
 enum { ROW_TIME_MAX = 32 };
 char *row_time(int64_t ms, char text[ROW_TIME_MAX]);
-
-#endif

@@ -1,7 +1,6 @@
 /* A study while it runs: rounds of frames in study/run.c, then what is kept and compared of each cell in
  * study/run_keep.c; opened and closed by study/run_open.c. */
-#ifndef CUVETTE_STUDY_RUN_STATE_H
-#define CUVETTE_STUDY_RUN_STATE_H
+#pragma once
 
 #include "job/job.h"
 #include "study/csv.h"
@@ -49,5 +48,3 @@ status run_render(run *r, const scene *setting, const render_options *options, j
 
 /* Makes what is kept of each cell and compares it with its reference, outside of all that is measured. */
 status run_keep_all(run *r, diagnostic *why);
-
-#endif

@@ -3,8 +3,7 @@
  * at once, never rewritten), manifest.json, images/ (one a cell); with a reference compare.csv (one row a cell) and
  * references/. Ownership: study_read gives, study_destroy releases. Errors in the file are located there: file, line,
  * column. */
-#ifndef CUVETTE_STUDY_STUDY_H
-#define CUVETTE_STUDY_STUDY_H
+#pragma once
 
 #include "base/status.h"
 #include "scene/model/open.h"
@@ -121,5 +120,3 @@ status study_status(const study *s, const char *results, study_progress *out, di
 /* Joins the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv; no row lost or twice. rows.csv
  * appears whole or not at all; the shards' files stay. */
 status study_merge(const study *s, const char *results, size_t *rows, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* A study's rows as a table: one line a cell, tab separated, medians and intervals (results/tables/<study>.tsv).
  * Warm-ups and marked rows are left out of every value but the number of marked rows. */
-#ifndef CUVETTE_STUDY_SUMMARY_H
-#define CUVETTE_STUDY_SUMMARY_H
+#pragma once
 
 #include "study/study.h"
 
@@ -11,5 +10,3 @@
  * known. Cells without rows are there with n = 0; a study without any is STATUS_FAILURE, and nothing is written.
  * Errors of writing to out are the caller's to find (ferror). */
 status study_summary(const study *s, const char *results, FILE *out, diagnostic *why);
-
-#endif

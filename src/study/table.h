@@ -4,8 +4,7 @@
  * is ever taken out of the file or changed in it; one with other columns gets what it lacks before the first new row
  * (study/csv_layout.h). Ownership: table_open gives, table_close releases. Errors name the file, and leave whole
  * what is in it. */
-#ifndef CUVETTE_STUDY_TABLE_H
-#define CUVETTE_STUDY_TABLE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -23,5 +22,3 @@ status table_append(table *t, const char *lines, size_t size, diagnostic *why);
 status table_set_aside(table *t, size_t offset, diagnostic *why);
 
 void table_close(table *t);
-
-#endif

@@ -3,8 +3,7 @@
  * lab_start gives, lab_stop releases and joins all threads; the settings' texts are borrowed in between. Errors:
  * STATUS_BAD_INPUT for a scene, folder or port that cannot be had, STATUS_FAILURE for memory and threads. Nothing is
  * printed, no signal is taken. */
-#ifndef CUVETTE_WEB_LAB_H
-#define CUVETTE_WEB_LAB_H
+#pragma once
 
 #include "base/isa.h"
 #include "scene/model/open.h"
@@ -29,5 +28,3 @@ void lab_stop(lab *l); /* NULL is allowed */
 const char *lab_address(const lab *l);
 /* Who serves it: its port and token by themselves. */
 const struct http_server *lab_server(const lab *l);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the laboratory's files share: not for others. */
-#ifndef CUVETTE_WEB_LAB_PRIVATE_H
-#define CUVETTE_WEB_LAB_PRIVATE_H
+#pragma once
 
 #include "base/vec3.h"
 #include "web/session/desk.h"
@@ -45,5 +44,3 @@ void lab_forget_threads(const lab *l, scene *s);
 
 /* The ray through a place of the full picture, in pixels, of the scene's camera. direction is a unit vector. */
 void lab_camera_ray(const scene *s, double x, double y, vec3 *origin, vec3 *direction);
-
-#endif

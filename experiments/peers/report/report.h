@@ -7,8 +7,7 @@
  * normals and the nearest hit. One thing differs on purpose: camera rays go through the centres of pixels, as in every
  * other program that is compared, and not through their upper left corners. Single precision throughout, as in the
  * listings. A program of its own: when memory fails it ends with a message. */
-#ifndef CUVETTE_PEERS_REPORT_H
-#define CUVETTE_PEERS_REPORT_H
+#pragma once
 
 #include <math.h>
 #include <stddef.h>
@@ -114,5 +113,3 @@ void room_frame(const room *in, const setting *of, rgb *pixels, tally *counted);
 
 /* Memory that is there: without it the program ends with exit status 1. */
 void *allocate(size_t bytes);
-
-#endif

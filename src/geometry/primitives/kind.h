@@ -8,8 +8,7 @@
  * surface leaves what is across it. 32 half-ulps of the sum of these magnitudes covers it with room to spare (Higham,
  * Accuracy and Stability of Numerical Algorithms, 3.1: gamma_n), which the tests check against quadruple precision.
  * Pure; cannot fail. */
-#ifndef CUVETTE_GEOMETRY_PRIMITIVES_KIND_H
-#define CUVETTE_GEOMETRY_PRIMITIVES_KIND_H
+#pragma once
 
 #include "geometry/kernels.h"
 #include "geometry/primitives/primitive.h"
@@ -196,5 +195,3 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool 
         else                                                                                           \
             points_on(p, point, false, rays, t, bit, met);                                             \
     }
-
-#endif

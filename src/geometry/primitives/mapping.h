@@ -1,8 +1,7 @@
 /* Texture coordinates on surfaces: u to the right and v up as seen from outside, in pictures; per_length is how many of
  * the nearer repeated ones lie on a scene unit. size is what a picture covers, in scene units; 0 spreads one picture
  * over a face. Pure; cannot fail. */
-#ifndef CUVETTE_GEOMETRY_PRIMITIVES_MAPPING_H
-#define CUVETTE_GEOMETRY_PRIMITIVES_MAPPING_H
+#pragma once
 
 #include "base/elementary.h"
 
@@ -24,5 +23,3 @@ static inline surface_mapping mapping_around(double x, double z, double radius, 
     const double turn = 0.5 + elementary_atan2_deg(x, -z) / 360.0, arc = 6.283185307179586 * radius;
     return mapping_flat(turn * arc, v, arc, height, size);
 }
-
-#endif

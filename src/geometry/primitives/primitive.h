@@ -4,8 +4,7 @@
  *
  * Points and rays are in the primitive's own frame, faces are numbered from 0. Functions are pure and cannot fail. A
  * mesh has no rule (geometry/forest.h): to the functions at the end its answers are none, nothing and zero. */
-#ifndef CUVETTE_GEOMETRY_PRIMITIVES_PRIMITIVE_H
-#define CUVETTE_GEOMETRY_PRIMITIVES_PRIMITIVE_H
+#pragma once
 
 #include "geometry/primitives/mapping.h"
 #include "geometry/rays.h"
@@ -61,5 +60,3 @@ int primitive_flats(const primitive *p, flat_face flat[FLATS_MAX]);
 
 /* The point of the world lies on that face (a face's number, see arrangement.h). */
 surface_mapping primitive_mapping(const primitive *p, int64_t face, vec3 point, double size);
-
-#endif

@@ -1,6 +1,5 @@
 /* What several shapes share. Pure. */
-#ifndef CUVETTE_GEOMETRY_SHAPES_PARTS_H
-#define CUVETTE_GEOMETRY_SHAPES_PARTS_H
+#pragma once
 
 #include "geometry/arrangement.h"
 #include "geometry/bodies.h"
@@ -50,5 +49,3 @@ int cylinder_rings(const solid_shape *shape, shape_ring *out);
 vec3 cylinder_tessellation_scale(const solid_shape *shape);
 /* Level faces at these heights, for a rule's flat. */
 bool level_faces(const double *heights, size_t count, size_t i, vec3 *normal, vec3 *point);
-
-#endif

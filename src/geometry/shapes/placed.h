@@ -1,6 +1,5 @@
 /* Where placed shapes end, for those that may hold others. Lengths are compared up to rounding. Pure. */
-#ifndef CUVETTE_GEOMETRY_SHAPES_PLACED_H
-#define CUVETTE_GEOMETRY_SHAPES_PLACED_H
+#pragma once
 
 #include "geometry/shapes/shape.h"
 
@@ -25,5 +24,3 @@ static inline bool is_within(double reach, double limit, double length)
 
 /* Does the other one lie between low and high along the cover's axis k? */
 bool placed_is_between(const placed_shape *cover, const placed_shape *hidden, int k, double low, double high);
-
-#endif

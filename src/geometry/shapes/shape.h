@@ -4,8 +4,7 @@
  *
  * Functions get a shape that passes its check, unless they are the check. "Local" is the solid's own frame; directions
  * are unit vectors. Pure; ownership: rules are constant; shapes borrow their meshes. */
-#ifndef CUVETTE_GEOMETRY_SHAPES_SHAPE_H
-#define CUVETTE_GEOMETRY_SHAPES_SHAPE_H
+#pragma once
 
 #include "geometry/solid.h"
 #include <stddef.h>
@@ -117,5 +116,3 @@ static inline int shape_places(const solid_shape *shape)
 #define SHAPE_DECLARED(KIND, file) extern const shape_rule shape_##file;
 SHAPES(SHAPE_DECLARED)
 #undef SHAPE_DECLARED
-
-#endif

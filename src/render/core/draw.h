@@ -1,7 +1,6 @@
 /* What is drawn by chance: a function of the seed, the pixel, the sample, the depth and the purpose, so that a picture
  * does not depend on who draws when (design, decision 5). Pure. */
-#ifndef CUVETTE_RENDER_CORE_DRAW_H
-#define CUVETTE_RENDER_CORE_DRAW_H
+#pragma once
 
 #include "base/random.h"
 #include "render/core/ticket.h"
@@ -25,5 +24,3 @@ static inline random_words draw(int64_t seed, int64_t ticket, int depth, int pur
     return random_at((uint64_t)seed, (uint32_t)ticket_pixel(ticket), (uint32_t)ticket_sample(ticket), (uint32_t)depth,
                      (uint32_t)purpose);
 }
-
-#endif

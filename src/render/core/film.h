@@ -4,8 +4,7 @@
  * are linear sRGB, or of a spectral film CIE XYZ, whose sums are never negative. A film of random paths is exposed in
  * layers, each by an equal share of the paths: how they differ tells how sure the picture is. Ownership: film_create
  * gives, film_destroy releases. Different pixels may be written by different threads. */
-#ifndef CUVETTE_RENDER_CORE_FILM_H
-#define CUVETTE_RENDER_CORE_FILM_H
+#pragma once
 
 #include "base/status.h"
 #include "image/image.h"
@@ -47,5 +46,3 @@ uint64_t film_hash(const film *f);
 
 /* The film as a picture (linear, float). */
 status film_image(const film *f, image **out, diagnostic *why);
-
-#endif

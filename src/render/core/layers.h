@@ -1,7 +1,6 @@
 /* The named layers of a frame: numbers by pixel that an integrator gives beside the film, in its rows' order.
  * Ownership: layers_create gives, layers_destroy releases. Different pixels may be written by different threads. */
-#ifndef CUVETTE_RENDER_CORE_LAYERS_H
-#define CUVETTE_RENDER_CORE_LAYERS_H
+#pragma once
 
 #include "base/vec3.h"
 #include "scene/model/layers.h"
@@ -24,5 +23,3 @@ static inline void layers_put(layer_set *l, layer_rule which, int64_t pixel, vec
     if (layer_channels[which] == 3)
         at[1] = (float)value.y, at[2] = (float)value.z;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What the meshes of a frame are, and what their hierarchies took. A plain value. */
-#ifndef CUVETTE_RENDER_CORE_MESH_REPORT_H
-#define CUVETTE_RENDER_CORE_MESH_REPORT_H
+#pragma once
 
 #include <stdint.h>
 
@@ -14,5 +13,3 @@ typedef struct mesh_report {
     uint64_t drawn, drawn_bytes; /* of a frame that is drawn: triangles in the picture, analytic solids' too, and memory
                                     of the depth buffer */
 } mesh_report;
-
-#endif

@@ -1,8 +1,7 @@
 /* A scene made ready for tracing: solids in order of rank, materials and indices by rank, the camera's frame. Built
  * once a frame, then read by all workers. Ownership: plan_build gives, plan_destroy releases; it borrows the scene's
  * lights and sky. */
-#ifndef CUVETTE_RENDER_CORE_PLAN_H
-#define CUVETTE_RENDER_CORE_PLAN_H
+#pragma once
 
 #include "geometry/arrangement.h"
 #include "geometry/hierarchy.h"
@@ -62,5 +61,3 @@ bool body_look_make(const scene *s, const solid *owner, const material *surface,
 /* What a shadow ray keeps at its surface: the least, and by slot where faces differ, else NULL; *by_slot is the
  * caller's. False when memory is out. */
 bool body_clearness_make(const scene *s, const solid *owner, double *least, double **by_slot);
-
-#endif

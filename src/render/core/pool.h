@@ -1,8 +1,7 @@
 /* Worker threads. A kept pool starts its threads once and wakes them for each frame, in a tree (worker i wakes 2i+1 and
  * 2i+2), so that a thousand of them do not queue up behind one waker. Without keeping, threads are made and joined for
  * each run, as the report does. Ownership: pool_create gives, pool_destroy joins and releases. One run at a time. */
-#ifndef CUVETTE_RENDER_CORE_POOL_H
-#define CUVETTE_RENDER_CORE_POOL_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -21,5 +20,3 @@ status pool_reserve(pool *p, int count, diagnostic *why);
  */
 status pool_run(pool *p, int count, bool keep, pool_task *task, void (*watch)(void *), double every_s, void *context,
                 diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* Rays that wait to be traced, as a structure of arrays; last in, first out, so that what waits stays small.
  * Ownership: queue_create gives, queue_destroy releases; one worker's own. */
-#ifndef CUVETTE_RENDER_CORE_QUEUE_H
-#define CUVETTE_RENDER_CORE_QUEUE_H
+#pragma once
 
 #include "geometry/rays.h"
 #include <stdbool.h>
@@ -38,5 +37,3 @@ static inline void queue_move_polarised(ray_queue *q, int to, int from)
     queue_move(q, to, from);
     q->sq[to] = q->sq[from], q->su[to] = q->su[from], q->sv[to] = q->sv[from];
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* What a frame leaves on disk beside its numbers: the picture, maps of a quantity by pixel, the timeline. Every file
  * appears whole or not at all; results are borrowed. */
-#ifndef CUVETTE_RENDER_CORE_RECORD_H
-#define CUVETTE_RENDER_CORE_RECORD_H
+#pragma once
 
 #include "render/core/renderer.h"
 
@@ -23,5 +22,3 @@ status record_layers(const render_result *result, const char *prefix, diagnostic
 status record_noise(const render_result *result, const char *path, diagnostic *why);
 
 status record_timeline(const render_result *result, const char *path, diagnostic *why);
-
-#endif

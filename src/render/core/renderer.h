@@ -2,8 +2,7 @@
  * scene and its parameters alone (design, decision 5): not on threads, schedule, tile, pinning, batch or instruction
  * set. Ownership: a renderer owns its pool, and may serve many frames and scenes, one at a time; a result is the
  * caller's, release it with render_result_destroy. No global state: several renderers may run in one process. */
-#ifndef CUVETTE_RENDER_CORE_RENDERER_H
-#define CUVETTE_RENDER_CORE_RENDERER_H
+#pragma once
 
 #include "base/counters.h"
 #include "base/isa.h"
@@ -96,5 +95,3 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options);
 
 /* Makes the pool as large as s asks for beforehand (render.pool on), so that the first frame does not pay for it. */
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why);
-
-#endif

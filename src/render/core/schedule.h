@@ -1,8 +1,7 @@
 /* Which worker does which piece of the picture. columns and rows: one block a worker, as the report; tiles: square
  * tiles dealt out in turn; dynamic: the next tile to whoever asks. Ownership: a value; next is the only field that
  * workers share. */
-#ifndef CUVETTE_RENDER_CORE_SCHEDULE_H
-#define CUVETTE_RENDER_CORE_SCHEDULE_H
+#pragma once
 
 #include "scene/model/render_settings.h"
 #include <stdatomic.h>
@@ -22,5 +21,3 @@ void schedule_start(schedule *s, const render_settings *settings);
 
 /* The next piece for a worker that has had `taken` of them so far; false when there is none left. */
 bool schedule_next(schedule *s, int worker, uint64_t taken, span *out);
-
-#endif

@@ -5,8 +5,7 @@
  *          28..49 the sample: at most 1048576 paths, 64 x 65536 wavelengths
  *          50..61 the wavelength's number (render/shade/spectra.h)
  *          62     see TICKET_SEES_LIGHTS */
-#ifndef CUVETTE_RENDER_CORE_TICKET_H
-#define CUVETTE_RENDER_CORE_TICKET_H
+#pragma once
 
 #include <stdint.h>
 
@@ -37,5 +36,3 @@ static inline int64_t ticket_wavelength(int64_t ticket)
 {
     return ticket >> 50 & 0xfff;
 }
-
-#endif

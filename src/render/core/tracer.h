@@ -1,8 +1,7 @@
 /* One worker's tracer: queues of rays by depth, run a batch at a time, deepest full batch first, so that what waits
  * stays small whatever the depth; the film, the counters and the scratch it works on. There is no other tracer: a
  * single ray is a batch of one. Ownership: tracer_create gives, tracer_destroy releases; plan and film are borrowed. */
-#ifndef CUVETTE_RENDER_CORE_TRACER_H
-#define CUVETTE_RENDER_CORE_TRACER_H
+#pragma once
 
 #include "base/counters.h"
 #include "base/isa.h"
@@ -43,5 +42,3 @@ const ray_counters *tracer_counters(const tracer *t);
 double tracer_visibility_s(const tracer *t);
 /* Did a contribution or a pixel's sum leave the film's range, or was it not a number? */
 bool tracer_overflowed(const tracer *t);
-
-#endif

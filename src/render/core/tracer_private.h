@@ -1,6 +1,5 @@
 /* The tracer's inside, shared by tracer.c (which rays when), by what shades (render/shade) and by the integrators. */
-#ifndef CUVETTE_RENDER_CORE_TRACER_PRIVATE_H
-#define CUVETTE_RENDER_CORE_TRACER_PRIVATE_H
+#pragma once
 
 #include "render/core/ticket.h"
 #include "render/integrators/integrator.h"
@@ -79,5 +78,3 @@ int tracer_camera_rays(tracer *t, int x, int y);
 
 /* camera_rays.c: rays first .. first + count - 1 of a row of pixels from x0 on. */
 void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count);
-
-#endif

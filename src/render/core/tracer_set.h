@@ -1,8 +1,7 @@
 /* The tracers of a renderer. Each is lent to one worker at a time, the last one given back first: what it works on is
  * then still in that processor's cache, and a thousand workers on few processors need no more tracers than run at once.
  * Ownership: tracer_set_create gives, tracer_set_destroy releases; take and give may be called from any thread. */
-#ifndef CUVETTE_RENDER_CORE_TRACER_SET_H
-#define CUVETTE_RENDER_CORE_TRACER_SET_H
+#pragma once
 
 #include "render/core/tracer.h"
 
@@ -20,5 +19,3 @@ void tracer_set_give(tracer_set *set, tracer *t);
 
 /* After the frame: adds up what its tracers counted; true if one of them overflowed. */
 bool tracer_set_collect(const tracer_set *set, ray_counters *sum);
-
-#endif

@@ -2,8 +2,7 @@
  * where neighbours cross, which is the caustic, and the point that all exit rays pass nearest, the mean focus.
  *
  * Ownership: a fan is the caller's; zero it before its first use, release it with fan_release. */
-#ifndef CUVETTE_RENDER_INSPECT_FAN_H
-#define CUVETTE_RENDER_INSPECT_FAN_H
+#pragma once
 
 #include "render/inspect/probe.h"
 
@@ -54,5 +53,3 @@ typedef struct fan {
 
 status fan_follow(probe *p, const fan_rule *rule, fan *out, diagnostic *why);
 void fan_release(fan *f);
-
-#endif

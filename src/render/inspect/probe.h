@@ -5,8 +5,7 @@
  * Ownership: probe_create gives, probe_destroy releases; it borrows the scene, whose pictures are loaded. A ray_tree is
  * the caller's; zero it before its first use (its memory is used again by the next ray), and release it with
  * ray_tree_release. One probe serves one thread. */
-#ifndef CUVETTE_RENDER_INSPECT_PROBE_H
-#define CUVETTE_RENDER_INSPECT_PROBE_H
+#pragma once
 
 #include "base/isa.h"
 #include "base/status.h"
@@ -114,5 +113,3 @@ int probe_medium_at(const probe *p, vec3 point);
 
 /* A camera ray's direction through a point of the picture, in pixels from its top left corner; unit vector. */
 vec3 probe_camera_direction(const probe *p, double x, double y);
-
-#endif

@@ -1,6 +1,5 @@
 /* The probe's inside, shared by probe.c (what is asked) and probe_grow.c (how a tree grows). */
-#ifndef CUVETTE_RENDER_INSPECT_PROBE_PRIVATE_H
-#define CUVETTE_RENDER_INSPECT_PROBE_PRIVATE_H
+#pragma once
 
 #include "render/inspect/probe.h"
 #include "render/shade/shading.h"
@@ -35,5 +34,3 @@ status probe_grow(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind
 
 /* Adds a ray and of its branches one each: see probe_way. */
 status probe_follow(probe *p, ray_tree *tree, const ray_record *ray, int reflect_at, diagnostic *why);
-
-#endif

@@ -8,8 +8,7 @@
  * neighbours.
  *
  * Ownership: a section is the caller's; zero it before its first use, release it with section_release. */
-#ifndef CUVETTE_RENDER_INSPECT_SECTION_H
-#define CUVETTE_RENDER_INSPECT_SECTION_H
+#pragma once
 
 #include "render/inspect/probe.h"
 
@@ -56,5 +55,3 @@ status section_area(const section *s, int medium, section_step *out, size_t *cou
 /* A point of space in the plane's coordinates, projected at right angles; and back. */
 section_point section_project(const section_plane *plane, vec3 p);
 vec3 section_place(const section_plane *plane, double u, double v);
-
-#endif

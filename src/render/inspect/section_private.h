@@ -1,7 +1,6 @@
 /* The section's inside, shared by section.c (the grid), section_march.c (one cell after another) and section_chain.c
  * (lines out of pieces, areas out of lines). */
-#ifndef CUVETTE_RENDER_INSPECT_SECTION_PRIVATE_H
-#define CUVETTE_RENDER_INSPECT_SECTION_PRIVATE_H
+#pragma once
 
 #include "render/inspect/section.h"
 
@@ -70,5 +69,3 @@ static inline int edge_up(const cutter *c, int i, int j)
 {
     return c->nv * (c->nu - 1) + j * c->nu + i;
 }
-
-#endif

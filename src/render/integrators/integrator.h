@@ -12,8 +12,7 @@
  * depend on who calls when (design, decision 5).
  * Ownership: what prepare gives is the frame's, until release; what begin puts into t->own is the worker's, is kept
  * for later frames of the same integrator, and goes with end. */
-#ifndef CUVETTE_RENDER_INTEGRATORS_H
-#define CUVETTE_RENDER_INTEGRATORS_H
+#pragma once
 
 #include "geometry/rays.h"
 #include "render/core/mesh_report.h"
@@ -68,5 +67,3 @@ typedef struct integrator {
 
 /* The integrator of render.integrator. */
 const integrator *integrator_for(const render_settings *r);
-
-#endif

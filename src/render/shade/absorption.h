@@ -1,7 +1,6 @@
 /* What the media that rays pass through leave of their light. Ownership: absorption_begin gives the tracer its memory,
  * absorption_end frees it. */
-#ifndef CUVETTE_RENDER_SHADE_ABSORPTION_H
-#define CUVETTE_RENDER_SHADE_ABSORPTION_H
+#pragma once
 
 #include "render/core/queue.h"
 #include "render/core/tracer.h"
@@ -22,5 +21,3 @@ void absorption_announce(tracer *t, const int64_t *tickets, int count);
 void absorption_spare_sky(tracer *t);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
 double absorption_left(double optical_depth);
-
-#endif

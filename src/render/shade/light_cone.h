@@ -1,8 +1,7 @@
 /* The cone that a light's light stays in: of a spotlight's `cone` all of it up to the half-angle a from the axis, of a
  * `soft_cone` a share that falls from 1 on the axis to 0 at the half-angle, linear in the cosine: (cos t - cos a) / (1
  * - cos a). Pure. */
-#ifndef CUVETTE_RENDER_SHADE_LIGHT_CONE_H
-#define CUVETTE_RENDER_SHADE_LIGHT_CONE_H
+#pragma once
 
 #include "base/elementary.h"
 #include "base/lanes.h"
@@ -45,5 +44,3 @@ static inline double light_share(const light *l, const light_cone *c, vec3 direc
 {
     return l->kind == LIGHT_POINT ? 1.0 : light_cone_share(c, l->kind == LIGHT_SOFT_CONE, direction);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Rays that met meshes. Ownership: mesh_begin gives the tracer its memory, mesh_end frees it. */
-#ifndef CUVETTE_RENDER_SHADE_MESH_SHADING_H
-#define CUVETTE_RENDER_SHADE_MESH_SHADING_H
+#pragma once
 
 #include "geometry/forest.h"
 #include "render/core/tracer.h"
@@ -27,5 +26,3 @@ bool mesh_lets_out(const tracer *t, int k, vec3 direction);
 bool mesh_has_corner_light(const tracer *t, int rank);
 void mesh_corner_light(tracer *t, const material *m, const light *lamp, int rank);
 int mesh_next_look(const tracer *t, int *list, int count, int *slot);
-
-#endif

@@ -1,7 +1,6 @@
 /* Basic radiance, of a plan that carries it (render.radiance). Ownership: radiance_begin gives the tracer its memory,
  * radiance_end frees it. */
-#ifndef CUVETTE_RENDER_SHADE_RADIANCE_H
-#define CUVETTE_RENDER_SHADE_RADIANCE_H
+#pragma once
 
 #include "geometry/rays.h"
 #include "render/core/tracer.h"
@@ -22,5 +21,3 @@ void radiance_weigh_back(tracer *t);
  * under classic radiance. */
 void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *tickets);
 void radiance_end_shadows(tracer *t);
-
-#endif

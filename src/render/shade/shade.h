@@ -1,7 +1,6 @@
 /* The kernels of shading: what happens to a group of rays that met one surface. All loops, no decisions by ray;
  * compiled once for each instruction set. Ownership: all arrays are the caller's (the tracer's scratch). */
-#ifndef CUVETTE_RENDER_SHADE_SHADE_H
-#define CUVETTE_RENDER_SHADE_SHADE_H
+#pragma once
 
 #include "geometry/rays.h"
 #include "render/core/plan.h"
@@ -70,5 +69,3 @@ typedef struct shade_kernels {
 } shade_kernels;
 
 extern const shade_kernels shade_kernels_sse2, shade_kernels_avx2, shade_kernels_avx512;
-
-#endif

@@ -1,7 +1,6 @@
 /* What surfaces do with light, for integrators to choose from: each works on the tracer's gathered group, or on single
  * contributions to the film. */
-#ifndef CUVETTE_RENDER_SHADE_SHADING_H
-#define CUVETTE_RENDER_SHADE_SHADING_H
+#pragma once
 
 #include "render/core/tracer_private.h"
 
@@ -64,5 +63,3 @@ void spectral_light(tracer *t, int lamp);
 /* polarised.c: the group's Stokes vectors, and what an interface makes of weights and vectors. */
 void polarised_gather(tracer *t, const ray_queue *q, int first, const int *list);
 void polarised_branches(tracer *t, const material *m, bool opaque);
-
-#endif

@@ -2,8 +2,7 @@
  * wavelengths, 0.1 nm from one to the next; what a scene does at each of them (its colours lifted by optics/lift.h, its
  * indices of refraction, its absorption, and how the eye sees it) is worked out once a frame, in tables. Ownership:
  * spectra_create gives, spectra_destroy releases; the scene is borrowed during the call only. Lookups are pure. */
-#ifndef CUVETTE_RENDER_SHADE_SPECTRA_H
-#define CUVETTE_RENDER_SHADE_SPECTRA_H
+#pragma once
 
 #include "optics/lift.h"
 #include "render/core/ticket.h"
@@ -72,5 +71,3 @@ static inline double spectra_light(const spectra *p, int64_t ticket, int lamp)
 /* Radiance of the sky; its mean over all directions, of which sky_mean has the colour. */
 double spectra_sky(const spectral_row *row, const background *sky, vec3 direction);
 double spectra_sky_mean(const spectral_row *row, const background *sky, vec3 mean);
-
-#endif

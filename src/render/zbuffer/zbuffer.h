@@ -11,8 +11,7 @@
  * at once, takes the triangles into the picture; zbuffer_sort deals them to squares of the picture; zbuffer_draw, by
  * whoever has a piece of the picture, draws it. The steps wait for each other. What is drawn depends on no order.
  * Ownership: create gives, destroy releases; the plan is borrowed. */
-#ifndef CUVETTE_RENDER_ZBUFFER_ZBUFFER_H
-#define CUVETTE_RENDER_ZBUFFER_ZBUFFER_H
+#pragma once
 
 #include "render/core/plan.h"
 #include "render/core/schedule.h"
@@ -55,5 +54,3 @@ bool zbuffer_failed(const zbuffer *z);
 /* How many triangles are in the picture, and the bytes that they and the picture's buffer take. After zbuffer_sort. */
 size_t zbuffer_triangles(const zbuffer *z);
 size_t zbuffer_bytes(const zbuffer *z);
-
-#endif

@@ -5,8 +5,7 @@
  * 2^-12 of that unit. From there on all that decides which points a triangle covers is whole numbers; two triangles
  * that share an edge share its rounded ends, and by the rule of top and left edges no point on it is drawn twice or
  * left out. */
-#ifndef CUVETTE_RENDER_ZBUFFER_ZBUFFER_PRIVATE_H
-#define CUVETTE_RENDER_ZBUFFER_ZBUFFER_PRIVATE_H
+#pragma once
 
 #include "geometry/forest.h"
 #include "render/zbuffer/zbuffer.h"
@@ -129,5 +128,3 @@ static inline vec3 zbuffer_vertex(const forest_part *p, vec3 o, uint32_t vertex)
     const vec3 scaled = p->scaled ? vec3_make(v.x * p->scale.x, v.y * p->scale.y, v.z * p->scale.z) : v;
     return vec3_add(o, p->turned ? mat3_apply(p->rotation, scaled) : scaled);
 }
-
-#endif

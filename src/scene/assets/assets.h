@@ -1,6 +1,5 @@
 /* What the loaders of a scene's files share. Pure but for the diagnostic. */
-#ifndef CUVETTE_SCENE_ASSETS_ASSETS_H
-#define CUVETTE_SCENE_ASSETS_ASSETS_H
+#pragma once
 
 #include "scene/model/open.h"
 
@@ -8,5 +7,3 @@
  * column, or where bad is, if line is 0. Returns code. */
 status asset_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code,
                    diagnostic *why);
-
-#endif

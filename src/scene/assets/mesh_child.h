@@ -2,8 +2,7 @@
  * always reaped. Private to the mesh reader; scene/assets/mesh_file.h is for others. Ownership: the child's open and
  * close go together; every descriptor is closed on exec. No signal is sent to the caller, none of its signal handlers
  * is touched, other children are left alone. */
-#ifndef CUVETTE_SCENE_ASSETS_MESH_CHILD_H
-#define CUVETTE_SCENE_ASSETS_MESH_CHILD_H
+#pragma once
 
 #include "scene/assets/mesh_stream.h"
 #include <sys/types.h>
@@ -36,5 +35,3 @@ status mesh_child_end(void *context, diagnostic *why);
 /* Ends the child, whatever it does, and waits for it. code is how the reading went: STATUS_OK stays only if the child
  * ended well; what the child said, or how it died, comes before what reading said. */
 status mesh_child_close(mesh_child *child, const char *path, const mesh_limits *limits, status code, diagnostic *why);
-
-#endif

@@ -6,13 +6,10 @@
  * file that the mesh names (MTL, buffers, pictures) must be there. Vertex colours, emission, lights, cameras, animation
  * and the metalness of glTF are not read. Ownership: the import is the caller's (scene/assets/mesh_stream.h). Errors:
  * STATUS_BAD_INPUT with the file, and what is wrong with it. */
-#ifndef CUVETTE_SCENE_ASSETS_MESH_FILE_H
-#define CUVETTE_SCENE_ASSETS_MESH_FILE_H
+#pragma once
 
 #include "scene/assets/mesh_stream.h"
 
 /* limits may be NULL. Textures come back as paths that can be opened: absolute, or beside the mesh file; they are
  * looked for, not opened. */
 status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import **out, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* The triangles of a scene's mesh: computed from its parameters, or read from its file. Ownership: the entry becomes an
  * owner of what it is given, mesh_entry_unload lets go of it. */
-#ifndef CUVETTE_SCENE_ASSETS_MESH_MAKE_H
-#define CUVETTE_SCENE_ASSETS_MESH_MAKE_H
+#pragma once
 
 #include "scene/model/mesh_entry.h"
 
@@ -10,5 +9,3 @@ status mesh_make(mesh_entry *m, diagnostic *why);
 
 /* path: from the working folder. No mesh has more triangles than limits allow all together. */
 status mesh_make_from_file(mesh_entry *m, const char *path, const load_limits *limits, diagnostic *why);
-
-#endif

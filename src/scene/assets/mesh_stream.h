@@ -2,8 +2,7 @@
  * against limits before memory is asked for, indices, numbers and texts are checked, and a stream that ends early or
  * goes on is refused. Ownership: an import is the caller's, mesh_import_destroy releases it; its mesh may be kept with
  * mesh_retain. */
-#ifndef CUVETTE_SCENE_ASSETS_MESH_STREAM_H
-#define CUVETTE_SCENE_ASSETS_MESH_STREAM_H
+#pragma once
 
 #include "base/status.h"
 #include "geometry/mesh.h"
@@ -56,5 +55,3 @@ typedef struct mesh_source {
 status mesh_stream_read(const mesh_source *source, const mesh_limits *limits, mesh_import **out, diagnostic *why);
 
 void mesh_import_destroy(mesh_import *imported); /* NULL is allowed */
-
-#endif

@@ -2,8 +2,7 @@
  * study files are both read through it. Anchors and aliases, tags and several documents in one file are refused:
  * a file says what it means where it says it, and cannot be cyclic or explode. Ownership: document_destroy
  * releases the whole tree. */
-#ifndef CUVETTE_SCENE_FILE_DOCUMENT_H
-#define CUVETTE_SCENE_FILE_DOCUMENT_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -44,5 +43,3 @@ status node_check_keys(const document *d, const node *map, const char *const *wo
 bool node_is_value(const node *n);
 /* Such a one as text ("8", "0,2.75,-6"); fresh memory, NULL when memory is out, and for other kinds. */
 char *node_value_text(const node *n);
-
-#endif

@@ -1,7 +1,6 @@
 /* libyaml's events for document.c, with its errors as diagnostics. Ownership: the reader borrows its text; events_next
  * gives an event, release it with yaml_event_delete. */
-#ifndef CUVETTE_SCENE_FILE_DOCUMENT_EVENTS_H
-#define CUVETTE_SCENE_FILE_DOCUMENT_EVENTS_H
+#pragma once
 
 #include "base/status.h"
 #include <yaml.h>
@@ -17,5 +16,3 @@ typedef struct event_reader {
 status events_error(event_reader *r, yaml_mark_t mark, const char *remedy, const char *what);
 /* The next event. Aliases, anchors and tags are refused here, and so is what is not YAML or not UTF-8. */
 status events_next(event_reader *r, yaml_event_t *event);
-
-#endif

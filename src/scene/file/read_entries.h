@@ -1,7 +1,6 @@
 /* What the sections of a scene file have in common: entries that are rows of the parameter table. For read.c and
  * read_objects.c. Ownership: a scene_reader borrows. */
-#ifndef CUVETTE_SCENE_FILE_READ_ENTRIES_H
-#define CUVETTE_SCENE_FILE_READ_ENTRIES_H
+#pragma once
 
 #include "scene/file/document.h"
 #include "scene/model/params.h"
@@ -33,5 +32,3 @@ status read_entries(const scene_reader *r, const char *name, param_group group, 
 /* A section of named objects: each is added to the scene, and checked. Materials come before solids, which refer to
  * them. */
 status read_objects(const scene_reader *r, const char *name, param_group group, const node *map);
-
-#endif

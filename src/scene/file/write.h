@@ -3,8 +3,7 @@
  * Writing, reading and writing again gives the same bytes, and what is read makes the same film. Numbers have the
  * fewest digits that read back the same. Comments of the file that a scene came from are not part of the scene.
  * Ownership: text is the caller's, released with free. */
-#ifndef CUVETTE_SCENE_FILE_WRITE_H
-#define CUVETTE_SCENE_FILE_WRITE_H
+#pragma once
 
 #include "scene/model/open.h"
 
@@ -15,5 +14,3 @@ status scene_write_text(const scene *s, const char *path, bool all, char **text,
 
 /* The same into a file, which appears whole or not at all; "-" is standard output. */
 status scene_write(const scene *s, const char *path, bool all, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* What scene/file/write.c puts together: words that YAML reads back, and paths that follow their file. Ownership: fresh
  * memory is the caller's. */
-#ifndef CUVETTE_SCENE_FILE_WRITE_PARTS_H
-#define CUVETTE_SCENE_FILE_WRITE_PARTS_H
+#pragma once
 
 #include "base/status.h"
 #include <stdio.h>
@@ -18,5 +17,3 @@ void write_list(FILE *out, const char *numbers);
 /* path, which is relative to the folder of the file old_file, as it reads from new_file. "" stands for a file in the
  * working folder. */
 status write_moved_path(const char *path, const char *old_file, const char *new_file, char **moved, diagnostic *why);
-
-#endif

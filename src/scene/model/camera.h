@@ -1,6 +1,5 @@
 /* Where the camera stands and looks, as vectors. Pure. */
-#ifndef CUVETTE_SCENE_MODEL_CAMERA_H
-#define CUVETTE_SCENE_MODEL_CAMERA_H
+#pragma once
 
 #include "base/vec3.h"
 #include "scene/model/open.h"
@@ -50,5 +49,3 @@ static inline vec3 camera_direction(const camera_frame *f, const render_settings
     const camera_pixel p = camera_pixel_of(f, r);
     return camera_toward(f, camera_u(f, p, x), camera_v(f, p, y));
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* How a person moves the camera: around what it looks at, on the spot, along its own axes. Pure. */
-#ifndef CUVETTE_SCENE_MODEL_CAMERA_MOVES_H
-#define CUVETTE_SCENE_MODEL_CAMERA_MOVES_H
+#pragma once
 
 #include "scene/model/open.h"
 
@@ -14,5 +13,3 @@ typedef struct camera_move {
 /* A desk_change; of is a camera_move. The camera never stands on its head: directions stay 0.5 degrees from straight
  * up and down. */
 status camera_move_apply(void *of, scene *s, diagnostic *why);
-
-#endif

@@ -1,6 +1,5 @@
 /* The parts of scene_check that concern one object, so that a reader can say where in a file the trouble is. Pure. */
-#ifndef CUVETTE_SCENE_MODEL_CHECK_H
-#define CUVETTE_SCENE_MODEL_CHECK_H
+#pragma once
 
 #include "scene/model/params.h"
 
@@ -16,5 +15,3 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
 
 /* Numbers of lights, materials and primitives. */
 status check_limits(const scene *s, diagnostic *why);
-
-#endif

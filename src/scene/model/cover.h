@@ -1,7 +1,6 @@
 /* Which solid hides another one for good, and which are apart: by the shapes' own measures, so that what sticks out
  * by a hair is not hidden. Pure. */
-#ifndef CUVETTE_SCENE_MODEL_COVER_H
-#define CUVETTE_SCENE_MODEL_COVER_H
+#pragma once
 
 #include "scene/model/open.h"
 #include "scene/model/solids.h"
@@ -23,5 +22,3 @@ bool scene_apart_from_eye(const scene *s, const solid *owner);
 
 /* Does the solid lie wholly behind the camera, so that it is seen in reflections at most? */
 bool scene_is_behind_camera(const scene *s, const solid *owner);
-
-#endif

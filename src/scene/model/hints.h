@@ -1,6 +1,5 @@
 /* What a scene that is right in every part still shows nothing of, most often because a line was forgotten. Pure. */
-#ifndef CUVETTE_SCENE_MODEL_HINTS_H
-#define CUVETTE_SCENE_MODEL_HINTS_H
+#pragma once
 
 #include "scene/model/inert/note.h"
 #include "scene/model/open.h"
@@ -14,5 +13,3 @@ void scene_hints(const scene *s, const note_taker *taker);
 /* The same for each medium, the surroundings' too, whose index is extrapolated beyond the wavelengths where it was
  * measured. */
 void scene_range_hints(const scene *s, const note_taker *taker);
-
-#endif

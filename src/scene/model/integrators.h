@@ -1,8 +1,7 @@
 /* The integrators: the words of render.integrator, and what the rest of the program asks of each. A new one is a row
  * here and its own file in src/render/integrators; render's table of what they do is made from the same rows.
  * Constant. */
-#ifndef CUVETTE_SCENE_MODEL_INTEGRATORS_H
-#define CUVETTE_SCENE_MODEL_INTEGRATORS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -30,5 +29,3 @@ extern const integrator_traits integrator_table[];
 
 /* The word of the first one that gives layers; NULL if none does. */
 const char *integrator_with_layers(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* Named layers: what an integrator may give of each pixel beside the film, and render.layer's words. Constant. */
-#ifndef CUVETTE_SCENE_MODEL_LAYERS_H
-#define CUVETTE_SCENE_MODEL_LAYERS_H
+#pragma once
 
 /* Name, word, numbers a pixel. */
 #define LAYERS(X)            \
@@ -17,5 +16,3 @@ typedef enum layer_rule { LAYERS(LAYER_NUMBER) LAYER_COUNT } layer_rule;
 
 extern const char *const layer_words[]; /* ends with NULL */
 extern const int layer_channels[LAYER_COUNT];
-
-#endif

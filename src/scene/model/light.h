@@ -1,6 +1,5 @@
 /* Lights of a scene. Values; a light owns its name. */
-#ifndef CUVETTE_SCENE_MODEL_LIGHT_H
-#define CUVETTE_SCENE_MODEL_LIGHT_H
+#pragma once
 
 #include "base/vec3.h"
 #include <stdint.h>
@@ -19,5 +18,3 @@ typedef struct light {
     double radius; /* of the sphere that shines, for the path tracer; 0 = a point */
     double reach;  /* distance at which intensity holds, falling off with the square; 0 = the same everywhere */
 } light;
-
-#endif

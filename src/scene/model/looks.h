@@ -1,7 +1,6 @@
 /* How the faces of a mesh's slots look, as its file says it: what Phong's sum needs and a texture, by slot. Shared like
  * the mesh that they came with: looks_retain and looks_release count owners, from any thread. */
-#ifndef CUVETTE_SCENE_MODEL_LOOKS_H
-#define CUVETTE_SCENE_MODEL_LOOKS_H
+#pragma once
 
 #include "scene/assets/mesh_stream.h"
 #include "scene/model/material.h"
@@ -57,5 +56,3 @@ bool looks_waste(const scene *s, const solid *owner);
 
 int looks_count(const face_looks *l); /* 0 for NULL */
 const face_look *looks_at(const face_looks *l, int slot);
-
-#endif

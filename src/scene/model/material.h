@@ -1,6 +1,5 @@
 /* What surfaces and media are like: the parameters of materials. Values. */
-#ifndef CUVETTE_SCENE_MODEL_MATERIAL_H
-#define CUVETTE_SCENE_MODEL_MATERIAL_H
+#pragma once
 
 #include "base/vec3.h"
 #include <stdint.h>
@@ -43,5 +42,3 @@ typedef struct named_material {
     char *name;
     material value;
 } named_material;
-
-#endif

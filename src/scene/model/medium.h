@@ -1,8 +1,7 @@
 /* The medium of a material or of the surroundings: which law gives its refractive index and its absorption. The choice
  * is an index into medium_words: `ior` for a plain index, the words of the laws that a scene may give coefficients for,
  * then the names of the catalogue (optics/media.h). Pure; indices are relative to vacuum, wavelengths are vacuum's. */
-#ifndef CUVETTE_SCENE_MODEL_MEDIUM_H
-#define CUVETTE_SCENE_MODEL_MEDIUM_H
+#pragma once
 
 #include "optics/dispersion.h"
 #include "optics/media.h"
@@ -73,5 +72,3 @@ bool surroundings_absorb(const background *b);
 
 /* Pairs of numbers, wavelengths ascending, coefficients not negative. */
 status material_absorption_check(const material *m, const char *label, diagnostic *why);
-
-#endif

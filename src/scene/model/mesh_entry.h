@@ -1,7 +1,6 @@
 /* Meshes and textures that a scene names: where they come from, and what was loaded. An entry owns its words and is one
  * owner of its data. */
-#ifndef CUVETTE_SCENE_MODEL_MESH_ENTRY_H
-#define CUVETTE_SCENE_MODEL_MESH_ENTRY_H
+#pragma once
 
 #include "geometry/mesh.h"
 #include "image/texture.h"
@@ -69,5 +68,3 @@ typedef struct load_limits {
 /* Lets go of what was loaded for an entry whose parameters change. */
 void mesh_entry_unload(mesh_entry *m);
 void texture_entry_unload(texture_entry *t);
-
-#endif

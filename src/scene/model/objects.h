@@ -1,8 +1,7 @@
 /* The objects of a scene by their group, whatever they are: meshes, textures, lights, materials and solids stand in
  * arrays whose elements begin with their names; render, camera and background are one each, without a name of their
  * own. For the scene's own files, which make, copy, find and remove them. Ownership: the scene's. */
-#ifndef CUVETTE_SCENE_MODEL_OBJECTS_H
-#define CUVETTE_SCENE_MODEL_OBJECTS_H
+#pragma once
 
 #include "scene/model/params.h"
 
@@ -32,5 +31,3 @@ void objects_release(scene *s);
 
 /* "did you mean 'oak'?", or where to add one; returns text. */
 char *object_remedy(const scene *s, param_group group, const char *wrong, char *text, size_t size);
-
-#endif

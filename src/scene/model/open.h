@@ -1,7 +1,6 @@
 /* Scenes as wholes, for those who do not look inside: made, read, loaded, checked, destroyed. Ownership: scene_create,
  * scene_read and scene_clone give a scene to the caller, scene_destroy releases it. */
-#ifndef CUVETTE_SCENE_MODEL_OPEN_H
-#define CUVETTE_SCENE_MODEL_OPEN_H
+#pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
@@ -67,5 +66,3 @@ status scene_check(const scene *s, diagnostic *why);
 /* Gives each mesh of s that is not loaded the triangles of a mesh with the same parameters in another scene, where
  * there is one. Slimes only where s.render.keep is on: each frame is to have its own simulation else. */
 void scene_borrow_meshes(scene *s, const scene *from);
-
-#endif

@@ -6,8 +6,7 @@
  * `glass.ior`. One element of a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a material's
  * field sets it for all the solids that refer to it; setting it by a solid's name sets it for that solid alone; the
  * last one set wins. Ownership: the table is constant. */
-#ifndef CUVETTE_SCENE_MODEL_PARAMS_H
-#define CUVETTE_SCENE_MODEL_PARAMS_H
+#pragma once
 
 #include "scene/model/open.h"
 
@@ -89,5 +88,3 @@ status scene_get(const scene *s, const char *path, char **value, diagnostic *why
  * when visit returns other than STATUS_OK, and returns that. */
 typedef status param_visit(void *context, const char *path, const param *row, const char *value);
 status scene_each_param(const scene *s, param_visit *visit, void *context);
-
-#endif

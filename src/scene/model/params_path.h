@@ -1,7 +1,6 @@
 /* Where a parameter's path leads: `lamp.position.x` to the row, the light and the element. Ownership: a place borrows
  * the scene. */
-#ifndef CUVETTE_SCENE_MODEL_PARAMS_PATH_H
-#define CUVETTE_SCENE_MODEL_PARAMS_PATH_H
+#pragma once
 
 #include "geometry/solid.h"
 #include "scene/model/params.h"
@@ -32,5 +31,3 @@ size_t place_group_size(const scene *s, param_group group);
 
 /* "sphere" */
 const char *shape_name(shape_kind kind);
-
-#endif

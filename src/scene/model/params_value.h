@@ -1,7 +1,6 @@
 /* One row's value: from text, to text, into and out of the struct that holds it. The rest of params.h is
  * built on it. Ownership: param_value_text gives fresh memory; a PARAM_PATH field owns its text. */
-#ifndef CUVETTE_SCENE_MODEL_PARAMS_VALUE_H
-#define CUVETTE_SCENE_MODEL_PARAMS_VALUE_H
+#pragma once
 
 #include "scene/model/params.h"
 #include "scene/model/material.h"
@@ -34,5 +33,3 @@ char *param_default_text(const param *row);
 
 /* Gives every field of the group's rows in *base its default. Path fields must be NULL or text of their own. */
 status param_set_defaults(param_group group, void *base, diagnostic *why);
-
-#endif

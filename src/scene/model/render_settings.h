@@ -1,7 +1,6 @@
 /* How a scene is rendered: the parameters render.*. Integer and enum parameters are int64_t, switches (on/off) too: one
  * type a kind of parameter. Values. */
-#ifndef CUVETTE_SCENE_MODEL_RENDER_SETTINGS_H
-#define CUVETTE_SCENE_MODEL_RENDER_SETTINGS_H
+#pragma once
 
 #include "scene/model/integrators.h"
 #include "scene/model/layers.h"
@@ -93,5 +92,3 @@ static inline bool scene_has_basic_radiance(const render_settings *r)
 {
     return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT && !integrator_of(r)->drawn;
 }
-
-#endif

@@ -2,8 +2,7 @@
  * Every field that may be turned is a row of the parameter table (scene/model/params.h), which is how files,
  * --set, studies and manuals reach it. Who only passes a scene on includes scene/model/open.h. Ownership: see there;
  * the renderer borrows a scene. */
-#ifndef CUVETTE_SCENE_MODEL_SCENE_H
-#define CUVETTE_SCENE_MODEL_SCENE_H
+#pragma once
 
 #include "scene/model/light.h"
 #include "scene/model/mesh_entry.h"
@@ -41,5 +40,3 @@ const mesh_entry *scene_mesh_of(const scene *s, const solid *owner);
 /* The solid's shape with the triangles of its mesh, where they are loaded. */
 solid_shape scene_loaded_shape(const scene *s, const solid *owner);
 const texture_entry *scene_find_texture(const scene *s, const char *name);
-
-#endif

@@ -1,8 +1,7 @@
 /* The body of a slime among a scene's meshes: what its parameters and its script say, from the beginning to a moment.
  * Ownership: slime_create gives, slime_destroy releases; slime_make's mesh is the entry's. Errors: STATUS_BAD_INPUT,
  * located: a script's in its file, others where the scene file says what the mesh is, with its name. */
-#ifndef CUVETTE_SCENE_MODEL_SLIME_H
-#define CUVETTE_SCENE_MODEL_SLIME_H
+#pragma once
 
 #include "scene/model/mesh_entry.h"
 #include "scene/model/open.h"
@@ -41,5 +40,3 @@ double slime_work(const mesh_entry *m);
 /* Fills the data, account and motion_s of an entry that has no data; leaves it as it was where that fails or is
  * stopped. */
 status slime_make(const scene *s, mesh_entry *m, const load_watch *watch, diagnostic *why);
-
-#endif

@@ -1,6 +1,5 @@
 /* The solids of a scene: a shape, what it is made of, and its priority. A solid owns its name. */
-#ifndef CUVETTE_SCENE_MODEL_SOLIDS_H
-#define CUVETTE_SCENE_MODEL_SOLIDS_H
+#pragma once
 
 #include "geometry/solid.h"
 #include "scene/model/material.h"
@@ -23,5 +22,3 @@ typedef struct solid {
 
 /* Is it of a shape with triangles, and names that mesh? */
 bool solid_shows(const solid *owner, const char *mesh_name);
-
-#endif

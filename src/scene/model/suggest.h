@@ -1,6 +1,5 @@
 /* What to suggest in place of a wrong word of a scene or study file, or of a path. Pure. */
-#ifndef CUVETTE_SCENE_MODEL_SUGGEST_H
-#define CUVETTE_SCENE_MODEL_SUGGEST_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -15,5 +14,3 @@ char *suggest_key(const char *wrong, const char *const *words, size_t count, cha
 
 /* "prefix" and "a, b, c", cut at the end of the buffer. */
 void suggest_list(const char *prefix, const char *const *words, size_t count, char *text, size_t size);
-
-#endif

@@ -1,7 +1,6 @@
 /* What a scene is looked at with, and what it is surrounded by: camera, background. Plain values; a background owns
  * its picture. */
-#ifndef CUVETTE_SCENE_MODEL_VIEW_SETTINGS_H
-#define CUVETTE_SCENE_MODEL_VIEW_SETTINGS_H
+#pragma once
 
 #include "base/vec3.h"
 #include "image/image.h"
@@ -33,5 +32,3 @@ typedef struct background {
     int64_t medium;                    /* see scene/model/medium.h */
     vec3 absorb_per_m; /* of what surrounds all solids, by channel, along ways that end at a surface or a light */
 } background;
-
-#endif

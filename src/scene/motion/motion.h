@@ -5,8 +5,7 @@
  *
  * Ownership: scene_motion_create gives, scene_motion_destroy releases; the scene is borrowed, must outlive it, and is
  * not rendered while it advances. Errors as softbody/softbody.h; a script's are located in its file. */
-#ifndef CUVETTE_SCENE_MOTION_MOTION_H
-#define CUVETTE_SCENE_MOTION_MOTION_H
+#pragma once
 
 #include "softbody/softbody.h"
 #include "geometry/hierarchy.h"
@@ -56,5 +55,3 @@ size_t scene_motion_mesh(const scene_motion *m, size_t i);
 double scene_motion_script_end_s(const scene_motion *m);
 /* From now on no script moves a hand; what those hold they let go. false where there was none. */
 bool scene_motion_drop_scripts(scene_motion *m);
-
-#endif

@@ -5,8 +5,7 @@
  * begins. Rays and ways of the world are taken into the mesh's frame by that; distances along a ray, as multiples of
  * its direction, are the same in both. Ownership: hands are the caller's, SOFTBODY_HANDS_MAX for each slime, by the
  * body's own numbers. Errors as softbody/softbody.h. */
-#ifndef CUVETTE_SCENE_MOTION_MOTION_HANDS_H
-#define CUVETTE_SCENE_MOTION_MOTION_HANDS_H
+#pragma once
 
 #include "scene/motion/motion.h"
 
@@ -44,5 +43,3 @@ vec3 motion_hand_way(const motion_hand *h, vec3 by);
 /* All steps of the slime until time_s, with its hands on their straight ways from where they are; none where no hand
  * moves. Skins and the scene's account are left to scene_motion_advance. */
 status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, double time_s, diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* A scene that moves, shared by motion.c (its time), motion_stage.c (which scene it is in) and motion_hands.c (what
  * takes hold of it). */
-#ifndef CUVETTE_SCENE_MOTION_MOTION_PRIVATE_H
-#define CUVETTE_SCENE_MOTION_MOTION_PRIVATE_H
+#pragma once
 
 #include "scene/motion/motion.h"
 #include "scene/model/slime.h"
@@ -46,5 +45,3 @@ void motion_forget(moving_slime *one);
 /* A skin of its own, in place of what others may look at. */
 status motion_give_skin(const scene_motion *m, const moving_slime *one, diagnostic *why);
 void motion_take_account(scene_motion *m, moving_slime *one, double time_s);
-
-#endif

@@ -10,8 +10,7 @@
  * Points are in the frame of the slime's mesh, which is the world's where its solid is neither moved, turned nor
  * scaled. Ownership: the caller releases with hand_script_destroy. Errors: STATUS_BAD_INPUT, located: file, line,
  * column. */
-#ifndef CUVETTE_SCENE_MOTION_SCRIPT_H
-#define CUVETTE_SCENE_MOTION_SCRIPT_H
+#pragma once
 
 #include "softbody/hand.h"
 
@@ -19,5 +18,3 @@
 status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why);
 /* The same from memory; name stands for the file in diagnostics. */
 status script_read_text(const char *name, const char *text, size_t size, hand_script **out, diagnostic *why);
-
-#endif

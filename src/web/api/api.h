@@ -1,8 +1,7 @@
 /* The laboratory's API: a request, what answers it, and what is read of it. All routes stand in one table, in
  * web/api/routes.c; web/README.md describes them. A handler fills the call and returns a status, and api.c answers:
  * with told where that is STATUS_OK, else with the diagnostic. */
-#ifndef CUVETTE_WEB_API_API_H
-#define CUVETTE_WEB_API_API_H
+#pragma once
 
 #include "web/lab_private.h"
 
@@ -76,5 +75,3 @@ bool api_take_bits(const call *c, int *bits);
 status api_wait_for_final(call *c, const picture **out);
 /* The desk's scene, and its file's name, "" for none; fresh memory, NULL when that is out. */
 char *api_desk_file(const call *c);
-
-#endif

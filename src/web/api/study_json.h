@@ -1,8 +1,7 @@
 /* What the laboratory's API says of studies, as JSON. Values of rows and summaries are texts, as they stand in the
  * files: a program that reads them as numbers loses nothing on the way. Ownership: new references. Errors:
  * STATUS_BAD_INPUT for rows that are damaged or of another definition. */
-#ifndef CUVETTE_WEB_API_STUDY_JSON_H
-#define CUVETTE_WEB_API_STUDY_JSON_H
+#pragma once
 
 #include "study/study.h"
 #include <jansson.h>
@@ -20,5 +19,3 @@ status study_json_rows(const study *s, const char *results, size_t from, json_t 
 /* {"columns": paths of the grid, "cells": [..]}: wall times of the cells in two folders of results, see web/README.md.
  */
 status study_json_compare(const study *s, const char *results, const char *other, json_t **out, diagnostic *why);
-
-#endif

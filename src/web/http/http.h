@@ -33,8 +33,7 @@
  * for all clients. Ownership: http_start gives, http_stop releases; settings, routes and files are borrowed in between
  * (settings itself only by http_start). What is given to a reply is the reply's. Errors: STATUS_BAD_INPUT for a port
  * that cannot be had, STATUS_FAILURE for memory, threads and sockets. Nothing is printed, no signal is taken. */
-#ifndef CUVETTE_WEB_HTTP_HTTP_H
-#define CUVETTE_WEB_HTTP_HTTP_H
+#pragma once
 
 #include "base/status.h"
 #include <jansson.h>
@@ -126,5 +125,3 @@ void http_events(void *context, const http_request *request, http_reply *reply);
 status http_publish(http_server *server, const char *event, const json_t *value, diagnostic *why);
 /* Streams that are open now. */
 int http_event_clients(http_server *server);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the server's files share: not for others. See web/http/http.h. */
-#ifndef CUVETTE_WEB_HTTP_HTTP_PRIVATE_H
-#define CUVETTE_WEB_HTTP_HTTP_PRIVATE_H
+#pragma once
 
 #include "web/http/http.h"
 #include <microhttpd.h>
@@ -102,5 +101,3 @@ void *http_on_target(void *server, const char *target, struct MHD_Connection *c)
 enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const char *url, const char *method,
                                 const char *version, const char *upload, size_t *upload_size, void **request);
 void http_on_end(void *server, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode why);
-
-#endif

@@ -5,8 +5,7 @@
  * the scene) that nobody else looks at meanwhile; the others from any thread. Ownership: live_create gives,
  * live_destroy releases, after live_detach and when no other thread calls any more. Errors: STATUS_BAD_INPUT for what
  * cannot be, among them a body that blew up: it then stands still and says so until it is started again. */
-#ifndef CUVETTE_WEB_LIVE_LIVE_H
-#define CUVETTE_WEB_LIVE_LIVE_H
+#pragma once
 
 #include "base/vec3.h"
 #include "scene/model/open.h"
@@ -75,5 +74,3 @@ bool live_take_moved(live *l);
 
 /* A stage that is on is not to be lent to the desk: its slimes lie as hands have drawn them, not as their time_s says.
  */
-
-#endif

@@ -1,7 +1,6 @@
 /* The live slime, shared by live.c (what other threads ask), live_stage.c (which scene it is in, and orders) and
  * live_move.c (its motion). */
-#ifndef CUVETTE_WEB_LIVE_LIVE_PRIVATE_H
-#define CUVETTE_WEB_LIVE_LIVE_PRIVATE_H
+#pragma once
 
 #include "scene/motion/motion_hands.h"
 #include "web/live/live.h"
@@ -75,5 +74,3 @@ struct live {
 status live_move_on(live *l, double most_s, diagnostic *why);
 /* Nothing is left of how it moved. */
 void live_stand_still(live *l);
-
-#endif

@@ -1,7 +1,6 @@
 /* How coarse the frames of a film that moves are, so that each takes about as long as it may: coarser when they come
  * too late, finer when there is time, a step at a time and no to and fro. Pure. */
-#ifndef CUVETTE_WEB_LIVE_PACE_H
-#define CUVETTE_WEB_LIVE_PACE_H
+#pragma once
 
 typedef struct pace {
     int step;       /* of the steps of coarseness; 0 is the finest */
@@ -13,5 +12,3 @@ int pace_shrink(const pace *p);
 
 /* A frame of that coarseness took wall_s, and may take wanted_s. */
 void pace_take(pace *p, double wall_s, double wanted_s);
-
-#endif

@@ -2,8 +2,7 @@
  * pass that is on its way. It also moves the slime while that is live (web/live/live.h). One picture, the newest, is
  * there for all. Ownership: painter_create gives, painter_end joins, painter_destroy releases. Pictures are shared and
  * never change: picture_keep and picture_release count their owners. */
-#ifndef CUVETTE_WEB_LIVE_PAINTER_H
-#define CUVETTE_WEB_LIVE_PAINTER_H
+#pragma once
 
 #include "base/isa.h"
 #include "image/image.h"
@@ -70,5 +69,3 @@ live *painter_live(painter *p);
  * as far as that went. */
 status painter_with_scene(painter *p, status (*look)(void *context, scene *s, diagnostic *why), void *context,
                           diagnostic *why);
-
-#endif

@@ -1,8 +1,7 @@
 /* What the painter's files share: not for others. painter.c answers others and starts and ends the thread,
  * painter_thread.c is what it does in turn, painter_stage.c brings the scene there and moves it, painter_pass.c makes a
  * picture of it. See web/live/painter.h. */
-#ifndef CUVETTE_WEB_LIVE_PAINTER_PRIVATE_H
-#define CUVETTE_WEB_LIVE_PAINTER_PRIVATE_H
+#pragma once
 
 #include "job/job.h"
 #include "web/live/pace.h"
@@ -72,5 +71,3 @@ void painter_say(painter *p);
 /* The stage's trouble is this; with the lock held, true where pages are to be told; the other one locks and tells. */
 bool painter_take_trouble(painter *p, status code, const diagnostic *why);
 void painter_set_trouble(painter *p, status code, const diagnostic *why);
-
-#endif

@@ -1,7 +1,6 @@
 /* In how many passes, and how coarse, a scene is painted so that the first one comes soon: reckoned from how fast
  * pictures came so far. Pure. */
-#ifndef CUVETTE_WEB_LIVE_PASSES_H
-#define CUVETTE_WEB_LIVE_PASSES_H
+#pragma once
 
 #include "scene/model/render_settings.h"
 #include <stdbool.h>
@@ -21,5 +20,3 @@ pass_plan passes_plan(const render_settings *r, double rate, double first_s);
 
 /* The settings of one pass. */
 render_settings passes_settings(const render_settings *r, int shrink, bool single);
-
-#endif

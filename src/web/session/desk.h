@@ -3,8 +3,7 @@
  * bounds below before it takes the place of the scene, so that nobody ever sees a half of one. Ownership: desk_create
  * gives, desk_destroy releases; scenes that go in or come out belong to the receiver, but for the desk's own copy in a
  * change. Errors: STATUS_BAD_INPUT with the reason; the scene is then as it was. */
-#ifndef CUVETTE_WEB_SESSION_DESK_H
-#define CUVETTE_WEB_SESSION_DESK_H
+#pragma once
 
 #include "web/session/folder.h"
 #include <stdint.h>
@@ -60,5 +59,3 @@ void desk_saved(desk *d, const char *file, uint64_t generation);
 
 /* Adds generation, file, title, saved, undo, redo; false when memory is out. */
 bool desk_tell(desk *d, json_t *state);
-
-#endif

@@ -2,8 +2,7 @@
  * (plots/draw.sh). A script says in its head what it needs (`# needs: tables/NAME.tsv`); a figure without one belongs
  * to the study that its name begins with. Names of figures are small letters, digits and '-'. Ownership: what is given
  * is the caller's. */
-#ifndef CUVETTE_WEB_SESSION_FIGURES_H
-#define CUVETTE_WEB_SESSION_FIGURES_H
+#pragma once
 
 #include "study/study.h"
 #include "web/lab_private.h"
@@ -20,5 +19,3 @@ json_t *figures_drawable(const lab *l, const char *name);
  * page waits. *said: what the script said, one line a figure, or NULL. *whole: it failed in none of them; figures of a
  * study that is not complete often cannot be drawn. */
 status figures_draw(const lab *l, const study *s, char **said, bool *whole, diagnostic *why);
-
-#endif

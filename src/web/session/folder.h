@@ -1,8 +1,7 @@
 /* The folder that was chosen: names that pages give, and what may be read and written. A name is relative to it, with
  * '/', without "." or ".." or an empty part; what a symbolic link leads out of it is refused like a path that climbs.
  * Ownership: folder_open gives, folder_close releases; paths are fresh memory. Errors: STATUS_BAD_INPUT. */
-#ifndef CUVETTE_WEB_SESSION_FOLDER_H
-#define CUVETTE_WEB_SESSION_FOLDER_H
+#pragma once
 
 #include "scene/model/open.h"
 #include <jansson.h>
@@ -36,5 +35,3 @@ status folder_check_scene(const folder *f, const scene *s, diagnostic *why);
  * memory is out. */
 enum { FOLDER_FILES_MAX = 2000 };
 json_t *folder_tell(const folder *f);
-
-#endif

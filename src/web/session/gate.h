@@ -1,8 +1,7 @@
 /* Lets in a few at a time, for what takes much memory and time and cannot be ended on its way: pictures that are
  * encoded or compared, models that are read. For any number of threads. Ownership: gate_create gives, gate_destroy
  * releases, when nobody is in it or waits. */
-#ifndef CUVETTE_WEB_SESSION_GATE_H
-#define CUVETTE_WEB_SESSION_GATE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -16,5 +15,3 @@ status gate_enter(gate *g, diagnostic *why);
 void gate_leave(gate *g);
 /* For good: who waits is sent away, who is in goes on. */
 void gate_close(gate *g);
-
-#endif

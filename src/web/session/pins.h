@@ -3,8 +3,7 @@
  * measurement but those who ask for it. Ownership: pins_create gives, pins_destroy releases; pictures and pairs are
  * shared, and theirs who took them until they release them. Errors: STATUS_BAD_INPUT for pictures that cannot be
  * compared, STATUS_FAILURE for memory. */
-#ifndef CUVETTE_WEB_SESSION_PINS_H
-#define CUVETTE_WEB_SESSION_PINS_H
+#pragma once
 
 #include "image/compare.h"
 #include "web/live/painter.h"
@@ -31,5 +30,3 @@ bool pin_pair_fits(const pin_pair *pair); /* are they of one size? */
  * pair's. */
 status pin_pair_numbers(pin_pair *pair, image_comparison *out, diagnostic *why);
 status pin_pair_map(pin_pair *pair, const unsigned char **bytes, size_t *size, diagnostic *why);
-
-#endif

@@ -1,8 +1,7 @@
 /* The one study that runs in the laboratory, in a thread of its own; while it measures, the painter waits. How far it
  * is goes to all pages as event `study` and stands in the state. Ownership: studies_create gives, studies_destroy
  * releases. Errors: STATUS_INTERRUPTED for what does not go together with what is there now (409). */
-#ifndef CUVETTE_WEB_SESSION_STUDIES_H
-#define CUVETTE_WEB_SESSION_STUDIES_H
+#pragma once
 
 #include "study/study.h"
 #include "web/lab_private.h"
@@ -28,5 +27,3 @@ json_t *studies_tell(studies *st);
 const atomic_bool *studies_ending(const studies *st);
 bool studies_begin_drawing(studies *st);
 void studies_end_drawing(studies *st);
-
-#endif

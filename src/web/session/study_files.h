@@ -1,8 +1,7 @@
 /* Studies as files of the chosen folder, and where their rows lie. A study is known by the name that stands in it; one
  * that cannot be read by its file's. Nothing is opened that lies outside of the folder, whatever names it. Ownership:
  * what is given is the caller's. Errors: STATUS_BAD_INPUT with the reason. */
-#ifndef CUVETTE_WEB_SESSION_STUDY_FILES_H
-#define CUVETTE_WEB_SESSION_STUDY_FILES_H
+#pragma once
 
 #include "study/study.h"
 #include "web/lab_private.h"
@@ -21,5 +20,3 @@ status study_find(const lab *l, const char *name, char **file, diagnostic *why);
 status study_check_results(const lab *l, const char *results, const char *name, diagnostic *why);
 /* The names of folders that hold rows of it, three folders deep; NULL when memory is out. */
 json_t *study_runs(const lab *l, const char *name);
-
-#endif

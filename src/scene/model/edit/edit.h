@@ -3,8 +3,7 @@
  * edits a scene may be wrong as a whole (a cup whose hollow is too wide, say): scene_check says so at the end.
  * Ownership: the scene stays the caller's; names are copied. An index holds until something is removed; pointers to
  * objects hold until something is added. Errors: STATUS_BAD_INPUT with the reason, the scene is then as it was. */
-#ifndef CUVETTE_SCENE_MODEL_EDIT_EDIT_H
-#define CUVETTE_SCENE_MODEL_EDIT_EDIT_H
+#pragma once
 
 #include "geometry/solid.h"
 #include "scene/model/params.h"
@@ -67,5 +66,3 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why);
 
 /* Aims the camera at a point. */
 status scene_look_at(scene *s, vec3 target, diagnostic *why);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the files that move things share (edit_place.c, edit_whole.c). Nobody else includes it. */
-#ifndef CUVETTE_SCENE_MODEL_EDIT_EDIT_VECTOR_H
-#define CUVETTE_SCENE_MODEL_EDIT_EDIT_VECTOR_H
+#pragma once
 
 #include "scene/model/params_path.h"
 #include "scene/model/open.h"
@@ -13,5 +12,3 @@ status edit_find(const scene *s, const char *name, place *at, diagnostic *why);
 
 /* An angle that came out of an arc tangent, whose error is under 1e-12 degrees: a round one is what was meant. */
 double edit_settle_deg(double degrees);
-
-#endif

@@ -2,8 +2,7 @@
  * computed from what the scene says and what the renderer does with it, so that no value of the parameter changes the
  * film while it holds; where that cannot be known, nothing is said: a note that is false is worse than none. Pure;
  * ownership: values. */
-#ifndef CUVETTE_SCENE_MODEL_INERT_INERT_H
-#define CUVETTE_SCENE_MODEL_INERT_INERT_H
+#pragma once
 
 #include "base/counters.h"
 #include "scene/model/inert/note.h"
@@ -26,5 +25,3 @@ typedef struct inert_witness {
 
 /* Is the parameter without effect? witness may be NULL. False also for a path that leads nowhere. */
 bool inert_ask(const scene *s, const char *path, const inert_witness *witness, inert_answer *out);
-
-#endif

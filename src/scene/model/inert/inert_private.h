@@ -1,7 +1,6 @@
 /* What the rules of inert.c share. A rule looks at one parameter and either says why it is inert, or returns false.
  * Ownership: values; everything is borrowed for the call. */
-#ifndef CUVETTE_SCENE_MODEL_INERT_INERT_PRIVATE_H
-#define CUVETTE_SCENE_MODEL_INERT_INERT_PRIVATE_H
+#pragma once
 
 #include "scene/model/inert/inert.h"
 #include "scene/model/params_path.h"
@@ -111,5 +110,3 @@ bool sends_rays_on(const scene *s, const solid *owner);
 inert_remedy color_remedy(const scene *s, const material *m, const char *name);
 /* And one that makes a lamp shine. */
 inert_remedy lamp_remedy(const scene *s);
-
-#endif

@@ -1,8 +1,7 @@
 /* A note: something of a scene that is allowed and still looks wrong, or that is set and does nothing. It says
  * where, what, and what to do about it, as a diagnostic does of an error. Ownership: values; a note holds its own
  * text. */
-#ifndef CUVETTE_SCENE_MODEL_INERT_NOTE_H
-#define CUVETTE_SCENE_MODEL_INERT_NOTE_H
+#pragma once
 
 #include "scene/model/material.h"
 #include <stddef.h>
@@ -29,5 +28,3 @@ void note_give(const note_taker *taker, const char *object, const char *paramete
 /* Writes "place: text; remedy" (parts that are absent are left out) into line, of NOTE_LINE_MAX at best; returns
  * line. */
 char *note_line(const scene_note *note, char *line, size_t size);
-
-#endif

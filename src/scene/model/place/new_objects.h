@@ -2,8 +2,7 @@
  * can be seen. Called on a copy of the scene that is thrown away after an error. wanted: the name that it is to have;
  * NULL: one is made that is free, which name then says, wanted or not. Errors: STATUS_BAD_INPUT as
  * scene/model/edit/edit.h has them. */
-#ifndef CUVETTE_SCENE_MODEL_PLACE_NEW_OBJECTS_H
-#define CUVETTE_SCENE_MODEL_PLACE_NEW_OBJECTS_H
+#pragma once
 
 #include "geometry/solid.h"
 #include "scene/model/material.h"
@@ -28,5 +27,3 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
                  diagnostic *why);
 /* Another one like it, beside it. */
 status new_copy(scene *s, const char *of, object_name name, diagnostic *why);
-
-#endif

@@ -1,8 +1,7 @@
 /* Where something new goes in a scene, and how large it is to be: into the middle of the picture, a sixth of the way
  * from the eye in size, beside what is there already, on the ground where there is one in the picture. Lengths are
  * scene units. Pure. */
-#ifndef CUVETTE_SCENE_MODEL_PLACE_SPOT_H
-#define CUVETTE_SCENE_MODEL_PLACE_SPOT_H
+#pragma once
 
 #include "scene/model/open.h"
 #include "scene/model/solids.h"
@@ -33,5 +32,3 @@ bool spot_in_view(const scene *s, vec3 point);
 
 /* value to so many digits as something of that size needs. */
 double spot_round(double value, double size);
-
-#endif
