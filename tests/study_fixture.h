@@ -1,6 +1,5 @@
 /* A folder of its own for a test, with a small scene and a study in it; gone at the end. */
-#ifndef STUDY_FIXTURE_H
-#define STUDY_FIXTURE_H
+#pragma once
 
 #include <math.h>
 #include <setjmp.h>
@@ -132,5 +131,3 @@ __attribute__((unused)) static size_t fixture_count(const char *text, const char
         count++;
     return count;
 }
-
-#endif
