@@ -265,9 +265,9 @@ vectorise: $(build)/flags ## report which loops of the kernels are vectorised; f
 
 .PHONY: sanitize tsan valgrind clang
 sanitize: ## build and test with AddressSanitizer and UndefinedBehaviorSanitizer
-	@$(MAKE) STRICT=1 config=sanitize build=$(build)/sanitize test
+	@$(MAKE) STRICT=1 config=sanitize build=$(build)/sanitize TEST_LIMIT_S=3600 test
 tsan: ## build and test with ThreadSanitizer
-	@$(MAKE) STRICT=1 config=tsan build=$(build)/tsan test
+	@$(MAKE) STRICT=1 config=tsan build=$(build)/tsan TEST_LIMIT_S=3600 test
 valgrind: ## run the test programs under valgrind
 	@$(MAKE) RUNNER='valgrind -q --error-exitcode=9 --leak-check=full --max-threads=1100 --suppressions=tests/valgrind.supp' \
 	  TEST_LIMIT_S=3600 selected_scripts= test
