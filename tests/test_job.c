@@ -216,7 +216,7 @@ static void too_many_threads_are_an_error(void **state)
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     skip(); /* whose shadow memory is larger than any bound */
 #endif
-    int ended;
+    int ended = 0;
     const pid_t child = fork();
     if (child == 0)
         _exit(ask_for_too_many());
