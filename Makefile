@@ -219,7 +219,7 @@ setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install what the benches compa
 # --- tests ---
 
 # Checks that read the sources; one run of them is enough, whatever the configuration.
-source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh
+source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh
 scripts := $(filter-out $(source_checks),$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
