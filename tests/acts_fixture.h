@@ -67,7 +67,7 @@ static inline bool acts_hash(renderer *r, scene *s, uint64_t *hash, ray_counters
     if (scene_check(s, why) != STATUS_OK || scene_load(s, why) != STATUS_OK || scene_check(s, why) != STATUS_OK ||
         renderer_render(r, s, NULL, &result, why) != STATUS_OK)
         return false;
-    *hash = film_hash(result->picture);
+    *hash = film_hash(result->img);
     if (counters)
         *counters = result->counters;
     render_result_destroy(result);

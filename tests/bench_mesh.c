@@ -7,7 +7,7 @@
  */
 #include "../experiments/peers/mesh_rays.h"
 #include "base/isa.h"
-#include "geometry/bodies.h"
+#include "geometry/mesh_generators.h"
 #include "geometry/hierarchy.h"
 
 #include <stdio.h>
@@ -118,9 +118,9 @@ static bool bench(const char *mode, size_t count, hierarchy_kind kind, const cha
     char text[DIAGNOSTIC_TEXT_MAX];
     status s = isa_choose(&level, &why);
     if (s == STATUS_OK)
-        s = (!strcmp(mode, "sparse")  ? body_sparse
-             : !strcmp(mode, "dense") ? body_dense
-                                      : body_sphere)(count, &m, &why);
+        s = (!strcmp(mode, "sparse")  ? generate_sparse_soup
+             : !strcmp(mode, "dense") ? generate_dense_soup
+                                      : generate_sphere)(count, &m, &why);
     if (s == STATUS_OK)
         s = hierarchy_build(m, kind, threads, &h, &why);
     if (s != STATUS_OK)

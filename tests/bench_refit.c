@@ -5,7 +5,7 @@
  * so that drift of the machine falls on all alike. The first refit after a build finds the caches full of that: it
  * stands apart, as cold_ms. cost_ratio is the refitted hierarchy's cost over that of the one built for the same
  * positions, after a twist by one radian and a squash to 0.7. */
-#include "geometry/bodies.h"
+#include "geometry/mesh_generators.h"
 #include "geometry/hierarchy.h"
 
 #include <stdio.h>
@@ -85,7 +85,7 @@ static status bench(int level, int repeats, diagnostic *why)
     hierarchy *h = NULL;
     vec3 *rest = NULL, *positions = NULL;
     row r;
-    status s = body_icosphere(level, &m, why);
+    status s = generate_icosphere(level, &m, why);
     if (s == STATUS_OK)
         s = hierarchy_build(m, HIERARCHY_BVH, 1, &h, why);
     if (s == STATUS_OK) {
@@ -128,7 +128,7 @@ int main(int count, char **words)
             fprintf(stderr, "bench_refit: no option %s; see the head of tests/bench_refit.c\n", words[i]);
             return 2;
         }
-    if (repeats < 1 || repeats > REPEATS_MAX || first < 0 || last > BODY_LEVEL_MAX)
+    if (repeats < 1 || repeats > REPEATS_MAX || first < 0 || last > ICOSPHERE_LEVEL_MAX)
         return 2;
     printf("level\ttriangles\tmove_ms\trefit_ms\tcold_ms\tbuild_ms\tbuild/refit\tcost_ratio\n");
     for (int level = first; level <= last; level++) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/single.h"
-#include "geometry/bodies.h"
+#include "geometry/mesh_generators.h"
 #include "geometry/hierarchy.h"
 #include "random_stream.h"
 

@@ -169,7 +169,7 @@ static inline void add_swing(judge *j, const scene *s, const film *plain, double
         render_result *r = law_render(j, other);
         for (int i = 0; i < LAW_WIDTH * LAW_HEIGHT * 3; i++) {
             const int x = i / 3 % LAW_WIDTH, y = i / 3 / LAW_WIDTH;
-            swing[i] = fmax(swing[i], fabs(film_value(r->picture, x, y, i % 3) - film_value(plain, x, y, i % 3)));
+            swing[i] = fmax(swing[i], fabs(film_value(r->img, x, y, i % 3) - film_value(plain, x, y, i % 3)));
         }
         render_result_destroy(r);
         scene_destroy(other);
@@ -200,10 +200,9 @@ static inline verdict same_films(judge *j, const law_pair *p, bool exact)
     if (p->which == LAW_SCALE)
         scale_lengths(t, ldexp(1.0, p->exponent));
     render_result *x = law_render(j, s), *y = law_render(j, t);
-    j->difference = film_apart(x->picture, y->picture);
+    j->difference = film_apart(x->img, y->img);
     j->added_hits = hits_of_added(t, y);
-    const bool same =
-        exact ? film_hash(x->picture) == film_hash(y->picture) : alike_but_for_rounding(j, s, x->picture, y->picture);
+    const bool same = exact ? film_hash(x->img) == film_hash(y->img) : alike_but_for_rounding(j, s, x->img, y->img);
     render_result_destroy(x);
     render_result_destroy(y);
     scene_destroy(s);

@@ -3,14 +3,14 @@
  * gives, mesh_room_empty releases. */
 #pragma once
 
-#include "geometry/bodies.h"
-#include "geometry/forest.h"
+#include "geometry/mesh_generators.h"
+#include "geometry/instance_set.h"
 #include "room_fixture.h"
 #include <stdlib.h>
 
 typedef struct mesh_room {
     room r;
-    mesh *body[SOLIDS_MAX]; /* NULL: the solid is none */
+    mesh *region[SOLIDS_MAX]; /* NULL: the solid is none */
     hierarchy *tree[SOLIDS_MAX];
     vec3 (*triangle[SOLIDS_MAX])[3]; /* in the world, of all copies */
     size_t count[SOLIDS_MAX];
@@ -32,8 +32,8 @@ static inline double winding(const vec3 (*triangle)[3], size_t count, vec3 at)
 
 static inline bool solid_contains(const mesh_room *m, int i, vec3 at)
 {
-    return m->body[i] ? winding((const vec3(*)[3])m->triangle[i], m->count[i], at) > 0.5
-                      : solid_shape_contains(&m->r.shape[i], at);
+    return m->region[i] ? winding((const vec3(*)[3])m->triangle[i], m->count[i], at) > 0.5
+                        : solid_shape_contains(&m->r.shape[i], at);
 }
 
 static inline int winner_in_room(const mesh_room *m, vec3 at)
@@ -69,9 +69,9 @@ static inline int crossings_in_room(const mesh_room *m, const reference_line *li
 {
     int n = 0;
     for (int i = 0; i < m->r.count; i++) {
-        if (!m->body[i])
+        if (!m->region[i])
             n += reference_events(&m->r.shape[i], line, 0, t + n);
-        for (size_t k = 0; m->body[i] && k < m->count[i]; k++)
+        for (size_t k = 0; m->region[i] && k < m->count[i]; k++)
             n += triangle_event((const vec3 *)m->triangle[i][k], line, &t[n]);
         assert_true(n < ROOM_CROSSINGS_MAX - REFERENCE_CROSSINGS_MAX);
     }
@@ -107,7 +107,7 @@ static inline int changes_in_room(const mesh_room *m, const reference_line *line
 static inline void place_triangles(mesh_room *m, int i)
 {
     const solid_shape *s = &m->r.shape[i];
-    const mesh *b = m->body[i];
+    const mesh *b = m->region[i];
     const mat3 turn = rotation_from_deg(s->rotation_deg);
     const size_t nx = (size_t)s->copies.x, ny = (size_t)s->copies.y, nz = (size_t)s->copies.z;
     m->count[i] = 0;
@@ -131,10 +131,10 @@ static inline mesh *random_body(uint64_t *seed, bool box, vec3 size)
     mesh *b = NULL;
     status code;
     switch (box ? 0 : random_below(seed, 4)) {
-    case 0: code = body_box(size, &b, NULL); break;
-    case 1: code = body_icosphere(random_below(seed, 2), &b, NULL); break;
-    case 2: code = body_torus(0.7, 0.3, 7, 5, &b, NULL); break;
-    default: code = body_lathe(cup, sizeof cup / sizeof cup[0], 6, 30.0, &b, NULL); break;
+    case 0: code = generate_box(size, &b, NULL); break;
+    case 1: code = generate_icosphere(random_below(seed, 2), &b, NULL); break;
+    case 2: code = generate_torus(0.7, 0.3, 7, 5, &b, NULL); break;
+    default: code = generate_lathe(cup, sizeof cup / sizeof cup[0], 6, 30.0, &b, NULL); break;
     }
     assert_int_equal(code, STATUS_OK);
     assert_true(b->closed);
@@ -143,16 +143,16 @@ static inline mesh *random_body(uint64_t *seed, bool box, vec3 size)
 
 static inline void mesh_room_arrange(mesh_room *m)
 {
-    body_source sources[SOLIDS_MAX];
+    region_source sources[SOLIDS_MAX];
     for (int i = 0; i < m->r.count; i++)
-        sources[i] = (body_source){.shape = &m->r.shape[i],
-                                   .tree = m->tree[i],
-                                   .priority = m->r.priority[i],
-                                   .medium = m->r.medium[i],
-                                   .opaque = m->r.opaque[i],
-                                   .clearness = m->r.opaque[i] ? 0.0 : m->r.clearness[i],
-                                   .solid = i};
-    assert_int_equal(arrangement_build(sources, m->r.count, 0, &m->r.solids, NULL), STATUS_OK);
+        sources[i] = (region_source){.shape = &m->r.shape[i],
+                                     .tree = m->tree[i],
+                                     .priority = m->r.priority[i],
+                                     .medium = m->r.medium[i],
+                                     .opaque = m->r.opaque[i],
+                                     .shadow_transmittance = m->r.opaque[i] ? 0.0 : m->r.shadow_transmittance[i],
+                                     .solid = i};
+    assert_int_equal(scene_geometry_build(sources, m->r.count, 0, &m->r.solids, NULL), STATUS_OK);
 }
 
 /* About two solids in three are meshes; on the grid boxes whose faces, and whose copies, coincide wherever they can. */
@@ -160,14 +160,14 @@ static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
 {
     memset(m, 0, sizeof *m);
     (on_a_grid ? room_fill_on_a_grid : room_fill)(&m->r, seed);
-    arrangement_destroy(m->r.solids);
+    scene_geometry_destroy(m->r.solids);
     for (int i = 0; i < m->r.count; i++) {
         solid_shape *s = &m->r.shape[i];
         if (random_below(seed, 3) == 0)
             continue;
-        m->body[i] = random_body(seed, on_a_grid, s->size);
+        m->region[i] = random_body(seed, on_a_grid, s->size);
         s->kind = SHAPE_MESH;
-        s->mesh = m->body[i];
+        s->mesh = m->region[i];
         s->scale =
             on_a_grid || random_below(seed, 2)
                 ? vec3_make(1.0, 1.0, 1.0)
@@ -177,7 +177,7 @@ static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
         if (!on_a_grid)
             s->spacing = vec3_add(s->spacing, vec3_scale(s->size, 1.0));
         assert_int_equal(
-            hierarchy_build(m->body[i], (hierarchy_kind)random_below(seed, HIERARCHY_EMBREE), 1, &m->tree[i], NULL),
+            hierarchy_build(m->region[i], (hierarchy_kind)random_below(seed, HIERARCHY_EMBREE), 1, &m->tree[i], NULL),
             STATUS_OK);
         place_triangles(m, i);
     }
@@ -186,10 +186,10 @@ static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
 
 static inline void mesh_room_empty(mesh_room *m)
 {
-    arrangement_destroy(m->r.solids);
+    scene_geometry_destroy(m->r.solids);
     for (int i = 0; i < m->r.count; i++) {
         hierarchy_destroy(m->tree[i]);
-        mesh_release(m->body[i]);
+        mesh_release(m->region[i]);
         free(m->triangle[i]);
     }
 }

@@ -12,17 +12,16 @@ static inline void give_texture(scene *s, const char *name, const double *texels
         texture_entry *t = &s->textures[i];
         if (strcmp(t->name, name) != 0)
             continue;
-        image *picture = NULL;
-        assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
+        image *img = NULL;
+        assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
         for (int y = 0; y < height; y++)
             for (int x = 0; x < 3 * width; x++)
-                picture->pixel[(size_t)(height - 1 - y) * 3 * (size_t)width + (size_t)x] =
-                    (float)texels[y * 3 * width + x];
+                img->pixel[(size_t)(height - 1 - y) * 3 * (size_t)width + (size_t)x] = (float)texels[y * 3 * width + x];
         texture *made = NULL;
-        assert_int_equal(texture_create(picture, TEXTURE_SRGB, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v,
+        assert_int_equal(texture_create(img, TEXTURE_SRGB, (texture_wrap)t->wrap_u, (texture_wrap)t->wrap_v,
                                         (texture_filter)t->filter, &made, NULL),
                          STATUS_OK);
-        image_destroy(picture);
+        image_destroy(img);
         t->data = made;
     }
 }

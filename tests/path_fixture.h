@@ -17,8 +17,8 @@ typedef struct estimate {
 
 static inline estimate estimate_at(const render_result *r, int x, int y, int channel)
 {
-    const size_t at = ((size_t)y * (size_t)r->picture->width + (size_t)x) * 3 + (size_t)channel;
-    const estimate e = {(double)r->picture->sum[at] / FILM_ONE, sqrt(r->variance[at])};
+    const size_t at = ((size_t)y * (size_t)r->img->width + (size_t)x) * 3 + (size_t)channel;
+    const estimate e = {(double)r->img->sum[at] / FILM_ONE, sqrt(r->variance[at])};
     return e;
 }
 

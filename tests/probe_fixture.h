@@ -80,7 +80,7 @@ static inline void stage_close(stage *g)
 static inline const ray_tree *stage_way(stage *g, vec3 origin, vec3 direction, int reflect_at)
 {
     diagnostic why = {0};
-    worked(probe_way(g->probe, origin, direction, reflect_at, &g->tree, &why), &why);
+    worked(probe_path(g->probe, origin, direction, reflect_at, &g->tree, &why), &why);
     return &g->tree;
 }
 

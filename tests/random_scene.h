@@ -51,7 +51,7 @@ static inline void add_room(scene_text *t, uint64_t *seed, const room *m, double
             add(t, "reflectivity: %.17g, ambient: %.17g, diffuse: 0.5, ", mirror, 1.0 - mirror);
         } else {
             add(t, "ior: %.17g, transparency: %.17g, reflectivity: 0, ", random_ior(seed, m->medium[i], outside),
-                all_clear ? 1.0 : m->clearness[i]);
+                all_clear ? 1.0 : m->shadow_transmittance[i]);
         }
         if (absorbing && random_below(seed, 2))
             add(t, "absorb_per_m: [%.17g, 0, %.17g], ", random_real(seed, 0.0, 0.5), random_real(seed, 0.0, 1.0));
@@ -64,7 +64,7 @@ static inline room random_room(uint64_t *seed, bool on_a_grid)
 {
     room m;
     (on_a_grid ? room_fill_on_a_grid : room_fill)(&m, seed);
-    arrangement_destroy(m.solids);
+    scene_geometry_destroy(m.solids);
     m.solids = NULL;
     return m;
 }

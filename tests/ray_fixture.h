@@ -1,9 +1,9 @@
 /* One ray through the kernels of geometry/rays.h, and the arrangement of a few shapes, for tests. Ownership: what
- * arrange_shapes gives is released with arrangement_destroy. */
+ * arrange_shapes gives is released with scene_geometry_destroy. */
 #pragma once
 
 #include "base/isa.h"
-#include "geometry/forest.h"
+#include "geometry/instance_set.h"
 #include "geometry/rays.h"
 
 typedef struct one_ray {
@@ -14,7 +14,7 @@ typedef struct one_ray {
 
 typedef struct one_hit {
     double t;
-    int crossed, before, after, surface; /* crossed -1: a miss */
+    int hit_primitive, before, after, surface; /* crossed -1: a miss */
     uint64_t inside_before, inside_after;
     vec3 point, normal;
     double cos_i, error;
@@ -33,7 +33,7 @@ static inline ray_batch batch_of_one(const one_ray *r)
     return (ray_batch){1, &r->o.x, &r->o.y, &r->o.z, &r->d.x, &r->d.y, &r->d.z, &r->start, &r->inside};
 }
 
-static inline one_hit nearest_interface(const arrangement *a, one_ray r)
+static inline one_hit nearest_interface(const scene_geometry *a, one_ray r)
 {
     static mesh_scratch meshes;
     static ray_scratch scratch;
@@ -44,20 +44,20 @@ static inline one_hit nearest_interface(const arrangement *a, one_ray r)
     const ray_batch batch = batch_of_one(&r);
     kernels->nearest(a, &batch, &scratch, &hits);
     one_hit h = {.t = hits.t[0],
-                 .crossed = (int)hits.crossed[0],
+                 .hit_primitive = (int)hits.hit_primitive[0],
                  .before = (int)hits.before[0],
                  .after = (int)hits.after[0],
                  .surface = (int)hits.surface[0],
                  .inside_before = hits.inside_before[0],
                  .inside_after = hits.inside_after[0],
                  .face = FACE_NONE};
-    if (h.crossed < 0)
+    if (h.hit_primitive < 0)
         return h;
     r.inside = h.inside_before;
-    if (!a->primitives[h.crossed].rule)
-        forest_surface(a->meshes, &batch, meshes.hit, false, &points, NULL);
+    if (!a->primitives[h.hit_primitive].rule)
+        instance_set_surface(a->meshes, &batch, meshes.hit, false, &points, NULL);
     else
-        kernels->surface(&a->primitives[h.crossed], &batch, hits.t, h.crossed, &points);
+        kernels->surface(&a->primitives[h.hit_primitive], &batch, hits.t, h.hit_primitive, &points);
     h.point = vec3_make(points.px[0], points.py[0], points.pz[0]);
     h.normal = vec3_make(points.nx[0], points.ny[0], points.nz[0]);
     h.cos_i = points.cos_i[0];
@@ -66,7 +66,7 @@ static inline one_hit nearest_interface(const arrangement *a, one_ray r)
     return h;
 }
 
-static inline double light_through(const arrangement *a, one_ray r, int solid_shadows)
+static inline double light_through(const scene_geometry *a, one_ray r, int solid_shadows)
 {
     static mesh_scratch meshes;
     static ray_scratch scratch;
@@ -77,14 +77,14 @@ static inline double light_through(const arrangement *a, one_ray r, int solid_sh
     return transmitted[0];
 }
 
-/* Shapes of different clear media, the first with the highest priority; release with arrangement_destroy. */
-static inline arrangement *arrangement_of(const solid_shape *shapes, int count)
+/* Shapes of different clear media, the first with the highest priority; release with scene_geometry_destroy. */
+static inline scene_geometry *scene_geometry_of(const solid_shape *shapes, int count)
 {
-    body_source sources[8];
+    region_source sources[8];
     for (int i = 0; i < count; i++)
-        sources[i] =
-            (body_source){.shape = &shapes[i], .priority = count - i, .medium = i + 1, .clearness = 1.0, .solid = i};
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(sources, count, 0, &a, NULL), STATUS_OK);
+        sources[i] = (region_source){
+            .shape = &shapes[i], .priority = count - i, .medium = i + 1, .shadow_transmittance = 1.0, .solid = i};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(sources, count, 0, &a, NULL), STATUS_OK);
     return a;
 }

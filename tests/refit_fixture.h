@@ -35,7 +35,7 @@ static inline hierarchy *built(const mesh *m, hierarchy_kind kind)
 static inline mesh *icosphere(int level)
 {
     mesh *m = NULL;
-    assert_int_equal(body_icosphere(level, &m, NULL), STATUS_OK);
+    assert_int_equal(generate_icosphere(level, &m, NULL), STATUS_OK);
     return m;
 }
 

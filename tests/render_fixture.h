@@ -78,8 +78,8 @@ static inline render_result *render(const scene *s)
 static inline vec3 look(const scene *s)
 {
     render_result *result = render(s);
-    vec3 seen = vec3_make(film_value(result->picture, 0, 0, 0), film_value(result->picture, 0, 0, 1),
-                          film_value(result->picture, 0, 0, 2));
+    vec3 seen =
+        vec3_make(film_value(result->img, 0, 0, 0), film_value(result->img, 0, 0, 1), film_value(result->img, 0, 0, 2));
     render_result_destroy(result);
     return seen;
 }

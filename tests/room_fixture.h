@@ -1,5 +1,5 @@
 /* Rooms of a few overlapping solids, at random, and what is where in them by definition and in quadruple precision.
- * Ownership: room_fill and room_build give m->solids; release it with arrangement_destroy. */
+ * Ownership: room_fill and room_build give m->solids; release it with scene_geometry_destroy. */
 #pragma once
 
 #include "random_stream.h"
@@ -13,8 +13,8 @@ typedef struct room {
     solid_shape shape[SOLIDS_MAX];
     int64_t priority[SOLIDS_MAX], medium[SOLIDS_MAX];
     int opaque[SOLIDS_MAX];
-    double clearness[SOLIDS_MAX];
-    arrangement *solids;
+    double shadow_transmittance[SOLIDS_MAX];
+    scene_geometry *solids;
 } room;
 
 typedef struct change {
@@ -24,15 +24,15 @@ typedef struct change {
 
 static inline void room_build(room *m)
 {
-    body_source sources[SOLIDS_MAX];
+    region_source sources[SOLIDS_MAX];
     for (int i = 0; i < m->count; i++)
-        sources[i] = (body_source){.shape = &m->shape[i],
-                                   .priority = m->priority[i],
-                                   .medium = m->medium[i],
-                                   .opaque = m->opaque[i],
-                                   .clearness = m->opaque[i] ? 0.0 : m->clearness[i],
-                                   .solid = i};
-    assert_int_equal(arrangement_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
+        sources[i] = (region_source){.shape = &m->shape[i],
+                                     .priority = m->priority[i],
+                                     .medium = m->medium[i],
+                                     .opaque = m->opaque[i],
+                                     .shadow_transmittance = m->opaque[i] ? 0.0 : m->shadow_transmittance[i],
+                                     .solid = i};
+    assert_int_equal(scene_geometry_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
 }
 
 /* The definition: the highest priority wins, of equals the one that comes first. */
@@ -69,9 +69,9 @@ static inline int64_t medium_of(const room *m, int i)
     return i < 0 ? 0 : m->medium[i];
 }
 
-static inline int solid_of(const room *m, int rank)
+static inline int solid_of(const room *m, int priority_index)
 {
-    return m->solids->bodies[rank].solid;
+    return m->solids->regions[priority_index].solid;
 }
 
 static inline vec3 point_at(const reference_line *line, quad t)
@@ -153,7 +153,7 @@ static inline void room_fill(room *m, uint64_t *seed)
         m->priority[i] = random_below(seed, 6) - 2;
         m->opaque[i] = random_below(seed, 4) == 0;
         m->medium[i] = m->opaque[i] || random_below(seed, 3) ? i + 1 : -random_below(seed, 3);
-        m->clearness[i] = random_below(seed, 3) ? random_real(seed, 0.1, 1.0) : 1.0;
+        m->shadow_transmittance[i] = random_below(seed, 3) ? random_real(seed, 0.1, 1.0) : 1.0;
     }
     room_build(m);
 }
@@ -162,7 +162,7 @@ static inline void room_fill(room *m, uint64_t *seed)
 static inline void room_fill_on_a_grid(room *m, uint64_t *seed)
 {
     room_fill(m, seed);
-    arrangement_destroy(m->solids);
+    scene_geometry_destroy(m->solids);
     for (int i = 0; i < m->count; i++) {
         solid_shape *s = &m->shape[i];
         s->position = vec3_make(0.25 * (random_below(seed, 5) - 2), 0.25 * (random_below(seed, 5) - 2),

@@ -163,7 +163,7 @@ static status try_parameter(void *context, const char *path, const param *row, c
     inert_answer answer;
     acts_values_of(x->a->s, row, value, &v);
     x->out->tried++;
-    if (row->is_how)
+    if (row->performance_only)
         judge_mark(x, path, &v);
     else if (acts_ask(x->a, path, &answer))
         judge_note(x, path, row, &v, &answer);
@@ -320,7 +320,7 @@ static const condition conditions[] = {
     {"rod", "rod.checker_color=0.85,0.15,0.1", "rod.checker", "one-color", true},
     {"rod", "rod.position=0,50,0 rod.priority=0", "rod.color", "unseen", false},
     {"rod", "rod.position=0,50,0 rod.priority=0", "rod.priority", "apart", false},
-    {"rod", "background.picture=models.jpg", "background.color", "picture-sky", true},
+    {"rod", "background.img=models.jpg", "background.color", "picture-sky", true},
     {"slime", "toy.script= toy.time_s=0", "toy.stiffness", "time-0", true},
     {"slime", "toy.script= toy.ground=off", "toy.friction", "no-floor", true},
     {"slime", "floor.texture=", "tiles.filter", "unused-texture", true},
@@ -546,7 +546,7 @@ static const struct {
     {"rod", "lamp.intensity=0 background.ambient=0,0,0 clear.color=0.9,0.8,0.7"},
     {"solids", "render.integrator=zbuffer key.kind=cone"},
     {"solids", "render.integrator=path render.paths=1 render.roulette=on glass.diffuse=0.2"},
-    {"solids", "background.picture=models.jpg clay.transparency=0.3"},
+    {"solids", "background.img=models.jpg clay.transparency=0.3"},
     {"models", "render.integrator=zbuffer render.texturing=affine"},
     {"models", "render.integrator=path render.paths=1 silver.texture=tiles"},
     {"models", "bowl.visible=off lamp.intensity=0 render.shadows=opaque"},

@@ -144,7 +144,7 @@ static void nothing_is_zero(void **state)
             for (int i = 0; i < LAYER_COUNT && miss; i++)
                 near(value(r, (layer_rule)i, x, y), vec3_make(0.0, 0.0, 0.0), 0.0);
             for (int c = 0; c < 3 && miss; c++)
-                assert_true(film_value(r->picture, x, y, c) == 0.0);
+                assert_true(film_value(r->img, x, y, c) == 0.0);
         }
     assert_in_range(empty, WIDTH * HEIGHT / 2, WIDTH * HEIGHT - 9);
     render_result_destroy(r);
@@ -162,7 +162,7 @@ static void normals_as_normal_maps(void **state)
             const vec3 n = value(r, LAYER_NORMAL, x, y);
             const double wanted[3] = {0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z};
             for (int c = 0; c < 3 && value(r, LAYER_SOLID, x, y).x > 0.0; c++)
-                assert_true(fabs(srgb_encode(film_value(r->picture, x, y, c)) - wanted[c]) < 1e-6);
+                assert_true(fabs(srgb_encode(film_value(r->img, x, y, c)) - wanted[c]) < 1e-6);
         }
     render_result_destroy(r);
     scene_destroy(s);
@@ -170,7 +170,7 @@ static void normals_as_normal_maps(void **state)
 
 static void same(const render_result *a, const render_result *b)
 {
-    assert_true(film_hash(a->picture) == film_hash(b->picture));
+    assert_true(film_hash(a->img) == film_hash(b->img));
     for (int i = 0; i < LAYER_COUNT; i++)
         assert_memory_equal(a->layers->values[i], b->layers->values[i],
                             WIDTH * HEIGHT * sizeof(float) * (size_t)layer_channels[i]);

@@ -92,7 +92,7 @@ static void it_changes_no_count(void **state)
         assert_int_equal(sky->counters.cut_depth, mean->counters.cut_depth);
         for (int c = 0; c < 3; c++)
             assert_int_equal(sky->counters.cut_depth_throughput[c], mean->counters.cut_depth_throughput[c]);
-        assert_true(film_hash(sky->picture) != film_hash(mean->picture));
+        assert_true(film_hash(sky->img) != film_hash(mean->img));
         render_result_destroy(sky);
         render_result_destroy(mean);
         scene_destroy(s);

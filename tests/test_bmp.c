@@ -58,18 +58,18 @@ static bmp_file make_bmp(int width, int height, uint32_t header, uint32_t gap, b
     return f;
 }
 
-static void is_the_picture(const bmp_file *f, int width, int height)
+static void is_the_image(const bmp_file *f, int width, int height)
 {
-    image *picture;
+    image *img;
     diagnostic why = {0};
-    worked(codec_bmp_read(f->bytes, f->size, &picture, &why), &why);
-    assert_int_equal(picture->width, width);
-    assert_int_equal(picture->height, height);
+    worked(codec_bmp_read(f->bytes, f->size, &img, &why), &why);
+    assert_int_equal(img->width, width);
+    assert_int_equal(img->height, height);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++)
             for (int c = 0; c < 3; c++)
-                assert_true(picture->pixel[(y * width + x) * 3 + c] == (float)srgb_decode(value_at(x, y, c) / 255.0));
-    image_destroy(picture);
+                assert_true(img->pixel[(y * width + x) * 3 + c] == (float)srgb_decode(value_at(x, y, c) / 255.0));
+    image_destroy(img);
 }
 
 static void every_width_header_and_order_is_read(void **state)
@@ -81,7 +81,7 @@ static void every_width_header_and_order_is_read(void **state)
             for (size_t g = 0; g < COUNT(gaps); g++)
                 for (int from_top = 0; from_top < 2; from_top++) {
                     const bmp_file f = make_bmp(width, 5, headers[h], gaps[g], from_top);
-                    is_the_picture(&f, width, 5);
+                    is_the_image(&f, width, 5);
                     free(f.bytes);
                 }
 }
@@ -95,19 +95,19 @@ static void what_lies_behind_the_pixels_does_no_harm(void **state)
     memset(longer + f.size, 0xAB, 77);
     f = (bmp_file){longer, f.size + 77};
     put_number(f.bytes + 2, 0, 4); /* some writers leave the file's own size out */
-    is_the_picture(&f, 3, 2);
+    is_the_image(&f, 3, 2);
     f.size -= 77 + 3; /* the last row's padding may be missing */
-    is_the_picture(&f, 3, 2);
+    is_the_image(&f, 3, 2);
     free(f.bytes);
 }
 
 static void refused(const unsigned char *bytes, size_t size, const char *word, const char *remedy)
 {
-    image *picture = (image *)1;
+    image *img = (image *)1;
     diagnostic why = {0};
     char said[DIAGNOSTIC_TEXT_MAX];
-    assert_int_equal(codec_bmp_read(bytes, size, &picture, &why), STATUS_BAD_INPUT);
-    assert_null(picture);
+    assert_int_equal(codec_bmp_read(bytes, size, &img, &why), STATUS_BAD_INPUT);
+    assert_null(img);
     diagnostic_text(&why, said, sizeof said);
     if (!strstr(said, word) || !strstr(said, remedy) || strchr(said, '\n'))
         fail_msg("'%s' has no '%s' or '%s'", said, word, remedy);
@@ -183,11 +183,11 @@ static void truncated_files_are_refused(void **state)
     const bmp_file f = make_bmp(5, 4, 124, 0, true);
     for (size_t size = 0; size < f.size - 1; size++) {
         unsigned char *cut = malloc(size ? size : 1); /* of its own size, so that a look beyond its end is found */
-        image *picture;
+        image *img;
         diagnostic why = {0};
         assert_non_null(cut);
         memcpy(cut, f.bytes, size);
-        assert_int_equal(codec_bmp_read(cut, size, &picture, &why), STATUS_BAD_INPUT);
+        assert_int_equal(codec_bmp_read(cut, size, &img, &why), STATUS_BAD_INPUT);
         assert_non_null(strstr(why.what, "truncated"));
         free(cut);
     }
@@ -205,12 +205,12 @@ static void corruptions_do_no_harm(void **state)
         memcpy(copy, f.bytes, f.size);
         for (int change = 0; change < 1 + k % 6; change++)
             copy[2 + random_below(&seed, 52)] = (unsigned char)random_below(&seed, 256);
-        image *picture;
+        image *img;
         diagnostic why = {0};
-        const status code = codec_bmp_read(copy, f.size, &picture, &why);
-        assert_true(code == STATUS_OK ? picture != NULL : code == STATUS_BAD_INPUT && !picture && why.what[0]);
+        const status code = codec_bmp_read(copy, f.size, &img, &why);
+        assert_true(code == STATUS_OK ? img != NULL : code == STATUS_BAD_INPUT && !img && why.what[0]);
         if (code == STATUS_OK)
-            image_destroy(picture);
+            image_destroy(img);
     }
     free(copy);
     free(f.bytes);
@@ -230,7 +230,7 @@ static uint64_t film_with(const char *path)
     diagnostic why = {0};
     worked(scene_load(s, &why), &why);
     render_result *r = render(s);
-    const uint64_t hash = film_hash(r->picture);
+    const uint64_t hash = film_hash(r->img);
     render_result_destroy(r);
     scene_destroy(s);
     return hash;
@@ -246,13 +246,13 @@ static void same_pixels_give_the_same_film_as_png(void **state)
     const bmp_file f = make_bmp(13, 7, 108, 0, false);
     assert_int_equal(write(handle, f.bytes, f.size), (ssize_t)f.size);
     close(handle);
-    image *picture;
+    image *img;
     diagnostic why = {0};
     int bits = 0;
-    worked(image_read(bmp, &picture, &bits, &why), &why);
-    assert_true(bits == 8 && picture->coded_bits == 8);
-    worked(image_write(picture, png, 8, &why), &why);
-    image_destroy(picture);
+    worked(image_read(bmp, &img, &bits, &why), &why);
+    assert_true(bits == 8 && img->coded_bits == 8);
+    worked(image_write(img, png, 8, &why), &why);
+    image_destroy(img);
     assert_true(film_with(bmp) == film_with(png));
     unlink(bmp);
     unlink(png);

@@ -60,7 +60,7 @@ static int pixels_of_scene_beyond(scene *s, int quarters, double much)
             level_pixel(quarters, x, y, &x0, &y0);
             double most = 0.0;
             for (int c = 0; c < 3; c++)
-                most = fmax(most, fabs(film_value(rolled->picture, x, y, c) - film_value(level->picture, x0, y0, c)));
+                most = fmax(most, fabs(film_value(rolled->img, x, y, c) - film_value(level->img, x0, y0, c)));
             beyond += most > much;
         }
     render_result_destroy(level);

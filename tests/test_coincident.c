@@ -20,7 +20,7 @@ typedef struct assembly {
     solid_shape shape[PARTS_MAX];
     int64_t priority[PARTS_MAX], medium[PARTS_MAX];
     vec3 turn; /* of the whole, about the origin */
-    arrangement *solids;
+    scene_geometry *solids;
 } assembly;
 
 static vec3 turned(vec3 v, vec3 degrees)
@@ -32,15 +32,18 @@ static vec3 turned(vec3 v, vec3 degrees)
 /* The parts are described upright; they are turned as one here. */
 static void assemble(assembly *m, vec3 turn)
 {
-    body_source sources[PARTS_MAX];
+    region_source sources[PARTS_MAX];
     m->turn = turn;
     for (int i = 0; i < m->count; i++) {
         m->shape[i].rotation_deg = turn;
         m->shape[i].position = turned(m->shape[i].position, turn);
-        sources[i] = (body_source){
-            .shape = &m->shape[i], .priority = m->priority[i], .medium = m->medium[i], .clearness = 1.0, .solid = i};
+        sources[i] = (region_source){.shape = &m->shape[i],
+                                     .priority = m->priority[i],
+                                     .medium = m->medium[i],
+                                     .shadow_transmittance = 1.0,
+                                     .solid = i};
     }
-    assert_int_equal(arrangement_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
 }
 
 /* Media in order along the line, as digits: "01230". */
@@ -48,12 +51,12 @@ static void expect_media(const assembly *m, one_ray r, const char *wanted)
 {
     for (int k = 0; wanted[k + 1]; k++) {
         const one_hit h = nearest_interface(m->solids, r);
-        assert_true(h.crossed >= 0);
-        assert_int_equal(m->solids->bodies[h.before].medium, wanted[k] - '0');
-        assert_int_equal(m->solids->bodies[h.after].medium, wanted[k + 1] - '0');
+        assert_true(h.hit_primitive >= 0);
+        assert_int_equal(m->solids->regions[h.before].medium, wanted[k] - '0');
+        assert_int_equal(m->solids->regions[h.after].medium, wanted[k + 1] - '0');
         r = (one_ray){h.point, r.d, h.face, h.inside_after};
     }
-    assert_int_equal(nearest_interface(m->solids, r).crossed, -1);
+    assert_int_equal(nearest_interface(m->solids, r).hit_primitive, -1);
 }
 
 /* A line through a point of the contact plane y = level, from above, at an angle to that plane down to 1e-7 (both
@@ -63,7 +66,7 @@ static one_ray line_through(const assembly *m, vec3 contact, double away, uint64
     const double steep = exp(random_real(seed, -16.0, 0.5)), turn = random_real(seed, 0.0, 6.2831853);
     vec3 d = turned(vec3_normalize(vec3_make(cos(turn), -steep, sin(turn))), m->turn);
     vec3 o = vec3_sub(turned(contact, m->turn), vec3_scale(d, away));
-    return (one_ray){o, d, FACE_NONE, arrangement_inside(m->solids, o)};
+    return (one_ray){o, d, FACE_NONE, scene_geometry_inside(m->solids, o)};
 }
 
 static const vec3 turns[] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 13.7}, {17.3, -33.1, 71.9}, {-5.7, 123.4, 3.3}};
@@ -80,7 +83,7 @@ static void through_the_contact(assembly_maker *make, const char *wanted)
             vec3 contact = vec3_make(random_real(&seed, -0.4, 0.4), 0.3, random_real(&seed, -0.4, 0.4));
             expect_media(&m, line_through(&m, contact, 5.0, &seed), wanted);
         }
-        arrangement_destroy(m.solids);
+        scene_geometry_destroy(m.solids);
     }
 }
 
@@ -181,11 +184,11 @@ static void mirror_at_the_contact(assembly_maker *make)
             one_ray r = line_through(&m, contact, 5.0, &seed);
             one_hit h = nearest_interface(m.solids, r);
             h = nearest_interface(m.solids, (one_ray){h.point, r.d, h.face, h.inside_after});
-            assert_int_equal(m.solids->bodies[h.after].medium, 1);
+            assert_int_equal(m.solids->regions[h.after].medium, 1);
             expect_media(&m, (one_ray){h.point, direction_reflect(r.d, h.normal, h.cos_i), h.face, h.inside_before},
                          "20");
         }
-        arrangement_destroy(m.solids);
+        scene_geometry_destroy(m.solids);
     }
 }
 
@@ -222,25 +225,25 @@ static void a_liquid_that_fits_its_vessel_exactly(void **state)
             vec3 wall = vec3_make(0.9 * cos(turn), random_real(&seed, -0.5, 0.5), 0.9 * sin(turn));
             from.z /= m.shape[0].m, wall.z /= m.shape[0].m;
             one_ray r = {turned(from, m.turn), turned(vec3_normalize(vec3_sub(wall, from)), m.turn), FACE_NONE, 0};
-            r.inside = arrangement_inside(m.solids, r.o);
+            r.inside = scene_geometry_inside(m.solids, r.o);
             expect_media(&m, r, "210");
             /* and back from outside */
             vec3 far = vec3_add(r.o, vec3_scale(r.d, 4.0));
             const one_hit in = nearest_interface(
-                m.solids, (one_ray){far, vec3_scale(r.d, -1.0), FACE_NONE, arrangement_inside(m.solids, far)});
-            assert_int_equal(m.solids->bodies[in.after].medium, 1);
+                m.solids, (one_ray){far, vec3_scale(r.d, -1.0), FACE_NONE, scene_geometry_inside(m.solids, far)});
+            assert_int_equal(m.solids->regions[in.after].medium, 1);
             const one_hit wet =
                 nearest_interface(m.solids, (one_ray){in.point, vec3_scale(r.d, -1.0), in.face, in.inside_after});
-            assert_int_equal(m.solids->bodies[wet.before].medium, 1);
-            assert_int_equal(m.solids->bodies[wet.after].medium, 2);
+            assert_int_equal(m.solids->regions[wet.before].medium, 1);
+            assert_int_equal(m.solids->regions[wet.after].medium, 2);
         }
         /* down the axis: through the surface and the floor */
         vec3 above = turned(vec3_make(0.1, 3.0, 0.2), m.turn);
-        expect_media(
-            &m,
-            (one_ray){above, turned(vec3_make(0.0, -1.0, 0.0), m.turn), FACE_NONE, arrangement_inside(m.solids, above)},
-            "0210");
-        arrangement_destroy(m.solids);
+        expect_media(&m,
+                     (one_ray){above, turned(vec3_make(0.0, -1.0, 0.0), m.turn), FACE_NONE,
+                               scene_geometry_inside(m.solids, above)},
+                     "0210");
+        scene_geometry_destroy(m.solids);
     }
 }
 
@@ -265,17 +268,17 @@ static void a_liquid_that_reaches_into_the_wall(void **state)
     for (int k = 0; k < 4; k++) {
         const one_hit h = nearest_interface(m.solids, r);
         assert_true(fabs(h.point.x - (turning_points[k] - 2.0)) < 1e-15);
-        assert_int_equal(m.solids->bodies[h.before].medium, media[k]);
-        assert_int_equal(m.solids->bodies[h.after].medium, media[k + 1]);
+        assert_int_equal(m.solids->regions[h.before].medium, media[k]);
+        assert_int_equal(m.solids->regions[h.after].medium, media[k + 1]);
         r = (one_ray){h.point, r.d, h.face, h.inside_after};
     }
-    assert_int_equal(nearest_interface(m.solids, r).crossed, -1);
+    assert_int_equal(nearest_interface(m.solids, r).hit_primitive, -1);
     one_ray down = {vec3_make(0.2, 5.0, 0.1), vec3_make(0.0, -1.0, 0.0), FACE_NONE, 0};
-    down.inside = arrangement_inside(m.solids, down.o);
+    down.inside = scene_geometry_inside(m.solids, down.o);
     const one_hit surface = nearest_interface(m.solids, down);
     assert_true(fabs(surface.point.y - 2.001) < 1e-15);
     expect_media(&m, down, "0210");
-    arrangement_destroy(m.solids);
+    scene_geometry_destroy(m.solids);
 }
 
 /* Solids of the surrounding medium are not there, alone or over one another; in another medium they are bubbles. */
@@ -300,15 +303,15 @@ static void equal_media_are_no_interface(void **state)
     for (int i = 0; i < 5000; i++) {
         vec3 o = random_point(&seed, 2.0);
         assert_int_equal(nearest_interface(m.solids, (one_ray){o, random_direction(&seed), FACE_NONE,
-                                                               arrangement_inside(m.solids, o)})
-                             .crossed,
+                                                               scene_geometry_inside(m.solids, o)})
+                             .hit_primitive,
                          -1);
     }
-    arrangement_destroy(m.solids);
+    scene_geometry_destroy(m.solids);
     bubble.shape[1].size = vec3_make(0.5, 0.5, 0.5);
     assemble(&bubble, turns[0]);
     expect_media(&bubble, (one_ray){vec3_make(-3.0, 0.1, 0.0), vec3_make(1.0, 0.0, 0.0), FACE_NONE, 0}, "01010");
-    arrangement_destroy(bubble.solids);
+    scene_geometry_destroy(bubble.solids);
 }
 
 int main(void)

@@ -49,20 +49,20 @@ static int grain(int x, int y, int channel, int variant)
 
 static image *make(int width, int height, formula *of, int variant)
 {
-    image *picture;
-    assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
+    image *img;
+    assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
     for (int i = 0; i < 3 * width * height; i++)
-        picture->pixel[i] = (float)of(i / 3 % width, i / 3 / width, i % 3, variant) / 256.0f;
-    return picture;
+        img->pixel[i] = (float)of(i / 3 % width, i / 3 / width, i % 3, variant) / 256.0f;
+    return img;
 }
 
 static image *constant(int width, int height, double linear)
 {
-    image *picture;
-    assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
+    image *img;
+    assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
     for (int i = 0; i < 3 * width * height; i++)
-        picture->pixel[i] = (float)linear;
-    return picture;
+        img->pixel[i] = (float)linear;
+    return img;
 }
 
 static image_comparison compare(const image *a, const image *b)

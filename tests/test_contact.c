@@ -13,38 +13,38 @@
  * crossing, and the solid's extent. */
 
 /* Below y = 0 and above it, a gap apart; and perhaps a solid far away. */
-static arrangement *halves(double gap, double x, bool upper_wins, bool far_solid)
+static scene_geometry *halves(double gap, double x, bool upper_wins, bool far_solid)
 {
     const solid_shape shapes[3] = {
         {.kind = SHAPE_BOX, .position = {x, 0.5, 0.0}, .size = {4.0, 1.0, 4.0}},
         {.kind = SHAPE_BOX, .position = {x, -1.0 - gap, 0.0}, .size = {4.0, 2.0, 4.0}},
         {.kind = SHAPE_SPHERE, .position = {0.0, 1e6, 0.0}, .radius = 10.0},
     };
-    const body_source sources[3] = {
-        {.shape = &shapes[0], .priority = upper_wins ? 2 : 1, .medium = 1, .clearness = 1.0, .solid = 0},
-        {.shape = &shapes[1], .priority = upper_wins ? 1 : 2, .medium = 2, .clearness = 1.0, .solid = 1},
-        {.shape = &shapes[2], .priority = 9, .medium = 3, .clearness = 1.0, .solid = 2},
+    const region_source sources[3] = {
+        {.shape = &shapes[0], .priority = upper_wins ? 2 : 1, .medium = 1, .shadow_transmittance = 1.0, .solid = 0},
+        {.shape = &shapes[1], .priority = upper_wins ? 1 : 2, .medium = 2, .shadow_transmittance = 1.0, .solid = 1},
+        {.shape = &shapes[2], .priority = 9, .medium = 3, .shadow_transmittance = 1.0, .solid = 2},
     };
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(sources, far_solid ? 3 : 2, 0, &a, NULL), STATUS_OK);
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(sources, far_solid ? 3 : 2, 0, &a, NULL), STATUS_OK);
     return a;
 }
 
-static one_ray downwards_ray(const arrangement *a, double x, double angle, double height)
+static one_ray downwards_ray(const scene_geometry *a, double x, double angle, double height)
 {
     one_ray r = {{x, height, 0.0}, {sin(angle), -cos(angle), 0.0}, FACE_NONE, 0};
-    r.inside = arrangement_inside(a, r.o);
+    r.inside = scene_geometry_inside(a, r.o);
     return r;
 }
 
 /* Is the surrounding medium behind the upper box? */
 static bool sees_gap(double gap, double x, double angle, bool upper_wins, bool far_solid)
 {
-    arrangement *a = halves(gap, x, upper_wins, far_solid);
+    scene_geometry *a = halves(gap, x, upper_wins, far_solid);
     const one_hit h = nearest_interface(a, downwards_ray(a, x, angle, 0.5));
-    assert_true(h.crossed >= 0 && fabs(h.t * cos(angle) - 0.5) < 1e-9);
+    assert_true(h.hit_primitive >= 0 && fabs(h.t * cos(angle) - 0.5) < 1e-9);
     const bool outside = h.after == 0;
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
     return outside;
 }
 
@@ -109,20 +109,20 @@ static void a_film_in_contact_is_entered(void **state)
                 {.kind = SHAPE_BOX, .position = {0.0, 0.5, 0.0}, .size = {4.0, 1.0, 4.0}},
                 {.kind = SHAPE_BOX, .position = {0.0, -0.5 * thickness, 0.0}, .size = {4.0, thickness, 4.0}},
             };
-            const body_source sources[2] = {
-                {.shape = &shapes[0], .priority = order % 2, .medium = 1, .clearness = 1.0, .solid = 0},
-                {.shape = &shapes[1], .priority = 1 - order % 2, .medium = 2, .clearness = 1.0, .solid = 1},
+            const region_source sources[2] = {
+                {.shape = &shapes[0], .priority = order % 2, .medium = 1, .shadow_transmittance = 1.0, .solid = 0},
+                {.shape = &shapes[1], .priority = 1 - order % 2, .medium = 2, .shadow_transmittance = 1.0, .solid = 1},
             };
-            arrangement *a = NULL;
-            assert_int_equal(arrangement_build(sources, 2, 0, &a, NULL), STATUS_OK);
+            scene_geometry *a = NULL;
+            assert_int_equal(scene_geometry_build(sources, 2, 0, &a, NULL), STATUS_OK);
             one_ray r = downwards_ray(a, 0.0, 0.3 * (order / 2), 0.5);
             one_hit h = nearest_interface(a, r);
-            assert_int_equal(a->bodies[h.after].medium, 2);
+            assert_int_equal(a->regions[h.after].medium, 2);
             r = (one_ray){h.point, r.d, h.face, h.inside_after};
             h = nearest_interface(a, r);
             assert_int_equal(h.after, 0);
             assert_true(fabs(h.t * cos(0.3 * (order / 2)) - thickness) <= 1e-14);
-            arrangement_destroy(a);
+            scene_geometry_destroy(a);
         }
     }
 }
@@ -135,17 +135,18 @@ static double light_through_discs(double gap, const vec3 *turn_deg)
         {.kind = SHAPE_CYLINDER, .position = {0.0, 0.0, 0.0}, .radius = 2.0, .height = 1.0, .m = 1.0},
         {.kind = SHAPE_CYLINDER, .position = {0.0, -1.0 - gap, 0.0}, .radius = 2.0, .height = 1.0, .m = 1.0},
     };
-    body_source sources[2];
+    region_source sources[2];
     for (int i = 0; i < 2; i++) {
         shapes[i].position = mat3_apply(turn, shapes[i].position);
         shapes[i].rotation_deg = *turn_deg;
-        sources[i] = (body_source){.shape = &shapes[i], .priority = i, .medium = i + 1, .clearness = 0.5, .solid = i};
+        sources[i] = (region_source){
+            .shape = &shapes[i], .priority = i, .medium = i + 1, .shadow_transmittance = 0.5, .solid = i};
     }
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(sources, 2, 0, &a, NULL), STATUS_OK);
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(sources, 2, 0, &a, NULL), STATUS_OK);
     const vec3 from = mat3_apply(turn, vec3_make(0.1, 3.0, 0.2)), to = mat3_apply(turn, vec3_make(0.6, -4.0, -0.3));
     const double light = light_through(a, (one_ray){from, vec3_sub(to, from), FACE_NONE, 0}, 0);
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
     return light;
 }
 

@@ -22,7 +22,7 @@ typedef struct fingerprint {
 static fingerprint fingerprint_at(const scene *s, isa level, const render_options *options)
 {
     render_result *result = render_at(s, level, options);
-    const fingerprint f = {film_hash(result->picture), result->counters};
+    const fingerprint f = {film_hash(result->img), result->counters};
     uint64_t rays = 0;
     for (int i = 0; i < result->worker_count; i++) {
         const worker_report *w = &result->workers[i];
@@ -42,7 +42,7 @@ static void expect_same(const fingerprint *a, const fingerprint *b)
 /* Golden: film_hash of the reference scene at 160x120, depth 4. When the picture changes on purpose, take its hash from
  *     build/cuvette render experiments/scenes/rod.yaml -o out.png --json --set render.width=160 --set render.height=120
  * or from this test's message, and say in the commit why the picture changed. */
-static void the_picture_is_the_golden_one(void **state)
+static void the_image_is_the_golden_one(void **state)
 {
     (void)state;
     FILE *file = fopen("tests/golden/rod-hash.txt", "r");
@@ -91,10 +91,10 @@ static void threads_schedules_tiles_and_pool(void **state)
                 s->render.threads = threads[t];
                 s->render.schedule = rule;
                 s->render.tile = tiles[k];
-                s->render.pool = (t + k) % 2 == 0;
+                s->render.worker_pool = (t + k) % 2 == 0;
                 render_result *result = NULL;
                 assert_int_equal(renderer_render(r, s, NULL, &result, NULL), STATUS_OK);
-                const fingerprint f = {film_hash(result->picture), result->counters};
+                const fingerprint f = {film_hash(result->img), result->counters};
                 expect_same(&f, &wanted);
                 render_result_destroy(result);
             }
@@ -111,7 +111,7 @@ static void a_thousand_threads(void **state)
     set(s, "render.threads=1024");
     for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++) {
         s->render.schedule = rule;
-        s->render.pool = rule % 2;
+        s->render.worker_pool = rule % 2;
         const fingerprint f = fingerprint_at(s, rule == SCHEDULE_ROWS ? ISA_SSE2 : isa_best(), NULL);
         expect_same(&f, &wanted);
     }
@@ -126,7 +126,7 @@ static void side_pictures_change_nothing(void **state)
     const fingerprint wanted = fingerprint_at(s, isa_best(), NULL);
     const render_options options = {.pixel_rays = true, .pixel_time = true, .timeline = true};
     render_result *result = render_at(s, isa_best(), &options);
-    const fingerprint f = {film_hash(result->picture), result->counters};
+    const fingerprint f = {film_hash(result->img), result->counters};
     expect_same(&f, &wanted);
     double rays = 0.0, pixels = 0.0;
     for (int i = 0; i < 160 * 120; i++) {
@@ -179,7 +179,7 @@ static void counters_are_consistent(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_picture_is_the_golden_one),    cmocka_unit_test(instruction_sets),
+        cmocka_unit_test(the_image_is_the_golden_one),      cmocka_unit_test(instruction_sets),
         cmocka_unit_test(threads_schedules_tiles_and_pool), cmocka_unit_test(a_thousand_threads),
         cmocka_unit_test(side_pictures_change_nothing),     cmocka_unit_test(counters_are_consistent),
     };

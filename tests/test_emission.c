@@ -124,7 +124,7 @@ static void a_furnace_of_walls_that_shine(void **state)
         render_result *r = render(s);
         for (int at = 0; at < 4 * 3; at++)
             for (int c = 0; c < 3; c++)
-                assert_near((double)r->picture->sum[at * 3 + c] / FILM_ONE,
+                assert_near((double)r->img->sum[at * 3 + c] / FILM_ONE,
                             geometric_sum(0.75 * color[c], 0.6 * color[c], depth + 1), 1e-8);
         render_result_destroy(r);
     }

@@ -379,7 +379,7 @@ static void counters_and_pixels_are_the_renderers(void **state)
                 assert_true(value == -7.0F && byte == 77); /* beyond the row is not ours */
                 continue;
             }
-            const double truth = film_value(result->picture, x / 3, y, x % 3);
+            const double truth = film_value(result->img, x / 3, y, x % 3);
             assert_true(value == (float)truth && again[y * 3 * W + x] == value && bytes[y * 3 * W + x] == byte);
             assert_true(fabs(255.0 * srgb_encode((double)value) - byte) <= 0.5000001);
         }

@@ -68,13 +68,13 @@ static void a_film_becomes_a_picture(void **state)
 {
     (void)state;
     film *f = made(2, 2);
-    image *picture = NULL;
+    image *img = NULL;
     for (int i = 0; i < 12; i++)
         f->sum[i] = (int64_t)i << 42; /* quarters */
-    assert_int_equal(film_image(f, &picture, NULL), STATUS_OK);
+    assert_int_equal(film_image(f, &img, NULL), STATUS_OK);
     for (int i = 0; i < 12; i++)
-        assert_true(picture->pixel[i] == 0.25f * (float)i);
-    image_destroy(picture);
+        assert_true(img->pixel[i] == 0.25f * (float)i);
+    image_destroy(img);
     film_destroy(f);
 }
 
@@ -86,7 +86,7 @@ static void a_queue_gives_back_the_last_first(void **state)
     assert_true(queue_create(&q, 3 * BATCH + LANES_MAX));
     for (int count = 1; count <= 3 * BATCH + LANES_MAX; count++) {
         for (int i = 0; i < count; i++)
-            q.ox[i] = i, q.inside[i] = (uint64_t)i, q.ticket[i] = i, q.wb[i] = -i;
+            q.ox[i] = i, q.inside[i] = (uint64_t)i, q.sample_key[i] = i, q.wb[i] = -i;
         q.count = count;
         int first, left = count;
         while (left > 0) {
@@ -100,7 +100,7 @@ static void a_queue_gives_back_the_last_first(void **state)
         }
     }
     queue_move(&q, 3, 200);
-    assert_true(q.ox[3] == 200.0 && q.inside[3] == 200 && q.ticket[3] == 200 && q.wb[3] == -200.0);
+    assert_true(q.ox[3] == 200.0 && q.inside[3] == 200 && q.sample_key[3] == 200 && q.wb[3] == -200.0);
     queue_destroy(&q);
 }
 

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "base/team.h"
+#include "base/thread_team.h"
 #include "cuvette.h"
-#include "render/core/pool.h"
+#include "render/core/worker_pool.h"
 #include <fenv.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -556,14 +556,14 @@ static void threads_begin_in_the_default(void **state)
         memset(&r, 0xff, sizeof r);
         pthread_barrier_init(&r.all_there, NULL, THREADS);
         set_surroundings(&now);
-        team *t = kind == 0 ? team_start(THREADS) : NULL;
-        pool *p = kind == 0 ? NULL : pool_create();
+        thread_team *t = kind == 0 ? thread_team_start(THREADS) : NULL;
+        worker_pool *p = kind == 0 ? NULL : worker_pool_create();
         if (t)
-            team_run(t, sign_in_team, &r, THREADS);
+            thread_team_run(t, sign_in_team, &r, THREADS);
         else
-            pool_run(p, THREADS, kind == 1, sign_in_pool, NULL, 0.1, &r, NULL);
-        team_stop(t);
-        pool_destroy(p);
+            worker_pool_run(p, THREADS, kind == 1, sign_in_pool, NULL, 0.1, &r, NULL);
+        thread_team_stop(t);
+        worker_pool_destroy(p);
         fesetenv(FE_DFL_ENV);
         pthread_barrier_destroy(&r.all_there);
         for (int i = kind == 0 ? 1 : 0; i < THREADS; i++) /* member 0 of a team is the caller */

@@ -37,7 +37,7 @@ static const char furnace[] =
 enum { DEEPEST = 10 };
 
 /* A whole small picture, through the probe and by renders with and without what is cut off. */
-static void check_picture(const char *assignments, int depth)
+static void check_image(const char *assignments, int depth)
 {
     char depth_now[32];
     snprintf(depth_now, sizeof depth_now, "render.depth=%d", depth);
@@ -49,14 +49,14 @@ static void check_picture(const char *assignments, int depth)
     render_result *sky = render(g.setting);
     double all_cut[3] = {0.0, 0.0, 0.0}, worst = 0.0;
     size_t cuts = 0;
-    for (int y = 0; y < black->picture->height; y++) {
-        for (int x = 0; x < black->picture->width; x++) {
+    for (int y = 0; y < black->img->height; y++) {
+        for (int x = 0; x < black->img->width; x++) {
             const ray_tree *tree = stage_pixel(&g, x, y);
             for (size_t i = 0; i < tree->count; i++)
                 cuts += tree->node[i].end == RAY_END_CUT_DEPTH;
             for (int c = 0; c < 3; c++) {
-                const double cut = tree_cut(tree, c), seen = film_value(black->picture, x, y, c),
-                             whole = film_value(sky->picture, x, y, c);
+                const double cut = tree_cut(tree, c), seen = film_value(black->img, x, y, c),
+                             whole = film_value(sky->img, x, y, c);
                 all_cut[c] += cut;
                 worst = fmax(worst, fmax(fabs(seen + cut - 1.0), fabs(tree->radiance[c] + cut - 1.0)));
                 worst = fmax(worst, fmax(fabs(whole - 1.0), fabs(whole - seen - cut)));
@@ -78,14 +78,14 @@ static void fresnel_weights_lose_nothing(void **state)
 {
     (void)state;
     for (int depth = 0; depth <= DEEPEST; depth++)
-        check_picture("", depth);
+        check_image("", depth);
 }
 
 static void polarised_light_loses_nothing(void **state)
 {
     (void)state;
     for (int depth = 0; depth <= DEEPEST; depth += depth < 4 ? 1 : 3)
-        check_picture("render.polarisation=on", depth);
+        check_image("render.polarisation=on", depth);
 }
 
 /* Shares of 0.1 and 0.9 make 1 as well; under total reflection what cannot pass goes back. */
@@ -98,7 +98,7 @@ static void constant_weights_lose_nothing(void **state)
         snprintf(shares + strlen(shares), sizeof shares - strlen(shares), " %s.reflectivity=0.1 %s.transparency=0.9",
                  solids[k], solids[k]);
     for (int depth = 0; depth <= DEEPEST; depth += 2)
-        check_picture(shares, depth);
+        check_image(shares, depth);
 }
 
 /* From within each medium, and in surroundings that are not a vacuum: the throughput is one of power, so no n^2 comes
@@ -112,7 +112,7 @@ static void a_camera_in_any_medium_sees_the_furnace(void **state)
     for (size_t k = 0; k < COUNT(places); k++) {
         char all[128];
         snprintf(all, sizeof all, "%s camera.target=0.31,0.7,0.13%s", places[k], k % 2 ? " background.ior=1.38" : "");
-        check_picture(all, 7);
+        check_image(all, 7);
     }
 }
 

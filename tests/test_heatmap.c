@@ -14,29 +14,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool pixel_is(const image *picture, int x, int y, int red, int green, int blue)
+static bool pixel_is(const image *img, int x, int y, int red, int green, int blue)
 {
-    const float *pixel = picture->pixel + ((size_t)y * (size_t)picture->width + (size_t)x) * 3;
+    const float *pixel = img->pixel + ((size_t)y * (size_t)img->width + (size_t)x) * 3;
     return (int)codec_quantize(pixel[0], 255) == red && (int)codec_quantize(pixel[1], 255) == green &&
            (int)codec_quantize(pixel[2], 255) == blue;
 }
 
 /* Pixels of the ink of text in a rectangle. */
-static int ink_in(const image *picture, int left, int right, int top, int bottom)
+static int ink_in(const image *img, int left, int right, int top, int bottom)
 {
     int count = 0;
     for (int y = top; y < bottom; y++)
         for (int x = left; x < right; x++)
-            count += pixel_is(picture, x, y, 34, 34, 34);
+            count += pixel_is(img, x, y, 34, 34, 34);
     return count;
 }
 
 static image *draw(const double *values, int width, int height, const char *title)
 {
-    image *picture;
-    assert_int_equal(heatmap_create(values, width, height, title, &picture, NULL), STATUS_OK);
-    assert_non_null(picture);
-    return picture;
+    image *img;
+    assert_int_equal(heatmap_create(values, width, height, title, &img, NULL), STATUS_OK);
+    assert_non_null(img);
+    return img;
 }
 
 static double *make_values(int width, int height, double largest)
@@ -152,17 +152,17 @@ static void values_become_colors(void **state)
 {
     (void)state;
     double *values = make_values(300, 20, 118.0);
-    image *picture = draw(values, 300, 20, "rays per pixel");
-    assert_int_equal(picture->width, 300);
-    assert_true(picture->height > 20 + 30);
-    assert_true(pixel_is(picture, 0, 0, 68, 1, 84));
-    assert_true(pixel_is(picture, 299, 19, 253, 231, 37));
+    image *img = draw(values, 300, 20, "rays per pixel");
+    assert_int_equal(img->width, 300);
+    assert_true(img->height > 20 + 30);
+    assert_true(pixel_is(img, 0, 0, 68, 1, 84));
+    assert_true(pixel_is(img, 299, 19, 253, 231, 37));
     for (int i = 0; i < 300 * 20; i += 7) {
         unsigned char rgb[3];
         heatmap_color(values[i] / 118.0, rgb);
-        assert_true(pixel_is(picture, i % 300, i / 300, rgb[0], rgb[1], rgb[2]));
+        assert_true(pixel_is(img, i % 300, i / 300, rgb[0], rgb[1], rgb[2]));
     }
-    image_destroy(picture);
+    image_destroy(img);
     free(values);
 }
 
@@ -170,27 +170,27 @@ static void narrow_data_stand_in_the_middle(void **state)
 {
     (void)state;
     double *values = make_values(40, 10, 1.0);
-    image *picture = draw(values, 40, 10, "x");
-    assert_int_equal(picture->width, 240);
-    assert_true(pixel_is(picture, 99, 0, 255, 255, 255));
-    assert_true(pixel_is(picture, 100, 0, 68, 1, 84));
-    assert_true(pixel_is(picture, 139, 9, 253, 231, 37));
-    assert_true(pixel_is(picture, 140, 9, 255, 255, 255));
-    image_destroy(picture);
+    image *img = draw(values, 40, 10, "x");
+    assert_int_equal(img->width, 240);
+    assert_true(pixel_is(img, 99, 0, 255, 255, 255));
+    assert_true(pixel_is(img, 100, 0, 68, 1, 84));
+    assert_true(pixel_is(img, 139, 9, 253, 231, 37));
+    assert_true(pixel_is(img, 140, 9, 255, 255, 255));
+    image_destroy(img);
     free(values);
 }
 
 /* Finds text in the key by drawing it with the font at one pixel a dot. */
-static bool shows(const image *picture, int top, const char *text)
+static bool shows(const image *img, int top, const char *text)
 {
     int width = (int)strlen(text) * FONT_ADVANCE - 1;
-    for (int y = top; y + FONT_HEIGHT <= picture->height; y++) {
-        for (int x = 0; x + width <= picture->width; x++) {
+    for (int y = top; y + FONT_HEIGHT <= img->height; y++) {
+        for (int x = 0; x + width <= img->width; x++) {
             bool same = true;
             for (int i = 0; i < width * FONT_HEIGHT && same; i++) {
                 int column = i % width, row = i / width;
                 bool dot = font_dot(text[column / FONT_ADVANCE], column % FONT_ADVANCE, row);
-                same = dot == pixel_is(picture, x + column, y + row, 34, 34, 34);
+                same = dot == pixel_is(img, x + column, y + row, 34, 34, 34);
             }
             if (same)
                 return true;
@@ -202,13 +202,13 @@ static bool shows(const image *picture, int top, const char *text)
 static void check_key(double largest, const char *const numbers[5])
 {
     double *values = make_values(300, 3, largest);
-    image *picture = draw(values, 300, 3, "cost, in rays");
-    assert_true(shows(picture, 3, "cost, in rays"));
+    image *img = draw(values, 300, 3, "cost, in rays");
+    assert_true(shows(img, 3, "cost, in rays"));
     for (int i = 0; i < 5; i++)
-        if (!shows(picture, 3, numbers[i]))
+        if (!shows(img, 3, numbers[i]))
             fail_msg("the key up to %g does not show %s", largest, numbers[i]);
-    assert_false(shows(picture, 3, "cost, in rayz"));
-    image_destroy(picture);
+    assert_false(shows(img, 3, "cost, in rayz"));
+    image_destroy(img);
     free(values);
 }
 
@@ -237,10 +237,10 @@ static void whole_values_have_whole_numbers_at_the_scale(void **state)
         double values[300];
         for (int x = 0; x < 300; x++)
             values[x] = x % 2 * cases[i].largest;
-        image *picture = draw(values, 300, 1, "");
-        assert_true(shows(picture, 1, "0") && shows(picture, 1, cases[i].shown));
-        assert_false(shows(picture, 1, cases[i].hidden));
-        image_destroy(picture);
+        image *img = draw(values, 300, 1, "");
+        assert_true(shows(img, 1, "0") && shows(img, 1, cases[i].shown));
+        assert_false(shows(img, 1, cases[i].hidden));
+        image_destroy(img);
     }
 }
 
@@ -251,38 +251,38 @@ static void the_scale_is_not_set_by_a_few_outliers(void **state)
     for (int i = 0; i < 1200; i++)
         values[i] = i * 7 % 1200 / 2.0 + 0.25;
     values[0] = 1e9;
-    image *picture = draw(values, 300, 4, "t"); /* 6 of 1200 are above the percentile: the outlier, and 5 more */
-    assert_true(shows(picture, 4, ">=597.3"));
-    assert_true(pixel_is(picture, 0, 0, 253, 231, 37));
+    image *img = draw(values, 300, 4, "t"); /* 6 of 1200 are above the percentile: the outlier, and 5 more */
+    assert_true(shows(img, 4, ">=597.3"));
+    assert_true(pixel_is(img, 0, 0, 253, 231, 37));
     unsigned char rgb[3];
     heatmap_color(values[1] / 597.25, rgb);
-    assert_true(pixel_is(picture, 1, 0, rgb[0], rgb[1], rgb[2]));
-    image_destroy(picture);
+    assert_true(pixel_is(img, 1, 0, rgb[0], rgb[1], rgb[2]));
+    image_destroy(img);
     values[0] = 1190; /* not twice as much */
-    picture = draw(values, 300, 4, "t");
-    assert_true(shows(picture, 4, "1190") && !shows(picture, 4, ">=1190"));
-    image_destroy(picture);
+    img = draw(values, 300, 4, "t");
+    assert_true(shows(img, 4, "1190") && !shows(img, 4, ">=1190"));
+    image_destroy(img);
     for (int i = 0; i < 1200; i++)
         values[i] = i == 7 ? 5 : -0.0; /* the percentile is 0 */
-    picture = draw(values, 300, 4, "t");
-    assert_true(shows(picture, 4, "5") && pixel_is(picture, 7, 0, 253, 231, 37) && pixel_is(picture, 8, 0, 68, 1, 84));
-    image_destroy(picture);
+    img = draw(values, 300, 4, "t");
+    assert_true(shows(img, 4, "5") && pixel_is(img, 7, 0, 253, 231, 37) && pixel_is(img, 8, 0, 68, 1, 84));
+    image_destroy(img);
 }
 
 static void a_long_title_is_cut(void **state)
 {
     (void)state;
     double *values = make_values(240, 3, 1.0);
-    image *picture = draw(values, 240, 3, "a title that is much longer than the picture is wide");
-    assert_true(shows(picture, 3, "a title that is much longer than t..."));
-    image_destroy(picture);
+    image *img = draw(values, 240, 3, "a title that is much longer than the picture is wide");
+    assert_true(shows(img, 3, "a title that is much longer than t..."));
+    image_destroy(img);
     char huge[2000];
     memset(huge, 'W', sizeof huge);
     huge[sizeof huge - 1] = 0;
-    picture = draw(values, 240, 3, huge);
-    image_destroy(picture);
-    picture = draw(values, 240, 3, "");
-    image_destroy(picture);
+    img = draw(values, 240, 3, huge);
+    image_destroy(img);
+    img = draw(values, 240, 3, "");
+    image_destroy(img);
     free(values);
 }
 
@@ -290,10 +290,10 @@ static void nothing_but_zeros_is_no_error(void **state)
 {
     (void)state;
     static const double zeros[240 * 2] = {0};
-    image *picture = draw(zeros, 240, 2, "none");
-    assert_true(pixel_is(picture, 0, 0, 68, 1, 84) && pixel_is(picture, 239, 1, 68, 1, 84));
-    assert_true(shows(picture, 2, "0") && shows(picture, 2, "none"));
-    image_destroy(picture);
+    image *img = draw(zeros, 240, 2, "none");
+    assert_true(pixel_is(img, 0, 0, 68, 1, 84) && pixel_is(img, 239, 1, 68, 1, 84));
+    assert_true(shows(img, 2, "0") && shows(img, 2, "none"));
+    image_destroy(img);
 }
 
 static void text_grows_with_the_picture(void **state)
@@ -314,18 +314,18 @@ static void what_cannot_be_drawn_is_refused(void **state)
 {
     (void)state;
     static const double bad[] = {(double)NAN, INFINITY, -1.0, -INFINITY};
-    image *picture;
+    image *img;
     diagnostic why = {0};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const double values[4] = {0.0, 1.0, bad[i], 2.0};
-        assert_int_equal(heatmap_create(values, 2, 2, "x", &picture, &why), STATUS_BAD_INPUT);
-        assert_null(picture);
+        assert_int_equal(heatmap_create(values, 2, 2, "x", &img, &why), STATUS_BAD_INPUT);
+        assert_null(img);
         assert_non_null(strstr(why.what, "value 2"));
     }
     const double value = 1.0;
-    assert_int_equal(heatmap_create(&value, 0, 1, "x", &picture, &why), STATUS_BAD_INPUT);
-    assert_int_equal(heatmap_create(&value, 1, -1, "x", &picture, &why), STATUS_BAD_INPUT);
-    assert_int_equal(heatmap_create(&value, 65537, 1, "x", &picture, &why), STATUS_BAD_INPUT);
+    assert_int_equal(heatmap_create(&value, 0, 1, "x", &img, &why), STATUS_BAD_INPUT);
+    assert_int_equal(heatmap_create(&value, 1, -1, "x", &img, &why), STATUS_BAD_INPUT);
+    assert_int_equal(heatmap_create(&value, 65537, 1, "x", &img, &why), STATUS_BAD_INPUT);
 }
 
 int main(void)

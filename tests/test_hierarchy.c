@@ -214,7 +214,7 @@ static void no_ray_slips_out_of(mesh *m, int rays)
 static mesh *bumpy_sphere(int level, double bumps, bool single)
 {
     mesh *m = NULL, *round = NULL;
-    assert_int_equal(body_icosphere(level, &round, NULL), STATUS_OK);
+    assert_int_equal(generate_icosphere(level, &round, NULL), STATUS_OK);
     assert_int_equal(mesh_create(round->vertex_count, round->triangle_count, false, false, false, &m, NULL), STATUS_OK);
     for (size_t i = 0; i < m->vertex_count; i++) {
         const vec3 p = round->vertices[i];

@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "base/single.h"
-#include "base/team.h"
+#include "base/thread_team.h"
 #include "hierarchy_fixture.h"
 #include "random_stream.h"
 
@@ -349,17 +349,17 @@ static void a_team_does_each_task_once(void **state)
 {
     (void)state;
     for (int threads = 1; threads <= 5; threads += 2) {
-        team *t = team_start(threads);
+        thread_team *t = thread_team_start(threads);
         assert_non_null(t);
         static const size_t counts[] = {1000, 0, 1, 999};
         for (size_t k = 0; k < 4; k++) {
-            tally own = {.size = team_size(t)};
-            team_run(t, count_call, &own, counts[k]);
+            tally own = {.size = thread_team_size(t)};
+            thread_team_run(t, count_call, &own, counts[k]);
             for (size_t i = 0; i < 1000; i++)
                 assert_int_equal(own.calls[i], i < counts[k]);
             assert_int_equal(own.bad_members, 0);
         }
-        team_stop(t);
+        thread_team_stop(t);
     }
 }
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "geometry/bodies.h"
+#include "geometry/mesh_generators.h"
 #include "geometry/hierarchy.h"
 #include "random_stream.h"
 
@@ -29,7 +29,7 @@ static void embree_meets_the_sphere_where_it_is(void **state)
     mesh *m = NULL;
     hierarchy *h = NULL;
     diagnostic why;
-    assert_int_equal(body_sphere(50000, &m, &why), STATUS_OK);
+    assert_int_equal(generate_sphere(50000, &m, &why), STATUS_OK);
     const status built = hierarchy_build(m, HIERARCHY_EMBREE, 1, &h, &why);
     if (built == STATUS_BAD_INPUT) {
         assert_string_equal(why.what, "this program was built without Embree");

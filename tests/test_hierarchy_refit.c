@@ -20,8 +20,8 @@ static void a_refitted_hierarchy_gives_the_hits_of_a_new_one(void **state)
     (void)state;
     uint64_t seed = 1;
     mesh *bodies[] = {icosphere(3), NULL, NULL};
-    assert_int_equal(body_torus(1.0, 0.4, 40, 17, &bodies[1], NULL), STATUS_OK);
-    assert_int_equal(body_sparse(1001, &bodies[2], NULL), STATUS_OK); /* of floats */
+    assert_int_equal(generate_torus(1.0, 0.4, 40, 17, &bodies[1], NULL), STATUS_OK);
+    assert_int_equal(generate_sparse_soup(1001, &bodies[2], NULL), STATUS_OK); /* of floats */
     for (size_t k = 0; k < COUNT(bodies); k++) {
         mesh *m = bodies[k];
         vec3 *rest = copy_of_vertices(m);

@@ -100,17 +100,17 @@ static bool same_float(float a, float b)
 }
 
 /* A smooth picture with some grain. */
-static image *make_picture(int width, int height)
+static image *make_image(int width, int height)
 {
-    image *picture;
+    image *img;
     uint32_t random = 12345;
-    assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
+    assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
     for (int i = 0; i < width * height * 3; i++) {
         int x = i / 3 % width, y = i / 3 / width;
         double wave = 0.5 + 0.4 * sin(0.2 * x + i % 3) * cos(0.15 * y);
-        picture->pixel[i] = (float)(wave + 0.05 * (next_random(&random) % 1000) / 1000.0);
+        img->pixel[i] = (float)(wave + 0.05 * (next_random(&random) % 1000) / 1000.0);
     }
-    return picture;
+    return img;
 }
 
 /* ---- sRGB ---- */
@@ -190,16 +190,16 @@ static void formats_are_told_by_their_endings(void **state)
 static void pictures_have_limits(void **state)
 {
     (void)state;
-    image *picture;
+    image *img;
     diagnostic why = {0};
-    assert_int_equal(image_create(65536, 1, &picture, NULL), STATUS_OK);
-    assert_true(picture->pixel[65536 * 3 - 1] == 0.0f);
-    image_destroy(picture);
+    assert_int_equal(image_create(65536, 1, &img, NULL), STATUS_OK);
+    assert_true(img->pixel[65536 * 3 - 1] == 0.0f);
+    image_destroy(img);
     image_destroy(NULL);
     static const int sizes[][2] = {{0, 1}, {1, 0}, {-1, 5}, {65537, 1}, {1, 65537}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
-        assert_int_equal(image_create(sizes[i][0], sizes[i][1], &picture, &why), STATUS_BAD_INPUT);
-        assert_null(picture);
+        assert_int_equal(image_create(sizes[i][0], sizes[i][1], &img, &why), STATUS_BAD_INPUT);
+        assert_null(img);
     }
 }
 
@@ -209,20 +209,20 @@ static void pictures_have_limits(void **state)
 static void check_png_depth(int bits, int width, int height)
 {
     unsigned maximum = (1u << bits) - 1;
-    image *picture, *back;
+    image *img, *back;
     int file_bits = 0;
     char *path = in_folder("depth.png");
-    assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
+    assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
     for (int i = 0; i < width * height * 3; i++)
-        picture->pixel[i] = (float)srgb_decode((double)((unsigned)i % (maximum + 1)) / maximum);
-    assert_int_equal(image_write(picture, path, bits, NULL), STATUS_OK);
+        img->pixel[i] = (float)srgb_decode((double)((unsigned)i % (maximum + 1)) / maximum);
+    assert_int_equal(image_write(img, path, bits, NULL), STATUS_OK);
     assert_int_equal(image_read(path, &back, &file_bits, NULL), STATUS_OK);
     assert_int_equal(file_bits, bits);
     assert_int_equal(back->width, width);
     assert_int_equal(back->height, height);
     for (int i = 0; i < width * height * 3; i++)
-        assert_true(same_float(back->pixel[i], picture->pixel[i]));
-    image_destroy(picture);
+        assert_true(same_float(back->pixel[i], img->pixel[i]));
+    image_destroy(img);
     image_destroy(back);
     free(path);
 }
@@ -241,15 +241,15 @@ static void values_out_of_range_are_clamped(void **state)
     static const float values[6] = {NAN, -1.0f, 2.0f, INFINITY, -INFINITY, 0.5f};
     static const float expected[6] = {0, 0, 1, 1, 0, 0.5f};
     for (int bits = 8; bits <= 16; bits += 8) {
-        image *picture, *back;
+        image *img, *back;
         char *path = in_folder("clamp.png");
-        assert_int_equal(image_create(2, 1, &picture, NULL), STATUS_OK);
-        memcpy(picture->pixel, values, sizeof values);
-        assert_int_equal(image_write(picture, path, bits, NULL), STATUS_OK);
+        assert_int_equal(image_create(2, 1, &img, NULL), STATUS_OK);
+        memcpy(img->pixel, values, sizeof values);
+        assert_int_equal(image_write(img, path, bits, NULL), STATUS_OK);
         assert_int_equal(image_read(path, &back, NULL, NULL), STATUS_OK);
         for (int i = 0; i < 6; i++)
             assert_float_equal(back->pixel[i], expected[i], bits == 8 ? 0.003f : 2e-5f);
-        image_destroy(picture);
+        image_destroy(img);
         image_destroy(back);
         free(path);
     }
@@ -257,18 +257,18 @@ static void values_out_of_range_are_clamped(void **state)
 
 static void check_same_bytes(const char *name, int bits)
 {
-    image *picture = make_picture(61, 47);
+    image *img = make_image(61, 47);
     char *path = in_folder(name);
-    assert_int_equal(image_write(picture, path, bits, NULL), STATUS_OK);
+    assert_int_equal(image_write(img, path, bits, NULL), STATUS_OK);
     blob first = get(path);
-    assert_int_equal(image_write(picture, path, bits, NULL), STATUS_OK);
+    assert_int_equal(image_write(img, path, bits, NULL), STATUS_OK);
     blob second = get(path);
     assert_int_equal(first.size, second.size);
     assert_memory_equal(first.bytes, second.bytes, first.size);
     free(first.bytes);
     free(second.bytes);
     free(path);
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 static void the_same_picture_gives_the_same_bytes(void **state)
@@ -283,9 +283,9 @@ static void the_same_picture_gives_the_same_bytes(void **state)
 static void png_has_an_srgb_chunk_and_no_time(void **state)
 {
     (void)state;
-    image *picture = make_picture(20, 10);
+    image *img = make_image(20, 10);
     char *path = in_folder("chunks.png"), names[64] = "";
-    assert_int_equal(image_write(picture, path, 8, NULL), STATUS_OK);
+    assert_int_equal(image_write(img, path, 8, NULL), STATUS_OK);
     blob file = get(path);
     for (size_t at = 8; at + 12 <= file.size;) {
         const unsigned char *b = (const unsigned char *)file.bytes + at;
@@ -295,26 +295,26 @@ static void png_has_an_srgb_chunk_and_no_time(void **state)
     assert_string_equal(names, "IHDRsRGBIDATIEND");
     free(file.bytes);
     free(path);
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 static void jpeg_is_close(void **state)
 {
     (void)state;
-    image *picture = make_picture(50, 33), *back;
+    image *img = make_image(50, 33), *back;
     char *path = in_folder("a.jpeg");
     int bits = 0;
     for (int i = 0; i < 50 * 33 * 3; i++) /* without the grain */
-        picture->pixel[i] = (float)(0.5 + 0.4 * sin(0.1 * (i / 3 % 50) + i % 3));
-    assert_int_equal(image_write(picture, path, 8, NULL), STATUS_OK);
+        img->pixel[i] = (float)(0.5 + 0.4 * sin(0.1 * (i / 3 % 50) + i % 3));
+    assert_int_equal(image_write(img, path, 8, NULL), STATUS_OK);
     assert_int_equal(image_read(path, &back, &bits, NULL), STATUS_OK);
     assert_int_equal(bits, 8);
     assert_true(back->width == 50 && back->height == 33);
     for (int i = 0; i < 50 * 33 * 3; i++) {
-        double difference = srgb_encode((double)picture->pixel[i]) - srgb_encode((double)back->pixel[i]);
+        double difference = srgb_encode((double)img->pixel[i]) - srgb_encode((double)back->pixel[i]);
         assert_true(fabs(difference) < 8 / 255.0);
     }
-    image_destroy(picture);
+    image_destroy(img);
     image_destroy(back);
     free(path);
 }
@@ -322,14 +322,14 @@ static void jpeg_is_close(void **state)
 static void pfm_keeps_every_bit(void **state)
 {
     (void)state;
-    image *picture, *back;
+    image *img, *back;
     int bits = 0;
     char *path = in_folder("a.pfm");
     static const float values[12] = {0.0f, -0.0f,  1e-45f, 3.4e38f,    -3.4e38f, 1.0f,
                                      0.1f, 1e-10f, -5.0f,  1234567.0f, 0.5f,     2.0f};
-    assert_int_equal(image_create(2, 2, &picture, NULL), STATUS_OK);
-    memcpy(picture->pixel, values, sizeof values);
-    assert_int_equal(image_write(picture, path, 8, NULL), STATUS_OK);
+    assert_int_equal(image_create(2, 2, &img, NULL), STATUS_OK);
+    memcpy(img->pixel, values, sizeof values);
+    assert_int_equal(image_write(img, path, 8, NULL), STATUS_OK);
     assert_int_equal(image_read(path, &back, &bits, NULL), STATUS_OK);
     assert_int_equal(bits, 32);
     assert_memory_equal(back->pixel, values, sizeof values);
@@ -338,7 +338,7 @@ static void pfm_keeps_every_bit(void **state)
     assert_memory_equal(file.bytes, "PF\n2 2\n-1.0\n", 12);
     assert_memory_equal(file.bytes + 12, "\xcd\xcc\xcc\x3d", 4); /* 0.1f, little-endian: the lowest row comes first */
     free(file.bytes);
-    image_destroy(picture);
+    image_destroy(img);
     image_destroy(back);
     free(path);
 }
@@ -370,18 +370,18 @@ static void pfm_is_read_in_either_byte_order(void **state)
     static const char grey_little[] = "Pf\r\n2 1 -2\n"
                                       "\0\0\x80\x3f"
                                       "\0\0\0\x40";
-    image *picture;
-    assert_int_equal(read_bytes(big, sizeof big - 1, &picture, NULL), STATUS_OK);
+    image *img;
+    assert_int_equal(read_bytes(big, sizeof big - 1, &img, NULL), STATUS_OK);
     static const float expected[6] = {4, 5, 6, 1, 2, 3};
-    assert_memory_equal(picture->pixel, expected, sizeof expected);
-    image_destroy(picture);
+    assert_memory_equal(img->pixel, expected, sizeof expected);
+    image_destroy(img);
     static const float grey[6] = {1, 1, 1, 2, 2, 2};
-    assert_int_equal(read_bytes(grey_big, sizeof grey_big - 1, &picture, NULL), STATUS_OK);
-    assert_memory_equal(picture->pixel, grey, sizeof grey);
-    image_destroy(picture);
-    assert_int_equal(read_bytes(grey_little, sizeof grey_little - 1, &picture, NULL), STATUS_OK);
-    assert_memory_equal(picture->pixel, grey, sizeof grey);
-    image_destroy(picture);
+    assert_int_equal(read_bytes(grey_big, sizeof grey_big - 1, &img, NULL), STATUS_OK);
+    assert_memory_equal(img->pixel, grey, sizeof grey);
+    image_destroy(img);
+    assert_int_equal(read_bytes(grey_little, sizeof grey_little - 1, &img, NULL), STATUS_OK);
+    assert_memory_equal(img->pixel, grey, sizeof grey);
+    image_destroy(img);
 }
 
 static void bad_pfm_is_refused(void **state)
@@ -423,10 +423,10 @@ static void bad_pfm_is_refused(void **state)
     };
 #undef bad
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        image *picture;
+        image *img;
         diagnostic why = {0};
-        assert_int_equal(read_bytes(cases[i].bytes, cases[i].size, &picture, &why), STATUS_BAD_INPUT);
-        assert_null(picture);
+        assert_int_equal(read_bytes(cases[i].bytes, cases[i].size, &img, &why), STATUS_BAD_INPUT);
+        assert_null(img);
         assert_non_null(strstr(why.file, "/by_hand"));
         assert_true(why.what[0] != 0);
     }
@@ -534,17 +534,17 @@ static double expected_channel(const png_kind *kind, int x, int y, int channel)
 static void check_kind(const png_kind *kind)
 {
     char *path = in_folder("kind.png");
-    image *picture;
+    image *img;
     int bits = 0;
     write_kind(kind, path);
-    assert_int_equal(image_read(path, &picture, &bits, NULL), STATUS_OK);
+    assert_int_equal(image_read(path, &img, &bits, NULL), STATUS_OK);
     assert_int_equal(bits, kind->depth == 16 ? 16 : 8);
-    assert_true(picture->width == KIND_WIDTH && picture->height == KIND_HEIGHT);
+    assert_true(img->width == KIND_WIDTH && img->height == KIND_HEIGHT);
     for (int i = 0; i < KIND_WIDTH * KIND_HEIGHT * 3; i++) {
         double expected = expected_channel(kind, i / 3 % KIND_WIDTH, i / 3 / KIND_WIDTH, i % 3);
-        assert_true(fabs((double)picture->pixel[i] - expected) < 1e-7);
+        assert_true(fabs((double)img->pixel[i] - expected) < 1e-7);
     }
-    image_destroy(picture);
+    image_destroy(img);
     free(path);
 }
 
@@ -594,10 +594,10 @@ static void huge_png_is_refused(void **state)
         png_write_info(png, info);
         png_destroy_write_struct(&png, &info);
         fclose(file);
-        image *picture;
+        image *img;
         diagnostic why = {0};
-        assert_int_equal(image_read(path, &picture, NULL, &why), STATUS_BAD_INPUT);
-        assert_null(picture);
+        assert_int_equal(image_read(path, &img, NULL, &why), STATUS_BAD_INPUT);
+        assert_null(img);
         assert_string_equal(why.file, path);
         free(path);
     }
@@ -640,20 +640,20 @@ static void bombs_are_refused(void **state)
     char *path = in_folder("bomb.png");
     for (size_t i = 0; i < sizeof bombs / sizeof *bombs; i++) {
         write_bomb(path, bombs[i].side, bombs[i].bits, bombs[i].color, bombs[i].interlaced);
-        image *picture;
+        image *img;
         diagnostic why = {0};
         getrusage(RUSAGE_SELF, &before);
-        assert_int_equal(image_read(path, &picture, NULL, &why), STATUS_BAD_INPUT);
+        assert_int_equal(image_read(path, &img, NULL, &why), STATUS_BAD_INPUT);
         getrusage(RUSAGE_SELF, &after);
-        assert_null(picture);
+        assert_null(img);
         assert_non_null(strstr(why.what, "claims"));
         assert_true(after.ru_maxrss - before.ru_maxrss < 64 << 10);
     }
     /* Sixteen million pixels of one colour are still a picture. */
     write_bomb(path, 4000, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE);
-    image *picture;
-    assert_int_equal(image_read(path, &picture, NULL, NULL), STATUS_OK);
-    image_destroy(picture);
+    image *img;
+    assert_int_equal(image_read(path, &img, NULL, NULL), STATUS_OK);
+    image_destroy(img);
     free(path);
 }
 
@@ -703,15 +703,15 @@ static void jpeg_of_other_kinds_is_read(void **state)
     };
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         char *path = in_folder("kind.jpg");
-        image *picture;
+        image *img;
         write_jpeg_kind(path, kinds[k].space, kinds[k].channels, kinds[k].progressive, kinds[k].subsampling);
-        assert_int_equal(image_read(path, &picture, NULL, NULL), STATUS_OK);
-        assert_true(picture->width == 40 && picture->height == 30);
+        assert_int_equal(image_read(path, &img, NULL, NULL), STATUS_OK);
+        assert_true(img->width == 40 && img->height == 30);
         for (int i = 0; i < 40 * 30 * 3; i++) {
             double expected = (60 + i / 3 % 40 * 3 + i / 3 / 40) / 255.0;
-            assert_true(fabs(srgb_encode((double)picture->pixel[i]) - expected) < 6 / 255.0);
+            assert_true(fabs(srgb_encode((double)img->pixel[i]) - expected) < 6 / 255.0);
         }
-        image_destroy(picture);
+        image_destroy(img);
         free(path);
     }
 }
@@ -737,11 +737,11 @@ static void jpeg_that_claims_another_size_is_refused(void **state)
             put(path, b.bytes, b.size);
             free(b.bytes);
             struct rusage before, after;
-            image *picture;
+            image *img;
             getrusage(RUSAGE_SELF, &before);
-            assert_int_equal(image_read(path, &picture, NULL, NULL), STATUS_BAD_INPUT);
+            assert_int_equal(image_read(path, &img, NULL, NULL), STATUS_BAD_INPUT);
             getrusage(RUSAGE_SELF, &after);
-            assert_null(picture);
+            assert_null(img);
             assert_true(after.ru_maxrss - before.ru_maxrss < 64 << 10);
         }
     }
@@ -752,10 +752,10 @@ static void cmyk_jpeg_is_refused(void **state)
 {
     (void)state;
     char *path = in_folder("cmyk.jpg");
-    image *picture;
+    image *img;
     diagnostic why = {0};
     write_jpeg_kind(path, JCS_CMYK, 4, false, 1);
-    assert_int_equal(image_read(path, &picture, NULL, &why), STATUS_BAD_INPUT);
+    assert_int_equal(image_read(path, &img, NULL, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "neither grey nor RGB"));
     free(path);
 }
@@ -775,7 +775,7 @@ static void make_victims(victim victims[VICTIMS])
 {
     static const char *const names[VICTIMS] = {"8.png",           "16.png",   "interlaced.png", "baseline.jpg",
                                                "progressive.jpg", "grey.jpg", "a.pfm"};
-    image *picture = make_picture(19, 14);
+    image *img = make_image(19, 14);
     for (int i = 0; i < VICTIMS; i++) {
         char *path = in_folder(names[i]);
         if (i == 2)
@@ -783,25 +783,25 @@ static void make_victims(victim victims[VICTIMS])
         else if (i == 4 || i == 5)
             write_jpeg_kind(path, i == 4 ? JCS_RGB : JCS_GRAYSCALE, i == 4 ? 3 : 1, i == 4, 1);
         else
-            assert_int_equal(image_write(picture, path, i == 1 ? 16 : 8, NULL), STATUS_OK);
+            assert_int_equal(image_write(img, path, i == 1 ? 16 : 8, NULL), STATUS_OK);
         victims[i] = (victim){names[i], get(path), i <= 2};
         free(path);
     }
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 /* Never half a picture: either a refusal that names the file, or a picture of the whole size. */
 static status check_damaged(const void *bytes, size_t size)
 {
-    image *picture;
+    image *img;
     diagnostic why = {0};
-    status code = read_bytes(bytes, size, &picture, &why);
+    status code = read_bytes(bytes, size, &img, &why);
     if (code == STATUS_OK) {
-        assert_non_null(picture);
-        image_destroy(picture);
+        assert_non_null(img);
+        image_destroy(img);
     } else {
         assert_int_equal(code, STATUS_BAD_INPUT);
-        assert_null(picture);
+        assert_null(img);
         assert_non_null(strstr(why.file, "/by_hand"));
         assert_true(why.what[0] != 0 && !strchr(why.what, '\n'));
     }
@@ -870,14 +870,14 @@ static void many_corruptions_do_no_harm(void **state)
 static void wrong_requests_are_refused(void **state)
 {
     (void)state;
-    image *picture = make_picture(4, 4), *wide, *back;
+    image *img = make_image(4, 4), *wide, *back;
     diagnostic why = {0};
     char *gif = in_folder("x.gif"), *png = in_folder("x.png"), *jpg = in_folder("x.jpg");
     char *lost = in_folder("none/x.png");
-    assert_int_equal(image_write(picture, gif, 8, &why), STATUS_BAD_INPUT);
+    assert_int_equal(image_write(img, gif, 8, &why), STATUS_BAD_INPUT);
     assert_string_equal(why.file, gif);
-    assert_int_equal(image_write(picture, png, 12, &why), STATUS_BAD_INPUT);
-    assert_int_equal(image_write(picture, lost, 8, &why), STATUS_FAILURE);
+    assert_int_equal(image_write(img, png, 12, &why), STATUS_BAD_INPUT);
+    assert_int_equal(image_write(img, lost, 8, &why), STATUS_FAILURE);
     assert_string_equal(why.file, lost);
     assert_int_equal(image_create(65536, 1, &wide, NULL), STATUS_OK);
     assert_int_equal(image_write(wide, jpg, 8, &why), STATUS_BAD_INPUT);
@@ -888,11 +888,11 @@ static void wrong_requests_are_refused(void **state)
     image_destroy(wide);
     assert_int_equal(image_read(lost, &wide, NULL, &why), STATUS_BAD_INPUT);
     assert_null(wide);
-    assert_int_equal(image_write(picture, "/dev/null", 8, NULL), STATUS_OK);
-    assert_int_equal(image_write(picture, "/dev/full", 8, &why), STATUS_FAILURE);
+    assert_int_equal(image_write(img, "/dev/null", 8, NULL), STATUS_OK);
+    assert_int_equal(image_write(img, "/dev/full", 8, &why), STATUS_FAILURE);
     assert_int_equal(empty_folder(), 1);
     image_destroy(back);
-    image_destroy(picture);
+    image_destroy(img);
     free(gif);
     free(png);
     free(jpg);
@@ -903,7 +903,7 @@ static void a_full_disk_keeps_the_old_picture(void **state)
 {
     (void)state;
     static const char *const names[] = {"full.png", "full.jpg", "full.pfm"};
-    image *small = make_picture(5, 5), *large = make_picture(200, 150);
+    image *small = make_image(5, 5), *large = make_image(200, 150);
     struct rlimit before, limit;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);

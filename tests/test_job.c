@@ -153,7 +153,7 @@ static void finished_frames_are_kept(void **state)
     assert_int_equal(made.count, 2);
     assert_false(made.whole);
     assert_int_equal(made.result->counters.camera, 512 * 512 * 16);
-    assert_true(made.film_hash == film_hash(made.result->picture));
+    assert_true(made.film_hash == film_hash(made.result->img));
     job_account_release(&made);
     job_destroy(j);
     scene_destroy(s);
@@ -257,7 +257,7 @@ static void an_account_says_what_was_measured(void **state)
         assert_int_equal(made.spent.peak_rss_bytes > 0, measured);
         assert_true(isnan(made.spent.wall_s) == !measured);
         assert_true(made.film_hash != 0);
-        assert_true(job_account_hash(&made) == film_hash(made.result->picture));
+        assert_true(job_account_hash(&made) == film_hash(made.result->img));
         job_account_release(&made);
         job_destroy(j);
     }

@@ -246,7 +246,7 @@ static char *film_of_command(void)
     worked(scene_load(s, &why), &why);
     worked(renderer_create(isa_best(), NULL, &r, &why), &why);
     worked(renderer_render(r, s, NULL, &made, &why), &why);
-    char *hash = text_format("%016llx", (unsigned long long)film_hash(made->picture));
+    char *hash = text_format("%016llx", (unsigned long long)film_hash(made->img));
     render_result_destroy(made);
     renderer_destroy(r);
     scene_destroy(s);
@@ -283,7 +283,7 @@ static void a_command_of_a_file_in_another_folder(void **state)
     assert_non_null(length);
     assert_int_equal(fwrite(reply_body(png), 1, strtoul(length + 16, NULL, 10), out), strtoul(length + 16, NULL, 10));
     assert_int_equal(fclose(out), 0);
-    room_post(&room, "/api/set", "{\"set\": {\"background.picture\": \"sky.png\"}}");
+    room_post(&room, "/api/set", "{\"set\": {\"background.img\": \"sky.png\"}}");
     free(room_film(&room));
     room_post(&room, "/api/save", "{\"file\": \"inner/moved.yaml\"}");
     room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.25}}");

@@ -48,16 +48,16 @@ static double number(const json_t *of, const char *key)
     return json_number_value(value);
 }
 
-static image *picture_of(const char *assignments)
+static image *image_of(const char *assignments)
 {
     scene *s = scene_from(BALL_SCENE);
-    image *picture = NULL;
+    image *shared_image = NULL;
     set_all(s, assignments);
     render_result *result = render(s);
-    assert_int_equal(film_image(result->picture, &picture, NULL), STATUS_OK);
+    assert_int_equal(film_image(result->img, &shared_image, NULL), STATUS_OK);
     render_result_destroy(result);
     scene_destroy(s);
-    return picture;
+    return shared_image;
 }
 
 static void refused(const lab_room *room, const char *method, const char *target, int code, const char *words)
@@ -91,12 +91,12 @@ static image *decoded(const lab_room *room, const char *target)
     FILE *out = fopen(path, "wb");
     assert_int_equal(fwrite(bytes, 1, size, out), size);
     assert_int_equal(fclose(out), 0);
-    image *picture = NULL;
+    image *shared_image = NULL;
     diagnostic why = {.line = 0};
-    worked(image_read(path, &picture, NULL, &why), &why);
+    worked(image_read(path, &shared_image, NULL, &why), &why);
     free(path);
     free(bytes);
-    return picture;
+    return shared_image;
 }
 
 static void without_a_pin_there_is_nothing_to_compare(void **state)
@@ -159,7 +159,7 @@ static void numbers_and_map_are_those_of_the_pictures(void **state)
     pin(*state);
     change(*state, "\"ball.ior\": 1.7");
     json_t *told = room_get(*state, "/api/compare?wait=1");
-    image *a = picture_of(""), *b = picture_of("ball.ior=1.7");
+    image *a = image_of(""), *b = image_of("ball.ior=1.7");
     image_comparison found;
     assert_int_equal(image_compare(a, b, &found, NULL), STATUS_OK);
     assert_true(found.largest > 0.05);
@@ -172,7 +172,7 @@ static void numbers_and_map_are_those_of_the_pictures(void **state)
     json_decref(told);
     change(*state, "\"ball.ior\": 1.2");
     told = room_get(*state, "/api/compare?wait=1");
-    image *c = picture_of("ball.ior=1.2");
+    image *c = image_of("ball.ior=1.2");
     assert_int_equal(image_compare(a, c, &found, NULL), STATUS_OK);
     check_numbers(json_object_get(told, "comparison"), &found);
     check_map(*state, a, c);
@@ -215,8 +215,7 @@ static void the_pinned_picture_stays(void **state)
     pin(*state);
     change(*state, "\"render.width\": 32");
     free(room_film(*state));
-    image *a = picture_of(""), *fine = decoded(*state, "/api/pin.png?bits=16"),
-          *plain = decoded(*state, "/api/pin.png");
+    image *a = image_of(""), *fine = decoded(*state, "/api/pin.png?bits=16"), *plain = decoded(*state, "/api/pin.png");
     image_comparison found;
     assert_int_equal(fine->coded_bits, 16);
     assert_int_equal(plain->coded_bits, 8);

@@ -21,12 +21,12 @@ typedef struct room {
 } room;
 
 #define TRIANGLE "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n"
-#define GLTF(buffer, picture)                                                                                        \
+#define GLTF(buffer, img)                                                                                            \
     "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"            \
     "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]}],"                \
     "\"materials\":[{\"name\":\"a\",\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],\"textures\":[{" \
     "\"source\":0}],"                                                                                                \
-    "\"images\":[{\"uri\":\"" picture "\"}],"                                                                        \
+    "\"images\":[{\"uri\":\"" img "\"}],"                                                                            \
     "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                        \
     "{\"bufferView\":1,\"componentType\":5123,\"count\":3,\"type\":\"SCALAR\"}],"                                    \
     "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":6}],"          \
@@ -75,7 +75,7 @@ static void put_link(const room *r, const char *name, const char *target)
     free(path);
 }
 
-static void put_pictures(const room *r)
+static void put_images(const room *r)
 {
     image *blank = NULL;
     unsigned char *bytes = NULL;
@@ -100,7 +100,7 @@ static void put_files(const room *r)
     put_everywhere(r, "a.mtl", paint, sizeof paint - 1);
     put_everywhere(r, "plain.obj", model, sizeof model - 1);
     put_everywhere(r, "pull.yaml", pull, sizeof pull - 1);
-    put_pictures(r);
+    put_images(r);
 }
 
 static int enter(void **state)
@@ -228,7 +228,7 @@ static void test_absolute_libraries_of_models_in_the_working_folder(void **state
     assert_int_equal(chdir(here), 0);
 }
 
-static void test_pictures_of_materials(void **state)
+static void test_images_of_materials(void **state)
 {
     const room *r = *state;
     put_link(r, "out.png", "../p.png");
@@ -309,11 +309,11 @@ static void test_files_that_become_links(void **state)
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         put_files(r);
-        painter_wait(r->lab.lab->painter, "a file is exchanged");
+        render_worker_suspend(r->lab.lab->render_worker, "a file is exchanged");
         open_scene(r, cases[i].scene); /* passes the check */
         char *target = text_format("../%s", cases[i].file);
         put_link(r, cases[i].file, target);
-        painter_wait(r->lab.lab->painter, NULL);
+        render_worker_suspend(r->lab.lab->render_worker, NULL);
         is_refused(r, cases[i].scene, cases[i].file);
         is_said_of_the_file_itself(r);
         free(target);
@@ -330,17 +330,17 @@ static void test_a_new_scene(void **state)
 {
     const room *r = *state;
     char *change =
-        text_format("{\"set\": {\"background.kind\": \"picture\", \"background.picture\": \"%s/p.png\"}}", r->inside);
+        text_format("{\"set\": {\"background.kind\": \"picture\", \"background.img\": \"%s/p.png\"}}", r->inside);
     for (int opened = 0; opened < 2; opened++) { /* the first one, another one */
         if (opened)
             room_post(&r->lab, "/api/open", "{\"new\": true}");
         take_away(r, "p.png");
-        put_pictures(r);
-        painter_wait(r->lab.lab->painter, "a file is exchanged");
+        put_images(r);
+        render_worker_suspend(r->lab.lab->render_worker, "a file is exchanged");
         room_post(&r->lab, "/api/set", change);
         put_link(r, "p.png", "../p.png");
-        painter_wait(r->lab.lab->painter, NULL);
-        is_refused(r, "a sky", "background.picture");
+        render_worker_suspend(r->lab.lab->render_worker, NULL);
+        is_refused(r, "a sky", "background.img");
     }
     free(change);
 }
@@ -497,7 +497,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_libraries_of_materials, enter, leave),
         cmocka_unit_test_setup_teardown(test_absolute_libraries_of_models_in_the_working_folder, enter, leave),
-        cmocka_unit_test_setup_teardown(test_pictures_of_materials, enter, leave),
+        cmocka_unit_test_setup_teardown(test_images_of_materials, enter, leave),
         cmocka_unit_test_setup_teardown(test_what_gltf_names, enter, leave),
         cmocka_unit_test_setup_teardown(test_models_that_are_added, enter, leave),
         cmocka_unit_test_setup_teardown(test_files_that_become_links, enter, leave),

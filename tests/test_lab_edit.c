@@ -74,16 +74,16 @@ static int enter(void **state)
     r->above = strdup(mkdtemp(place));
     r->inside = text_format("%s/lab", r->above);
     make_folder(r->inside);
-    char *deep = text_format("%s/deep", r->inside), *picture_path = text_format("%s/picture.png", r->inside),
+    char *deep = text_format("%s/deep", r->inside), *image_path = text_format("%s/picture.png", r->inside),
          *outside = text_format("%s/outside.png", r->above);
     make_folder(deep);
-    image *picture = NULL;
-    assert_int_equal(image_create(4, 2, &picture, NULL), STATUS_OK);
-    assert_int_equal(image_write(picture, picture_path, 8, NULL), STATUS_OK);
-    assert_int_equal(image_write(picture, outside, 8, NULL), STATUS_OK);
-    image_destroy(picture);
+    image *img = NULL;
+    assert_int_equal(image_create(4, 2, &img, NULL), STATUS_OK);
+    assert_int_equal(image_write(img, image_path, 8, NULL), STATUS_OK);
+    assert_int_equal(image_write(img, outside, 8, NULL), STATUS_OK);
+    image_destroy(img);
     free(deep);
-    free(picture_path);
+    free(image_path);
     free(outside);
     put(r, "lab/deep/ball.yaml", small);
     put(r, "lab/deep/Two sides.obj", tetrahedron);
@@ -196,7 +196,7 @@ static void test_files(void **state)
     assert_string_equal(json_string_value(json_object_get(files, "prefix")), "../");
     json_decref(files);
     /* With its prefix a name is a path as the scene gives it. */
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.img\": \"../picture.png\"}}");
     char hash[64];
     film(r, hash);
     json_t *media = ask(r, 200, "GET", "/api/media", NULL);
@@ -273,7 +273,7 @@ static void test_save(void **state)
     assert_false(is_there(r, "new.yaml"));
     char before[64], after[64], text[256];
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\"}");
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.img\": \"../picture.png\"}}");
     film(r, before);
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
@@ -319,7 +319,7 @@ static void test_paths_of_parameters(void **state)
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
     const json_int_t before = generation(r);
-    tell(r, 400, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../../outside.png\"}}");
+    tell(r, 400, "POST", "/api/set", "{\"set\": {\"background.img\": \"../../outside.png\"}}");
     tell(r, 400, "POST", "/api/set", "{\"set\": {\"cloth.file\": \"../../outside.png\"}}");
     tell(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.file\": \"../../outside.obj\"}}");
     tell(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.script\": \"/etc/passwd\"}}");

@@ -190,9 +190,9 @@ static void a_study_is_stopped_and_goes_on(void **state)
     assert_int_equal(number_at(one, "rows"), count);
     json_decref(list);
     room_post(room, "/api/set", "{\"set\": {\"ball.ior\": 1.3}}");
-    char *picture = client_ask(room->server, "GET", "/api/picture.png?wait=1", "", NULL);
-    assert_int_equal(reply_code(picture), 200); /* pictures are made again */
-    free(picture);
+    char *img = client_ask(room->server, "GET", "/api/picture.png?wait=1", "", NULL);
+    assert_int_equal(reply_code(img), 200); /* pictures are made again */
+    free(img);
     free(rows);
     free(rows_now);
 }
@@ -260,7 +260,7 @@ static void nothing_outside_is_read(void **state)
     room_write(room, "inside/scene.yaml", BALL_SCENE);
     room_write(room, "inside/far.study", "study: far\nscene: ../scene.yaml\n");
     room_write(room, "inside/sky.study",
-               "study: sky\nscene: scene.yaml\ngrid: [{background.picture: [near.png, ../../far.png]}]\n");
+               "study: sky\nscene: scene.yaml\ngrid: [{background.img: [near.png, ../../far.png]}]\n");
     room_write(room, "inside/away.study", "study: away\nscene: scene.yaml\nrepetitions: 1\n");
     assert_int_equal(symlink(away, link), 0);
     lab_room inner = {.lab = NULL};

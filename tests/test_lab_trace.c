@@ -134,7 +134,7 @@ static void it_is_the_pixel_that_is_shown(void **state)
     render_result *result = render(s);
     for (int c = 0; c < 3; c++)
         assert_true(json_number_value(json_array_get(json_object_get(trace, "radiance"), (size_t)c)) ==
-                    film_value(result->picture, 41, 37, c));
+                    film_value(result->img, 41, 37, c));
     render_result_destroy(result);
     scene_destroy(s);
     json_decref(trace);

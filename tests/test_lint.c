@@ -348,7 +348,7 @@ static void a_frame_is_the_same_after_the_linter(void **state)
                 lint(s[k]);
             r[k] = law_render(&j, s[k]);
         }
-        assert_int_equal(film_hash(r[0]->picture), film_hash(r[1]->picture));
+        assert_int_equal(film_hash(r[0]->img), film_hash(r[1]->img));
         assert_memory_equal(&r[0]->counters, &r[1]->counters, sizeof r[0]->counters);
         for (int k = 0; k < 2; k++) {
             render_result_destroy(r[k]);
@@ -385,8 +385,8 @@ static double changed_share(judge *j, scene *s, int depth)
         double most = 1.0 / 255.0, apart_by = 0.0;
         for (int c = 0; c < 3; c++) {
             const int w = (int)s->render.width;
-            const double a = fmin(1.0, film_value(r[0]->picture, i % w, i / w, c)),
-                         b = fmin(1.0, film_value(r[1]->picture, i % w, i / w, c));
+            const double a = fmin(1.0, film_value(r[0]->img, i % w, i / w, c)),
+                         b = fmin(1.0, film_value(r[1]->img, i % w, i / w, c));
             most = fmax(most, fmax(a, b));
             apart_by = fmax(apart_by, fabs(a - b));
         }

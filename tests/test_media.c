@@ -20,12 +20,12 @@ static int walk_agrees(const room *m, vec3 from, vec3 direction)
     const int n = changes_of(m, &line, wanted);
     if (n < 0)
         return 0;
-    one_ray r = {from, direction, FACE_NONE, arrangement_inside(m->solids, from)};
-    assert_int_equal(solid_of(m, arrangement_rank(m->solids, r.inside)), winner(m, from));
+    one_ray r = {from, direction, FACE_NONE, scene_geometry_inside(m->solids, from)};
+    assert_int_equal(solid_of(m, scene_geometry_priority_index(m->solids, r.inside)), winner(m, from));
     double gone = 0.0;
     for (int k = 0; k < n; k++) {
         const one_hit h = nearest_interface(m->solids, r);
-        assert_true(h.crossed >= 0);
+        assert_true(h.hit_primitive >= 0);
         gone += h.t;
         assert_true(quad_abs(wanted[k].t - gone) < (quad)1e-8);
         assert_int_equal(solid_of(m, h.before), wanted[k].before);
@@ -33,11 +33,11 @@ static int walk_agrees(const room *m, vec3 from, vec3 direction)
         assert_int_equal(solid_of(m, h.surface), owner_of_surface(m, wanted[k].before, wanted[k].after));
         assert_true(quad3_length(quad3_sub(quad3_from(h.point), reference_at(&line, wanted[k].t))) < (quad)1e-8);
         /* the sets on both sides are what the points there are in */
-        assert_true(h.inside_before == arrangement_inside(m->solids, point_at(&line, wanted[k].t - (quad)1e-7)));
-        assert_true(h.inside_after == arrangement_inside(m->solids, point_at(&line, wanted[k].t + (quad)1e-7)));
+        assert_true(h.inside_before == scene_geometry_inside(m->solids, point_at(&line, wanted[k].t - (quad)1e-7)));
+        assert_true(h.inside_after == scene_geometry_inside(m->solids, point_at(&line, wanted[k].t + (quad)1e-7)));
         r = (one_ray){h.point, direction, h.face, h.inside_after};
     }
-    assert_int_equal(nearest_interface(m->solids, r).crossed, -1);
+    assert_int_equal(nearest_interface(m->solids, r).hit_primitive, -1);
     return n + 1;
 }
 
@@ -52,7 +52,7 @@ static void random_rooms_agree_with_brute_force(void **state)
         for (int k = 0; k < 12; k++)
             interfaces += walk_agrees(&m, random_point(&seed, k % 2 ? 0.7 : 4.0),
                                       random_direction(&seed)); /* also from inside solids */
-        arrangement_destroy(m.solids);
+        scene_geometry_destroy(m.solids);
     }
     assert_true(interfaces > 10000);
 }
@@ -67,7 +67,7 @@ static void rooms_full_of_coincident_faces_agree_with_brute_force(void **state)
         room_fill_on_a_grid(&m, &seed);
         for (int k = 0; k < 12; k++)
             interfaces += walk_agrees(&m, random_point(&seed, k % 2 ? 0.7 : 4.0), random_direction(&seed));
-        arrangement_destroy(m.solids);
+        scene_geometry_destroy(m.solids);
     }
     assert_true(interfaces > 8000);
 }
@@ -87,20 +87,20 @@ static void rays_in_coincident_faces_come_to_an_end(void **state)
             vec3 d = vec3_make(random_below(&seed, 3) - 1, random_below(&seed, 3) - 1, random_below(&seed, 3) - 1);
             if (vec3_dot(d, d) == 0.0)
                 continue;
-            one_ray r = {o, vec3_normalize(d), FACE_NONE, arrangement_inside(m.solids, o)};
-            int64_t medium = m.solids->bodies[arrangement_rank(m.solids, r.inside)].medium;
+            one_ray r = {o, vec3_normalize(d), FACE_NONE, scene_geometry_inside(m.solids, o)};
+            int64_t medium = m.solids->regions[scene_geometry_priority_index(m.solids, r.inside)].medium;
             int steps = 0;
-            for (one_hit h = nearest_interface(m.solids, r); h.crossed >= 0;
+            for (one_hit h = nearest_interface(m.solids, r); h.hit_primitive >= 0;
                  h = nearest_interface(m.solids, r), steps++) {
-                assert_int_equal(m.solids->bodies[h.before].medium, medium);
-                assert_true(m.solids->bodies[h.after].medium != medium);
+                assert_int_equal(m.solids->regions[h.before].medium, medium);
+                assert_true(m.solids->regions[h.after].medium != medium);
                 assert_true(h.t >= 0.0 && steps < WALK_MAX);
-                medium = m.solids->bodies[h.after].medium;
+                medium = m.solids->regions[h.after].medium;
                 r = (one_ray){h.point, r.d, h.face, h.inside_after};
             }
             assert_true(has_plane(&m) || medium == 0); /* no set is left behind in what a ray has long passed */
         }
-        arrangement_destroy(m.solids);
+        scene_geometry_destroy(m.solids);
     }
 }
 
@@ -110,14 +110,14 @@ static void walk_at_random(const room *m, one_ray r, uint64_t *seed)
 {
     for (int step = 0; step < 100; step++) {
         const one_hit h = nearest_interface(m->solids, r);
-        if (h.crossed < 0)
+        if (h.hit_primitive < 0)
             return;
         vec3 middle = vec3_add(r.o, vec3_scale(r.d, 0.5 * h.t));
         quad nearest = 1;
         for (int i = 0; i < m->count; i++)
             nearest = quad_min(nearest, quad_abs(reference_distance(&m->shape[i], quad3_from(middle))));
         if (nearest > (quad)1e-12)
-            assert_int_equal(medium_of(m, winner(m, middle)), m->solids->bodies[h.before].medium);
+            assert_int_equal(medium_of(m, winner(m, middle)), m->solids->regions[h.before].medium);
         const fresnel f = fresnel_dielectric(h.cos_i, 1.0 + 0.2 * h.before, 1.0 + 0.2 * h.after);
         if (f.total || random_below(seed, 2))
             r = (one_ray){h.point, direction_reflect(r.d, h.normal, h.cos_i), h.face, h.inside_before};
@@ -138,10 +138,10 @@ static void sets_stay_true_on_long_walks(void **state)
             room_fill(&m, &seed);
         for (int k = 0; k < 12; k++) {
             vec3 o = random_point(&seed, 1.5);
-            walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, arrangement_inside(m.solids, o)},
+            walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, scene_geometry_inside(m.solids, o)},
                            &seed);
         }
-        arrangement_destroy(m.solids);
+        scene_geometry_destroy(m.solids);
     }
 }
 
@@ -167,7 +167,7 @@ static void instruction_sets_agree_to_the_bit(void **state)
                 d = vec3_make(0.0, random_below(&seed, 2) ? 1.0 : -1.0, -0.0);
             c[0][i] = o.x, c[1][i] = o.y, c[2][i] = o.z, c[3][i] = d.x, c[4][i] = d.y, c[5][i] = d.z;
             start[i] = random_below(&seed, 4) ? FACE_NONE : random_below(&seed, m.solids->primitive_count) * FACES_MAX;
-            inside[i] = arrangement_inside(m.solids, o);
+            inside[i] = scene_geometry_inside(m.solids, o);
         }
         const ray_batch rays = {count, c[0], c[1], c[2], c[3], c[4], c[5], start, inside};
         for (int level = 0; level <= (int)isa_best(); level++) {
@@ -185,7 +185,7 @@ static void instruction_sets_agree_to_the_bit(void **state)
             assert_memory_equal(points[level].cos_i, points[0].cos_i, (size_t)count * sizeof(double));
             assert_memory_equal(points[level].face, points[0].face, (size_t)count * sizeof(int64_t));
         }
-        arrangement_destroy(m.solids);
+        scene_geometry_destroy(m.solids);
     }
 }
 

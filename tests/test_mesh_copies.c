@@ -22,7 +22,7 @@ static uint64_t hash_of(const char *text, const char *assignments, isa level)
 {
     scene *s = scene_with_meshes(text, assignments);
     render_result *r = render_at(s, level, NULL);
-    const uint64_t hash = film_hash(r->picture);
+    const uint64_t hash = film_hash(r->img);
     render_result_destroy(r);
     scene_destroy(s);
     return hash;
@@ -62,7 +62,7 @@ static void copies_that_touch_are_one_block(void **state)
         -0.7 + turned(vec3_make(0.45, 0.0, 0.7), vec3_make(0.0, 20.0, 0.0)).z);
     scene *many = scene_with_meshes(a.at, ""), *one = scene_with_meshes(b.at, "");
     render_result *x = render(many), *y = render(one);
-    assert_true(rms_between(x->picture, y->picture) < 1e-8);
+    assert_true(rms_between(x->img, y->img) < 1e-8);
     render_result_destroy(x);
     render_result_destroy(y);
     scene_destroy(many);
@@ -95,7 +95,7 @@ static void placed_copies_are_transformed_vertices(void **state)
     mesh_release(moved->meshes[0].data);
     moved->meshes[0].data = m;
     render_result *x = render(placed), *y = render(moved);
-    assert_true(rms_between(x->picture, y->picture) < 1e-6);
+    assert_true(rms_between(x->img, y->img) < 1e-6);
     render_result_destroy(x);
     render_result_destroy(y);
     scene_destroy(placed);
@@ -187,7 +187,7 @@ static void light_through_very_many_media_is_the_same_in_any_batch(void **state)
     scene *s = scene_with_meshes(t.at, "");
     render_result *r = render(s);
     for (int c = 0; c < 3; c++)
-        assert_true(fabs(film_value(r->picture, 12, 8, c) - tree->radiance[c]) < 1e-9);
+        assert_true(fabs(film_value(r->img, 12, 8, c) - tree->radiance[c]) < 1e-9);
     render_result_destroy(r);
     scene_destroy(s);
     stage_close(&g);

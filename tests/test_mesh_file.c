@@ -90,9 +90,9 @@ static void obj_with_two_materials(void **state)
     assert_true(red->emissive[0] == 3 && red->emissive[1] == 0.5 && red->emissive[2] == 0 && glass->emissive[0] == 0);
     assert_true(glass->opacity == 0.25 && glass->ior == 1.5);
     assert_null(glass->texture);
-    char *picture = in_folder("paint.png");
-    assert_string_equal(red->texture, picture);
-    free(picture);
+    char *img = in_folder("paint.png");
+    assert_string_equal(red->texture, img);
+    free(img);
     mesh_import_destroy(got);
 }
 
@@ -100,7 +100,7 @@ static void textures_of_other_spellings_are_found(void **state)
 {
     (void)state;
     put_text("my paint.png", "a picture");
-    char *picture = in_folder("my paint.png");
+    char *img = in_folder("my paint.png");
     static const char *const spellings[] = {"my paint.png", ".\\my paint.png", "my%20paint.png"};
     for (size_t i = 0; i < sizeof spellings / sizeof *spellings; i++) {
         char *library = text_format("newmtl a\nmap_Kd %s\n", spellings[i]);
@@ -112,7 +112,7 @@ static void textures_of_other_spellings_are_found(void **state)
         assert_int_equal(access(got->materials[0].texture, R_OK), 0);
         mesh_import_destroy(got);
     }
-    free(picture);
+    free(img);
 }
 
 static void obj_polygons_are_triangulated(void **state)

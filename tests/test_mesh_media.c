@@ -19,31 +19,31 @@ typedef struct walks {
 static void walk_agrees(const mesh_room *m, vec3 from, vec3 direction, walks *sum)
 {
     const reference_line line = {quad3_from(from), quad3_from(direction)};
-    const arrangement *a = m->r.solids;
+    const scene_geometry *a = m->r.solids;
     change wanted[ROOM_CROSSINGS_MAX];
     const int n = changes_in_room(m, &line, wanted);
     if (n < 0) {
         sum->skipped++;
         return;
     }
-    one_ray r = {from, direction, FACE_NONE, arrangement_inside(a, from)};
-    assert_int_equal(solid_of(&m->r, arrangement_rank(a, r.inside)), winner_in_room(m, from));
+    one_ray r = {from, direction, FACE_NONE, scene_geometry_inside(a, from)};
+    assert_int_equal(solid_of(&m->r, scene_geometry_priority_index(a, r.inside)), winner_in_room(m, from));
     double gone = 0.0;
     for (int k = 0; k < n; k++) {
         const one_hit h = nearest_interface(a, r);
-        assert_true(h.crossed >= 0);
+        assert_true(h.hit_primitive >= 0);
         gone += h.t;
         assert_true(quad_abs(wanted[k].t - gone) < (quad)1e-8);
         assert_int_equal(solid_of(&m->r, h.before), wanted[k].before);
         assert_int_equal(solid_of(&m->r, h.after), wanted[k].after);
         assert_int_equal(solid_of(&m->r, h.surface), owner_of_surface(&m->r, wanted[k].before, wanted[k].after));
         assert_true(quad3_length(quad3_sub(quad3_from(h.point), reference_at(&line, wanted[k].t))) < (quad)1e-8);
-        assert_true(h.inside_before == arrangement_inside(a, point_at(&line, wanted[k].t - (quad)1e-7)));
-        assert_true(h.inside_after == arrangement_inside(a, point_at(&line, wanted[k].t + (quad)1e-7)));
+        assert_true(h.inside_before == scene_geometry_inside(a, point_at(&line, wanted[k].t - (quad)1e-7)));
+        assert_true(h.inside_after == scene_geometry_inside(a, point_at(&line, wanted[k].t + (quad)1e-7)));
         sum->seen_meshes += is_mesh_face(h.face);
         r = (one_ray){h.point, direction, h.face, h.inside_after};
     }
-    assert_int_equal(nearest_interface(a, r).crossed, -1);
+    assert_int_equal(nearest_interface(a, r).hit_primitive, -1);
     sum->interfaces += n + 1;
 }
 
@@ -84,7 +84,7 @@ static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
     for (int trial = 0; trial < 500; trial++) {
         mesh_room m;
         mesh_room_fill(&m, &seed, true);
-        const arrangement *a = m.r.solids;
+        const scene_geometry *a = m.r.solids;
         for (int k = 0; k < 12; k++) {
             const vec3 o = vec3_make(0.125 * (random_below(&seed, 33) - 16), 0.125 * (random_below(&seed, 33) - 16),
                                      0.125 * (random_below(&seed, 33) - 16));
@@ -92,18 +92,18 @@ static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
                 vec3_make(random_below(&seed, 3) - 1, random_below(&seed, 3) - 1, random_below(&seed, 3) - 1);
             if (vec3_dot(d, d) == 0.0)
                 continue;
-            one_ray r = {o, vec3_normalize(d), FACE_NONE, arrangement_inside(a, o)};
-            int64_t medium = a->bodies[arrangement_rank(a, r.inside)].medium;
+            one_ray r = {o, vec3_normalize(d), FACE_NONE, scene_geometry_inside(a, o)};
+            int64_t medium = a->regions[scene_geometry_priority_index(a, r.inside)].medium;
             int steps = 0, standing = 0;
-            for (one_hit h = nearest_interface(a, r); h.crossed >= 0; h = nearest_interface(a, r), steps++) {
-                assert_int_equal(a->bodies[h.before].medium, medium);
-                assert_true(a->bodies[h.after].medium != medium);
+            for (one_hit h = nearest_interface(a, r); h.hit_primitive >= 0; h = nearest_interface(a, r), steps++) {
+                assert_int_equal(a->regions[h.before].medium, medium);
+                assert_true(a->regions[h.after].medium != medium);
                 assert_true(h.t >= 0.0 && steps < WALK_MAX);
                 standing = h.t < 1e-12 ? standing + 1 : 0;
                 rays += steps == 0, stuck += standing == 3;
                 if (standing == 3)
                     break;
-                medium = a->bodies[h.after].medium;
+                medium = a->regions[h.after].medium;
                 r = (one_ray){h.point, r.d, h.face, h.inside_after};
             }
         }
@@ -116,9 +116,9 @@ static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
 static bool is_clear_of_surfaces(const mesh_room *m, vec3 at)
 {
     for (int i = 0; i < m->r.count; i++) {
-        if (!m->body[i] && !(quad_abs(reference_distance(&m->r.shape[i], quad3_from(at))) > (quad)1e-12))
+        if (!m->region[i] && !(quad_abs(reference_distance(&m->r.shape[i], quad3_from(at))) > (quad)1e-12))
             return false;
-        for (size_t k = 0; m->body[i] && k < m->count[i]; k++) {
+        for (size_t k = 0; m->region[i] && k < m->count[i]; k++) {
             const vec3 *v = (const vec3 *)m->triangle[i][k], n = vec3_cross(vec3_sub(v[1], v[0]), vec3_sub(v[2], v[0]));
             if (!(fabs(vec3_dot(n, vec3_sub(at, v[0]))) > 1e-11 * vec3_length(n)))
                 return false;
@@ -131,14 +131,14 @@ static bool is_clear_of_surfaces(const mesh_room *m, vec3 at)
  */
 static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *asked)
 {
-    const arrangement *a = m->r.solids;
+    const scene_geometry *a = m->r.solids;
     for (int step = 0; step < 60; step++) {
         const one_hit h = nearest_interface(a, r);
-        if (h.crossed < 0)
+        if (h.hit_primitive < 0)
             return;
         const vec3 middle = vec3_add(r.o, vec3_scale(r.d, 0.5 * h.t));
         if (is_clear_of_surfaces(m, middle)) {
-            assert_int_equal(medium_of(&m->r, winner_in_room(m, middle)), a->bodies[h.before].medium);
+            assert_int_equal(medium_of(&m->r, winner_in_room(m, middle)), a->regions[h.before].medium);
             ++*asked;
         }
         const fresnel f = fresnel_dielectric(h.cos_i, 1.0 + 0.2 * h.before, 1.0 + 0.2 * h.after);
@@ -159,7 +159,7 @@ static void sets_stay_true_on_long_walks_among_meshes(void **state)
         mesh_room_fill(&m, &seed, trial % 2 == 0);
         for (int k = 0; k < 8; k++) {
             const vec3 o = random_point(&seed, 1.5);
-            walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, arrangement_inside(m.r.solids, o)},
+            walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, scene_geometry_inside(m.r.solids, o)},
                            &seed, &asked);
         }
         mesh_room_empty(&m);
@@ -176,7 +176,7 @@ static double light_by_definition(const mesh_room *m, const change *changes, int
     for (int k = 0; k < count && changes[k].t < end; k++) {
         const int before = changes[k].before, after = changes[k].after;
         const bool blocked = solid_shadows || is_opaque(&m->r, before) || is_opaque(&m->r, after);
-        share *= blocked ? 0.0 : m->r.clearness[higher_of(&m->r, before, after)];
+        share *= blocked ? 0.0 : m->r.shadow_transmittance[higher_of(&m->r, before, after)];
     }
     return share;
 }
@@ -196,7 +196,7 @@ static void shadow_rays_among_meshes_agree_with_brute_force(void **state)
             const int n = changes_in_room(&m, &line, changes), start = winner_in_room(&m, o);
             if (n < 0 || is_opaque(&m.r, start))
                 continue;
-            const one_ray r = {o, d, FACE_NONE, arrangement_inside(m.r.solids, o)};
+            const one_ray r = {o, d, FACE_NONE, scene_geometry_inside(m.r.solids, o)};
             for (int solid = 0; solid < 2; solid++) {
                 const double wanted = light_by_definition(&m, changes, n, 1, start, solid),
                              got = light_through(m.r.solids, r, solid);
@@ -228,7 +228,7 @@ static void instruction_sets_agree_to_the_bit_on_meshes(void **state)
             const vec3 o = random_point(&seed, 3.0), d = random_direction(&seed);
             c[0][i] = o.x, c[1][i] = o.y, c[2][i] = o.z, c[3][i] = d.x, c[4][i] = d.y, c[5][i] = d.z;
             start[i] = FACE_NONE;
-            inside[i] = arrangement_inside(m.r.solids, o);
+            inside[i] = scene_geometry_inside(m.r.solids, o);
         }
         const ray_batch rays = {count, c[0], c[1], c[2], c[3], c[4], c[5], start, inside};
         memset(meshes, 0, sizeof meshes);
@@ -239,7 +239,7 @@ static void instruction_sets_agree_to_the_bit_on_meshes(void **state)
             scratch.meshes = &meshes[level];
             kernels->nearest(m.r.solids, &rays, &scratch, &hits[level]);
             for (int i = 0; i < count && level > 0; i++) {
-                if (hits[0].crossed[i] < 0 || m.r.solids->primitives[hits[0].crossed[i]].rule)
+                if (hits[0].hit_primitive[i] < 0 || m.r.solids->primitives[hits[0].hit_primitive[i]].rule)
                     continue;
                 assert_int_equal(meshes[level].hit[i].face, meshes[0].hit[i].face);
                 assert_memory_equal(&meshes[level].hit[i].u, &meshes[0].hit[i].u, 2 * sizeof(double));

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "base/single.h"
-#include "geometry/bodies.h"
+#include "geometry/mesh_generators.h"
 #include "geometry/mesh.h"
 #include "random_stream.h"
 
@@ -79,7 +79,7 @@ static void bounds_are_found_in_meshes_of_many_pieces(void **state)
     (void)state;
     uint64_t seed = 1;
     mesh *m = NULL;
-    assert_int_equal(body_icosphere(4, &m, NULL), STATUS_OK);
+    assert_int_equal(generate_icosphere(4, &m, NULL), STATUS_OK);
     vec3 *to = malloc(m->vertex_count * sizeof *to);
     assert_non_null(to);
     for (int round = 0; round < 20; round++) {
@@ -113,7 +113,7 @@ static void one_coordinate_that_is_no_float_shows(void **state)
     assert_false(m->single);
     mesh_release(m);
 
-    assert_int_equal(body_icosphere(0, &m, NULL), STATUS_OK); /* triangles use every vertex */
+    assert_int_equal(generate_icosphere(0, &m, NULL), STATUS_OK); /* triangles use every vertex */
     vec3 all[60] = {{0, 0, 0}};
     assert_true(m->vertex_count <= COUNT(all));
     moved_as_finished(m, all, NULL);

@@ -128,21 +128,21 @@ static void through_a_mesh_block_the_ground_is_the_ground(void **state)
 static void a_mesh_of_the_liquids_own_index_is_not_seen(void **state)
 {
     (void)state;
-    static const char pool[] =
+    static const char worker_pool[] =
         "  water: {shape: box, size: [2, 1, 2], transparency: 1, ior: 1.33, position: [0, 0.5, 0], priority: 1}\n";
     char both[1024];
     snprintf(both, sizeof both,
              "%s  lump: {shape: mesh, mesh: ring, transparency: 1, ior: 1.33, position: [0, 0.5, 0], rotation: [50, 0, "
              "0], priority: 2}\n",
-             pool);
+             worker_pool);
     scene_text a = {.length = 0}, b = {.length = 0};
-    add(&a, "%ssolids:\n%s", FRAME, pool);
+    add(&a, "%ssolids:\n%s", FRAME, worker_pool);
     add(&b, "%smeshes: {ring: {generate: torus, major: 0.4, minor: 0.15, around: 40, tube: 20}}\nsolids:\n%s", FRAME,
         both);
     scene *without = scene_with_meshes(a.at, "render.width=96 render.height=72"),
           *with = scene_with_meshes(b.at, "render.width=96 render.height=72");
     render_result *x = render(without), *y = render(with);
-    assert_true(film_hash(x->picture) == film_hash(y->picture));
+    assert_true(film_hash(x->img) == film_hash(y->img));
     render_result_destroy(x);
     render_result_destroy(y);
     scene_destroy(without);
@@ -162,7 +162,7 @@ static double error_at_level(int level, bool smooth, const film *wanted)
         FRAME, level, smooth ? "smooth" : "flat");
     scene *s = scene_with_meshes(t.at, "render.width=120 render.height=90 render.depth=6");
     render_result *r = render(s);
-    const double rms = rms_between(r->picture, wanted);
+    const double rms = rms_between(r->img, wanted);
     render_result_destroy(r);
     scene_destroy(s);
     return rms;
@@ -178,8 +178,8 @@ static void a_glass_mesh_sphere_converges_to_the_sphere(void **state)
     render_result *wanted = render(s);
     double smooth[LEVELS], flat[LEVELS];
     for (int level = 0; level < LEVELS; level++) {
-        smooth[level] = error_at_level(level, true, wanted->picture);
-        flat[level] = error_at_level(level, false, wanted->picture);
+        smooth[level] = error_at_level(level, true, wanted->img);
+        flat[level] = error_at_level(level, false, wanted->img);
         print_message("level %d: smooth %.3e (%.1f dB), flat %.3e (%.1f dB)\n", level, smooth[level],
                       psnr(smooth[level]), flat[level], psnr(flat[level]));
     }
@@ -214,7 +214,7 @@ static double error_of_mesh(const char *generated, const char *look, int segment
     add(&t, "}}\n");
     add(&body, "shape: mesh, mesh: triangles, %s", look);
     render_result *r = glass(t.at, body.at);
-    const double rms = rms_between(r->picture, wanted);
+    const double rms = rms_between(r->img, wanted);
     render_result_destroy(r);
     return rms;
 }
@@ -236,10 +236,10 @@ static void glass_meshes_converge_to_torus_cone_and_frustum(void **state)
     };
     for (size_t k = 0; k < COUNT(body); k++) {
         render_result *wanted = glass("", body[k].solid);
-        double coarse = error_of_mesh(body[k].mesh, TURNED, 16, wanted->picture), fine = 0.0;
+        double coarse = error_of_mesh(body[k].mesh, TURNED, 16, wanted->img), fine = 0.0;
         const double first = coarse;
         for (int segments = 64; segments <= 1024; segments *= 4, coarse = fine) {
-            fine = error_of_mesh(body[k].mesh, TURNED, segments, wanted->picture);
+            fine = error_of_mesh(body[k].mesh, TURNED, segments, wanted->img);
             print_message("%s: %d segments, %.3e (%.1f dB)\n", body[k].solid, segments, fine, psnr(fine));
             assert_true(fine < coarse);
         }
@@ -257,7 +257,7 @@ static void a_lathe_of_few_segments_is_a_prism(void **state)
         add(&t, "shape: prism, radius: 0.8, height: 1.1, rotation: [0, 10, 15], sides: %d", sides);
         render_result *wanted = glass("", t.at);
         const double rms = error_of_mesh("generate: lathe, profile: [0, 0, 0.8, 0, 0.8, 1.1, 0, 1.1], around: %d",
-                                         "shading: flat, rotation: [0, 190, 15]", sides, wanted->picture);
+                                         "shading: flat, rotation: [0, 190, 15]", sides, wanted->img);
         print_message("%d sides: rms %.3e\n", sides, rms);
         assert_true(rms < 1e-6);
         render_result_destroy(wanted);
@@ -275,7 +275,7 @@ static void a_mesh_vessel_looks_like_the_cup(void **state)
     set_all(cup, "render.width=200 render.height=150");
     set_all(turned_one, "render.width=200 render.height=150");
     render_result *a = render(cup), *b = render(turned_one);
-    const double rms = rms_between(a->picture, b->picture);
+    const double rms = rms_between(a->img, b->img);
     print_message("vessel: rms %.3e, %.1f dB\n", rms, psnr(rms));
     assert_true(psnr(rms) > 65.0);
     render_result_destroy(a);

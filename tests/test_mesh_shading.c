@@ -227,14 +227,14 @@ static void meshes_in_a_furnace_lose_nothing(void **state)
 static void absorption_over_lengths_in_meshes(void **state)
 {
     (void)state;
-    static const char *const bodies[] = {"{generate: box, size: [2, 1, 2]}", "{generate: icosphere, level: 6}"};
+    static const char *const regions[] = {"{generate: box, size: [2, 1, 2]}", "{generate: icosphere, level: 6}"};
     for (int k = 0; k < 2; k++) {
         scene_text t = {.length = 0};
         add(&t,
             "background: {color: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 3}\nmeshes: {body: %s}\n"
             "solids: {lump: {shape: mesh, mesh: body, transparency: 1, ior: 1.25, absorb_per_m: [0.5, 1, 2], position: "
             "[0, 0, 4]}}\n",
-            bodies[k]);
+            regions[k]);
         stage g = stage_with_meshes(t.at, "render.unit_m=0.5 background.ior=1.25 lump.ior=1.5");
         const double length = 2.0;
         const ray_node *in = &stage_ray(&g, vec3_make(0.001, 0.002, 0), vec3_make(0, 0, 1))->node[0];
@@ -331,7 +331,7 @@ static void spectral_films_refuse_textures_and_faces(void **state)
 }
 
 /* Two triangles, two materials: the file's looks, and the scene's own material where it has the slot's name. */
-static void faces_look_like_their_materials(void **state)
+static void faces_are_shaded_by_their_materials(void **state)
 {
     (void)state;
     char folder[] = "/tmp/cuvette-faces-XXXXXX", path[64], text[1024], why[DIAGNOSTIC_TEXT_MAX];
@@ -425,7 +425,7 @@ int main(void)
         cmocka_unit_test(textures_at_known_points),
         cmocka_unit_test(an_open_dielectric_names_its_hole),
         cmocka_unit_test(spectral_films_refuse_textures_and_faces),
-        cmocka_unit_test(faces_look_like_their_materials),
+        cmocka_unit_test(faces_are_shaded_by_their_materials),
         cmocka_unit_test(faces_shine_as_their_materials_say),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

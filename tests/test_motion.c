@@ -37,7 +37,7 @@ static scene *toys_with(const char *assignments)
 static uint64_t film_of(const scene *s)
 {
     render_result *result = render(s);
-    const uint64_t hash = film_hash(result->picture);
+    const uint64_t hash = film_hash(result->img);
     render_result_destroy(result);
     return hash;
 }

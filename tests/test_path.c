@@ -39,10 +39,10 @@ static agreement agree(scene *s, const char *settings, double unseen)
     render_result *chance = render(s);
     assert_non_null(chance->variance);
     agreement a = {0};
-    for (int y = 0; y < tree->picture->height; y++)
-        for (int x = 0; x < tree->picture->width; x++)
+    for (int y = 0; y < tree->img->height; y++)
+        for (int x = 0; x < tree->img->width; x++)
             for (int c = 0; c < 3; c++)
-                agreement_add(&a, estimate_at(chance, x, y, c), film_value(tree->picture, x, y, c), unseen);
+                agreement_add(&a, estimate_at(chance, x, y, c), film_value(tree->img, x, y, c), unseen);
     render_result_destroy(tree);
     render_result_destroy(chance);
     return a;
@@ -98,7 +98,7 @@ static void paths_have_highlights_under_every_lighting(void **state)
     for (size_t k = 0; k < COUNT(rules); k++) {
         set(s, rules[k]);
         render_result *r = render(s);
-        assert_true(film_hash(r->picture) == film_hash(wanted->picture));
+        assert_true(film_hash(r->img) == film_hash(wanted->img));
         render_result_destroy(r);
     }
     render_result_destroy(wanted);
@@ -431,7 +431,7 @@ static void check_hollow_series(const char *settings)
         for (int c = 0; c < 3; c++) {
             const double rho = 0.8 / (1 << c), wanted = rho * 3.0 / 4.0 * (1.0 - pow(rho, depth + 1)) / (1.0 - rho);
             for (int i = 0; i < 48; i++)
-                assert_true(fabs(film_value(r->picture, i % 8, i / 8, c) - wanted) < 1e-9);
+                assert_true(fabs(film_value(r->img, i % 8, i / 8, c) - wanted) < 1e-9);
         }
         render_result_destroy(r);
     }
@@ -573,7 +573,7 @@ static void spread_over_seeds(scene *s, spread *out)
         s->render.seed = seed;
         render_result *r = render(s);
         for (int i = 0; i < 3 * PIXELS; i++) {
-            const double v = (double)r->picture->sum[i] / FILM_ONE;
+            const double v = (double)r->img->sum[i] / FILM_ONE;
             sum[i] += v, squares[i] += v * v;
             out->reported[i] += r->variance[i] / SEEDS;
         }
@@ -649,9 +649,9 @@ static void any_number_of_paths_will_do(void **state)
         s->render.paths = cases[k].paths;
         render_result *r = render(s);
         assert_true((r->variance != NULL) == cases[k].known);
-        assert_int_equal(r->picture->layers, 1);
+        assert_int_equal(r->img->layers, 1);
         for (int i = 0; i < 32 * 24; i++)
-            assert_true(fabs(film_value(r->picture, i % 32, i / 32, 1) - 1.0) < ROUNDINGS);
+            assert_true(fabs(film_value(r->img, i % 32, i / 32, 1) - 1.0) < ROUNDINGS);
         render_result_destroy(r);
     }
     set_all(s, "render.paths=18 render.samples=4"); /* the pixel's points have unequal shares */

@@ -29,8 +29,8 @@ typedef struct fingerprint {
 
 static fingerprint fingerprint_of(const render_result *r)
 {
-    fingerprint f = {film_hash(r->picture), 0, r->counters};
-    for (int i = 0; r->variance && i < 3 * r->picture->width * r->picture->height; i++) {
+    fingerprint f = {film_hash(r->img), 0, r->counters};
+    for (int i = 0; r->variance && i < 3 * r->img->width * r->img->height; i++) {
         uint64_t bits;
         memcpy(&bits, &r->variance[i], sizeof bits);
         f.variance = f.variance * 0x9e3779b97f4a7c15U + bits;

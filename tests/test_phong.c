@@ -273,10 +273,10 @@ static void yaw_counts_looking_down(void **state)
     render_result *turned = render_at(s, isa_best(), NULL);
     for (int y = 0; y < 6; y++)
         for (int x = 0; x < 8; x++)
-            assert_true(film_value(level->picture, x, y, 0) == film_value(turned->picture, 7 - x, 5 - y, 0));
+            assert_true(film_value(level->img, x, y, 0) == film_value(turned->img, 7 - x, 5 - y, 0));
     set(s, "camera.yaw_deg=40");
     render_result *askew = render_at(s, isa_best(), NULL);
-    assert_true(film_hash(askew->picture) != film_hash(level->picture));
+    assert_true(film_hash(askew->img) != film_hash(level->img));
     render_result_destroy(level);
     render_result_destroy(turned);
     render_result_destroy(askew);

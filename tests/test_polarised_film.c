@@ -140,7 +140,7 @@ static void straight_through_plates_each_polarisation_fares_alone(void **state)
         ray_tree tree = {0};
         diagnostic why = {0};
         worked(probe_create(s, isa_best(), &p, &why), &why);
-        worked(probe_way(p, vec3_make(0.0, 0.0, -50.0), vec3_make(0.0, 0.0, 1.0), -1, &tree, &why), &why);
+        worked(probe_path(p, vec3_make(0.0, 0.0, -50.0), vec3_make(0.0, 0.0, 1.0), -1, &tree, &why), &why);
         assert_int_equal(tree.count, 5);
         assert_near(tree.node[4].throughput[0], wanted, 1e-12);
         const double q = on ? (kept_s - kept_p) / (kept_s + kept_p) : 0.0;
@@ -172,7 +172,7 @@ static void a_pile_of_plates_is_that_of_stokes(void **state)
         render_result *r = render(s);
         const double cut =
             (double)(r->counters.cut_depth_throughput[0] + r->counters.cut_weight_throughput[0]) / COUNTERS_CUT_ONE;
-        const double seen = film_value(r->picture, 0, 0, 0);
+        const double seen = film_value(r->img, 0, 0, 0);
         print_message("pile of plates, polarisation %d: %.7f + at most %.1e, wanted %.7f\n", on, seen, cut, wanted);
         assert_true(cut < 1e-3);
         assert_true(seen <= wanted + 1e-10 && seen + cut >= wanted - 1e-10);
@@ -228,7 +228,7 @@ static void the_weight_of_any_way_is_that_of_its_fields(void **state)
     for (int trial = 0; trial < 3000; trial++) {
         const vec3 o = vec3_scale(random_direction(&seed), trial % 2 ? 0.9 : 6.0);
         const vec3 to = vec3_sub(vec3_scale(random_direction(&seed), 0.8), o);
-        worked(probe_way(p, o, to, trial % 3 - 1, &tree, &why), &why);
+        worked(probe_path(p, o, to, trial % 3 - 1, &tree, &why), &why);
         for (size_t i = 0; i < tree.count; i++) {
             const ray_node *n = &tree.node[i];
             if (n->end == RAY_END_CUT_DEPTH)
@@ -259,7 +259,7 @@ static void total_reflections_keep_all_light(void **state)
     for (int on = 0; on <= 1; on++) {
         s->render.polarisation = on;
         render_result *r = render(s);
-        assert_near(film_value(r->picture, 0, 0, 0), 1.0, 1e-12);
+        assert_near(film_value(r->img, 0, 0, 0), 1.0, 1e-12);
         assert_int_equal(r->counters.total_internal, CUVETTE_COUNTERS ? 31 : 0);
         assert_int_equal(r->counters.refract, 0);
         render_result_destroy(r);
@@ -297,7 +297,7 @@ static void every_pixel_of_a_white_furnace_is_white(void **state)
             s->render.depth = depth;
             render_result *r = render(s);
             for (int i = 0; i < 24 * 18; i++)
-                assert_near(film_value(r->picture, i % 24, i / 24, i % 3), 1.0, 1e-9);
+                assert_near(film_value(r->img, i % 24, i / 24, i % 3), 1.0, 1e-9);
             render_result_destroy(r);
         }
     }
@@ -314,12 +314,12 @@ static void matched_media_are_not_there(void **state)
     scene *without = scene_clone(with);
     set(without, "ball.visible=off");
     render_result *a = render(with), *b = render(without);
-    assert_true(film_hash(a->picture) == film_hash(b->picture));
+    assert_true(film_hash(a->img) == film_hash(b->img));
     set_all(with, "liquid.ior=1 ball.ior=1");
     set(without, "liquid.visible=off");
     render_result *c = render(with), *d = render(without);
-    assert_true(film_hash(c->picture) == film_hash(d->picture));
-    assert_true(film_hash(a->picture) != film_hash(c->picture));
+    assert_true(film_hash(c->img) == film_hash(d->img));
+    assert_true(film_hash(a->img) != film_hash(c->img));
     render_result *const all[] = {a, b, c, d};
     for (size_t k = 0; k < COUNT(all); k++)
         render_result_destroy(all[k]);

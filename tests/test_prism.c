@@ -12,11 +12,11 @@
 
 /* Prisms over regular polygons: light through an equilateral one, sizes, and what is refused. */
 
-static arrangement *arrange(const solid_shape *shape)
+static scene_geometry *arrange(const solid_shape *shape)
 {
-    const body_source source = {.shape = shape, .medium = 1, .clearness = 1.0};
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    const region_source source = {.shape = shape, .medium = 1, .shadow_transmittance = 1.0};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
     return a;
 }
 
@@ -27,7 +27,7 @@ static double degrees(double radians)
 
 /* The angle by which a ray of that angle of incidence is turned in an equilateral prism of index n; -1 where it is
  * totally reflected. Its corner in front is the refracting edge. */
-static double deviation(const arrangement *a, double n, double incidence)
+static double deviation(const scene_geometry *a, double n, double incidence)
 {
     const double turn = acos(-1.0) / 180.0 * (incidence - 30.0); /* the first side faces 60 degrees from -z to +x */
     const vec3 d = vec3_make(-cos(turn), 0.0, -sin(turn));
@@ -53,7 +53,7 @@ static void the_least_deviation_is_that_of_the_formula(void **state)
 {
     (void)state;
     const solid_shape s = {.kind = SHAPE_PRISM, .radius = 1.0, .sides = 3, .height = 2.0};
-    arrangement *a = arrange(&s);
+    scene_geometry *a = arrange(&s);
     static const double indices[3] = {1.33, 1.5168, 1.72};
     for (int k = 0; k < 3; k++) {
         const double half = asin(indices[k] * 0.5), least = degrees(2.0 * half) - 60.0;
@@ -62,7 +62,7 @@ static void the_least_deviation_is_that_of_the_formula(void **state)
             for (int side = -1; side <= 1; side += 2)
                 assert_true(deviation(a, indices[k], degrees(half) + side * off) > least);
     }
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 /* The polygon's area is n/2 r^2 sin(2 pi / n). */
@@ -74,13 +74,13 @@ static void its_volume_is_that_of_its_polygon(void **state)
     static const int sides[4] = {3, 4, 7, 60};
     for (int k = 0; k < 4; k++) {
         const solid_shape s = {.kind = SHAPE_PRISM, .radius = 0.9, .sides = sides[k], .height = 0.8};
-        arrangement *a = arrange(&s);
+        scene_geometry *a = arrange(&s);
         int inside = 0;
         for (int i = 0; i < POINTS; i++)
-            inside += arrangement_inside(a, random_point(&seed, 1.0)) == 1;
+            inside += scene_geometry_inside(a, random_point(&seed, 1.0)) == 1;
         const double area = 0.5 * sides[k] * 0.81 * sin(2.0 * acos(-1.0) / sides[k]), share = 0.8 * area / 8.0;
         assert_true(fabs((double)inside / POINTS - share) < 4.0 * sqrt(share * (1.0 - share) / POINTS));
-        arrangement_destroy(a);
+        scene_geometry_destroy(a);
     }
 }
 
@@ -89,7 +89,7 @@ static void chords_through_the_middle(void **state)
 {
     (void)state;
     const solid_shape s = {.kind = SHAPE_PRISM, .radius = 1.0, .sides = 6, .height = 1.0};
-    arrangement *a = arrange(&s);
+    scene_geometry *a = arrange(&s);
     const vec3 along[3] = {{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
     const double lengths[3] = {sqrt(3.0), 2.0, 1.0};
     for (int k = 0; k < 3; k++) {
@@ -99,7 +99,7 @@ static void chords_through_the_middle(void **state)
         assert_true(fabs(out.t - lengths[k]) < 1e-14);
         assert_true(k < 2 || (in.face == 1 && out.face == 0));
     }
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 /* Four sides, turned by 45 degrees, are a box. */
@@ -111,18 +111,18 @@ static void with_four_sides_it_is_a_box(void **state)
     const solid_shape prism = {
         .kind = SHAPE_PRISM, .radius = 1.0, .sides = 4, .height = 1.0, .rotation_deg = {0.0, 45.0, 0.0}};
     const solid_shape box = {.kind = SHAPE_BOX, .position = {0.0, 0.5, 0.0}, .size = {edge, 1.0, edge}};
-    arrangement *a = arrange(&prism), *b = arrange(&box);
+    scene_geometry *a = arrange(&prism), *b = arrange(&box);
     int met = 0;
     for (int trial = 0; trial < 20000; trial++) {
         const vec3 from = vec3_scale(random_direction(&seed), 4.0);
         const one_ray r = {from, vec3_normalize(vec3_sub(random_point(&seed, 1.0), from)), FACE_NONE, 0};
         const one_hit h = nearest_interface(a, r), k = nearest_interface(b, r);
-        assert_int_equal(h.crossed, k.crossed);
-        met += h.crossed >= 0;
-        assert_true(h.crossed < 0 || fabs(h.t - k.t) <= (h.error + k.error) / h.cos_i);
+        assert_int_equal(h.hit_primitive, k.hit_primitive);
+        met += h.hit_primitive >= 0;
+        assert_true(h.hit_primitive < 0 || fabs(h.t - k.t) <= (h.error + k.error) / h.cos_i);
     }
     assert_true(met > 5000);
-    arrangement_destroy(a), arrangement_destroy(b);
+    scene_geometry_destroy(a), scene_geometry_destroy(b);
 }
 
 static void too_few_and_too_many_sides_are_refused(void **state)

@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "render/inspect/probe.h"
-#include "geometry/arrangement.h"
+#include "geometry/scene_geometry.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
@@ -37,7 +37,7 @@ static void compare_pixels(scene *s)
             for (int c = 0; c < 3; c++)
                 brought[c] += tree.node[i].brought[c]; /* multiples of the film's step: exact */
         for (int c = 0; c < 3; c++) {
-            assert_true(tree.radiance[c] == film_value(frame->picture, x, y, c));
+            assert_true(tree.radiance[c] == film_value(frame->img, x, y, c));
             assert_true(brought[c] == tree.radiance[c]);
         }
     }
@@ -308,11 +308,11 @@ static void a_way_goes_straight_on_or_turns_back_where_told(void **state)
     scene *s = scene_from(slab_text);
     probe *p = probe_of(s);
     ray_tree tree = {0};
-    worked(probe_way(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), -1, &tree, NULL), NULL);
+    worked(probe_path(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), -1, &tree, NULL), NULL);
     assert_int_equal(tree.count, 3);
     assert_true(tree.node[2].kind == RAY_REFRACT && tree.node[2].end == RAY_END_SKY &&
                 tree.node[2].direction.y == -1.0);
-    worked(probe_way(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), 1, &tree, NULL), NULL);
+    worked(probe_path(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), 1, &tree, NULL), NULL);
     assert_int_equal(tree.count, 4);
     assert_true(tree.node[2].kind == RAY_REFLECT && tree.node[3].kind == RAY_REFRACT &&
                 tree.node[3].direction.y == 1.0);
@@ -338,7 +338,7 @@ static void absorption_of_a_spectral_scene_is_that_of_its_wavelength(void **stat
         worked(probe_create(s, isa_best(), &p, &why), &why);
         if (!i)
             probe_one_wavelength(p);
-        worked(probe_way(p, vec3_make(0.0, 0.0, -5.0), vec3_make(0.0, 0.0, 1.0), -1, &tree, &why), &why);
+        worked(probe_path(p, vec3_make(0.0, 0.0, -5.0), vec3_make(0.0, 0.0, 1.0), -1, &tree, &why), &why);
         for (int c = 0; c < 3; c++)
             assert_true(fabs(tree.node[1].hit.transmittance[c] - exp(-2.0)) < 1e-14);
         ray_tree_release(&tree);

@@ -187,7 +187,7 @@ static void camera_rays_meet_what_the_probe_meets(void **state)
             const vec3 d = vec3_make(ray.direction[0], ray.direction[1], ray.direction[2]);
             const vec3 o = vec3_make(ray.origin[0], ray.origin[1], ray.origin[2]);
             diagnostic inner = {0};
-            worked(probe_way(g.probe, o, d, -1, &g.tree, &inner), &inner);
+            worked(probe_path(g.probe, o, d, -1, &g.tree, &inner), &inner);
             const ray_node *root = &g.tree.node[0];
             const cuvette_hit hit = nearest(q, &ray);
             assert_true((root->end == RAY_END_HIT) == (bool)isfinite(hit.distance));

@@ -136,7 +136,7 @@ static void a_furnace_shows_nothing_but_the_eyes_own_medium(void **state)
             set_all(s, eyes[k].pose);
             render_result *r = render(s);
             for (int i = 0; i < 12 * 9; i++)
-                assert_true(fabs(film_value(r->picture, i % 12, i / 12, i % 3) - eyes[k].n * eyes[k].n) < 1e-9);
+                assert_true(fabs(film_value(r->img, i % 12, i / 12, i % 3) - eyes[k].n * eyes[k].n) < 1e-9);
             render_result_destroy(r);
             scene_destroy(s);
         }
@@ -323,8 +323,7 @@ static void meshes_shade_like_the_solids_that_they_are(void **state)
     render_result *triangles = askew("shape: mesh, mesh: block, scale: [2, 1, 1.5]");
     int shaded_pixels = 0;
     for (int i = 0; i < 40 * 30; i++) {
-        const double a = film_value(solids->picture, i % 40, i / 40, 1),
-                     b = film_value(triangles->picture, i % 40, i / 40, 1);
+        const double a = film_value(solids->img, i % 40, i / 40, 1), b = film_value(triangles->img, i % 40, i / 40, 1);
         shaded_pixels += a > 0.0 && a < 0.6;
         if (!(fabs(a - b) < 1e-9))
             fail_msg("pixel %d,%d: %.12g by triangles instead of %.12g", i % 40, i / 40, b, a);
@@ -351,7 +350,7 @@ static double mean_of(const scene *s)
     render_result *r = render(s);
     double sum = 0.0;
     for (int i = 0; i < 256; i++)
-        sum += film_value(r->picture, i % 16, i / 16, 0);
+        sum += film_value(r->img, i % 16, i / 16, 0);
     render_result_destroy(r);
     return sum / 256.0;
 }
@@ -418,7 +417,7 @@ static uint64_t hash_of(const char *settings)
     scene *s = rod_scene("render.width=80 render.height=60 render.depth=6");
     set_all(s, settings);
     render_result *r = render(s);
-    const uint64_t hash = film_hash(r->picture);
+    const uint64_t hash = film_hash(r->img);
     render_result_destroy(r);
     scene_destroy(s);
     return hash;

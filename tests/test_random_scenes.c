@@ -127,9 +127,9 @@ static void look_at_scene(uint64_t *seed, int number, bool lit, renderer *r, sur
 {
     const scene_text text = random_scene(seed, number, lit);
     stage g = stage_of(text.at, ways_to_render[number % (int)COUNT(ways_to_render)]);
-    render_result *picture = NULL;
+    render_result *img = NULL;
     diagnostic why = {0};
-    worked(renderer_render(r, g.setting, NULL, &picture, &why), &why);
+    worked(renderer_render(r, g.setting, NULL, &img, &why), &why);
     for (int y = 0; y < HEIGHT; y++) {
         for (int x = 0; x < WIDTH; x++) {
             const ray_tree *tree = stage_pixel(&g, x, y);
@@ -142,7 +142,7 @@ static void look_at_scene(uint64_t *seed, int number, bool lit, renderer *r, sur
             sum->rays += tree->count;
             ask_media(&sum->media, g.probe, tree);
             for (int c = 0; c < 3; c++) {
-                if (tree->radiance[c] != film_value(picture->picture, x, y, c))
+                if (tree->radiance[c] != film_value(img->img, x, y, c))
                     fail_msg("scene %d, pixel %d,%d: the probe and the picture differ", number, x, y);
                 /* each contribution is rounded to a unit of the film */
                 sum->brightest = fmax(sum->brightest, tree->radiance[c] - (double)tree->count / FILM_ONE);
@@ -151,7 +151,7 @@ static void look_at_scene(uint64_t *seed, int number, bool lit, renderer *r, sur
     }
     if (sum->media.wrong)
         fail_msg("scene %d: the media of %d places are not those of the solids there", number, sum->media.wrong);
-    render_result_destroy(picture);
+    render_result_destroy(img);
     stage_close(&g);
 }
 

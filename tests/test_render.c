@@ -60,12 +60,12 @@ static void check_slab(scene *s, double R, double T, double lost_share)
 {
     for (int depth = 0; depth <= 12; depth++) {
         s->render.depth = depth;
-        s->render.beyond = BEYOND_BLACK;
+        s->render.beyond = DEPTH_LIMIT_BLACK;
         const slab_light wanted = slab_series(R, T, depth);
         render_result *result = render(s);
-        assert_near(film_value(result->picture, 0, 0, 0), wanted.passed, 1e-12);
-        assert_near(film_value(result->picture, 0, 0, 1), wanted.back, 1e-12);
-        assert_true(film_value(result->picture, 0, 0, 2) == 0.0);
+        assert_near(film_value(result->img, 0, 0, 0), wanted.passed, 1e-12);
+        assert_near(film_value(result->img, 0, 0, 1), wanted.back, 1e-12);
+        assert_true(film_value(result->img, 0, 0, 2) == 0.0);
         /* what is cut off is the light that the last ray inside carries to its interface, and what that interface
          * makes of it */
         const double inside = wanted.inside_up + wanted.inside_down, cut = inside * (R + T);
@@ -75,7 +75,7 @@ static void check_slab(scene *s, double R, double T, double lost_share)
         if (lost_share == 0.0)
             assert_near(wanted.passed + wanted.back + cut, 1.0, 1e-14);
         /* beyond the last depth the sky: the two cut branches see it where they would have gone */
-        s->render.beyond = BEYOND_SKY;
+        s->render.beyond = DEPTH_LIMIT_SKY;
         const slab_light next = slab_series(R, T, depth + 1);
         vec3 seen = look(s);
         assert_near(seen.x, next.passed + next.inside_up, 1e-12);
@@ -113,8 +113,8 @@ static void branches_that_weigh_too_little_are_cut(void **state)
     scene *s = scene_from(slab_scene);
     set_all(s, "render.depth=8 render.min_weight=0.01");
     render_result *result = render(s);
-    assert_near(film_value(result->picture, 0, 0, 0), 0.96 * 0.96, 1e-12);
-    assert_near(film_value(result->picture, 0, 0, 1), 0.04 + 0.96 * 0.96 * 0.04, 1e-12);
+    assert_near(film_value(result->img, 0, 0, 0), 0.96 * 0.96, 1e-12);
+    assert_near(film_value(result->img, 0, 0, 1), 0.04 + 0.96 * 0.96 * 0.04, 1e-12);
     if (CUVETTE_COUNTERS) {
         assert_int_equal(result->counters.cut_weight, 1);
         assert_near((double)result->counters.cut_weight_throughput[1] / COUNTERS_CUT_ONE, 0.96 * 0.04 * 0.04, 1e-10);
@@ -201,7 +201,7 @@ static void check_furnace(const char *settings)
             for (int y = 0; y < 18; y++)
                 for (int x = 0; x < 24; x++)
                     for (int c = 0; c < 3; c++)
-                        assert_near(film_value(result->picture, x, y, c), 1.0, 1e-9);
+                        assert_near(film_value(result->img, x, y, c), 1.0, 1e-9);
             assert_true(!CUVETTE_COUNTERS || result->counters.total_internal > 0 || depth < 4);
             render_result_destroy(result);
         }
@@ -232,7 +232,7 @@ static void light_that_is_cut_off_is_accounted_for(void **state)
         for (int depth = 0; depth <= 8; depth += 2) {
             set(s, pruned ? "render.min_weight=0.02" : "render.min_weight=0");
             s->render.depth = depth;
-            s->render.beyond = BEYOND_BLACK;
+            s->render.beyond = DEPTH_LIMIT_BLACK;
             render_result *result = render(s);
             for (int c = 0; c < 3; c++) {
                 double sum =
@@ -240,7 +240,7 @@ static void light_that_is_cut_off_is_accounted_for(void **state)
                     COUNTERS_CUT_ONE;
                 for (int y = 0; y < 18; y++)
                     for (int x = 0; x < 24; x++)
-                        sum += film_value(result->picture, x, y, c);
+                        sum += film_value(result->img, x, y, c);
                 assert_near(sum / (24 * 18), 1.0, 1e-9);
             }
             assert_true((result->counters.cut_weight > 0) == (pruned && depth > 0));
@@ -262,8 +262,8 @@ static void four_samples_are_the_mean_of_four_pixels(void **state)
             for (int c = 0; c < 3; c++) {
                 double mean = 0.0;
                 for (int k = 0; k < 4; k++)
-                    mean += 0.25 * film_value(one->picture, 2 * x + k % 2, 2 * y + k / 2, c);
-                assert_near(film_value(four->picture, x, y, c), mean, 1e-11);
+                    mean += 0.25 * film_value(one->img, 2 * x + k % 2, 2 * y + k / 2, c);
+                assert_near(film_value(four->img, x, y, c), mean, 1e-11);
             }
     assert_int_equal(four->counters.camera, CUVETTE_COUNTERS ? 4 * 40 * 30 : 0);
     render_result_destroy(four);
@@ -290,8 +290,8 @@ static void what_is_to_the_right_is_seen_to_the_right(void **state)
         s->solids[0].shape.position =
             vec3_add(s->camera.position, vec3_scale(vec3_add(forward, vec3_scale(right, tan(30.0 * radian))), 10.0));
         render_result *result = render(s);
-        assert_true(film_value(result->picture, 0, 0, 0) == 0.0);
-        assert_near(film_value(result->picture, 1, 0, 0), 1.0, 1e-12);
+        assert_true(film_value(result->img, 0, 0, 0) == 0.0);
+        assert_near(film_value(result->img, 1, 0, 0), 1.0, 1e-12);
         render_result_destroy(result);
     }
     scene_destroy(s);
@@ -306,7 +306,7 @@ static void solids_of_index_one_are_not_there(void **state)
         scene *away = rod_scene("render.width=120 render.height=90 vessel.visible=off liquid.visible=off");
         there->render.depth = away->render.depth = depth;
         render_result *a = render(there), *b = render(away);
-        assert_true(film_hash(a->picture) == film_hash(b->picture));
+        assert_true(film_hash(a->img) == film_hash(b->img));
         assert_memory_equal(a->counters.hits, b->counters.hits, sizeof a->counters.hits);
         assert_memory_equal(a->counters.first_hits, b->counters.first_hits, sizeof a->counters.hits);
         assert_memory_equal(a->counters.by_depth, b->counters.by_depth, sizeof a->counters.by_depth);
@@ -350,7 +350,7 @@ static void neighbours_may_meet_different_bodies_on_one_face(void **state)
     int lit = 0;
     for (int y = 0; y < 2; y++)
         for (int x = 0; x < 64; x++) {
-            const double red = film_value(result->picture, x, y, 0);
+            const double red = film_value(result->img, x, y, 0);
             assert_true((red > 0.9) == (x < 32));
             lit += red > 0.0;
         }

@@ -116,7 +116,7 @@ static void stop_and_go_on(renderer *r, const scene *large, const scene *small, 
     assert_true(!CUVETTE_COUNTERS || (part->counters.camera > 0 && part->counters.camera < pixels));
     render_result_destroy(part);
     assert_int_equal(renderer_render(r, small, NULL, &after, NULL), STATUS_OK);
-    assert_true(film_hash(after->picture) == film_hash(undisturbed->picture));
+    assert_true(film_hash(after->img) == film_hash(undisturbed->img));
     assert_memory_equal(&after->counters, &undisturbed->counters, sizeof after->counters);
     render_result_destroy(after);
 }
@@ -127,7 +127,7 @@ static void stop_some_frames(scene *large, scene *small, int count)
     renderer *r = NULL;
     assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
     for (int i = 0; i < count; i++) {
-        large->render.pool = i % 2;
+        large->render.worker_pool = i % 2;
         stop_and_go_on(r, large, small, undisturbed);
     }
     renderer_destroy(r);
@@ -161,7 +161,7 @@ static void progress_changes_nothing(void **state)
     watch w = {0, 0.0};
     const render_options options = {.progress = go_on, .context = &w};
     render_result *watched = render_at(s, isa_best(), &options);
-    assert_true(film_hash(plain->picture) == film_hash(watched->picture));
+    assert_true(film_hash(plain->img) == film_hash(watched->img));
     render_result_destroy(plain);
     render_result_destroy(watched);
     scene_destroy(s);
@@ -180,8 +180,7 @@ static void *work_in(void *argument)
     w->wrong = renderer_create(isa_best(), NULL, &r, NULL) != STATUS_OK;
     for (int i = 0; i < 10 && !w->wrong; i++) {
         render_result *result = NULL;
-        w->wrong =
-            renderer_render(r, w->s, NULL, &result, NULL) != STATUS_OK || film_hash(result->picture) != w->wanted;
+        w->wrong = renderer_render(r, w->s, NULL, &result, NULL) != STATUS_OK || film_hash(result->img) != w->wanted;
         render_result_destroy(result);
     }
     renderer_destroy(r);
@@ -198,7 +197,7 @@ static void two_renderers_at_once(void **state)
     pthread_t threads[2];
     for (int i = 0; i < 2; i++) {
         render_result *alone = render(scenes[i]);
-        studios[i] = (studio){scenes[i], film_hash(alone->picture), 0};
+        studios[i] = (studio){scenes[i], film_hash(alone->img), 0};
         render_result_destroy(alone);
     }
     assert_true(studios[0].wanted != studios[1].wanted);
@@ -225,7 +224,7 @@ static void a_renderer_serves_one_scene_after_another(void **state)
         set_all(s, settings[i * 7 % 5]);
         render_result *alone = render(s), *served = NULL;
         assert_int_equal(renderer_render(r, s, NULL, &served, NULL), STATUS_OK);
-        assert_true(film_hash(alone->picture) == film_hash(served->picture));
+        assert_true(film_hash(alone->img) == film_hash(served->img));
         assert_memory_equal(&alone->counters, &served->counters, sizeof served->counters);
         render_result_destroy(alone);
         render_result_destroy(served);

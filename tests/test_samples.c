@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "render/core/ticket.h"
+#include "render/core/sample_key.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
@@ -78,14 +78,15 @@ static void other_films_take_the_same_points(void **state)
 }
 
 /* The most samples with the most wavelengths fit beside the largest pixel and wavelength. */
-static void a_ticket_holds_the_last_sample_of_the_last_pixel(void **state)
+static void a_sample_key_holds_the_last_sample_of_the_last_pixel(void **state)
 {
     (void)state;
     const int64_t pixel = SCENE_PIXELS_MAX - 1, sample = (int64_t)SCENE_SAMPLES_MAX * 65536 - 1, number = 3999;
-    const int64_t ticket = ticket_with_wavelength(ticket_make(pixel, sample), number) | TICKET_SEES_LIGHTS;
-    assert_true(ticket > 0);
-    assert_true(ticket_pixel(ticket) == pixel && ticket_sample(ticket) == sample &&
-                ticket_wavelength(ticket) == number);
+    const int64_t sample_key =
+        sample_key_with_wavelength(sample_key_make(pixel, sample), number) | SAMPLE_KEY_SPECULAR_BOUNCE;
+    assert_true(sample_key > 0);
+    assert_true(sample_key_pixel(sample_key) == pixel && sample_key_sample(sample_key) == sample &&
+                sample_key_wavelength(sample_key) == number);
 }
 
 int main(void)
@@ -94,7 +95,7 @@ int main(void)
         cmocka_unit_test(an_edge_covers_the_cells_whose_middle_it_covers),
         cmocka_unit_test(a_corner_covers_a_rectangle_of_cells),
         cmocka_unit_test(other_films_take_the_same_points),
-        cmocka_unit_test(a_ticket_holds_the_last_sample_of_the_last_pixel),
+        cmocka_unit_test(a_sample_key_holds_the_last_sample_of_the_last_pixel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

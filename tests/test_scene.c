@@ -226,19 +226,19 @@ static void a_copy_is_equal_and_independent(void **state)
 {
     (void)state;
     scene *s = read_file(SCENES "rod.yaml");
-    assert_int_equal(image_create(2, 1, &s->background.picture, NULL), STATUS_OK);
-    s->background.picture->pixel[5] = 0.25f;
+    assert_int_equal(image_create(2, 1, &s->background.img, NULL), STATUS_OK);
+    s->background.img->pixel[5] = 0.25f;
     scene *c = scene_clone(s);
     assert_non_null(c);
     assert_int_equal(scene_each_param(s, compare, c), STATUS_OK);
     assert_string_equal(c->path, SCENES "rod.yaml");
     assert_string_equal(c->title, s->title);
     /* One sky for both: it is never changed once it is loaded. */
-    assert_ptr_equal(c->background.picture, s->background.picture);
+    assert_ptr_equal(c->background.img, s->background.img);
     assert_int_equal(scene_set(c, "clear.ior", "3", NULL), STATUS_OK);
     assert_true(find(s, "vessel")->surface.ior == 1.5 && find(c, "vessel")->surface.ior == 3);
     scene_destroy(s); /* the copy outlives it */
-    assert_true(c->background.picture->pixel[5] == 0.25f);
+    assert_true(c->background.img->pixel[5] == 0.25f);
     assert_string_equal(c->solids[1].name, "vessel");
     assert_int_equal(scene_check(c, NULL), STATUS_OK);
     scene_destroy(c);
@@ -294,10 +294,10 @@ static void a_sky_is_neither_negative_nor_endless(void **state)
         image_destroy(sky);
         assert_int_equal(scene_read_text("s.yaml", text, strlen(text), &s, NULL), STATUS_OK);
         assert_int_equal(scene_load(s, &why), is_bad ? STATUS_BAD_INPUT : STATUS_OK);
-        assert_true(is_bad == !s->background.picture);
+        assert_true(is_bad == !s->background.img);
         if (is_bad) {
             diagnostic_text(&why, said, sizeof said);
-            assert_memory_equal(said, "s.yaml:1:23: background.picture: ", 33);
+            assert_memory_equal(said, "s.yaml:1:23: background.img: ", 33);
             assert_non_null(strstr(said, "pixel 2,1 is "));
         }
         scene_destroy(s);
@@ -308,44 +308,44 @@ static void a_sky_is_neither_negative_nor_endless(void **state)
 static void a_sky_picture_is_found_beside_its_scene(void **state)
 {
     (void)state;
-    char folder[] = "/tmp/test_scene_XXXXXX", picture_path[64], scene_path[64];
+    char folder[] = "/tmp/test_scene_XXXXXX", image_path[64], scene_path[64];
     assert_non_null(mkdtemp(folder));
-    snprintf(picture_path, sizeof picture_path, "%s/sky.pfm", folder);
+    snprintf(image_path, sizeof image_path, "%s/sky.pfm", folder);
     snprintf(scene_path, sizeof scene_path, "%s/s.yaml", folder);
     image *sky;
     assert_int_equal(image_create(4, 2, &sky, NULL), STATUS_OK);
     sky->pixel[3] = 0.5f;
-    assert_int_equal(image_write(sky, picture_path, 8, NULL), STATUS_OK);
+    assert_int_equal(image_write(sky, image_path, 8, NULL), STATUS_OK);
     image_destroy(sky);
     FILE *file = fopen(scene_path, "w");
     assert_non_null(file);
     fputs("background: {picture: sky.pfm}\n", file);
     fclose(file);
     scene *s = read_file(scene_path);
-    assert_int_equal(s->background.kind, BACKGROUND_PICTURE);
-    assert_null(s->background.picture);
+    assert_int_equal(s->background.kind, BACKGROUND_IMAGE);
+    assert_null(s->background.img);
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
-    const image *loaded = s->background.picture;
+    const image *loaded = s->background.img;
     assert_true(loaded && loaded->width == 4 && loaded->height == 2 && loaded->pixel[3] == 0.5f);
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
-    assert_ptr_equal(s->background.picture, loaded); /* once */
-    assert_int_equal(scene_set(s, "background.picture", "other.pfm", NULL), STATUS_OK);
-    assert_null(s->background.picture); /* another path, another picture */
+    assert_ptr_equal(s->background.img, loaded); /* once */
+    assert_int_equal(scene_set(s, "background.img", "other.pfm", NULL), STATUS_OK);
+    assert_null(s->background.img); /* another path, another picture */
     diagnostic why = {.what = ""};
     assert_int_equal(scene_load(s, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.file, "other.pfm"));
-    assert_int_equal(scene_set(s, "background.picture", picture_path, NULL), STATUS_OK); /* absolute */
+    assert_int_equal(scene_set(s, "background.img", image_path, NULL), STATUS_OK); /* absolute */
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
-    assert_non_null(s->background.picture);
-    assert_int_equal(scene_set(s, "background.picture", "none.png", NULL), STATUS_OK);
+    assert_non_null(s->background.img);
+    assert_int_equal(scene_set(s, "background.img", "none.png", NULL), STATUS_OK);
     assert_int_equal(scene_set(s, "background.kind", "uniform", NULL), STATUS_OK);
     assert_int_equal(scene_load(s, NULL), STATUS_OK); /* not wanted, not read */
     scene_destroy(s);
-    unlink(picture_path);
+    unlink(image_path);
     s = read_file(scene_path); /* which names a picture that is no more */
     scene *c = scene_clone(s);
     char where[200], text[DIAGNOSTIC_TEXT_MAX];
-    snprintf(where, sizeof where, "%s:1:23: background.picture: %s: ", scene_path, picture_path);
+    snprintf(where, sizeof where, "%s:1:23: background.img: %s: ", scene_path, image_path);
     assert_int_equal(scene_load(c, &why), STATUS_BAD_INPUT);
     assert_int_equal(strncmp(diagnostic_text(&why, text, sizeof text), where, strlen(where)), 0);
     scene_destroy(c);

@@ -159,7 +159,7 @@ static void what_every_scene_has_goes_back_to_its_defaults(void **state)
     assert_int_equal(scene_remove(s, "render", NULL), STATUS_OK);
     char *left = text_of(s), *defaults = text_of(empty);
     assert_string_equal(left, defaults);
-    assert_int_equal(s->background.picture_line, 0);
+    assert_int_equal(s->background.image_line, 0);
     free(left);
     free(defaults);
     scene_destroy(s);
@@ -409,7 +409,7 @@ static void the_rod_in_its_vessel_is_built_by_calls_alone(void **state)
     free(made);
     free(expected);
     render_result *a = render(s), *b = render(read);
-    assert_true(film_hash(a->picture) == film_hash(b->picture));
+    assert_true(film_hash(a->img) == film_hash(b->img));
     render_result_destroy(a);
     render_result_destroy(b);
     scene_destroy(s);

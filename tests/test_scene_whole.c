@@ -62,11 +62,11 @@ static render_result *film_of(scene *s)
 static int pixels_beyond(const render_result *a, const render_result *b, double much)
 {
     int beyond = 0;
-    for (int y = 0; y < a->picture->height; y++)
-        for (int x = 0; x < a->picture->width; x++) {
+    for (int y = 0; y < a->img->height; y++)
+        for (int x = 0; x < a->img->width; x++) {
             double most = 0.0;
             for (int c = 0; c < 3; c++)
-                most = fmax(most, fabs(film_value(a->picture, x, y, c) - film_value(b->picture, x, y, c)));
+                most = fmax(most, fabs(film_value(a->img, x, y, c) - film_value(b->img, x, y, c)));
             beyond += most > much;
         }
     return beyond;

@@ -82,7 +82,7 @@ static uint64_t hash_of(scene *s)
     diagnostic why = {0};
     worked(scene_load(s, &why), &why);
     render_result *result = render(s);
-    uint64_t hash = film_hash(result->picture);
+    uint64_t hash = film_hash(result->img);
     render_result_destroy(result);
     return hash;
 }
@@ -422,17 +422,17 @@ static void text_that_is_not_utf8_is_refused(void **state)
 }
 
 /* What picture becomes when a scene of from is written to to. */
-static void assert_moved(const char *from, const char *picture, const char *to, const char *expected)
+static void assert_moved(const char *from, const char *img, const char *to, const char *expected)
 {
     scene *s = NULL;
     char text[700], *there, *value = NULL;
     diagnostic why = {0};
-    snprintf(text, sizeof text, "background: {picture: \"%s\"}\n", picture);
+    snprintf(text, sizeof text, "background: {picture: \"%s\"}\n", img);
     worked(scene_read_text(from, text, strlen(text), &s, &why), &why);
     there = written(s, to, false);
     scene_destroy(s);
     worked(scene_read_text(to, there, strlen(there), &s, &why), &why);
-    worked(scene_get(s, "background.picture", &value, &why), &why);
+    worked(scene_get(s, "background.img", &value, &why), &why);
     assert_string_equal(value, expected);
     char *again = written(s, to, false);
     assert_string_equal(there, again);

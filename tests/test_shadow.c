@@ -19,7 +19,7 @@ static double light_by_marching(const room *m, const reference_line *line, int s
     for (int k = 0; k < n && met[k].t < 1; k++) {
         if (solid_shadows || is_opaque(m, met[k].before) || is_opaque(m, met[k].after))
             return 0.0;
-        light *= m->clearness[higher_of(m, met[k].before, met[k].after)];
+        light *= m->shadow_transmittance[higher_of(m, met[k].before, met[k].after)];
     }
     return n < 0 ? -1.0 : light;
 }
@@ -36,7 +36,7 @@ static void shadows_agree_with_marching(void **state)
             vec3 from = random_point(&seed, 3.0), to = random_point(&seed, 5.0);
             if (winner(&m, from) >= 0 && m.opaque[winner(&m, from)])
                 continue; /* no light falls on a point within opaque matter */
-            one_ray r = {from, vec3_sub(to, from), FACE_NONE, arrangement_inside(m.solids, from)};
+            one_ray r = {from, vec3_sub(to, from), FACE_NONE, scene_geometry_inside(m.solids, from)};
             const reference_line line = {quad3_from(r.o), quad3_from(r.d)};
             const double wanted = light_by_marching(&m, &line, k % 2), got = light_through(m.solids, r, k % 2);
             if (wanted < 0.0)
@@ -46,7 +46,7 @@ static void shadows_agree_with_marching(void **state)
             dark += wanted == 0.0;
             lit += wanted == 1.0;
         }
-        arrangement_destroy(m.solids);
+        scene_geometry_destroy(m.solids);
     }
     assert_true(partly > 300 && dark > 600 && lit > 600);
 }
@@ -60,7 +60,7 @@ static void light_enters_an_opaque_cup_from_above(void **state)
         (solid_shape){.kind = SHAPE_CUP, .m = 1.0, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
     room_build(&m);
     const vec3 floor_point = vec3_make(0.0, 0.1, 0.0);
-    const uint64_t inside = arrangement_inside(m.solids, vec3_make(0.0, 0.2, 0.0));
+    const uint64_t inside = scene_geometry_inside(m.solids, vec3_make(0.0, 0.2, 0.0));
     const int64_t floor_face = FACES_MAX + 1;
     for (int k = 0; k <= 100; k++) {
         const double slope = k * 0.01; /* the lamp is 29 high above the floor; the rim stands 2.9 high at 0.9 */
@@ -77,7 +77,7 @@ static void light_enters_an_opaque_cup_from_above(void **state)
     across.o.y = 1.0;
     across.d.x = 0.99; /* the lamp is in front of the wall */
     assert_true(light_through(m.solids, across, 0) == 1.0);
-    arrangement_destroy(m.solids);
+    scene_geometry_destroy(m.solids);
 }
 
 int main(void)

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "geometry/arrangement.h"
+#include "geometry/scene_geometry.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/shapes/placed.h"
 #include "random_stream.h"
@@ -127,9 +127,9 @@ static void what_it_contains_is_within_its_sizes(void **state)
 static void primitives(const shape_rule *rule, const placed_shape *placed)
 {
     const solid_shape *shape = &placed->shape;
-    const body_source source = {.shape = shape, .medium = 1, .clearness = 1.0};
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    const region_source source = {.shape = shape, .medium = 1, .shadow_transmittance = 1.0};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
     for (int n = 0; n < POINTS; n++) {
         const vec3 p = point_in(rule->extent(shape).box, 0.3), at = in_world(placed, p);
         bool inside = primitive_contains(&a->primitives[0], at);
@@ -138,7 +138,7 @@ static void primitives(const shape_rule *rule, const placed_shape *placed)
         assert_int_equal(inside, rule->contains(shape, p));
         assert_int_equal(inside, solid_shape_contains(shape, at));
     }
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 static void its_primitives_contain_what_it_contains(void **state)
@@ -205,10 +205,10 @@ static void its_drawings_lie_in_its_box(void **state)
 static void surfaces(const shape_rule *rule, const placed_shape *placed)
 {
     const solid_shape *shape = &placed->shape;
-    const body_source source = {.shape = shape, .medium = 1, .clearness = 1.0};
+    const region_source source = {.shape = shape, .medium = 1, .shadow_transmittance = 1.0};
     const vec3 scale = rule->tessellation_scale ? rule->tessellation_scale(shape) : vec3_make(1, 1, 1);
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
     for (int part = 0; part < rule->primitive_count && !rule->hollow; part++) {
         mesh *m = NULL;
         assert_int_equal(rule->tessellation(shape, part, &m, NULL), STATUS_OK);
@@ -227,7 +227,7 @@ static void surfaces(const shape_rule *rule, const placed_shape *placed)
         }
         mesh_release(m);
     }
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 static void its_triangles_lie_on_its_surface(void **state)

@@ -53,23 +53,23 @@ enum { WIDTH = 8, HEIGHT = 4 };
 /* Column in red, row in green. */
 static image *numbered(void)
 {
-    image *picture = NULL;
-    assert_int_equal(image_create(WIDTH, HEIGHT, &picture, NULL), STATUS_OK);
+    image *img = NULL;
+    assert_int_equal(image_create(WIDTH, HEIGHT, &img, NULL), STATUS_OK);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
-            float *p = &picture->pixel[(y * WIDTH + x) * 3];
+            float *p = &img->pixel[(y * WIDTH + x) * 3];
             p[0] = (float)x;
             p[1] = (float)y;
             p[2] = 0.5f;
         }
-    return picture;
+    return img;
 }
 
 static void a_picture_is_met_texel_by_texel(void **state)
 {
     (void)state;
-    image *picture = numbered();
-    const background sky = {.kind = BACKGROUND_PICTURE, .picture = picture};
+    image *img = numbered();
+    const background sky = {.kind = BACKGROUND_IMAGE, .img = img};
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             /* the middle column is +z, the right half +x, the top row straight up */
@@ -79,14 +79,14 @@ static void a_picture_is_met_texel_by_texel(void **state)
     expect_radiance(sky_radiance(&sky, vec3_make(0.0, 0.0, 1.0)), 3.5, 1.5, 0.5);
     expect_radiance(sky_radiance(&sky, vec3_make(1.0, 0.0, 0.0)), 5.5, 1.5, 0.5);
     expect_radiance(sky_radiance(&sky, vec3_make(-1.0, 0.0, 0.0)), 1.5, 1.5, 0.5);
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 static void a_picture_closes_behind_and_ends_at_the_poles(void **state)
 {
     (void)state;
-    image *picture = numbered();
-    const background sky = {.kind = BACKGROUND_PICTURE, .picture = picture};
+    image *img = numbered();
+    const background sky = {.kind = BACKGROUND_IMAGE, .img = img};
     const double texel = 360.0 / WIDTH;
     for (int k = -4; k <= 4; k++) { /* across the seam from column 7 to column 0 */
         const double share = 0.5 + k / 8.0;
@@ -96,7 +96,7 @@ static void a_picture_closes_behind_and_ends_at_the_poles(void **state)
     assert_near(sky_radiance(&sky, vec3_make(0.0, -1.0, 0.0)).y, HEIGHT - 1.0, 1e-12);
     assert_near(sky_radiance(&sky, towards(10.0, 80.0)).y, 0.0, 1e-12); /* above the first row's middle */
     assert_near(sky_radiance(&sky, towards(10.0, 45.0)).y, 0.5, 1e-12); /* between the first two */
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 /* The mean over the sphere, by the midpoint rule on each part between texels' middles, where the interpolation is
@@ -124,18 +124,18 @@ static void the_mean_weighs_solid_angles_alike(void **state)
     expect_radiance(sky_mean(&rising), 0.25, 0.75, 0.5);
     const vec3 seen = mean_by_quadrature(&rising, 200);
     assert_near(seen.x, 0.25, 1e-4);
-    image *picture = numbered();
-    const background panorama = {.kind = BACKGROUND_PICTURE, .picture = picture};
+    image *img = numbered();
+    const background panorama = {.kind = BACKGROUND_IMAGE, .img = img};
     const vec3 mean = sky_mean(&panorama), close = mean_by_quadrature(&panorama, 400);
     assert_near(mean.x, 3.5, 1e-12);
     assert_near(mean.y, 1.5, 1e-12); /* rows alike above and below */
     assert_near(mean.z, 0.5, 1e-12);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
-            picture->pixel[(y * WIDTH + x) * 3 + 1] = (float)(y * y); /* and now not */
+            img->pixel[(y * WIDTH + x) * 3 + 1] = (float)(y * y); /* and now not */
     assert_near(sky_mean(&panorama).y, mean_by_quadrature(&panorama, 400).y, 2e-5);
     assert_near(close.x, 3.5, 1e-9);
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 /* One row is the same all over; of two, each has a half. */
@@ -143,14 +143,14 @@ static void pictures_of_few_rows_have_a_mean(void **state)
 {
     (void)state;
     for (int height = 1; height <= 3; height++) {
-        image *picture = NULL;
-        assert_int_equal(image_create(1, height, &picture, NULL), STATUS_OK);
+        image *img = NULL;
+        assert_int_equal(image_create(1, height, &img, NULL), STATUS_OK);
         for (int y = 0; y < height; y++)
             for (int c = 0; c < 3; c++)
-                picture->pixel[y * 3 + c] = c == 1 ? (float)y : 2.0f;
-        const background sky = {.kind = BACKGROUND_PICTURE, .picture = picture};
+                img->pixel[y * 3 + c] = c == 1 ? (float)y : 2.0f;
+        const background sky = {.kind = BACKGROUND_IMAGE, .img = img};
         expect_radiance(sky_mean(&sky), 2.0, 0.5 * (height - 1), 2.0);
-        image_destroy(picture);
+        image_destroy(img);
     }
 }
 

@@ -24,7 +24,7 @@ static extent extent_of(const softbody *b)
     }
     free(at);
     mesh *skin;
-    assert_int_equal(softbody_skin(b, &skin, NULL), STATUS_OK);
+    assert_int_equal(softbody_surface(b, &skin, NULL), STATUS_OK);
     for (size_t t = 0; t < skin->triangle_count; t++) {
         const uint32_t *corner = skin->triangles[t].corner;
         const vec3 p = skin->vertices[corner[0]];

@@ -76,7 +76,7 @@ static mesh *skin_of(const mesh_entry *m, const hand_script *script, softbody_ac
     if (script)
         assert_int_equal(softbody_follow(b, script, NULL), STATUS_OK);
     worked(softbody_advance(b, m->time_s, &why), &why);
-    worked(softbody_skin(b, &skin, &why), &why);
+    worked(softbody_surface(b, &skin, &why), &why);
     *account = softbody_measure(b);
     softbody_destroy(b);
     return skin;

@@ -212,7 +212,7 @@ static void no_ray_falls_between_faces(void **state)
     steps_of(b, 50);
     mesh *skin = NULL;
     diagnostic why = {.what = ""};
-    assert_int_equal(softbody_skin(b, &skin, &why), STATUS_OK);
+    assert_int_equal(softbody_surface(b, &skin, &why), STATUS_OK);
     size_t reached = 0;
     for (size_t e = 0; e < sizeof eyes / sizeof *eyes; e++)
         for (size_t i = 0; i < 3 * skin->triangle_count; i++) {

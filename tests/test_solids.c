@@ -76,11 +76,11 @@ static void told(int good, const char *what, const solid_shape *s, const referen
 }
 #define expect(condition, s, line, h) told(condition, #condition, s, line, h)
 
-static arrangement *arrange_one(const solid_shape *shape)
+static scene_geometry *arrange_one(const solid_shape *shape)
 {
-    const body_source source = {.shape = shape, .medium = 1, .clearness = 1.0};
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    const region_source source = {.shape = shape, .medium = 1, .shadow_transmittance = 1.0};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
     return a;
 }
 
@@ -177,7 +177,7 @@ static double least_radius(const solid_shape *s, quad3 p)
     return (s->kind == SHAPE_CUP ? s->inner_radius : s->radius) * (m > 1.0 ? 1.0 / (m * m) : m);
 }
 
-static void check_point(const solid_shape *s, const arrangement *a, const reference_line *line, const one_hit *h)
+static void check_point(const solid_shape *s, const scene_geometry *a, const reference_line *line, const one_hit *h)
 {
     const quad3 p = quad3_from(h->point), d = quad3_scale(line->d, 1 / quad3_length(line->d)),
                 n = quad3_from(h->normal);
@@ -205,13 +205,13 @@ static void check_point(const solid_shape *s, const arrangement *a, const refere
 /* One ray against quadruple precision. Before the hit (or for ever, for a miss) the ray is where it was to within
  * the error bound: what it passes on the other side is no deeper than that; and the hit is on the surface, which
  * check_point sees to. */
-static void check_ray(const solid_shape *s, const arrangement *a, one_ray r)
+static void check_ray(const solid_shape *s, const scene_geometry *a, one_ray r)
 {
     const reference_line line = line_of(r);
     quad t[REFERENCE_CROSSINGS_MAX];
     const int events = reference_events(s, &line, 0, t);
     const one_hit h = nearest_interface(a, r);
-    const int missed = h.crossed < 0;
+    const int missed = h.hit_primitive < 0;
     for (int k = 0; k < events && (missed || t[k] < h.t); k += 2) {
         const double bound = missed ? 4e-15 * (3.0 * vec3_length(r.o) + 6.0 * a->extent + 2.0 * (double)t[k]) : h.error;
         quad until = k + 1 < events ? t[k + 1] : t[k] + 1;
@@ -227,16 +227,16 @@ static void check_ray(const solid_shape *s, const arrangement *a, one_ray r)
 }
 
 /* A start well off the surface, so that in and out are not a matter of roundings. */
-static int start_at(const solid_shape *s, const arrangement *a, vec3 o, one_ray *r)
+static int start_at(const solid_shape *s, const scene_geometry *a, vec3 o, one_ray *r)
 {
     const double clear = 1e-9 * (1.0 + vec3_length(o));
     if (quad_abs(reference_distance(s, quad3_from(o))) < clear)
         return 0;
-    *r = (one_ray){.o = o, .start = FACE_NONE, .inside = arrangement_inside(a, o)};
+    *r = (one_ray){.o = o, .start = FACE_NONE, .inside = scene_geometry_inside(a, o)};
     return 1;
 }
 
-static void aim(const solid_shape *s, const arrangement *a, vec3 from, vec3 direction)
+static void aim(const solid_shape *s, const scene_geometry *a, vec3 from, vec3 direction)
 {
     one_ray r;
     if (!start_at(s, a, from, &r))
@@ -245,7 +245,7 @@ static void aim(const solid_shape *s, const arrangement *a, vec3 from, vec3 dire
     check_ray(s, a, r);
 }
 
-typedef void ray_maker(const solid_shape *s, const arrangement *a, uint64_t *seed);
+typedef void ray_maker(const solid_shape *s, const scene_geometry *a, uint64_t *seed);
 
 static void for_all_shapes_at(vec3 away, ray_maker *make, int rays)
 {
@@ -255,10 +255,10 @@ static void for_all_shapes_at(vec3 away, ray_maker *make, int rays)
             solid_shape s = shapes[i];
             s.rotation_deg = turns[k];
             s.position = vec3_add(s.position, away);
-            arrangement *a = arrange_one(&s);
+            scene_geometry *a = arrange_one(&s);
             for (int n = 0; n < rays; n++)
                 make(&s, a, &seed);
-            arrangement_destroy(a);
+            scene_geometry_destroy(a);
         }
     }
 }
@@ -294,7 +294,7 @@ static vec3 place_on(const solid_shape *s, uint64_t *seed)
     return vec3_add(double_of(quad3_turn(quad3_from(p), s->rotation_deg, 0)), s->position);
 }
 
-static void from_near(const solid_shape *s, const arrangement *a, uint64_t *seed)
+static void from_near(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
 {
     vec3 from = random_point(seed, random_below(seed, 2) ? 4.0 : 1.0);
     aim(s, a, from, vec3_sub(place_on(s, seed), from));
@@ -307,7 +307,7 @@ static void any_ray_agrees_with_quadruple_precision(void **state)
     for_all_shapes(from_near, 600);
 }
 
-static void from_far(const solid_shape *s, const arrangement *a, uint64_t *seed)
+static void from_far(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
 {
     vec3 from = vec3_scale(random_direction(seed), exp(random_real(seed, 2.0, 11.5)));
     aim(s, a, from, vec3_sub(place_on(s, seed), from));
@@ -319,7 +319,7 @@ static void rays_from_far_away(void **state)
     for_all_shapes(from_far, 400);
 }
 
-static void from_beside(const solid_shape *s, const arrangement *a, uint64_t *seed)
+static void from_beside(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
 {
     vec3 from = vec3_add(s->position, random_point(seed, 3.0));
     aim(s, a, from, vec3_sub(place_on(s, seed), from));
@@ -334,7 +334,7 @@ static void solids_far_from_the_origin(void **state)
 }
 
 /* Along a local axis but for a component that is 0, -0 or next to nothing. */
-static void along_an_axis(const solid_shape *s, const arrangement *a, uint64_t *seed)
+static void along_an_axis(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
 {
     static const double little[] = {0.0,    -0.0,   1e-320, -1e-310, 1e-300, -1e-200, 1e-160,
                                     1e-100, -1e-20, 1e-16,  -1e-12,  1e-8,   -1e-4};
@@ -356,7 +356,7 @@ static void rays_along_the_axes(void **state)
 }
 
 /* Past a point of the surface in its tangent plane, at a height from 1e-14 to 1 above or under it. */
-static void grazing(const solid_shape *s, const arrangement *a, uint64_t *seed)
+static void grazing(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
 {
     vec3 from = random_point(seed, 3.0);
     one_ray r;
@@ -364,7 +364,7 @@ static void grazing(const solid_shape *s, const arrangement *a, uint64_t *seed)
         return;
     r.d = vec3_normalize(vec3_sub(place_on(s, seed), from));
     const one_hit h = nearest_interface(a, r);
-    if (h.crossed < 0)
+    if (h.hit_primitive < 0)
         return;
     vec3 along = vec3_normalize(vec3_cross(h.normal, random_direction(seed)));
     const double off = exp(random_real(seed, -32.0, 0.0)) * (random_below(seed, 2) ? 1.0 : -1.0),
@@ -381,13 +381,13 @@ static void grazing_rays(void **state)
 }
 
 /* The length of a line's pieces within the solid, from hit to hit. */
-static double chord(const arrangement *a, vec3 from, vec3 direction)
+static double chord(const scene_geometry *a, vec3 from, vec3 direction)
 {
     one_ray r = {.o = from, .d = direction, .start = FACE_NONE};
     double length = 0.0;
     for (int k = 0; k < REFERENCE_CROSSINGS_MAX; k++) {
         const one_hit h = nearest_interface(a, r);
-        if (h.crossed < 0)
+        if (h.hit_primitive < 0)
             return length;
         length += h.before == 1 ? h.t : 0.0;
         r = (one_ray){.o = h.point, .d = direction, .start = h.face, .inside = h.inside_after};
@@ -409,7 +409,7 @@ static void an_elliptic_cups_volume_is_that_of_its_closed_form(void **state)
         if (s.kind != SHAPE_CUP)
             continue;
         s.rotation_deg = vec3_make(17.0, -33.0, 71.0);
-        arrangement *a = arrange_one(&s);
+        scene_geometry *a = arrange_one(&s);
         const double outside = s.radius * s.radius * s.height,
                      hollow = s.inner_radius * s.inner_radius * (s.height - s.floor);
         for (size_t j = 0; j < COUNT(directions); j++) {
@@ -425,7 +425,7 @@ static void an_elliptic_cups_volume_is_that_of_its_closed_form(void **state)
             if (!(fabs(volume - wanted) < 0.01 * wanted))
                 fail_msg("m %g: %.6g instead of %.6g", s.m, volume, wanted);
         }
-        arrangement_destroy(a);
+        scene_geometry_destroy(a);
     }
 }
 

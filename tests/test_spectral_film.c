@@ -61,8 +61,8 @@ static looks spectral_against_rgb(scene *s, int wavelengths)
     s->render.spectrum = SPECTRUM_SPECTRAL;
     s->render.wavelengths = wavelengths;
     render_result *spectral = render(s);
-    assert_int_equal(spectral->picture->space, FILM_XYZ);
-    const looks l = compare(spectral->picture, rgb->picture);
+    assert_int_equal(spectral->img->space, FILM_XYZ);
+    const looks l = compare(spectral->img, rgb->img);
     render_result_destroy(rgb);
     render_result_destroy(spectral);
     return l;
@@ -168,12 +168,12 @@ static void a_picture_sky_looks_as_in_rgb(void **state)
                                       {0, 1, 1}, {1, 0, 1},          {1, 1, 0}, {0.7F, 0.4F, 0.1F}, {0.2F, 0.5F, 2.0F}};
     enum { TEXELS = sizeof texels / sizeof texels[0] };
     scene *s = scene_from("render: {width: 8, height: 8}\ncamera: {position: [0, 0, 0], fov_deg: 2}\n");
-    s->background.kind = BACKGROUND_PICTURE;
-    free(s->background.picture_path);
-    s->background.picture_path = strdup("in-memory.pfm");
-    assert_int_equal(image_create(3 * TEXELS, 5, &s->background.picture, NULL), STATUS_OK);
+    s->background.kind = BACKGROUND_IMAGE;
+    free(s->background.image_path);
+    s->background.image_path = strdup("in-memory.pfm");
+    assert_int_equal(image_create(3 * TEXELS, 5, &s->background.img, NULL), STATUS_OK);
     for (int i = 0; i < 3 * TEXELS * 5; i++)
-        memcpy(s->background.picture->pixel + 3 * i, texels[i % (3 * TEXELS) / 3], sizeof texels[0]);
+        memcpy(s->background.img->pixel + 3 * i, texels[i % (3 * TEXELS) / 3], sizeof texels[0]);
     double largest = 0.0;
     for (int k = 0; k < TEXELS; k++) {
         s->camera.aimed = 0;
@@ -290,8 +290,8 @@ static void a_spectral_furnace_is_white_in_every_pixel(void **state)
         for (int y = 0; y < 9; y++)
             for (int x = 0; x < 12; x++)
                 for (int c = 0; c < 3; c++)
-                    if (!(fabs(film_value(result->picture, x, y, c) - 1.0) <= 1e-9))
-                        fail_msg("%s: %.12f at %d,%d", settings[i], film_value(result->picture, x, y, c), x, y);
+                    if (!(fabs(film_value(result->img, x, y, c) - 1.0) <= 1e-9))
+                        fail_msg("%s: %.12f at %d,%d", settings[i], film_value(result->img, x, y, c), x, y);
         render_result_destroy(result);
         scene_destroy(s);
     }
@@ -316,7 +316,7 @@ static void a_prism_shows_red_and_blue_apart(void **state)
     for (int k = 0; k < 2; k++) {
         set(s, bands[k].law);
         render_result *r = render(s);
-        rows[k] = seen_edge(r->picture, k == 0 ? 2 : 0);
+        rows[k] = seen_edge(r->img, k == 0 ? 2 : 0);
         const double wanted = edge_row(index_of_bk7(bands[k].nm), tilt_deg, edge_deg);
         print_message("edge at %g nm: row %g, by Snell's law %.2f\n", bands[k].nm, rows[k], wanted);
         assert_near(rows[k], wanted, 1.5);
@@ -327,17 +327,17 @@ static void a_prism_shows_red_and_blue_apart(void **state)
     set(s, "prism.absorb_spectrum=[]");
     render_result *all = render(s);
     const int between = (int)(0.5 * (rows[0] + rows[1]));
-    const double *white = (const double[3]){film_value(all->picture, 0, 0, 0), film_value(all->picture, 0, 0, 1),
-                                            film_value(all->picture, 0, 0, 2)};
+    const double *white =
+        (const double[3]){film_value(all->img, 0, 0, 0), film_value(all->img, 0, 0, 1), film_value(all->img, 0, 0, 2)};
     assert_true(fabs(white[0] - white[2]) < 0.01 && white[0] > 0.8);
-    assert_true(fabs(film_value(all->picture, 0, between, 0) - film_value(all->picture, 0, between, 2)) > 0.2);
-    assert_true(fabs(film_value(all->picture, 0, ROWS - 1, 1)) < 1e-12);
+    assert_true(fabs(film_value(all->img, 0, between, 0) - film_value(all->img, 0, between, 2)) > 0.2);
+    assert_true(fabs(film_value(all->img, 0, ROWS - 1, 1)) < 1e-12);
     render_result_destroy(all);
     set_all(s, "render.spectrum=rgb render.lambda_nm=450");
     render_result *rgb = render(s);
-    assert_near(seen_edge(rgb->picture, 0), edge_row(index_of_bk7(450.0), tilt_deg, edge_deg), 1.0);
+    assert_near(seen_edge(rgb->img, 0), edge_row(index_of_bk7(450.0), tilt_deg, edge_deg), 1.0);
     for (int y = 0; y < ROWS; y++)
-        assert_true(film_value(rgb->picture, 0, y, 0) == film_value(rgb->picture, 0, y, 2));
+        assert_true(film_value(rgb->img, 0, y, 0) == film_value(rgb->img, 0, y, 2));
     render_result_destroy(rgb);
     scene_destroy(s);
 }
@@ -362,7 +362,7 @@ static void a_band_that_is_absorbed_is_missing(void **state)
     }
     render_result *r = render(s);
     for (int i = 0; i < 256; i++) {
-        xyz_at(r->picture, i % 16, i / 16, xyz);
+        xyz_at(r->img, i % 16, i / 16, xyz);
         for (int c = 0; c < 3; c++)
             mean[c] += xyz[c] / 256.0;
     }
@@ -374,7 +374,7 @@ static void a_band_that_is_absorbed_is_missing(void **state)
     r = render(s);
     double seen = 0.0, rest = wanted[1];
     for (int i = 0; i < 256; i++) {
-        xyz_at(r->picture, i % 16, i / 16, xyz);
+        xyz_at(r->img, i % 16, i / 16, xyz);
         seen += xyz[1] / 256.0;
     }
     assert_near(seen, rest + (1.0 - rest) * exp(-0.1), 2e-4);

@@ -66,13 +66,13 @@ static size_t files_in(const fixture *f, const char *name, const char *ending)
 }
 
 /* The picture of the fixture's scene at that depth, without a study. */
-static image *picture_at(const fixture *f, const char *depth)
+static image *image_at(const fixture *f, const char *depth)
 {
     char path[400];
     scene *s = NULL;
     renderer *r = NULL;
     render_result *frame = NULL;
-    image *picture = NULL;
+    image *img = NULL;
     isa level;
     fixture_path(f, "scene.yaml", path);
     assert_int_equal(isa_choose(&level, NULL), STATUS_OK);
@@ -80,11 +80,11 @@ static image *picture_at(const fixture *f, const char *depth)
     assert_int_equal(scene_set(s, "render.depth", depth, NULL), STATUS_OK);
     assert_int_equal(renderer_create(level, NULL, &r, NULL), STATUS_OK);
     assert_int_equal(renderer_render(r, s, &(render_options){0}, &frame, NULL), STATUS_OK);
-    assert_int_equal(film_image(frame->picture, &picture, NULL), STATUS_OK);
+    assert_int_equal(film_image(frame->img, &img, NULL), STATUS_OK);
     render_result_destroy(frame);
     renderer_destroy(r);
     scene_destroy(s);
-    return picture;
+    return img;
 }
 
 static void a_picture_does_not_differ_from_itself(void **state)
@@ -115,7 +115,7 @@ static void another_depth_differs_as_the_films_do(void **state)
     study *s = fixture_study(f, depth_text);
     fixture_run(f, s);
     csv *table = read_table(f, "results/test/compare.csv");
-    image *shallow = picture_at(f, "0"), *deep = picture_at(f, "2");
+    image *shallow = image_at(f, "0"), *deep = image_at(f, "2");
     image_comparison lies;
     assert_int_equal(image_compare(shallow, deep, &lies, NULL), STATUS_OK);
     assert_true(lies.mse > 0 && lies.flip > 0 && lies.ssim < 1);

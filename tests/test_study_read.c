@@ -281,7 +281,7 @@ static void the_studies_of_the_house(void **state)
 
 typedef struct guard_notes {
     int opens, loads, refuse_open, refuse_load; /* the how manyeth is refused; 0: none */
-    bool seen_picture;
+    bool seen_image;
 } guard_notes;
 
 static status note_open(void *context, const char *path, diagnostic *why)
@@ -295,8 +295,8 @@ static status note_open(void *context, const char *path, diagnostic *why)
 static status note_load(void *context, const scene *setting, diagnostic *why)
 {
     guard_notes *n = context;
-    assert_null(setting->background.picture);
-    n->seen_picture |= strcmp(setting->background.picture_path, "far.png") == 0;
+    assert_null(setting->background.img);
+    n->seen_image |= strcmp(setting->background.image_path, "far.png") == 0;
     return ++n->loads == n->refuse_load ? diagnose(why, STATUS_BAD_INPUT, "stay inside", "that lies outside")
                                         : STATUS_OK;
 }
@@ -305,7 +305,7 @@ static status note_load(void *context, const scene *setting, diagnostic *why)
 static void a_guard_is_asked_first(void **state)
 {
     const fixture *f = *state;
-    const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.picture: [near.png, far.png]}]\nreference: "
+    const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.img: [near.png, far.png]}]\nreference: "
                        "{render.depth: 3}\n";
     char path[400];
     fixture_write(f, "test.study", text);
@@ -321,7 +321,7 @@ static void a_guard_is_asked_first(void **state)
         assert_int_equal(n.loads, refused == 0   ? 5
                                   : refused == 6 ? 0
                                                  : refused); /* the scene, two cells, two references */
-        assert_int_equal(refused == 0, n.seen_picture && s);
+        assert_int_equal(refused == 0, n.seen_image && s);
         if (refused)
             assert_string_equal(why.what, refused == 6 ? "this lies outside" : "that lies outside");
         study_destroy(s);

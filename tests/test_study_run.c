@@ -186,7 +186,7 @@ static void an_interrupted_study_goes_on(void **state)
 }
 
 typedef struct watch {
-    size_t calls, frames_done, pictures;
+    size_t calls, frames_done, images;
     bool stop, knew_left;
     pthread_t from;
 } watch;
@@ -203,17 +203,17 @@ static void look(void *context, const study_moment *now)
         assert_int_equal(now->frames_done, 0);
         assert_int_equal(now->frames_all, 4 * 4000);
     }
-    if (now->stage == STUDY_PICTURES) {
-        assert_true(now->picture >= 1 && now->picture <= now->pictures);
-        assert_int_equal(now->pictures, 4);
+    if (now->stage == STUDY_IMAGES) {
+        assert_true(now->img >= 1 && now->img <= now->images);
+        assert_int_equal(now->images, 4);
     } else {
-        assert_int_equal(now->pictures, 0);
+        assert_int_equal(now->images, 0);
     }
     if (now->frames_done)
         assert_true(now->left_s >= 0);
     assert_true(now->frames_done >= w->frames_done && now->frames_done <= now->frames_all);
     w->frames_done = now->frames_done;
-    w->pictures = now->pictures;
+    w->images = now->images;
     w->knew_left |= now->left_s > 0;
 }
 
@@ -264,7 +264,7 @@ static void pictures_are_told_too(void **state)
     study_options options = {.results = f->results, .progressed = look, .context = &w};
     assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_OK);
     assert_true(w.calls >= 2);
-    assert_int_equal(w.pictures, 4);
+    assert_int_equal(w.images, 4);
     assert_int_equal(w.frames_done, 4);
     study_destroy(s);
 }

@@ -17,11 +17,11 @@
 
 static const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}};
 
-static arrangement *arrange_one(const solid_shape *shape)
+static scene_geometry *arrange_one(const solid_shape *shape)
 {
-    const body_source source = {.shape = shape, .medium = 1, .clearness = 1.0};
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    const region_source source = {.shape = shape, .medium = 1, .shadow_transmittance = 1.0};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
     return a;
 }
 
@@ -37,11 +37,11 @@ static one_ray mirrored(one_ray r, const one_hit *h)
 }
 
 /* Mirrored inside over and over; returns the number of chords. Every one ends on the surface, at a distance ahead. */
-static int bounce_inside(const solid_shape *s, arrangement *a, one_ray r, int bounces, double loosest)
+static int bounce_inside(const solid_shape *s, scene_geometry *a, one_ray r, int bounces, double loosest)
 {
     for (int i = 0; i < bounces; i++) {
         const one_hit h = nearest_interface(a, r);
-        if (h.crossed != 0 || h.before != 1 || h.after != 0 || h.t < 0.0 || h.t > 100.0)
+        if (h.hit_primitive != 0 || h.before != 1 || h.after != 0 || h.t < 0.0 || h.t > 100.0)
             return i;
         if (quad_abs(reference_distance(s, quad3_from(h.point))) > loosest ||
             quad_abs(vec3_length(h.normal) - 1.0) > 1e-15)
@@ -59,7 +59,7 @@ static void chords_of_a_sphere(void **state)
     for (int trial = 0; trial < 12; trial++) {
         const double radius = exp(random_real(&seed, -5.0, 5.0));
         solid_shape s = {.kind = SHAPE_SPHERE, .radius = radius, .rotation_deg = turns[trial % 2]};
-        arrangement *a = arrange_one(&s);
+        scene_geometry *a = arrange_one(&s);
         one_ray r = {.o = vec3_scale(random_direction(&seed), 0.7 * radius),
                      .d = random_direction(&seed),
                      .start = FACE_NONE,
@@ -69,13 +69,13 @@ static void chords_of_a_sphere(void **state)
         for (int i = 0; i < 10000; i++) {
             r = mirrored(r, &h);
             h = nearest_interface(a, r);
-            assert_int_equal(h.crossed, 0);
+            assert_int_equal(h.hit_primitive, 0);
             assert_near(h.t, 2.0 * radius * cos_i, 1e-11 * radius); /* 10000 half-ulps, at random or not */
             assert_near(apart(r.o, h.point), h.t, 1e-15 * radius * 4.0);
             assert_near(quad3_length(quad3_from(h.point)), radius, 5e-16 * radius);
             assert_near(h.cos_i, cos_i, 1e-11);
         }
-        arrangement_destroy(a);
+        scene_geometry_destroy(a);
     }
 }
 
@@ -88,7 +88,7 @@ static void chords_of_a_cylinder(void **state)
         const double radius = random_real(&seed, 0.2, 2.0), tall = 2000.0;
         solid_shape s = {
             .kind = SHAPE_CYLINDER, .position = {0.0, -tall / 2, 0.0}, .radius = radius, .height = tall, .m = 1.0};
-        arrangement *a = arrange_one(&s);
+        scene_geometry *a = arrange_one(&s);
         one_ray r = {.o = vec3_make(0.3 * radius, 0.0, 0.2 * radius),
                      .d = random_direction(&seed),
                      .start = FACE_NONE,
@@ -106,7 +106,7 @@ static void chords_of_a_cylinder(void **state)
             length += h.t;
         }
         assert_near(h.point.y - level, length * rise, 2e-9); /* the slope is kept */
-        arrangement_destroy(a);
+        scene_geometry_destroy(a);
     }
 }
 
@@ -128,7 +128,7 @@ static void nothing_escapes_from_a_closed_mirror(void **state)
         for (int trial = 0; trial < 8; trial++) {
             solid_shape s = shapes[i];
             s.rotation_deg = turns[trial % 2];
-            arrangement *a = arrange_one(&s);
+            scene_geometry *a = arrange_one(&s);
             const double up = s.height > 0.0 ? s.height / 2 : 0.0;
             quad3 middle = quad3_turn(quad3_make(0, up, 0), s.rotation_deg, 0);
             one_ray r = {.o = vec3_add(s.position, vec3_make((double)middle.x, (double)middle.y, (double)middle.z)),
@@ -137,7 +137,7 @@ static void nothing_escapes_from_a_closed_mirror(void **state)
                          .inside = 1};
             /* 1e-15 of the coordinates' size: their own rounding */
             assert_int_equal(bounce_inside(&s, a, r, 10000, 1e-15 * (1.0 + vec3_length(s.position))), 10000);
-            arrangement_destroy(a);
+            scene_geometry_destroy(a);
         }
     }
 }
@@ -148,19 +148,19 @@ static void grazing_chords_do_not_stick(void **state)
     (void)state;
     uint64_t seed = 4;
     solid_shape s = {.kind = SHAPE_SPHERE, .radius = 1.0};
-    arrangement *a = arrange_one(&s);
+    scene_geometry *a = arrange_one(&s);
     for (int trial = 0; trial < 200; trial++) {
         vec3 n = random_direction(&seed), side = vec3_normalize(vec3_cross(n, random_direction(&seed)));
         const double steep = exp(random_real(&seed, -20.0, 0.0));
         one_ray r = {.o = n, .d = vec3_normalize(vec3_sub(side, vec3_scale(n, steep))), .start = 0, .inside = 1};
         for (int i = 0; i < 100; i++) {
             const one_hit h = nearest_interface(a, r);
-            assert_int_equal(h.crossed, 0);
+            assert_int_equal(h.hit_primitive, 0);
             assert_true(h.t > 0.5 * steep && h.t < 2.001);
             r = mirrored(r, &h);
         }
     }
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 /* What leaves a convex solid, by reflection or refraction, never meets it again; what enters leaves on the far side,
@@ -181,31 +181,31 @@ static void convex_solids_are_met_twice_and_no_more(void **state)
     for (int trial = 0; trial < 20000; trial++) {
         solid_shape s = shapes[trial % (int)COUNT(shapes)];
         s.rotation_deg = turns[trial / (int)COUNT(shapes) % 2];
-        arrangement *a = arrange_one(&s);
+        scene_geometry *a = arrange_one(&s);
         vec3 from = vec3_scale(random_direction(&seed), 5.0), to = random_point(&seed, 1.0);
         one_ray r = {.o = from, .d = vec3_normalize(vec3_sub(to, from)), .start = FACE_NONE, .inside = 0};
         const one_hit in = nearest_interface(a, r);
-        if (in.crossed >= 0) {
+        if (in.hit_primitive >= 0) {
             entered++;
-            assert_int_equal(nearest_interface(a, mirrored(r, &in)).crossed, -1);
+            assert_int_equal(nearest_interface(a, mirrored(r, &in)).hit_primitive, -1);
             const one_ray on = {in.point, r.d, in.face, in.inside_after};
             const one_hit out = nearest_interface(a, on);
-            assert_int_equal(out.crossed, 0);
+            assert_int_equal(out.hit_primitive, 0);
             assert_true(out.after == 0 && out.before == 1 && out.t >= 0.0);
-            assert_int_equal(nearest_interface(a, (one_ray){out.point, r.d, out.face, 0}).crossed, -1);
+            assert_int_equal(nearest_interface(a, (one_ray){out.point, r.d, out.face, 0}).hit_primitive, -1);
             const reference_line line = {quad3_from(in.point), quad3_from(r.d)};
             quad t[REFERENCE_CROSSINGS_MAX];
             const int n = reference_events(&s, &line, (quad)1e-9, t);
             if (n > 0 && in.cos_i > 1e-3 && out.cos_i > 1e-3)
                 assert_near(out.t, t[n - 1], 2e-15 * 8.0 / (in.cos_i * out.cos_i));
         }
-        arrangement_destroy(a);
+        scene_geometry_destroy(a);
     }
     assert_true(entered > 8000);
 }
 
 /* Of a ray on a face of solid a at h: what it does that runs along the face and leans outwards by a little. */
-typedef void face_check(const arrangement *a, const one_hit *h, vec3 along, vec3 outward, double lean);
+typedef void face_check(const scene_geometry *a, const one_hit *h, vec3 along, vec3 outward, double lean);
 
 /* Every face of every convex shape, upright and turned. */
 static void on_all_faces(face_check *check)
@@ -225,27 +225,27 @@ static void on_all_faces(face_check *check)
         const int which = trial % (int)COUNT(shapes);
         solid_shape s = shapes[which];
         s.rotation_deg = turns[trial / (int)COUNT(shapes) % 2];
-        arrangement *a = arrange_one(&s);
+        scene_geometry *a = arrange_one(&s);
         vec3 from = vec3_scale(random_direction(&seed), 5.0), to = random_point(&seed, 1.0);
-        const one_ray r = {from, vec3_normalize(vec3_sub(to, from)), FACE_NONE, arrangement_inside(a, from)};
+        const one_ray r = {from, vec3_normalize(vec3_sub(to, from)), FACE_NONE, scene_geometry_inside(a, from)};
         const one_hit h = nearest_interface(a, r);
-        if (h.crossed >= 0) {
+        if (h.hit_primitive >= 0) {
             const vec3 outward = h.before == 0 ? h.normal : vec3_scale(h.normal, -1.0);
             const vec3 along = vec3_normalize(vec3_cross(outward, random_direction(&seed)));
             check(a, &h, along, outward, exp(random_real(&seed, -28.0, 0.0)));
             faces[which] |= 1 << h.face;
         }
-        arrangement_destroy(a);
+        scene_geometry_destroy(a);
     }
     static const int all[COUNT(shapes)] = {1, 7, 7, 63, 1, 7, 31};
     assert_memory_equal(faces, all, sizeof all);
 }
 
-static void leaves_at_once(const arrangement *a, const one_hit *h, vec3 along, vec3 outward, double lean)
+static void leaves_at_once(const scene_geometry *a, const one_hit *h, vec3 along, vec3 outward, double lean)
 {
     const vec3 d = vec3_normalize(vec3_add(along, vec3_scale(outward, lean)));
     const one_hit out = nearest_interface(a, (one_ray){h->point, d, h->face, 1});
-    assert_int_equal(out.crossed, 0);
+    assert_int_equal(out.hit_primitive, 0);
     assert_true(out.t == 0.0 && out.after == 0);
 }
 
@@ -257,10 +257,10 @@ static void the_root_of_the_starting_face_is_zero(void **state)
     on_all_faces(leaves_at_once);
 }
 
-static void stays_outside(const arrangement *a, const one_hit *h, vec3 along, vec3 outward, double lean)
+static void stays_outside(const scene_geometry *a, const one_hit *h, vec3 along, vec3 outward, double lean)
 {
     const vec3 d = vec3_normalize(vec3_sub(along, vec3_scale(outward, lean)));
-    assert_int_equal(nearest_interface(a, (one_ray){h->point, d, h->face, 0}).crossed, -1);
+    assert_int_equal(nearest_interface(a, (one_ray){h->point, d, h->face, 0}).hit_primitive, -1);
 }
 
 /* A ray that is outside, on a face, does not enter there, though roundings lean it inwards: its set is believed. */
@@ -270,20 +270,21 @@ static void who_has_left_by_a_face_does_not_come_back(void **state)
     on_all_faces(stays_outside);
 }
 
-static void is_on_one_side_or_the_other(const arrangement *a, const one_hit *h, vec3 along, vec3 outward, double lean)
+static void is_on_one_side_or_the_other(const scene_geometry *a, const one_hit *h, vec3 along, vec3 outward,
+                                        double lean)
 {
     (void)lean;
-    const uint64_t inside = arrangement_inside(a, h->point);
+    const uint64_t inside = scene_geometry_inside(a, h->point);
     const one_hit in =
         nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_sub(along, outward)), FACE_NONE, inside});
     const one_hit out =
         nearest_interface(a, (one_ray){h->point, vec3_normalize(vec3_add(along, outward)), FACE_NONE, inside});
     if (inside) {
-        assert_true(in.before == 1 && in.t > 0.0 && (in.crossed == 0 || a->shapes[1].kind == SHAPE_PLANE));
-        assert_true(out.crossed == 0 && out.before == 1 && out.t <= 1e-13);
+        assert_true(in.before == 1 && in.t > 0.0 && (in.hit_primitive == 0 || a->shapes[1].kind == SHAPE_PLANE));
+        assert_true(out.hit_primitive == 0 && out.before == 1 && out.t <= 1e-13);
     } else {
-        assert_true(in.crossed == 0 && in.before == 0 && in.after == 1 && in.t <= 1e-13);
-        assert_int_equal(out.crossed, -1);
+        assert_true(in.hit_primitive == 0 && in.before == 0 && in.after == 1 && in.t <= 1e-13);
+        assert_int_equal(out.hit_primitive, -1);
     }
 }
 
@@ -301,18 +302,18 @@ static void a_cup_is_met_again_through_its_hollow(void **state)
     (void)state;
     const solid_shape s = {
         .kind = SHAPE_CUP, .m = 1.0, .radius = 1.0, .inner_radius = 0.9, .height = 3.0, .floor = 0.1};
-    arrangement *a = arrange_one(&s);
+    scene_geometry *a = arrange_one(&s);
     one_ray r = {.o = vec3_make(0.0, 1.0, 0.0),
                  .d = vec3_make(0.6, 0.8, 0.0),
                  .start = FACE_NONE,
-                 .inside = arrangement_inside(a, vec3_make(0, 1, 0))};
-    assert_int_equal(arrangement_rank(a, r.inside), 0);
+                 .inside = scene_geometry_inside(a, vec3_make(0, 1, 0))};
+    assert_int_equal(scene_geometry_priority_index(a, r.inside), 0);
     one_hit h = nearest_interface(a, r);
     assert_near(h.t, 1.5, 1e-15);
     assert_int_equal(h.face, FACES_MAX); /* the hollow's side */
     assert_true(h.before == 0 && h.after == 1 && h.normal.x == -1.0);
     r = mirrored(r, &h);
-    assert_int_equal(nearest_interface(a, r).crossed, -1); /* it rises 2.4 on its way across */
+    assert_int_equal(nearest_interface(a, r).hit_primitive, -1); /* it rises 2.4 on its way across */
     r.d = vec3_make(-0.8, 0.6, 0.0);
     r.o.y = 0.5;
     h = nearest_interface(a, r);
@@ -322,7 +323,7 @@ static void a_cup_is_met_again_through_its_hollow(void **state)
     h = nearest_interface(a, wall);
     assert_near(h.t, 0.125, 1e-15); /* 0.1 of wall at cosine 0.8 */
     assert_true(h.face == 0 && h.before == 1 && h.after == 0);
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 int main(void)

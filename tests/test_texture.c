@@ -34,15 +34,15 @@ static void assert_same(vec3 a, vec3 b, double tolerance)
 
 static image *blank(int width, int height)
 {
-    image *picture;
-    assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
-    return picture;
+    image *img;
+    assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
+    return img;
 }
 
 /* Sets the texel x from the left and y from below. */
-static void set(image *picture, int x, int y, double r, double g, double b)
+static void set(image *img, int x, int y, double r, double g, double b)
 {
-    float *pixel = picture->pixel + ((size_t)(picture->height - 1 - y) * (size_t)picture->width + (size_t)x) * 3;
+    float *pixel = img->pixel + ((size_t)(img->height - 1 - y) * (size_t)img->width + (size_t)x) * 3;
     pixel[0] = (float)r;
     pixel[1] = (float)g;
     pixel[2] = (float)b;
@@ -50,25 +50,25 @@ static void set(image *picture, int x, int y, double r, double g, double b)
 
 static image *noise(int width, int height)
 {
-    image *picture = blank(width, height);
+    image *img = blank(width, height);
     uint64_t s = 7;
     for (int i = 0; i < 3 * width * height; i++)
-        picture->pixel[i] = (float)random_real(&s, 0.0, 1.0);
-    return picture;
+        img->pixel[i] = (float)random_real(&s, 0.0, 1.0);
+    return img;
 }
 
-static texture *textured(const image *picture, texture_wrap wrap, texture_filter filter)
+static texture *textured(const image *img, texture_wrap wrap, texture_filter filter)
 {
     texture *t;
-    assert_int_equal(texture_create(picture, TEXTURE_SRGB, wrap, wrap, filter, &t, NULL), STATUS_OK);
+    assert_int_equal(texture_create(img, TEXTURE_SRGB, wrap, wrap, filter, &t, NULL), STATUS_OK);
     return t;
 }
 
 /* And the picture is not needed any more. */
-static texture *owned(image *picture, texture_wrap wrap, texture_filter filter)
+static texture *owned(image *img, texture_wrap wrap, texture_filter filter)
 {
-    texture *t = textured(picture, wrap, filter);
-    image_destroy(picture);
+    texture *t = textured(img, wrap, filter);
+    image_destroy(img);
     return t;
 }
 
@@ -81,13 +81,13 @@ static void texel_centres_return_the_texels_the_lowest_row_first(void **state)
     (void)state;
     for (size_t s = 0; s < COUNT(sizes); s++) {
         int width = sizes[s][0], height = sizes[s][1];
-        image *picture = noise(width, height);
+        image *img = noise(width, height);
         for (size_t f = 0; f < COUNT(filters); f++) {
             for (size_t w = 0; w < COUNT(wraps); w++) {
-                texture *t = textured(picture, wraps[w], filters[f]);
+                texture *t = textured(img, wraps[w], filters[f]);
                 for (int i = 0; i < width * height; i++) {
                     int x = i % width, y = i / width;
-                    const float *p = picture->pixel + ((height - 1 - y) * width + x) * 3;
+                    const float *p = img->pixel + ((height - 1 - y) * width + x) * 3;
                     vec3 c = texture_sample(t, (x + 0.5) / width, (y + 0.5) / height, 0.0);
                     /* a centre is a double exactly where the size is a power of two; else off by some 1e-16 of it */
                     int exact =
@@ -97,17 +97,17 @@ static void texel_centres_return_the_texels_the_lowest_row_first(void **state)
                 texture_release(t);
             }
         }
-        image_destroy(picture);
+        image_destroy(img);
     }
 }
 
 static void the_lower_left_corner_of_the_picture_is_the_origin(void **state)
 {
     (void)state;
-    image *picture = blank(4, 2);
+    image *img = blank(4, 2);
     for (int i = 0; i < 24; i++)
-        picture->pixel[i] = (float)i; /* rows from the top: pixel 4 is the left one of the lower row */
-    texture *t = owned(picture, TEXTURE_CLAMP, TEXTURE_NEAREST);
+        img->pixel[i] = (float)i; /* rows from the top: pixel 4 is the left one of the lower row */
+    texture *t = owned(img, TEXTURE_CLAMP, TEXTURE_NEAREST);
     assert_same(texture_sample(t, 0.0, 0.0, 0.0), vec3_make(12.0, 13.0, 14.0), 0.0);
     assert_same(texture_sample(t, 1.0, 0.0, 0.0), vec3_make(21.0, 22.0, 23.0), 0.0);
     assert_same(texture_sample(t, 0.0, 1.0, 0.0), vec3_make(0.0, 1.0, 2.0), 0.0);
@@ -119,19 +119,19 @@ static void the_lower_left_corner_of_the_picture_is_the_origin(void **state)
 static void between_centres_bilinear_is_the_mean_and_nearest_changes_at_the_edge(void **state)
 {
     (void)state;
-    image *picture = blank(2, 2);
-    set(picture, 0, 0, 0.25, 1, 0);
-    set(picture, 1, 0, 0.75, 0, 0);
-    set(picture, 0, 1, 2.0, 0, 0);
-    set(picture, 1, 1, 5.0, 0, 1);
-    texture *t = textured(picture, TEXTURE_CLAMP, TEXTURE_BILINEAR);
+    image *img = blank(2, 2);
+    set(img, 0, 0, 0.25, 1, 0);
+    set(img, 1, 0, 0.75, 0, 0);
+    set(img, 0, 1, 2.0, 0, 0);
+    set(img, 1, 1, 5.0, 0, 1);
+    texture *t = textured(img, TEXTURE_CLAMP, TEXTURE_BILINEAR);
     assert_same(texture_sample(t, 0.5, 0.25, 0.0), vec3_make(0.5, 0.5, 0.0), 0.0);
     assert_same(texture_sample(t, 0.25, 0.5, 0.0), vec3_make(1.125, 0.5, 0.0), 0.0);
     assert_same(texture_sample(t, 0.5, 0.5, 0.0), vec3_make(2.0, 0.25, 0.25), 0.0);
     /* a quarter of the way to the right, half up: (3/4) (1/4 + 2)/2 + (1/4) (3/4 + 5)/2 */
     assert_near(texture_sample(t, 0.375, 0.5, 0.0).x, 0.84375 + 0.71875, 0.0);
     texture_release(t);
-    t = owned(picture, TEXTURE_CLAMP, TEXTURE_NEAREST);
+    t = owned(img, TEXTURE_CLAMP, TEXTURE_NEAREST);
     assert_near(texture_sample(t, nextafter(0.5, 0.0), 0.1, 0.0).x, 0.25, 0.0);
     assert_near(texture_sample(t, 0.5, 0.1, 0.0).x, 0.75, 0.0);
     texture_release(t);
@@ -143,10 +143,10 @@ static void a_linear_ramp_is_reproduced_between_the_outer_centres_and_is_flat_be
 {
     (void)state;
     const int width = 16, height = 6;
-    image *picture = blank(width, height);
+    image *img = blank(width, height);
     for (int i = 0; i < width * height; i++)
-        set(picture, i % width, i / width, 3 + 5 * (i % width) - 2 * (i / width), i % width, i / width);
-    texture *t = owned(picture, TEXTURE_CLAMP, TEXTURE_BILINEAR);
+        set(img, i % width, i / width, 3 + 5 * (i % width) - 2 * (i / width), i % width, i / width);
+    texture *t = owned(img, TEXTURE_CLAMP, TEXTURE_BILINEAR);
     for (int i = 0; i <= 200; i++) {
         for (int j = 0; j <= 20; j++) {
             double u = i / 200.0, v = j / 20.0;
@@ -208,13 +208,13 @@ static void wrap_modes_lay_the_texels_out_on_either_side_of_the_seams(void **sta
 static void each_axis_has_a_wrap_mode_of_its_own(void **state)
 {
     (void)state;
-    image *picture = blank(4, 4);
+    image *img = blank(4, 4);
     for (int i = 0; i < 16; i++)
-        set(picture, i % 4, i / 4, i % 4, i / 4, 0);
+        set(img, i % 4, i / 4, i % 4, i / 4, 0);
     for (int i = 0; i < 9; i++) {
         texture *t;
         assert_int_equal(
-            texture_create(picture, TEXTURE_SRGB, rows[i / 3].wrap, rows[i % 3].wrap, TEXTURE_BILINEAR, &t, NULL),
+            texture_create(img, TEXTURE_SRGB, rows[i / 3].wrap, rows[i % 3].wrap, TEXTURE_BILINEAR, &t, NULL),
             STATUS_OK);
         for (int k = 0; k < 14 * 14; k++) {
             vec3 c = texture_sample(t, (k % 14 - 4.5) / 4.0, (k / 14 - 4.5) / 4.0, 0.0);
@@ -222,7 +222,7 @@ static void each_axis_has_a_wrap_mode_of_its_own(void **state)
         }
         texture_release(t);
     }
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 static void a_mirrored_texture_is_symmetric_about_whole_numbers(void **state)
@@ -247,11 +247,11 @@ static void each_level_has_half_the_size_and_the_mean_of_the_picture(void **stat
     (void)state;
     for (size_t s = 0; s < COUNT(sizes); s++) {
         int width = sizes[s][0], height = sizes[s][1];
-        image *picture = noise(width, height);
+        image *img = noise(width, height);
         double sum[3] = {0.0, 0.0, 0.0};
         for (int i = 0; i < 3 * width * height; i++)
-            sum[i % 3] += (double)picture->pixel[i] / (width * height);
-        texture *t = owned(picture, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
+            sum[i % 3] += (double)img->pixel[i] / (width * height);
+        texture *t = owned(img, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
         for (int level = 0; level < texture_levels(t); level++) {
             int w, h;
             texture_size(t, level, &w, &h);
@@ -272,10 +272,10 @@ static void each_level_has_half_the_size_and_the_mean_of_the_picture(void **stat
 static void odd_sizes_are_shared_out_by_area(void **state)
 {
     (void)state;
-    image *picture = blank(5, 3);
+    image *img = blank(5, 3);
     for (int i = 0; i < 15; i++)
-        set(picture, i % 5, i / 5, i % 5 == 0, i % 5 == 2, (i % 5 == 4) * (i / 5 == 1));
-    texture *t = owned(picture, TEXTURE_CLAMP, TEXTURE_TRILINEAR);
+        set(img, i % 5, i / 5, i % 5 == 0, i % 5 == 2, (i % 5 == 4) * (i / 5 == 1));
+    texture *t = owned(img, TEXTURE_CLAMP, TEXTURE_TRILINEAR);
     assert_int_equal(texture_levels(t), 3);
     assert_same(texture_texel(t, 1, 0, 0), vec3_make(0.4, 0.2, 0.0), 3e-8);
     assert_same(texture_texel(t, 1, 1, 0), vec3_make(0.0, 0.2, 0.4 / 3.0), 3e-8);
@@ -299,12 +299,12 @@ static int remove_folder(void **state)
     return rmdir(folder);
 }
 
-static void write_then_read(const image *picture, const char *ending, int bits, texture_space space,
-                            texture_filter filter, texture **out)
+static void write_then_read(const image *img, const char *ending, int bits, texture_space space, texture_filter filter,
+                            texture **out)
 {
     char path[sizeof folder + 32];
     snprintf(path, sizeof path, "%s/picture%s", folder, ending);
-    assert_int_equal(image_write(picture, path, bits, NULL), STATUS_OK);
+    assert_int_equal(image_write(img, path, bits, NULL), STATUS_OK);
     assert_int_equal(texture_read(path, space, TEXTURE_REPEAT, TEXTURE_REPEAT, filter, out, NULL), STATUS_OK);
     unlink(path);
 }
@@ -381,9 +381,9 @@ static void a_linear_picture_gives_back_the_numbers_in_its_file(void **state)
 static void the_level_is_the_logarithm_of_the_footprint_in_texels(void **state)
 {
     (void)state;
-    image *picture = blank(8, 1);
-    set(picture, 0, 0, 1, 1, 1);
-    texture *t = owned(picture, TEXTURE_CLAMP, TEXTURE_TRILINEAR);
+    image *img = blank(8, 1);
+    set(img, 0, 0, 1, 1, 1);
+    texture *t = owned(img, TEXTURE_CLAMP, TEXTURE_TRILINEAR);
     static const double light[] = {1.0, 0.5, 0.25, 0.125};
     for (int level = 0; level <= 3; level++)
         assert_near(texture_sample(t, 0.0, 0.5, (1 << level) / 8.0).x, light[level], 0.0);
@@ -420,9 +420,9 @@ static void trilinear_has_no_step_where_the_level_changes(void **state)
 static void a_larger_footprint_never_shows_more_contrast(void **state)
 {
     (void)state;
-    image *picture = blank(64, 64);
-    set(picture, 20, 41, 1, 1, 1); /* one bright texel: what is seen at its centre can only fall */
-    texture *t = owned(picture, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
+    image *img = blank(64, 64);
+    set(img, 20, 41, 1, 1, 1); /* one bright texel: what is seen at its centre can only fall */
+    texture *t = owned(img, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
     double before = 2.0;
     for (double footprint = 0.001; footprint < 3.0; footprint *= 1.01) {
         double now = texture_sample(t, 20.5 / 64, 41.5 / 64, footprint).x;
@@ -438,14 +438,14 @@ static void samples_stay_within_the_range_of_the_texels(void **state)
     (void)state;
     uint64_t s = 11;
     for (size_t k = 0; k < COUNT(sizes); k++) {
-        image *picture = noise(sizes[k][0], sizes[k][1]);
+        image *img = noise(sizes[k][0], sizes[k][1]);
         float low = 2.0f, high = -1.0f;
         for (int i = 0; i < 3 * sizes[k][0] * sizes[k][1]; i++) {
-            low = fminf(low, picture->pixel[i]);
-            high = fmaxf(high, picture->pixel[i]);
+            low = fminf(low, img->pixel[i]);
+            high = fmaxf(high, img->pixel[i]);
         }
         for (size_t i = 0; i < COUNT(wraps) * COUNT(filters); i++) {
-            texture *t = textured(picture, wraps[i / 3], filters[i % 3]);
+            texture *t = textured(img, wraps[i / 3], filters[i % 3]);
             for (int j = 0; j < 2000; j++) {
                 double u = random_real(&s, -3.0, 3.0), v = random_real(&s, -3.0, 3.0);
                 vec3 c = texture_sample(t, u, v, random_real(&s, 0.0, 1.2));
@@ -454,7 +454,7 @@ static void samples_stay_within_the_range_of_the_texels(void **state)
             }
             texture_release(t);
         }
-        image_destroy(picture);
+        image_destroy(img);
     }
 }
 
@@ -462,18 +462,18 @@ static void a_plain_picture_is_plain_everywhere(void **state)
 {
     (void)state;
     for (size_t k = 0; k < COUNT(sizes); k++) {
-        image *picture = blank(sizes[k][0], sizes[k][1]);
+        image *img = blank(sizes[k][0], sizes[k][1]);
         for (int i = 0; i < sizes[k][0] * sizes[k][1]; i++)
-            set(picture, i % sizes[k][0], i / sizes[k][0], 0.1, 0.7, (double)FLT_MAX);
+            set(img, i % sizes[k][0], i / sizes[k][0], 0.1, 0.7, (double)FLT_MAX);
         for (size_t i = 0; i < COUNT(wraps) * COUNT(filters); i++) {
-            texture *t = textured(picture, wraps[i / 3], filters[i % 3]);
+            texture *t = textured(img, wraps[i / 3], filters[i % 3]);
             for (int j = 0; j < 300; j++) {
                 vec3 c = texture_sample(t, j * 0.0173 - 2.0, j * 0.0311 - 4.0, j * 0.004);
                 assert_same(c, vec3_make((double)0.1f, (double)0.7f, (double)FLT_MAX), 0.0);
             }
             texture_release(t);
         }
-        image_destroy(picture);
+        image_destroy(img);
     }
 }
 
@@ -497,9 +497,9 @@ static void no_coordinate_and_no_footprint_is_too_strange(void **state)
                                      0.99999999999999989,
                                      -1e-17};
     for (size_t k = 0; k < COUNT(sizes); k++) {
-        image *picture = noise(sizes[k][0], sizes[k][1]);
+        image *img = noise(sizes[k][0], sizes[k][1]);
         for (size_t i = 0; i < COUNT(wraps) * COUNT(filters); i++) {
-            texture *t = textured(picture, wraps[i / 3], filters[i % 3]);
+            texture *t = textured(img, wraps[i / 3], filters[i % 3]);
             for (size_t j = 0; j < COUNT(strange) * COUNT(strange) * COUNT(strange); j++) {
                 double u = strange[j % COUNT(strange)], v = strange[j / COUNT(strange) % COUNT(strange)];
                 vec3 c = texture_sample(t, u, v, strange[j / COUNT(strange) / COUNT(strange)]);
@@ -512,18 +512,18 @@ static void no_coordinate_and_no_footprint_is_too_strange(void **state)
             assert_same(texture_sample(t, (double)INFINITY, 0.0, -1.0), far, 0.0);
             texture_release(t);
         }
-        image_destroy(picture);
+        image_destroy(img);
     }
 }
 
 static void what_is_no_number_is_refused_and_named(void **state)
 {
     (void)state;
-    image *picture = noise(5, 4);
+    image *img = noise(5, 4);
     texture *t = (texture *)&t;
     diagnostic why = {0};
-    picture->pixel[(2 * 5 + 3) * 3 + 1] = NAN;
-    assert_int_equal(texture_create(picture, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_NEAREST, &t, &why),
+    img->pixel[(2 * 5 + 3) * 3 + 1] = NAN;
+    assert_int_equal(texture_create(img, TEXTURE_SRGB, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_NEAREST, &t, &why),
                      STATUS_BAD_INPUT);
     assert_null(t);
     assert_non_null(strstr(why.what, "column 3, row 2"));
@@ -535,7 +535,7 @@ static void what_is_no_number_is_refused_and_named(void **state)
         STATUS_BAD_INPUT);
     assert_null(t);
     assert_string_equal(why.file, "/nonexistent/brick.png");
-    image_destroy(picture);
+    image_destroy(img);
     texture_release(NULL);
 }
 
@@ -569,9 +569,9 @@ static void owners_share_a_texture_and_the_last_one_releases_it(void **state)
 static void a_pyramid_takes_a_third_more_memory(void **state)
 {
     (void)state;
-    image *picture = noise(256, 256);
-    texture *flat = textured(picture, TEXTURE_REPEAT, TEXTURE_BILINEAR),
-            *deep = textured(picture, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
+    image *img = noise(256, 256);
+    texture *flat = textured(img, TEXTURE_REPEAT, TEXTURE_BILINEAR),
+            *deep = textured(img, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
     assert_int_equal(texture_levels(flat), 1);
     assert_int_equal(texture_levels(deep), 9);
     assert_true(texture_bytes(flat) >= 256 * 256 * 3 * sizeof(float));
@@ -579,7 +579,7 @@ static void a_pyramid_takes_a_third_more_memory(void **state)
     assert_near(more, 4.0 / 3.0, 1e-3);
     texture_release(flat);
     texture_release(deep);
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 int main(void)

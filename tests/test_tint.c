@@ -107,7 +107,7 @@ static void every_film_is_tinted(void **state)
 
 /* A grey has one share at all wavelengths, so that its film is grey, too; of a colour the spectrum that it is lifted to
  * counts. */
-static void a_spectral_film_is_tinted_by_the_lifted_color(void **state)
+static void a_spectral_film_is_tinted_by_the_upsampled_color(void **state)
 {
     (void)state;
     stage g = pane(2.0, "render.spectrum=spectral render.wavelengths=64 pane.color=0.5,0.5,0.5");
@@ -150,7 +150,7 @@ int main(void)
         cmocka_unit_test(black_lets_nothing_pass_and_white_all),
         cmocka_unit_test(opaque_solids_tint_nothing),
         cmocka_unit_test(every_film_is_tinted),
-        cmocka_unit_test(a_spectral_film_is_tinted_by_the_lifted_color),
+        cmocka_unit_test(a_spectral_film_is_tinted_by_the_upsampled_color),
         cmocka_unit_test(light_through_a_tinted_pane_is_tinted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

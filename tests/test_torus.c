@@ -18,10 +18,10 @@ static solid_shape torus_of(double radius, double tube_radius)
 }
 
 /* All crossings of a ray, each from the last one's point. */
-static int walk(const arrangement *a, one_ray r, one_hit *hits, int most)
+static int walk(const scene_geometry *a, one_ray r, one_hit *hits, int most)
 {
     int n = 0;
-    for (one_hit h = nearest_interface(a, r); h.crossed >= 0; h = nearest_interface(a, r)) {
+    for (one_hit h = nearest_interface(a, r); h.hit_primitive >= 0; h = nearest_interface(a, r)) {
         assert_true(n < most);
         hits[n++] = h;
         r = (one_ray){h.point, r.d, h.face, h.inside_after};
@@ -33,7 +33,7 @@ static void a_line_through_both_tubes_crosses_four_times(void **state)
 {
     (void)state;
     const solid_shape s = torus_of(1.0, 0.25);
-    arrangement *a = arrangement_of(&s, 1);
+    scene_geometry *a = scene_geometry_of(&s, 1);
     one_hit hits[8];
     const one_ray across = {{-3.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, FACE_NONE, 0};
     assert_int_equal(walk(a, across, hits, 8), 4);
@@ -49,7 +49,7 @@ static void a_line_through_both_tubes_crosses_four_times(void **state)
     const one_ray down = {{1.0, 3.0, 0.0}, {0.0, -1.0, 0.0}, FACE_NONE, 0};
     assert_int_equal(walk(a, down, hits, 8), 2);
     assert_true(hits[1].t == 0.5 && hits[0].normal.y == 1.0);
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 /* Starts on the surface included: every crossing of a random line, from hit to hit, against quadruple precision, and
@@ -60,14 +60,14 @@ static void crossings_agree_with_quadruple_precision(void **state)
     enum { RAYS = 120000 };
     uint64_t seed = 1;
     double worst = 0.0, worst_along = 0.0;
-    long crossed = 0, met_four = 0, unlike = 0;
+    long hit_primitive = 0, met_four = 0, unlike = 0;
     for (int ray = 0; ray < RAYS; ray++) {
         const double R = exp(random_real(&seed, -3.0, 3.0));
         solid_shape s = torus_of(R, R * (1.0 - exp(random_real(&seed, -6.0, -0.002))));
         s.position = random_point(&seed, random_below(&seed, 4) ? 1.0 : 1000.0);
         if (random_below(&seed, 2))
             s.rotation_deg = random_point(&seed, 180.0);
-        arrangement *a = arrangement_of(&s, 1);
+        scene_geometry *a = scene_geometry_of(&s, 1);
         const double size = R + s.tube_radius, off = exp(random_real(&seed, 0.5, random_below(&seed, 8) ? 1.0 : 9.0));
         const vec3 from = vec3_add(s.position, vec3_scale(random_direction(&seed), size * off));
         const vec3 to = vec3_add(s.position, vec3_scale(random_direction(&seed), size * random_real(&seed, 0.0, 1.0)));
@@ -90,16 +90,16 @@ static void crossings_agree_with_quadruple_precision(void **state)
                 worst_along = fmax(worst_along, (double)(quad_abs(passed - t[k]) / bound));
             }
         }
-        crossed += n;
+        hit_primitive += n;
         met_four += n == 4;
-        arrangement_destroy(a);
+        scene_geometry_destroy(a);
     }
     print_message(
         "%d rays, %ld crossings, %ld rays with four, %ld grazing ones unlike; points are off by %.3f of their bound, "
         "distances by %.3f\n",
-        RAYS, crossed, met_four, unlike, worst, worst_along);
+        RAYS, hit_primitive, met_four, unlike, worst, worst_along);
     assert_true(worst <= 1.0 && worst_along <= 1.0);
-    assert_true(met_four > RAYS / 100 && crossed > RAYS / 2);
+    assert_true(met_four > RAYS / 100 && hit_primitive > RAYS / 2);
 }
 
 /* Pappus and Guldin: 2 pi^2 R r^2. */
@@ -111,13 +111,13 @@ static void its_volume_is_that_of_pappus(void **state)
     solid_shape s = torus_of(0.8, 0.3);
     s.position = vec3_make(0.1, -0.2, 0.3);
     s.rotation_deg = vec3_make(20.0, 40.0, 60.0);
-    arrangement *a = arrangement_of(&s, 1);
+    scene_geometry *a = scene_geometry_of(&s, 1);
     int inside = 0;
     for (int i = 0; i < POINTS; i++)
-        inside += arrangement_inside(a, vec3_add(s.position, random_point(&seed, 1.2))) == 1;
+        inside += scene_geometry_inside(a, vec3_add(s.position, random_point(&seed, 1.2))) == 1;
     const double pi = acos(-1.0), share = 2.0 * pi * pi * 0.8 * 0.09 / pow(2.4, 3.0);
     assert_true(fabs((double)inside / POINTS - share) < 4.0 * sqrt(share * (1.0 - share) / POINTS));
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 /* A ball that fills the hole reaches into the tube and loses to it there: no air between them, and the tube's inner
@@ -126,24 +126,24 @@ static void what_reaches_into_the_tube_is_hidden_there(void **state)
 {
     (void)state;
     const solid_shape shapes[2] = {torus_of(1.0, 0.25), {.kind = SHAPE_SPHERE, .radius = 0.9}};
-    arrangement *a = arrangement_of(shapes, 2);
+    scene_geometry *a = scene_geometry_of(shapes, 2);
     const one_ray across = {{-3.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, FACE_NONE, 0};
     one_hit hits[8];
     assert_int_equal(walk(a, across, hits, 8), 4);
     static const int solids[5] = {-1, 0, 1, 0, -1};
     for (int k = 0; k < 4; k++) {
-        assert_int_equal(a->bodies[hits[k].before].solid, solids[k]);
-        assert_int_equal(a->bodies[hits[k].after].solid, solids[k + 1]);
-        assert_int_equal(a->bodies[hits[k].surface].solid, 0);
+        assert_int_equal(a->regions[hits[k].before].solid, solids[k]);
+        assert_int_equal(a->regions[hits[k].after].solid, solids[k + 1]);
+        assert_int_equal(a->regions[hits[k].surface].solid, 0);
     }
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
     const solid_shape over[2] = {shapes[1], shapes[0]}; /* now the ball wins, and hides two of the tube's crossings */
-    a = arrangement_of(over, 2);
+    a = scene_geometry_of(over, 2);
     assert_int_equal(walk(a, across, hits, 8), 4);
     static const int covered[5] = {-1, 1, 0, 1, -1};
     for (int k = 0; k < 4; k++)
-        assert_int_equal(a->bodies[hits[k].after].solid, covered[k + 1]);
-    arrangement_destroy(a);
+        assert_int_equal(a->regions[hits[k].after].solid, covered[k + 1]);
+    scene_geometry_destroy(a);
 }
 
 /* Light through both tubes is dimmed by each interface; an opaque torus blocks with either tube, and lets light through
@@ -152,21 +152,21 @@ static void shadows_see_both_tubes(void **state)
 {
     (void)state;
     const solid_shape s = torus_of(1.0, 0.25);
-    body_source source = {.shape = &s, .medium = 1, .clearness = 0.5};
-    arrangement *a = NULL;
-    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    region_source source = {.shape = &s, .medium = 1, .shadow_transmittance = 0.5};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
     const one_ray whole = {{-3.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, FACE_NONE, 0},
                   half = {{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}, FACE_NONE, 0};
     const one_ray hole = {{0.0, -3.0, 0.0}, {0.1, 6.0, 0.0}, FACE_NONE, 0},
                   far = {{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, FACE_NONE, 0};
     assert_true(light_through(a, whole, 0) == 0.0625 && light_through(a, half, 0) == 0.25);
     assert_true(light_through(a, hole, 0) == 1.0 && light_through(a, far, 0) == 0.25);
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
     source.opaque = true;
-    assert_int_equal(arrangement_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
     assert_true(light_through(a, whole, 0) == 0.0 && light_through(a, far, 0) == 0.0);
     assert_true(light_through(a, hole, 0) == 1.0);
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 /* Mirrored inside over and over: every chord ends on the surface, ahead, and none escapes. */
@@ -177,18 +177,18 @@ static void nothing_escapes_from_a_mirrored_tube(void **state)
     for (int trial = 0; trial < 20; trial++) {
         solid_shape s = torus_of(1.0, random_real(&seed, 0.02, 0.98));
         s.rotation_deg = trial % 2 ? vec3_make(17.0, -33.0, 71.0) : vec3_make(0.0, 0.0, 0.0);
-        arrangement *a = arrangement_of(&s, 1);
+        scene_geometry *a = scene_geometry_of(&s, 1);
         const quad3 middle = quad3_turn(quad3_make(1, 0, 0), s.rotation_deg, 0);
         one_ray r = {vec3_make((double)middle.x, (double)middle.y, (double)middle.z), random_direction(&seed),
                      FACE_NONE, 1};
         for (int i = 0; i < 5000; i++) {
             const one_hit h = nearest_interface(a, r);
-            assert_true(h.crossed == 0 && h.before == 1 && h.after == 0 && h.t >= 0.0);
+            assert_true(h.hit_primitive == 0 && h.before == 1 && h.after == 0 && h.t >= 0.0);
             assert_true(quad_abs(reference_distance(&s, quad3_from(h.point))) <= (quad)1e-15);
             const vec3 d = vec3_add(r.d, vec3_scale(h.normal, 2.0 * h.cos_i));
             r = (one_ray){h.point, d, h.face, h.inside_before};
         }
-        arrangement_destroy(a);
+        scene_geometry_destroy(a);
     }
 }
 
@@ -199,7 +199,7 @@ static void the_set_is_believed_on_its_own_surface(void **state)
     (void)state;
     uint64_t seed = 4;
     const solid_shape s = torus_of(1.0, 0.4);
-    arrangement *a = arrangement_of(&s, 1);
+    scene_geometry *a = scene_geometry_of(&s, 1);
     for (int trial = 0; trial < 20000; trial++) {
         const double around = random_real(&seed, 0.0, 6.3), tube = random_real(&seed, 0.0, 6.3);
         const vec3 n = vec3_make(cos(tube) * cos(around), sin(tube), cos(tube) * sin(around));
@@ -209,15 +209,15 @@ static void the_set_is_believed_on_its_own_surface(void **state)
         const vec3 out = vec3_normalize(vec3_add(along, vec3_scale(n, lean))),
                    in = vec3_normalize(vec3_sub(along, vec3_scale(n, lean)));
         const one_hit left = nearest_interface(a, (one_ray){at, out, 0, 1});
-        assert_true(left.crossed == 0 && left.before == 1 && left.t >= 0.0);
+        assert_true(left.hit_primitive == 0 && left.before == 1 && left.t >= 0.0);
         const one_hit inner = nearest_interface(a, (one_ray){at, in, 0, 1});
-        assert_true(inner.crossed == 0 && inner.before == 1 && inner.t >= 0.0 && inner.t < 2.9);
+        assert_true(inner.hit_primitive == 0 && inner.before == 1 && inner.t >= 0.0 && inner.t < 2.9);
         const one_hit missed = nearest_interface(a, (one_ray){at, in, 0, 0});
-        assert_true(missed.crossed < 0 || missed.before == 0);
+        assert_true(missed.hit_primitive < 0 || missed.before == 0);
         if (lean > 1e-3)
-            assert_true(left.t == 0.0 && (missed.crossed < 0 || missed.t > 1e-3));
+            assert_true(left.t == 0.0 && (missed.hit_primitive < 0 || missed.t > 1e-3));
     }
-    arrangement_destroy(a);
+    scene_geometry_destroy(a);
 }
 
 static void a_ring_without_a_hole_is_refused(void **state)

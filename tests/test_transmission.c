@@ -111,13 +111,13 @@ static void simple_transmission_knows_no_total_reflection(void **state)
                           "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
                           "solids: {sea: {shape: plane, transparency: 0.7, reflectivity: 0.2, ior: 1.33}}\n");
     render_result *r = render(s); /* what goes back down sees the sky below: the sea has no floor */
-    assert_near(film_value(r->picture, 0, 0, 0), 0.7 + 0.2, 1e-12);
+    assert_near(film_value(r->img, 0, 0, 0), 0.7 + 0.2, 1e-12);
     assert_int_equal(r->counters.total_internal, 0);
     assert_int_equal(r->counters.refract, CUVETTE_COUNTERS);
     render_result_destroy(r);
     set(s, "render.transmission=refract");
     r = render(s);
-    assert_near(film_value(r->picture, 0, 0, 0), 1.0, 1e-12);
+    assert_near(film_value(r->img, 0, 0, 0), 1.0, 1e-12);
     assert_int_equal(r->counters.refract, 0);
     render_result_destroy(r);
     scene_destroy(s);
@@ -201,7 +201,7 @@ static void an_index_above_ten_thousand_is_a_mirror(void **state)
     for (size_t k = 0; k < COUNT(cases); k++) {
         set_all(s, cases[k].settings);
         render_result *r = render(s);
-        const double seen = film_value(r->picture, 0, 0, 1);
+        const double seen = film_value(r->img, 0, 0, 1);
         if (cases[k].share == 1.0)
             assert_true(seen == 1.0);
         else
@@ -240,7 +240,7 @@ static void a_mirror_by_index_is_opaque_to_glass_and_light(void **state)
                           "ior: 1.5, priority: 1}\n"
                           "  mirror: {shape: plane, transparency: 1, ior: 20000}\n");
     render_result *r = render(s);
-    assert_near(film_value(r->picture, 0, 0, 0), 1.0, 1e-12);
+    assert_near(film_value(r->img, 0, 0, 0), 1.0, 1e-12);
     assert_true(!CUVETTE_COUNTERS || r->counters.reflect > 1);
     render_result_destroy(r);
     scene_destroy(s);

@@ -82,7 +82,7 @@ static double radiance(const char *depth, double entry_y)
     render_result *result;
     assert_int_equal(renderer_create(isa_best(), NULL, &r, &why), STATUS_OK);
     assert_int_equal(renderer_render(r, s, NULL, &result, &why), STATUS_OK);
-    double value = film_value(result->picture, 0, 0, 1);
+    double value = film_value(result->img, 0, 0, 1);
     render_result_destroy(result);
     renderer_destroy(r);
     scene_destroy(s);

@@ -16,44 +16,44 @@ typedef struct stream_bytes {
 } stream_bytes;
 
 /* One frame of that picture. */
-static stream_bytes frame_of(const image *picture)
+static stream_bytes frame_of(const image *img)
 {
     stream_bytes out = {0};
     FILE *stream = open_memstream(&out.text, &out.size);
     assert_non_null(stream);
-    assert_int_equal(y4m_frame(stream, picture, NULL), STATUS_OK);
+    assert_int_equal(y4m_frame(stream, img, NULL), STATUS_OK);
     fclose(stream);
     return out;
 }
 
-static image *picture_of(int width, int height)
+static image *image_of(int width, int height)
 {
-    image *picture;
-    assert_int_equal(image_create(width, height, &picture, NULL), STATUS_OK);
-    return picture;
+    image *img;
+    assert_int_equal(image_create(width, height, &img, NULL), STATUS_OK);
+    return img;
 }
 
-static void put(image *picture, int x, int y, double r, double g, double b)
+static void put(image *img, int x, int y, double r, double g, double b)
 {
-    float *pixel = picture->pixel + 3 * ((size_t)y * (size_t)picture->width + (size_t)x);
+    float *pixel = img->pixel + 3 * ((size_t)y * (size_t)img->width + (size_t)x);
     pixel[0] = (float)r;
     pixel[1] = (float)g;
     pixel[2] = (float)b;
 }
 
-static void fill(image *picture, double r, double g, double b)
+static void fill(image *img, double r, double g, double b)
 {
-    for (int y = 0; y < picture->height; y++)
-        for (int x = 0; x < picture->width; x++)
-            put(picture, x, y, r, g, b);
+    for (int y = 0; y < img->height; y++)
+        for (int x = 0; x < img->width; x++)
+            put(img, x, y, r, g, b);
 }
 
 /* Every byte of a picture of one colour. */
 static void check_colour(int width, int height, double r, double g, double b, int luma, int blue, int red)
 {
-    image *picture = picture_of(width, height);
-    fill(picture, r, g, b);
-    stream_bytes frame = frame_of(picture);
+    image *img = image_of(width, height);
+    fill(img, r, g, b);
+    stream_bytes frame = frame_of(img);
     const size_t pixels = (size_t)width * (size_t)height,
                  chroma = (size_t)((width + 1) / 2) * (size_t)((height + 1) / 2);
     assert_int_equal(frame.size, 6 + pixels + 2 * chroma);
@@ -66,7 +66,7 @@ static void check_colour(int width, int height, double r, double g, double b, in
         assert_int_equal(bytes[pixels + chroma + i], red);
     }
     free(frame.text);
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 /* Y = 16 + 219 K, Cb = 128 + 224 (B - Y) / (2 (1 - K_B)), Cr = 128 + 224 (R - Y) / (2 (1 - K_R)) with B, R, Y from 0
@@ -114,16 +114,16 @@ static void pixels_are_coded_first(void **state)
 static void chroma_is_the_mean_of_what_is_there(void **state)
 {
     (void)state;
-    image *picture = picture_of(3, 3);
+    image *img = image_of(3, 3);
     for (int y = 0; y < 3; y += 2)
         for (int x = 0; x < 3; x += 2)
-            put(picture, x, y, 1, 0, 0);
-    stream_bytes frame = frame_of(picture);
+            put(img, x, y, 1, 0, 0);
+    stream_bytes frame = frame_of(img);
     static const unsigned char expected[] = {81, 16, 81, 16, 16, 16, 81, 16, 81, 119, 109, 109, 90, 156, 184, 184, 240};
     assert_int_equal(frame.size, 6 + sizeof expected);
     assert_memory_equal(frame.text + 6, expected, sizeof expected);
     free(frame.text);
-    image_destroy(picture);
+    image_destroy(img);
 }
 
 static void odd_sizes_are_rounded_up(void **state)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "geometry/bodies.h"
+#include "geometry/mesh_generators.h"
 #include "mesh_fixture.h"
 #include "random_stream.h"
 #include "zbuffer_fixture.h"
@@ -68,10 +68,10 @@ static double share_beyond(const char *text, const char *assignments, double muc
     set(s, "render.integrator=zbuffer");
     render_result *drawn = render(s);
     int beyond = 0;
-    for (int y = 0; y < cast->picture->height; y++)
-        for (int x = 0; x < cast->picture->width; x++)
-            beyond += difference_at(cast->picture, drawn->picture, x, y) > much;
-    const double share = (double)beyond / ((double)cast->picture->width * cast->picture->height);
+    for (int y = 0; y < cast->img->height; y++)
+        for (int x = 0; x < cast->img->width; x++)
+            beyond += difference_at(cast->img, drawn->img, x, y) > much;
+    const double share = (double)beyond / ((double)cast->img->width * cast->img->height);
     render_result_destroy(cast);
     render_result_destroy(drawn);
     scene_destroy(s);
@@ -162,7 +162,7 @@ static void count_cover(const vec3 *vertices, size_t vertex_count, const mesh_tr
         render_result *r = render(s);
         for (int y = 0; y < WEB; y++)
             for (int x = 0; x < WEB; x++)
-                cover[y][x] += film_value(r->picture, x, y, 0) > 0.5;
+                cover[y][x] += film_value(r->img, x, y, 0) > 0.5;
         render_result_destroy(r);
         scene_destroy(s);
     }
@@ -251,7 +251,7 @@ static void triangles_that_reach_behind_the_eye_are_cut(void **state)
         for (int x = 0; x < WEB; x++) {
             const double across = (2.0 * x + 1.0) / WEB - 1.0, up = 1.0 - (2.0 * y + 1.0) / WEB;
             const bool seen = up < -0.1 && fabs(across) < -50.0 * up;
-            assert_int_equal(film_value(r->picture, x, y, 0) > 0.5, seen);
+            assert_int_equal(film_value(r->img, x, y, 0) > 0.5, seen);
         }
     }
     render_result_destroy(r);
@@ -262,20 +262,20 @@ static void triangles_that_reach_behind_the_eye_are_cut(void **state)
 static const texture *ramp(void)
 {
     enum { SIDE = 64 };
-    image *picture;
+    image *img;
     texture *t;
-    assert_int_equal(image_create(SIDE, SIDE, &picture, NULL), STATUS_OK);
+    assert_int_equal(image_create(SIDE, SIDE, &img, NULL), STATUS_OK);
     for (int y = 0; y < SIDE; y++) {
         for (int x = 0; x < SIDE; x++) {
-            float *pixel = picture->pixel + (y * SIDE + x) * 3;
+            float *pixel = img->pixel + (y * SIDE + x) * 3;
             pixel[0] = (float)((x + 0.5) / SIDE);
             pixel[1] = (float)((SIDE - y - 0.5) / SIDE);
             pixel[2] = 0.0F;
         }
     }
-    assert_int_equal(texture_create(picture, TEXTURE_SRGB, TEXTURE_CLAMP, TEXTURE_CLAMP, TEXTURE_BILINEAR, &t, NULL),
+    assert_int_equal(texture_create(img, TEXTURE_SRGB, TEXTURE_CLAMP, TEXTURE_CLAMP, TEXTURE_BILINEAR, &t, NULL),
                      STATUS_OK);
-    image_destroy(picture);
+    image_destroy(img);
     return t;
 }
 
@@ -346,8 +346,8 @@ static double expect_texture(const char *texturing, bool (*wanted)(double, doubl
             if (!wanted(x, y, uv) || !other(x, y, not ) || uv[0] < edge || uv[0] > 1.0 - edge || uv[1] < edge ||
                 uv[1] > 1.0 - edge)
                 continue; /* the ramp is level beyond its last texels' middles */
-            assert_true(fabs(film_value(r->picture, i, j, 0) - uv[0]) < 1e-6);
-            assert_true(fabs(film_value(r->picture, i, j, 1) - uv[1]) < 1e-6);
+            assert_true(fabs(film_value(r->img, i, j, 0) - uv[0]) < 1e-6);
+            assert_true(fabs(film_value(r->img, i, j, 1) - uv[1]) < 1e-6);
             apart = fmax(apart, fabs(uv[1] - not [1]));
             seen++;
         }
@@ -395,7 +395,7 @@ static void boxes_have_textures_of_either_kind(void **state)
         for (int y = 25; y < 35; y++)
             for (int x = 25; x < 35; x++)
                 for (int k = 0; k < 2; k++)
-                    apart[k] = fmax(apart[k], difference_at(r[k]->picture, r[2]->picture, x, y));
+                    apart[k] = fmax(apart[k], difference_at(r[k]->img, r[2]->img, x, y));
         assert_true(apart[0] < 1e-6);
         assert_true(turned ? apart[1] > 0.02 : apart[1] < 1e-6);
         for (int k = 0; k < 3; k++)

@@ -207,8 +207,8 @@ static void what_goes_straight_is_seen_as_traced(void **state)
         for (int at = 0; at < 160 * 120; at++) {
             double most = 0.0;
             for (int c = 0; c < 3; c++)
-                most = fmax(most, fabs(film_value(traced->picture, at % 160, at / 160, c) -
-                                       film_value(drawn->picture, at % 160, at / 160, c)));
+                most = fmax(most, fabs(film_value(traced->img, at % 160, at / 160, c) -
+                                       film_value(drawn->img, at % 160, at / 160, c)));
             beyond += most > 0.01;
         }
         if (beyond > 160 * 120 / 100)
@@ -300,7 +300,7 @@ static void nothing_is_lost_between_layers(void **state)
         render_result *r = render(s);
         for (int at = 0; at < 160 * 120; at++)
             for (int c = 0; c < 3; c++)
-                assert_near(film_value(r->picture, at % 160, at / 160, c), 1.0, 1e-9);
+                assert_near(film_value(r->img, at % 160, at / 160, c), 1.0, 1e-9);
         render_result_destroy(r);
     }
     scene_destroy(s);
@@ -316,8 +316,8 @@ static void the_rod_is_close_to_what_rays_show(void **state)
     render_result *drawn = render(s);
     image *a = NULL, *b = NULL;
     image_comparison c;
-    assert_int_equal(film_image(traced->picture, &a, NULL), STATUS_OK);
-    assert_int_equal(film_image(drawn->picture, &b, NULL), STATUS_OK);
+    assert_int_equal(film_image(traced->img, &a, NULL), STATUS_OK);
+    assert_int_equal(film_image(drawn->img, &b, NULL), STATUS_OK);
     assert_int_equal(image_compare(a, b, &c, NULL), STATUS_OK);
     print_message("rod: FLIP %.3f\n", c.flip);
     assert_true(c.flip < 0.12);

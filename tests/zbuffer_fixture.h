@@ -17,7 +17,7 @@ static inline scene *scene_loaded(const char *text, const char *assignments)
 static inline uint64_t film_hash_at(const scene *s, isa level)
 {
     render_result *r = render_at(s, level, NULL);
-    const uint64_t hash = film_hash(r->picture);
+    const uint64_t hash = film_hash(r->img);
     render_result_destroy(r);
     return hash;
 }

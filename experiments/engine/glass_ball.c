@@ -58,7 +58,7 @@ static bool report(void *context, double share)
 
 int main(void)
 {
-    static unsigned char picture[3 * WIDTH * HEIGHT];
+    static unsigned char img[3 * WIDTH * HEIGHT];
     size_t pieces[2] = {0, 0};
     cuvette_diagnostic why;
     cuvette_engine *engine;
@@ -68,7 +68,7 @@ int main(void)
 
     cuvette_request request = CUVETTE_REQUEST;
     request.width = WIDTH, request.height = HEIGHT;
-    request.srgb = picture;
+    request.srgb = img;
     request.preview = 8;
     request.progress = report;
     request.piece = show;
@@ -89,7 +89,7 @@ int main(void)
         (unsigned long long)rays.shadow);
 
     printf("P6\n%d %d\n255\n", WIDTH, HEIGHT);
-    fwrite(picture, 1, sizeof picture, stdout);
+    fwrite(img, 1, sizeof img, stdout);
     cuvette_frame_destroy(frame);
     cuvette_engine_destroy(engine);
     cuvette_scene_destroy(scene);

@@ -73,7 +73,7 @@ static void render(cuvette_engine *engine, const cuvette_scene *scene, const cuv
 
 int main(void)
 {
-    static unsigned char picture[ROW * HEIGHT];
+    static unsigned char img[ROW * HEIGHT];
     static const double by[3] = {-0.9, 0.6, -0.2};
     int hand = CUVETTE_NO_HAND;
     cuvette_diagnostic why;
@@ -88,10 +88,10 @@ int main(void)
             need(cuvette_motion_move(motion, hand, by, &why), &why);
         if (i == 3 && hand >= 0)
             need(cuvette_motion_release(motion, hand, &why), &why);
-        render(engine, scene, motion, picture + 3 * WIDTH * i);
+        render(engine, scene, motion, img + 3 * WIDTH * i);
     }
     printf("P6\n%d %d\n255\n", WIDTH * FRAMES, HEIGHT);
-    fwrite(picture, 1, sizeof picture, stdout);
+    fwrite(img, 1, sizeof img, stdout);
     cuvette_motion_destroy(motion);
     cuvette_engine_destroy(engine);
     cuvette_scene_destroy(scene);

@@ -1,11 +1,11 @@
 /* embree - camera and shadow rays through the triangle sets of Cuvette's mesh bench, traced by Embree 3 on one thread.
  *   embree [-m sparse|dense|sphere] [-n TRIANGLES] [-k 1|16|1,16] [-r ROUNDS]
  * k: rays one at a time (rtcIntersect1, rtcOccluded1), or in packets of 16, squares of 4 x 4 pixels. The triangles are
- * Cuvette's own (geometry/bodies.h), the rays those of mesh_rays.h. Prints a line for each k and round: milliseconds of
- * CPU time, and exact counts of hits and of shadow rays that are blocked. */
+ * Cuvette's own (geometry/mesh_generators.h), the rays those of mesh_rays.h. Prints a line for each k and round:
+ * milliseconds of CPU time, and exact counts of hits and of shadow rays that are blocked. */
 #include <embree3/rtcore.h>
 
-#include "geometry/bodies.h"
+#include "geometry/mesh_generators.h"
 #include "mesh_rays.h"
 
 #include <errno.h>
@@ -297,9 +297,9 @@ int main(int count, char **words)
     mesh *m = NULL;
     diagnostic why = {0};
     char text[DIAGNOSTIC_TEXT_MAX];
-    if ((!strcmp(o.set, "sparse")  ? body_sparse
-         : !strcmp(o.set, "dense") ? body_dense
-                                   : body_sphere)(o.triangles, &m, &why) != STATUS_OK) {
+    if ((!strcmp(o.set, "sparse")  ? generate_sparse_soup
+         : !strcmp(o.set, "dense") ? generate_dense_soup
+                                   : generate_sphere)(o.triangles, &m, &why) != STATUS_OK) {
         fprintf(stderr, "embree: %s\n", diagnostic_text(&why, text, sizeof text));
         return 1;
     }

@@ -102,7 +102,7 @@ static status make(const animate_request *request, const animate_names *names, j
     status result = scene_motion_create(s, &motion, why);
     THEN(result, animate_define(request, s, &d, why));
     if (result == STATUS_OK && names)
-        result = animate_ledger_check(names, &d, animate_count(request), request->restart, why);
+        result = animate_index_check(names, &d, animate_count(request), request->restart, why);
     THEN(result, animate_film(request, names, &d, with, s, motion, &account, why));
     if (result == STATUS_OK && request->json)
         result = print_account(request, s, &d, job_isa(with), &account, why);

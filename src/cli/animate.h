@@ -49,8 +49,8 @@ char *animate_name(const animate_names *names, int64_t frame);
 int64_t animate_name_frame(const animate_names *names, const char *name);
 
 /* All that changes the film's frames, by its path: parameters but for those that are how a frame is computed
- * (param.is_how) and for names of files, frames a second and start; and a fingerprint of these and of what the files
- * hold. Its length does not count. */
+ * (param.performance_only) and for names of files, frames a second and start; and a fingerprint of these and of what
+ * the files hold. Its length does not count. */
 typedef struct animate_definition {
     json_t *parameters; /* text by path */
     uint64_t hash;
@@ -66,14 +66,14 @@ status animate_script_end_s(const scene *s, bool *any, double *end_s, diagnostic
 /* The ledger beside the frames, PATTERN.json, says of which film they are and how many it has. STATUS_BAD_INPUT where
  * the frames there are of another film or of an unknown one; restart: of a film that the ledger does not know of.
  * count: frames of this one. */
-status animate_ledger_check(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
-                            diagnostic *why);
+status animate_index_check(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
+                           diagnostic *why);
 /* Makes folder and ledger where they are not there; a longer film is written into it. restart: removes what frames are
  * there first. */
-status animate_ledger_begin(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
-                            diagnostic *why);
+status animate_index_begin(const animate_names *names, const animate_definition *d, int64_t count, bool restart,
+                           diagnostic *why);
 /* How many frames a ledger says that its film has; -1 for what is no ledger. */
-int64_t animate_ledger_count(const char *path);
+int64_t animate_index_count(const char *path);
 
 /* STATUS_BAD_INPUT for files named as frames that are none of the film's known ones (known < 0: there is no ledger, and
  * it has none), and where another film's ledger has names of the first frames of this one, as many as are known or

@@ -19,7 +19,7 @@ static bool is_time_of_slime(const param *row)
 /* The moment that a slime shows is the frame's; of files the contents count, so that a folder may be moved. */
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
-    if (row->is_how || row->type == PARAM_PATH || is_time_of_slime(row))
+    if (row->performance_only || row->type == PARAM_PATH || is_time_of_slime(row))
         return STATUS_OK;
     json_object_del(context, path); /* so that what is set last stands last */
     return json_object_set_new(context, path, json_of_text(value)) == 0 ? STATUS_OK : STATUS_FAILURE;

@@ -91,12 +91,12 @@ static status flush_stream(film_job *f, diagnostic *why)
     return result == STATUS_OK ? diagnose(why, STATUS_FAILURE, "", "cannot write the film") : result;
 }
 
-static status write_picture(film_job *f, const char *path, const film *picture, diagnostic *why)
+static status write_image(film_job *f, const char *path, const film *img, diagnostic *why)
 {
     if (path)
-        return record_picture(picture, path, 8, why);
+        return record_image(img, path, 8, why);
     image *frame = NULL;
-    status result = film_image(picture, &frame, why);
+    status result = film_image(img, &frame, why);
     errno = 0;
     THEN(result, y4m_frame(f->stream.stream, frame, why));
     image_destroy(frame);
@@ -110,7 +110,7 @@ static status render_frame(film_job *f, const char *path, diagnostic *why)
     status ended = job_render(f->with, f->s, &options, &made, why);
     if (ended == STATUS_INTERRUPTED)
         ended = say_interrupted(f, why);
-    THEN(ended, write_picture(f, path, made.result->picture, why));
+    THEN(ended, write_image(f, path, made.result->img, why));
     if (ended == STATUS_OK && f->rows) {
         const animate_row row = {.definition = f->definition,
                                  .frame = f->frame,
@@ -190,7 +190,7 @@ status animate_film(const animate_request *request, const animate_names *names, 
     status result =
         request->rows ? animate_rows_open(request->rows, d->hash, request->restart || !names, &f.rows, why) : STATUS_OK;
     if (result == STATUS_OK && names)
-        result = animate_ledger_begin(names, d, f.count, request->restart, why);
+        result = animate_index_begin(names, d, f.count, request->restart, why);
     THEN(result, make_film(&f, why));
     animate_rows_close(f.rows);
     return result;

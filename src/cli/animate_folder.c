@@ -39,7 +39,7 @@ static bool is_folder(DIR *in, const char *name)
     return fstatat(dirfd(in), name, &about, 0) == 0 && S_ISDIR(about.st_mode);
 }
 
-static bool is_own_ledger(const animate_names *names, const char *name)
+static bool is_own_index(const animate_names *names, const char *name)
 {
     const char *own = file_name_of(names->pattern);
     const size_t length = strlen(own);
@@ -62,12 +62,12 @@ static status check_frame(const animate_names *names, DIR *in, const char *name,
 }
 
 /* Is that a ledger of another film, one of whose frames would be one of this film's first count? */
-static bool overlaps(const animate_names *names, const char *ledger, int64_t count)
+static bool overlaps(const animate_names *names, const char *progress_index, int64_t count)
 {
     animate_names other = {.digits = 0};
-    char *path = text_format("%s/%s", names->folder, ledger),
-         *pattern = strndup(ledger, strlen(ledger) - strlen(".json"));
-    const int64_t frames = path ? animate_ledger_count(path) : -1;
+    char *path = text_format("%s/%s", names->folder, progress_index),
+         *pattern = strndup(progress_index, strlen(progress_index) - strlen(".json"));
+    const int64_t frames = path ? animate_index_count(path) : -1;
     bool same = false;
     if (pattern && animate_names_parse(pattern, &other, NULL) == STATUS_OK) {
         for (int64_t k = 0; k < frames && !same; k++) {
@@ -91,7 +91,7 @@ status animate_folder_check(const animate_names *names, int64_t known, int64_t w
         const char *name = entry->d_name;
         if (animate_name_frame(names, name) >= 0)
             result = check_frame(names, folder, name, known, why);
-        else if (outputs_ends_with(name, ".json") && !is_own_ledger(names, name) &&
+        else if (outputs_ends_with(name, ".json") && !is_own_index(names, name) &&
                  overlaps(names, name, known > wanted ? known : wanted))
             result = refuse(names, name, elsewhere, "another film has frames of the same names", why);
     }
@@ -125,7 +125,7 @@ typedef struct read_search {
 static bool is_in_place(const animate_names *names, const char *path)
 {
     const char *name = file_name_of(path);
-    if (animate_name_frame(names, name) < 0 && !is_own_ledger(names, name))
+    if (animate_name_frame(names, name) < 0 && !is_own_index(names, name))
         return false;
     char *folder = outputs_folder_of(path);
     const bool same = folder && outputs_same_entry(folder, names->folder);

@@ -107,13 +107,13 @@ static status take_rows(animate_rows *rows, const char *path, const csv *there, 
     if (!rows->there)
         return out_of_memory(why);
     const int frame = csv_column(there, "frame"), of = csv_column(there, "definition"),
-              picture = csv_column(there, "film_hash");
+              img = csv_column(there, "film_hash");
     for (size_t i = 0; i < there->row_count; i++) {
         if (strcmp(csv_field(there, i, of), hash) != 0)
             return refuse(path, "holds rows of another film", why);
         if (!number_parse_int(csv_field(there, i, frame), &rows->there[i].frame))
             return refuse(path, "holds a row without a frame's number", why);
-        snprintf(rows->there[i].film_hash, sizeof rows->there[i].film_hash, "%s", csv_field(there, i, picture));
+        snprintf(rows->there[i].film_hash, sizeof rows->there[i].film_hash, "%s", csv_field(there, i, img));
     }
     rows->count = there->row_count;
     qsort(rows->there, rows->count, sizeof *rows->there, compare_frames);

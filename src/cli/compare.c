@@ -32,7 +32,7 @@ static const command_form form = {
 };
 
 typedef struct pair {
-    image *pictures[2];
+    image *images[2];
     int bits[2];
     image_comparison found;
 } pair;
@@ -43,14 +43,14 @@ static status check_request(const compare_request *request, diagnostic *why)
         return options_wrong("compare", NULL, why, "give two PNG, JPEG, PFM or 24-bit BMP files",
                              request->paths[0] ? "there is nothing to compare the picture with"
                                                : "no pictures are named");
-    return request->map ? outputs_check_picture("--diff", request->map, request->paths, 2, why) : STATUS_OK;
+    return request->map ? outputs_check_image("--diff", request->map, request->paths, 2, why) : STATUS_OK;
 }
 
 static status measure(const compare_request *request, pair *p, diagnostic *why)
 {
     for (int i = 0; i < 2; i++)
-        TRY(image_read(request->paths[i], &p->pictures[i], &p->bits[i], why));
-    status result = image_compare(p->pictures[0], p->pictures[1], &p->found, why);
+        TRY(image_read(request->paths[i], &p->images[i], &p->bits[i], why));
+    status result = image_compare(p->images[0], p->images[1], &p->found, why);
     if (result == STATUS_BAD_INPUT)
         diagnostic_locate(why, request->paths[0], 0, 0);
     return result;
@@ -59,7 +59,7 @@ static status measure(const compare_request *request, pair *p, diagnostic *why)
 static status write_map(const compare_request *request, const pair *p, diagnostic *why)
 {
     image *map;
-    status result = image_compare_map(p->pictures[0], p->pictures[1], &map, why);
+    status result = image_compare_map(p->images[0], p->images[1], &map, why);
     THEN(result, image_write(map, request->map, 8, why));
     image_destroy(map);
     return result;
@@ -68,7 +68,7 @@ static status write_map(const compare_request *request, const pair *p, diagnosti
 static void print_text(const pair *p)
 {
     const image_comparison *c = &p->found;
-    printf("size        %d x %d pixels\n", p->pictures[0]->width, p->pictures[0]->height);
+    printf("size        %d x %d pixels\n", p->images[0]->width, p->images[0]->height);
     printf("mse         %.6g\n", c->mse);
     if (c->mse > 0)
         printf("psnr        %.2f dB\n", c->psnr_db + 0.0); /* not -0 */
@@ -91,8 +91,8 @@ static status print_json(const compare_request *request, const pair *p, diagnost
     bad |= json_object_set_new(o, "files",
                                json_pack("[o,o]", json_of_text(request->paths[0]), json_of_text(request->paths[1])));
     bad |= json_object_set_new(o, "bits", json_pack("[i,i]", p->bits[0], p->bits[1]));
-    bad |= json_object_set_new(o, "width", json_integer(p->pictures[0]->width));
-    bad |= json_object_set_new(o, "height", json_integer(p->pictures[0]->height));
+    bad |= json_object_set_new(o, "width", json_integer(p->images[0]->width));
+    bad |= json_object_set_new(o, "height", json_integer(p->images[0]->height));
     bad |= !report_comparison(o, c);
     return json_print(json_whole(o, bad == 0), why);
 }
@@ -110,7 +110,7 @@ status command_compare(int argc, char **argv, diagnostic *why)
         result = print_json(&request, &p, why);
     else if (result == STATUS_OK)
         print_text(&p);
-    image_destroy(p.pictures[0]);
-    image_destroy(p.pictures[1]);
+    image_destroy(p.images[0]);
+    image_destroy(p.images[1]);
     return result;
 }

@@ -44,7 +44,7 @@ status command_machine(int argc, char **argv, diagnostic *why)
     bool as_json = false;
     machine_account a = {0};
     status result = command_form_read(&form, argc, argv, &as_json, why);
-    THEN(result, machine_look(&a, why));
+    THEN(result, machine_measure(&a, why));
     if (result == STATUS_OK && as_json)
         result = json_print(machine_json(&a), why);
     else if (result == STATUS_OK)

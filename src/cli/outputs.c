@@ -81,7 +81,7 @@ static bool ask(const search *x, const char *named)
 bool scene_files_any(const scene *s, bool (*is_it)(void *context, const char *path), void *context)
 {
     const search x = {s, is_it, context};
-    if ((s->path && s->path[0] && is_it(context, s->path)) || ask(&x, s->background.picture_path))
+    if ((s->path && s->path[0] && is_it(context, s->path)) || ask(&x, s->background.image_path))
         return true;
     for (size_t i = 0; i < s->texture_count; i++)
         if (ask(&x, s->textures[i].path))
@@ -110,7 +110,7 @@ static bool is_script_of(const char *path, const scene *s)
     return false;
 }
 
-static status check_picture(const outputs *o, const named_file *file, bool is_map, diagnostic *why)
+static status check_image(const outputs *o, const named_file *file, bool is_map, diagnostic *why)
 {
     image_format format = image_format_of(file->path);
     if (strcmp(file->path, "-") == 0)
@@ -141,7 +141,7 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
     enum { TIMELINE = 4 };
     const named_file *file = &files[at];
     if (at < TIMELINE)
-        TRY(check_picture(o, file, at > 0, why));
+        TRY(check_image(o, file, at > 0, why));
     else if (!outputs_ends_with(file->path, ".json"))
         return wrong(file, why, "end it in .json", "a timeline is a JSON file");
     TRY(check_folder(file, why));
@@ -178,11 +178,8 @@ static status check_layers(const outputs *o, const named_file *files, size_t cou
 
 status outputs_check(const outputs *o, const scene *s, diagnostic *why)
 {
-    const named_file files[] = {{"-o", o->picture},
-                                {"--rays", o->rays},
-                                {"--time", o->time},
-                                {"--noise", o->noise},
-                                {"--timeline", o->timeline}};
+    const named_file files[] = {
+        {"-o", o->img}, {"--rays", o->rays}, {"--time", o->time}, {"--noise", o->noise}, {"--timeline", o->timeline}};
     if (o->noise && (!integrator_of(&s->render)->by_chance || s->render.paths < 2))
         return wrong(&files[3], why, "set render.integrator to path and render.paths to 16 or more",
                      "nothing is drawn by chance");
@@ -192,11 +189,10 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why)
     return o->layers ? check_layers(o, files, sizeof files / sizeof files[0], s, why) : STATUS_OK;
 }
 
-status outputs_check_picture(const char *option, const char *path, const char *const *read, size_t count,
-                             diagnostic *why)
+status outputs_check_image(const char *option, const char *path, const char *const *read, size_t count, diagnostic *why)
 {
     const named_file file = {option, path};
-    TRY(check_picture(&(outputs){0}, &file, false, why));
+    TRY(check_image(&(outputs){0}, &file, false, why));
     TRY(check_folder(&file, why));
     for (size_t i = 0; i < count; i++)
         if (same_file(path, read[i]))
@@ -249,12 +245,12 @@ status outputs_write_text(const char *path, status (*write)(const void *content,
 
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why)
 {
-    if (o->picture)
-        TRY(record_picture(result->picture, o->picture, o->bits == 16 ? 16 : 8, why));
+    if (o->img)
+        TRY(record_image(result->img, o->img, o->bits == 16 ? 16 : 8, why));
     if (o->rays && result->pixel_rays)
-        TRY(record_map(result->pixel_rays, result->picture, "rays per pixel", o->rays, why));
+        TRY(record_map(result->pixel_rays, result->img, "rays per pixel", o->rays, why));
     if (o->time && result->pixel_ns)
-        TRY(record_map(result->pixel_ns, result->picture, "nanoseconds per pixel", o->time, why));
+        TRY(record_map(result->pixel_ns, result->img, "nanoseconds per pixel", o->time, why));
     if (o->noise && result->variance)
         TRY(record_noise(result, o->noise, why));
     if (o->timeline && result->events)

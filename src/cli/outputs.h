@@ -7,8 +7,8 @@
 #include <stdio.h>
 
 typedef struct outputs {
-    const char *picture, *rays, *time, *noise, *timeline, *layers; /* NULL: not wanted; layers: a prefix */
-    int bits;                                                      /* of a PNG picture: 8 or 16; 0 when not said */
+    const char *img, *rays, *time, *noise, *timeline, *layers; /* NULL: not wanted; layers: a prefix */
+    int bits;                                                  /* of a PNG picture: 8 or 16; 0 when not said */
 } outputs;
 
 /* The folder of a path in fresh memory, "." for a bare name. */
@@ -26,8 +26,8 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why);
 
 /* The same for one picture by itself that no scene has to do with; read are the count files that are read. option is
  * what named it. */
-status outputs_check_picture(const char *option, const char *path, const char *const *read, size_t count,
-                             diagnostic *why);
+status outputs_check_image(const char *option, const char *path, const char *const *read, size_t count,
+                           diagnostic *why);
 
 /* Of a text file: which of the endings its name has, by index. remedy says what to do when it has none of them. */
 status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count,

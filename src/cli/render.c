@@ -30,7 +30,7 @@ static status take_bits(const command_option *o, void *into, const char *value, 
 
 static const command_option options[] = {
     {"output", 'o', "FILE", "write the picture: .png, .jpg or .pfm (linear floats)",
-     OPTION_FILLS(option_text, render_request, files.picture)},
+     OPTION_FILLS(option_text, render_request, files.img)},
     OPTION_SET("'render.depth=8' or 'lamp.position.x=2'"),
     {"json", 0, NULL, "print the account as one JSON object: hash, times, counts, parameters",
      OPTION_FILLS(option_flag, render_request, json)},
@@ -54,8 +54,7 @@ static status check_request(void *asked, diagnostic *why)
 {
     const render_request *request = asked;
     const outputs *files = &request->files;
-    if (files->picture || files->rays || files->time || files->noise || files->timeline || files->layers ||
-        request->json)
+    if (files->img || files->rays || files->time || files->noise || files->timeline || files->layers || request->json)
         return STATUS_OK;
     return options_wrong("render", NULL, why, "add -o FILE for the picture or --json for the counts",
                          "nothing is asked for");
@@ -71,7 +70,7 @@ static status check_scene(void *asked, const scene *s, diagnostic *why)
 static void print_summary(const job_account *f, const outputs *files)
 {
     const scene *s = f->of;
-    const char *const written[] = {files->picture, files->rays, files->time, files->noise, files->timeline};
+    const char *const written[] = {files->img, files->rays, files->time, files->noise, files->timeline};
     uint64_t rays = ray_counters_total(&f->result->counters);
     const double wall_s = job_account_wall_s(f);
     printf("%s%lldx%lld pixels, depth %lld: %llu rays in %.3f s (%.1f million a second), film %016llx",
@@ -104,10 +103,10 @@ static status say_interrupted(const render_request *request, const job_account *
 {
     if (!f->result)
         return diagnose(why, STATUS_INTERRUPTED, "", "interrupted before the first pixel");
-    bool partial = f->count == 0 && request->files.picture;
+    bool partial = f->count == 0 && request->files.img;
     diagnose(why, STATUS_INTERRUPTED, "", "interrupted; %s",
              partial ? "the picture holds what was finished" : "what was finished is kept");
-    diagnostic_locate(why, request->files.picture, 0, 0);
+    diagnostic_locate(why, request->files.img, 0, 0);
     return STATUS_INTERRUPTED;
 }
 

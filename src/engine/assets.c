@@ -100,21 +100,20 @@ cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int 
                                         cuvette_diagnostic *why)
 {
     ENGINE_CHANGE(s, name, rgb);
-    image *picture = NULL;
+    image *img = NULL;
     texture *made = NULL;
     size_t index = 0;
     status code =
         width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX &&
                 width <= SCENE_PIXELS_MAX / height
-            ? image_create(width, height, &picture, &inner)
+            ? image_create(width, height, &img, &inner)
             : diagnose(&inner, STATUS_BAD_INPUT, "keep both from 1 to 65536, and their product within 268435456",
                        "a texture cannot be %d x %d", width, height);
     if (code == STATUS_OK) {
-        memcpy(picture->pixel, rgb, 3 * (size_t)width * (size_t)height * sizeof *rgb);
-        code =
-            texture_create(picture, TEXTURE_LINEAR, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &made, &inner);
+        memcpy(img->pixel, rgb, 3 * (size_t)width * (size_t)height * sizeof *rgb);
+        code = texture_create(img, TEXTURE_LINEAR, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &made, &inner);
     }
-    image_destroy(picture);
+    image_destroy(img);
     THEN(code, scene_add(s->model, PARAM_TEXTURE, name, &index, &inner));
     if (code != STATUS_OK) {
         texture_release(made);

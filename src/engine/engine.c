@@ -93,10 +93,10 @@ static bool watch(void *context, double share)
     return report_share(now, now->is_preview ? 0.0 : share);
 }
 
-static void take_piece(void *context, const film *picture, int x0, int y0, int x1, int y1)
+static void take_piece(void *context, const film *img, int x0, int y0, int x1, int y1)
 {
     stage *now = context;
-    canvas_fill(&now->buffers, picture, x0, y0, x1, y1, 1);
+    canvas_fill(&now->buffers, img, x0, y0, x1, y1, 1);
     canvas_note(&now->buffers, (cuvette_piece){x0, y0, x1, y1, 1});
 }
 
@@ -143,8 +143,7 @@ static status render_preview(stage *now, const scene *s, diagnostic *why)
     const status code = job_render(now->engine->workers, &small, &options, &made, why);
     now->is_preview = false;
     if (code == STATUS_OK) {
-        canvas_fill(&now->buffers, made.result->picture, 0, 0, (int)small.render.width, (int)small.render.height,
-                    coarse);
+        canvas_fill(&now->buffers, made.result->img, 0, 0, (int)small.render.width, (int)small.render.height, coarse);
         if (now->request->piece)
             canvas_hand_piece(&now->buffers,
                               &(cuvette_piece){0, 0, (int)s->render.width, (int)s->render.height, coarse});
@@ -158,11 +157,11 @@ static status render_frame(stage *now, const scene *s, cuvette_frame *frame, dia
     const cuvette_request *r = now->request;
     const render_options options = {.progress = watch, .piece_done = r->piece ? take_piece : NULL, .context = now};
     status code = job_render(now->engine->workers, s, &options, &frame->account, why);
-    const film *picture = frame->account.result ? frame->account.result->picture : NULL;
-    if (picture && r->piece && now->noted == STATUS_OK)
+    const film *img = frame->account.result ? frame->account.result->img : NULL;
+    if (img && r->piece && now->noted == STATUS_OK)
         now->noted = canvas_hand_out(&now->buffers, why);
-    else if (picture && !r->piece)
-        canvas_fill(&now->buffers, picture, 0, 0, picture->width, picture->height, 1);
+    else if (img && !r->piece)
+        canvas_fill(&now->buffers, img, 0, 0, img->width, img->height, 1);
     if (code == STATUS_OK && now->noted != STATUS_OK)
         code = diagnose(why, now->noted, "", "out of memory for the list of finished pieces");
     if (code == STATUS_OK)

@@ -16,12 +16,12 @@ void cuvette_frame_destroy(cuvette_frame *frame)
 
 int cuvette_frame_width(const cuvette_frame *frame)
 {
-    return frame ? frame->account.result->picture->width : 0;
+    return frame ? frame->account.result->img->width : 0;
 }
 
 int cuvette_frame_height(const cuvette_frame *frame)
 {
-    return frame ? frame->account.result->picture->height : 0;
+    return frame ? frame->account.result->img->height : 0;
 }
 
 uint64_t cuvette_frame_hash(const cuvette_frame *frame)
@@ -48,9 +48,9 @@ cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0, int y0, int
                                  cuvette_diagnostic *why)
 {
     ENGINE_CALL(frame, rgb);
-    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, &stride, &inner);
+    const status code = check_rectangle(frame->account.result->img, x0, y0, x1, y1, &stride, &inner);
     if (code == STATUS_OK)
-        film_read(frame->account.result->picture, x0, y0, x1, y1, rgb, stride);
+        film_read(frame->account.result->img, x0, y0, x1, y1, rgb, stride);
     return engine_report(code, &inner, why);
 }
 
@@ -58,11 +58,11 @@ cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, in
                                   size_t stride, cuvette_diagnostic *why)
 {
     ENGINE_CALL(frame, srgb);
-    const status code = check_rectangle(frame->account.result->picture, x0, y0, x1, y1, &stride, &inner);
+    const status code = check_rectangle(frame->account.result->img, x0, y0, x1, y1, &stride, &inner);
     if (code == STATUS_OK) {
         codec_bytes bytes;
         codec_bytes_prepare(&bytes);
-        canvas_bytes(frame->account.result->picture, &bytes, x0, y0, x1, y1, srgb, stride);
+        canvas_bytes(frame->account.result->img, &bytes, x0, y0, x1, y1, srgb, stride);
     }
     return engine_report(code, &inner, why);
 }
@@ -73,7 +73,7 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
     status code = bits == 8 || bits == 16
                       ? STATUS_OK
                       : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "a picture cannot have %d bits", bits);
-    THEN(code, record_picture(frame->account.result->picture, path, bits, &inner));
+    THEN(code, record_image(frame->account.result->img, path, bits, &inner));
     return engine_report(code, &inner, why);
 }
 

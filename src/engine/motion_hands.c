@@ -88,7 +88,7 @@ cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const doubl
     if (!engine_is_finite(by))
         return engine_report(
             diagnose(&inner, STATUS_BAD_INPUT, "give three finite numbers", "the hand moves to nowhere"), &inner, why);
-    h->to = motion_hand_way(h, vector_of(by));
+    h->to = motion_hand_offset(h, vector_of(by));
     return CUVETTE_OK;
 }
 

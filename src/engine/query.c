@@ -33,7 +33,7 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
 {
     isa level = ISA_SSE2;
     scene without_sky = *s; /* no ray of a query looks at it */
-    without_sky.background.picture = NULL;
+    without_sky.background.img = NULL;
     if (integrator_of(&s->render)->drawn)
         trace_trees(&without_sky.render); /* rays need the hierarchies that drawing does without */
     status code = engine_isa(instructions, &level, why);
@@ -76,7 +76,7 @@ bench *query_take_bench(const cuvette_query *query)
         q->shelf = b->next;
     pthread_mutex_unlock(&q->lock);
     if (!b && (b = aligned_alloc(64, (sizeof *b + 63) / 64 * 64))) {
-        b->scratch.ways = NULL;
+        b->scratch.segments = NULL;
         b->scratch.meshes = &b->meshes;
     }
     return b;
@@ -114,7 +114,9 @@ cuvette_status cuvette_query_medium(const cuvette_query *query, const double *po
     if (!engine_is_finite(point))
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point is not finite"),
                              &inner, why);
-    const arrangement *a = query->ready->solids;
-    *at = a->bodies[arrangement_rank(a, arrangement_inside(a, vec3_make(point[0], point[1], point[2])))].solid;
+    const scene_geometry *a = query->ready->solids;
+    *at =
+        a->regions[scene_geometry_priority_index(a, scene_geometry_inside(a, vec3_make(point[0], point[1], point[2])))]
+            .solid;
     return CUVETTE_OK;
 }

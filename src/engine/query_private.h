@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/engine_private.h"
-#include "geometry/forest.h"
+#include "geometry/instance_set.h"
 #include "geometry/rays.h"
 #include "render/core/plan.h"
 
@@ -19,7 +19,7 @@ typedef struct bench {
     int list[ROW];
     surface_batch points;
     mesh_scratch meshes;
-    forest_hit mesh_hits[ROW];
+    instance_hit mesh_hits[ROW];
     mesh_points on_mesh;
     double transmitted[ROW];
     size_t asked[ROW]; /* which of the caller's rays a column is */

@@ -19,7 +19,7 @@ bool engine_is_finite(const double *v)
 }
 
 /* Is it the number of a face that there is? */
-static bool is_face(const arrangement *a, uint64_t word)
+static bool is_face(const scene_geometry *a, uint64_t word)
 {
     const int64_t face = (int64_t)word;
     if (!is_mesh_face(face))
@@ -28,7 +28,7 @@ static bool is_face(const arrangement *a, uint64_t word)
     const int part = a->meshes && bit < a->primitive_count ? a->meshes->by_primitive[bit] : -1;
     if (part < 0)
         return false;
-    const forest_part *p = &a->meshes->parts[part];
+    const instanced_mesh *p = &a->meshes->parts[part];
     return mesh_face_triangle(face) < p->triangles->triangle_count &&
            mesh_face_copy(face) < p->copies[0] * p->copies[1] * p->copies[2];
 }
@@ -67,7 +67,7 @@ static void put_ray(const cuvette_query *q, bench *b, int column, const cuvette_
     b->ox[column] = origin.x, b->oy[column] = origin.y, b->oz[column] = origin.z;
     b->dx[column] = d.x, b->dy[column] = d.y, b->dz[column] = d.z;
     b->start[column] = ray->start.word[0] ? (int64_t)ray->start.word[1] : FACE_NONE;
-    b->inside[column] = ray->start.word[0] ? ray->start.word[2] : arrangement_inside(q->ready->solids, origin);
+    b->inside[column] = ray->start.word[0] ? ray->start.word[2] : scene_geometry_inside(q->ready->solids, origin);
 }
 
 static ray_batch view_of(const bench *b, int count)
@@ -76,15 +76,15 @@ static ray_batch view_of(const bench *b, int count)
 }
 
 /* A miss, as far as it can be told. */
-static cuvette_hit nothing_met(const cuvette_query *q, int rank)
+static cuvette_hit nothing_met(const cuvette_query *q, int priority_index)
 {
     cuvette_hit h;
     memset(&h, 0, sizeof h);
     h.distance = (double)INFINITY;
     h.solid = h.after = CUVETTE_OUTSIDE;
     h.triangle = -1;
-    h.before = q->ready->solids->bodies[rank].solid;
-    h.n_before = q->ready->ior[rank];
+    h.before = q->ready->solids->regions[priority_index].solid;
+    h.n_before = q->ready->ior[priority_index];
     return h;
 }
 
@@ -94,13 +94,13 @@ static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int 
     const hit_batch *hits = &b->hits;
     const surface_batch *s = &b->points;
     cuvette_hit h = nothing_met(q, (int)hits->before[column]);
-    const body *bounded = &p->solids->bodies[p->solids->primitives[met].rank];
+    const region *bounded = &p->solids->regions[p->solids->primitives[met].priority_index];
     h.distance = hits->t[column];
     h.point[0] = s->px[k], h.point[1] = s->py[k], h.point[2] = s->pz[k];
     h.normal[0] = s->nx[k], h.normal[1] = s->ny[k], h.normal[2] = s->nz[k];
     h.error = s->error[k];
-    h.solid = p->solids->bodies[hits->surface[column]].solid;
-    h.after = p->solids->bodies[hits->after[column]].solid;
+    h.solid = p->solids->regions[hits->surface[column]].solid;
+    h.after = p->solids->regions[hits->after[column]].solid;
     h.n_after = p->ior[hits->after[column]];
     if (is_mesh_face(s->face[k])) {
         h.triangle = mesh_face_triangle(s->face[k]);
@@ -125,11 +125,11 @@ static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuv
         b->gstart[k] = b->start[i], b->ginside[k] = b->hits.inside_before[i], b->t[k] = b->hits.t[i];
     }
     const ray_batch rays = {count, b->gox, b->goy, b->goz, b->gdx, b->gdy, b->gdz, b->gstart, b->ginside};
-    const arrangement *a = q->ready->solids;
+    const scene_geometry *a = q->ready->solids;
     if (!a->primitives[met].rule) {
         for (int k = 0; k < count; k++)
             b->mesh_hits[k] = b->meshes.hit[b->list[k]];
-        forest_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);
+        instance_set_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);
     } else {
         q->kernels->surface(&a->primitives[met], &rays, b->t, met, &b->points);
     }
@@ -144,20 +144,20 @@ static bool within(double distance, double reach)
 
 static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *rays, int count, cuvette_hit *hits)
 {
-    const arrangement *a = q->ready->solids;
+    const scene_geometry *a = q->ready->solids;
     for (int i = 0; i < count; i++)
         put_ray(q, b, i, &rays[i], 1.0);
     const ray_batch view = view_of(b, count);
     q->kernels->nearest(a, &view, &b->scratch, &b->hits);
     for (int i = 0; i < count; i++)
-        if (b->hits.crossed[i] < 0 || !within(b->hits.t[i], rays[i].reach)) {
-            hits[i] = nothing_met(q, arrangement_rank(a, b->inside[i]));
-            b->hits.crossed[i] = -1;
+        if (b->hits.hit_primitive[i] < 0 || !within(b->hits.t[i], rays[i].reach)) {
+            hits[i] = nothing_met(q, scene_geometry_priority_index(a, b->inside[i]));
+            b->hits.hit_primitive[i] = -1;
         }
     for (int met = 0; met < a->primitive_count; met++) {
         int listed = 0;
         for (int i = 0; i < count; i++)
-            if (b->hits.crossed[i] == met)
+            if (b->hits.hit_primitive[i] == met)
                 b->list[listed++] = i;
         if (listed > 0)
             tell_group(q, b, met, listed, hits);
@@ -198,7 +198,7 @@ static void occluded_batch(const cuvette_query *q, bench *b, int count, bool end
     else
         q->kernels->nearest(q->ready->solids, &view, &b->scratch, &b->hits);
     for (int i = 0; i < count; i++)
-        blocked[b->asked[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.crossed[i] >= 0;
+        blocked[b->asked[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.hit_primitive[i] >= 0;
 }
 
 static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, size_t count, bool ends,

@@ -33,7 +33,7 @@ static double facing(const surface_batch *point, const ray_batch *one)
     return greater(-along, DBL_MIN);
 }
 
-static crossing crossing_of(const arrangement *a, const ray_batch *rays, int i, int p, double t, bool leaving)
+static crossing crossing_of(const scene_geometry *a, const ray_batch *rays, int i, int p, double t, bool leaving)
 {
     const uint64_t inside = (uint64_t)leaving << p;
     const ray_batch one = ray_of(rays, i, &inside);
@@ -44,18 +44,18 @@ static crossing crossing_of(const arrangement *a, const ray_batch *rays, int i, 
 
 /* A point on a mesh is as exact as its triangle; the distance along the ray depends on the ray's start and length, too.
  */
-static crossing mesh_crossing_of(const arrangement *a, const ray_batch *rays, int i, const forest_hit *hit)
+static crossing mesh_crossing_of(const scene_geometry *a, const ray_batch *rays, int i, const instance_hit *hit)
 {
     const uint64_t inside = 0;
     const ray_batch one = ray_of(rays, i, &inside);
     surface_batch point;
-    forest_surface(a->meshes, &one, hit, false, &point, NULL);
-    const forest_part *part = &a->meshes->parts[a->meshes->by_primitive[mesh_face_primitive(hit->face)]];
-    const vec3 o = forest_origin(part, mesh_face_copy(hit->face));
+    instance_set_surface(a->meshes, &one, hit, false, &point, NULL);
+    const instanced_mesh *part = &a->meshes->parts[a->meshes->by_primitive[mesh_face_primitive(hit->face)]];
+    const vec3 o = instance_set_origin(part, mesh_face_copy(hit->face));
     const double start = magnitude(rays->ox[i] - o.x) + magnitude(rays->oy[i] - o.y) + magnitude(rays->oz[i] - o.z);
     const double step = magnitude(rays->dx[i]) + magnitude(rays->dy[i]) + magnitude(rays->dz[i]);
     const double error = point.error[0] + POINT_ERROR * (start + magnitude(hit->t) * step);
-    return (crossing){part->primitive, hit->t, error / facing(&point, &one), forest_extent(a->meshes, hit->face)};
+    return (crossing){part->primitive, hit->t, error / facing(&point, &one), instance_set_extent(a->meshes, hit->face)};
 }
 
 /* Upper limit of a contact: half the filter's window or less, whatever else is in the scene. It acts where a ray grazes
@@ -72,7 +72,8 @@ static bool in_contact(const ray_batch *rays, int i, const crossing *c, const cr
 }
 
 /* Where a primitive's boundary at t lies: -1 before the crossing, 0 in contact with it, 1 behind it. */
-static int side_of(const arrangement *a, const ray_batch *rays, int i, const crossing *c, int p, double t, bool leaving)
+static int side_of(const scene_geometry *a, const ray_batch *rays, int i, const crossing *c, int p, double t,
+                   bool leaving)
 {
     if (p == c->of && t == c->t)
         return 0;
@@ -91,14 +92,14 @@ static void set_bit(uint64_t *set, int bit, bool on)
 
 /* A mesh's boundaries in contact with a crossing, and the distance of the farthest from it; negative for none. */
 typedef struct mesh_contact {
-    const arrangement *a;
+    const scene_geometry *a;
     const ray_batch *rays;
     int ray;
     const crossing *at;
     double reach;
 } mesh_contact;
 
-static void take_contact(void *context, const forest_hit *hit)
+static void take_contact(void *context, const instance_hit *hit)
 {
     mesh_contact *m = context;
     const crossing other = mesh_crossing_of(m->a, m->rays, m->ray, hit);
@@ -107,8 +108,8 @@ static void take_contact(void *context, const forest_hit *hit)
 }
 
 /* How far mesh p's boundaries in contact lie from the crossing at most, and a little more; negative for none. */
-static double mesh_reach(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, const crossing *at,
-                         int p)
+static double mesh_reach(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s,
+                         const crossing *at, int p)
 {
     mesh_contact m = {a, rays, s->ray[k], at, -1.0};
     KERNEL(mesh_each_near)(a, rays, k, s, p, at->t, take_contact, &m);
@@ -116,7 +117,7 @@ static double mesh_reach(const arrangement *a, const ray_batch *rays, int k, con
 }
 
 /* The sets on both sides of the crossing as to the meshes with other boundaries near it. */
-static void merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
+static void merge_meshes(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
                          const crossing *at)
 {
     for (int p = 0; p < a->primitive_count; p++) {
@@ -131,28 +132,28 @@ static void merge_meshes(const arrangement *a, const ray_batch *rays, int k, ray
     }
 }
 
-static void cross_mesh_of_owner(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
-                                forest_hit *mesh_hits, const crossing *at)
+static void cross_mesh_of_owner(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s,
+                                hit_batch *c, instance_hit *mesh_hits, const crossing *at)
 {
-    const int p = a->bodies[c->surface[k]].outside;
+    const int p = a->regions[c->surface[k]].outside;
     const double reach = s->meshes->near[k] >> p & 1 ? mesh_reach(a, rays, k, s, at, p) : -1.0;
     if (reach < 0.0)
         return;
-    const forest_hit own =
+    const instance_hit own =
         KERNEL(mesh_hit_between)(a, rays, k, s, p, c->inside_before[k], at->t - reach, at->t + reach);
     if (own.face == FACE_NONE)
         return;
     mesh_hits[k] = own;
     c->t[k] = own.t;
-    c->crossed[k] = p;
+    c->hit_primitive[k] = p;
 }
 
 /* Of several boundaries in contact at column k's crossing, the one of the body that owns the surface is crossed: its
  * normal, frame and colours are seen. */
-static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
-                             forest_hit *mesh_hits, const crossing *at)
+static void cross_the_owners(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
+                             instance_hit *mesh_hits, const crossing *at)
 {
-    const body *owner = &a->bodies[c->surface[k]];
+    const region *owner = &a->regions[c->surface[k]];
     const int pieces[2] = {owner->outside, owner->hollow};
     if (c->surface[k] == 0 || at->of == owner->outside || at->of == owner->hollow)
         return;
@@ -167,19 +168,20 @@ static void cross_the_owners(const arrangement *a, const ray_batch *rays, int k,
             const double t = leaving ? s->out[p + end / 2][k] : s->in[p + end / 2][k];
             if (side_of(a, rays, s->ray[k], at, p, t, leaving) == 0) {
                 c->t[k] = t;
-                c->crossed[k] = p;
+                c->hit_primitive[k] = p;
                 return;
             }
         }
     }
 }
 
-void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
-                            forest_hit *mesh_hits)
+void KERNEL(merge_contacts)(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
+                            instance_hit *mesh_hits)
 {
-    const int i = s->ray[k], crossed = (int)c->crossed[k];
-    const crossing at = is_mesh(a, crossed) ? mesh_crossing_of(a, rays, i, &mesh_hits[k])
-                                            : crossing_of(a, rays, i, crossed, c->t[k], c->t[k] != s->in[crossed][k]);
+    const int i = s->ray[k], hit_primitive = (int)c->hit_primitive[k];
+    const crossing at = is_mesh(a, hit_primitive)
+                            ? mesh_crossing_of(a, rays, i, &mesh_hits[k])
+                            : crossing_of(a, rays, i, hit_primitive, c->t[k], c->t[k] != s->in[hit_primitive][k]);
     const uint64_t meshes = a->meshes ? a->meshes->primitives : 0;
     for (int p = 0; p < a->primitive_count; p++) {
         if (!((s->near[k] & ~meshes) >> p & 1))
@@ -196,7 +198,7 @@ void KERNEL(merge_contacts)(const arrangement *a, const ray_batch *rays, int k, 
     }
     if (a->meshes)
         merge_meshes(a, rays, k, s, c, &at);
-    c->after[k] = arrangement_rank(a, c->inside_after[k]);
-    c->surface[k] = arrangement_surface(a, (int)c->before[k], (int)c->after[k]);
+    c->after[k] = scene_geometry_priority_index(a, c->inside_after[k]);
+    c->surface[k] = scene_geometry_surface(a, (int)c->before[k], (int)c->after[k]);
     cross_the_owners(a, rays, k, s, c, mesh_hits, &at);
 }

@@ -57,13 +57,13 @@ static void read_piece(void *context, size_t index, int member)
     r->pieces[index] = piece;
 }
 
-static status read_triangles(const mesh *m, team *t, bvh_ref *refs, bvh_range *all, diagnostic *why)
+static status read_triangles(const mesh *m, thread_team *t, bvh_ref *refs, bvh_range *all, diagnostic *why)
 {
     size_t count = (m->triangle_count + PIECE - 1) / PIECE;
     reading r = {m, refs, aligned_alloc(64, (count + 1) * 64 * ((sizeof(bvh_range) + 63) / 64))};
     if (!r.pieces)
         return out_of_memory(why);
-    team_run(t, read_piece, &r, count);
+    thread_team_run(t, read_piece, &r, count);
     *all = (bvh_range){.box = bvh_box_empty(), .centers = bvh_box_empty()};
     for (size_t i = 0; i < count; i++) {
         const bvh_range *piece = &r.pieces[i];
@@ -77,15 +77,15 @@ static status read_triangles(const mesh *m, team *t, bvh_ref *refs, bvh_range *a
     return STATUS_OK;
 }
 
-static status build(hierarchy *h, team *t, bvh_ref *refs, diagnostic *why)
+static status build(hierarchy *h, thread_team *t, bvh_ref *refs, diagnostic *why)
 {
     bvh_range all;
     TRY(read_triangles(h->of, t, refs, &all, why));
     h->referred = all.count;
     bvh_tree tree;
-    status code = bvh_grow(&tree, t, refs, &all, why);
-    THEN(code, bvh_gather(h, tree.root, refs, t, why));
-    bvh_fell(&tree);
+    status code = bvh_build_tree(&tree, t, refs, &all, why);
+    THEN(code, bvh_collapse(h, tree.root, refs, t, why));
+    bvh_free(&tree);
     return code;
 }
 
@@ -101,9 +101,9 @@ status hierarchy_build_bvh(hierarchy *h, int threads, diagnostic *why)
     const mesh *m = h->of;
     h->single = m->single;
     bvh_ref *refs = aligned_alloc(64, (m->triangle_count + 2) / 2 * 2 * sizeof *refs);
-    team *t = team_start(useful(threads, m->triangle_count));
+    thread_team *t = thread_team_start(useful(threads, m->triangle_count));
     status code = refs && t ? build(h, t, refs, why) : out_of_memory(why);
-    team_stop(t);
+    thread_team_stop(t);
     free(refs);
     size_t block = h->single ? sizeof(block_single) : sizeof(block_double);
     h->report.bytes = sizeof *h + h->node_count * sizeof *h->nodes + h->block_count * block;

@@ -11,7 +11,7 @@
 #pragma once
 
 #include "geometry/hierarchy_private.h"
-#include "base/team.h"
+#include "base/thread_team.h"
 
 #include <string.h>
 
@@ -173,7 +173,7 @@ typedef struct bvh_cut {
  * 0. */
 void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2]);
 /* The same by a team; for ranges so large that it pays. STATUS_FAILURE when memory is out. */
-status bvh_split_together(team *t, bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2],
+status bvh_split_together(thread_team *t, bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2],
                           diagnostic *why);
 
 /* The steps of a split. */
@@ -184,10 +184,10 @@ bool bvh_cheapest(const bvh_bins *s, bvh_cut *cut); /* false where no cut is bet
 /* Moves the references of the first half to the front and returns their number; centers: bounds of the halves' doubled
  * centres. */
 uint32_t bvh_part(bvh_ref *refs, size_t count, const bvh_bins *s, bvh_cut cut, bvh_box centers[2]);
-void bvh_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2],
-                bvh_range half[2]);
+void bvh_median_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2],
+                       bvh_range half[2]);
 /* Halves of equal counts, for where bins do not help. */
-void bvh_halve(bvh_ref *refs, const bvh_range *range, bvh_range half[2]);
+void bvh_split_at_median(bvh_ref *refs, const bvh_range *range, bvh_range half[2]);
 
 /* Cost and shares of a branch from its halves', when those are known. */
 void bvh_choose(bvh_branch *b);
@@ -203,9 +203,9 @@ typedef struct bvh_tree {
 /* Ranges and subtrees of at most so many triangles are one member's work. */
 enum { TASK_TRIANGLES = 8192 };
 
-/* Grows a tree over refs, which it reorders. bvh_fell releases it, also after STATUS_FAILURE (memory is out). */
-status bvh_grow(bvh_tree *tree, team *t, bvh_ref *refs, const bvh_range *all, diagnostic *why);
-void bvh_fell(bvh_tree *tree);
+/* Grows a tree over refs, which it reorders. bvh_free releases it, also after STATUS_FAILURE (memory is out). */
+status bvh_build_tree(bvh_tree *tree, thread_team *t, bvh_ref *refs, const bvh_range *all, diagnostic *why);
+void bvh_free(bvh_tree *tree);
 
 /* The kernels of hierarchy_refit: blocks and boxes anew. */
 void hierarchy_refit_nodes_sse2(hierarchy *h);
@@ -214,4 +214,4 @@ void hierarchy_refit_nodes_avx512(hierarchy *h);
 
 /* Counts what becomes of a tree, and writes it to h; root NULL: no triangles. STATUS_FAILURE when memory is out or the
  * tree too large. */
-status bvh_gather(hierarchy *h, bvh_branch *root, const bvh_ref *refs, team *t, diagnostic *why);
+status bvh_collapse(hierarchy *h, bvh_branch *root, const bvh_ref *refs, thread_team *t, diagnostic *why);

@@ -100,8 +100,8 @@ uint32_t bvh_part(bvh_ref *refs, size_t count, const bvh_bins *s, bvh_cut cut, b
     return lower;
 }
 
-void bvh_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2],
-                bvh_range half[2])
+void bvh_median_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2],
+                       bvh_range half[2])
 {
     half[0] = (bvh_range){bvh_box_empty(), centers[0], range->first, lower};
     half[1] = (bvh_range){bvh_box_empty(), centers[1], range->first + lower, range->count - lower};
@@ -146,7 +146,7 @@ static void select_lower(bvh_ref *refs, size_t count, size_t middle, int axis)
     }
 }
 
-void bvh_halve(bvh_ref *refs, const bvh_range *range, bvh_range half[2])
+void bvh_split_at_median(bvh_ref *refs, const bvh_range *range, bvh_range half[2])
 {
     int axis = 0;
     float widest = -1.0f;
@@ -198,9 +198,9 @@ void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[
         if (bvh_cheapest(&s, &cut)) {
             bvh_box centers[2];
             uint32_t lower = bvh_part(refs + range->first, range->count, &s, cut, centers);
-            bvh_halves(range, &s, cut, lower, centers, half);
+            bvh_median_halves(range, &s, cut, lower, centers, half);
             return;
         }
     }
-    bvh_halve(refs, range, half);
+    bvh_split_at_median(refs, range, half);
 }

@@ -80,10 +80,11 @@ static void settle(const job *j, size_t pieces)
     }
 }
 
-status bvh_split_together(team *t, bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2], diagnostic *why)
+status bvh_split_together(thread_team *t, bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2],
+                          diagnostic *why)
 {
     size_t pieces = (range->count + (size_t)PIECE - 1) / PIECE;
-    if (team_size(t) == 1 || pieces < 2 || !bvh_may_bin(range, depth)) {
+    if (thread_team_size(t) == 1 || pieces < 2 || !bvh_may_bin(range, depth)) {
         bvh_split(refs, range, depth, half);
         return STATUS_OK;
     }
@@ -92,11 +93,11 @@ status bvh_split_together(team *t, bvh_ref *refs, const bvh_range *range, int de
     if (!j.pieces)
         return out_of_memory(why);
     bvh_bins_begin(&j.bins, range);
-    team_run(t, fill_piece, &j, pieces);
+    thread_team_run(t, fill_piece, &j, pieces);
     for (size_t i = 0; i < pieces; i++)
         add_bins(&j.bins, &j.pieces[i].bins);
     if (bvh_cheapest(&j.bins, &j.cut)) {
-        team_run(t, part_piece, &j, pieces);
+        thread_team_run(t, part_piece, &j, pieces);
         bvh_box centers[2] = {bvh_box_empty(), bvh_box_empty()};
         for (size_t i = 0; i < pieces; i++) {
             j.lower += j.pieces[i].lower;
@@ -104,9 +105,9 @@ status bvh_split_together(team *t, bvh_ref *refs, const bvh_range *range, int de
                 bvh_box_add(&centers[k], j.pieces[i].centers[k].low, j.pieces[i].centers[k].high);
         }
         settle(&j, pieces);
-        bvh_halves(range, &j.bins, j.cut, j.lower, centers, half);
+        bvh_median_halves(range, &j.bins, j.cut, j.lower, centers, half);
     } else {
-        bvh_halve(refs, range, half);
+        bvh_split_at_median(refs, range, half);
     }
     free(j.pieces);
     return STATUS_OK;

@@ -8,7 +8,7 @@
 
 #include "base/kernel.h"
 #include "base/lanes.h"
-#include "geometry/arrangement.h"
+#include "geometry/scene_geometry.h"
 #include <math.h>
 
 typedef struct local_ray {

@@ -1,7 +1,7 @@
 #include "geometry/shapes/shape.h"
 
 #include "base/elementary.h"
-#include "geometry/arrangement.h"
+#include "geometry/scene_geometry.h"
 #include <string.h>
 
 #define SHAPE_RULE(KIND, file) [SHAPE_##KIND] = &shape_##file,

@@ -93,21 +93,21 @@ status codec_bmp_read(const unsigned char *bytes, size_t size, image **out, diag
     bmp_header header;
     *out = NULL;
     TRY(read_header(bytes, size, &header, why));
-    image *picture = NULL;
+    image *img = NULL;
     float *linear = NULL;
-    status code = codec_begin(header.width, header.height, size, 255, &picture, &linear, why);
+    status code = codec_begin(header.width, header.height, size, 255, &img, &linear, why);
     if (code != STATUS_OK) {
-        image_destroy(picture);
+        image_destroy(img);
         return code;
     }
     const size_t width = (size_t)header.width, height = (size_t)header.height;
     for (size_t row = 0; row < height; row++) {
         const unsigned char *from = bytes + header.offset + row * header.row_bytes;
-        float *pixel = picture->pixel + (header.from_top ? row : height - 1 - row) * width * 3;
+        float *pixel = img->pixel + (header.from_top ? row : height - 1 - row) * width * 3;
         for (size_t x = 0; x < width; x++, from += 3, pixel += 3)
             pixel[0] = linear[from[2]], pixel[1] = linear[from[1]], pixel[2] = linear[from[0]];
     }
     free(linear);
-    *out = picture;
+    *out = img;
     return STATUS_OK;
 }

@@ -23,8 +23,8 @@ status codec_check_size(long long width, long long height, size_t file_bytes, di
 
 /* A picture of the size that a file of so many bytes claims, and the decoding table of its values 0..maximum. Both are
  * the caller's, also of what there is when this fails. */
-status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **picture,
-                   float **linear, diagnostic *why);
+status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **img, float **linear,
+                   diagnostic *why);
 
 /* sRGB-encoded and correctly rounded to 0..maximum; NaN is 0. */
 unsigned codec_quantize(float linear, unsigned maximum);
@@ -39,9 +39,9 @@ unsigned char codec_byte(const codec_bytes *table, float linear);
 float *codec_decode_table(unsigned maximum);
 
 /* fast: with less effort, a larger file. */
-status codec_png_write(const image *picture, FILE *stream, int bits, bool fast, diagnostic *why);
-status codec_jpeg_write(const image *picture, FILE *stream, diagnostic *why);
-status codec_pfm_write(const image *picture, FILE *stream, diagnostic *why);
+status codec_png_write(const image *img, FILE *stream, int bits, bool fast, diagnostic *why);
+status codec_jpeg_write(const image *img, FILE *stream, diagnostic *why);
+status codec_pfm_write(const image *img, FILE *stream, diagnostic *why);
 
 status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why);
 status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);

@@ -6,16 +6,16 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static size_t pixels_of(const image *picture)
+static size_t pixels_of(const image *img)
 {
-    return (size_t)picture->width * (size_t)picture->height;
+    return (size_t)img->width * (size_t)img->height;
 }
 
-static status check_numbers(const image *picture, const char *which, diagnostic *why)
+static status check_numbers(const image *img, const char *which, diagnostic *why)
 {
-    for (size_t i = 0; i < 3 * pixels_of(picture); i++) {
-        if (isnan(picture->pixel[i])) {
-            size_t pixel = i / 3, width = (size_t)picture->width;
+    for (size_t i = 0; i < 3 * pixels_of(img); i++) {
+        if (isnan(img->pixel[i])) {
+            size_t pixel = i / 3, width = (size_t)img->width;
             return diagnose(why, STATUS_BAD_INPUT, "give pictures of numbers",
                             "pixel %zu,%zu of the %s picture is not a number", pixel % width, pixel / width, which);
         }

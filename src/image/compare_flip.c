@@ -28,10 +28,10 @@ typedef struct work_planes {
     double *memory;
 } work_planes;
 
-static status lay_out_planes(work_planes *d, const image *picture, diagnostic *why)
+static status lay_out_planes(work_planes *d, const image *img, diagnostic *why)
 {
     enum { PLANES = 2 * SEEN + 4 };
-    *d = (work_planes){.width = picture->width, .height = picture->height};
+    *d = (work_planes){.width = img->width, .height = img->height};
     d->count = (size_t)d->width * (size_t)d->height;
     d->memory = calloc(d->count, PLANES * sizeof *d->memory);
     if (!d->memory)
@@ -118,11 +118,11 @@ static void detect(const work_planes *d, const convolve_taps *detector, const co
         strength[i] = sqrt(across[i] * across[i] + down[i] * down[i]);
 }
 
-static void look_at(const work_planes *d, const image *picture, const sight *s)
+static void look_at(const work_planes *d, const image *img, const sight *s)
 {
     for (size_t i = 0; i < d->count; i++) {
         double opponent[3];
-        flip_opponent(picture->pixel + 3 * i, opponent);
+        flip_opponent(img->pixel + 3 * i, opponent);
         for (int channel = 0; channel < 3; channel++)
             d->opponent[channel][i] = opponent[channel];
     }

@@ -15,21 +15,21 @@ static void magma(double t, float linear[3])
 
 status image_compare_map(const image *a, const image *b, image **map, diagnostic *why)
 {
-    image *picture = NULL;
+    image *img = NULL;
     *map = NULL;
     TRY(compare_check(a, b, why));
     size_t count = (size_t)a->width * (size_t)a->height;
     double *errors = malloc(count * sizeof *errors);
-    status code = errors ? image_create(a->width, a->height, &picture, why)
+    status code = errors ? image_create(a->width, a->height, &img, why)
                          : diagnose(why, STATUS_FAILURE, NULL, "out of memory for the map of errors");
     THEN(code, compare_flip(a, b, errors, why));
     for (size_t i = 0; code == STATUS_OK && i < count; i++)
-        magma(errors[i], picture->pixel + 3 * i);
+        magma(errors[i], img->pixel + 3 * i);
     free(errors);
     if (code != STATUS_OK) {
-        image_destroy(picture);
+        image_destroy(img);
         return code;
     }
-    *map = picture;
+    *map = img;
     return STATUS_OK;
 }

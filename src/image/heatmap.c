@@ -37,19 +37,19 @@ void heatmap_color(double t, unsigned char rgb[3])
 
 /* A picture and the linear light of the 256 encoded values. */
 typedef struct canvas {
-    image *picture;
+    image *img;
     const float *decoded;
 } canvas;
 
 static void fill(const canvas *on, int x, int y, int width, int height, const unsigned char rgb[3])
 {
-    image *picture = on->picture;
+    image *img = on->img;
     float linear[3] = {on->decoded[rgb[0]], on->decoded[rgb[1]], on->decoded[rgb[2]]};
-    int right = x + width < picture->width ? x + width : picture->width;
-    int bottom = y + height < picture->height ? y + height : picture->height;
+    int right = x + width < img->width ? x + width : img->width;
+    int bottom = y + height < img->height ? y + height : img->height;
     for (int row = y > 0 ? y : 0; row < bottom; row++)
         for (int column = x > 0 ? x : 0; column < right; column++)
-            memcpy(picture->pixel + ((size_t)row * (size_t)picture->width + (size_t)column) * 3, linear, sizeof linear);
+            memcpy(img->pixel + ((size_t)row * (size_t)img->width + (size_t)column) * 3, linear, sizeof linear);
 }
 
 static int text_width(size_t length, int scale)
@@ -107,20 +107,20 @@ static key_layout lay_out_key(int width)
 static void draw_title(const canvas *on, const key_layout *key, int top, const char *title)
 {
     char shown[256];
-    size_t room = (size_t)((on->picture->width - 2 * key->margin) / (FONT_ADVANCE * key->scale));
+    size_t room = (size_t)((on->img->width - 2 * key->margin) / (FONT_ADVANCE * key->scale));
     room = room < sizeof shown ? room : sizeof shown - 1;
     size_t length = strlen(title);
     snprintf(shown, room + 1, "%s", title);
     if (length > room && room > 3)
         memcpy(shown + room - 3, "...", 3);
-    int x = (on->picture->width - text_width(strlen(shown), key->scale)) / 2;
+    int x = (on->img->width - text_width(strlen(shown), key->scale)) / 2;
     draw_text(on, x, top + key->title_y, key->scale, shown);
 }
 
 static void draw_number(const canvas *on, const key_layout *key, int top, int center, const char *text)
 {
     int width = text_width(strlen(text), key->scale), x = center - width / 2;
-    int rightmost = on->picture->width - width - 2 * key->scale;
+    int rightmost = on->img->width - width - 2 * key->scale;
     x = x > rightmost ? rightmost : x;
     draw_text(on, x < 2 * key->scale ? 2 * key->scale : x, top + key->numbers_y, key->scale, text);
 }
@@ -222,8 +222,8 @@ static void draw_values(const canvas *on, int left, const double *values, int wi
 static void draw(const canvas *on, const double *values, int width, int height, const key_scale *scale,
                  const char *title, const key_layout *key)
 {
-    fill(on, 0, 0, on->picture->width, on->picture->height, PAPER);
-    draw_values(on, (on->picture->width - width) / 2, values, width, height, scale->end);
+    fill(on, 0, 0, on->img->width, on->img->height, PAPER);
+    draw_values(on, (on->img->width - width) / 2, values, width, height, scale->end);
     draw_key(on, key, height, scale, title);
 }
 
@@ -235,16 +235,16 @@ status heatmap_create(const double *values, int width, int height, const char *t
         return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
                         "a heat map of %d x %d values is not possible", width, height);
     TRY(find_scale(values, (size_t)width * (size_t)height, &scale, why));
-    int picture_width = width < WIDTH_MIN ? WIDTH_MIN : width;
-    key_layout key = lay_out_key(picture_width);
+    int image_width = width < WIDTH_MIN ? WIDTH_MIN : width;
+    key_layout key = lay_out_key(image_width);
     float *decoded = codec_decode_table(255);
-    image *picture = NULL;
+    image *img = NULL;
     if (!decoded)
         return out_of_memory(why);
-    status code = image_create(picture_width, height + key.height, &picture, why);
+    status code = image_create(image_width, height + key.height, &img, why);
     if (code == STATUS_OK) {
-        draw(&(canvas){picture, decoded}, values, width, height, &scale, title ? title : "", &key);
-        *out = picture;
+        draw(&(canvas){img, decoded}, values, width, height, &scale, title ? title : "", &key);
+        *out = img;
     }
     free(decoded);
     return code;

@@ -18,29 +18,29 @@ status image_create(int width, int height, image **out, diagnostic *why)
     if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
                         "a picture of %d x %d pixels is not possible", width, height);
-    image *picture = malloc(sizeof *picture);
+    image *img = malloc(sizeof *img);
     float *pixel = calloc((size_t)width * (size_t)height * 3, sizeof *pixel);
-    if (!picture || !pixel) {
-        free(picture);
+    if (!img || !pixel) {
+        free(img);
         free(pixel);
         return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a picture of %d x %d pixels", width, height);
     }
-    *picture = (image){.width = width, .height = height, .pixel = pixel, .owners = 1};
-    *out = picture;
+    *img = (image){.width = width, .height = height, .pixel = pixel, .owners = 1};
+    *out = img;
     return STATUS_OK;
 }
 
-void image_destroy(image *picture)
+void image_destroy(image *img)
 {
-    if (picture && __atomic_sub_fetch(&picture->owners, 1, __ATOMIC_ACQ_REL) <= 0) {
-        free(picture->pixel);
-        free(picture);
+    if (img && __atomic_sub_fetch(&img->owners, 1, __ATOMIC_ACQ_REL) <= 0) {
+        free(img->pixel);
+        free(img);
     }
 }
 
-image *image_share(const image *picture)
+image *image_share(const image *img)
 {
-    image *own = (image *)(uintptr_t)picture; /* the count alone changes */
+    image *own = (image *)(uintptr_t)img; /* the count alone changes */
     __atomic_add_fetch(&own->owners, 1, __ATOMIC_RELAXED);
     return own;
 }
@@ -78,29 +78,29 @@ status codec_check_size(long long width, long long height, size_t file_bytes, di
     return STATUS_OK;
 }
 
-status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **picture,
-                   float **linear, diagnostic *why)
+status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **img, float **linear,
+                   diagnostic *why)
 {
     TRY(codec_check_size(width, height, file_bytes, why));
-    TRY(image_create((int)width, (int)height, picture, why));
+    TRY(image_create((int)width, (int)height, img, why));
     if (!(*linear = codec_decode_table(maximum)))
         return out_of_memory(why);
     return STATUS_OK;
 }
 
-static status write_as(const image *picture, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
+static status write_as(const image *img, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
 {
     switch (format) {
-    case IMAGE_PNG: return codec_png_write(picture, stream, bits, fast, why);
-    case IMAGE_JPEG: return codec_jpeg_write(picture, stream, why);
-    case IMAGE_PFM: return codec_pfm_write(picture, stream, why);
+    case IMAGE_PNG: return codec_png_write(img, stream, bits, fast, why);
+    case IMAGE_JPEG: return codec_jpeg_write(img, stream, why);
+    case IMAGE_PFM: return codec_pfm_write(img, stream, why);
     case IMAGE_BMP:
     case IMAGE_UNKNOWN: break;
     }
     return diagnose(why, STATUS_BAD_INPUT, "PNG, JPEG or PFM", "unknown kind of picture");
 }
 
-status image_encode(const image *picture, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
+status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
                     diagnostic *why)
 {
     char *text = NULL;
@@ -108,12 +108,12 @@ status image_encode(const image *picture, image_format format, int bits, bool fa
     *bytes = NULL;
     TRY(text_writer_open(&writer, why));
     const status code =
-        text_writer_end(&writer, write_as(picture, format, writer.stream, bits, fast, why), &text, size, why);
+        text_writer_end(&writer, write_as(img, format, writer.stream, bits, fast, why), &text, size, why);
     *bytes = (unsigned char *)text;
     return code;
 }
 
-status image_write(const image *picture, const char *path, int bits, diagnostic *why)
+status image_write(const image *img, const char *path, int bits, diagnostic *why)
 {
     image_format format = image_format_of(path);
     if (format == IMAGE_UNKNOWN)
@@ -123,7 +123,7 @@ status image_write(const image *picture, const char *path, int bits, diagnostic 
         return diagnose_at(why, path, STATUS_BAD_INPUT, "8 or 16", "a PNG picture cannot have %d bits", bits);
     file_writer writer;
     TRY(file_writer_open(&writer, path, why));
-    status code = write_as(picture, format, writer.stream, bits, false, why);
+    status code = write_as(img, format, writer.stream, bits, false, why);
     if (code == STATUS_OK || ferror(writer.stream))
         return file_writer_commit(&writer, why); /* knows best why the stream failed */
     file_writer_abandon(&writer);

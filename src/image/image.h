@@ -18,11 +18,11 @@ enum { IMAGE_SIDE_MAX = 65536 };
 
 /* Black picture, 1 <= width, height <= IMAGE_SIDE_MAX. */
 status image_create(int width, int height, image **out, diagnostic *why);
-void image_destroy(image *picture);
+void image_destroy(image *img);
 
 /* One more owner of a picture that nobody changes from now on: image_destroy then releases it when the last one has
  * called it, from any thread. */
-image *image_share(const image *picture);
+image *image_share(const image *img);
 
 /* The sRGB transfer function, IEC 61966-2-1, both ways. Values under 0 and over 1 are clamped by the encoder. */
 double srgb_encode(double linear);
@@ -41,11 +41,11 @@ image_format image_format_of(const char *path);
 
 /* PNG at 8 or 16 bits and JPEG (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as
  * 0; PFM is linear, little-endian float. bits matters to PNG only. */
-status image_write(const image *picture, const char *path, int bits, diagnostic *why);
+status image_write(const image *img, const char *path, int bits, diagnostic *why);
 
 /* The same into fresh memory, the caller's. bits: 8 or 16. fast: a PNG is compressed with less effort, for one who
  * waits. */
-status image_encode(const image *picture, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
+status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
                     diagnostic *why);
 
 /* Reads PNG (any depth and kind; alpha is dropped after blending over black), JPEG (grey or RGB), PFM (colour or

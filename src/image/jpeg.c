@@ -15,7 +15,7 @@ typedef struct jpeg_job {
     jmp_buf escape;
     char message[JMSG_LENGTH_MAX];
     unsigned char *row;
-    image *picture;
+    image *img;
     float *linear;
     status code;
     diagnostic *why;
@@ -52,12 +52,12 @@ static void prepare(jpeg_job *job)
 
 /* ---- writing ---- */
 
-static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image *picture, FILE *stream)
+static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image *img, FILE *stream)
 {
     jpeg_create_compress(cinfo);
     jpeg_stdio_dest(cinfo, stream);
-    cinfo->image_width = (JDIMENSION)picture->width;
-    cinfo->image_height = (JDIMENSION)picture->height;
+    cinfo->image_width = (JDIMENSION)img->width;
+    cinfo->image_height = (JDIMENSION)img->height;
     cinfo->input_components = 3;
     cinfo->in_color_space = JCS_RGB;
     jpeg_set_defaults(cinfo);
@@ -69,9 +69,9 @@ static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const 
     jpeg_start_compress(cinfo, TRUE);
     codec_bytes bytes;
     codec_bytes_prepare(&bytes);
-    size_t count = (size_t)picture->width * 3;
+    size_t count = (size_t)img->width * 3;
     while (cinfo->next_scanline < cinfo->image_height) {
-        const float *pixel = picture->pixel + cinfo->next_scanline * count;
+        const float *pixel = img->pixel + cinfo->next_scanline * count;
         for (size_t i = 0; i < count; i++)
             job->row[i] = codec_byte(&bytes, pixel[i]);
         JSAMPROW row = job->row;
@@ -80,17 +80,17 @@ static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const 
     jpeg_finish_compress(cinfo);
 }
 
-static bool write_guarded(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image *picture, FILE *stream)
+static bool write_guarded(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image *img, FILE *stream)
 {
     if (setjmp(job->escape))
         return false;
-    write_rows(job, cinfo, picture, stream);
+    write_rows(job, cinfo, img, stream);
     return true;
 }
 
-status codec_jpeg_write(const image *picture, FILE *stream, diagnostic *why)
+status codec_jpeg_write(const image *img, FILE *stream, diagnostic *why)
 {
-    if (picture->width > JPEG_MAX_DIMENSION || picture->height > JPEG_MAX_DIMENSION)
+    if (img->width > JPEG_MAX_DIMENSION || img->height > JPEG_MAX_DIMENSION)
         return diagnose(why, STATUS_BAD_INPUT, "write a PNG instead", "a JPEG picture has at most %ld pixels a side",
                         JPEG_MAX_DIMENSION);
     struct jpeg_compress_struct cinfo = {0};
@@ -98,10 +98,10 @@ status codec_jpeg_write(const image *picture, FILE *stream, diagnostic *why)
     status code = STATUS_FAILURE;
     prepare(&job);
     cinfo.err = &job.errors;
-    job.row = malloc((size_t)picture->width * 3);
+    job.row = malloc((size_t)img->width * 3);
     if (!job.row)
         diagnose(why, code, NULL, "out of memory");
-    else if (!write_guarded(&job, &cinfo, picture, stream))
+    else if (!write_guarded(&job, &cinfo, img, stream))
         diagnose(why, code, NULL, "cannot write the JPEG file: %s", job.message);
     else
         code = STATUS_OK;
@@ -133,7 +133,7 @@ static bool choose_colors(jpeg_job *job, j_decompress_ptr cinfo)
 
 static bool allocate(jpeg_job *job, long long width, long long height, size_t file_bytes)
 {
-    job->code = codec_begin(width, height, file_bytes, 255, &job->picture, &job->linear, job->why);
+    job->code = codec_begin(width, height, file_bytes, 255, &job->img, &job->linear, job->why);
     if (job->code == STATUS_OK && !(job->row = malloc((size_t)width * 3)))
         job->code = out_of_memory(job->why);
     return job->code == STATUS_OK;
@@ -151,9 +151,9 @@ static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progres
         return false;
     cinfo->dct_method = JDCT_ISLOW;
     jpeg_start_decompress(cinfo);
-    size_t width = (size_t)job->picture->width, channels = (size_t)cinfo->output_components;
+    size_t width = (size_t)job->img->width, channels = (size_t)cinfo->output_components;
     while (cinfo->output_scanline < cinfo->output_height) {
-        float *pixel = job->picture->pixel + cinfo->output_scanline * width * 3;
+        float *pixel = job->img->pixel + cinfo->output_scanline * width * 3;
         JSAMPROW row = job->row;
         jpeg_read_scanlines(cinfo, &row, 1);
         for (size_t i = 0; i < width * 3; i++)
@@ -189,9 +189,9 @@ status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, dia
     free(job.row);
     free(job.linear);
     if (job.code != STATUS_OK) {
-        image_destroy(job.picture);
+        image_destroy(job.img);
         return job.code;
     }
-    *out = job.picture;
+    *out = job.img;
     return STATUS_OK;
 }

@@ -10,15 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-status codec_pfm_write(const image *picture, FILE *stream, diagnostic *why)
+status codec_pfm_write(const image *img, FILE *stream, diagnostic *why)
 {
-    size_t count = (size_t)picture->width * 3;
+    size_t count = (size_t)img->width * 3;
     unsigned char *row = malloc(count * 4);
     if (!row)
         return out_of_memory(why);
-    fprintf(stream, "PF\n%d %d\n-1.0\n", picture->width, picture->height);
-    for (int y = picture->height - 1; y >= 0; y--) {
-        const float *pixel = picture->pixel + (size_t)y * count;
+    fprintf(stream, "PF\n%d %d\n-1.0\n", img->width, img->height);
+    for (int y = img->height - 1; y >= 0; y--) {
+        const float *pixel = img->pixel + (size_t)y * count;
         for (size_t i = 0; i < count; i++) {
             uint32_t word;
             memcpy(&word, &pixel[i], sizeof word);
@@ -62,11 +62,11 @@ static float read_float(const unsigned char *b, bool little)
     return value;
 }
 
-static status read_pixels(const unsigned char *bytes, int channels, bool little, image *picture, diagnostic *why)
+static status read_pixels(const unsigned char *bytes, int channels, bool little, image *img, diagnostic *why)
 {
-    for (int y = picture->height - 1; y >= 0; y--) {
-        for (int x = 0; x < picture->width; x++) {
-            float *pixel = picture->pixel + ((size_t)y * (size_t)picture->width + (size_t)x) * 3;
+    for (int y = img->height - 1; y >= 0; y--) {
+        for (int x = 0; x < img->width; x++) {
+            float *pixel = img->pixel + ((size_t)y * (size_t)img->width + (size_t)x) * 3;
             for (int channel = 0; channel < 3; channel++) {
                 pixel[channel] = read_float(bytes + (channels == 3 ? 4 * channel : 0), little);
                 if (!isfinite(pixel[channel]))
@@ -99,13 +99,13 @@ status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diag
     if (got != expected)
         return diagnose(why, STATUS_BAD_INPUT, NULL, "the PFM file is %s: %zu bytes of pixels where %zu should be",
                         got < expected ? "truncated" : "too long", got, expected);
-    image *picture;
-    TRY(image_create((int)width, (int)height, &picture, why));
-    status code = read_pixels(c.at, channels, scale < 0, picture, why);
+    image *img;
+    TRY(image_create((int)width, (int)height, &img, why));
+    status code = read_pixels(c.at, channels, scale < 0, img, why);
     if (code != STATUS_OK) {
-        image_destroy(picture);
+        image_destroy(img);
         return code;
     }
-    *out = picture;
+    *out = img;
     return STATUS_OK;
 }

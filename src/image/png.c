@@ -14,7 +14,7 @@ typedef struct png_job {
     unsigned char *raw;         /* one row, or the whole picture when it is interlaced */
     const unsigned char *bytes; /* reading: the file and how much is consumed */
     size_t size, used;
-    image *picture;
+    image *img;
     float *linear; /* reading: sRGB decoding table */
     int bits;
     bool fast;   /* writing: a larger file, sooner */
@@ -37,11 +37,11 @@ static void on_warning(png_structp png, png_const_charp message)
 
 /* ---- writing ---- */
 
-static void write_rows(png_job *job, const image *picture, FILE *stream)
+static void write_rows(png_job *job, const image *img, FILE *stream)
 {
     png_init_io(job->png, stream);
-    png_set_IHDR(job->png, job->info, (png_uint_32)picture->width, (png_uint_32)picture->height, job->bits,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(job->png, job->info, (png_uint_32)img->width, (png_uint_32)img->height, job->bits, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_set_compression_level(job->png, job->fast ? 1 : 6);
     if (job->fast)
@@ -49,9 +49,9 @@ static void write_rows(png_job *job, const image *picture, FILE *stream)
     png_write_info(job->png, job->info);
     codec_bytes bytes;
     codec_bytes_prepare(&bytes);
-    size_t count = (size_t)picture->width * 3;
-    for (int y = 0; y < picture->height; y++) {
-        const float *pixel = picture->pixel + (size_t)y * count;
+    size_t count = (size_t)img->width * 3;
+    for (int y = 0; y < img->height; y++) {
+        const float *pixel = img->pixel + (size_t)y * count;
         for (size_t i = 0; i < count; i++) {
             if (job->bits == 8) {
                 job->raw[i] = codec_byte(&bytes, pixel[i]);
@@ -66,24 +66,24 @@ static void write_rows(png_job *job, const image *picture, FILE *stream)
     png_write_end(job->png, job->info);
 }
 
-static bool write_guarded(png_job *job, const image *picture, FILE *stream)
+static bool write_guarded(png_job *job, const image *img, FILE *stream)
 {
     if (setjmp(png_jmpbuf(job->png)))
         return false;
-    write_rows(job, picture, stream);
+    write_rows(job, img, stream);
     return true;
 }
 
-status codec_png_write(const image *picture, FILE *stream, int bits, bool fast, diagnostic *why)
+status codec_png_write(const image *img, FILE *stream, int bits, bool fast, diagnostic *why)
 {
     png_job job = {.bits = bits, .fast = fast};
     status code = STATUS_FAILURE;
-    job.raw = malloc((size_t)picture->width * 3 * (size_t)(bits / 8));
+    job.raw = malloc((size_t)img->width * 3 * (size_t)(bits / 8));
     job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
     job.info = job.png ? png_create_info_struct(job.png) : NULL;
     if (!job.raw || !job.info)
         diagnose(why, code, NULL, "out of memory");
-    else if (!write_guarded(&job, picture, stream))
+    else if (!write_guarded(&job, img, stream))
         diagnose(why, code, NULL, "cannot write the PNG file: %s", job.message);
     else
         code = STATUS_OK;
@@ -119,8 +119,8 @@ static unsigned sample(const png_job *job, const unsigned char *row, size_t inde
 /* Linear light, blended over black with alpha, which is linear itself (PNG specification 13.16). */
 static void store_row(png_job *job, const unsigned char *row, int y, size_t channels)
 {
-    float *pixel = job->picture->pixel + (size_t)y * (size_t)job->picture->width * 3;
-    for (size_t x = 0; x < (size_t)job->picture->width; x++) {
+    float *pixel = job->img->pixel + (size_t)y * (size_t)job->img->width * 3;
+    for (size_t x = 0; x < (size_t)job->img->width; x++) {
         for (size_t channel = 0; channel < 3; channel++)
             pixel[3 * x + channel] = job->linear[sample(job, row, channels * x + channel)];
         if (channels == 4) {
@@ -133,8 +133,7 @@ static void store_row(png_job *job, const unsigned char *row, int y, size_t chan
 
 static bool allocate(png_job *job, long long width, long long height, bool interlaced)
 {
-    job->code =
-        codec_begin(width, height, job->size, job->bits == 8 ? 255 : 65535, &job->picture, &job->linear, job->why);
+    job->code = codec_begin(width, height, job->size, job->bits == 8 ? 255 : 65535, &job->img, &job->linear, job->why);
     if (job->code != STATUS_OK)
         return false;
     /* Zeroed, because an interlaced picture is read by combining with what was there. */
@@ -161,7 +160,7 @@ static bool read_rows(png_job *job)
         return false;
     size_t channels = png_get_channels(job->png, job->info), row_bytes = png_get_rowbytes(job->png, job->info);
     for (int pass = 0; pass < passes; pass++) {
-        for (int y = 0; y < job->picture->height; y++) {
+        for (int y = 0; y < job->img->height; y++) {
             unsigned char *row = job->raw + (passes > 1 ? (size_t)y * row_bytes : 0);
             png_read_row(job->png, row, NULL);
             if (pass == passes - 1)
@@ -196,10 +195,10 @@ status codec_png_read(const unsigned char *bytes, size_t size, image **out, int 
     free(job.raw);
     free(job.linear);
     if (job.code != STATUS_OK) {
-        image_destroy(job.picture);
+        image_destroy(job.img);
         return job.code;
     }
     *bits = job.bits;
-    *out = job.picture;
+    *out = job.img;
     return STATUS_OK;
 }

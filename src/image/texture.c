@@ -6,16 +6,15 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static status check(const image *picture, diagnostic *why)
+static status check(const image *img, diagnostic *why)
 {
-    if (picture->width < 1 || picture->height < 1 || picture->width > IMAGE_SIDE_MAX ||
-        picture->height > IMAGE_SIDE_MAX) {
+    if (img->width < 1 || img->height < 1 || img->width > IMAGE_SIDE_MAX || img->height > IMAGE_SIDE_MAX) {
         return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
-                        "a texture of %d x %d texels is not possible", picture->width, picture->height);
+                        "a texture of %d x %d texels is not possible", img->width, img->height);
     }
-    const size_t width = (size_t)picture->width, count = width * (size_t)picture->height;
+    const size_t width = (size_t)img->width, count = width * (size_t)img->height;
     for (size_t i = 0; i < 3 * count; i++) {
-        if (!isfinite(picture->pixel[i]))
+        if (!isfinite(img->pixel[i]))
             return diagnose(why, STATUS_BAD_INPUT, NULL,
                             "the pixel in column %zu, row %zu from the top is not a finite number", i / 3 % width,
                             i / 3 / width);
@@ -52,14 +51,14 @@ static float restore(const codec_bytes *bytes, int coded_bits, float linear)
 }
 
 /* Level 0, upside down. */
-static void copy_pixels(texture *t, const image *picture, int coded_bits)
+static void copy_pixels(texture *t, const image *img, int coded_bits)
 {
     codec_bytes bytes;
     if (coded_bits == 8)
         codec_bytes_prepare(&bytes);
     const texture_level *to = &t->level[0];
     for (int y = 0; y < to->height; y++) {
-        const float *from = picture->pixel + (size_t)(to->height - 1 - y) * (size_t)to->width * 3;
+        const float *from = img->pixel + (size_t)(to->height - 1 - y) * (size_t)to->width * 3;
         texel *row = to->texels + (size_t)y * (size_t)to->width;
         for (int x = 0; x < to->width; x++, from += 3) {
             row[x] = (texel){.r = restore(&bytes, coded_bits, from[0]),
@@ -69,11 +68,11 @@ static void copy_pixels(texture *t, const image *picture, int coded_bits)
     }
 }
 
-status texture_create(const image *picture, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
+status texture_create(const image *img, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
                       texture_filter filter, texture **out, diagnostic *why)
 {
     *out = NULL;
-    TRY(check(picture, why));
+    TRY(check(img, why));
     texture *t = calloc(1, sizeof *t);
     if (t) {
         t->wrap_u = wrap_u;
@@ -81,12 +80,12 @@ status texture_create(const image *picture, texture_space space, texture_wrap wr
         t->filter = filter;
         t->owners = 1;
     }
-    if (!t || !allocate(t, picture->width, picture->height)) {
+    if (!t || !allocate(t, img->width, img->height)) {
         free(t);
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a texture of %d x %d texels", picture->width,
-                        picture->height);
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a texture of %d x %d texels", img->width,
+                        img->height);
     }
-    copy_pixels(t, picture, space == TEXTURE_LINEAR ? picture->coded_bits : 0);
+    copy_pixels(t, img, space == TEXTURE_LINEAR ? img->coded_bits : 0);
     texture_build_pyramid(t);
     *out = t;
     return STATUS_OK;
@@ -95,13 +94,13 @@ status texture_create(const image *picture, texture_space space, texture_wrap wr
 status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u,
                           texture_wrap wrap_v, texture_filter filter, texture **out, diagnostic *why)
 {
-    image *picture;
+    image *img;
     *out = NULL;
-    TRY(image_read_below(path, root, &picture, NULL, why));
-    status code = texture_create(picture, space, wrap_u, wrap_v, filter, out, why);
+    TRY(image_read_below(path, root, &img, NULL, why));
+    status code = texture_create(img, space, wrap_u, wrap_v, filter, out, why);
     if (code != STATUS_OK)
         diagnostic_locate(why, path, 0, 0);
-    image_destroy(picture);
+    image_destroy(img);
     return code;
 }
 

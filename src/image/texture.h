@@ -31,7 +31,7 @@ typedef struct texture texture;
 
 /* The caller is the one owner. STATUS_BAD_INPUT when a pixel is not finite or a size not image_create's, STATUS_FAILURE
  * when memory is out. */
-status texture_create(const image *picture, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
+status texture_create(const image *img, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
                       texture_filter filter, texture **out, diagnostic *why);
 
 /* The same from a file that lies below root (base/below.h; NULL: anywhere): image_read's diagnostics and limits. */

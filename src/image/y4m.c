@@ -66,13 +66,13 @@ static void put_chroma_at(const planes *p, const luma_shares *k, size_t x, size_
     p->cr[at] = (unsigned char)(128 + nearest(224 * red, 255 * 2 * (TEN_THOUSAND - k->red) * count));
 }
 
-static void convert(const planes *p, const image *picture)
+static void convert(const planes *p, const image *img)
 {
     codec_bytes bytes;
     codec_bytes_prepare(&bytes);
     for (size_t i = 0; i < 3 * p->wide * p->high; i++)
-        p->rgb[i] = codec_byte(&bytes, picture->pixel[i]);
-    const luma_shares k = shares_for(picture->height);
+        p->rgb[i] = codec_byte(&bytes, img->pixel[i]);
+    const luma_shares k = shares_for(img->height);
     put_luma(p, &k);
     for (size_t y = 0; y < p->chroma_high; y++)
         for (size_t x = 0; x < p->chroma_wide; x++)
@@ -92,18 +92,18 @@ status y4m_begin(FILE *stream, int width, int height, int64_t fps_num, int64_t f
     return STATUS_OK;
 }
 
-status y4m_frame(FILE *stream, const image *picture, diagnostic *why)
+status y4m_frame(FILE *stream, const image *img, diagnostic *why)
 {
-    const size_t wide = (size_t)picture->width, high = (size_t)picture->height;
+    const size_t wide = (size_t)img->width, high = (size_t)img->height;
     planes p = {.wide = wide, .high = high, .chroma_wide = (wide + 1) / 2, .chroma_high = (high + 1) / 2};
     p.rgb = malloc(3 * wide * high + plane_bytes(&p));
     if (!p.rgb)
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a frame of %d x %d pixels", picture->width,
-                        picture->height);
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a frame of %d x %d pixels", img->width,
+                        img->height);
     p.y = p.rgb + 3 * wide * high;
     p.cb = p.y + wide * high;
     p.cr = p.cb + p.chroma_wide * p.chroma_high;
-    convert(&p, picture);
+    convert(&p, img);
     fputs("FRAME\n", stream);
     fwrite(p.y, 1, plane_bytes(&p), stream);
     free(p.rgb);

@@ -12,4 +12,4 @@
 /* The stream's header: frames a second as a fraction. */
 status y4m_begin(FILE *stream, int width, int height, int64_t fps_num, int64_t fps_den, diagnostic *why);
 /* One frame, of that size. */
-status y4m_frame(FILE *stream, const image *picture, diagnostic *why);
+status y4m_frame(FILE *stream, const image *img, diagnostic *why);

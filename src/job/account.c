@@ -26,7 +26,7 @@ void job_account_release(job_account *a)
 
 uint64_t job_account_hash(const job_account *a)
 {
-    return a->film_hash ? a->film_hash : film_hash(a->result->picture);
+    return a->film_hash ? a->film_hash : film_hash(a->result->img);
 }
 
 /* NaN when memory is out. */

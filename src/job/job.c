@@ -131,10 +131,10 @@ static bool go_on(void *of, double share_done)
            w->wanted->progress(w->wanted->context, ((double)w->frame + share_done) / (double)w->frames);
 }
 
-static void pass_on_piece(void *of, const film *picture, int x0, int y0, int x1, int y1)
+static void pass_on_piece(void *of, const film *img, int x0, int y0, int x1, int y1)
 {
     const work *w = of;
-    w->wanted->piece_done(w->wanted->context, picture, x0, y0, x1, y1);
+    w->wanted->piece_done(w->wanted->context, img, x0, y0, x1, y1);
 }
 
 static status check_quota(const job *j, const scene *s, const render_options *wanted, diagnostic *why)
@@ -196,7 +196,7 @@ static status keep(job_account *a, render_result *result, status ended, diagnost
         render_result_destroy(result);
         return ended;
     }
-    const uint64_t hash = a->result ? film_hash(result->picture) : 0;
+    const uint64_t hash = a->result ? film_hash(result->img) : 0;
     if (a->result && job_account_hash(a) != hash) {
         render_result_destroy(result);
         return diagnose(why, STATUS_FAILURE, "report this as a bug, with the scene", "two frames of one scene differ");

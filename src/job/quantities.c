@@ -55,7 +55,7 @@ static double mean_cut(const int64_t one[3], const int64_t other[3])
 /* Mean over all pixels, by channel; NaN where nothing is drawn by chance. */
 static void take_variance(quantity_value *v, const render_result *r)
 {
-    const size_t pixels = r->variance ? (size_t)r->picture->width * (size_t)r->picture->height : 0;
+    const size_t pixels = r->variance ? (size_t)r->img->width * (size_t)r->img->height : 0;
     for (int channel = 0; channel < 3; channel++)
         v->real[channel] = pixels > 0 ? 0.0 : (double)NAN;
     for (size_t i = 0; i < 3 * pixels; i++)
@@ -144,8 +144,8 @@ static size_t solids_of(const job_account *a)
    "wall time of these, for this frame (render.keep off) or before it; not in wall_s", r->meshes.motion_s) \
  Q(drawn, "", COUNT, SAME, ROW, "meshes.drawn", NULL, \
    "of the depth buffer: triangles in the picture, analytic solids' too; else 0", r->meshes.drawn) \
- Q(drawn_bytes, "B", COUNT, SAME, ROW, "meshes.drawn_bytes", NULL, \
-   "memory of the depth buffer and of these triangles", r->meshes.drawn_bytes) \
+ Q(raster_bytes, "B", COUNT, SAME, ROW, "meshes.drawn_bytes", NULL, \
+   "memory of the depth buffer and of these triangles", r->meshes.raster_bytes) \
  Q(workers, "", COUNT, SAME, ROW, "workers", "threads", "threads of the frame", r->worker_count) \
  Q(workers_with_tiles, "", COUNT, LAST, ROW, "workers_with_tiles", NULL, "those that had a piece of the picture", \
    sum_workers(a).with_tiles) \

@@ -32,7 +32,7 @@ static status trace_image(depth_probe *p, int deeper, diagnostic *why)
     atomic_uint_fast64_t begun = 0;
     const atomic_bool stop = false;
     TRY(film_create(whole.x1, whole.y1, 1, FILM_RGB, &p->image[deeper], why));
-    const tracer_target target = {.scene = p->made, .picture = p->image[deeper], .pixel_rays = p->pixel_rays};
+    const tracer_target target = {.scene = p->made, .img = p->image[deeper], .pixel_rays = p->pixel_rays};
     for (size_t i = 0; i < pixels; i++)
         p->pixel_rays[i] = 0.0;
     if (!tracer_begin(p->rays, &target))

@@ -34,9 +34,9 @@ static void take_crossing(void *context, const mesh_hit *hit)
 
 /* Of one copy: in at a front, out at a back, and so on. From here the line is followed from its origin, which lies
  * before the mesh. */
-static bool through_copy(const forest_part *p, uint32_t copy, const line *l, line_spans *out)
+static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, line_spans *out)
 {
-    const vec3 o = mat3_apply_transposed(p->rotation, vec3_sub(l->origin, forest_origin(p, copy)));
+    const vec3 o = mat3_apply_transposed(p->rotation, vec3_sub(l->origin, instance_set_origin(p, copy)));
     const vec3 d = mat3_apply_transposed(p->rotation, l->direction), s = p->scale;
     const mesh_ray ray = {.origin = vec3_make(o.x / s.x, o.y / s.y, o.z / s.z),
                           .direction = vec3_make(d.x / s.x, d.y / s.y, d.z / s.z),
@@ -69,7 +69,7 @@ static void sort_spans(line_spans *s)
 
 enum { COPIES_FEW = 64 };
 
-static bool through_mesh(const forest_part *p, const line *l, line_spans *out)
+static bool through_mesh(const instanced_mesh *p, const line *l, line_spans *out)
 {
     const uint64_t copies = (uint64_t)p->copies[0] * p->copies[1] * p->copies[2];
     bool known = p->closed && copies <= COPIES_FEW;
@@ -79,7 +79,7 @@ static bool through_mesh(const forest_part *p, const line *l, line_spans *out)
     return known;
 }
 
-bool line_through(const arrangement *a, const body *b, const line *l, line_spans *out)
+bool line_through(const scene_geometry *a, const region *b, const line *l, line_spans *out)
 {
     out->count = 0;
     const primitive *p = &a->primitives[b->outside];

@@ -1,8 +1,8 @@
 /* Where a line runs inside a body, and how large and how thick a body is. Pure. */
 #pragma once
 
-#include "geometry/arrangement.h"
-#include "geometry/forest.h"
+#include "geometry/scene_geometry.h"
+#include "geometry/instance_set.h"
 
 typedef struct line {
     vec3 origin, direction;
@@ -17,4 +17,4 @@ typedef struct line_spans {
 
 /* False where it cannot be said: an open mesh, more than SPANS_MAX, or a line through an edge of a mesh that is
  * taken for none or two. */
-bool line_through(const arrangement *a, const body *b, const line *l, line_spans *out);
+bool line_through(const scene_geometry *a, const region *b, const line *l, line_spans *out);

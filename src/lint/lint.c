@@ -35,7 +35,7 @@ static bool is_loaded(const scene *s)
             if (!m || !m->data)
                 return false;
         }
-    return s->background.kind != BACKGROUND_PICTURE || s->background.picture;
+    return s->background.kind != BACKGROUND_IMAGE || s->background.img;
 }
 
 /* A hierarchy that is kept is the one that a frame would build at its first use; else the linter builds its own. */

@@ -16,11 +16,11 @@ enum { LATTICE_LEAST = 8, LATTICE_MOST = 32, LINES_MAX = 200000 };
 #define CONTACT_SHARE 1e-12 /* of the coordinates: surfaces that are closer are in contact */
 
 typedef struct neighbour {
-    const body *of;
+    const region *of;
     const solid *said;
     bounds3 box;
     double thickness;
-    int rank;
+    int priority_index;
 } neighbour;
 
 typedef struct pair {
@@ -39,7 +39,7 @@ static double *component(vec3 *v, int axis)
     return axis == 0 ? &v->x : axis == 1 ? &v->y : &v->z;
 }
 
-static bool is_in(const body *b, uint64_t inside)
+static bool is_in(const region *b, uint64_t inside)
 {
     return (inside >> b->outside & 1) && !(b->hollow >= 0 && (inside >> b->hollow & 1));
 }
@@ -53,12 +53,12 @@ static double deep_enough(const pair *p)
 /* Are both at the point, and so far about it? */
 static bool overlap_at(const pair *p, vec3 point)
 {
-    const arrangement *a = p->room->made->solids;
+    const scene_geometry *a = p->room->made->solids;
     const double far = deep_enough(p);
     for (int i = 0; i < 6; i++) {
         vec3 at = point;
         *component(&at, i / 2) += i % 2 ? far : -far;
-        const uint64_t inside = arrangement_inside(a, at);
+        const uint64_t inside = scene_geometry_inside(a, at);
         if (!is_in(p->a->of, inside) || !is_in(p->b->of, inside))
             return false;
     }
@@ -120,7 +120,7 @@ static double spans_gap(const pair *p, const line_spans *a, const line_spans *b,
 /* Looks along all lines of an axis; true where they overlap. */
 static bool look_along(const pair *p, int axis)
 {
-    const arrangement *a = p->room->made->solids;
+    const scene_geometry *a = p->room->made->solids;
     for (int i = 0; i < p->lattice; i++)
         for (int j = 0; j < p->lattice; j++) {
             const line l = lattice_line(p, axis, i, j);
@@ -141,7 +141,7 @@ static bool look_along(const pair *p, int axis)
 /* Is the gap narrow on the line and on eight around it, a patch as wide as is wanted, and nothing else in it? */
 static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step_v)
 {
-    const arrangement *a = p->room->made->solids;
+    const scene_geometry *a = p->room->made->solids;
     for (int di = -1; di <= 1; di++)
         for (int dj = -1; dj <= 1; dj++) {
             const int at_i = i + di * step_u, at_j = j + dj * step_v;
@@ -153,7 +153,8 @@ static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step
         for (int dj = -1; dj <= 1; dj++) {
             const int at_i = i + di * step_u, at_j = j + dj * step_v;
             const line l = lattice_line(p, axis, at_i, at_j);
-            if (arrangement_rank(a, arrangement_inside(a, line_at(&l, p->middle[at_i * p->lattice + at_j]))) != 0)
+            if (scene_geometry_priority_index(
+                    a, scene_geometry_inside(a, line_at(&l, p->middle[at_i * p->lattice + at_j]))) != 0)
                 return false;
         }
     return true;
@@ -243,12 +244,12 @@ static void look_at_pair(pair *p)
 /* Is the medium another one, or does it absorb otherwise? */
 static bool media_differ(const plan *made, const neighbour *a, const neighbour *b)
 {
-    const vec3 off = vec3_sub(made->absorption[a->rank], made->absorption[b->rank]);
+    const vec3 off = vec3_sub(made->absorption[a->priority_index], made->absorption[b->priority_index]);
     return a->of->medium != b->of->medium || off.x != 0.0 || off.y != 0.0 || off.z != 0.0;
 }
 
 /* Does an interface with what is around all show, on a clear solid or an opaque one? */
-static bool shows(const body *b)
+static bool shows(const region *b)
 {
     return b->opaque || b->medium != 0;
 }
@@ -305,19 +306,20 @@ static void look_at_all(const lint_room *room, const neighbour *all, int count, 
 
 status lint_neighbours(const lint_room *room, diagnostic *why)
 {
-    const arrangement *a = room->made->solids;
-    neighbour *all = calloc((size_t)a->body_count + 1, sizeof *all);
+    const scene_geometry *a = room->made->solids;
+    neighbour *all = calloc((size_t)a->region_count + 1, sizeof *all);
     float *gap = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *gap);
     double *middle = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *middle);
     const bool there = all && gap && middle;
     int count = 0;
-    for (int rank = 1; there && rank <= a->body_count; rank++) {
-        const body *b = &a->bodies[rank];
-        const solid *said = lint_solid(room, rank);
+    for (int priority_index = 1; there && priority_index <= a->region_count; priority_index++) {
+        const region *b = &a->regions[priority_index];
+        const solid *said = lint_solid(room, priority_index);
         const solid_shape shape = scene_loaded_shape(room->of, said);
         if (shape.mesh && !shape.mesh->closed)
             continue; /* it contains nothing */
-        all[count++] = (neighbour){b, said, shape_world_box(&shape), shape_of(&shape)->thickness(&shape), rank};
+        all[count++] =
+            (neighbour){b, said, shape_world_box(&shape), shape_of(&shape)->thickness(&shape), priority_index};
     }
     if (there)
         look_at_all(room, all, count, gap, middle);

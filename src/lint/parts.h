@@ -22,7 +22,7 @@ void lint_camera(const lint_room *room);
 status lint_depth(const lint_room *room, diagnostic *why);
 
 /* The solid of a rank's body. */
-static inline const solid *lint_solid(const lint_room *room, int rank)
+static inline const solid *lint_solid(const lint_room *room, int priority_index)
 {
-    return &room->of->solids[room->made->solids->bodies[rank].solid];
+    return &room->of->solids[room->made->solids->regions[priority_index].solid];
 }

@@ -38,7 +38,7 @@ status attenuation_point(trial *t, const setup *at, double length, double transm
 {
     const solid_shape *liquid = &t->s->solids[at->liquid].shape;
     const vec3 from = vec3_make(-length, liquid->height / 2.0, 0.0);
-    const status code = probe_way(t->p, from, vec3_make(1.0, 0.0, 0.0), -1, &t->tree, why);
+    const status code = probe_path(t->p, from, vec3_make(1.0, 0.0, 0.0), -1, &t->tree, why);
     const ray_node *first = &t->tree.node[0];
     for (int c = 0; c < 3 && code == STATUS_OK; c++)
         transmittance[c] = first->end == RAY_END_HIT && first->hit.solid == at->rod ? first->hit.transmittance[c] : NAN;

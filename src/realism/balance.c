@@ -19,7 +19,7 @@ static scene *furnace(const scene *s, const setup *at)
     copy->background.kind = BACKGROUND_UNIFORM;
     copy->background.color = vec3_make(1.0, 1.0, 1.0);
     copy->background.ambient = vec3_make(0.0, 0.0, 0.0);
-    copy->render.beyond = BEYOND_BLACK;
+    copy->render.beyond = DEPTH_LIMIT_BLACK;
     copy->render.depth = s->render.depth < DEPTH_MAX ? s->render.depth : DEPTH_MAX;
     for (size_t i = 0; i < copy->solid_count; i++) {
         copy->solids[i].surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);

@@ -50,7 +50,7 @@ static status trace_fresnel(const metrics *m, realism_curve which, realism_point
     status code = trial_start(&t, s, m->level, why);
     for (int i = 0; i < 180 && code == STATUS_OK; i++) {
         interface_shares seen;
-        code = interface_look(t.p, &t.tree, start_y, 0.5 * i * DEGREE, &seen, why);
+        code = interface_measure(t.p, &t.tree, start_y, 0.5 * i * DEGREE, &seen, why);
         const double measured[] = {seen.R_s, seen.R_p, seen.R};
         const int at = (int)which - (int)REALISM_CURVE_FRESNEL_S;
         add_point(out, 0.5 * i, measured[at], theory[at](0.5 * i * DEGREE, n[SETUP_OUTSIDE], n[SETUP_VESSEL]));

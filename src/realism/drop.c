@@ -50,7 +50,7 @@ static double minus_turned_back(void *context, double offset)
     const vec3 in = vec3_make(0.0, 0.0, 1.0);
     const vec3 from = vec3_add(s->center, vec3_make(offset * s->radius, 0.0, -4.0 * s->radius));
     if (s->code == STATUS_OK)
-        s->code = probe_way(s->t->p, from, in, 1, &s->t->tree, s->why);
+        s->code = probe_path(s->t->p, from, in, 1, &s->t->tree, s->why);
     if (s->code != STATUS_OK || s->t->tree.count != 4)
         return NAN;
     const vec3 out = s->t->tree.node[3].direction;

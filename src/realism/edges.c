@@ -38,11 +38,11 @@ static bool theory_sees(void *context, double x)
 
 /* The line of the picture through the axis in the middle of what is filled of the rod's height, and the theory in it.
  */
-typedef struct picture_line {
+typedef struct image_line {
     double py, range[2], filled[2], bare[2];
-} picture_line;
+} image_line;
 
-static const char *theory_edges(const scene *s, const setup *at, picture_line *out)
+static const char *theory_edges(const scene *s, const setup *at, image_line *out)
 {
     level_section c;
     const char *none = level_section_read(s, at, &c);
@@ -66,7 +66,7 @@ static const char *theory_edges(const scene *s, const setup *at, picture_line *o
     return NULL;
 }
 
-static status measure_edges(const metrics *m, const picture_line *of, double filled[2], double bare[2], diagnostic *why)
+static status measure_edges(const metrics *m, const image_line *of, double filled[2], double bare[2], diagnostic *why)
 {
     scene *vessel = arrange_vessel(m->traced, &m->at), *alone = arrange_empty(m->traced);
     if (vessel)
@@ -80,7 +80,7 @@ static status measure_edges(const metrics *m, const picture_line *of, double fil
 
 status edges_displacement(const metrics *m, double measured[2], double theory[2], diagnostic *why)
 {
-    picture_line l;
+    image_line l;
     double filled[2], bare[2];
     for (int i = 0; i < 2; i++)
         measured[i] = theory[i] = NAN;
@@ -96,7 +96,7 @@ status edges_displacement(const metrics *m, double measured[2], double theory[2]
 
 static status add_edges(const metrics *m, diagnostic *why)
 {
-    picture_line l = {.filled = {NAN, NAN}, .bare = {NAN, NAN}};
+    image_line l = {.filled = {NAN, NAN}, .bare = {NAN, NAN}};
     double filled[2] = {NAN, NAN}, bare[2] = {NAN, NAN};
     const char *const none = theory_edges(m->supposed, &m->theory_at, &l);
     const status code = none ? STATUS_OK : measure_edges(m, &l, filled, bare, why);

@@ -12,10 +12,10 @@
 #define DEGREE (M_PI / 180.0)
 enum { ANGLES = 900 }; /* steps of 0.1 degrees */
 
-status interface_look(probe *p, ray_tree *tree, double start_y, double angle, interface_shares *out, diagnostic *why)
+status interface_measure(probe *p, ray_tree *tree, double start_y, double angle, interface_shares *out, diagnostic *why)
 {
     const vec3 down = vec3_make(sin(angle), start_y > 0.0 ? -cos(angle) : cos(angle), 0.0);
-    const status code = probe_way(p, vec3_make(0.0, start_y, 0.0), down, 0, tree, why);
+    const status code = probe_path(p, vec3_make(0.0, start_y, 0.0), down, 0, tree, why);
     const ray_hit *hit = &tree->node[0].hit;
     *out = (interface_shares){0.0, 0.0, 0.0};
     /* Between media that refract alike there is no interface: the ray goes on to what lies further off. */
@@ -45,7 +45,7 @@ static status bisect_critical(trial *t, double start_y, double *angle, diagnosti
     while (high - low > 1e-14) {
         const double middle = (low + high) / 2.0;
         const vec3 d = vec3_make(sin(middle), start_y > 0.0 ? -cos(middle) : cos(middle), 0.0);
-        TRY(probe_way(t->p, vec3_make(0.0, start_y, 0.0), d, -1, &t->tree, why));
+        TRY(probe_path(t->p, vec3_make(0.0, start_y, 0.0), d, -1, &t->tree, why));
         if (t->tree.node[0].end == RAY_END_HIT && t->tree.node[0].hit.tir)
             high = middle;
         else
@@ -97,7 +97,7 @@ static status compare_shares(const metrics *m, const crossing *at, worst_pair wo
     for (int i = 0; i < ANGLES && code == STATUS_OK; i++) {
         const double angle = 0.1 * i * DEGREE;
         interface_shares seen;
-        code = interface_look(t.p, &t.tree, start_y, angle, &seen, why);
+        code = interface_measure(t.p, &t.tree, start_y, angle, &seen, why);
         worst_take(&worst[0], seen.R_s, theory_fresnel_s(angle, n[at->from], n[at->to]));
         worst_take(&worst[1], seen.R_p, theory_fresnel_p(angle, n[at->from], n[at->to]));
         worst_take(&worst[2], seen.R, theory_fresnel(angle, n[at->from], n[at->to]));

@@ -19,7 +19,7 @@ enum { OFFSETS = 64, LEVELS = 5 };
 status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, double *radians, diagnostic *why)
 {
     const vec3 from = vec3_make(at->x + offset, (at->low + at->high) / 2.0, at->z - 4.0 * at->outer);
-    TRY(probe_way(p, from, vec3_make(0.0, 0.0, 1.0), -1, tree, why));
+    TRY(probe_path(p, from, vec3_make(0.0, 0.0, 1.0), -1, tree, why));
     const ray_node *last = &tree->node[tree->count - 1];
     *radians = last->end == RAY_END_SKY ? atan2(-last->direction.x, last->direction.z)
                                         : NAN; /* towards the axis, which is at -x */

@@ -39,13 +39,14 @@ status realism_measure(const scene *s, isa level, realism_report *out, diagnosti
 static const struct arrangement_kind {
     bool (*is_there)(const scene *s);
     status (*measure)(const metrics *m, diagnostic *why);
-} arrangements[] = {{prism_is_there, realism_prism}, {drop_is_there, realism_drop}, {stack_is_there, realism_stack}};
+} scene_geometries[] = {
+    {prism_is_there, realism_prism}, {drop_is_there, realism_drop}, {stack_is_there, realism_stack}};
 
 status realism_check(const scene *s, bool curves, diagnostic *why)
 {
     setup unused;
-    for (size_t i = 0; i < sizeof arrangements / sizeof arrangements[0] && !curves; i++)
-        if (arrangements[i].is_there(s))
+    for (size_t i = 0; i < sizeof scene_geometries / sizeof scene_geometries[0] && !curves; i++)
+        if (scene_geometries[i].is_there(s))
             return STATUS_OK;
     return setup_read(s, &unused, why);
 }
@@ -58,9 +59,9 @@ status realism_measure_against(const scene *traced, const scene *supposed, isa l
         realism_slab,  realism_gap,        realism_radiance, realism_absorption, realism_reversal};
     metrics m = {.traced = traced, .supposed = supposed, .level = level, .report = out};
     out->count = 0;
-    for (size_t i = 0; i < sizeof arrangements / sizeof arrangements[0]; i++)
-        if (arrangements[i].is_there(traced) && arrangements[i].is_there(supposed))
-            return arrangements[i].measure(&m, why);
+    for (size_t i = 0; i < sizeof scene_geometries / sizeof scene_geometries[0]; i++)
+        if (scene_geometries[i].is_there(traced) && scene_geometries[i].is_there(supposed))
+            return scene_geometries[i].measure(&m, why);
     TRY(setup_read(traced, &m.at, why));
     TRY(setup_read(supposed, &m.theory_at, why));
     for (size_t i = 0; i < sizeof of_vessel / sizeof of_vessel[0]; i++)

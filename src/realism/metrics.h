@@ -48,7 +48,8 @@ status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, 
 typedef struct interface_shares {
     double R_s, R_p, R;
 } interface_shares;
-status interface_look(probe *p, ray_tree *tree, double start_y, double angle, interface_shares *out, diagnostic *why);
+status interface_measure(probe *p, ray_tree *tree, double start_y, double angle, interface_shares *out,
+                         diagnostic *why);
 status slab_measure(const metrics *m, int depth, bool polarised, double *transmitted, diagnostic *why);
 double slab_theory(const metrics *m, int depth, bool polarised);
 scene *attenuation_scene(const scene *s, const setup *at);

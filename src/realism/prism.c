@@ -12,7 +12,7 @@
 /* point: on the left face; left, right: the prism's outward normals; up: along the left face, towards the apex. */
 typedef struct prism_faces {
     vec3 point, left, right, up;
-    int body;
+    int region;
 } prism_faces;
 
 bool prism_is_there(const scene *s)
@@ -33,7 +33,7 @@ static prism_faces faces_of(const scene *s)
     prism_faces f = {.point = left->shape.position,
                      .left = outward(left),
                      .right = outward(right),
-                     .body = scene_find_solid(s, "prism")};
+                     .region = scene_find_solid(s, "prism")};
     f.up = vec3_normalize(vec3_sub(f.right, vec3_scale(f.left, vec3_dot(f.left, f.right))));
     return f;
 }
@@ -52,12 +52,12 @@ static double deviation(void *context, double incidence)
     search *s = context;
     const vec3 in = vec3_sub(vec3_scale(s->at.up, sin(incidence)), vec3_scale(s->at.left, cos(incidence)));
     if (s->code == STATUS_OK)
-        s->code = probe_way(s->t->p, vec3_sub(s->at.point, vec3_scale(in, 3.0)), in, -1, &s->t->tree, s->why);
+        s->code = probe_path(s->t->p, vec3_sub(s->at.point, vec3_scale(in, 3.0)), in, -1, &s->t->tree, s->why);
     if (s->code != STATUS_OK)
         return NAN;
     const ray_tree *way = &s->t->tree;
-    if (way->count < 3 || way->node[2].kind != RAY_REFRACT || way->node[0].hit.to != s->at.body ||
-        way->node[1].hit.from != s->at.body)
+    if (way->count < 3 || way->node[2].kind != RAY_REFRACT || way->node[0].hit.to != s->at.region ||
+        way->node[1].hit.from != s->at.region)
         return NAN;
     const vec3 out = way->node[2].direction;
     const vec3 across = vec3_cross(in, out);
@@ -88,7 +88,7 @@ static status at_line(const metrics *m, double lambda_nm, double *measured, doub
 {
     const prism_faces supposed = faces_of(m->supposed);
     const double apex = M_PI - acos(vec3_dot(supposed.left, supposed.right));
-    *theory = theory_least_deviation(apex, relative_index(m->supposed, supposed.body, lambda_nm));
+    *theory = theory_least_deviation(apex, relative_index(m->supposed, supposed.region, lambda_nm));
     trial t;
     search look = {.t = &t, .at = faces_of(m->traced), .why = why};
     look.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);

@@ -37,7 +37,7 @@ static scene *pond(const scene *s, const setup *at, look which)
     copy->background.kind = BACKGROUND_UNIFORM;
     const double sky = which == LOOK_SKY ? 1.0 : 0.0;
     copy->background.color = vec3_make(sky, sky, sky);
-    copy->render.beyond = BEYOND_BLACK;
+    copy->render.beyond = DEPTH_LIMIT_BLACK;
     copy->render.depth = 1;
     copy->render.radiance = RADIANCE_BASIC;
     copy->render.shadows = SHADOWS_ATTENUATED;

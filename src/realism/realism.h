@@ -8,9 +8,9 @@
  * say what an interface does with light, are taken as they are; where a metric needs another arrangement of the same
  * media, such as a slab, it builds that from a copy.
  *
- * Three other arrangements are known by the names of their solids, and have metrics of their own: a prism (prism, cut
- * by the half-spaces left and right), a drop (a sphere whose name begins with drop), and two parallel plates (plate1,
- * plate2).
+ * Three other scene_geometries are known by the names of their solids, and have metrics of their own: a prism (prism,
+ * cut by the half-spaces left and right), a drop (a sphere whose name begins with drop), and two parallel plates
+ * (plate1, plate2).
  *
  * Tolerances come from arithmetic: a unit in the last place of a double is 2.2e-16 of the value, of the film 5.7e-14;
  * the longest ways here take some ten interfaces, each of which may make such an error several times larger. None is a

@@ -19,7 +19,7 @@ typedef struct way {
     int reflect_at;
 } way;
 
-static way random_way(const setup *at, uint32_t number)
+static way random_path(const setup *at, uint32_t number)
 {
     const random_words a = random_at(10, number, 0, 0, 0), b = random_at(10, number, 1, 0, 0);
     const double turn = 2.0 * M_PI * random_unit(a.word[0]), middle = (at->low + at->high) / 2.0;
@@ -62,17 +62,17 @@ typedef struct round_trip {
 
 static status trace_back(trial *forth, trial *back, const setup *at, uint32_t number, round_trip *out, diagnostic *why)
 {
-    const way w = random_way(at, number);
+    const way w = random_path(at, number);
     *out = (round_trip){NAN, NAN, NAN, false};
-    status code = probe_way(forth->p, w.from, w.along, w.reflect_at, &forth->tree, why);
+    status code = probe_path(forth->p, w.from, w.along, w.reflect_at, &forth->tree, why);
     const int hits = code == STATUS_OK ? surfaces(&forth->tree) : -1;
     if (hits < 0)
         return code;
     const ray_node *last = &forth->tree.node[hits];
     const int asked = reflected_at(&forth->tree, w.reflect_at);
     const vec3 start = vec3_add(last->origin, vec3_scale(last->direction, 3.0 * at->outer));
-    TRY(probe_way(back->p, start, vec3_scale(last->direction, -1.0), asked < 0 ? -1 : hits - 1 - asked, &back->tree,
-                  why));
+    TRY(probe_path(back->p, start, vec3_scale(last->direction, -1.0), asked < 0 ? -1 : hits - 1 - asked, &back->tree,
+                   why));
     const ray_node *home = &back->tree.node[back->tree.count - 1];
     const vec3 away = vec3_sub(w.from, home->origin);
     out->done = true;

@@ -214,6 +214,6 @@ scene *arrange_shining(const scene *s, const setup *at, solid_shape slab, double
     copy->background.ambient = vec3_make(1.0, 1.0, 1.0);
     copy->background.kind = BACKGROUND_UNIFORM;
     copy->background.color = vec3_make(0.0, 0.0, 0.0);
-    copy->render.beyond = BEYOND_BLACK;
+    copy->render.beyond = DEPTH_LIMIT_BLACK;
     return copy;
 }

@@ -80,7 +80,7 @@ static status look_through(const metrics *m, double *straight, double *whole, do
     }
     status code = trial_start(&t, s, m->level, why);
     const vec3 eye = m->traced->camera.position, forward = vec3_make(0.0, 0.0, 1.0);
-    THEN(code, probe_way(t.p, eye, forward, -1, &t.tree, why));
+    THEN(code, probe_path(t.p, eye, forward, -1, &t.tree, why));
     if (code == STATUS_OK) {
         const ray_node *last = &t.tree.node[t.tree.count - 1];
         *straight = t.tree.count == INTERFACES + 1 && (last->end == RAY_END_SKY || last->hit.opaque)

@@ -25,7 +25,7 @@ void trial_end(trial *t)
 static bool meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why)
 {
     if (*code == STATUS_OK)
-        *code = probe_way(t->p, origin, direction, -1, &t->tree, why);
+        *code = probe_path(t->p, origin, direction, -1, &t->tree, why);
     if (*code != STATUS_OK)
         return false;
     for (size_t i = 0; i < t->tree.count; i++) {
@@ -96,18 +96,18 @@ bool find_edges(seen_at *seen, void *context, double from, double to, int steps,
     return true;
 }
 
-typedef struct picture_line {
+typedef struct image_line {
     trial *t;
     int which;
     bool upright;
     double py;
     status code;
     diagnostic *why;
-} picture_line;
+} image_line;
 
 static bool traced_sees(void *context, double x)
 {
-    picture_line *l = context;
+    image_line *l = context;
     return meets(l->t, l->t->s->camera.position, probe_camera_direction(l->t->p, x, l->py), l->which, l->upright,
                  &l->code, l->why);
 }
@@ -115,7 +115,7 @@ static bool traced_sees(void *context, double x)
 status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],
                    diagnostic *why)
 {
-    picture_line l = {t, which, upright, py, STATUS_OK, why};
+    image_line l = {t, which, upright, py, STATUS_OK, why};
     if (!find_edges(traced_sees, &l, range[0], range[1], steps, edge))
         edge[0] = edge[1] = NAN;
     return l.code;

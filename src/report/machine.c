@@ -18,7 +18,7 @@ static bool counts_cycles(void)
     return counts.cycles >= 0;
 }
 
-status machine_look(machine_account *a, diagnostic *why)
+status machine_measure(machine_account *a, diagnostic *why)
 {
     status result = isa_choose(&a->chosen, why);
     if (result != STATUS_OK) {

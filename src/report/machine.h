@@ -1,5 +1,5 @@
 /* What this machine is, as far as it matters to a measurement: processors, clocks, vector instructions, and what could
- * disturb now. Ownership: machine_look fills, machine_release releases, also after an error. */
+ * disturb now. Ownership: machine_measure fills, machine_release releases, also after an error. */
 #pragma once
 
 #include "base/isa.h"
@@ -21,7 +21,7 @@ typedef struct machine_account {
 
 /* Takes half a second, in which it watches the load of others. An instruction set that the environment asks for wrongly
  * is STATUS_BAD_INPUT. */
-status machine_look(machine_account *a, diagnostic *why);
+status machine_measure(machine_account *a, diagnostic *why);
 void machine_release(machine_account *a);
 
 /* What `cuvette machine --json` prints; NULL when memory is out. */

@@ -20,10 +20,10 @@ static const ray_style styles[] = {
 };
 static const ray_style blocked = {SVG_GREY, "blocked", "5,3"};
 
-typedef struct picture {
+typedef struct img {
     const traced *t;
     double sky_length; /* at which rays to the sky are drawn, scene units */
-} picture;
+} img;
 
 /* A shadow ray's weight is that of the ray whose hit it leaves: its own is a radiance. */
 static double weight_of(const ray_tree *tree, const ray_node *node)
@@ -38,7 +38,7 @@ static vec3 along(const ray_node *node, double length)
     return vec3_add(node->origin, vec3_scale(node->direction, length));
 }
 
-static vec3 end_of(const picture *a, const ray_node *node)
+static vec3 end_of(const img *a, const ray_node *node)
 {
     if (node->end == RAY_END_HIT)
         return node->hit.point;
@@ -150,7 +150,7 @@ static section_plane other_plane(const ray_tree *tree, const section_plane *inci
     return diagram_plane(tree->node[0].origin, vec3_normalize(vec3_make(d.x, 0, d.z)), vec3_make(0, 1, 0));
 }
 
-static void draw_node(const diagram *d, const picture *a, const ray_node *node)
+static void draw_node(const diagram *d, const img *a, const ray_node *node)
 {
     const double weight = weight_of(a->t->tree, node);
     const ray_style *style = node->end == RAY_END_BLOCKED ? &blocked : &styles[node->kind];
@@ -164,7 +164,7 @@ static void draw_node(const diagram *d, const picture *a, const ray_node *node)
 }
 
 /* Shadow rays below, the camera's ray on top. */
-static void draw_tree(const diagram *d, const picture *a)
+static void draw_tree(const diagram *d, const img *a)
 {
     const ray_tree *tree = a->t->tree;
     const ray_kind order[] = {RAY_SHADOW, RAY_REFLECT, RAY_REFRACT, RAY_CAMERA};
@@ -181,11 +181,11 @@ static void draw_tree(const diagram *d, const picture *a)
         diagram_dot(d, tree->node[0].hit.point, 2.2, SVG_INK, "none");
 }
 
-static status draw_view(const picture *a, FILE *out, const section_plane *plane, const diagram_frame *frame,
+static status draw_view(const img *a, FILE *out, const section_plane *plane, const diagram_frame *frame,
                         const char *caption, diagnostic *why)
 {
     diagram d;
-    picture own = *a;
+    img own = *a;
     const diagram_box box = box_of(a->t, plane);
     status result = diagram_begin(&d, out, a->t->p, a->t->s, plane, &box, frame, caption, why);
     own.sky_length = 0.13 * hypot(d.plane.u1 - d.plane.u0, d.plane.v1 - d.plane.v0);
@@ -222,7 +222,7 @@ status trace_write_drawing(const traced *t, FILE *out, diagnostic *why)
 {
     const double side = 470.0, full = DIAGRAM_BEFORE + side + DIAGRAM_BEHIND,
                  foot = DIAGRAM_ABOVE + side + DIAGRAM_BELOW;
-    const picture a = {.t = t};
+    const img a = {.t = t};
     char caption[160];
     const double media = diagram_media_key(NULL, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
     svg_begin(out, 2.0 * full, media + 32.0, t->s->title && t->s->title[0] ? t->s->title : NULL);

@@ -1,6 +1,6 @@
 /* The toy's net: masses where an icosphere's vertices lie, springs along its edges, across its neighbouring faces, and
  * from side to side. */
-#include "geometry/bodies.h"
+#include "geometry/mesh_generators.h"
 #include "geometry/mesh_parts.h"
 #include "softbody/softbody_private.h"
 
@@ -116,7 +116,7 @@ status toy_net_create(const softbody_settings *s, toy_net *out, diagnostic *why)
 {
     *out = (toy_net){0};
     mesh *sphere;
-    TRY(body_icosphere((int)s->level, &sphere, why));
+    TRY(generate_icosphere((int)s->level, &sphere, why));
     status code = STATUS_OK;
     vec3 *unit = malloc(sphere->vertex_count * sizeof *unit);
     out->position = malloc(sphere->vertex_count * sizeof *out->position);

@@ -135,7 +135,7 @@ static int useful_threads(const softbody *b)
 static status fill(softbody *b, const softbody_net *net, diagnostic *why)
 {
     TRY(springs_build(&b->net, net, why));
-    b->workers = team_start(useful_threads(b));
+    b->workers = thread_team_start(useful_threads(b));
     if (!make_arrays(b) || !copy_net(b, net) || !b->workers)
         return diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
     fill_masses(b, net);
@@ -238,7 +238,7 @@ void softbody_destroy(softbody *b)
         free(stiff[i]);
     for (int i = 0; i < SOFTBODY_HANDS_MAX; i++)
         free(b->hands[i].masses);
-    team_stop(b->workers);
+    thread_team_stop(b->workers);
     springs_release(&b->net);
     free(b->spring_list);
     free(b->faces);

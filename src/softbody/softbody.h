@@ -147,7 +147,7 @@ double softbody_stable_dt_s(const softbody *b);
 
 /* A closed mesh with normals (sums of the faces' area vectors) and texture coordinates, as the body lies now. The
  * caller is its owner. Of the toy alone. */
-status softbody_skin(const softbody *b, mesh **out, diagnostic *why);
-/* Moves a mesh that softbody_skin made for this body to where that lies now; no one looks at it meanwhile (mesh_move).
- */
-status softbody_move_skin(const softbody *b, mesh *skin, diagnostic *why);
+status softbody_surface(const softbody *b, mesh **out, diagnostic *why);
+/* Moves a mesh that softbody_surface made for this body to where that lies now; no one looks at it meanwhile
+ * (mesh_move). */
+status softbody_move_surface(const softbody *b, mesh *skin, diagnostic *why);

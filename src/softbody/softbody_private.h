@@ -6,7 +6,7 @@
  * that goes into it only changes its sign. */
 #pragma once
 
-#include "base/team.h"
+#include "base/thread_team.h"
 #include "softbody/softbody.h"
 
 /* Vertices are worked on, and summed over, in chunks of a fixed size. */
@@ -112,7 +112,7 @@ struct softbody {
     const hand_script *script;
     track_play *plays;
     const softbody_kernels *kernels;
-    team *workers;
+    thread_team *workers;
     uint32_t *mass_of; /* the toy's: by vertex of its skin */
     int skin_level;    /* -1: it has none */
     push pushing;      /* of the present substep */
@@ -142,8 +142,8 @@ static inline size_t softbody_chunks(const softbody *b)
 /* An array of doubles for every mass, zero, 64-byte aligned; NULL when memory is out. */
 double *softbody_array(size_t count);
 
-/* The net of the toy, for softbody_create: arrays are the caller's (free), also mass_of by vertex of body_icosphere's
- * mesh. */
+/* The net of the toy, for softbody_create: arrays are the caller's (free), also mass_of by vertex of
+ * generate_icosphere's mesh. */
 typedef struct toy_net {
     size_t mass_count, spring_count, face_count;
     vec3 *position;

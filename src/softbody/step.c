@@ -22,8 +22,8 @@ void softbody_for_chunks(softbody *b, chunk_work *work)
 {
     chunk_task t = {b, work};
     const size_t count = softbody_chunks(b);
-    if (team_size(b->workers) > 1) {
-        team_run(b->workers, run_chunk, &t, count);
+    if (thread_team_size(b->workers) > 1) {
+        thread_team_run(b->workers, run_chunk, &t, count);
         return;
     }
     for (size_t chunk = 0; chunk < count; chunk++)

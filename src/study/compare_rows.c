@@ -15,15 +15,15 @@ static double difference_rms(const image *a, const image *b)
 
 status compare_row_measure(compare_row *row, const render_result *frame, diagnostic *why)
 {
-    image *picture = NULL;
-    status code = film_image(frame->picture, &picture, why);
-    THEN(code, image_compare(picture, row->against->picture, &row->lies, why));
+    image *img = NULL;
+    status code = film_image(frame->img, &img, why);
+    THEN(code, image_compare(img, row->against->img, &row->lies, why));
     if (code == STATUS_OK) {
-        row->error_rms = difference_rms(picture, row->against->picture);
-        row->film_hash = film_hash(frame->picture);
+        row->error_rms = difference_rms(img, row->against->img);
+        row->film_hash = film_hash(frame->img);
         row->noise_rms = render_noise_rms(frame);
     }
-    image_destroy(picture);
+    image_destroy(img);
     return code;
 }
 

@@ -62,12 +62,12 @@ size_t study_cell_film(const study *s, size_t cell)
     return film;
 }
 
-static bool is_how(const char *path)
+static bool is_performance_only(const char *path)
 {
     static const char group[] = "render.";
     const param *row =
         strncmp(path, group, sizeof group - 1) == 0 ? param_find(PARAM_RENDER, path + sizeof group - 1) : NULL;
-    return row && row->is_how;
+    return row && row->performance_only;
 }
 
 /* Embree's hits are of single precision: its film is its own. */
@@ -80,7 +80,7 @@ static bool have_one_film(const study_point *a, const study_point *b)
 {
     for (size_t i = 0; i < a->count; i++)
         if (strcmp(a->values[i], b->values[i]) != 0 &&
-            (!is_how(a->paths[i]) || is_foreign(a->values[i]) || is_foreign(b->values[i])))
+            (!is_performance_only(a->paths[i]) || is_foreign(a->values[i]) || is_foreign(b->values[i])))
             return false;
     return true;
 }
@@ -137,7 +137,7 @@ status grid_check_kept(const study *s, const study_point *point, const scene *se
     return STATUS_OK;
 }
 
-status grid_each_cell(const study *s, grid_look *look, void *context, diagnostic *why)
+status grid_each_cell(const study *s, grid_visit *look, void *context, diagnostic *why)
 {
     status code = STATUS_OK;
     for (size_t cell = 0, count = study_cell_count(s); code == STATUS_OK && cell < count; cell++) {
@@ -173,10 +173,10 @@ void grid_hash_text(uint64_t *hash, const char *text)
     *hash = hash_bytes(*hash, text, strlen(text) + 1);
 }
 
-status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how)
+status grid_hash_scene(uint64_t *hash, const scene *of, bool without_performance)
 {
     meaning said = {0};
-    const status code = meaning_of_scene(&said, of, without_how);
+    const status code = meaning_of_scene(&said, of, without_performance);
     const int64_t word = (int64_t)meaning_hash(&said);
     meaning_free(&said);
     *hash = hash_words(*hash, &word, 1);

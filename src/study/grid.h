@@ -11,8 +11,8 @@ status grid_set_point(scene *to, const study_point *point, diagnostic *why);
 status grid_check_kept(const study *s, const study_point *point, const scene *setting, diagnostic *why);
 
 /* Calls look with the scene of every cell, until one has an error. */
-typedef status grid_look(void *context, const study *s, size_t cell, scene *setting, diagnostic *why);
-status grid_each_cell(const study *s, grid_look *look, void *context, diagnostic *why);
+typedef status grid_visit(void *context, const study *s, size_t cell, scene *setting, diagnostic *why);
+status grid_each_cell(const study *s, grid_visit *look, void *context, diagnostic *why);
 
 /* scene_check for every cell; a wrong one is located in the study file at the point of its last axis. */
 status grid_check_cells(const study *s, diagnostic *why);
@@ -25,9 +25,10 @@ void axis_find_films(study_axis *axis);
 status grid_definition(const study *s, uint64_t *hash, diagnostic *why);
 
 /* Goes into a fingerprint: a text; all of a scene that makes its picture, with or without the parameters that are how a
- * frame is computed (param.is_how); the paths and values of a point. The scene's files must have been loaded. */
+ * frame is computed (param.performance_only); the paths and values of a point. The scene's files must have been
+ * loaded. */
 void grid_hash_text(uint64_t *hash, const char *text);
-status grid_hash_scene(uint64_t *hash, const scene *of, bool without_how);
+status grid_hash_scene(uint64_t *hash, const scene *of, bool without_performance);
 /* The part of it that the parameters do not say: the sky's picture, textures, meshes and what their files say of their
  * faces. A scene without files leaves the fingerprint as it was. */
 void grid_hash_files(uint64_t *hash, const scene *of);

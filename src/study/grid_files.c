@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/hash.h"
-#include "scene/model/looks.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +22,7 @@ static void hash_texture(uint64_t *hash, const texture *t)
 
 /* What a later version reads of a face goes in only where it is not at its default: the fingerprints that rows carry
  * must stay. */
-static void hash_look(uint64_t *hash, const face_look *l)
+static void hash_visit(uint64_t *hash, const face_material *l)
 {
     const double numbers[] = {l->given, l->color.x, l->color.y, l->color.z, l->diffuse, l->specular, l->shininess};
     hash_array(hash, numbers, sizeof numbers / sizeof *numbers, sizeof *numbers);
@@ -31,7 +31,7 @@ static void hash_look(uint64_t *hash, const face_look *l)
         const double numbered[] = {(double)i, later[i]};
         hash_array(hash, later[i] != 0.0 ? numbered : NULL, 2, sizeof *numbered);
     }
-    hash_texture(hash, l->picture);
+    hash_texture(hash, l->img);
 }
 
 static void hash_mesh(uint64_t *hash, const mesh *m)
@@ -60,7 +60,7 @@ static void hash_script(uint64_t *hash, const scene *of, const mesh_entry *m)
 
 void grid_hash_files(uint64_t *hash, const scene *of)
 {
-    const image *sky = of->background.picture;
+    const image *sky = of->background.img;
     if (sky)
         hash_array(hash, sky->pixel, (size_t)sky->width * (size_t)sky->height * 3, sizeof *sky->pixel);
     for (size_t i = 0; i < of->texture_count; i++)
@@ -71,7 +71,7 @@ void grid_hash_files(uint64_t *hash, const scene *of)
             hash_mesh(hash, m->data);
         if (m->source == MESH_SLIME && m->script_path[0])
             hash_script(hash, of, m);
-        for (int slot = 0; slot < looks_count(m->looks); slot++)
-            hash_look(hash, looks_at(m->looks, slot));
+        for (int slot = 0; slot < face_materials_count(m->shading_materials); slot++)
+            hash_visit(hash, face_materials_at(m->shading_materials, slot));
     }
 }

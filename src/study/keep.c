@@ -70,13 +70,13 @@ static status write_kept(const study *s, const kept_cell *c, size_t what, const 
     const render_result *frame = c->made->result;
     const size_t wish = files[what].wish;
     if (wish == offsetof(study, keep_pixel_rays))
-        return record_map(frame->pixel_rays, frame->picture, "rays per pixel", path, why);
+        return record_map(frame->pixel_rays, frame->img, "rays per pixel", path, why);
     if (wish == offsetof(study, keep_pixel_time))
-        return record_map(frame->pixel_ns, frame->picture, "nanoseconds per pixel", path, why);
+        return record_map(frame->pixel_ns, frame->img, "nanoseconds per pixel", path, why);
     if (wish == offsetof(study, keep_timeline))
         return record_timeline(frame, path, why);
     if (wish == offsetof(study, keep_image) || wish == offsetof(study, keep_pfm))
-        return record_picture(frame->picture, path, 8, why);
+        return record_image(frame->img, path, 8, why);
     const cell_table which = wish == offsetof(study, keep_metrics)  ? CELL_METRICS
                              : wish == offsetof(study, keep_curves) ? CELL_CURVES
                                                                     : CELL_MOTION;

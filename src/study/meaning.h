@@ -15,9 +15,9 @@ typedef struct meaning {
     size_t count;
 } meaning;
 
-/* Of a scene, with or without the parameters that are how a frame is computed (param.is_how). STATUS_FAILURE when
- * memory is out. */
-status meaning_of_scene(meaning *m, const scene *of, bool without_how);
+/* Of a scene, with or without the parameters that are how a frame is computed (param.performance_only). STATUS_FAILURE
+ * when memory is out. */
+status meaning_of_scene(meaning *m, const scene *of, bool without_performance);
 /* Of a study: its name, its scene with the fixed parameters, its grid. What files hold is not in it
  * (grid_hash_files). */
 status meaning_of_study(meaning *m, const study *s);

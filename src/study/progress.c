@@ -34,21 +34,22 @@ static double sum(const double *values, size_t count)
     return total;
 }
 
-static void count_frames(progress_line *line, const ledger *done, const size_t *cells, size_t cell_count)
+static void count_frames(progress_line *line, const progress_index *done, const size_t *cells, size_t cell_count)
 {
     study_moment *now = &line->now;
     double known_s = 0;
     now->frames_done = now->frames_all = 0;
     for (size_t i = 0; i < cell_count; i++) {
-        const ledger_cell *cell = &done->cells[cells[i]];
+        const progress_index_cell *cell = &done->cells[cells[i]];
         known_s += sum(cell->wall_s, cell->counted);
         now->frames_done += cell->counted;
     }
     const double mean_s = now->frames_done ? known_s / (double)now->frames_done : NAN;
     now->left_s = 0;
     for (size_t i = 0; i < cell_count; i++) {
-        const ledger_cell *cell = &done->cells[cells[i]];
-        size_t lacking = ledger_cell_done(done, cells[i]) ? 0 : (size_t)line->s->repetitions_max - cell->counted;
+        const progress_index_cell *cell = &done->cells[cells[i]];
+        size_t lacking =
+            progress_index_cell_done(done, cells[i]) ? 0 : (size_t)line->s->repetitions_max - cell->counted;
         now->left_s +=
             (double)lacking * (cell->counted ? sum(cell->wall_s, cell->counted) / (double)cell->counted : mean_s);
         now->frames_all += cell->counted + lacking;
@@ -59,8 +60,8 @@ static void write_line(const progress_line *line, const char *more)
 {
     const study_moment *now = &line->now;
     FILE *terminal = line->options->progress;
-    if (now->pictures) {
-        fprintf(terminal, "\r%s: pictures: %zu of %zu%s", line->s->name, now->picture, now->pictures, more);
+    if (now->images) {
+        fprintf(terminal, "\r%s: pictures: %zu of %zu%s", line->s->name, now->img, now->images, more);
         return;
     }
     double share = now->stage == STUDY_MEASURING ? now->share : 0;
@@ -72,7 +73,7 @@ static void write_line(const progress_line *line, const char *more)
     fputs(more, terminal);
 }
 
-static void show(progress_line *line, study_stage stage, double share_done, const char *more)
+static void show(progress_line *line, study_phase stage, double share_done, const char *more)
 {
     const double now_s = clock_wall_s();
     if (!is_watched(line) || (line->shown_s > 0 && now_s - line->shown_s < refresh_s))
@@ -90,7 +91,8 @@ static void show(progress_line *line, study_stage stage, double share_done, cons
         line->options->progressed(line->options->context, &line->now);
 }
 
-void progress_count(progress_line *line, size_t cell, const ledger *done, const size_t *cells, size_t cell_count)
+void progress_count(progress_line *line, size_t cell, const progress_index *done, const size_t *cells,
+                    size_t cell_count)
 {
     line->now.cell = cell;
     if (!is_watched(line))
@@ -99,7 +101,7 @@ void progress_count(progress_line *line, size_t cell, const ledger *done, const 
     progress_show(line, 0); /* frames of under a tenth of a second are not heard of in between */
 }
 
-void progress_measured(progress_line *line, const ledger *done, const size_t *cells, size_t cell_count)
+void progress_measured(progress_line *line, const progress_index *done, const size_t *cells, size_t cell_count)
 {
     if (!is_watched(line))
         return;
@@ -108,19 +110,19 @@ void progress_measured(progress_line *line, const ledger *done, const size_t *ce
     progress_show(line, 0);
 }
 
-void progress_pictures(progress_line *line, size_t cell, size_t picture, size_t pictures)
+void progress_images(progress_line *line, size_t cell, size_t img, size_t images)
 {
     line->now.cell = cell;
-    line->now.picture = picture;
-    line->now.pictures = pictures;
-    if (picture == 1)
+    line->now.img = img;
+    line->now.images = images;
+    if (img == 1)
         line->shown_s = 0; /* what comes after the rows is not held up by them */
     progress_show(line, 0);
 }
 
 void progress_show(progress_line *line, double share_done)
 {
-    show(line, line->now.pictures ? STUDY_PICTURES : STUDY_MEASURING, share_done, "");
+    show(line, line->now.images ? STUDY_IMAGES : STUDY_MEASURING, share_done, "");
 }
 
 void progress_moving(progress_line *line, double share_done)

@@ -67,10 +67,10 @@ static char *file_path(const char *folder, uint64_t scene_hash, const char *endi
     return text_format("%s/references/%016" PRIx64 "%s", folder, scene_hash, ending);
 }
 
-static uint64_t pixel_hash(const image *picture)
+static uint64_t pixel_hash(const image *img)
 {
-    size_t count = (size_t)picture->width * (size_t)picture->height * 3;
-    return hash_finish(hash_bytes(HASH_START, picture->pixel, count * sizeof *picture->pixel));
+    size_t count = (size_t)img->width * (size_t)img->height * 3;
+    return hash_finish(hash_bytes(HASH_START, img->pixel, count * sizeof *img->pixel));
 }
 
 static status damaged(const char *path, diagnostic *why)
@@ -94,26 +94,27 @@ static status load_facts(const char *path, const char *root, reference *out, uin
 status reference_load(const char *folder, const char *root, uint64_t scene_hash, reference *out, diagnostic *why)
 {
     *out = (reference){.scene_hash = scene_hash};
-    char *facts = file_path(folder, scene_hash, ".json"), *picture = file_path(folder, scene_hash, ".pfm");
+    char *facts = file_path(folder, scene_hash, ".json"), *img = file_path(folder, scene_hash, ".pfm");
     uint64_t pixels = 0;
-    status code = facts && picture ? STATUS_OK : out_of_memory(why);
+    status code = facts && img ? STATUS_OK : out_of_memory(why);
     /* The facts are written last: without them the picture is not believed. */
-    if (code == STATUS_OK && access(facts, F_OK) == 0 && access(picture, F_OK) == 0) {
+    if (code == STATUS_OK && access(facts, F_OK) == 0 && access(img, F_OK) == 0) {
         code = load_facts(facts, root, out, &pixels, why);
-        THEN(code, image_read_below(picture, root, &out->picture, NULL, why));
-        if (code == STATUS_OK && pixel_hash(out->picture) != pixels) {
+        THEN(code, image_read_below(img, root, &out->img, NULL, why));
+        if (code == STATUS_OK && pixel_hash(out->img) != pixels) {
             reference_release(out);
-            code = damaged(picture, why);
+            code = damaged(img, why);
         }
     }
     free(facts);
-    free(picture);
+    free(img);
     return code;
 }
 
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
-    return row->is_how || json_object_set_new(context, path, json_string(value)) == 0 ? STATUS_OK : STATUS_FAILURE;
+    return row->performance_only || json_object_set_new(context, path, json_string(value)) == 0 ? STATUS_OK
+                                                                                                : STATUS_FAILURE;
 }
 
 static status save_facts(const reference *of, const scene *setting, const char *path, diagnostic *why)
@@ -122,7 +123,7 @@ static status save_facts(const reference *of, const scene *setting, const char *
     status code = scene_each_param(setting, add_param, params);
     json_t *facts = json_pack("{s:o, s:o, s:o, s:o}", "film_hash", facts_hash(of->film_hash), "noise_rms",
                               isnan(of->noise_rms) ? json_null() : json_real(of->noise_rms), "pixel_hash",
-                              facts_hash(pixel_hash(of->picture)), "parameters", params);
+                              facts_hash(pixel_hash(of->img)), "parameters", params);
     code = code == STATUS_OK && facts ? facts_write(facts, 0, path, why) : out_of_memory(why);
     json_decref(facts);
     return code;
@@ -134,9 +135,9 @@ status reference_save(const study *s, const char *folder, const reference *of, c
     char *pfm = file_path(folder, of->scene_hash, ".pfm"), *png = file_path(folder, of->scene_hash, ".png");
     char *facts = file_path(folder, of->scene_hash, ".json");
     status code = into && pfm && png && facts ? file_make_directory(into, why) : out_of_memory(why);
-    THEN(code, image_write(of->picture, pfm, 8, why));
+    THEN(code, image_write(of->img, pfm, 8, why));
     if (code == STATUS_OK && s->keep_image)
-        code = image_write(of->picture, png, 8, why);
+        code = image_write(of->img, png, 8, why);
     THEN(code, save_facts(of, setting, facts, why));
     free(into);
     free(pfm);
@@ -147,6 +148,6 @@ status reference_save(const study *s, const char *folder, const reference *of, c
 
 void reference_release(reference *of)
 {
-    image_destroy(of->picture);
-    of->picture = NULL;
+    image_destroy(of->img);
+    of->img = NULL;
 }

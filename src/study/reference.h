@@ -11,7 +11,7 @@ typedef struct reference {
     uint64_t scene_hash; /* of all that makes its picture; its file's name, 16 hex digits */
     uint64_t film_hash;
     double noise_rms; /* of random paths, as in rows.csv; NaN without */
-    image *picture;   /* NULL: none is held */
+    image *img;       /* NULL: none is held */
 } reference;
 
 /* Checks every cell's reference: a scene that can be rendered, as large as the cell's. Errors are located in the study
@@ -26,7 +26,7 @@ status reference_scene(const study *s, size_t cell, scene **out, diagnostic *why
 /* Its fingerprint: scenes that differ only in how they are computed have one. Pictures must have been loaded. */
 status reference_scene_hash(const scene *setting, uint64_t *hash);
 
-/* The reference with that scene_hash from the study's folder, below root (base/below.h); out->picture is NULL when it
+/* The reference with that scene_hash from the study's folder, below root (base/below.h); out->img is NULL when it
  * is not there. A file that is not what was written is STATUS_BAD_INPUT. */
 status reference_load(const char *folder, const char *root, uint64_t scene_hash, reference *out, diagnostic *why);
 /* Keeps it there, with the parameters of its scene; as a PNG for the eye too when the study keeps images. */

@@ -41,8 +41,9 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
     TRY(run_append(r->rows, &line, why));
     r->row_number++;
     r->ran++;
-    ledger_entry entry = {row->cell, row->repetition, row->warmup, row->made->film_hash, row->made->result->wall_s};
-    return ledger_add(r->done, &entry, why);
+    progress_index_entry entry = {row->cell, row->repetition, row->warmup, row->made->film_hash,
+                                  row->made->result->wall_s};
+    return progress_index_add(r->done, &entry, why);
 }
 
 static bool show_motion(void *of, double share_done)
@@ -91,7 +92,7 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
                                .repetition = r->done->cells[cell].next_repetition,
                                .warmup = warmup,
                                .order = r->row_number,
-                               .film_expected = ledger_film(r->done, cell, made.film_hash),
+                               .film_expected = progress_index_film(r->done, cell, made.film_hash),
                                .made = &made};
         code = append_row(r, &row, why);
     }
@@ -117,7 +118,7 @@ static status run_rounds(run *r, diagnostic *why)
             order_shuffle(r->s->seed, (uint64_t)round, r->order, r->cell_count);
         for (size_t i = 0; i < r->cell_count; i++) {
             size_t cell = r->cells[r->order[i]];
-            if (r->done->cells[cell].counted > (size_t)round || ledger_cell_done(r->done, cell))
+            if (r->done->cells[cell].counted > (size_t)round || progress_index_cell_done(r->done, cell))
                 continue;
             progress_count(r->line, cell, r->done, r->cells, r->cell_count);
             TRY(measure_warm(r, cell, why));
@@ -144,7 +145,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
              .compared = calloc(total, sizeof *r.compared),
              .line = progress_begin(s, options)};
     bool has_memory = r.folder && r.cells && r.warm && r.order && r.compared && r.line;
-    status code = has_memory ? ledger_read(s, options->results, &r.done, why) : out_of_memory(why);
+    status code = has_memory ? progress_index_read(s, options->results, &r.done, why) : out_of_memory(why);
     THEN(code, run_find_compared(&r, why));
     if (code == STATUS_OK) {
         choose_cells(&r);

@@ -31,7 +31,7 @@ static bool lacks_anything(const run *r, size_t cell)
 bool run_complete(const run *r)
 {
     for (size_t i = 0; i < r->cell_count; i++)
-        if (!ledger_cell_done(r->done, r->cells[i]) || lacks_anything(r, r->cells[i]))
+        if (!progress_index_cell_done(r->done, r->cells[i]) || lacks_anything(r, r->cells[i]))
             return false;
     return true;
 }
@@ -40,7 +40,7 @@ static status render_reference(run *r, const scene *setting, reference *out, dia
 {
     job_account frame;
     status code = run_render(r, setting, NULL, &frame, why);
-    THEN(code, film_image(frame.result->picture, &out->picture, why));
+    THEN(code, film_image(frame.result->img, &out->img, why));
     if (code == STATUS_OK) {
         out->film_hash = frame.film_hash;
         out->noise_rms = render_noise_rms(frame.result);
@@ -58,10 +58,10 @@ static status hold_reference(run *r, size_t cell, diagnostic *why)
     status code = reference_scene(r->s, cell, &setting, why);
     THEN(code, run_load(r, setting, why));
     THEN(code, reference_scene_hash(setting, &hash));
-    if (code == STATUS_OK && (!r->held.picture || r->held.scene_hash != hash)) {
+    if (code == STATUS_OK && (!r->held.img || r->held.scene_hash != hash)) {
         reference_release(&r->held);
         code = reference_load(r->folder, scene_root(r->s->base), hash, &r->held, why);
-        if (code == STATUS_OK && !r->held.picture)
+        if (code == STATUS_OK && !r->held.img)
             code = render_reference(r, setting, &r->held, why);
         if (code != STATUS_OK)
             reference_release(&r->held);
@@ -91,7 +91,7 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
     THEN(code, study_cell_scene(r->s, cell, &setting, why));
     THEN(code, run_load(r, setting, why));
     THEN(code, run_render(r, setting, keeps ? &wanted : NULL, &frame, why));
-    if (code == STATUS_OK && frame.film_hash != ledger_film(r->done, cell, frame.film_hash))
+    if (code == STATUS_OK && frame.film_hash != progress_index_film(r->done, cell, frame.film_hash))
         code = diagnose(why, STATUS_FAILURE, "look for marked rows; the image must depend on the scene alone",
                         "the picture of cell %zu is not the one that its rows saw", cell);
     if (code == STATUS_OK && keeps)
@@ -106,12 +106,12 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
 status run_keep_all(run *r, diagnostic *why)
 {
     status code = STATUS_OK;
-    size_t pictures = 0, picture = 0;
+    size_t images = 0, img = 0;
     for (size_t i = 0; i < r->cell_count; i++)
-        pictures += lacks_anything(r, r->cells[i]);
+        images += lacks_anything(r, r->cells[i]);
     for (size_t i = 0; code == STATUS_OK && i < r->cell_count; i++)
         if (lacks_anything(r, r->cells[i])) {
-            progress_pictures(r->line, r->cells[i], ++picture, pictures);
+            progress_images(r->line, r->cells[i], ++img, images);
             code = keep_cell(r, r->cells[i], why);
         }
     return code;

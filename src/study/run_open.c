@@ -72,8 +72,8 @@ status run_prepare(run *r, diagnostic *why)
     TRY(job_create(&settings, &r->with, why));
     TRY(file_make_directory(r->folder, why));
     TRY(open_tables(r, why));
-    ledger_destroy(r->done);
-    TRY(ledger_read(r->s, r->options->results, &r->done, why));
+    progress_index_destroy(r->done);
+    TRY(progress_index_read(r->s, r->options->results, &r->done, why));
     TRY(run_find_compared(r, why));
     TRY(job_machine(r->with, &machine, why));
     return manifest_write(r->s, r->folder, machine, job_isa(r->with), r->options->shard, r->options->shards, why);
@@ -87,7 +87,7 @@ void run_release(run *r)
     table_close(r->compares);
     table_close(r->workers);
     table_close(r->rows);
-    ledger_destroy(r->done);
+    progress_index_destroy(r->done);
     free(r->compared);
     free(r->order);
     free(r->warm);

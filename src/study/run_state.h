@@ -4,7 +4,7 @@
 
 #include "job/job.h"
 #include "study/csv.h"
-#include "study/ledger.h"
+#include "study/progress_index.h"
 #include "study/progress.h"
 #include "study/reference.h"
 #include "study/table.h"
@@ -16,7 +16,7 @@ typedef struct run {
     size_t *cells, cell_count; /* this shard's */
     bool *warm;                /* by number in the whole grid */
     size_t *order;             /* scratch: the round's order of cells[] */
-    ledger *done;
+    progress_index *done;
     bool *compared;        /* by number in the whole grid: compare.csv has its row */
     table *rows, *workers; /* workers: NULL unless kept */
     table *compares;       /* NULL without a reference */

@@ -75,25 +75,26 @@ void study_destroy(study *s);
 size_t study_cell_count(const study *s);
 /* The axis point of a cell: study.axes[axis].points[study_cell_point(...)]. */
 size_t study_cell_point(const study *s, size_t cell, size_t axis);
-/* The first cell that must have the same film: its parameters differ only in how a frame is computed (param.is_how). */
+/* The first cell that must have the same film: its parameters differ only in how a frame is computed
+ * (param.performance_only). */
 size_t study_cell_film(const study *s, size_t cell);
 /* The study's scene with the fixed parameters and the cell's set; pictures are not loaded. */
 status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *why);
 
-typedef enum study_stage {
+typedef enum study_phase {
     STUDY_MEASURING,
     STUDY_MOVING,
-    STUDY_PICTURES
-} study_stage; /* moving: slimes, before a frame */
+    STUDY_IMAGES
+} study_phase; /* moving: slimes, before a frame */
 
 /* How far a study is while it runs. */
 typedef struct study_moment {
-    study_stage stage;
+    study_phase stage;
     size_t cell;                    /* whose frame it is */
     double share;                   /* of that frame, or of the motion before it, 0..1 */
     size_t frames_done, frames_all; /* repetitions, without warm-ups, of this process' cells */
     double left_s;                  /* for the frames to come; NaN: not known */
-    size_t picture, pictures;       /* which of the kept pictures, from 1; 0 of 0 while rows are measured */
+    size_t img, images;             /* which of the kept pictures, from 1; 0 of 0 while rows are measured */
 } study_moment;
 
 typedef struct study_options {

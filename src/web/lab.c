@@ -5,7 +5,7 @@
 #include "report/json.h"
 #include "web/api/api.h"
 #include "web/page.h"
-#include "web/session/pins.h"
+#include "web/session/reference_image.h"
 #include "web/session/studies.h"
 #include "scene/model/scene.h"
 
@@ -29,11 +29,11 @@ json_t *lab_state(lab *l)
 {
     json_t *state = json_pack("{s:s}", "version", CUVETTE_VERSION);
     const bool good =
-        state && desk_tell(l->desk, state) && painter_tell(l->painter, state) &&
-        json_object_update_new(state,
-                               json_pack("{s:o, s:o, s:o, s:{s:i, s:i}}", "slime", live_tell(painter_live(l->painter)),
-                                         "pin", pins_tell(l->pins), "study", studies_tell(l->studies), "limits",
-                                         "pixels", DESK_PIXELS_MAX, "triangles", DESK_TRIANGLES_MAX)) == 0;
+        state && scene_document_json(l->scene_document, state) && render_worker_json(l->render_worker, state) &&
+        json_object_update_new(
+            state, json_pack("{s:o, s:o, s:o, s:{s:i, s:i}}", "slime", live_tell(render_worker_live(l->render_worker)),
+                             "pin", reference_image_json(l->reference_image), "study", studies_tell(l->studies),
+                             "limits", "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) == 0;
     return json_whole(state, good);
 }
 
@@ -53,20 +53,20 @@ void lab_tell_state(lab *l)
     pthread_mutex_unlock(&l->tell_lock);
 }
 
-static void on_desk(void *of)
+static void on_document(void *of)
 {
     lab *l = of;
-    painter_wake(l->painter);
+    render_worker_wake(l->render_worker);
     lab_tell_state(l);
 }
 
-static void on_picture(void *of, const picture *p)
+static void on_image(void *of, const shared_image *p)
 {
     lab *l = of;
     if (!is_open(l))
         return;
-    lab_publish(l, "picture", picture_json(p));
-    live *toy = painter_live(l->painter);
+    lab_publish(l, "picture", shared_image_json(p));
+    live *toy = render_worker_live(l->render_worker);
     if (live_is_on(toy))
         lab_publish(l, "slime", live_tell(toy));
 }
@@ -122,14 +122,14 @@ static status check_results(const lab *l, diagnostic *why)
                        "is not in the folder of the laboratory");
 }
 
-static status open_desk(lab *l, diagnostic *why)
+static status open_document(lab *l, diagnostic *why)
 {
     scene *first = NULL;
     char *file = NULL;
     status code = first_scene(l, &first, &file, why);
     if (code == STATUS_OK) {
         lab_give_threads(l, first);
-        code = desk_create(first, file, l->files, on_desk, l, &l->desk, why);
+        code = scene_document_create(first, file, l->files, on_document, l, &l->scene_document, why);
     }
     free(file);
     return code;
@@ -163,12 +163,13 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
         return out_of_memory(why);
     *l =
         (lab){.settings = *settings, .tell_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
-    const painter_listener listener = {on_picture, on_told, l};
+    const render_worker_listener listener = {on_image, on_told, l};
     status code = folder_open(settings->folder, &l->files, why);
     THEN(code, check_results(l, why));
-    THEN(code, open_desk(l, why));
-    THEN(code, painter_create(l->desk, settings->level, &listener, &l->painter, why));
-    if (code == STATUS_OK && (!(l->pins = pins_create()) || !(l->heavy = gate_create(HEAVY_AT_ONCE))))
+    THEN(code, open_document(l, why));
+    THEN(code, render_worker_create(l->scene_document, settings->level, &listener, &l->render_worker, why));
+    if (code == STATUS_OK &&
+        (!(l->reference_image = reference_image_create()) || !(l->heavy = semaphore_create(HEAVY_AT_ONCE))))
         code = out_of_memory(why);
     THEN(code, studies_create(l, &l->studies, why));
     THEN(code, serve(l, why));
@@ -189,17 +190,17 @@ void lab_stop(lab *l)
     l->open = false;
     pthread_mutex_unlock(&l->publish_lock);
     if (l->heavy)
-        gate_close(l->heavy);
+        semaphore_close(l->heavy);
     if (l->studies)
         studies_end(l->studies);
-    if (l->painter)
-        painter_end(l->painter);
+    if (l->render_worker)
+        render_worker_end(l->render_worker);
     http_stop(l->server);
     studies_destroy(l->studies);
-    gate_destroy(l->heavy);
-    pins_destroy(l->pins);
-    painter_destroy(l->painter);
-    desk_destroy(l->desk);
+    semaphore_destroy(l->heavy);
+    reference_image_destroy(l->reference_image);
+    render_worker_destroy(l->render_worker);
+    scene_document_destroy(l->scene_document);
     folder_close(l->files);
     pthread_mutex_destroy(&l->publish_lock);
     pthread_mutex_destroy(&l->tell_lock);

@@ -2,25 +2,25 @@
 #pragma once
 
 #include "base/vec3.h"
-#include "web/session/desk.h"
+#include "web/session/scene_document.h"
 #include "web/session/folder.h"
-#include "web/session/gate.h"
+#include "web/session/semaphore.h"
 #include "web/http/http.h"
 #include "web/lab.h"
-#include "web/live/painter.h"
+#include "web/live/render_worker.h"
 #include <pthread.h>
 
-typedef struct pins pins;       /* web/session/pins.h */
-typedef struct studies studies; /* web/session/studies.h */
+typedef struct reference_image reference_image; /* web/session/reference_image.h */
+typedef struct studies studies;                 /* web/session/studies.h */
 
 struct lab {
     lab_settings settings;
     folder *files;
-    struct desk *desk;
-    struct painter *painter;
-    struct pins *pins;
+    struct scene_document *scene_document;
+    struct render_worker *render_worker;
+    struct reference_image *reference_image;
     struct studies *studies;
-    gate *heavy; /* for handlers that take much memory and time */
+    semaphore *heavy; /* for handlers that take much memory and time */
     http_server *server;
     http_route *routes;
     struct api_bound *bound;   /* their contexts */

@@ -171,13 +171,13 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool 
 
 /* Define rows and points by a body that is compiled for both answers of is_general, an expression in p: whether rays
  * must be turned into the primitive's frame, or it is scaled. */
-#define ROWS_OF(is_general, body)                                                                   \
+#define ROWS_OF(is_general, region)                                                                 \
     static void rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                               \
         if (is_general)                                                                             \
-            body(p, true, bit, rays, s);                                                            \
+            region(p, true, bit, rays, s);                                                          \
         else                                                                                        \
-            body(p, false, bit, rays, s);                                                           \
+            region(p, false, bit, rays, s);                                                         \
     }
 /* Of a convex primitive. */
 #define SPANS_OF(is_general, span)                                                                             \

@@ -17,7 +17,7 @@ static inline surface_mapping mapping_flat(double x, double y, double width, dou
 }
 
 /* Around the axis by the angle, with one picture, or as the length of the arc: to the right as seen from outside, the
- * picture's middle in front, at -z, as on the bodies of geometry/bodies.h. */
+ * picture's middle in front, at -z, as on the bodies of geometry/mesh_generators.h. */
 static inline surface_mapping mapping_around(double x, double z, double radius, double v, double height, double size)
 {
     const double turn = 0.5 + elementary_atan2_deg(x, -z) / 360.0, arc = 6.283185307179586 * radius;

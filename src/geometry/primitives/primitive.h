@@ -3,7 +3,7 @@
  * new one is its file, and the shapes that are made of it name it with PRIMITIVE_RULE.
  *
  * Points and rays are in the primitive's own frame, faces are numbered from 0. Functions are pure and cannot fail. A
- * mesh has no rule (geometry/forest.h): to the functions at the end its answers are none, nothing and zero. */
+ * mesh has no rule (geometry/instance_set.h): to the functions at the end its answers are none, nothing and zero. */
 #pragma once
 
 #include "geometry/primitives/mapping.h"
@@ -58,5 +58,5 @@ int primitive_chords(const primitive *p, vec3 origin, vec3 direction, interval c
 /* Its faces across an axis of its own; returns how many. */
 int primitive_flats(const primitive *p, flat_face flat[FLATS_MAX]);
 
-/* The point of the world lies on that face (a face's number, see arrangement.h). */
+/* The point of the world lies on that face (a face's number, see scene_geometry.h). */
 surface_mapping primitive_mapping(const primitive *p, int64_t face, vec3 point, double size);

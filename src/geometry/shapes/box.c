@@ -75,7 +75,7 @@ static int rings(const solid_shape *shape, shape_ring *out)
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)part;
-    return body_box(shape->size, out, why);
+    return generate_box(shape->size, out, why);
 }
 
 const shape_rule shape_box = {

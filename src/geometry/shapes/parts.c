@@ -27,7 +27,7 @@ shape_extent extent_of_size(vec3 size)
 
 status tessellate_lathe(const profile_point *profile, size_t count, mesh **out, diagnostic *why)
 {
-    return body_lathe(profile, count, ROUND_SEGMENTS, 30.0, out, why);
+    return generate_lathe(profile, count, ROUND_SEGMENTS, 30.0, out, why);
 }
 
 bool level_faces(const double *heights, size_t count, size_t i, vec3 *normal, vec3 *point)

@@ -1,8 +1,8 @@
 /* What several shapes share. Pure. */
 #pragma once
 
-#include "geometry/arrangement.h"
-#include "geometry/bodies.h"
+#include "geometry/scene_geometry.h"
+#include "geometry/mesh_generators.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/shapes/placed.h"
 

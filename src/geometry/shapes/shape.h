@@ -62,7 +62,7 @@ typedef struct shape_rule {
     bool (*contains)(const solid_shape *shape, vec3 local);
     /* Writes what the kernels intersect: primitive_count of them, the second one hollows the first one out. */
     int primitive_count;
-    int further_rows; /* how many more than one each of them takes: see geometry/arrangement.h */
+    int further_rows; /* how many more than one each of them takes: see geometry/scene_geometry.h */
     void (*primitives)(const solid_shape *shape, struct primitive *out);
     /* By primitive, names of its faces by their number there; the last one is that of all that follow. */
     const char *const *faces[SHAPE_PRIMITIVES];

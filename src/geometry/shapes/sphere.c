@@ -70,7 +70,7 @@ static int rings(const solid_shape *shape, shape_ring *out)
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)shape, (void)part;
-    return body_icosphere(5, out, why);
+    return generate_icosphere(5, out, why);
 }
 
 static vec3 tessellation_scale(const solid_shape *shape)

@@ -74,7 +74,7 @@ static int rings(const solid_shape *shape, shape_ring *out)
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)part;
-    return body_torus(shape->radius, shape->tube_radius, ROUND_SEGMENTS, ROUND_SEGMENTS / 2, out, why);
+    return generate_torus(shape->radius, shape->tube_radius, ROUND_SEGMENTS, ROUND_SEGMENTS / 2, out, why);
 }
 
 const shape_rule shape_torus = {

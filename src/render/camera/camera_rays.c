@@ -40,13 +40,13 @@ void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
         q->ox[i] = p->view.eye.x, q->oy[i] = p->view.eye.y, q->oz[i] = p->view.eye.z;
         q->wr[i] = q->wg[i] = q->wb[i] = 1.0 / (double)each;
         q->start[i] = FACE_NONE;
-        q->ticket[i] = ticket_make((int64_t)y * r->width + x, t->by_ticket ? ray : 0);
+        q->sample_key[i] = sample_key_make((int64_t)y * r->width + x, t->by_sample_key ? ray : 0);
         if (p->spectral) {
             const double *white;
-            q->ticket[i] = spectra_choose(p->spectral, r, q->ticket[i], &white);
+            q->sample_key[i] = spectra_choose(p->spectral, r, q->sample_key[i], &white);
             q->wr[i] *= white[0], q->wg[i] *= white[1], q->wb[i] *= white[2];
         }
-        q->ticket[i] |= need.marks;
+        q->sample_key[i] |= need.marks;
         q->inside[i] = p->eye_inside;
         q->sq[i] = q->su[i] = q->sv[i] = 0.0;
     }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/random.h"
-#include "render/core/ticket.h"
+#include "render/core/sample_key.h"
 #include "scene/model/light.h"
 #include <assert.h>
 
@@ -19,8 +19,8 @@ enum {
 };
 static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_NEXT, "lights draw by numbers of their own");
 
-static inline random_words draw(int64_t seed, int64_t ticket, int depth, int purpose)
+static inline random_words draw(int64_t seed, int64_t sample_key, int depth, int purpose)
 {
-    return random_at((uint64_t)seed, (uint32_t)ticket_pixel(ticket), (uint32_t)ticket_sample(ticket), (uint32_t)depth,
-                     (uint32_t)purpose);
+    return random_at((uint64_t)seed, (uint32_t)sample_key_pixel(sample_key), (uint32_t)sample_key_sample(sample_key),
+                     (uint32_t)depth, (uint32_t)purpose);
 }

@@ -67,7 +67,7 @@ static void report_mesh(plan *p, const mesh_entry *m, const solid_shape *shape, 
 }
 
 /* The shape of a mesh solid with its triangles, and the hierarchy over them. */
-static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, body_source *source, diagnostic *why)
+static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, region_source *source, diagnostic *why)
 {
     const solid *one = &s->solids[i];
     const mesh_entry *m = scene_find_mesh(s, one->mesh);
@@ -87,12 +87,12 @@ static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, 
 
 static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
-    body_source *sources = calloc(s->solid_count + 1, sizeof *sources);
+    region_source *sources = calloc(s->solid_count + 1, sizeof *sources);
     solid_shape *shapes = calloc(s->solid_count + 1, sizeof *shapes);
     p->own_trees = calloc(s->solid_count + 1, sizeof(hierarchy *));
     p->own_tree_count = s->solid_count;
-    p->clearness = calloc(s->solid_count + 1, sizeof *p->clearness);
-    if (!sources || !shapes || !p->own_trees || !p->clearness) {
+    p->shadow_transmittance = calloc(s->solid_count + 1, sizeof *p->shadow_transmittance);
+    if (!sources || !shapes || !p->own_trees || !p->shadow_transmittance) {
         free(sources);
         free(shapes);
         return out_of_memory(why);
@@ -103,25 +103,25 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
         const solid *one = &s->solids[i];
         if (!one->visible)
             continue;
-        double clearness;
-        if (!body_clearness_make(s, one, &clearness, &p->clearness[i]))
+        double shadow_transmittance;
+        if (!region_shadow_transmittance(s, one, &shadow_transmittance, &p->shadow_transmittance[i]))
             code = out_of_memory(why);
-        sources[count] = (body_source){.shape = &one->shape,
-                                       .priority = one->priority,
-                                       .medium = medium_of(s, laws, i),
-                                       .opaque = looks_opaque(s, one),
-                                       .clearness = clearness,
-                                       .face_clearness = p->clearness[i],
-                                       .absorbs = material_dims(&one->surface),
-                                       .reflects = p->basic && !scene_has_constant_shares(&s->render),
-                                       .solid = i};
+        sources[count] = (region_source){.shape = &one->shape,
+                                         .priority = one->priority,
+                                         .medium = medium_of(s, laws, i),
+                                         .opaque = solid_is_opaque(s, one),
+                                         .shadow_transmittance = shadow_transmittance,
+                                         .face_shadow_transmittance = p->shadow_transmittance[i],
+                                         .absorbs = material_dims(&one->surface),
+                                         .reflects = p->basic && !scene_has_constant_shares(&s->render),
+                                         .solid = i};
         if (code == STATUS_OK && shape_of(&one->shape)->triangles)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
     }
-    THEN(code, arrangement_build(sources, count, 0, &p->solids, why));
+    THEN(code, scene_geometry_build(sources, count, 0, &p->solids, why));
     if (code == STATUS_OK && surroundings_absorb(&s->background))
-        arrangement_surroundings_absorb(p->solids);
+        scene_geometry_surroundings_absorb(p->solids);
     free(shapes);
     free(sources);
     return code;
@@ -163,30 +163,31 @@ static const material *material_of(const scene *s, plan *p, int solid_index)
 }
 
 /* What each rank's body is made of. */
-static status fill_ranks(const scene *s, const index_law *laws, plan *p, diagnostic *why)
+static status fill_priority_indices(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
-    const size_t ranks = (size_t)p->solids->body_count + 1;
-    p->materials = calloc(ranks, sizeof *p->materials);
-    p->ior = calloc(ranks, sizeof *p->ior);
-    p->laws = calloc(ranks, sizeof *p->laws);
-    p->absorption = calloc(ranks, sizeof *p->absorption);
-    p->looks = calloc(ranks, sizeof *p->looks);
+    const size_t priority_indices = (size_t)p->solids->region_count + 1;
+    p->materials = calloc(priority_indices, sizeof *p->materials);
+    p->ior = calloc(priority_indices, sizeof *p->ior);
+    p->laws = calloc(priority_indices, sizeof *p->laws);
+    p->absorption = calloc(priority_indices, sizeof *p->absorption);
+    p->shading_materials = calloc(priority_indices, sizeof *p->shading_materials);
     p->mirrors = calloc(s->solid_count + 1, sizeof *p->mirrors);
-    if (!p->mirrors || !p->materials || !p->ior || !p->laws || !p->absorption || !p->looks)
+    if (!p->mirrors || !p->materials || !p->ior || !p->laws || !p->absorption || !p->shading_materials)
         return out_of_memory(why);
-    for (size_t r = 0; r < ranks; r++) {
-        const int solid_index = p->solids->bodies[r].solid;
+    for (size_t r = 0; r < priority_indices; r++) {
+        const int solid_index = p->solids->regions[r].solid;
         p->laws[r] = laws[solid_index < 0 ? (int)s->solid_count : solid_index];
         p->ior[r] = index_law_at(&p->laws[r], s->render.lambda_nm);
         if (solid_index < 0)
             continue;
         p->materials[r] = material_of(s, p, solid_index);
-        if (!body_look_make(s, &s->solids[solid_index], p->materials[r], &p->looks[r]))
+        if (!region_materials_make(s, &s->solids[solid_index], p->materials[r], &p->shading_materials[r]))
             return out_of_memory(why);
         p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
     }
     p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);
-    if (s->render.spectrum == SPECTRUM_SPECTRAL && !(p->spectral = spectra_create(s, p->materials, p->laws, ranks)))
+    if (s->render.spectrum == SPECTRUM_SPECTRAL &&
+        !(p->spectral = spectra_create(s, p->materials, p->laws, priority_indices)))
         return out_of_memory(why);
     return STATUS_OK;
 }
@@ -199,7 +200,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     if (code == STATUS_OK)
         p->basic = scene_has_basic_radiance(&s->render);
     THEN(code, arrange(s, laws, p, why));
-    THEN(code, fill_ranks(s, laws, p, why));
+    THEN(code, fill_priority_indices(s, laws, p, why));
     THEN(code, aim_cones(s, p, why));
     free(laws);
     if (code != STATUS_OK) {
@@ -211,10 +212,10 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     if (integrator_of(&s->render)->drawn)
         p->render.shadows = SHADOWS_OFF;
     else
-        p->eye_inside = arrangement_inside(p->solids, p->view.eye);
-    p->eye_rank = arrangement_rank(p->solids, p->eye_inside);
+        p->eye_inside = scene_geometry_inside(p->solids, p->view.eye);
+    p->camera_priority_index = scene_geometry_priority_index(p->solids, p->eye_inside);
     p->sky = &s->background;
-    if (s->render.beyond == BEYOND_MEAN)
+    if (s->render.beyond == DEPTH_LIMIT_MEAN)
         p->sky_mean = sky_mean(p->sky);
     p->lights = s->lights;
     p->light_count = (int)s->light_count;
@@ -229,16 +230,16 @@ void plan_destroy(plan *p)
 {
     if (!p)
         return;
-    for (int r = 0; p->looks && r <= p->solids->body_count; r++)
-        free(p->looks[r].look);
-    free(p->looks);
-    arrangement_destroy(p->solids);
+    for (int r = 0; p->shading_materials && r <= p->solids->region_count; r++)
+        free(p->shading_materials[r].mat);
+    free(p->shading_materials);
+    scene_geometry_destroy(p->solids);
     for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
         hierarchy_destroy(p->own_trees[i]);
     free(p->own_trees);
-    for (size_t i = 0; p->clearness && i < p->own_tree_count; i++)
-        free(p->clearness[i]);
-    free(p->clearness);
+    for (size_t i = 0; p->shadow_transmittance && i < p->own_tree_count; i++)
+        free(p->shadow_transmittance[i]);
+    free(p->shadow_transmittance);
     free(p->materials);
     free(p->mirrors);
     free(p->ior);

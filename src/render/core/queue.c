@@ -17,7 +17,7 @@ bool queue_create(ray_queue *q, int capacity)
     for (size_t i = 0; i < sizeof reals / sizeof *reals; i++, at += length)
         *reals[i] = at;
     q->start = (int64_t *)(void *)at;
-    q->ticket = (int64_t *)(void *)(at + length);
+    q->sample_key = (int64_t *)(void *)(at + length);
     q->inside = (uint64_t *)(void *)(at + 2 * length);
     q->sq = at + 3 * length, q->su = at + 4 * length, q->sv = at + 5 * length;
     q->memory = memory;

@@ -8,8 +8,8 @@
 typedef struct ray_queue {
     int count, capacity;
     double *ox, *oy, *oz, *dx, *dy, *dz;
-    double *wr, *wg, *wb;    /* throughput; of a shadow ray the radiance that it brings if nothing is in the way */
-    int64_t *start, *ticket; /* face it starts on; render/core/ticket.h */
+    double *wr, *wg, *wb;        /* throughput; of a shadow ray the radiance that it brings if nothing is in the way */
+    int64_t *start, *sample_key; /* face it starts on; render/core/sample_key.h */
     uint64_t *inside;
     double *sq, *su, *sv; /* with polarisation: the analyser's Stokes vector relative to its first element */
     void *memory;
@@ -28,7 +28,7 @@ static inline void queue_move(ray_queue *q, int to, int from)
     q->ox[to] = q->ox[from], q->oy[to] = q->oy[from], q->oz[to] = q->oz[from];
     q->dx[to] = q->dx[from], q->dy[to] = q->dy[from], q->dz[to] = q->dz[from];
     q->wr[to] = q->wr[from], q->wg[to] = q->wg[from], q->wb[to] = q->wb[from];
-    q->start[to] = q->start[from], q->ticket[to] = q->ticket[from], q->inside[to] = q->inside[from];
+    q->start[to] = q->start[from], q->sample_key[to] = q->sample_key[from], q->inside[to] = q->inside[from];
 }
 
 /* And its Stokes vector. */

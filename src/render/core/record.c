@@ -7,16 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-status record_picture(const film *f, const char *path, int bits, diagnostic *why)
+status record_image(const film *f, const char *path, int bits, diagnostic *why)
 {
-    image *picture = NULL;
-    status code = film_image(f, &picture, why);
-    THEN(code, image_write(picture, path, bits, why));
-    image_destroy(picture);
+    image *img = NULL;
+    status code = film_image(f, &img, why);
+    THEN(code, image_write(img, path, bits, why));
+    image_destroy(img);
     return code;
 }
 
-static status picture_of_values(const double *values, const film *f, image **out, diagnostic *why)
+static status image_of_values(const double *values, const film *f, image **out, diagnostic *why)
 {
     status code = image_create(f->width, f->height, out, why);
     for (size_t i = 0; code == STATUS_OK && i < (size_t)f->width * (size_t)f->height; i++)
@@ -27,18 +27,17 @@ static status picture_of_values(const double *values, const film *f, image **out
 
 status record_map(const double *values, const film *f, const char *title, const char *path, diagnostic *why)
 {
-    image *picture = NULL;
-    status code = image_format_of(path) == IMAGE_PFM
-                      ? picture_of_values(values, f, &picture, why)
-                      : heatmap_create(values, f->width, f->height, title, &picture, why);
-    THEN(code, image_write(picture, path, 8, why));
-    image_destroy(picture);
+    image *img = NULL;
+    status code = image_format_of(path) == IMAGE_PFM ? image_of_values(values, f, &img, why)
+                                                     : heatmap_create(values, f->width, f->height, title, &img, why);
+    THEN(code, image_write(img, path, 8, why));
+    image_destroy(img);
     return code;
 }
 
 status record_noise(const render_result *result, const char *path, diagnostic *why)
 {
-    const size_t pixels = (size_t)result->picture->width * (size_t)result->picture->height;
+    const size_t pixels = (size_t)result->img->width * (size_t)result->img->height;
     double *error = malloc((pixels + 1) * sizeof *error);
     if (!error)
         return out_of_memory(why);
@@ -46,7 +45,7 @@ status record_noise(const render_result *result, const char *path, diagnostic *w
         const double *v = &result->variance[3 * i];
         error[i] = sqrt((v[0] + v[1] + v[2]) / 3.0);
     }
-    status code = record_map(error, result->picture, "standard error per pixel", path, why);
+    status code = record_map(error, result->img, "standard error per pixel", path, why);
     free(error);
     return code;
 }
@@ -62,12 +61,12 @@ char *record_layer_path(const char *prefix, int layer)
 
 static status record_layer(const float *values, int channels, const film *f, const char *path, diagnostic *why)
 {
-    image *picture = NULL;
-    status code = image_create(f->width, f->height, &picture, why);
+    image *img = NULL;
+    status code = image_create(f->width, f->height, &img, why);
     for (size_t i = 0; code == STATUS_OK && i < 3 * (size_t)f->width * (size_t)f->height; i++)
-        picture->pixel[i] = values[channels == 3 ? i : i / 3];
-    THEN(code, image_write(picture, path, 8, why));
-    image_destroy(picture);
+        img->pixel[i] = values[channels == 3 ? i : i / 3];
+    THEN(code, image_write(img, path, 8, why));
+    image_destroy(img);
     return code;
 }
 
@@ -76,7 +75,7 @@ status record_layers(const render_result *result, const char *prefix, diagnostic
     status code = STATUS_OK;
     for (int i = 0; i < LAYER_COUNT && code == STATUS_OK; i++) {
         char *path = record_layer_path(prefix, i);
-        code = path ? record_layer(result->layers->values[i], layer_channels[i], result->picture, path, why)
+        code = path ? record_layer(result->layers->values[i], layer_channels[i], result->img, path, why)
                     : out_of_memory(why);
         free(path);
     }

@@ -5,7 +5,7 @@
 #include "render/core/renderer.h"
 
 /* The film as a picture, by the ending of path; bits as image_write takes them. */
-status record_picture(const film *f, const char *path, int bits, diagnostic *why);
+status record_image(const film *f, const char *path, int bits, diagnostic *why);
 
 /* values, one a pixel of f: in false colours with a key and a title; or, in a file that ends in .pfm, the numbers
  * themselves (the same in all three channels). */

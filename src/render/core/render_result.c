@@ -7,7 +7,7 @@ double render_noise_rms(const render_result *result)
 {
     if (!result->variance)
         return (double)NAN;
-    const size_t count = 3 * (size_t)result->picture->width * (size_t)result->picture->height;
+    const size_t count = 3 * (size_t)result->img->width * (size_t)result->img->height;
     double sum = 0.0;
     for (size_t i = 0; i < count; i++)
         sum += result->variance[i];
@@ -18,7 +18,7 @@ void render_result_destroy(render_result *result)
 {
     if (!result)
         return;
-    film_destroy(result->picture);
+    film_destroy(result->img);
     free(result->workers);
     free(result->pixel_rays);
     free(result->pixel_ns);

@@ -3,9 +3,9 @@
 #include "base/grow.h"
 #include "measure/clock.h"
 #include "render/core/plan.h"
-#include "render/core/pool.h"
+#include "render/core/worker_pool.h"
 #include "render/core/schedule.h"
-#include "render/core/tracer_set.h"
+#include "render/core/tracer_pool.h"
 #include "render/integrators/integrator.h"
 #include "scene/model/scene.h"
 #include <math.h>
@@ -14,8 +14,8 @@
 
 struct renderer {
     const topology *machine;
-    pool *threads;
-    tracer_set *tracers;
+    worker_pool *threads;
+    tracer_pool *tracers;
 };
 
 typedef struct event_list {
@@ -36,7 +36,7 @@ typedef struct frame {
     const scene *s;
     const render_options *options;
     const plan *scene;
-    const film *picture;
+    const film *img;
     const integrator *rule;
     void *kept;               /* what the integrator keeps for the frame */
     void (*step)(void *kept); /* of its pre-pass: the one that is being done */
@@ -50,8 +50,8 @@ status renderer_create(isa level, const topology *machine, renderer **out, diagn
 {
     renderer *r = calloc(1, sizeof *r);
     if (r) {
-        r->threads = pool_create();
-        r->tracers = tracer_set_create(level);
+        r->threads = worker_pool_create();
+        r->tracers = tracer_pool_create(level);
         r->machine = machine;
     }
     if (!r || !r->threads || !r->tracers) {
@@ -66,8 +66,8 @@ void renderer_destroy(renderer *r)
 {
     if (!r)
         return;
-    pool_destroy(r->threads);
-    tracer_set_destroy(r->tracers);
+    worker_pool_destroy(r->threads);
+    tracer_pool_destroy(r->tracers);
     free(r);
 }
 
@@ -78,7 +78,7 @@ void renderer_know_machine(renderer *r, const topology *machine)
 
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why)
 {
-    return s->render.pool ? pool_reserve(r->threads, (int)s->render.threads, why) : STATUS_OK;
+    return s->render.worker_pool ? worker_pool_reserve(r->threads, (int)s->render.threads, why) : STATUS_OK;
 }
 
 static pin_policy policy_of(const scene *s)
@@ -125,7 +125,7 @@ static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
 {
     const bool timeline = f->options && f->options->timeline, by_piece = f->options && f->options->piece_done;
     const double began_s = since(f);
-    tracer *t = tracer_set_take(f->owner->tracers);
+    tracer *t = tracer_pool_take(f->owner->tracers);
     if (!t) {
         d->out_of_memory = true;
         return;
@@ -139,7 +139,7 @@ static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
         if (by_piece) {
             tracer_finish(t, &f->stop);
             if (!atomic_load_explicit(&f->stop, memory_order_relaxed))
-                f->options->piece_done(f->options->context, f->picture, piece.x0, piece.y0, piece.x1, piece.y1);
+                f->options->piece_done(f->options->context, f->img, piece.x0, piece.y0, piece.x1, piece.y1);
         }
         d->report.tiles++;
         if (timeline)
@@ -153,7 +153,7 @@ static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
     d->report.visibility_s = tracer_visibility_s(t) - visibility_s;
     d->report.camera = c->camera - camera_rays, d->report.reflect = c->reflect - reflect;
     d->report.refract = c->refract - refract, d->report.shadow = c->shadow - shadow;
-    tracer_set_give(f->owner->tracers, t);
+    tracer_pool_return(f->owner->tracers, t);
 }
 
 static void work(void *context, int worker)
@@ -210,10 +210,10 @@ static bool join_events(const worker_account *accounts, int count, render_result
 static void count_tests(const plan *p, ray_counters *c)
 {
     const uint64_t nearest = c->camera + c->reflect + c->refract;
-    for (int r = 1; r <= p->solids->body_count; r++) {
-        const body *b = &p->solids->bodies[r];
+    for (int r = 1; r <= p->solids->region_count; r++) {
+        const region *b = &p->solids->regions[r];
         c->tests[b->solid] =
-            nearest + (body_casts_shadow(b, p->solid_shadows) || p->solids->bodies[0].absorbs ? c->shadow : 0);
+            nearest + (region_casts_shadow(b, p->solid_shadows) || p->solids->regions[0].absorbs ? c->shadow : 0);
     }
 }
 
@@ -230,7 +230,7 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
         out_of_memory |= d->out_of_memory;
         misplaced |= d->misplaced;
     }
-    const bool overflow = tracer_set_collect(f->owner->tracers, &result->counters) || !in_range;
+    const bool overflow = tracer_pool_collect(f->owner->tracers, &result->counters) || !in_range;
     if (f->rule->traced)
         count_tests(f->scene, &result->counters);
     if (f->options && f->options->timeline)
@@ -278,7 +278,7 @@ static status make_result(const scene *s, const render_options *options, render_
     if (!result)
         return out_of_memory(why);
     const film_space space = s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
-    status code = film_create((int)s->render.width, (int)s->render.height, layers_of(s), space, &result->picture, why);
+    status code = film_create((int)s->render.width, (int)s->render.height, layers_of(s), space, &result->img, why);
     if (code == STATUS_OK) {
         result->worker_count = (int)s->render.threads;
         result->workers = calloc((size_t)result->worker_count, sizeof *result->workers);
@@ -323,7 +323,7 @@ static status run_steps(frame *f, int count, diagnostic *why)
     status code = STATUS_OK;
     for (const integrator_step *step = f->rule->steps; step && step->together && code == STATUS_OK; step++) {
         f->step = step->together;
-        code = pool_run(f->owner->threads, count, f->s->render.pool, run_step, NULL, 0.0, f, why);
+        code = worker_pool_run(f->owner->threads, count, f->s->render.worker_pool, run_step, NULL, 0.0, f, why);
         if (code == STATUS_OK && step->alone)
             code = step->alone(f->kept, why);
     }
@@ -336,8 +336,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
     worker_account *accounts = make_accounts(count);
-    const tracer_target target = {p, result->picture, result->pixel_rays, result->pixel_ns, kept, result->layers};
-    bool has_memory = f && accounts && tracer_set_begin(r->tracers, count, &target);
+    const tracer_target target = {p, result->img, result->pixel_rays, result->pixel_ns, kept, result->layers};
+    bool has_memory = f && accounts && tracer_pool_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
     if (code == STATUS_OK) {
         memset(f, 0, sizeof *f);
@@ -345,7 +345,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->s = s;
         f->options = options;
         f->scene = p;
-        f->picture = result->picture;
+        f->img = result->img;
         f->rule = integrator_for(&s->render);
         f->kept = kept;
         f->accounts = accounts;
@@ -353,12 +353,13 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         const double cpu_s = clock_process_cpu_s();
         f->began_s = clock_wall_s();
         code = run_steps(f, count, why);
-        THEN(code, pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL,
-                            options && options->progress_s > 0 ? options->progress_s : 0.1, f, why));
+        THEN(code, worker_pool_run(r->threads, count, s->render.worker_pool, work,
+                                   options && options->progress ? watch : NULL,
+                                   options && options->progress_s > 0 ? options->progress_s : 0.1, f, why));
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
         if (code == STATUS_OK) {
-            const bool in_range = film_add_layers(result->picture, result->variance);
+            const bool in_range = film_add_layers(result->img, result->variance);
             code = collect(f, in_range, result, why);
             if (code == STATUS_OK && f->rule->finish)
                 code = f->rule->finish(kept, &result->meshes, why);
@@ -377,7 +378,7 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
     plan *p = NULL;
     void *kept = NULL;
     render_result *result = NULL;
-    if (code == STATUS_OK && s->background.kind == BACKGROUND_PICTURE && !s->background.picture)
+    if (code == STATUS_OK && s->background.kind == BACKGROUND_IMAGE && !s->background.img)
         code = diagnose(why, STATUS_FAILURE, "call scene_load before", "the sky's picture is not loaded");
     THEN(code, plan_build(s, &p, why));
     const integrator *rule = code == STATUS_OK ? integrator_for(&s->render) : NULL;

@@ -56,12 +56,12 @@ typedef struct render_options {
     /* Called by the worker that has traced the last ray of a piece of the picture (x0 <= x < x1, y0 <= y < y1), so by
      * different threads at the same time; the film may be read there. Batches are then not filled up across pieces,
      * which costs time and changes no bit. May be NULL. */
-    void (*piece_done)(void *context, const film *picture, int x0, int y0, int x1, int y1);
+    void (*piece_done)(void *context, const film *img, int x0, int y0, int x1, int y1);
     void *context;
 } render_options;
 
 typedef struct render_result {
-    film *picture;
+    film *img;
     ray_counters counters; /* summed over workers */
     /* from the release of the workers to the end of the last; with pool off, their creation and join too */
     double wall_s;

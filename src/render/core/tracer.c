@@ -90,7 +90,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     if (!make_queues(t, t->queues.depth_limit + 1) || !mesh_begin(t) || !radiance_begin(t) || !take_integrator(t) ||
         !absorption_begin(t, p->solids->absorbs && t->rule->traced))
         return false;
-    t->by_ticket = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic;
+    t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic;
     drop_all(t);
     memset(&t->account.counters, 0, sizeof t->account.counters);
     t->account.visibility_ns = 0;
@@ -117,16 +117,17 @@ bool tracer_overflowed(const tracer *t)
  * two in one place) are listed last but one, those that met nothing last. */
 static void sort_by_primitive(tracer *t, int count)
 {
-    const arrangement *a = t->target.scene->solids;
+    const scene_geometry *a = t->target.scene->solids;
     const int foreign = a->primitive_count, none = foreign + 1;
     memset(t->batch.listed, 0, ((size_t)none + 1) * sizeof *t->batch.listed);
     for (int i = 0; i < count;) {
-        const int64_t met = t->batch.hits.crossed[i], rank = t->batch.hits.surface[i];
-        const int at = met < 0 ? none : rank == a->primitives[met].rank ? (int)met : foreign;
+        const int64_t met = t->batch.hits.hit_primitive[i], priority_index = t->batch.hits.surface[i];
+        const int at = met < 0 ? none : priority_index == a->primitives[met].priority_index ? (int)met : foreign;
         int *list = t->batch.list[at], listed = t->batch.listed[at];
         do /* neighbours often meet the same */
             list[listed++] = i++;
-        while (i < count && t->batch.hits.crossed[i] == met && (t->batch.hits.surface[i] == rank || met < 0));
+        while (i < count && t->batch.hits.hit_primitive[i] == met &&
+               (t->batch.hits.surface[i] == priority_index || met < 0));
         t->batch.listed[at] = listed;
     }
 }
@@ -137,16 +138,16 @@ static void shade_foreign(tracer *t, int depth, int first)
     const int foreign = t->target.scene->solids->primitive_count;
     int *list = t->batch.list[foreign], left = t->batch.listed[foreign], same[BATCH];
     while (left > 0) {
-        const int64_t met = t->batch.hits.crossed[list[0]], rank = t->batch.hits.surface[list[0]];
+        const int64_t met = t->batch.hits.hit_primitive[list[0]], priority_index = t->batch.hits.surface[list[0]];
         int count = 0, others = 0;
         for (int k = 0; k < left; k++) {
             const int i = list[k];
-            if (t->batch.hits.crossed[i] == met && t->batch.hits.surface[i] == rank)
+            if (t->batch.hits.hit_primitive[i] == met && t->batch.hits.surface[i] == priority_index)
                 same[count++] = i;
             else
                 list[others++] = i;
         }
-        shading_group(t, depth, first, (int)met, (int)rank, same, count);
+        shading_group(t, depth, first, (int)met, (int)priority_index, same, count);
         left = others;
     }
 }
@@ -178,12 +179,12 @@ static void trace_batch(tracer *t, int depth)
         COUNT(t->account.counters.by_depth[depth] += (uint64_t)rays.count);
     if (depth == 0)
         COUNT(t->account.counters.camera += (uint64_t)rays.count);
-    if (t->batch.scratch.ways)
-        absorption_announce(t, q->ticket + first, rays.count);
+    if (t->batch.scratch.segments)
+        absorption_announce(t, q->sample_key + first, rays.count);
     const int64_t began_ns = visibility_begins(t);
     t->rule->meet(t, q, first, depth, &rays);
     visibility_ends(t, began_ns);
-    if (t->batch.scratch.ways) {
+    if (t->batch.scratch.segments) {
         absorption_spare_sky(t);
         absorption_dim(t, q, first, rays.count);
     }
@@ -193,7 +194,7 @@ static void trace_batch(tracer *t, int depth)
         t->rule->background(t, q, first, t->batch.list[none], t->batch.listed[none]);
     for (int met = 0; met < primitives; met++)
         if (t->batch.listed[met] > 0)
-            shading_group(t, depth, first, met, p->solids->primitives[met].rank, t->batch.list[met],
+            shading_group(t, depth, first, met, p->solids->primitives[met].priority_index, t->batch.list[met],
                           t->batch.listed[met]);
     shade_foreign(t, depth, first);
 }
@@ -206,8 +207,8 @@ static void trace_shadows(tracer *t)
     const ray_batch rays = queue_take(q, &first);
     COUNT(t->account.counters.shadow += (uint64_t)rays.count);
     if (p->solids->absorbs)
-        absorption_announce(t, q->ticket + first, rays.count);
-    radiance_begin_shadows(t, &rays, q->ticket + first);
+        absorption_announce(t, q->sample_key + first, rays.count);
+    radiance_begin_shadows(t, &rays, q->sample_key + first);
     const int64_t began_ns = visibility_begins(t);
     t->geometry->shadow(p->solids, &rays, p->solid_shadows, &t->batch.scratch, t->batch.transmitted);
     visibility_ends(t, began_ns);
@@ -218,7 +219,7 @@ static void trace_shadows(tracer *t)
         const double share = t->batch.transmitted[i];
         const int at = first + i;
         if (share > 0.0)
-            shading_expose(t, q->ticket[at], share * q->wr[at], share * q->wg[at], share * q->wb[at]);
+            shading_expose(t, q->sample_key[at], share * q->wr[at], share * q->wg[at], share * q->wb[at]);
     }
 }
 
@@ -238,9 +239,9 @@ void tracer_run_batch(tracer *t, int depth)
     double share = (double)(clock_wall_ns() - began) / count;
     for (int i = first; i < first + count; i++) {
         if (target->pixel_rays && (depth < 0 || is_counted(t, depth)))
-            target->pixel_rays[ticket_pixel(q->ticket[i])] += 1.0;
+            target->pixel_rays[sample_key_pixel(q->sample_key[i])] += 1.0;
         if (target->pixel_ns)
-            target->pixel_ns[ticket_pixel(q->ticket[i])] += share;
+            target->pixel_ns[sample_key_pixel(q->sample_key[i])] += share;
     }
 }
 

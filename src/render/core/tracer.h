@@ -17,7 +17,7 @@ typedef struct tracer tracer;
  * layers where it puts named layers if they are wanted; else NULL. */
 typedef struct tracer_target {
     const plan *scene;
-    film *picture;
+    film *img;
     double *pixel_rays, *pixel_ns;
     void *kept;
     layer_set *layers;

@@ -1,7 +1,7 @@
 /* The tracer's inside, shared by tracer.c (which rays when), by what shades (render/shade) and by the integrators. */
 #pragma once
 
-#include "render/core/ticket.h"
+#include "render/core/sample_key.h"
 #include "render/integrators/integrator.h"
 #include "render/shade/absorption.h"
 #include "render/shade/mesh_shading.h"
@@ -19,7 +19,7 @@ typedef struct tracer_queues {
 typedef struct tracer_account {
     ray_counters counters;
     int64_t visibility_ns; /* of a scene with meshes: in the geometry's kernels */
-    uint64_t frame;        /* of its tracer_set, in which it was last begun; 0 before */
+    uint64_t frame;        /* of its tracer_pool, in which it was last begun; 0 before */
     int64_t overflow;      /* negative: a sum or contribution left the film's range */
 } tracer_account;
 
@@ -43,7 +43,7 @@ typedef struct tracer_surface {
     _Alignas(64) lit_group lit;
     _Alignas(64) branch_group branches;
     polar_group polar;
-    const surface_look *look;
+    const shading_material *mat;
     const vec3 *texture_at; /* where the texture is looked up, unless at the points themselves: then NULL */
     bool on_mesh;
 } tracer_surface;
@@ -56,7 +56,7 @@ struct tracer {
     void *own;              /* the integrator's, of this worker */
     double least_weight;    /* a branch that weighs less is not followed: render.min_weight, for its share of the camera
                                ray */
-    bool by_ticket;         /* the film wants more of a ticket than its pixel */
+    bool by_sample_key;     /* the film wants more of a ticket than its pixel */
     tracer_queues queues;
     tracer_account account;
     mesh_work *meshes;               /* once a scene with meshes has been traced; NULL before, and so on */

@@ -89,7 +89,7 @@ static void read_exit(const fan *f, fan_ray *ray)
 }
 
 /* Did two rays cross the same surfaces? */
-static bool same_way(const fan *f, const fan_ray *a, const fan_ray *b)
+static bool same_direction(const fan *f, const fan_ray *a, const fan_ray *b)
 {
     if (a->count != b->count || !a->leaves || !b->leaves)
         return false;
@@ -122,7 +122,8 @@ static void find_crossings(fan *f)
 {
     for (int i = 0; i + 1 < f->count; i++) {
         vec3 at;
-        if (same_way(f, &f->ray[i], &f->ray[i + 1]) && f->ray[i].count > 1 && cross(f, &f->ray[i], &f->ray[i + 1], &at))
+        if (same_direction(f, &f->ray[i], &f->ray[i + 1]) && f->ray[i].count > 1 &&
+            cross(f, &f->ray[i], &f->ray[i + 1], &at))
             f->crossing[f->crossing_count++] = (fan_crossing){i, at};
     }
 }
@@ -191,7 +192,7 @@ static status follow_all(probe *p, const fan_rule *rule, fan *f, diagnostic *why
     for (int i = 0; i < f->count && result == STATUS_OK; i++) {
         vec3 origin, direction;
         start_of(f, rule, i, &f->ray[i], &origin, &direction);
-        result = probe_way(p, origin, direction, -1, &way, why);
+        result = probe_path(p, origin, direction, -1, &way, why);
         THEN(result, keep_nodes(f, &way, &f->ray[i], why));
         if (result == STATUS_OK)
             read_exit(f, &f->ray[i]);

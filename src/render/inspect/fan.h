@@ -1,5 +1,6 @@
-/* Many rays of one pencil or fan, each followed along its refracted way (probe_way), and what becomes of them together:
- * where neighbours cross, which is the caustic, and the point that all exit rays pass nearest, the mean focus.
+/* Many rays of one pencil or fan, each followed along its refracted way (probe_path), and what becomes of them
+ * together: where neighbours cross, which is the caustic, and the point that all exit rays pass nearest, the mean
+ * focus.
  *
  * Ownership: a fan is the caller's; zero it before its first use, release it with fan_release. */
 #pragma once

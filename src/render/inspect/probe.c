@@ -24,7 +24,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         code = scene_check(p->setting, why);
     }
     THEN(code, plan_build(p->setting, &p->scene, why));
-    THEN(code, film_create(1, 1, 1, FILM_RGB, &p->picture, why));
+    THEN(code, film_create(1, 1, 1, FILM_RGB, &p->img, why));
     if (code != STATUS_OK) {
         probe_destroy(p);
         return code;
@@ -42,8 +42,8 @@ static vec3 tint_of(const probe *p, const material *m)
     if (!material_tints(m))
         return vec3_make(0.0, 0.0, 0.0);
     if (p->spectral) {
-        const lifted color = lift_reflectance((const double[3]){share.x, share.y, share.z});
-        share.x = share.y = share.z = lifted_reflectance(&color, p->scene->render.lambda_nm);
+        const upsampled_spectrum color = upsample_reflectance((const double[3]){share.x, share.y, share.z});
+        share.x = share.y = share.z = upsampled_reflectance(&color, p->scene->render.lambda_nm);
     }
     return vec3_make(material_tint(m, share.x), material_tint(m, share.y), material_tint(m, share.z));
 }
@@ -55,12 +55,12 @@ void probe_one_wavelength(probe *p)
         const double a = surrounding_absorption_at(&p->setting->background, r->lambda_nm) * r->unit_m;
         p->scene->absorption[0] = vec3_make(a, a, a);
     }
-    for (int rank = 1; rank <= p->scene->solids->body_count; rank++) {
-        const material *m = p->scene->materials[rank];
+    for (int priority_index = 1; priority_index <= p->scene->solids->region_count; priority_index++) {
+        const material *m = p->scene->materials[priority_index];
         if (m->absorb_spectrum.count == 0 && !p->spectral)
             continue;
         const double a = material_absorption_at(m, r->lambda_nm) * r->unit_m;
-        p->scene->absorption[rank] = vec3_add(vec3_make(a, a, a), tint_of(p, m));
+        p->scene->absorption[priority_index] = vec3_add(vec3_make(a, a, a), tint_of(p, m));
     }
 }
 
@@ -70,7 +70,7 @@ void probe_destroy(probe *p)
         return;
     plan_destroy(p->scene);
     tracer_destroy(p->rays);
-    film_destroy(p->picture);
+    film_destroy(p->img);
     scene_destroy(p->setting);
     free(p);
 }
@@ -83,19 +83,19 @@ void ray_tree_release(ray_tree *tree)
 
 static status begin(probe *p, ray_tree *tree, diagnostic *why)
 {
-    const tracer_target target = {.scene = p->scene, .picture = p->picture};
-    memset(p->picture->sum, 0, 3 * sizeof *p->picture->sum);
+    const tracer_target target = {.scene = p->scene, .img = p->img};
+    memset(p->img->sum, 0, 3 * sizeof *p->img->sum);
     tree->count = 0;
     tree->depth_limit = (int)p->scene->render.depth;
     tree->lambda_nm = p->scene->render.lambda_nm;
-    p->scene->eye_rank = arrangement_rank(p->scene->solids, p->scene->eye_inside);
+    p->scene->camera_priority_index = scene_geometry_priority_index(p->scene->solids, p->scene->eye_inside);
     return tracer_begin(p->rays, &target) ? STATUS_OK : out_of_memory(why);
 }
 
 static status finish(probe *p, ray_tree *tree, status code, diagnostic *why)
 {
     for (int c = 0; c < 3; c++)
-        tree->radiance[c] = film_value(p->picture, 0, 0, c);
+        tree->radiance[c] = film_value(p->img, 0, 0, c);
     if (code == STATUS_OK && tracer_overflowed(p->rays))
         return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
                         "the ray is brighter than the film holds");
@@ -119,7 +119,7 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
     size_t last = 0;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         size_t root;
-        code = probe_grow(p, tree, &roots[i], RAY_CAMERA, RAY_NONE, &root, why);
+        code = probe_build(p, tree, &roots[i], RAY_CAMERA, RAY_NONE, &root, why);
         if (code == STATUS_OK && i > 0)
             tree->node[last].next = (int)root;
         last = root;
@@ -133,7 +133,7 @@ static status begin_free(probe *p, vec3 origin, vec3 direction, ray_tree *tree, 
     TRY(probe_check_ray(origin, direction, why));
     TRY(begin(p, tree, why));
     *root = probe_free_ray(p, origin, direction);
-    p->scene->eye_rank = root->medium_rank; /* an eye stands where the ray starts */
+    p->scene->camera_priority_index = root->medium_priority_index; /* an eye stands where the ray starts */
     return STATUS_OK;
 }
 
@@ -142,11 +142,11 @@ status probe_ray(probe *p, vec3 origin, vec3 direction, ray_tree *tree, diagnost
     ray_record root;
     size_t unused;
     TRY(begin_free(p, origin, direction, tree, &root, why));
-    status code = probe_grow(p, tree, &root, RAY_CAMERA, RAY_NONE, &unused, why);
+    status code = probe_build(p, tree, &root, RAY_CAMERA, RAY_NONE, &unused, why);
     return finish(p, tree, code, why);
 }
 
-status probe_way(probe *p, vec3 origin, vec3 direction, int reflect_at, ray_tree *tree, diagnostic *why)
+status probe_path(probe *p, vec3 origin, vec3 direction, int reflect_at, ray_tree *tree, diagnostic *why)
 {
     ray_record root;
     TRY(begin_free(p, origin, direction, tree, &root, why));
@@ -168,10 +168,10 @@ const char *probe_medium_name(const probe *p, int at)
 int probe_medium_at(const probe *p, vec3 point)
 {
     const scene *s = p->setting;
-    const arrangement *a = p->scene->solids;
+    const scene_geometry *a = p->scene->solids;
     int best = RAY_OUTSIDE;
     if (a->meshes) /* only who has their triangles in order knows what is in them */
-        return a->bodies[arrangement_rank(a, arrangement_inside(a, point))].solid;
+        return a->regions[scene_geometry_priority_index(a, scene_geometry_inside(a, point))].solid;
     for (int i = 0; i < (int)s->solid_count; i++) {
         const solid *one = &s->solids[i];
         if (one->visible && solid_shape_contains(&one->shape, point) &&

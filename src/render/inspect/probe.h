@@ -99,7 +99,7 @@ status probe_ray(probe *p, vec3 origin, vec3 direction, ray_tree *tree, diagnost
 /* The same, but of a hit's branches only one is followed, as an array of nodes each of which is its predecessor's
  * child: the refracted one where there is any, else the reflected one; or with `reflect_at` >= 0, at the interface of
  * that number (counted from 0) the reflected one. No shadow rays. */
-status probe_way(probe *p, vec3 origin, vec3 direction, int reflect_at, ray_tree *tree, diagnostic *why);
+status probe_path(probe *p, vec3 origin, vec3 direction, int reflect_at, ray_tree *tree, diagnostic *why);
 
 /* "vessel", or the catalogue's name of its medium; "air" for what surrounds all when its index is 1. */
 const char *probe_medium_name(const probe *p, int at);

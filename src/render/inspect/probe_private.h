@@ -1,4 +1,4 @@
-/* The probe's inside, shared by probe.c (what is asked) and probe_grow.c (how a tree grows). */
+/* The probe's inside, shared by probe.c (what is asked) and probe_build.c (how a tree grows). */
 #pragma once
 
 #include "render/inspect/probe.h"
@@ -8,7 +8,7 @@ struct probe {
     scene *setting; /* its own copy */
     plan *scene;
     tracer *rays;
-    film *picture; /* one pixel */
+    film *img;     /* one pixel */
     bool spectral; /* its picture would be */
 };
 
@@ -19,7 +19,7 @@ typedef struct ray_record {
     int64_t start;
     uint64_t inside;
     int depth;
-    int medium_rank; /* it sets out in */
+    int medium_priority_index; /* it sets out in */
 } ray_record;
 
 status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why);
@@ -29,8 +29,8 @@ ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction);
 void probe_take(const probe *p, int depth, int i, ray_record *out);
 
 /* Adds a ray and all that comes of it to the tree; *at is its index. */
-status probe_grow(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at,
-                  diagnostic *why);
+status probe_build(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at,
+                   diagnostic *why);
 
-/* Adds a ray and of its branches one each: see probe_way. */
+/* Adds a ray and of its branches one each: see probe_path. */
 status probe_follow(probe *p, ray_tree *tree, const ray_record *ray, int reflect_at, diagnostic *why);

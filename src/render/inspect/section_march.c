@@ -132,10 +132,10 @@ void section_march(cutter *c, int i, int j)
 {
     const int corner[4] = {label(c, i, j), label(c, i + 1, j), label(c, i + 1, j + 1), label(c, i, j + 1)};
     const int side[4] = {edge_across(c, i, j), edge_up(c, i + 1, j), edge_across(c, i, j + 1), edge_up(c, i, j)};
-    int crossed[4], count = 0;
+    int hit_primitive[4], count = 0;
     for (int k = 0; k < 4; k++)
         if (corner[k] != corner[(k + 1) % 4])
-            crossed[count++] = k;
+            hit_primitive[count++] = k;
     if (count == 0)
         return;
     if (count == 4)
@@ -143,5 +143,6 @@ void section_march(cutter *c, int i, int j)
     else if (count == 3)
         meet(c, i, j, side, corner);
     else
-        add_piece(c, side[crossed[0]], side[crossed[1]], corner[crossed[0]], corner[(crossed[0] + 1) % 4]);
+        add_piece(c, side[hit_primitive[0]], side[hit_primitive[1]], corner[hit_primitive[0]],
+                  corner[(hit_primitive[0] + 1) % 4]);
 }

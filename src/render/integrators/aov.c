@@ -32,7 +32,7 @@ static status prepare(const plan *p, void **frame, diagnostic *why)
         return out_of_memory(why);
     for (int i = 0; i < p->solids->primitive_count; i++) {
         const primitive *one = &p->solids->primitives[i];
-        if (p->solids->further >> i & 1 || shape_of(&p->solids->shapes[one->rank])->unbounded)
+        if (p->solids->further >> i & 1 || shape_of(&p->solids->shapes[one->priority_index])->unbounded)
             continue;
         sum += vec3_length(vec3_sub(one->origin, p->view.eye));
         count++;
@@ -85,7 +85,7 @@ static vec3 view_of(layer_rule layer, vec3 v, double scale)
 
 /* --- a batch --- */
 
-static vec3 value_of(const tracer *t, layer_rule layer, int rank, int k)
+static vec3 value_of(const tracer *t, layer_rule layer, int priority_index, int k)
 {
     const group *g = &t->surface.gathered;
     const surface_batch *s = &g->points;
@@ -93,15 +93,15 @@ static vec3 value_of(const tracer *t, layer_rule layer, int rank, int k)
     case LAYER_NORMAL: return vec3_make(s->nx[k], s->ny[k], s->nz[k]);
     case LAYER_ALBEDO: return vec3_make(g->cr[k], g->cg[k], g->cb[k]);
     case LAYER_DEPTH: return vec3_make(g->t[k], 0.0, 0.0);
-    case LAYER_SOLID: return vec3_make(t->target.scene->solids->bodies[rank].solid + 1.0, 0.0, 0.0);
-    case LAYER_MATERIAL: return vec3_make(t->surface.look->number, 0.0, 0.0);
+    case LAYER_SOLID: return vec3_make(t->target.scene->solids->regions[priority_index].solid + 1.0, 0.0, 0.0);
+    case LAYER_MATERIAL: return vec3_make(t->surface.mat->number, 0.0, 0.0);
     case LAYER_POSITION: return vec3_make(s->px[k], s->py[k], s->pz[k]);
     case LAYER_COUNT: break;
     }
     return vec3_make(0.0, 0.0, 0.0);
 }
 
-static void shade(tracer *t, int depth, int rank)
+static void shade(tracer *t, int depth, int priority_index)
 {
     const group *g = &t->surface.gathered;
     const layer_rule show = (layer_rule)t->target.scene->render.layer;
@@ -111,13 +111,13 @@ static void shade(tracer *t, int depth, int rank)
         if (!t->target.layers && layer != (int)show)
             continue;
         for (int k = 0; k < g->count; k++) {
-            const vec3 value = value_of(t, (layer_rule)layer, rank, k);
+            const vec3 value = value_of(t, (layer_rule)layer, priority_index, k);
             if (t->target.layers)
-                layers_put(t->target.layers, (layer_rule)layer, ticket_pixel(g->ticket[k]), value);
+                layers_put(t->target.layers, (layer_rule)layer, sample_key_pixel(g->sample_key[k]), value);
             if (layer != (int)show)
                 continue;
             const vec3 view = view_of(show, value, *scale);
-            shading_expose(t, g->ticket[k], view.x, view.y, view.z);
+            shading_expose(t, g->sample_key[k], view.x, view.y, view.z);
         }
     }
 }

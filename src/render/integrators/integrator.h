@@ -26,7 +26,7 @@ typedef struct camera_need {
     int64_t rays;
     int64_t points;   /* of the pixel that they go through, at most: the largest square grid of no more is taken */
     int64_t together; /* rays, one after another, through one point; the next ones through the next, round and round */
-    int64_t marks;    /* bits that their tickets have besides pixel and sample (render/core/ticket.h) */
+    int64_t marks;    /* bits that their tickets have besides pixel and sample (render/core/sample_key.h) */
 } camera_need;
 
 /* A step of a pre-pass. Steps wait for each other. */
@@ -62,7 +62,7 @@ typedef struct integrator {
     /* May move points of the gathered group before it gets its colours; list: its rays in the batch. */
     void (*place)(tracer *t, const int *list);
     /* The gathered group, coloured: light to the film, shadow rays and children put in line. */
-    void (*shade)(tracer *t, int depth, int rank);
+    void (*shade)(tracer *t, int depth, int priority_index);
 } integrator;
 
 /* The integrator of render.integrator. */

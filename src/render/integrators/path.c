@@ -27,13 +27,13 @@ static double radiance_along(const plan *p, int lamp, vec3 direction)
     return l->reach * l->reach / (l->radius * l->radius) * light_share(l, &p->cones[lamp], vec3_scale(direction, -1.0));
 }
 
-static vec3 light_color(const tracer *t, int lamp, int64_t ticket)
+static vec3 light_color(const tracer *t, int lamp, int64_t sample_key)
 {
     const plan *p = t->target.scene;
     const light *l = &p->lights[lamp];
     if (!p->spectral)
         return vec3_scale(l->color, l->intensity);
-    const double radiance = spectra_light(p->spectral, ticket, lamp);
+    const double radiance = spectra_light(p->spectral, sample_key, lamp);
     return vec3_make(radiance, radiance, radiance);
 }
 
@@ -50,11 +50,11 @@ static double distance_to_light(const light *l, vec3 origin, vec3 direction)
 }
 
 /* What a ray went through ends at the light. */
-static void clip_stretches(ray_ways *w, int ray, double end)
+static void clip_segments(medium_segments *w, int ray, double end)
 {
     double start = 0.0;
     for (int k = 0; w && k < w->count; k++) {
-        stretch *one = &w->stretches[k];
+        medium_segment *one = &w->segment[k];
         if (one->ray != ray)
             continue;
         const double length = one->length;
@@ -69,9 +69,9 @@ static int64_t mark_of(int lamp)
     return -2 - lamp;
 }
 
-static int lamp_of(int64_t crossed)
+static int lamp_of(int64_t hit_primitive)
 {
-    return (int)(-2 - crossed);
+    return (int)(-2 - hit_primitive);
 }
 
 static void meet_lights(tracer *t, const ray_queue *q, int first, int i)
@@ -80,7 +80,7 @@ static void meet_lights(tracer *t, const ray_queue *q, int first, int i)
     const int at = first + i;
     double nearest = t->batch.hits.t[i];
     int met = -1;
-    for (int k = 0; k < p->light_count && q->ticket[at] & TICKET_SEES_LIGHTS; k++) {
+    for (int k = 0; k < p->light_count && q->sample_key[at] & SAMPLE_KEY_SPECULAR_BOUNCE; k++) {
         if (p->lights[k].radius == 0.0)
             continue;
         const vec3 origin = vec3_make(q->ox[at], q->oy[at], q->oz[at]);
@@ -92,8 +92,8 @@ static void meet_lights(tracer *t, const ray_queue *q, int first, int i)
     }
     if (met < 0)
         return;
-    t->batch.hits.crossed[i] = mark_of(met);
-    clip_stretches(t->batch.scratch.ways, i, nearest);
+    t->batch.hits.hit_primitive[i] = mark_of(met);
+    clip_segments(t->batch.scratch.segments, i, nearest);
 }
 
 static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
@@ -103,21 +103,21 @@ static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch 
         meet_lights(t, q, first, i);
 }
 
-static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int rank)
+static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int priority_index)
 {
     const plan *p = t->target.scene;
-    const int64_t ticket = q->ticket[at];
+    const int64_t sample_key = q->sample_key[at];
     const double radiance = radiance_along(p, lamp, vec3_make(q->dx[at], q->dy[at], q->dz[at])) *
-                            (p->basic ? radiance_share(p, ticket, rank) : 1.0);
-    const vec3 l = vec3_scale(light_color(t, lamp, ticket), radiance);
-    shading_expose(t, ticket, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
+                            (p->basic ? radiance_share(p, sample_key, priority_index) : 1.0);
+    const vec3 l = vec3_scale(light_color(t, lamp, sample_key), radiance);
+    shading_expose(t, sample_key, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
 }
 
 static void expose_background(tracer *t, const ray_queue *q, int first, const int *list, int count)
 {
     for (int k = 0; k < count; k++) {
         const int i = list[k];
-        const int64_t met = t->batch.hits.crossed[i];
+        const int64_t met = t->batch.hits.hit_primitive[i];
         if (met == -1)
             background_sky(t, q, first, &i, 1);
         else
@@ -149,7 +149,7 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
         return;
     /* 1 - least_cos, without its cancellation. */
     const double least_cos = sqrt(1.0 - share2), cap = share2 / (1.0 + least_cos);
-    const random_words drawn = draw(p->render.seed, g->ticket[k], depth, DRAW_LIGHT + lamp);
+    const random_words drawn = draw(p->render.seed, g->sample_key[k], depth, DRAW_LIGHT + lamp);
     const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
     const vec3 to = direction_about(vec3_scale(way, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
     const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to),
@@ -164,7 +164,7 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
                              ? m->specular * elementary_pow(r_v < 1.0 ? r_v : 1.0, m->shininess)
                              : 0.0;
     const double seen = 2.0 * cap * radiance, diffuse = m->diffuse * n_l;
-    const vec3 color = vec3_scale(light_color(t, lamp, g->ticket[k]), seen);
+    const vec3 color = vec3_scale(light_color(t, lamp, g->sample_key[k]), seen);
     ray_queue *q = &t->queues.shadows;
     const int at = q->count++;
     q->ox[at] = point.x, q->oy[at] = point.y, q->oz[at] = point.z;
@@ -172,14 +172,14 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
     q->wr[at] = g->wr[k] * color.x * (diffuse * g->cr[k] + shine);
     q->wg[at] = g->wg[k] * color.y * (diffuse * g->cg[k] + shine);
     q->wb[at] = g->wb[k] * color.z * (diffuse * g->cb[k] + shine);
-    q->start[at] = g->points.face[k], q->ticket[at] = g->ticket[k], q->inside[at] = g->inside_before[k];
+    q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k], q->inside[at] = g->inside_before[k];
 }
 
 /* A continuation: where to, through which media, with which share of each channel. */
 typedef struct continuation {
     vec3 direction, share;
     uint64_t inside;
-    bool refracted, sees_lights;
+    bool refracted, specular_bounce;
 } continuation;
 
 static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
@@ -192,7 +192,7 @@ static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
     c->direction = c->refracted ? vec3_make(b->tx[k], b->ty[k], b->tz[k]) : vec3_make(b->rx[k], b->ry[k], b->rz[k]);
     c->inside = c->refracted ? t->surface.gathered.inside_after[k] : t->surface.gathered.inside_before[k];
     c->share = vec3_make(both, both, both);
-    c->sees_lights = true;
+    c->specular_bounce = true;
     return true;
 }
 
@@ -207,13 +207,13 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
     const double odds = (mirrored ? mirror : matte) / (matte + mirror);
     c->inside = g->inside_before[k];
     c->refracted = false;
-    c->sees_lights = mirrored;
+    c->specular_bounce = mirrored;
     if (mirrored) {
         c->direction = vec3_make(t->surface.branches.rx[k], t->surface.branches.ry[k], t->surface.branches.rz[k]);
         c->share = vec3_make(mirror / odds, mirror / odds, mirror / odds);
         return true;
     }
-    const random_words drawn = draw(t->target.scene->render.seed, g->ticket[k], depth, DRAW_DIRECTION);
+    const random_words drawn = draw(t->target.scene->render.seed, g->sample_key[k], depth, DRAW_DIRECTION);
     const double sine2 = random_unit(drawn.word[0]);
     const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
     c->direction = direction_about(n, sqrt(1.0 - sine2), sqrt(sine2), random_unit(drawn.word[1]));
@@ -231,7 +231,7 @@ static bool survives(const tracer *t, int k, int depth, vec3 *share)
     const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)r->paths;
     if (weight >= 1.0)
         return true;
-    if (random_unit(draw(r->seed, g->ticket[k], depth, DRAW_ROULETTE).word[0]) >= weight)
+    if (random_unit(draw(r->seed, g->sample_key[k], depth, DRAW_ROULETTE).word[0]) >= weight)
         return false;
     *share = vec3_scale(*share, 1.0 / weight);
     return true;
@@ -245,7 +245,7 @@ static void cut(tracer *t, int k, const continuation *c)
     COUNT(t->account.counters.cut_depth_throughput[0] += counters_cut_units(r));
     COUNT(t->account.counters.cut_depth_throughput[1] += counters_cut_units(gr));
     COUNT(t->account.counters.cut_depth_throughput[2] += counters_cut_units(b));
-    shading_expose_beyond(t, g->ticket[k], c->direction, r, gr, b);
+    shading_expose_at_depth_limit(t, g->sample_key[k], c->direction, r, gr, b);
 }
 
 static void go_on(tracer *t, int k, int depth, const continuation *c)
@@ -257,13 +257,15 @@ static void go_on(tracer *t, int k, int depth, const continuation *c)
     q->dx[at] = c->direction.x, q->dy[at] = c->direction.y, q->dz[at] = c->direction.z;
     q->wr[at] = g->wr[k] * c->share.x, q->wg[at] = g->wg[k] * c->share.y, q->wb[at] = g->wb[k] * c->share.z;
     q->start[at] = g->points.face[k], q->inside[at] = c->inside;
-    q->ticket[at] = (g->ticket[k] & ~TICKET_SEES_LIGHTS) | (c->sees_lights ? TICKET_SEES_LIGHTS : 0);
+    q->sample_key[at] =
+        (g->sample_key[k] & ~SAMPLE_KEY_SPECULAR_BOUNCE) | (c->specular_bounce ? SAMPLE_KEY_SPECULAR_BOUNCE : 0);
     COUNT(c->refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
 
 static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth)
 {
-    const random_words drawn = draw(t->target.scene->render.seed, t->surface.gathered.ticket[k], depth, DRAW_BRANCH);
+    const random_words drawn =
+        draw(t->target.scene->render.seed, t->surface.gathered.sample_key[k], depth, DRAW_BRANCH);
     const double chance = random_unit(drawn.word[0]);
     continuation c = {.refracted = false};
     if (!(opaque ? draw_matte(t, m, k, depth, chance, &c) : draw_clear(t, k, chance, &c)))
@@ -274,12 +276,12 @@ static void continue_one(tracer *t, const material *m, bool opaque, int k, int d
         go_on(t, k, depth, &c);
 }
 
-static void shade(tracer *t, int depth, int rank)
+static void shade(tracer *t, int depth, int priority_index)
 {
     const plan *p = t->target.scene;
-    const material *m = &t->surface.look->surface;
-    const bool opaque = surface_is_opaque(t, rank), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
-    local_light(t, rank, (light_terms){.highlights = true}); /* of points; spheres follow */
+    const material *m = &t->surface.mat->surface;
+    const bool opaque = surface_is_opaque(t, priority_index), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
+    local_light(t, priority_index, (light_terms){.highlights = true}); /* of points; spheres follow */
     radiance_weigh(t);
     for (int k = 0; lit && k < t->surface.gathered.count; k++)
         for (int lamp = 0; lamp < p->light_count; lamp++)
@@ -295,7 +297,7 @@ static void shade(tracer *t, int depth, int rank)
 static camera_need paths_of(const render_settings *r)
 {
     const int64_t points = r->paths < r->samples ? r->paths : r->samples;
-    return (camera_need){.rays = r->paths, .points = points, .together = 1, .marks = TICKET_SEES_LIGHTS};
+    return (camera_need){.rays = r->paths, .points = points, .together = 1, .marks = SAMPLE_KEY_SPECULAR_BOUNCE};
 }
 
 /* As many as there can be. Each has all of the pixel's points. */

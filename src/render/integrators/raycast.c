@@ -2,10 +2,10 @@
  * camera rays meet, with its shadows. No ray goes on. */
 #include "render/shade/shading.h"
 
-static void shade(tracer *t, int depth, int rank)
+static void shade(tracer *t, int depth, int priority_index)
 {
     (void)depth;
-    local_light(t, rank, light_terms_of(&t->target.scene->render));
+    local_light(t, priority_index, light_terms_of(&t->target.scene->render));
 }
 
 const integrator integrator_of_raycast = {

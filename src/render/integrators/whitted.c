@@ -6,7 +6,7 @@ static void branch(tracer *t, int depth, bool opaque)
 {
     const group *g = &t->surface.gathered;
     const branch_group *b = &t->surface.branches;
-    if (opaque && t->surface.look->surface.reflectivity == 0.0)
+    if (opaque && t->surface.mat->surface.reflectivity == 0.0)
         return;
     shading_branches(t, opaque);
     if (depth == t->queues.depth_limit) {
@@ -19,12 +19,12 @@ static void branch(tracer *t, int depth, bool opaque)
     COUNT(t->account.counters.refract += (uint64_t)refracted);
 }
 
-static void shade(tracer *t, int depth, int rank)
+static void shade(tracer *t, int depth, int priority_index)
 {
     const render_settings *r = &t->target.scene->render;
-    local_light(t, rank, light_terms_of(r));
+    local_light(t, priority_index, light_terms_of(r));
     if (r->lighting == LIGHTING_WHITTED)
-        branch(t, depth, surface_is_opaque(t, rank));
+        branch(t, depth, surface_is_opaque(t, priority_index));
 }
 
 const integrator integrator_of_whitted = {

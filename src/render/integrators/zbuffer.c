@@ -9,40 +9,40 @@
 
 /* One worker's: a square of the depth buffer, and of each ray of the batch the point of the grid and the triangle
  * there. */
-typedef struct drawn_work {
+typedef struct raster_work {
     zbuffer_square square;
     int x[ROW], y[ROW];
     uint32_t number[ROW];
     bool straight[ROW];               /* it meets a curved surface and looks straight on */
     double vx[ROW], vy[ROW], vz[ROW]; /* and the straight view's direction there, of a frame with layers */
     vec3 at[ROW]; /* of the gathered group: where a texture is looked up that runs straight across the picture */
-} drawn_work;
+} raster_work;
 
 static bool begin(tracer *t)
 {
-    if (!t->own && !(t->own = calloc(1, sizeof(drawn_work))))
+    if (!t->own && !(t->own = calloc(1, sizeof(raster_work))))
         return false;
-    zbuffer_square_begin(&((drawn_work *)t->own)->square);
+    zbuffer_square_begin(&((raster_work *)t->own)->square);
     return true;
 }
 
 static void end(void *own)
 {
     if (own)
-        zbuffer_square_release(&((drawn_work *)own)->square);
+        zbuffer_square_release(&((raster_work *)own)->square);
     free(own);
 }
 
 static void draw_piece(tracer *t, const span *piece)
 {
-    zbuffer_draw(t->target.kept, piece, &((drawn_work *)t->own)->square);
+    zbuffer_draw(t->target.kept, piece, &((raster_work *)t->own)->square);
 }
 
 /* The point of the grid that a ray goes through. */
-static size_t point_of(const zbuffer *z, int64_t ticket, int *x, int *y)
+static size_t point_of(const zbuffer *z, int64_t sample_key, int *x, int *y)
 {
     /* Short divisions are faster. */
-    const uint32_t pixel = (uint32_t)ticket_pixel(ticket), sample = (uint32_t)ticket_sample(ticket);
+    const uint32_t pixel = (uint32_t)sample_key_pixel(sample_key), sample = (uint32_t)sample_key_sample(sample_key);
     const uint32_t points = (uint32_t)z->points, width = (uint32_t)z->scene->render.width;
     const uint32_t row = pixel / width, line = points == 1 ? 0 : sample / points;
     *x = (int)((pixel - row * width) * points + sample - line * points);
@@ -66,10 +66,10 @@ static met met_plane(const primitive *p, const camera_frame *view, vec3 d)
  * and Moreton, "Interpolation for polygon texture mapping and shading", 1991), by the ray instead of the picture
  * because corners may be behind the eye (Moller and Trumbore, JGT 2(1), 1997). A ray that misses by what corners were
  * rounded takes the nearest edge. */
-static met met_triangle(const drawn_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
+static met met_triangle(const rasterised_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
 {
     const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
-    const vec3 o = vec3_sub(forest_origin(&p->at, s->copy), view->eye);
+    const vec3 o = vec3_sub(instance_set_origin(&p->at, s->copy), view->eye);
     const vec3 a = zbuffer_vertex(&p->at, o, tri.corner[0]);
     const vec3 ab = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[1]), a),
                ac = vec3_sub(zbuffer_vertex(&p->at, o, tri.corner[2]), a);
@@ -98,13 +98,13 @@ static met met_depth(const zbuffer *z, const screen_triangle *s, int x, int y, v
 static void note_nothing(tracer *t, int i)
 {
     t->batch.hits.t[i] = HUGE_VAL;
-    t->batch.hits.crossed[i] = -1;
+    t->batch.hits.hit_primitive[i] = -1;
     t->batch.hits.surface[i] = 0;
 }
 
 static met met_by(const zbuffer *z, const screen_triangle *s, vec3 d)
 {
-    const drawn_part *p = &z->parts[s->part];
+    const rasterised_part *p = &z->parts[s->part];
     return p->plane ? met_plane(&z->scene->solids->primitives[p->met], &z->scene->view, d)
                     : met_triangle(p, s, &z->scene->view, d);
 }
@@ -112,17 +112,17 @@ static met met_by(const zbuffer *z, const screen_triangle *s, vec3 d)
 static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
 {
     const zbuffer *z = t->target.kept;
-    const drawn_part *p = &z->parts[s->part];
+    const rasterised_part *p = &z->parts[s->part];
     const primitive *surface = &z->scene->solids->primitives[p->met];
     hit_batch *h = &t->batch.hits;
     h->t[i] = m.t;
-    h->crossed[i] = p->met;
-    h->surface[i] = h->after[i] = surface->rank;
+    h->hit_primitive[i] = p->met;
+    h->surface[i] = h->after[i] = surface->priority_index;
     h->inside_before[i] = m.leaving ? (uint64_t)1 << p->met : 0;
     if (surface->rule)
         return;
     const int64_t face = mesh_face_number(p->met, s->copy, s->triangle);
-    t->meshes->scratch.hit[i] = (forest_hit){m.t, m.u, m.v, face, m.leaving ? FACING_BACK : FACING_FRONT};
+    t->meshes->scratch.hit[i] = (instance_hit){m.t, m.u, m.v, face, m.leaving ? FACING_BACK : FACING_FRONT};
 }
 
 /* The straight views of a batch, whose directions may be bent: through the points of the grid. */
@@ -130,7 +130,7 @@ static void straight_views(tracer *t, int count)
 {
     const zbuffer *z = t->target.kept;
     const camera_frame *view = &z->scene->view;
-    drawn_work *w = t->own;
+    raster_work *w = t->own;
     const double across = 1.0 / z->units_x, down = 1.0 / z->units_y;
     double u[ROW], v[ROW];
     for (int i = 0; i < count; i++) {
@@ -144,29 +144,29 @@ static void straight_views(tracer *t, int count)
 static void first_views(tracer *t, const ray_batch *rays)
 {
     const size_t bytes = (size_t)rays->count * sizeof(double);
-    drawn_work *w = t->own;
+    raster_work *w = t->own;
     memcpy(w->vx, rays->dx, bytes), memcpy(w->vy, rays->dy, bytes), memcpy(w->vz, rays->dz, bytes);
 }
 
 /* The straight way to a layer goes through one medium, which takes its share of the light. */
-static void dim(const plan *p, ray_queue *q, int at, int rank, double length)
+static void dim(const plan *p, ray_queue *q, int at, int priority_index, double length)
 {
-    if (rank == 0 || !p->solids->bodies[rank].absorbs)
+    if (priority_index == 0 || !p->solids->regions[priority_index].absorbs)
         return;
-    const vec3 a = p->absorption[rank];
+    const vec3 a = p->absorption[priority_index];
     q->wr[at] *= absorption_left(a.x * length), q->wg[at] *= absorption_left(a.y * length),
         q->wb[at] *= absorption_left(a.z * length);
 }
 
-static const drawn_layer *layer_at(const zbuffer *z, uint32_t place)
+static const rasterised_layer *layer_at(const zbuffer *z, uint32_t place)
 {
     return &z->blocks[place / BLOCK_LAYERS][place % BLOCK_LAYERS];
 }
 
-static inline met met_layer(const tracer *t, int i, const drawn_layer *l)
+static inline met met_layer(const tracer *t, int i, const rasterised_layer *l)
 {
     const zbuffer *z = t->target.kept;
-    const drawn_work *w = t->own;
+    const raster_work *w = t->own;
     const screen_triangle *s = &z->triangles[l->number - 1];
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
     met m = l->ends || !z->parts[s->part].own ? met_by(z, s, view) : met_depth(z, s, w->x[i], w->y[i], view);
@@ -181,8 +181,8 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
     const zbuffer *z = t->target.kept;
     const plan *p = z->scene;
-    const drawn_layer *l = layer_at(z, place);
-    drawn_work *w = t->own;
+    const rasterised_layer *l = layer_at(z, place);
+    raster_work *w = t->own;
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
     double passed = vec3_dot(vec3_sub(vec3_make(q->ox[at], q->oy[at], q->oz[at]), p->view.eye), view);
     w->straight[i] = false;
@@ -219,10 +219,10 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     const zbuffer *z = t->target.kept;
-    drawn_work *w = t->own;
+    raster_work *w = t->own;
     uint32_t seen[ROW];
     for (int i = 0; i < rays->count; i++)
-        seen[i] = z->seen[point_of(z, q->ticket[first + i], &w->x[i], &w->y[i])];
+        seen[i] = z->seen[point_of(z, q->sample_key[first + i], &w->x[i], &w->y[i])];
     if (depth == 0)
         first_views(t, rays);
     else
@@ -253,7 +253,7 @@ static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch 
  * layers. */
 static void bend(tracer *t, const int *list)
 {
-    const drawn_work *w = t->own;
+    const raster_work *w = t->own;
     const zbuffer *z = t->target.kept;
     group *g = &t->surface.gathered;
     if (!z->layered || z->scene->render.transmission == TRANSMISSION_SIMPLE)
@@ -296,7 +296,7 @@ static void straight_weights(const zbuffer *z, const screen_triangle *s, double 
     }
 }
 
-static void straighten_uv(tracer *t, const drawn_part *p, const screen_triangle *s, const double weight[3], int k)
+static void straighten_uv(tracer *t, const rasterised_part *p, const screen_triangle *s, const double weight[3], int k)
 {
     const mesh *m = p->at.triangles;
     const mesh_triangle tri = m->triangles[s->triangle];
@@ -311,11 +311,11 @@ static void straighten(tracer *t, const int *list)
 {
     const zbuffer *z = t->target.kept;
     const surface_batch *points = &t->surface.gathered.points;
-    drawn_work *w = t->own;
+    raster_work *w = t->own;
     for (int k = 0; k < t->surface.gathered.count; k++) {
         const int i = list[k];
         const screen_triangle *s = &z->triangles[w->number[i]];
-        const drawn_part *p = &z->parts[s->part];
+        const rasterised_part *p = &z->parts[s->part];
         w->at[k] = vec3_make(points->px[k], points->py[k], points->pz[k]);
         if (p->plane)
             continue;
@@ -328,16 +328,16 @@ static void straighten(tracer *t, const int *list)
         const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
         vec3 at = vec3_make(0.0, 0.0, 0.0);
         for (int j = 0; j < 3; j++)
-            at = vec3_add(at, vec3_scale(forest_vertex_point(&p->at, s->copy, tri.corner[j]), weight[j]));
+            at = vec3_add(at, vec3_scale(instance_set_vertex_point(&p->at, s->copy, tri.corner[j]), weight[j]));
         w->at[k] = at;
     }
 }
 
 static void place(tracer *t, const int *list)
 {
-    drawn_work *w = t->own;
+    raster_work *w = t->own;
     bend(t, list);
-    if (t->target.scene->render.texturing != TEXTURING_AFFINE || !t->surface.look->picture)
+    if (t->target.scene->render.texturing != TEXTURING_AFFINE || !t->surface.mat->img)
         return;
     straighten(t, list);
     t->surface.texture_at = w->at;
@@ -356,16 +356,16 @@ static void branch(tracer *t, int depth)
     }
     for (int i = 0; i < g->count; i++)
         if (b->reflect[i] > 0.0)
-            shading_expose_sky(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i],
+            shading_expose_sky(t, g->sample_key[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i],
                                g->wg[i] * b->reflect[i], g->wb[i] * b->reflect[i]);
     put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
 }
 
-static void shade(tracer *t, int depth, int rank)
+static void shade(tracer *t, int depth, int priority_index)
 {
     const render_settings *r = &t->target.scene->render;
-    local_light(t, rank, light_terms_of(r));
-    if (r->lighting == LIGHTING_WHITTED && !surface_is_opaque(t, rank))
+    local_light(t, priority_index, light_terms_of(r));
+    if (r->lighting == LIGHTING_WHITTED && !surface_is_opaque(t, priority_index))
         branch(t, depth);
 }
 
@@ -390,7 +390,7 @@ static status sort(void *frame, diagnostic *why)
 static status finish(void *frame, mesh_report *report, diagnostic *why)
 {
     report->drawn = zbuffer_triangles(frame);
-    report->drawn_bytes = zbuffer_bytes(frame);
+    report->raster_bytes = zbuffer_bytes(frame);
     return zbuffer_failed(frame) ? diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer clear solids",
                                             "out of memory for the layers of clear solids")
                                  : STATUS_OK;

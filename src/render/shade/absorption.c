@@ -7,11 +7,11 @@
 #define LOG2_E 1.4426950408889634074
 
 /* Coefficients of a rank, by channel; of a spectral film at the ray's wavelength. */
-static vec3 coefficients(const plan *p, int rank, int64_t ticket)
+static vec3 coefficients(const plan *p, int priority_index, int64_t sample_key)
 {
     if (!p->spectral)
-        return p->absorption[rank];
-    const double a = spectra_body(p->spectral, ticket, rank)->absorption;
+        return p->absorption[priority_index];
+    const double a = spectra_region(p->spectral, sample_key, priority_index)->absorption;
     return vec3_make(a, a, a);
 }
 
@@ -24,17 +24,17 @@ double absorption_left(double optical_depth)
 static void add_depths(tracer *t)
 {
     const plan *p = t->target.scene;
-    const int64_t *tickets = t->media->tickets;
-    for (int k = 0; k < t->batch.scratch.ways->count; k++) {
-        const stretch *s = &t->batch.scratch.ways->stretches[k];
-        if (!p->solids->bodies[s->rank].absorbs)
+    const int64_t *sample_keys = t->media->sample_keys;
+    for (int k = 0; k < t->batch.scratch.segments->count; k++) {
+        const medium_segment *s = &t->batch.scratch.segments->segment[k];
+        if (!p->solids->regions[s->priority_index].absorbs)
             continue;
-        const vec3 a = coefficients(p, s->rank, tickets[s->ray]);
+        const vec3 a = coefficients(p, s->priority_index, sample_keys[s->ray]);
         t->media->kept[0][s->ray] += a.x * s->length;
         t->media->kept[1][s->ray] += a.y * s->length;
         t->media->kept[2][s->ray] += a.z * s->length;
     }
-    t->batch.scratch.ways->count = 0;
+    t->batch.scratch.segments->count = 0;
 }
 
 /* A way to the sky is spared here too: it is as long as can be. */
@@ -42,9 +42,10 @@ static void make_room(void *context)
 {
     tracer *t = context;
     const double for_ever = 1e100;
-    for (int k = 0; k < t->batch.scratch.ways->count; k++)
-        if (t->batch.scratch.ways->stretches[k].rank == 0 && t->batch.scratch.ways->stretches[k].length > for_ever)
-            t->batch.scratch.ways->stretches[k].length = 0.0;
+    for (int k = 0; k < t->batch.scratch.segments->count; k++)
+        if (t->batch.scratch.segments->segment[k].priority_index == 0 &&
+            t->batch.scratch.segments->segment[k].length > for_ever)
+            t->batch.scratch.segments->segment[k].length = 0.0;
     add_depths(t);
 }
 
@@ -52,7 +53,7 @@ bool absorption_begin(tracer *t, bool absorbs)
 {
     if (absorbs && !t->media && !(t->media = malloc(sizeof *t->media)))
         return false;
-    t->batch.scratch.ways = absorbs ? &t->media->ways : NULL;
+    t->batch.scratch.segments = absorbs ? &t->media->segments : NULL;
     return true;
 }
 
@@ -61,11 +62,11 @@ void absorption_end(tracer *t)
     free(t->media);
 }
 
-void absorption_announce(tracer *t, const int64_t *tickets, int count)
+void absorption_announce(tracer *t, const int64_t *sample_keys, int count)
 {
-    t->media->tickets = tickets;
-    t->batch.scratch.ways->full = make_room;
-    t->batch.scratch.ways->context = t;
+    t->media->sample_keys = sample_keys;
+    t->batch.scratch.segments->full = make_room;
+    t->batch.scratch.segments->context = t;
     for (int i = 0; i < count; i++)
         t->media->kept[0][i] = t->media->kept[1][i] = t->media->kept[2][i] = 0.0; /* optical depths first */
 }
@@ -83,9 +84,9 @@ static void absorption_shares(tracer *t, int count)
 void absorption_spare_sky(tracer *t)
 {
     const plan *p = t->target.scene;
-    for (int k = 0; p->solids->bodies[0].absorbs && k < t->batch.scratch.ways->count; k++) {
-        stretch *s = &t->batch.scratch.ways->stretches[k];
-        if (s->rank == 0 && t->batch.hits.crossed[s->ray] == -1)
+    for (int k = 0; p->solids->regions[0].absorbs && k < t->batch.scratch.segments->count; k++) {
+        medium_segment *s = &t->batch.scratch.segments->segment[k];
+        if (s->priority_index == 0 && t->batch.hits.hit_primitive[s->ray] == -1)
             s->length = 0.0;
     }
 }

@@ -6,9 +6,9 @@
 #include "render/core/tracer.h"
 
 typedef struct media_work {
-    ray_ways ways;
-    const int64_t *tickets; /* of the batch whose ways are noted */
-    double kept[3][ROW];    /* share of light that the way to the hit left, by channel */
+    medium_segments segments;
+    const int64_t *sample_keys; /* of the batch whose ways are noted */
+    double kept[3][ROW];        /* share of light that the way to the hit left, by channel */
 } media_work;
 
 /* For a frame whose media absorb, if they do: false when memory is out. */
@@ -17,7 +17,7 @@ void absorption_end(tracer *t);
 
 /* Before a batch is looked at, whose ways are then noted; of one that looked for its nearest interfaces, the
  * surroundings are spared on ways to the sky; and the batch dimmed. */
-void absorption_announce(tracer *t, const int64_t *tickets, int count);
+void absorption_announce(tracer *t, const int64_t *sample_keys, int count);
 void absorption_spare_sky(tracer *t);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
 double absorption_left(double optical_depth);

@@ -3,13 +3,13 @@
 #include <string.h>
 
 /* A group that is one stretch of the batch, as where a whole batch meets the ground. */
-static void gather_stretch(const ray_queue *q, int from, const hit_batch *hits, int i, group *g)
+static void gather_segment(const ray_queue *q, int from, const hit_batch *hits, int i, group *g)
 {
     const size_t bytes = (size_t)g->count * sizeof(double);
     memcpy(g->ox, q->ox + from, bytes), memcpy(g->oy, q->oy + from, bytes), memcpy(g->oz, q->oz + from, bytes);
     memcpy(g->dx, q->dx + from, bytes), memcpy(g->dy, q->dy + from, bytes), memcpy(g->dz, q->dz + from, bytes);
     memcpy(g->wr, q->wr + from, bytes), memcpy(g->wg, q->wg + from, bytes), memcpy(g->wb, q->wb + from, bytes);
-    memcpy(g->start, q->start + from, bytes), memcpy(g->ticket, q->ticket + from, bytes);
+    memcpy(g->start, q->start + from, bytes), memcpy(g->sample_key, q->sample_key + from, bytes);
     memcpy(g->t, hits->t + i, bytes);
     memcpy(g->inside_before, hits->inside_before + i, bytes), memcpy(g->inside_after, hits->inside_after + i, bytes);
 }
@@ -19,7 +19,7 @@ static void gather_one(const ray_queue *q, int from, const hit_batch *hits, int 
     g->ox[k] = q->ox[from], g->oy[k] = q->oy[from], g->oz[k] = q->oz[from];
     g->dx[k] = q->dx[from], g->dy[k] = q->dy[from], g->dz[k] = q->dz[from];
     g->wr[k] = q->wr[from], g->wg[k] = q->wg[from], g->wb[k] = q->wb[from];
-    g->start[k] = q->start[from], g->ticket[k] = q->ticket[from];
+    g->start[k] = q->start[from], g->sample_key[k] = q->sample_key[from];
     g->t[k] = hits->t[i];
     g->inside_before[k] = hits->inside_before[i];
     g->inside_after[k] = hits->inside_after[i];
@@ -33,7 +33,7 @@ void group_gather(const ray_queue *q, int first, const hit_batch *hits, const do
     g->padded = (count + LANES_MAX - 1) / LANES_MAX * LANES_MAX;
     const bool whole = last - before == count - 1;
     if (whole)
-        gather_stretch(q, first + before, hits, before, g);
+        gather_segment(q, first + before, hits, before, g);
     for (int k = 0; k < count && !whole; k++)
         gather_one(q, first + list[k], hits, list[k], g, k);
     for (int k = count; k < g->padded; k++)

@@ -26,16 +26,16 @@ static void copy_point(surface_batch *s, mesh_points *m, int to, int from)
     m->gx[to] = m->gx[from], m->gy[to] = m->gy[from], m->gz[to] = m->gz[from];
 }
 
-void mesh_surface(tracer *t, int rank, const int *list)
+void mesh_surface(tracer *t, int priority_index, const int *list)
 {
     const plan *p = t->target.scene;
-    const shading_rule shading = p->looks[rank].shading;
+    const shading_rule shading = p->shading_materials[priority_index].shading;
     group *g = &t->surface.gathered;
     mesh_work *w = t->meshes;
     for (int k = 0; k < g->count; k++)
         w->hits[k] = w->scratch.hit[list[k]];
     const ray_batch rays = {g->count, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
-    forest_surface(p->solids->meshes, &rays, w->hits, shading == SHADING_SMOOTH, &g->points, &w->points);
+    instance_set_surface(p->solids->meshes, &rays, w->hits, shading == SHADING_SMOOTH, &g->points, &w->points);
     for (int k = g->count; k < g->padded; k++)
         copy_point(&g->points, &w->points, k, g->count - 1);
 }
@@ -82,23 +82,23 @@ void mesh_bound_branches(tracer *t)
     }
 }
 
-bool mesh_has_corner_light(const tracer *t, int rank)
+bool mesh_has_corner_light(const tracer *t, int priority_index)
 {
-    return t->surface.on_mesh && t->target.scene->looks[rank].shading == SHADING_GOURAUD;
+    return t->surface.on_mesh && t->target.scene->shading_materials[priority_index].shading == SHADING_GOURAUD;
 }
 
 /* The group as it would be if its rays met one corner of their triangles each. */
-static void move_to_corner(tracer *t, int corner, const forest_part *part)
+static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
 {
     group *c = &t->meshes->corner;
     const group *g = &t->surface.gathered;
     const mesh_points *m = &t->meshes->points;
     for (int k = 0; k < g->count; k++) {
         const uint32_t vertex = m->corner[corner][k];
-        const vec3 at = forest_vertex_point(part, mesh_face_copy(g->points.face[k]), vertex),
+        const vec3 at = instance_set_vertex_point(part, mesh_face_copy(g->points.face[k]), vertex),
                    o = vec3_make(g->ox[k], g->oy[k], g->oz[k]);
         const vec3 side = geometric(t->meshes, k), way = vec3_sub(at, o);
-        vec3 n = forest_vertex_normal(part, vertex);
+        vec3 n = instance_set_vertex_normal(part, vertex);
         n = vec3_dot(n, n) > 0.0 ? n : side;
         n = vec3_dot(n, side) < 0.0 ? vec3_scale(n, -1.0) : n;
         const double length = vec3_length(way);
@@ -112,13 +112,13 @@ static void move_to_corner(tracer *t, int corner, const forest_part *part)
 
 /* Gouraud, "Continuous shading of curved surfaces" (1971): light at a triangle's corners, and between them by their
  * weights. Shadows are the point's own. */
-void mesh_corner_light(tracer *t, const material *m, const light *lamp, int rank)
+void mesh_corner_light(tracer *t, const material *m, const light *lamp, int priority_index)
 {
     mesh_work *w = t->meshes;
     lit_group *l = &t->surface.lit;
     const group *g = &t->surface.gathered;
-    const forest *f = t->target.scene->solids->meshes;
-    const forest_part *part = &f->parts[f->by_primitive[t->target.scene->solids->bodies[rank].outside]];
+    const instance_set *f = t->target.scene->solids->meshes;
+    const instanced_mesh *part = &f->parts[f->by_primitive[t->target.scene->solids->regions[priority_index].outside]];
     t->shade->direct(m, lamp, g, l); /* for the ways to the light */
     for (int k = 0; k < g->count; k++)
         l->r[k] = l->g[k] = l->b[k] = 0.0;
@@ -144,7 +144,7 @@ void mesh_corner_light(tracer *t, const material *m, const light *lamp, int rank
 
 static int slot_of(const tracer *t, int i)
 {
-    const forest *f = t->target.scene->solids->meshes;
+    const instance_set *f = t->target.scene->solids->meshes;
     const int64_t face = t->meshes->scratch.hit[i].face;
     if (face == FACE_NONE)
         return 0;
@@ -153,7 +153,7 @@ static int slot_of(const tracer *t, int i)
 }
 
 /* Brings those that look like the first one to the front of the list, each part in its order; returns how many. */
-int mesh_next_look(const tracer *t, int *list, int count, int *slot)
+int mesh_next_material(const tracer *t, int *list, int count, int *slot)
 {
     int others[BATCH], alike = 0, left = 0;
     *slot = slot_of(t, list[0]);

@@ -19,7 +19,7 @@
 struct radiance_work {
     ray_crossings crossings;
     ray_batch rays;                   /* the shadow rays that crossings are noted of, ... */
-    const int64_t *tickets;           /* ... their tickets, ... */
+    const int64_t *sample_keys;       /* ... their tickets, ... */
     double through[ROW];              /* ... and the product of the interfaces' transmittances, by ray */
     double kept[CROSSINGS_MAX];       /* transmittances, by crossing */
     double wr[ROW], wg[ROW], wb[ROW]; /* the gathered group's throughput, while what its surface sends out is weighed */
@@ -41,14 +41,14 @@ void radiance_end(tracer *t)
     free(t->basic);
 }
 
-static double index_of(const plan *p, int64_t ticket, int rank)
+static double index_of(const plan *p, int64_t sample_key, int priority_index)
 {
-    return p->spectral ? spectra_body(p->spectral, ticket, rank)->index : p->ior[rank];
+    return p->spectral ? spectra_region(p->spectral, sample_key, priority_index)->index : p->ior[priority_index];
 }
 
-double radiance_share(const plan *p, int64_t ticket, int rank)
+double radiance_share(const plan *p, int64_t sample_key, int priority_index)
 {
-    const double ratio = index_of(p, ticket, p->eye_rank) / index_of(p, ticket, rank);
+    const double ratio = index_of(p, sample_key, p->camera_priority_index) / index_of(p, sample_key, priority_index);
     return ratio * ratio;
 }
 
@@ -62,7 +62,8 @@ void radiance_weigh(tracer *t)
     const size_t bytes = (size_t)g->padded * sizeof(double);
     memcpy(w->wr, g->wr, bytes), memcpy(w->wg, g->wg, bytes), memcpy(w->wb, g->wb, bytes);
     for (int k = 0; k < g->padded; k++) {
-        const double ratio = index_of(p, g->ticket[k], p->eye_rank) / g->n_from[k], share = ratio * ratio;
+        const double ratio = index_of(p, g->sample_key[k], p->camera_priority_index) / g->n_from[k],
+                     share = ratio * ratio;
         g->wr[k] *= share, g->wg[k] *= share, g->wb[k] *= share;
     }
 }
@@ -82,7 +83,7 @@ typedef struct straight_rays {
     double ox[ROW], oy[ROW], oz[ROW], dx[ROW], dy[ROW], dz[ROW], t[ROW];
     int64_t start[ROW];
     uint64_t inside[ROW];
-    forest_hit mesh[ROW];
+    instance_hit mesh[ROW];
     int64_t number[ROW]; /* in the list of crossings */
     int count;
 } straight_rays;
@@ -101,9 +102,9 @@ static void add_ray(const radiance_work *w, int number, straight_rays *s)
     s->number[at] = number;
 }
 
-static double transmittance(const plan *p, int64_t ticket, const ray_crossing *x, double cosine)
+static double transmittance(const plan *p, int64_t sample_key, const ray_crossing *x, double cosine)
 {
-    const double before = index_of(p, ticket, x->before), after = index_of(p, ticket, x->after);
+    const double before = index_of(p, sample_key, x->before), after = index_of(p, sample_key, x->after);
     const double low = before < after ? before : after, high = before < after ? after : before;
     return 1.0 - fresnel_dielectric(cosine, low, high).R;
 }
@@ -116,13 +117,14 @@ static void cross_surface(tracer *t, int met, straight_rays *s)
     const primitive *surface = &p->solids->primitives[met];
     const ray_batch rays = {s->count, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->start, s->inside};
     if (!surface->rule)
-        forest_surface(p->solids->meshes, &rays, s->mesh, p->looks[surface->rank].shading == SHADING_SMOOTH, &w->points,
-                       &w->on_mesh);
+        instance_set_surface(p->solids->meshes, &rays, s->mesh,
+                             p->shading_materials[surface->priority_index].shading == SHADING_SMOOTH, &w->points,
+                             &w->on_mesh);
     else
         t->geometry->surface(surface, &rays, s->t, met, &w->points);
     for (int k = 0; k < s->count; k++) {
         const ray_crossing *x = &w->crossings.crossings[s->number[k]];
-        w->kept[s->number[k]] = transmittance(p, w->tickets[x->ray], x, w->points.cos_i[k]);
+        w->kept[s->number[k]] = transmittance(p, w->sample_keys[x->ray], x, w->points.cos_i[k]);
     }
     s->count = 0;
 }
@@ -151,13 +153,13 @@ static void take_crossings(void *context)
     w->crossings.count = 0;
 }
 
-void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *tickets)
+void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *sample_keys)
 {
     radiance_work *w = t->basic;
     if (!t->target.scene->basic)
         return;
     w->rays = *rays;
-    w->tickets = tickets;
+    w->sample_keys = sample_keys;
     w->crossings.full = take_crossings;
     w->crossings.context = t;
     for (int i = 0; i < rays->count; i++)

@@ -11,7 +11,7 @@ bool radiance_begin(tracer *t); /* a frame; false when memory is out */
 void radiance_end(tracer *t);
 
 /* How much of what is sent out into the medium of a rank reaches an eye as radiance, (n_eye / n)^2. */
-double radiance_share(const plan *p, int64_t ticket, int rank);
+double radiance_share(const plan *p, int64_t sample_key, int priority_index);
 
 /* The gathered group's throughput times that, and back again; nothing under classic radiance. */
 void radiance_weigh(tracer *t);
@@ -19,5 +19,5 @@ void radiance_weigh_back(tracer *t);
 
 /* The transmittances of the interfaces that a batch of shadow rays crosses, taken from t->batch.transmitted; nothing
  * under classic radiance. */
-void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *tickets);
+void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *sample_keys);
 void radiance_end_shadows(tracer *t);

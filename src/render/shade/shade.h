@@ -12,7 +12,7 @@ typedef struct group {
     double wr[ROW], wg[ROW], wb[ROW]; /* throughput */
     double t[ROW];
     double n_from[ROW], n_to[ROW]; /* indices on the ray's side and beyond */
-    int64_t start[ROW], ticket[ROW];
+    int64_t start[ROW], sample_key[ROW];
     uint64_t inside_before[ROW], inside_after[ROW];
     surface_batch points;
     double cr[ROW], cg[ROW], cb[ROW]; /* the material's colour at the point */

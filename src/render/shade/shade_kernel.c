@@ -272,7 +272,7 @@ static void append(const group *g, const double *dx, const double *dy, const dou
     const size_t bytes = (size_t)n * sizeof(double);
     memcpy(to.ox, p->px, bytes), memcpy(to.oy, p->py, bytes), memcpy(to.oz, p->pz, bytes);
     memcpy(to.dx, dx, bytes), memcpy(to.dy, dy, bytes), memcpy(to.dz, dz, bytes);
-    memcpy(q->start + at, p->face, bytes), memcpy(q->ticket + at, g->ticket, bytes),
+    memcpy(q->start + at, p->face, bytes), memcpy(q->sample_key + at, g->sample_key, bytes),
         memcpy(q->inside + at, inside, bytes);
     double *restrict wr = to.wr, *restrict wg = to.wg, *restrict wb = to.wb;
     /* VECTORISE */

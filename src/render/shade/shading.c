@@ -22,7 +22,7 @@ static inline void expose_at(tracer *t, int64_t place, double r, double g, doubl
         t->account.overflow = -1;
         return;
     }
-    int64_t *sum = &t->target.picture->sum[place * 3];
+    int64_t *sum = &t->target.img->sum[place * 3];
     const int64_t red = (int64_t)((uint64_t)sum[0] + (uint64_t)in_film_units(r));
     const int64_t green = (int64_t)((uint64_t)sum[1] + (uint64_t)in_film_units(g));
     const int64_t blue = (int64_t)((uint64_t)sum[2] + (uint64_t)in_film_units(b));
@@ -32,82 +32,82 @@ static inline void expose_at(tracer *t, int64_t place, double r, double g, doubl
 
 /* The ticket's layer and pixel; of a spectral film as what the eye makes of its wavelength. Never inline, so that the
  * rgb film's way keeps its registers. */
-static __attribute__((noinline)) void expose_by_ticket(tracer *t, int64_t ticket, double r, double g, double b)
+static __attribute__((noinline)) void expose_by_sample_key(tracer *t, int64_t sample_key, double r, double g, double b)
 {
     const plan *p = t->target.scene;
-    const film *f = t->target.picture;
-    const int64_t layer = f->layers == 1 ? 0 : ticket_sample(ticket) / p->render.samples % f->layers;
-    const int64_t place = ticket_pixel(ticket) + layer * f->width * f->height;
+    const film *f = t->target.img;
+    const int64_t layer = f->layers == 1 ? 0 : sample_key_sample(sample_key) / p->render.samples % f->layers;
+    const int64_t place = sample_key_pixel(sample_key) + layer * f->width * f->height;
     if (p->spectral) {
-        const double *eye = spectra_row(p->spectral, ticket)->eye;
+        const double *eye = spectra_row(p->spectral, sample_key)->eye;
         r *= eye[0], g *= eye[1], b *= eye[2];
     }
     expose_at(t, place, r, g, b);
 }
 
-static inline void expose(tracer *t, int64_t ticket, double r, double g, double b)
+static inline void expose(tracer *t, int64_t sample_key, double r, double g, double b)
 {
-    if (t->by_ticket)
-        expose_by_ticket(t, ticket, r, g, b);
+    if (t->by_sample_key)
+        expose_by_sample_key(t, sample_key, r, g, b);
     else
-        expose_at(t, ticket, r, g, b);
+        expose_at(t, sample_key, r, g, b);
 }
 
-void shading_expose(tracer *t, int64_t ticket, double r, double g, double b)
+void shading_expose(tracer *t, int64_t sample_key, double r, double g, double b)
 {
-    expose(t, ticket, r, g, b);
+    expose(t, sample_key, r, g, b);
 }
 
-static __attribute__((noinline)) void expose_sky_by_ticket(tracer *t, int64_t ticket, vec3 direction, double wr,
-                                                           double wg, double wb)
+static __attribute__((noinline)) void expose_sky_by_sample_key(tracer *t, int64_t sample_key, vec3 direction, double wr,
+                                                               double wg, double wb)
 {
     const plan *p = t->target.scene;
     vec3 l;
     if (p->spectral)
-        l.x = l.y = l.z = spectra_sky(spectra_row(p->spectral, ticket), p->sky, direction);
+        l.x = l.y = l.z = spectra_sky(spectra_row(p->spectral, sample_key), p->sky, direction);
     else
         l = sky_radiance(p->sky, direction);
     if (p->basic) /* the sky lies in the surroundings, wherever a ray ends that is given its light */
-        l = vec3_scale(l, radiance_share(p, ticket, 0));
-    expose_by_ticket(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+        l = vec3_scale(l, radiance_share(p, sample_key, 0));
+    expose_by_sample_key(t, sample_key, wr * l.x, wg * l.y, wb * l.z);
 }
 
-static inline void expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+static inline void expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
     const background *sky = t->target.scene->sky;
-    if (t->by_ticket) {
-        expose_sky_by_ticket(t, ticket, direction, wr, wg, wb);
+    if (t->by_sample_key) {
+        expose_sky_by_sample_key(t, sample_key, direction, wr, wg, wb);
         return;
     }
     const vec3 l = sky->kind == BACKGROUND_UNIFORM ? sky->color : sky_radiance(sky, direction);
-    expose_at(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+    expose_at(t, sample_key, wr * l.x, wg * l.y, wb * l.z);
 }
 
-void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+void shading_expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
-    expose_sky(t, ticket, direction, wr, wg, wb);
+    expose_sky(t, sample_key, direction, wr, wg, wb);
 }
 
 /* What lies beyond the depth limit, along a branch that it cuts off. */
-static inline void expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+static inline void expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
     const plan *p = t->target.scene;
-    if (p->render.beyond != BEYOND_MEAN) {
-        expose_sky(t, ticket, direction, wr, wg, wb);
+    if (p->render.beyond != DEPTH_LIMIT_MEAN) {
+        expose_sky(t, sample_key, direction, wr, wg, wb);
         return;
     }
     vec3 l = p->sky_mean;
     if (p->spectral)
-        l.x = l.y = l.z = spectra_sky_mean(spectra_row(p->spectral, ticket), p->sky, p->sky_mean);
+        l.x = l.y = l.z = spectra_sky_mean(spectra_row(p->spectral, sample_key), p->sky, p->sky_mean);
     if (p->basic)
-        l = vec3_scale(l, radiance_share(p, ticket, 0));
-    expose(t, ticket, wr * l.x, wg * l.y, wb * l.z);
+        l = vec3_scale(l, radiance_share(p, sample_key, 0));
+    expose(t, sample_key, wr * l.x, wg * l.y, wb * l.z);
 }
 
-void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb)
+void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
-    if (t->target.scene->render.beyond != BEYOND_BLACK)
-        expose_beyond(t, ticket, direction, wr, wg, wb);
+    if (t->target.scene->render.beyond != DEPTH_LIMIT_BLACK)
+        expose_at_depth_limit(t, sample_key, direction, wr, wg, wb);
 }
 
 /* Light that needs no lamp: ambient and emitted; of a spectral film as daylight, white's spectrum. */
@@ -120,15 +120,15 @@ static void expose_own_light(tracer *t, const material *m, bool ambient)
         return;
     if (p->spectral) {
         for (int i = 0; i < g->count; i++) {
-            const spectral_row *row = spectra_row(p->spectral, g->ticket[i]);
+            const spectral_row *row = spectra_row(p->spectral, g->sample_key[i]);
             const double a = (k_a * row->ambient + k_e * row->basis[SKY_BASIS_WHITE]) * g->cr[i];
-            expose(t, g->ticket[i], g->wr[i] * a, g->wg[i] * a, g->wb[i] * a);
+            expose(t, g->sample_key[i], g->wr[i] * a, g->wg[i] * a, g->wb[i] * a);
         }
         return;
     }
     const vec3 a = vec3_add(vec3_scale(p->sky->ambient, k_a), vec3_make(k_e, k_e, k_e));
     for (int i = 0; i < g->count; i++)
-        expose(t, g->ticket[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
+        expose(t, g->sample_key[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
 }
 
 /* A shadow ray is worth its while only if its light can change the film. */
@@ -147,19 +147,19 @@ static void put_shadow_rays_in_line(tracer *t)
         q->ox[at] = g->points.px[i], q->oy[at] = g->points.py[i], q->oz[at] = g->points.pz[i];
         q->dx[at] = l->lx[i], q->dy[at] = l->ly[i], q->dz[at] = l->lz[i];
         q->wr[at] = l->r[i], q->wg[at] = l->g[i], q->wb[at] = l->b[i];
-        q->start[at] = g->points.face[i], q->ticket[at] = g->ticket[i], q->inside[at] = g->inside_before[i];
+        q->start[at] = g->points.face[i], q->sample_key[at] = g->sample_key[i], q->inside[at] = g->inside_before[i];
     }
 }
 
 /* One light on the gathered group, with the light's own spectrum where there is one. */
-static void direct_light(tracer *t, const material *m, int lamp, int rank)
+static void direct_light(tracer *t, const material *m, int lamp, int priority_index)
 {
     const plan *p = t->target.scene;
     light l = p->lights[lamp];
     if (p->spectral)
         l.color = vec3_make(1.0, 1.0, 1.0), l.intensity = 1.0;
-    if (mesh_has_corner_light(t, rank))
-        mesh_corner_light(t, m, &l, rank);
+    if (mesh_has_corner_light(t, priority_index))
+        mesh_corner_light(t, m, &l, priority_index);
     else
         t->shade->direct(m, &l, &t->surface.gathered, &t->surface.lit);
     if (l.kind != LIGHT_POINT)
@@ -171,10 +171,10 @@ static void direct_light(tracer *t, const material *m, int lamp, int rank)
 }
 
 /* All that the surface sends out by itself, weighted. */
-static void send_out(tracer *t, int rank, light_terms terms)
+static void send_out(tracer *t, int priority_index, light_terms terms)
 {
     const plan *p = t->target.scene;
-    const material *m = &t->surface.look->surface;
+    const material *m = &t->surface.mat->surface;
     material dull;
     if (!terms.highlights) {
         dull = *m;
@@ -187,21 +187,22 @@ static void send_out(tracer *t, int rank, light_terms terms)
     for (int k = 0; k < p->light_count; k++) {
         if (!terms.spheres && p->lights[k].radius > 0.0)
             continue;
-        direct_light(t, m, k, rank);
+        direct_light(t, m, k, priority_index);
         if (p->render.shadows != SHADOWS_OFF) {
             put_shadow_rays_in_line(t);
             continue;
         }
         for (int i = 0; i < t->surface.gathered.count; i++)
             if (t->surface.lit.shows[i])
-                expose(t, t->surface.gathered.ticket[i], t->surface.lit.r[i], t->surface.lit.g[i], t->surface.lit.b[i]);
+                expose(t, t->surface.gathered.sample_key[i], t->surface.lit.r[i], t->surface.lit.g[i],
+                       t->surface.lit.b[i]);
     }
 }
 
-void local_light(tracer *t, int rank, light_terms terms)
+void local_light(tracer *t, int priority_index, light_terms terms)
 {
     radiance_weigh(t);
-    send_out(t, rank, terms);
+    send_out(t, priority_index, terms);
     radiance_weigh_back(t);
 }
 
@@ -217,19 +218,19 @@ void cut_branches(tracer *t)
         for (int c = 0; c < 3; c++)
             t->account.counters.cut_depth_throughput[c] += sum.throughput[c];
     }
-    if (p->render.beyond == BEYOND_BLACK)
+    if (p->render.beyond == DEPTH_LIMIT_BLACK)
         return;
     const bool uniform =
-        p->sky->kind == BACKGROUND_UNIFORM || p->render.beyond == BEYOND_MEAN; /* then directions do not matter */
+        p->sky->kind == BACKGROUND_UNIFORM || p->render.beyond == DEPTH_LIMIT_MEAN; /* then directions do not matter */
     for (int i = 0; i < g->count; i++) {
         const double first = uniform ? b->reflect[i] + b->refract[i] : b->reflect[i],
                      second = uniform ? 0.0 : b->refract[i];
         if (first > 0.0)
-            expose_beyond(t, g->ticket[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first, g->wg[i] * first,
-                          g->wb[i] * first);
+            expose_at_depth_limit(t, g->sample_key[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * first,
+                                  g->wg[i] * first, g->wb[i] * first);
         if (second > 0.0)
-            expose_beyond(t, g->ticket[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second,
-                          g->wg[i] * second, g->wb[i] * second);
+            expose_at_depth_limit(t, g->sample_key[i], vec3_make(b->tx[i], b->ty[i], b->tz[i]), g->wr[i] * second,
+                                  g->wg[i] * second, g->wb[i] * second);
     }
 }
 
@@ -278,7 +279,7 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
 void shading_branches(tracer *t, bool opaque)
 {
     const plan *p = t->target.scene;
-    const material *m = &t->surface.look->surface;
+    const material *m = &t->surface.mat->surface;
     if (!opaque && p->render.transmission == TRANSMISSION_SIMPLE)
         t->shade->straight_branches(m, &t->surface.gathered, &t->surface.branches);
     else if (opaque || p->render.weights == WEIGHTS_CONSTANT)
@@ -303,30 +304,32 @@ void background_sky(tracer *t, const ray_queue *q, int first, const int *list, i
 {
     for (int k = 0; k < count; k++) {
         const int at = first + list[k];
-        expose_sky(t, q->ticket[at], vec3_make(q->dx[at], q->dy[at], q->dz[at]), q->wr[at], q->wg[at], q->wb[at]);
+        expose_sky(t, q->sample_key[at], vec3_make(q->dx[at], q->dy[at], q->dz[at]), q->wr[at], q->wg[at], q->wb[at]);
     }
 }
 
 /* A checker's cells lie in the frame of the solid whose surface it is, also where another solid's face exposes it. */
-static void color(tracer *t, int rank, const primitive *surface)
+static void color(tracer *t, int priority_index, const primitive *surface)
 {
     const plan *p = t->target.scene;
-    const primitive *frame = surface->rank == rank ? surface : &p->solids->primitives[p->solids->bodies[rank].outside];
+    const primitive *frame = surface->priority_index == priority_index
+                                 ? surface
+                                 : &p->solids->primitives[p->solids->regions[priority_index].outside];
     if (!p->spectral) {
-        t->shade->color(&t->surface.look->surface, frame, &t->surface.gathered);
-        if (t->surface.look->picture)
+        t->shade->color(&t->surface.mat->surface, frame, &t->surface.gathered);
+        if (t->surface.mat->img)
             texture_colors(t, surface);
         return;
     }
     /* Which of the two colours, and then its spectrum. */
-    material marked = t->surface.look->surface;
+    material marked = t->surface.mat->surface;
     marked.color = vec3_make(1.0, 0.0, 0.0);
     marked.checker_color = vec3_make(0.0, 1.0, 0.0);
     t->shade->color(&marked, frame, &t->surface.gathered);
-    spectral_colors(t, rank);
+    spectral_colors(t, priority_index);
 }
 
-static void shade_alike(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
+static void shade_alike(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count)
 {
     const plan *p = t->target.scene;
     const primitive *surface = &p->solids->primitives[met];
@@ -339,35 +342,35 @@ static void shade_alike(tracer *t, int depth, int first, int met, int rank, cons
     const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
     t->surface.on_mesh = !surface->rule;
     if (t->surface.on_mesh)
-        mesh_surface(t, rank, list);
+        mesh_surface(t, priority_index, list);
     else
         t->geometry->surface(surface, &rays, g->t, met, &g->points);
     t->surface.texture_at = NULL;
     if (t->rule->place)
         t->rule->place(t, list);
-    const int owner = p->solids->bodies[rank].solid;
+    const int owner = p->solids->regions[priority_index].solid;
     COUNT(t->account.counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
         COUNT(t->account.counters.first_hits[owner] += (uint64_t)count);
-    color(t, rank, surface);
-    t->rule->shade(t, depth, rank);
+    color(t, priority_index, surface);
+    t->rule->shade(t, depth, priority_index);
 }
 
-void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count)
+void shading_group(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count)
 {
-    const body_look *looks = &t->target.scene->looks[rank];
-    t->surface.look = looks->look;
-    if (looks->count == 1) {
-        shade_alike(t, depth, first, met, rank, list, count);
+    const region_materials *shading_materials = &t->target.scene->shading_materials[priority_index];
+    t->surface.mat = shading_materials->mat;
+    if (shading_materials->count == 1) {
+        shade_alike(t, depth, first, met, priority_index, list, count);
         return;
     }
     int left[BATCH];
     memcpy(left, list, (size_t)count * sizeof left[0]);
     for (int begin = 0; begin < count;) {
         int slot;
-        const int alike = mesh_next_look(t, left + begin, count - begin, &slot);
-        t->surface.look = &looks->look[slot < looks->count ? slot : 0];
-        shade_alike(t, depth, first, met, rank, left + begin, alike);
+        const int alike = mesh_next_material(t, left + begin, count - begin, &slot);
+        t->surface.mat = &shading_materials->mat[slot < shading_materials->count ? slot : 0];
+        shade_alike(t, depth, first, met, priority_index, left + begin, alike);
         begin += alike;
     }
 }

@@ -6,12 +6,12 @@
 
 /* Adds radiance to a ticket's pixel. Of a spectral film the three channels are one: radiance at the ticket's
  * wavelength. */
-void shading_expose(tracer *t, int64_t ticket, double r, double g, double b);
+void shading_expose(tracer *t, int64_t sample_key, double r, double g, double b);
 
 /* Adds what the sky sends along a direction, weighted; and what a branch that the depth limit cuts off brings:
  * render.beyond. */
-void shading_expose_sky(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
-void shading_expose_beyond(tracer *t, int64_t ticket, vec3 direction, double wr, double wg, double wb);
+void shading_expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb);
+void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb);
 
 /* The nearest interfaces of a batch, and the sky behind rays without one, as most integrators have it. */
 void meet_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
@@ -21,9 +21,9 @@ void background_sky(tracer *t, const ray_queue *q, int first, const int *list, i
 camera_need camera_samples(const render_settings *r);
 
 /* Does no light pass the surface of that rank's body with the tracer's look? */
-static inline bool surface_is_opaque(const tracer *t, int rank)
+static inline bool surface_is_opaque(const tracer *t, int priority_index)
 {
-    return t->target.scene->solids->bodies[rank].opaque || t->surface.look->surface.transparency == 0.0;
+    return t->target.scene->solids->regions[priority_index].opaque || t->surface.mat->surface.transparency == 0.0;
 }
 
 /* Terms of the light that a surface sends out by itself or gets from lamps. */
@@ -31,7 +31,7 @@ typedef struct light_terms {
     bool ambient, highlights;
     bool spheres; /* lamps that are spheres are taken for points at their centres */
 } light_terms;
-void local_light(tracer *t, int rank, light_terms terms);
+void local_light(tracer *t, int priority_index, light_terms terms);
 /* The terms of Phong's sum that render.lighting wants. */
 static inline light_terms light_terms_of(const render_settings *r)
 {
@@ -50,14 +50,14 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
 
 /* Gathers rays list[0 .. count-1] of the batch at `first` in the queue of a depth, all of which met primitive `met` as
  * the surface of the body of that rank, colours them and hands them to the integrator, in parts that look alike. */
-void shading_group(tracer *t, int depth, int first, int met, int rank, const int *list, int count);
+void shading_group(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count);
 
 /* texture_shading.c: the look's picture times the gathered group's colours. */
 void texture_colors(tracer *t, const primitive *surface);
 
 /* spectral.c: the gathered group's indices, colours and light at each ray's wavelength. */
 void spectral_indices(tracer *t, const int *list);
-void spectral_colors(tracer *t, int rank);
+void spectral_colors(tracer *t, int priority_index);
 void spectral_light(tracer *t, int lamp);
 
 /* polarised.c: the group's Stokes vectors, and what an interface makes of weights and vectors. */

@@ -2,9 +2,9 @@
 
 #include "base/elementary.h"
 
-static vec3 picture_texel(const image *picture, int x, int y)
+static vec3 sky_image_texel(const image *img, int x, int y)
 {
-    const float *p = &picture->pixel[((size_t)y * (size_t)picture->width + (size_t)x) * 3];
+    const float *p = &img->pixel[((size_t)y * (size_t)img->width + (size_t)x) * 3];
     return vec3_make((double)p[0], (double)p[1], (double)p[2]);
 }
 
@@ -25,16 +25,16 @@ static int clamp(int y, int height)
 }
 
 /* Bilinear; longitude wraps around, latitude is clamped. */
-static vec3 picture_radiance(const image *picture, vec3 d)
+static vec3 sky_image_radiance(const image *img, vec3 d)
 {
     double longitude = elementary_atan2_deg(d.x, d.z),
            latitude = elementary_atan2_deg(d.y, sqrt(d.x * d.x + d.z * d.z));
-    double u = (0.5 + longitude / 360.0) * picture->width - 0.5, v = (0.5 - latitude / 180.0) * picture->height - 0.5;
+    double u = (0.5 + longitude / 360.0) * img->width - 0.5, v = (0.5 - latitude / 180.0) * img->height - 0.5;
     double left = floor(u), top = floor(v);
-    int x0 = wrap((int)left, picture->width), x1 = wrap((int)left + 1, picture->width);
-    int y0 = clamp((int)top, picture->height), y1 = clamp((int)top + 1, picture->height);
-    vec3 upper = mix(picture_texel(picture, x0, y0), picture_texel(picture, x1, y0), u - left);
-    vec3 lower = mix(picture_texel(picture, x0, y1), picture_texel(picture, x1, y1), u - left);
+    int x0 = wrap((int)left, img->width), x1 = wrap((int)left + 1, img->width);
+    int y0 = clamp((int)top, img->height), y1 = clamp((int)top + 1, img->height);
+    vec3 upper = mix(sky_image_texel(img, x0, y0), sky_image_texel(img, x1, y0), u - left);
+    vec3 lower = mix(sky_image_texel(img, x0, y1), sky_image_texel(img, x1, y1), u - left);
     return mix(upper, lower, v - top);
 }
 
@@ -43,7 +43,7 @@ vec3 sky_radiance(const background *sky, vec3 direction)
     switch ((background_kind)sky->kind) {
     case BACKGROUND_UNIFORM: return sky->color;
     case BACKGROUND_GRADIENT: return mix(sky->horizon, sky->color, direction.y > 0.0 ? direction.y : 0.0);
-    case BACKGROUND_PICTURE: return sky->picture ? picture_radiance(sky->picture, direction) : sky->color;
+    case BACKGROUND_IMAGE: return sky->img ? sky_image_radiance(sky->img, direction) : sky->color;
     }
     return sky->color;
 }
@@ -65,14 +65,14 @@ static double row_weight(int y, int height)
     return sine * 4.0 * sin_half * sin_half / h;
 }
 
-static vec3 picture_mean(const image *picture)
+static vec3 sky_image_mean(const image *img)
 {
     vec3 mean = {0.0, 0.0, 0.0};
-    for (int y = 0; y < picture->height; y++) {
+    for (int y = 0; y < img->height; y++) {
         vec3 row = {0.0, 0.0, 0.0};
-        for (int x = 0; x < picture->width; x++)
-            row = vec3_add(row, picture_texel(picture, x, y));
-        mean = vec3_add(mean, vec3_scale(row, 0.5 * row_weight(y, picture->height) / picture->width));
+        for (int x = 0; x < img->width; x++)
+            row = vec3_add(row, sky_image_texel(img, x, y));
+        mean = vec3_add(mean, vec3_scale(row, 0.5 * row_weight(y, img->height) / img->width));
     }
     return mean;
 }
@@ -82,7 +82,7 @@ vec3 sky_mean(const background *sky)
     switch ((background_kind)sky->kind) {
     case BACKGROUND_UNIFORM: return sky->color;
     case BACKGROUND_GRADIENT: return mix(sky->horizon, sky->color, 0.25);
-    case BACKGROUND_PICTURE: return sky->picture ? picture_mean(sky->picture) : sky->color;
+    case BACKGROUND_IMAGE: return sky->img ? sky_image_mean(sky->img) : sky->color;
     }
     return sky->color;
 }

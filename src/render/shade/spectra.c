@@ -7,72 +7,72 @@
 #include <stdlib.h>
 
 /* Colours lifted, before they are looked up at each wavelength. */
-typedef struct lifted_scene {
+typedef struct upsampled_scene {
     const scene *s;
     const material *const *materials;
     const index_law *laws;
-    lifted sky, horizon, ambient, basis[SKY_BASIS_COUNT];
-    lifted *color, *checker_color, *light; /* by rank, by rank, by light */
-} lifted_scene;
+    upsampled_spectrum sky, horizon, ambient, basis[SKY_BASIS_COUNT];
+    upsampled_spectrum *color, *checker_color, *light; /* by rank, by rank, by light */
+} upsampled_scene;
 
-static lifted lift_light(vec3 color, double intensity)
+static upsampled_spectrum upsample_light(vec3 color, double intensity)
 {
-    return lift_emission((const double[3]){color.x * intensity, color.y * intensity, color.z * intensity});
+    return upsample_emission((const double[3]){color.x * intensity, color.y * intensity, color.z * intensity});
 }
 
-static lifted lift_surface(vec3 color)
+static upsampled_spectrum upsample_surface(vec3 color)
 {
-    return lift_reflectance((const double[3]){color.x, color.y, color.z});
+    return upsample_reflectance((const double[3]){color.x, color.y, color.z});
 }
 
-static bool lift_scene(lifted_scene *l, size_t ranks)
+static bool upsample_scene(upsampled_scene *l, size_t priority_indices)
 {
     static const double basis[SKY_BASIS_COUNT][3] = {{1, 1, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0},
                                                      {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const scene *s = l->s;
-    l->color = calloc(ranks, sizeof *l->color);
-    l->checker_color = calloc(ranks, sizeof *l->checker_color);
+    l->color = calloc(priority_indices, sizeof *l->color);
+    l->checker_color = calloc(priority_indices, sizeof *l->checker_color);
     l->light = calloc(s->light_count + 1, sizeof *l->light);
     if (!l->color || !l->checker_color || !l->light)
         return false;
-    for (size_t r = 1; r < ranks; r++) {
-        l->color[r] = lift_surface(l->materials[r]->color);
-        l->checker_color[r] = lift_surface(l->materials[r]->checker_color);
+    for (size_t r = 1; r < priority_indices; r++) {
+        l->color[r] = upsample_surface(l->materials[r]->color);
+        l->checker_color[r] = upsample_surface(l->materials[r]->checker_color);
     }
     for (size_t i = 0; i < s->light_count; i++)
-        l->light[i] = lift_light(s->lights[i].color, s->lights[i].intensity);
-    l->sky = lift_light(s->background.color, 1.0);
-    l->horizon = lift_light(s->background.horizon, 1.0);
-    l->ambient = lift_light(s->background.ambient, 1.0);
+        l->light[i] = upsample_light(s->lights[i].color, s->lights[i].intensity);
+    l->sky = upsample_light(s->background.color, 1.0);
+    l->horizon = upsample_light(s->background.horizon, 1.0);
+    l->ambient = upsample_light(s->background.ambient, 1.0);
     for (size_t i = 0; i < SKY_BASIS_COUNT; i++)
-        l->basis[i] = lift_emission(basis[i]);
+        l->basis[i] = upsample_emission(basis[i]);
     return true;
 }
 
-static spectral_row row_at(const lifted_scene *l, double lambda_nm)
+static spectral_row row_at(const upsampled_scene *l, double lambda_nm)
 {
     spectral_row row;
     observer_weights(lambda_nm, row.eye);
-    row.sky = lifted_emission(&l->sky, lambda_nm);
-    row.horizon = lifted_emission(&l->horizon, lambda_nm);
-    row.ambient = lifted_emission(&l->ambient, lambda_nm);
+    row.sky = upsampled_emission(&l->sky, lambda_nm);
+    row.horizon = upsampled_emission(&l->horizon, lambda_nm);
+    row.ambient = upsampled_emission(&l->ambient, lambda_nm);
     for (size_t i = 0; i < SKY_BASIS_COUNT; i++)
-        row.basis[i] = lifted_emission(&l->basis[i], lambda_nm);
+        row.basis[i] = upsampled_emission(&l->basis[i], lambda_nm);
     return row;
 }
 
-static body_spectrum body_at(const lifted_scene *l, size_t rank, double lambda_nm)
+static region_spectrum body_at(const upsampled_scene *l, size_t priority_index, double lambda_nm)
 {
-    body_spectrum b = {.index = index_law_at(&l->laws[rank], lambda_nm)};
-    if (!l->materials[rank]) {
+    region_spectrum b = {.index = index_law_at(&l->laws[priority_index], lambda_nm)};
+    if (!l->materials[priority_index]) {
         b.absorption = surrounding_absorption_at(&l->s->background, lambda_nm) * l->s->render.unit_m;
         return b;
     }
-    b.color = lifted_reflectance(&l->color[rank], lambda_nm);
-    b.checker_color = lifted_reflectance(&l->checker_color[rank], lambda_nm);
-    b.absorption = material_absorption_at(l->materials[rank], lambda_nm) * l->s->render.unit_m;
-    if (material_tints(l->materials[rank]))
-        b.absorption += material_tint(l->materials[rank], b.color);
+    b.color = upsampled_reflectance(&l->color[priority_index], lambda_nm);
+    b.checker_color = upsampled_reflectance(&l->checker_color[priority_index], lambda_nm);
+    b.absorption = material_absorption_at(l->materials[priority_index], lambda_nm) * l->s->render.unit_m;
+    if (material_tints(l->materials[priority_index]))
+        b.absorption += material_tint(l->materials[priority_index], b.color);
     return b;
 }
 
@@ -102,34 +102,35 @@ static void whiten(spectra *p, const render_settings *render, int offset)
         p->white[offset][c] = count < SPECTRA_WHITE_FROM ? 1.0 : white[c] / sum[c];
 }
 
-static bool fill_tables(const lifted_scene *l, spectra *p)
+static bool fill_tables(const upsampled_scene *l, spectra *p)
 {
     p->rows = calloc(SPECTRA_COUNT, sizeof *p->rows);
-    p->bodies = calloc(SPECTRA_COUNT * p->ranks, sizeof *p->bodies);
+    p->regions = calloc(SPECTRA_COUNT * p->priority_indices, sizeof *p->regions);
     p->lights = calloc(SPECTRA_COUNT * (p->light_count + 1), sizeof *p->lights);
     p->white = calloc(SPECTRA_OFFSETS, sizeof *p->white);
-    if (!p->rows || !p->bodies || !p->lights || !p->white)
+    if (!p->rows || !p->regions || !p->lights || !p->white)
         return false;
     for (size_t i = 0; i < SPECTRA_COUNT; i++) {
         const double lambda_nm = spectra_lambda((int64_t)i);
         p->rows[i] = row_at(l, lambda_nm);
-        for (size_t r = 0; r < p->ranks; r++)
-            p->bodies[i * p->ranks + r] = body_at(l, r, lambda_nm);
+        for (size_t r = 0; r < p->priority_indices; r++)
+            p->regions[i * p->priority_indices + r] = body_at(l, r, lambda_nm);
         for (size_t k = 0; k < p->light_count; k++)
-            p->lights[i * p->light_count + k] = lifted_emission(&l->light[k], lambda_nm);
+            p->lights[i * p->light_count + k] = upsampled_emission(&l->light[k], lambda_nm);
     }
     for (int i = 0; i < SPECTRA_OFFSETS; i++)
         whiten(p, &l->s->render, i);
     return true;
 }
 
-spectra *spectra_create(const scene *s, const material *const *materials, const index_law *laws, size_t ranks)
+spectra *spectra_create(const scene *s, const material *const *materials, const index_law *laws,
+                        size_t priority_indices)
 {
-    lifted_scene l = {.s = s, .materials = materials, .laws = laws};
+    upsampled_scene l = {.s = s, .materials = materials, .laws = laws};
     spectra *p = calloc(1, sizeof *p);
     if (p)
-        p->ranks = ranks, p->light_count = s->light_count;
-    const bool done = p && lift_scene(&l, ranks) && fill_tables(&l, p);
+        p->priority_indices = priority_indices, p->light_count = s->light_count;
+    const bool done = p && upsample_scene(&l, priority_indices) && fill_tables(&l, p);
     free(l.color);
     free(l.checker_color);
     free(l.light);
@@ -144,7 +145,7 @@ void spectra_destroy(spectra *p)
     if (!p)
         return;
     free(p->rows);
-    free(p->bodies);
+    free(p->regions);
     free(p->lights);
     free(p->white);
     free(p);
@@ -155,13 +156,14 @@ double spectra_lambda(int64_t number)
     return OBSERVER_LOW_NM + ((double)number + 0.5) * ((double)(OBSERVER_HIGH_NM - OBSERVER_LOW_NM) / SPECTRA_COUNT);
 }
 
-int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t ticket, const double **white)
+int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t sample_key, const double **white)
 {
     const int64_t count = wavelengths_together(render);
-    const int64_t sample = ticket_sample(ticket), all_of = ticket_make(ticket_pixel(ticket), sample / count);
+    const int64_t sample = sample_key_sample(sample_key),
+                  all_of = sample_key_make(sample_key_pixel(sample_key), sample / count);
     const int offset = (int)(draw(render->seed, all_of, 0, DRAW_WAVELENGTH).word[0] % SPECTRA_OFFSETS);
     *white = p->white[offset];
-    return ticket_with_wavelength(ticket, wavelength_of(sample % count, count, offset));
+    return sample_key_with_wavelength(sample_key, wavelength_of(sample % count, count, offset));
 }
 
 /* A texel as white, the best fitting secondary and the best fitting primary: Smits, "An RGB to Spectrum Conversion for
@@ -185,7 +187,7 @@ double spectra_sky(const spectral_row *row, const background *sky, vec3 directio
     switch ((background_kind)sky->kind) {
     case BACKGROUND_UNIFORM: break;
     case BACKGROUND_GRADIENT: return (1.0 - up) * row->horizon + up * row->sky;
-    case BACKGROUND_PICTURE: return texel_at(row, sky_radiance(sky, direction));
+    case BACKGROUND_IMAGE: return texel_at(row, sky_radiance(sky, direction));
     }
     return row->sky;
 }
@@ -195,7 +197,7 @@ double spectra_sky_mean(const spectral_row *row, const background *sky, vec3 mea
     switch ((background_kind)sky->kind) {
     case BACKGROUND_UNIFORM: break;
     case BACKGROUND_GRADIENT: return 0.75 * row->horizon + 0.25 * row->sky;
-    case BACKGROUND_PICTURE: return texel_at(row, mean);
+    case BACKGROUND_IMAGE: return texel_at(row, mean);
     }
     return row->sky;
 }

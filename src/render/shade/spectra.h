@@ -1,11 +1,11 @@
 /* The spectra of a scene, for films that are traced wavelength by wavelength. Light is told apart in SPECTRA_COUNT
- * wavelengths, 0.1 nm from one to the next; what a scene does at each of them (its colours lifted by optics/lift.h, its
- * indices of refraction, its absorption, and how the eye sees it) is worked out once a frame, in tables. Ownership:
+ * wavelengths, 0.1 nm from one to the next; what a scene does at each of them (its colours lifted by optics/upsample.h,
+ * its indices of refraction, its absorption, and how the eye sees it) is worked out once a frame, in tables. Ownership:
  * spectra_create gives, spectra_destroy releases; the scene is borrowed during the call only. Lookups are pure. */
 #pragma once
 
-#include "optics/lift.h"
-#include "render/core/ticket.h"
+#include "optics/upsample.h"
+#include "render/core/sample_key.h"
 #include "scene/model/medium.h"
 #include "scene/model/material.h"
 #include "scene/model/open.h"
@@ -26,20 +26,21 @@ typedef struct spectral_row {
 } spectral_row;
 
 /* A body at one wavelength; absorption: and tint, in 1 / scene unit. */
-typedef struct body_spectrum {
+typedef struct region_spectrum {
     double color, checker_color, index, absorption;
-} body_spectrum;
+} region_spectrum;
 
 typedef struct spectra {
-    spectral_row *rows;    /* by wavelength */
-    body_spectrum *bodies; /* by wavelength, then rank */
-    double *lights;        /* by wavelength, then light: radiance of its colour times its intensity */
-    double (*white)[3];    /* by offset: what makes the wavelengths of a pixel, seen under D65, white */
-    size_t ranks, light_count;
+    spectral_row *rows;       /* by wavelength */
+    region_spectrum *regions; /* by wavelength, then rank */
+    double *lights;           /* by wavelength, then light: radiance of its colour times its intensity */
+    double (*white)[3];       /* by offset: what makes the wavelengths of a pixel, seen under D65, white */
+    size_t priority_indices, light_count;
 } spectra;
 
 /* laws, materials: by rank, materials[0] is NULL; ranks counts that one too. NULL when memory is out. */
-spectra *spectra_create(const scene *s, const material *const *materials, const index_law *laws, size_t ranks);
+spectra *spectra_create(const scene *s, const material *const *materials, const index_law *laws,
+                        size_t priority_indices);
 void spectra_destroy(spectra *p);
 
 /* The wavelength of that number, in the middle of its 0.1 nm. */
@@ -51,21 +52,21 @@ double spectra_lambda(int64_t number);
  * least. What is left of the error for white is taken out by weights for X, Y and Z (*white), so that a white furnace
  * is white whatever the offset; below SPECTRA_WHITE_FROM wavelengths, where that would be no small change, they are 1.
  */
-int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t ticket, const double **white);
+int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t sample_key, const double **white);
 
-static inline const spectral_row *spectra_row(const spectra *p, int64_t ticket)
+static inline const spectral_row *spectra_row(const spectra *p, int64_t sample_key)
 {
-    return &p->rows[ticket_wavelength(ticket)];
+    return &p->rows[sample_key_wavelength(sample_key)];
 }
 
-static inline const body_spectrum *spectra_body(const spectra *p, int64_t ticket, int64_t rank)
+static inline const region_spectrum *spectra_region(const spectra *p, int64_t sample_key, int64_t priority_index)
 {
-    return &p->bodies[(size_t)ticket_wavelength(ticket) * p->ranks + (size_t)rank];
+    return &p->regions[(size_t)sample_key_wavelength(sample_key) * p->priority_indices + (size_t)priority_index];
 }
 
-static inline double spectra_light(const spectra *p, int64_t ticket, int lamp)
+static inline double spectra_light(const spectra *p, int64_t sample_key, int lamp)
 {
-    return p->lights[(size_t)ticket_wavelength(ticket) * p->light_count + (size_t)lamp];
+    return p->lights[(size_t)sample_key_wavelength(sample_key) * p->light_count + (size_t)lamp];
 }
 
 /* Radiance of the sky; its mean over all directions, of which sky_mean has the colour. */

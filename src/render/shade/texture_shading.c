@@ -14,7 +14,7 @@ void texture_colors(tracer *t, const primitive *surface)
 {
     const plan *p = t->target.scene;
     group *g = &t->surface.gathered;
-    const double size = t->surface.look->surface.texture_size;
+    const double size = t->surface.mat->surface.texture_size;
     for (int k = 0; k < g->count; k++) {
         const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
         const surface_mapping m =
@@ -23,8 +23,7 @@ void texture_colors(tracer *t, const primitive *surface)
                                : primitive_mapping(surface, g->points.face[k],
                                                    t->surface.texture_at ? t->surface.texture_at[k] : point, size);
         const double cosine = g->points.cos_i[k] > 0.05 ? g->points.cos_i[k] : 0.05;
-        const vec3 c =
-            texture_sample(t->surface.look->picture, m.u, m.v, pixel_width(p, point) / cosine * m.per_length);
+        const vec3 c = texture_sample(t->surface.mat->img, m.u, m.v, pixel_width(p, point) / cosine * m.per_length);
         g->cr[k] *= c.x, g->cg[k] *= c.y, g->cb[k] *= c.z;
     }
 }

@@ -10,7 +10,7 @@ static status no_room(diagnostic *why)
                     "out of memory for the depth buffer");
 }
 
-static uint64_t triangles_of(const drawn_part *p)
+static uint64_t triangles_of(const rasterised_part *p)
 {
     return (uint64_t)zbuffer_number(p) * p->at.copies[0] * p->at.copies[1] * p->at.copies[2];
 }
@@ -72,7 +72,7 @@ status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why)
     z->first = calloc((size_t)z->across * (size_t)z->down + 1, sizeof *z->first);
     zbuffer_find_layers(z);
     if (z->layered)
-        z->blocks = calloc(BLOCKS_MAX, sizeof(drawn_layer *));
+        z->blocks = calloc(BLOCKS_MAX, sizeof(rasterised_layer *));
     status code = z->seen && z->first && (z->blocks || !z->layered) ? zbuffer_cut(z, why) : no_room(why);
     if (code == STATUS_OK && !make_chunks(z))
         code = no_room(why);
@@ -183,9 +183,9 @@ size_t zbuffer_triangles(const zbuffer *z)
 size_t zbuffer_bytes(const zbuffer *z)
 {
     const size_t squares = (size_t)z->across * (size_t)z->down;
-    return (size_t)z->width * (size_t)z->height * sizeof *z->seen + atomic_load(&z->layer_count) * sizeof(drawn_layer) +
-           z->triangle_count * sizeof *z->triangles + z->first[squares] * sizeof *z->listed +
-           (squares + 1) * sizeof *z->first;
+    return (size_t)z->width * (size_t)z->height * sizeof *z->seen +
+           atomic_load(&z->layer_count) * sizeof(rasterised_layer) + z->triangle_count * sizeof *z->triangles +
+           z->first[squares] * sizeof *z->listed + (squares + 1) * sizeof *z->first;
 }
 
 bool zbuffer_failed(const zbuffer *z)

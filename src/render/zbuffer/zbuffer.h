@@ -29,17 +29,17 @@ status zbuffer_sort(zbuffer *z, diagnostic *why);
 
 /* What drawing needs for itself: one for each thread that draws. */
 enum { SQUARE_POINTS = 64 /* across */ };
-typedef struct drawn_fragment {
+typedef struct rasterised_fragment {
     double nearness;
     uint32_t number;
     int32_t next, part;
-} drawn_fragment; /* next of the same point, or -1 */
+} rasterised_fragment; /* next of the same point, or -1 */
 typedef struct zbuffer_square {
     double nearness[SQUARE_POINTS * SQUARE_POINTS];
     int32_t newest[SQUARE_POINTS * SQUARE_POINTS]; /* by point: fragment, or -1 */
-    drawn_fragment *fragments, *column;            /* of the square's layers; of one point, in order */
+    rasterised_fragment *fragments, *column;       /* of the square's layers; of one point, in order */
     size_t count, capacity, column_capacity;
-    struct drawn_layer *block; /* of the frame's lists, the one that is being filled; NULL: none yet */
+    struct rasterised_layer *block; /* of the frame's lists, the one that is being filled; NULL: none yet */
     uint32_t block_number, used;
 } zbuffer_square;
 void zbuffer_square_begin(zbuffer_square *s); /* before each frame; all zero at first */

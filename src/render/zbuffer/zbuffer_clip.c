@@ -22,7 +22,7 @@ static void plane_corners(const zbuffer *z, const primitive *p, uint32_t triangl
     out[2] = in_camera(view, ends[(triangle + 1) % 4], 0.0);
 }
 
-void zbuffer_corners(const zbuffer *z, const drawn_part *p, uint32_t copy, uint32_t triangle,
+void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, uint32_t triangle,
                      clip_corner out[POLYGON_MAX])
 {
     if (p->plane) {
@@ -30,7 +30,7 @@ void zbuffer_corners(const zbuffer *z, const drawn_part *p, uint32_t copy, uint3
     } else {
         const camera_frame *view = &z->scene->view;
         const mesh_triangle tri = p->at.triangles->triangles[triangle];
-        const vec3 o = vec3_sub(forest_origin(&p->at, copy), view->eye);
+        const vec3 o = vec3_sub(instance_set_origin(&p->at, copy), view->eye);
         for (int k = 0; k < 3; k++)
             out[k] = in_camera(view, zbuffer_vertex(&p->at, o, tri.corner[k]), 1.0);
     }
@@ -91,7 +91,7 @@ static int clip_at(const zbuffer *z, double nearest, int plane, clip_corner *pol
     return made;
 }
 
-int zbuffer_clip(const zbuffer *z, const drawn_part *p, clip_corner polygon[POLYGON_MAX])
+int zbuffer_clip(const zbuffer *z, const rasterised_part *p, clip_corner polygon[POLYGON_MAX])
 {
     int count = 3;
     for (int plane = 0; plane < 5 && count >= 3; plane++)

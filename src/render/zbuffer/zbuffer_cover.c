@@ -15,35 +15,36 @@ static bool dips_into(const primitive *half, bounds3 b)
     return vec3_dot(n, vec3_sub(lowest, half->origin)) <= 0.0;
 }
 
-static bool may_touch(const arrangement *a, int rank, int other)
+static bool may_touch(const scene_geometry *a, int priority_index, int other)
 {
-    const solid_shape *s = &a->shapes[rank], *t = &a->shapes[other];
+    const solid_shape *s = &a->shapes[priority_index], *t = &a->shapes[other];
     const bool endless = shape_of(s)->unbounded, other_endless = shape_of(t)->unbounded;
     if (endless && other_endless)
         return true;
     if (endless || other_endless)
-        return dips_into(&a->primitives[a->bodies[endless ? rank : other].outside], shape_world_box(endless ? t : s));
+        return dips_into(&a->primitives[a->regions[endless ? priority_index : other].outside],
+                         shape_world_box(endless ? t : s));
     const bounds3 b = shape_world_box(s), c = shape_world_box(t);
     return b.low.x <= c.high.x && c.low.x <= b.high.x && b.low.y <= c.high.y && c.low.y <= b.high.y &&
            b.low.z <= c.high.z && c.low.z <= b.high.z;
 }
 
-static bool is_layered(const arrangement *a, int rank)
+static bool is_layered(const scene_geometry *a, int priority_index)
 {
-    const body *b = &a->bodies[rank];
+    const region *b = &a->regions[priority_index];
     bool layered = !b->opaque;
-    for (int r = rank + 1; r <= a->body_count && !layered; r++)
-        layered = !a->bodies[r].opaque && may_touch(a, rank, r);
+    for (int r = priority_index + 1; r <= a->region_count && !layered; r++)
+        layered = !a->regions[r].opaque && may_touch(a, priority_index, r);
     return layered;
 }
 
 /* Is the eye in one of the mesh's copies? By the solid angle that the triangles fill (van Oosterom and Strackee, "The
  * solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983): all of it or none. A drawn frame has no
  * hierarchy to ask. */
-static bool eye_in_mesh(const forest_part *p, vec3 eye)
+static bool eye_in_mesh(const instanced_mesh *p, vec3 eye)
 {
     for (uint32_t copy = 0; copy < p->copies[0] * p->copies[1] * p->copies[2]; copy++) {
-        const vec3 o = vec3_sub(forest_origin(p, copy), eye);
+        const vec3 o = vec3_sub(instance_set_origin(p, copy), eye);
         const vec3 far = vec3_make(fabs(o.x), fabs(o.y), fabs(o.z));
         const double reach = 1.8 * p->reach;
         if (far.x > reach || far.y > reach || far.z > reach)
@@ -63,32 +64,32 @@ static bool eye_in_mesh(const forest_part *p, vec3 eye)
     return false;
 }
 
-static bool eye_in(const arrangement *a, const body *b, vec3 eye)
+static bool eye_in(const scene_geometry *a, const region *b, vec3 eye)
 {
     const primitive *p = &a->primitives[b->outside];
     if (p->rule)
         return primitive_contains(p, eye) && !(b->hollow >= 0 && primitive_contains(&a->primitives[b->hollow], eye));
-    const forest_part *part = &a->meshes->parts[a->meshes->by_primitive[b->outside]];
+    const instanced_mesh *part = &a->meshes->parts[a->meshes->by_primitive[b->outside]];
     return part->closed && eye_in_mesh(part, eye);
 }
 
 void zbuffer_find_layers(zbuffer *z)
 {
-    const arrangement *a = z->scene->solids;
+    const scene_geometry *a = z->scene->solids;
     bool clear = false;
-    for (int r = 1; r <= a->body_count; r++)
-        clear |= !a->bodies[r].opaque;
+    for (int r = 1; r <= a->region_count; r++)
+        clear |= !a->regions[r].opaque;
     if (!clear || z->scene->render.lighting != LIGHTING_WHITTED)
         return;
-    for (int r = 1; r <= a->body_count; r++) {
+    for (int r = 1; r <= a->region_count; r++) {
         if (!is_layered(a, r))
             continue;
         const uint64_t bit = (uint64_t)1 << (r - 1);
         z->layered |= bit;
         /* An eye in an opaque solid sees it from within, whether it is a layer or not. */
-        if (!a->bodies[r].opaque && eye_in(a, &a->bodies[r], z->scene->view.eye))
+        if (!a->regions[r].opaque && eye_in(a, &a->regions[r], z->scene->view.eye))
             z->eye_inside |= bit;
-        const bool skin = a->meshes && a->meshes->skins >> a->bodies[r].outside & 1;
+        const bool skin = a->meshes && a->meshes->skins >> a->regions[r].outside & 1;
         z->skins |= skin ? bit : 0;
     }
     z->eye_index = z->scene->ior[z->eye_inside ? 64 - __builtin_clzll(z->eye_inside) : 0];

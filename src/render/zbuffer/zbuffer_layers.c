@@ -27,26 +27,26 @@ void zbuffer_add_fragment(zbuffer *z, zbuffer_square *s, int point, double nearn
         atomic_store(&z->out_of_memory, true);
         return;
     }
-    s->fragments[s->count] = (drawn_fragment){nearness, number, s->newest[point], z->triangles[number].part};
+    s->fragments[s->count] = (rasterised_fragment){nearness, number, s->newest[point], z->triangles[number].part};
     s->newest[point] = (int32_t)s->count++;
 }
 
 static int compare_fragments(const void *a, const void *b)
 {
-    const drawn_fragment *x = a, *y = b;
+    const rasterised_fragment *x = a, *y = b;
     if (x->nearness != y->nearness)
         return x->nearness > y->nearness ? -1 : 1;
     return (x->number > y->number) - (x->number < y->number);
 }
 
-static void sort_fragments(drawn_fragment *f, int count)
+static void sort_fragments(rasterised_fragment *f, int count)
 {
     if (count > 24) {
         qsort(f, (size_t)count, sizeof *f, compare_fragments);
         return;
     }
     for (int k = 1; k < count; k++) {
-        const drawn_fragment one = f[k];
+        const rasterised_fragment one = f[k];
         int at = k;
         for (; at > 0 && compare_fragments(&one, &f[at - 1]) < 0; at--)
             f[at] = f[at - 1];
@@ -54,20 +54,20 @@ static void sort_fragments(drawn_fragment *f, int count)
     }
 }
 
-static bool is_opaque(const zbuffer *z, const drawn_fragment *f)
+static bool is_opaque(const zbuffer *z, const rasterised_fragment *f)
 {
-    return z->scene->solids->bodies[z->parts[f->part].at.rank].opaque;
+    return z->scene->solids->regions[z->parts[f->part].at.priority_index].opaque;
 }
 
 /* Is it before the opaque surface that is drawn without layers? Of two opaque ones the nearer is seen however close
  * they are, and of two equally near that of the higher rank, as where nothing clear is drawn. */
-static bool is_in_front(const zbuffer *z, const drawn_fragment *f, double nearness, uint32_t seen)
+static bool is_in_front(const zbuffer *z, const rasterised_fragment *f, double nearness, uint32_t seen)
 {
     if (!is_opaque(z, f))
         return f->nearness - nearness > TOGETHER * f->nearness;
     if (f->nearness != nearness)
         return f->nearness > nearness;
-    return z->parts[f->part].at.rank > z->parts[z->triangles[seen - 1].part].at.rank;
+    return z->parts[f->part].at.priority_index > z->parts[z->triangles[seen - 1].part].at.priority_index;
 }
 
 /* The point's fragments before its nearest opaque surface, the nearest first; how many. */
@@ -75,7 +75,7 @@ static int collect(zbuffer *z, zbuffer_square *s, int point, uint32_t seen)
 {
     int count = 0;
     for (int32_t k = s->newest[point]; k >= 0; k = s->fragments[k].next) {
-        const drawn_fragment *f = &s->fragments[k];
+        const rasterised_fragment *f = &s->fragments[k];
         if (!is_in_front(z, f, s->nearness[point], seen))
             continue;
         if (!GROW(s->column, s->column_capacity, (size_t)count + 1)) {
@@ -90,13 +90,13 @@ static int collect(zbuffer *z, zbuffer_square *s, int point, uint32_t seen)
 
 typedef struct layer_list {
     int count;
-    drawn_layer layer[LAYERS_MAX];
+    rasterised_layer layer[LAYERS_MAX];
 } layer_list;
 
 /* Sets of bodies have the bit r - 1 for the rank r: the medium is that of the highest. */
-static uint64_t bit_of(const zbuffer *z, const drawn_fragment *f)
+static uint64_t bit_of(const zbuffer *z, const rasterised_fragment *f)
 {
-    return (uint64_t)1 << (z->parts[f->part].at.rank - 1);
+    return (uint64_t)1 << (z->parts[f->part].at.priority_index - 1);
 }
 
 static int highest(uint64_t inside)
@@ -108,7 +108,7 @@ static int highest(uint64_t inside)
  * its triangle looks, so that near an outline, where front and back are as near, their order does not matter. What is
  * drawn of a cup's outside and of its hollow bounds its matter. Only one of them is opaque. Returns how many there
  * were. */
-static int cross(const zbuffer *z, const drawn_fragment *f, int count, uint64_t *inside)
+static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint64_t *inside)
 {
     int n = 0;
     bool opaque = false;
@@ -124,20 +124,20 @@ static int cross(const zbuffer *z, const drawn_fragment *f, int count, uint64_t 
 }
 
 /* Of the surfaces that are crossed together that of the body whose surface it is. */
-static inline drawn_layer layer_of(const zbuffer *z, const drawn_fragment *f, int count, uint64_t inside, int before,
-                                   int after)
+static inline rasterised_layer layer_of(const zbuffer *z, const rasterised_fragment *f, int count, uint64_t inside,
+                                        int before, int after)
 {
-    const int rank = arrangement_surface(z->scene->solids, before, after);
-    const drawn_fragment *c = f;
-    for (int k = 1; k < count && z->parts[c->part].at.rank != rank; k++)
-        c = z->parts[f[k].part].at.rank == rank ? &f[k] : c;
-    const drawn_part *p = &z->parts[c->part];
-    return (drawn_layer){.number = c->number + 1,
-                         .before = (uint8_t)before,
-                         .after = (uint8_t)after,
-                         .surface = (uint8_t)rank,
-                         .leaving = ((inside & bit_of(z, c)) != 0) != p->hollow,
-                         .ends = z->scene->solids->bodies[rank].opaque};
+    const int priority_index = scene_geometry_surface(z->scene->solids, before, after);
+    const rasterised_fragment *c = f;
+    for (int k = 1; k < count && z->parts[c->part].at.priority_index != priority_index; k++)
+        c = z->parts[f[k].part].at.priority_index == priority_index ? &f[k] : c;
+    const rasterised_part *p = &z->parts[c->part];
+    return (rasterised_layer){.number = c->number + 1,
+                              .before = (uint8_t)before,
+                              .after = (uint8_t)after,
+                              .surface = (uint8_t)priority_index,
+                              .leaving = ((inside & bit_of(z, c)) != 0) != p->hollow,
+                              .ends = z->scene->solids->regions[priority_index].opaque};
 }
 
 static bool absorb_alike(const plan *p, int before, int after)
@@ -148,9 +148,9 @@ static bool absorb_alike(const plan *p, int before, int after)
 
 /* Every layer but the last is a clear interface, no more of them than the depth limit lets through, or is passed; the
  * last one is what ends the view. */
-static void list_layers(const zbuffer *z, const drawn_fragment *f, int count, uint32_t base, layer_list *l)
+static void list_layers(const zbuffer *z, const rasterised_fragment *f, int count, uint32_t base, layer_list *l)
 {
-    const arrangement *a = z->scene->solids;
+    const scene_geometry *a = z->scene->solids;
     const int most = (int)z->scene->render.depth + 1;
     uint64_t inside = z->eye_inside;
     int before = highest(inside);
@@ -159,7 +159,7 @@ static void list_layers(const zbuffer *z, const drawn_fragment *f, int count, ui
     for (int k = 0; k < count && interfaces < most;) {
         uint64_t behind = inside;
         const int together = cross(z, f + k, count - k, &behind), after = highest(behind);
-        if (a->bodies[before].medium != a->bodies[after].medium) {
+        if (a->regions[before].medium != a->regions[after].medium) {
             l->layer[l->count++] = layer_of(z, f + k, together, inside, before, after);
             interfaces++;
             if (l->layer[l->count - 1].ends)
@@ -173,21 +173,21 @@ static void list_layers(const zbuffer *z, const drawn_fragment *f, int count, ui
         k += together;
     }
     if (interfaces < most) {
-        const int after = base ? z->parts[z->triangles[base - 1].part].at.rank : before;
-        l->layer[l->count++] = (drawn_layer){.number = base,
-                                             .before = (uint8_t)before,
-                                             .after = (uint8_t)after,
-                                             .surface = (uint8_t)after,
-                                             .ends = true};
+        const int after = base ? z->parts[z->triangles[base - 1].part].at.priority_index : before;
+        l->layer[l->count++] = (rasterised_layer){.number = base,
+                                                  .before = (uint8_t)before,
+                                                  .after = (uint8_t)after,
+                                                  .surface = (uint8_t)after,
+                                                  .ends = true};
     }
 }
 
 /* Room for a list in the worker's own block of them, or a fresh one. NULL when memory is out. */
-static drawn_layer *room_for(zbuffer *z, zbuffer_square *s, int count, uint32_t *place)
+static rasterised_layer *room_for(zbuffer *z, zbuffer_square *s, int count, uint32_t *place)
 {
     if (!s->block || s->used + (uint32_t)count > BLOCK_LAYERS) {
         const uint32_t number = atomic_fetch_add(&z->next_block, 1);
-        if (number >= BLOCKS_MAX || !(z->blocks[number] = malloc(BLOCK_LAYERS * sizeof(drawn_layer))))
+        if (number >= BLOCKS_MAX || !(z->blocks[number] = malloc(BLOCK_LAYERS * sizeof(rasterised_layer))))
             return NULL;
         s->block = z->blocks[number];
         s->block_number = number;
@@ -202,10 +202,10 @@ static drawn_layer *room_for(zbuffer *z, zbuffer_square *s, int count, uint32_t 
  * makes no difference. */
 static bool shows_alone(const zbuffer *z, const layer_list *l)
 {
-    const drawn_layer *f = &l->layer[0];
+    const rasterised_layer *f = &l->layer[0];
     if (l->count != 1 || !f->ends || f->before != 0)
         return false;
-    return f->number == 0 || z->parts[z->triangles[f->number - 1].part].at.rank == f->surface;
+    return f->number == 0 || z->parts[z->triangles[f->number - 1].part].at.priority_index == f->surface;
 }
 
 /* What is seen at a point. */
@@ -219,7 +219,7 @@ static void resolve_point(zbuffer *z, zbuffer_square *s, int point, uint32_t *se
         return;
     }
     uint32_t place;
-    drawn_layer *to = room_for(z, s, l.count, &place);
+    rasterised_layer *to = room_for(z, s, l.count, &place);
     if (!to) {
         atomic_store(&z->out_of_memory, true);
         return;

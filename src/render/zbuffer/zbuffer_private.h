@@ -7,7 +7,7 @@
  * left out. */
 #pragma once
 
-#include "geometry/forest.h"
+#include "geometry/instance_set.h"
 #include "render/zbuffer/zbuffer.h"
 #include <stdatomic.h>
 
@@ -25,14 +25,14 @@ enum {
 #define SEEN_LAYERS 0x80000000U /* of zbuffer.seen: the rest is where the point's list begins */
 
 /* What is seen at a point, one behind the other: see zbuffer_layers.c. */
-typedef struct drawn_layer {
+typedef struct rasterised_layer {
     uint32_t number;       /* of the triangle and 1; 0: the sky */
     uint8_t before, after; /* ranks of the media */
     uint8_t surface;       /* rank of the body whose surface it is */
     bool leaving : 1;      /* the primitive; of the last one its triangle says so */
     bool ends : 1;         /* it is opaque, or the sky */
     bool passed : 1;       /* no interface: two media of one index meet that absorb differently */
-} drawn_layer;
+} rasterised_layer;
 
 /* A point in the camera's frame, right, up, forward; distance 0 is a direction, infinitely far. */
 typedef struct clip_corner {
@@ -41,14 +41,14 @@ typedef struct clip_corner {
 } clip_corner;
 
 /* What is drawn: a mesh's copies, or one primitive as triangles in its own frame. */
-typedef struct drawn_part {
-    forest_part at;
+typedef struct rasterised_part {
+    instanced_mesh at;
     int met;        /* primitive */
     double nearest; /* depth that is drawn; by the part's own extent, so that no other solid shows in it */
     bool hollow;    /* of a cup */
     bool plane;     /* four triangles from the foot of the eye's perpendicular to the horizon */
     mesh *own;      /* an analytic solid's triangles; NULL for a mesh */
-} drawn_part;
+} rasterised_part;
 
 typedef struct screen_triangle {
     int32_t x[3], y[3]; /* in steps, so that the area is positive (clockwise as one sees it) */
@@ -76,15 +76,15 @@ struct zbuffer {
     double units_x, units_y; /* of the grid, in one of x / z and y / z */
     double reach_x, reach_y; /* largest of |x| / z and |y| / z */
     int part_count;
-    drawn_part parts[PRIMITIVES_MAX]; /* the highest rank first, so that of equally near triangles the one with the
+    rasterised_part parts[PRIMITIVES_MAX]; /* the highest rank first, so that of equally near triangles the one with the
                                        * lower number is drawn; layers last */
     uint64_t layered;    /* bit r - 1: the body of rank r is drawn as layers; 0: there is nothing to see through */
     uint64_t eye_inside; /* those that the eye is in */
     uint64_t skins;      /* those that are open meshes */
     double eye_index;    /* refractive index where the eye is */
     int first_layered_part;
-    size_t first_layered; /* triangle */
-    drawn_layer **blocks; /* of lists of layers */
+    size_t first_layered;      /* triangle */
+    rasterised_layer **blocks; /* of lists of layers */
     atomic_uint next_block;
     atomic_size_t layer_count;
     chunk *chunks;
@@ -102,7 +102,7 @@ struct zbuffer {
 /* zbuffer_cover.c: fills layered and eye_inside. */
 void zbuffer_find_layers(zbuffer *z);
 
-/* zbuffer_bodies.c */
+/* zbuffer_regions.c */
 status zbuffer_cut(zbuffer *z, diagnostic *why);
 
 /* zbuffer_layers.c: a point of a layered triangle; and all points of a window once its triangles are drawn. */
@@ -111,18 +111,18 @@ void zbuffer_resolve(zbuffer *z, int x0, int y0, int x1, int y1, zbuffer_square 
 
 /* zbuffer_clip.c: the triangle's corners as seen from the camera; what the planes leave of it, in order; where a corner
  * is on the grid. */
-void zbuffer_corners(const zbuffer *z, const drawn_part *p, uint32_t copy, uint32_t triangle,
+void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, uint32_t triangle,
                      clip_corner out[POLYGON_MAX]);
-int zbuffer_clip(const zbuffer *z, const drawn_part *p, clip_corner polygon[POLYGON_MAX]);
+int zbuffer_clip(const zbuffer *z, const rasterised_part *p, clip_corner polygon[POLYGON_MAX]);
 void zbuffer_place(const zbuffer *z, const clip_corner *c, double *x, double *y);
 
-static inline uint32_t zbuffer_number(const drawn_part *p)
+static inline uint32_t zbuffer_number(const rasterised_part *p)
 {
     return p->plane ? 4 : (uint32_t)p->at.triangles->triangle_count;
 }
 
 /* A corner of a part that is no plane, relative to the eye; o: the copy's origin less the eye. */
-static inline vec3 zbuffer_vertex(const forest_part *p, vec3 o, uint32_t vertex)
+static inline vec3 zbuffer_vertex(const instanced_mesh *p, vec3 o, uint32_t vertex)
 {
     const vec3 v = p->triangles->vertices[vertex];
     const vec3 scaled = p->scaled ? vec3_make(v.x * p->scale.x, v.y * p->scale.y, v.z * p->scale.z) : v;

@@ -8,7 +8,7 @@
 
 /* Of the plane through a triangle, 1 / depth is linear in the picture (Blinn, "Hyperbolic interpolation", 1992): N.r /
  * N.P along the ray r = (x/z, y/z, 1). False when one looks along it. corners: the triangle's own. */
-static bool depth_plane(const zbuffer *z, const drawn_part *p, const clip_corner *corners, screen_triangle *t)
+static bool depth_plane(const zbuffer *z, const rasterised_part *p, const clip_corner *corners, screen_triangle *t)
 {
     const vec3 a = vec3_make(corners[0].x, corners[0].y, corners[0].z),
                b = vec3_make(corners[1].x, corners[1].y, corners[1].z);
@@ -75,10 +75,11 @@ static bool is_beside(const zbuffer *z, const clip_corner *c)
 }
 
 /* Do the normals at its corners differ? A mesh that is shaded flat is what it is. */
-static bool is_curved(const zbuffer *z, const drawn_part *p, uint32_t triangle)
+static bool is_curved(const zbuffer *z, const rasterised_part *p, uint32_t triangle)
 {
     const mesh *m = p->at.triangles;
-    if (p->plane || !m->normals || (!p->own && z->scene->looks[p->at.rank].shading == SHADING_FLAT))
+    if (p->plane || !m->normals ||
+        (!p->own && z->scene->shading_materials[p->at.priority_index].shading == SHADING_FLAT))
         return false;
     const mesh_triangle tri = m->triangles[triangle];
     const vec3 n = m->normals[tri.corner[0]];
@@ -86,7 +87,7 @@ static bool is_curved(const zbuffer *z, const drawn_part *p, uint32_t triangle)
     return !(vec3_dot(n, m->normals[tri.corner[1]]) > least && vec3_dot(n, m->normals[tri.corner[2]]) > least);
 }
 
-static void project_triangle(const zbuffer *z, chunk *c, const drawn_part *p, uint32_t copy, uint32_t triangle)
+static void project_triangle(const zbuffer *z, chunk *c, const rasterised_part *p, uint32_t copy, uint32_t triangle)
 {
     clip_corner polygon[POLYGON_MAX];
     int32_t x[POLYGON_MAX], y[POLYGON_MAX];
@@ -117,7 +118,7 @@ void zbuffer_project(zbuffer *z)
 {
     for (size_t k; (k = atomic_fetch_add_explicit(&z->next_chunk, 1, memory_order_relaxed)) < z->chunk_count;) {
         chunk *c = &z->chunks[k];
-        const drawn_part *p = &z->parts[c->part];
+        const rasterised_part *p = &z->parts[c->part];
         const uint32_t number = zbuffer_number(p);
         for (int i = 0; i < c->count && c->made_count != SIZE_MAX; i++) {
             const uint64_t at = c->first + (uint64_t)i;

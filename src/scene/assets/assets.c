@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "geometry/shapes/shape.h"
 #include "scene/assets/assets.h"
-#include "scene/model/looks.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/objects.h"
 #include "scene/model/params_value.h"
 #include "scene/assets/mesh_make.h"
@@ -15,9 +15,9 @@
 void mesh_entry_unload(mesh_entry *m)
 {
     mesh_release(m->data);
-    looks_release(m->looks);
+    face_materials_release(m->shading_materials);
     m->data = NULL;
-    m->looks = NULL;
+    m->shading_materials = NULL;
     m->account = (softbody_account){.steps = 0};
     m->motion_s = 0.0;
 }
@@ -94,21 +94,20 @@ static status check_sky(const image *sky, const char *path, diagnostic *bad)
 static status load_sky(scene *s, diagnostic *why)
 {
     background *sky = &s->background;
-    if (sky->kind != BACKGROUND_PICTURE || sky->picture || !sky->picture_path[0])
+    if (sky->kind != BACKGROUND_IMAGE || sky->img || !sky->image_path[0])
         return STATUS_OK;
-    char *path = scene_file_path(s, sky->picture_path);
+    char *path = scene_file_path(s, sky->image_path);
     if (!path)
         return out_of_memory(why);
     diagnostic bad = {.what = ""};
-    status code = image_read_below(path, s->limits.root, &sky->picture, NULL, &bad);
-    if (code == STATUS_OK && (code = check_sky(sky->picture, path, &bad)) != STATUS_OK) {
-        image_destroy(sky->picture);
-        sky->picture = NULL;
+    status code = image_read_below(path, s->limits.root, &sky->img, NULL, &bad);
+    if (code == STATUS_OK && (code = check_sky(sky->img, path, &bad)) != STATUS_OK) {
+        image_destroy(sky->img);
+        sky->img = NULL;
     }
     free(path);
-    return code == STATUS_OK
-               ? code
-               : asset_error(s, "background.picture", sky->picture_line, sky->picture_column, &bad, code, why);
+    return code == STATUS_OK ? code
+                             : asset_error(s, "background.img", sky->image_line, sky->image_column, &bad, code, why);
 }
 
 static status load_texture(const scene *s, texture_entry *t, diagnostic *why)
@@ -154,11 +153,11 @@ void scene_borrow_meshes(scene *s, const scene *from)
             if (!other->data || !same_mesh(m, other))
                 continue;
             m->data = other->data;
-            m->looks = other->looks;
+            m->shading_materials = other->shading_materials;
             m->account = other->account;
             m->motion_s = other->motion_s;
             mesh_retain(m->data);
-            looks_retain(m->looks);
+            face_materials_retain(m->shading_materials);
         }
     }
 }
@@ -193,7 +192,7 @@ static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
 }
 
 /* Sky and textures. */
-static status load_pictures(scene *s, diagnostic *why)
+static status load_textures(scene *s, diagnostic *why)
 {
     TRY(load_sky(s, why));
     for (size_t i = 0; i < s->texture_count; i++)
@@ -240,7 +239,7 @@ static status load_meshes(scene *s, const load_watch *watch, diagnostic *why)
 
 status scene_load_until(scene *s, const load_watch *watch, diagnostic *why)
 {
-    TRY(load_pictures(s, why));
+    TRY(load_textures(s, why));
     return load_meshes(s, watch, why);
 }
 
@@ -251,7 +250,7 @@ status scene_load(scene *s, diagnostic *why)
 
 status scene_load_files(scene *s, diagnostic *why)
 {
-    status code = load_pictures(s, why);
+    status code = load_textures(s, why);
     for (size_t i = 0; i < s->mesh_count && code == STATUS_OK; i++) {
         mesh_entry *m = &s->meshes[i];
         if (m->source == MESH_FILE && !m->data) {

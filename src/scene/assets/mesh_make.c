@@ -1,8 +1,8 @@
 #include "scene/assets/mesh_make.h"
 
 #include "base/random.h"
-#include "geometry/bodies.h"
-#include "scene/model/looks.h"
+#include "geometry/mesh_generators.h"
+#include "scene/model/face_materials.h"
 #include "scene/assets/mesh_file.h"
 #include <stdlib.h>
 
@@ -39,7 +39,7 @@ static status make_terrain(const mesh_entry *m, mesh **out, diagnostic *why)
             heights[(size_t)row * (size_t)columns + (size_t)column] = m->size.y * sum;
         }
     }
-    const status code = body_height_field(heights, columns, rows, m->size.x, m->size.z, m->depth, out, why);
+    const status code = generate_height_field(heights, columns, rows, m->size.x, m->size.z, m->depth, out, why);
     free(heights);
     return code;
 }
@@ -50,20 +50,20 @@ static status make_lathe(const mesh_entry *m, mesh **out, diagnostic *why)
     const size_t count = (size_t)m->profile.count / 2;
     for (size_t i = 0; i < count; i++)
         profile[i] = (profile_point){m->profile.value[2 * i], m->profile.value[2 * i + 1]};
-    return body_lathe(profile, count, (int)m->around, m->crease_deg, out, why);
+    return generate_lathe(profile, count, (int)m->around, m->crease_deg, out, why);
 }
 
 static status make(const mesh_entry *m, mesh **out, diagnostic *why)
 {
     switch ((mesh_maker)m->source) {
-    case MESH_SPARSE: return body_sparse((size_t)m->count, out, why);
-    case MESH_DENSE: return body_dense((size_t)m->count, out, why);
-    case MESH_SPHERE: return body_sphere((size_t)m->count, out, why);
-    case MESH_ICOSPHERE: return body_icosphere((int)m->level, out, why);
-    case MESH_TORUS: return body_torus(m->major, m->minor, (int)m->around, (int)m->tube, out, why);
+    case MESH_SPARSE: return generate_sparse_soup((size_t)m->count, out, why);
+    case MESH_DENSE: return generate_dense_soup((size_t)m->count, out, why);
+    case MESH_SPHERE: return generate_sphere((size_t)m->count, out, why);
+    case MESH_ICOSPHERE: return generate_icosphere((int)m->level, out, why);
+    case MESH_TORUS: return generate_torus(m->major, m->minor, (int)m->around, (int)m->tube, out, why);
     case MESH_LATHE: return make_lathe(m, out, why);
     case MESH_TERRAIN: return make_terrain(m, out, why);
-    case MESH_BOX: return body_box(m->size, out, why);
+    case MESH_BOX: return generate_box(m->size, out, why);
     case MESH_FILE:
     case MESH_SLIME:
     case MESH_ARRAYS: break;
@@ -84,7 +84,7 @@ status mesh_make_from_file(mesh_entry *m, const char *path, const load_limits *l
     const mesh_limits own = {.root = limits->root, .triangles = limits->triangles};
     mesh_import *imported;
     TRY(mesh_read_file(path, &own, &imported, why));
-    status code = looks_create(imported, limits->root, &m->looks, why);
+    status code = face_materials_create(imported, limits->root, &m->shading_materials, why);
     if (code == STATUS_OK) {
         m->data = imported->mesh;
         mesh_retain(m->data);

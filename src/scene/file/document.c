@@ -205,7 +205,7 @@ static status wrap(const char *name, node *root, document **out, diagnostic *why
     return STATUS_OK;
 }
 
-static bool is_picture(const char *text, size_t size)
+static bool is_image(const char *text, size_t size)
 {
     return size >= 4 && (memcmp(text, "\x89PNG", 4) == 0 || memcmp(text, "\xff\xd8\xff", 3) == 0);
 }
@@ -223,7 +223,7 @@ status document_parse(const char *name, const char *text, size_t size, document 
         diagnostic_locate(why, name, 1, 1);
         return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 1 MiB");
     }
-    if (is_picture(text, size))
+    if (is_image(text, size))
         return events_error(&r, (yaml_mark_t){0}, "give the file that describes it", "this is a picture, not a scene");
     if (!yaml_parser_initialize(&r.parser))
         return out_of_memory(r.why);

@@ -25,12 +25,12 @@
 /* A picture that is named, of a background that is said to be of another kind? */
 static status check_sky(const scene_reader *r, const node *map)
 {
-    const node *kind = node_get(map, "kind"), *picture = node_get(map, "picture");
-    bool shown = picture && picture->kind == NODE_SCALAR && picture->text[0];
+    const node *kind = node_get(map, "kind"), *img = node_get(map, "picture");
+    bool shown = img && img->kind == NODE_SCALAR && img->text[0];
     status code = read_one_medium(r, map);
     if (code == STATUS_OK && shown) {
-        r->scene->background.picture_line = picture->line;
-        r->scene->background.picture_column = picture->column;
+        r->scene->background.image_line = img->line;
+        r->scene->background.image_column = img->column;
     }
     if (code == STATUS_OK && shown && kind && strcmp(kind->text, "picture") != 0)
         return node_error(r->file, kind, r->why, "set it to picture, or take the picture away",

@@ -10,6 +10,6 @@ typedef struct camera_move {
     double step[3];      /* right, up, forward, scene units; what is looked at moves with it */
 } camera_move;
 
-/* A desk_change; of is a camera_move. The camera never stands on its head: directions stay 0.5 degrees from straight
- * up and down. */
+/* A scene_document_change; of is a camera_move. The camera never stands on its head: directions stay 0.5 degrees from
+ * straight up and down. */
 status camera_move_apply(void *of, scene *s, diagnostic *why);

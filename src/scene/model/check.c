@@ -1,7 +1,7 @@
 #include "scene/model/check.h"
 #include "geometry/shapes/shape.h"
 #include "base/counters.h"
-#include "scene/model/looks.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/objects.h"
 #include "scene/model/params_path.h"
@@ -122,8 +122,8 @@ static status check_camera(const scene *s, diagnostic *why)
 
 static status check_background(const scene *s, diagnostic *why)
 {
-    if (s->background.kind == BACKGROUND_PICTURE && !s->background.picture_path[0])
-        return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG, PFM or 24-bit BMP file",
+    if (s->background.kind == BACKGROUND_IMAGE && !s->background.image_path[0])
+        return diagnose(why, STATUS_BAD_INPUT, "set background.img to a PNG, JPEG, PFM or 24-bit BMP file",
                         "the background is a picture, but which one is not said");
     return STATUS_OK;
 }
@@ -174,7 +174,8 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
 /* A spectral film's colours are spectra by material. */
 static status check_colors(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
 {
-    const bool by_face = m && owner->material_index < 0 && (m->looks || (m->data && m->data->slot_count > 1));
+    const bool by_face =
+        m && owner->material_index < 0 && (m->shading_materials || (m->data && m->data->slot_count > 1));
     if (s->render.spectrum != SPECTRUM_SPECTRAL || !(by_face || owner->surface.texture[0]))
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT,
@@ -202,9 +203,9 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
 /* The same sum for each kind of face that has shares of its own. */
 static status check_faces(const scene *s, const solid *owner, diagnostic *why)
 {
-    const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? looks_slots(s, owner) : 0;
+    const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? face_material_slots(s, owner) : 0;
     for (int slot = 0; slot < slots; slot++) {
-        const material m = looks_face(s, owner, &owner->surface, slot).surface;
+        const material m = shading_material_of_face(s, owner, &owner->surface, slot).surface;
         const char *name = scene_find_mesh(s, owner->mesh)->data->slot_names[slot];
         if (m.reflectivity + m.transparency > 1.0 + 1e-12)
             return diagnose(why, STATUS_BAD_INPUT, "lower one of them, or set render.transmission to refract",

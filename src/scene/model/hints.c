@@ -1,6 +1,6 @@
 #include "scene/model/hints.h"
 #include "scene/model/cover.h"
-#include "scene/model/looks.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
@@ -86,11 +86,11 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
         return;
     if (m->transparency > 0.0) {
         hint_at_clear(s, owner, taker);
-    } else if ((m->medium != MEDIUM_IOR || m->ior != 1.0) && !looks_by_face(s, owner)) {
+    } else if ((m->medium != MEDIUM_IOR || m->ior != 1.0) && !has_face_materials(s, owner)) {
         note_give(taker, owner->name, m->medium == MEDIUM_IOR ? "ior" : "medium", "set its transparency",
                   "%s has a refractive index but is opaque", owner->name);
     } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) &&
-               !looks_by_face(s, owner) &&
+               !has_face_materials(s, owner) &&
                !scene_is_behind_camera(s, owner)) { /* a black board behind the eye keeps reflections dark */
         note_give(taker, owner->name, "diffuse", "set its diffuse",
                   "%s is neither transparent, nor diffuse, nor lit: it is black", owner->name);
@@ -131,13 +131,13 @@ static void hint_at_range(const scene *s, const char *where, const char *name, c
 static void hint_at_idle(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    if (m->transparency == 0.0 && material_absorbs(m) && looks_opaque(s, owner))
+    if (m->transparency == 0.0 && material_absorbs(m) && solid_is_opaque(s, owner))
         note_give(taker, owner->name, m->absorb_spectrum.count > 0 ? "absorb_spectrum" : "absorb_per_m",
                   "set its transparency", "%s absorbs but is opaque", owner->name);
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE))
         note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
                   "%s has coefficients but no law for them", owner->name);
-    if (looks_waste(s, owner))
+    if (ignores_face_transparency(s, owner))
         note_give(taker, owner->name, "transparency",
                   "set it for the whole solid, or set render.transmission to simple",
                   "the transparency and reflectivity of the faces of %s have no effect: where light is bent they "

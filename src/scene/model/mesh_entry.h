@@ -10,7 +10,7 @@
 
 enum { SCENE_MESHES_MAX = 64, SCENE_TEXTURES_MAX = 64 };
 
-/* Where a mesh comes from: its file, or a body that is computed (geometry/bodies.h). */
+/* Where a mesh comes from: its file, or a body that is computed (geometry/mesh_generators.h). */
 typedef enum mesh_maker {
     MESH_FILE,
     MESH_SPARSE,
@@ -25,7 +25,8 @@ typedef enum mesh_maker {
     MESH_ARRAYS
 } mesh_maker;
 
-typedef struct face_looks face_looks; /* how the faces of a file's materials look: scene/model/looks.h */
+typedef struct face_materials
+    face_materials; /* how the faces of a file's materials look: scene/model/face_materials.h */
 
 typedef struct mesh_entry {
     char *name;
@@ -48,7 +49,7 @@ typedef struct mesh_entry {
     softbody_account account;        /* of a slime whose data is there: what became of it */
     double motion_s;                 /* and the wall time of its steps */
     const mesh *data;                /* one owner of it; NULL until scene_load */
-    const face_looks *looks;         /* one owner of them; NULL for none */
+    const face_materials *shading_materials; /* one owner of them; NULL for none */
 } mesh_entry;
 
 typedef struct texture_entry {

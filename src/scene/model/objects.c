@@ -1,5 +1,5 @@
 #include "scene/model/objects.h"
-#include "scene/model/looks.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/params_path.h"
 #include "scene/model/scene.h"
 #include "scene/model/suggest.h"
@@ -140,7 +140,7 @@ static bool own(param_group group, void *object)
 {
     if (group == PARAM_MESH) {
         const mesh_entry *m = object;
-        looks_retain(m->looks);
+        face_materials_retain(m->shading_materials);
         if (m->data)
             mesh_retain(m->data);
     } else if (group == PARAM_TEXTURE && ((const texture_entry *)object)->data) {

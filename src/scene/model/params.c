@@ -84,10 +84,10 @@ static void forget_loaded(scene *s, const place *at, param_value value)
         texture_entry_unload(t);
         t->path_line = names_file ? 0 : t->path_line;
     } else if (names_file) {
-        image_destroy(s->background.picture);
-        s->background.picture = NULL;
-        s->background.picture_line = s->background.picture_column = 0;
-        s->background.kind = some ? BACKGROUND_PICTURE : s->background.kind;
+        image_destroy(s->background.img);
+        s->background.img = NULL;
+        s->background.image_line = s->background.image_column = 0;
+        s->background.kind = some ? BACKGROUND_IMAGE : s->background.kind;
     }
 }
 
@@ -169,8 +169,8 @@ static bool is_in_use(const scene *s, const place *at)
         return (row->makers & 1u << s->meshes[at->index].source) != 0;
     if (row->type == PARAM_PATH && row->group == PARAM_MESH)
         return s->meshes[at->index].source == MESH_FILE;
-    if (row->type == PARAM_PATH && row->group == PARAM_BACKGROUND && s->background.kind != BACKGROUND_PICTURE)
-        return !s->background.picture_path[0];
+    if (row->type == PARAM_PATH && row->group == PARAM_BACKGROUND && s->background.kind != BACKGROUND_IMAGE)
+        return !s->background.image_path[0];
     return s->camera.aimed ? !is_angle(row) : !is_target(row);
 }
 

@@ -46,7 +46,7 @@ typedef struct param {
                                  * PARAM_INT: the only numbers allowed, or NULL */
     unsigned makers;            /* PARAM_MESH: 1 << mesh_maker, only listed and written for those; 0 = all */
     size_t offset;              /* within the group's struct */
-    bool is_how;                /* of how a frame is computed: the film is the same whatever it is */
+    bool performance_only;      /* of how a frame is computed: the film is the same whatever it is */
     bool by_shape;              /* PARAM_SOLID: only solids have it whose shape's rule names it */
 } param;
 
@@ -64,7 +64,7 @@ char *param_range_text(const param *row, char *text, size_t size);
  * scene_get, the other way of saying it is derived, so that setting one angle of an aimed camera leaves the
  * other as it was.
  *
- * Setting background.picture to a file makes background.kind picture; a kind that is set later wins.
+ * Setting background.img to a file makes background.kind picture; a kind that is set later wins.
  *
  * Setting a mesh's file makes its source file; a source (generate) that is set later wins.
  *

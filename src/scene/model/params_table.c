@@ -12,7 +12,7 @@ static const char *const off_on[] = {"off", "on", NULL};
 static const char *const sample_counts[] = {"1", "4", "9", "16", "25", "36", "49", "64", NULL};
 static const char *const weights_words[] = {"fresnel", "constant", NULL};
 static const char *const transmission_words[] = {"refract", "simple", NULL};
-static const char *const beyond_words[] = {"sky", "black", "mean", NULL};
+static const char *const depth_limit_words[] = {"sky", "black", "mean", NULL};
 static const char *const radiance_words[] = {"classic", "basic", NULL};
 static const char *const shadows_words[] = {"off", "opaque", "attenuated", NULL};
 static const char *const schedule_words[] = {"columns", "rows", "tiles", "dynamic", NULL};
@@ -45,8 +45,8 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
         group, name, kind, unit, low, high, above, fallback, meaning, words, __VA_ARGS__ \
     }
 #define OF(type, field) ON_ALL, .offset = offsetof(type, field)
-/* How, not what: see param.is_how. */
-#define HOW(field) OF(render_settings, field), .is_how = true
+/* How, not what: see param.performance_only. */
+#define PERFORMANCE(field) OF(render_settings, field), .performance_only = true
 /* Of a slime alone. */
 #define SLIME(field) ON_SLIME, .offset = offsetof(mesh_entry, slime.field)
 /* Of some shapes: see geometry/shapes/shape.h. */
@@ -66,12 +66,12 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
     ROW(group, #field, PARAM_COLOR, "", 0, high, false, fallback, meaning, NULL, OF(type, field))
 #define LIST(group, type, field, unit, high, fallback, meaning) \
     ROW(group, #field, PARAM_LIST, unit, -(high), high, false, fallback, meaning, NULL, OF(type, field))
-#define HOW_INTEGER(field, unit, low, high, fallback, meaning) \
-    ROW(PARAM_RENDER, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, HOW(field))
-#define HOW_CHOICE(field, words, fallback, meaning) \
-    ROW(PARAM_RENDER, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, HOW(field))
-#define HOW_REAL(field, unit, low, high, fallback, meaning) \
-    ROW(PARAM_RENDER, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, HOW(field))
+#define PERFORMANCE_INTEGER(field, unit, low, high, fallback, meaning) \
+    ROW(PARAM_RENDER, #field, PARAM_INT, unit, low, high, false, fallback, meaning, NULL, PERFORMANCE(field))
+#define PERFORMANCE_CHOICE(field, words, fallback, meaning) \
+    ROW(PARAM_RENDER, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, PERFORMANCE(field))
+#define PERFORMANCE_REAL(field, unit, low, high, fallback, meaning) \
+    ROW(PARAM_RENDER, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, PERFORMANCE(field))
 #define SLIME_REAL(field, unit, low, high, above, fallback, meaning) \
     ROW(PARAM_MESH, #field, PARAM_REAL, unit, low, high, above, fallback, meaning, NULL, SLIME(field))
 #define SLIME_VECTOR(field, unit, high, fallback, meaning) \
@@ -108,7 +108,7 @@ static const param table[] = {
     CHOICE(PARAM_RENDER, render_settings, transmission, transmission_words, "refract",
            "at clear surfaces light is bent by Snell's law; or it goes straight on, with each material's constants as "
            "weights"),
-    CHOICE(PARAM_RENDER, render_settings, beyond, beyond_words, "sky",
+    CHOICE(PARAM_RENDER, render_settings, beyond, depth_limit_words, "sky",
            "what a ray beyond the last depth brings back: the sky behind it, nothing, or the mean of the sky over all "
            "directions"),
     CHOICE(PARAM_RENDER, render_settings, radiance, radiance_words, "classic",
@@ -132,20 +132,22 @@ static const param table[] = {
     REAL(PARAM_RENDER, render_settings, lambda_nm, "nm", 200, 2000, "587.5618",
          "wavelength at which the rgb film takes refractive indices; the default is the d line"),
     POSITIVE(PARAM_RENDER, render_settings, unit_m, "m", 1e6, "1", "length of one scene unit, for absorption"),
-    HOW_INTEGER(threads, "", 1, 1024, "1", "workers"),
-    HOW_CHOICE(pool, off_on, "on", "workers wait between frames; off starts fresh ones for each"),
-    HOW_CHOICE(schedule, schedule_words, "dynamic",
-               "how the picture is shared: fixed blocks of columns or rows, fixed tiles, or tiles as workers ask"),
-    HOW_INTEGER(tile, "px", 1, 65536, "32", "edge of a tile"),
-    HOW_CHOICE(pin, pin_words, "none",
-               "workers bound to processing units: not, next to each other, or far from each other"),
-    HOW_CHOICE(accel, accel_words, "bvh",
-               "hierarchy over a mesh's triangles: none, one sphere, the report's tree of spheres, boxes, or Embree's "
-               "(not the same film)"),
-    HOW_INTEGER(build_threads, "", 0, 1024, "0", "threads that build hierarchies; 0 is one a processing unit"),
-    HOW_CHOICE(keep, off_on, "on", "meshes keep their hierarchies; off builds them anew for every frame"),
-    HOW_REAL(rebuild, "", 1, 1e6, "1.5",
-             "boxes around a mesh that moves are built anew when rays are expected to cost so many times more"),
+    PERFORMANCE_INTEGER(threads, "", 1, 1024, "1", "workers"),
+    PERFORMANCE_CHOICE(worker_pool, off_on, "on", "workers wait between frames; off starts fresh ones for each"),
+    PERFORMANCE_CHOICE(
+        schedule, schedule_words, "dynamic",
+        "how the picture is shared: fixed blocks of columns or rows, fixed tiles, or tiles as workers ask"),
+    PERFORMANCE_INTEGER(tile, "px", 1, 65536, "32", "edge of a tile"),
+    PERFORMANCE_CHOICE(pin, pin_words, "none",
+                       "workers bound to processing units: not, next to each other, or far from each other"),
+    PERFORMANCE_CHOICE(
+        accel, accel_words, "bvh",
+        "hierarchy over a mesh's triangles: none, one sphere, the report's tree of spheres, boxes, or Embree's "
+        "(not the same film)"),
+    PERFORMANCE_INTEGER(build_threads, "", 0, 1024, "0", "threads that build hierarchies; 0 is one a processing unit"),
+    PERFORMANCE_CHOICE(keep, off_on, "on", "meshes keep their hierarchies; off builds them anew for every frame"),
+    PERFORMANCE_REAL(rebuild, "", 1, 1e6, "1.5",
+                     "boxes around a mesh that moves are built anew when rays are expected to cost so many times more"),
     CHOICE(PARAM_RENDER, render_settings, texturing, texturing_words, "perspective",
            "how the depth buffer runs through textures: right, or straight across the picture"),
 
@@ -167,7 +169,7 @@ static const param table[] = {
           "linear colour of a gradient at the horizon and below"),
     {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
      "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder; makes the kind picture", NULL,
-     OF(background, picture_path)},
+     OF(background, image_path)},
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of Phong's sum"),
 
     REAL(PARAM_BACKGROUND, background, ior, "", 0.1, 100, "1",
@@ -232,7 +234,7 @@ static const param table[] = {
     SLIME_CHOICE(adaptive, off_on, "off", "splits a slime's steps until they are stable and short against its springs"),
     {PARAM_MESH, "threads", PARAM_INT, "", 1, 1024, false, "1",
      "that move a slime; at most one for each 4096 masses is started", NULL, ON_SLIME,
-     .offset = offsetof(mesh_entry, slime.threads), .is_how = true},
+     .offset = offsetof(mesh_entry, slime.threads), .performance_only = true},
 
     {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "",
      "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder", NULL, OF(texture_entry, path)},

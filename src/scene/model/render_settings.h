@@ -9,7 +9,7 @@
 
 typedef enum weights_rule { WEIGHTS_FRESNEL, WEIGHTS_CONSTANT } weights_rule;
 typedef enum transmission_rule { TRANSMISSION_REFRACT, TRANSMISSION_SIMPLE } transmission_rule;
-typedef enum beyond_rule { BEYOND_SKY, BEYOND_BLACK, BEYOND_MEAN } beyond_rule;
+typedef enum depth_limit_rule { DEPTH_LIMIT_SKY, DEPTH_LIMIT_BLACK, DEPTH_LIMIT_MEAN } depth_limit_rule;
 typedef enum radiance_rule { RADIANCE_CLASSIC, RADIANCE_BASIC } radiance_rule;
 typedef enum shadow_rule { SHADOWS_OFF, SHADOWS_OPAQUE, SHADOWS_ATTENUATED } shadow_rule;
 typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SCHEDULE_DYNAMIC } schedule_rule;
@@ -30,7 +30,7 @@ typedef struct render_settings {
     int64_t lighting;      /* lighting_rule */
     int64_t weights;       /* weights_rule */
     int64_t transmission;  /* transmission_rule */
-    int64_t beyond;        /* beyond_rule */
+    int64_t beyond;        /* depth_limit_rule */
     int64_t radiance;      /* radiance_rule */
     int64_t shadows;       /* shadow_rule */
     double min_weight;     /* children with a lower throughput in every channel are not traced; 0: all are */
@@ -43,7 +43,7 @@ typedef struct render_settings {
     double lambda_nm;      /* at which indices are taken where there is no spectrum */
     double unit_m;         /* length of one scene unit in metres */
     int64_t threads;       /* 1..1024 */
-    int64_t pool;          /* 1: threads started beforehand; 0: fresh ones for every frame */
+    int64_t worker_pool;   /* 1: threads started beforehand; 0: fresh ones for every frame */
     int64_t schedule;      /* schedule_rule */
     int64_t tile;          /* tile edge, pixels */
     int64_t pin;           /* pin_rule */

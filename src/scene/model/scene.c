@@ -29,22 +29,22 @@ void scene_destroy(scene *s)
     if (!s)
         return;
     objects_release(s);
-    free(s->background.picture_path);
-    image_destroy(s->background.picture);
+    free(s->background.image_path);
+    image_destroy(s->background.img);
     free(s->path);
     free(s->title);
     free(s->limits.root);
     free(s);
 }
 
-static bool clone_picture(background *to, const background *from)
+static bool clone_texture(background *to, const background *from)
 {
-    to->picture = NULL;
-    to->picture_path = strdup(from->picture_path);
-    if (!to->picture_path)
+    to->img = NULL;
+    to->image_path = strdup(from->image_path);
+    if (!to->image_path)
         return false;
-    if (from->picture)
-        to->picture = image_share(from->picture); /* never changed once it is loaded */
+    if (from->img)
+        to->img = image_share(from->img); /* never changed once it is loaded */
     return true;
 }
 
@@ -58,7 +58,7 @@ scene *scene_clone(const scene *original)
     s->background = original->background;
     s->path = strdup(original->path);
     s->title = strdup(original->title);
-    bool whole = clone_picture(&s->background, &original->background);
+    bool whole = clone_texture(&s->background, &original->background);
     whole = objects_clone(s, original) && whole;
     whole = scene_limit(s, original->limits.root, original->limits.triangles, NULL) == STATUS_OK && whole;
     if (!whole || !s->path || !s->title) {

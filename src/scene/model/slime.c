@@ -138,11 +138,11 @@ status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_
     return code == STATUS_OK ? code : body_error(s, m, &bad, code, why);
 }
 
-static status make_skin(const slime *x, const scene *s, mesh_entry *m, diagnostic *why)
+static status make_surface_mesh(const slime *x, const scene *s, mesh_entry *m, diagnostic *why)
 {
     diagnostic bad = {.what = ""};
     mesh *skin = NULL;
-    const status code = softbody_skin(x->body, &skin, &bad);
+    const status code = softbody_surface(x->body, &skin, &bad);
     if (code != STATUS_OK)
         return body_error(s, m, &bad, code, why);
     m->data = skin;
@@ -156,7 +156,7 @@ status slime_make(const scene *s, mesh_entry *m, const load_watch *watch, diagno
     slime x;
     TRY(slime_create(s, m, &x, why));
     status code = slime_advance(&x, s, m, m->time_s, watch, why);
-    THEN(code, make_skin(&x, s, m, why));
+    THEN(code, make_surface_mesh(&x, s, m, why));
     slime_destroy(&x);
     return code;
 }

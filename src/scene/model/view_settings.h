@@ -6,7 +6,7 @@
 #include "image/image.h"
 #include <stdint.h>
 
-typedef enum background_kind { BACKGROUND_UNIFORM, BACKGROUND_GRADIENT, BACKGROUND_PICTURE } background_kind;
+typedef enum background_kind { BACKGROUND_UNIFORM, BACKGROUND_GRADIENT, BACKGROUND_IMAGE } background_kind;
 /* Of a sky picture's values: under the film's limit, and all that a half float holds. */
 #define SCENE_SKY_MAX 65536.0F
 
@@ -21,14 +21,14 @@ typedef struct camera {
 } camera;
 
 typedef struct background {
-    int64_t kind;                      /* background_kind */
-    vec3 color;                        /* linear RGB in x, y, z; uniform, and the zenith of a gradient */
-    vec3 horizon;                      /* gradient: colour at and below the horizon */
-    char *picture_path;                /* equirectangular sky; "" for none; relative to the scene file */
-    long picture_line, picture_column; /* where the scene file names it; 0 when it was set otherwise */
-    image *picture;                    /* owned; NULL until loaded by scene_load */
-    vec3 ambient;                      /* I_a of Phong's sum, linear RGB */
-    double ior;                        /* of what surrounds all solids, where medium is MEDIUM_IOR */
-    int64_t medium;                    /* see scene/model/medium.h */
+    int64_t kind;                  /* background_kind */
+    vec3 color;                    /* linear RGB in x, y, z; uniform, and the zenith of a gradient */
+    vec3 horizon;                  /* gradient: colour at and below the horizon */
+    char *image_path;              /* equirectangular sky; "" for none; relative to the scene file */
+    long image_line, image_column; /* where the scene file names it; 0 when it was set otherwise */
+    image *img;                    /* owned; NULL until loaded by scene_load */
+    vec3 ambient;                  /* I_a of Phong's sum, linear RGB */
+    double ior;                    /* of what surrounds all solids, where medium is MEDIUM_IOR */
+    int64_t medium;                /* see scene/model/medium.h */
     vec3 absorb_per_m; /* of what surrounds all solids, by channel, along ways that end at a surface or a light */
 } background;

@@ -18,11 +18,11 @@ bool scene_moves(const scene *s)
     return motion_count_slimes(s) > 0;
 }
 
-status motion_give_skin(const scene_motion *m, const moving_slime *one, diagnostic *why)
+status motion_give_surface(const scene_motion *m, const moving_slime *one, diagnostic *why)
 {
     mesh_entry *entry = motion_entry(m, one);
     mesh *skin = NULL;
-    TRY(softbody_skin(one->x.body, &skin, why));
+    TRY(softbody_surface(one->x.body, &skin, why));
     mesh_entry_unload(entry);
     entry->data = skin;
     return STATUS_OK;
@@ -37,13 +37,13 @@ static void add_moves(hierarchy_moves *sum, const hierarchy_moves *more)
     sum->growth = sum->growth > more->growth ? sum->growth : more->growth;
 }
 
-static status move_skin(scene_motion *m, const moving_slime *one, diagnostic *why)
+static status move_surface(scene_motion *m, const moving_slime *one, diagnostic *why)
 {
     mesh_entry *entry = motion_entry(m, one);
     if (!entry->data || mesh_owners(entry->data) > 1)
-        return motion_give_skin(m, one, why);
-    /* Made by motion_give_skin for this scene, which alone holds it. */
-    status code = softbody_move_skin(one->x.body, (mesh *)(uintptr_t)entry->data, why);
+        return motion_give_surface(m, one, why);
+    /* Made by motion_give_surface for this scene, which alone holds it. */
+    status code = softbody_move_surface(one->x.body, (mesh *)(uintptr_t)entry->data, why);
     hierarchy_moves moves = {.refitted = 0};
     THEN(code, hierarchy_follow(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why));
     if (code != STATUS_OK) {
@@ -77,7 +77,7 @@ static status begin(scene_motion *m, diagnostic *why)
             return code;
         }
         m->count++;
-        code = motion_give_skin(m, one, why);
+        code = motion_give_surface(m, one, why);
         if (code != STATUS_OK)
             return code;
         motion_take_account(m, one, 0.0);
@@ -148,7 +148,7 @@ static status show_one(scene_motion *m, moving_slime *one, double time_s, bool s
     status code = STATUS_OK;
     if (skins) {
         const double begun_s = clock_wall_s();
-        code = move_skin(m, one, why);
+        code = move_surface(m, one, why);
         m->last.skin_s += clock_wall_s() - begun_s;
     }
     if (code == STATUS_OK) {

@@ -130,7 +130,7 @@ void scene_motion_release(scene_motion *m, size_t i, motion_hand *hands, int num
     hands[number] = (motion_hand){.holds = false};
 }
 
-vec3 motion_hand_way(const motion_hand *h, vec3 by)
+vec3 motion_hand_offset(const motion_hand *h, vec3 by)
 {
     return over(mat3_apply_transposed(h->rotation, by), h->scale);
 }

@@ -38,7 +38,7 @@ status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, d
 void scene_motion_release(scene_motion *m, size_t i, motion_hand *hands, int number);
 
 /* A way of the world in the mesh's frame. */
-vec3 motion_hand_way(const motion_hand *h, vec3 by);
+vec3 motion_hand_offset(const motion_hand *h, vec3 by);
 
 /* All steps of the slime until time_s, with its hands on their straight ways from where they are; none where no hand
  * moves. Skins and the scene's account are left to scene_motion_advance. */

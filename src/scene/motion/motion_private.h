@@ -1,4 +1,4 @@
-/* A scene that moves, shared by motion.c (its time), motion_stage.c (which scene it is in) and motion_hands.c (what
+/* A scene that moves, shared by motion.c (its time), motion_scene.c (which scene it is in) and motion_hands.c (what
  * takes hold of it). */
 #pragma once
 
@@ -43,5 +43,5 @@ status motion_remember(scene_motion *m, moving_slime *one, diagnostic *why);
 void motion_forget(moving_slime *one);
 
 /* A skin of its own, in place of what others may look at. */
-status motion_give_skin(const scene_motion *m, const moving_slime *one, diagnostic *why);
+status motion_give_surface(const scene_motion *m, const moving_slime *one, diagnostic *why);
 void motion_take_account(scene_motion *m, moving_slime *one, double time_s);

@@ -128,16 +128,16 @@ bool api_take_bits(const call *c, int *bits)
     return !given || strcmp(given, "8") == 0 || strcmp(given, "16") == 0;
 }
 
-status api_wait_for_final(call *c, const picture **out)
+status api_wait_for_final(call *c, const shared_image **out)
 {
     const double most_s = 120.0;
-    return painter_take_final(c->l->painter, most_s, out, &c->why);
+    return render_worker_take_final(c->l->render_worker, most_s, out, &c->why);
 }
 
-char *api_desk_file(const call *c)
+char *api_document_file(const call *c)
 {
     json_t *told = json_object();
-    const bool known = told && desk_tell(c->l->desk, told);
+    const bool known = told && scene_document_json(c->l->scene_document, told);
     const char *file = json_string_value(json_object_get(told, "file"));
     char *copy = known ? strdup(file ? file : "") : NULL;
     json_decref(told);

@@ -19,11 +19,11 @@ typedef struct call {
 typedef status api_handler(call *c);
 
 api_handler api_state, api_scene, api_set, api_reset, api_undo, api_redo, api_camera, api_scene_file, api_command,
-    api_picture_png, api_picture_jpeg, api_trace_json, api_trace_text, api_trace_drawing, api_pin, api_unpin,
-    api_pin_picture, api_compare, api_compare_map, api_add, api_remove, api_move, api_turn, api_scale, api_rename,
-    api_material, api_copy, api_files, api_open, api_save, api_media, api_slime, api_grab, api_move_hand, api_release,
-    api_studies, api_study, api_study_run, api_study_stop, api_study_rows, api_study_compare, api_study_draw,
-    api_figure, api_machine, api_notes;
+    api_image_png, api_image_jpeg, api_trace_json, api_trace_text, api_trace_drawing, api_set_reference,
+    api_clear_reference, api_reference_image, api_compare, api_compare_map, api_add, api_remove, api_move, api_turn,
+    api_scale, api_rename, api_material, api_copy, api_files, api_open, api_save, api_media, api_slime, api_grab,
+    api_move_hand, api_release, api_studies, api_study, api_study_run, api_study_stop, api_study_rows,
+    api_study_compare, api_study_draw, api_figure, api_machine, api_notes;
 
 /* All of a table's routes with the lab as their context, in l->routes. */
 status api_bind(lab *l, size_t *count, diagnostic *why);
@@ -72,6 +72,6 @@ bool api_asks_for(const call *c, const char *key);
 bool api_take_bits(const call *c, int *bits);
 
 /* The final picture of what is on the desk, waited for. */
-status api_wait_for_final(call *c, const picture **out);
+status api_wait_for_final(call *c, const shared_image **out);
 /* The desk's scene, and its file's name, "" for none; fresh memory, NULL when that is out. */
-char *api_desk_file(const call *c);
+char *api_document_file(const call *c);

@@ -3,42 +3,42 @@
 
 #include "report/json.h"
 #include "report/report.h"
-#include "web/session/pins.h"
+#include "web/session/reference_image.h"
 #include <stdlib.h>
 #include <string.h>
 
 /* The newest picture if it is a final one, or, where it is waited for, the next that is. */
-static status take_final(call *c, const picture **out)
+static status take_final(call *c, const shared_image **out)
 {
     *out = NULL;
     if (api_asks_for(c, "wait"))
         return api_wait_for_final(c, out);
-    const picture *newest = painter_take(c->l->painter);
+    const shared_image *newest = render_worker_take(c->l->render_worker);
     if (newest && newest->final) {
         *out = newest;
         return STATUS_OK;
     }
-    picture_release(newest);
+    shared_image_release(newest);
     return api_refuse(c, 409, "the picture is not finished yet", "wait until it is final, or ask with ?wait=1");
 }
 
-static status set_pin(call *c, const picture *a)
+static status set_pin(call *c, const shared_image *a)
 {
-    pins_set(c->l->pins, a);
-    picture_release(a);
+    reference_image_set(c->l->reference_image, a);
+    shared_image_release(a);
     lab_tell_state(c->l);
-    return api_tell(c, json_pack("{s:o}", "pin", pins_tell(c->l->pins)));
+    return api_tell(c, json_pack("{s:o}", "pin", reference_image_json(c->l->reference_image)));
 }
 
-status api_pin(call *c)
+status api_set_reference(call *c)
 {
-    const picture *newest;
+    const shared_image *newest;
     c->refused = 409;
     TRY(take_final(c, &newest));
     return set_pin(c, newest);
 }
 
-status api_unpin(call *c)
+status api_clear_reference(call *c)
 {
     return set_pin(c, NULL);
 }
@@ -57,7 +57,7 @@ static status send_copy(call *c, const unsigned char *bytes, size_t size)
     return api_send(c, "image/png", copy, size);
 }
 
-status api_pin_picture(call *c)
+status api_reference_image(call *c)
 {
     int bits;
     const unsigned char *shared = NULL;
@@ -65,34 +65,34 @@ status api_pin_picture(call *c)
     size_t size = 0;
     if (!api_take_bits(c, &bits))
         return api_refuse(c, 400, "bits is neither 8 nor 16", "ask for ?bits=8 or ?bits=16");
-    const picture *a = pins_take(c->l->pins);
+    const shared_image *a = reference_image_take(c->l->reference_image);
     if (!a)
         return refuse_without_pin(c, 404);
     c->refused = 409;
-    status code = gate_enter(c->l->heavy, &c->why);
+    status code = semaphore_acquire(c->l->heavy, &c->why);
     if (code == STATUS_OK) {
         code = bits == 16 ? image_encode(a->linear, IMAGE_PNG, 16, true, &own, &size, &c->why)
-                          : picture_png(a, &shared, &size, &c->why);
-        gate_leave(c->l->heavy);
+                          : shared_image_png(a, &shared, &size, &c->why);
+        semaphore_release(c->l->heavy);
     }
     if (code == STATUS_OK)
         own ? api_send(c, "image/png", own, size) : send_copy(c, shared, size);
-    picture_release(a);
+    shared_image_release(a);
     return code;
 }
 
 /* A and B, which the caller releases. */
-static status take_pair(call *c, pin_pair **pair, const picture **b)
+static status take_pair(call *c, reference_pair **pair, const shared_image **b)
 {
     c->refused = 409;
-    const picture *a = pins_take(c->l->pins); /* so that nobody waits for B without it */
-    picture_release(a);
+    const shared_image *a = reference_image_take(c->l->reference_image); /* so that nobody waits for B without it */
+    shared_image_release(a);
     if (!a)
         return refuse_without_pin(c, 409);
     const status code = take_final(c, b);
-    if (code != STATUS_OK || (*pair = pins_pair(c->l->pins, *b)))
+    if (code != STATUS_OK || (*pair = reference_image_compare(c->l->reference_image, *b)))
         return code;
-    picture_release(*b);
+    shared_image_release(*b);
     return refuse_without_pin(c, 409);
 }
 
@@ -104,41 +104,41 @@ static json_t *comparison_json(const image_comparison *found)
 
 status api_compare(call *c)
 {
-    pin_pair *pair;
-    const picture *b;
+    reference_pair *pair;
+    const shared_image *b;
     image_comparison found;
     TRY(take_pair(c, &pair, &b));
     status code = STATUS_OK;
-    const picture *a = pin_pair_a(pair);
-    const bool fits = pin_pair_fits(pair);
-    if (fits && (code = gate_enter(c->l->heavy, &c->why)) == STATUS_OK) {
-        code = pin_pair_numbers(pair, &found, &c->why);
-        gate_leave(c->l->heavy);
+    const shared_image *a = reference_pair_a(pair);
+    const bool fits = reference_pair_fits(pair);
+    if (fits && (code = semaphore_acquire(c->l->heavy, &c->why)) == STATUS_OK) {
+        code = reference_pair_numbers(pair, &found, &c->why);
+        semaphore_release(c->l->heavy);
     }
     if (code == STATUS_OK)
         api_tell(c,
-                 json_pack("{s:o, s:o, s:o, s:o}", "a", picture_json(a), "b", picture_json(b), "changed",
+                 json_pack("{s:o, s:o, s:o, s:o}", "a", shared_image_json(a), "b", shared_image_json(b), "changed",
                            changed_params(a->of, b->of), "comparison", fits ? comparison_json(&found) : json_null()));
-    picture_release(b);
-    pin_pair_release(pair);
+    shared_image_release(b);
+    reference_pair_release(pair);
     return code;
 }
 
 status api_compare_map(call *c)
 {
-    pin_pair *pair;
-    const picture *b;
+    reference_pair *pair;
+    const shared_image *b;
     const unsigned char *bytes;
     size_t size;
     TRY(take_pair(c, &pair, &b));
     status code = STATUS_OK;
-    if ((code = gate_enter(c->l->heavy, &c->why)) == STATUS_OK) {
-        code = pin_pair_map(pair, &bytes, &size, &c->why);
-        gate_leave(c->l->heavy);
+    if ((code = semaphore_acquire(c->l->heavy, &c->why)) == STATUS_OK) {
+        code = reference_pair_map(pair, &bytes, &size, &c->why);
+        semaphore_release(c->l->heavy);
     }
     if (code == STATUS_OK)
         send_copy(c, bytes, size);
-    picture_release(b);
-    pin_pair_release(pair);
+    shared_image_release(b);
+    reference_pair_release(pair);
     return code;
 }

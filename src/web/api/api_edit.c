@@ -51,7 +51,7 @@ static status apply(call *c, edit *e, const char *verb, const char *name, const 
     uint64_t generation = 0;
     char words[128];
     snprintf(words, sizeof words, "%s %.80s", verb, name);
-    const status code = desk_apply(c->l->desk, words, gesture, change, e, &generation, &c->why);
+    const status code = scene_document_apply(c->l->scene_document, words, gesture, change, e, &generation, &c->why);
     c->refused = e->refused;
     if (code == STATUS_OK && e->made[0])
         return api_tell(c, json_pack("{s:I, s:s}", "generation", (json_int_t)generation, "name", e->made));
@@ -210,7 +210,7 @@ static status load_alone(lab *l, const char *file, bool is_model, scene **out, d
         code =
             is_model ? scene_add(s, PARAM_MESH, "model", NULL, why) : scene_add(s, PARAM_TEXTURE, "picture", NULL, why);
     THEN(code, scene_set(s, is_model ? "model.file" : "picture.file", path, why));
-    THEN(code, desk_limit(s, l->files, why));
+    THEN(code, scene_document_limit(s, l->files, why));
     THEN(code, scene_load(s, why));
     free(path);
     if (code == STATUS_OK)
@@ -230,9 +230,9 @@ static status take_new(call *c, edit *e, scene **loaded)
     if (!api_take_text(c, "shape", is_solid, &shape) || !api_take_text(c, "file", is_file, &e->file))
         return STATUS_BAD_INPUT;
     status code = is_solid ? scene_shape_named(shape, &e->shape, &c->why) : STATUS_OK;
-    if (is_file && (code = gate_enter(c->l->heavy, &c->why)) == STATUS_OK) {
+    if (is_file && (code = semaphore_acquire(c->l->heavy, &c->why)) == STATUS_OK) {
         code = load_alone(c->l, e->file, is_model, loaded, &c->why);
-        gate_leave(c->l->heavy);
+        semaphore_release(c->l->heavy);
     }
     return code;
 }

@@ -16,7 +16,7 @@
 static char *prefix_of(const lab *l)
 {
     static const char any[] = "name";
-    scene *s = desk_take(l->desk, NULL);
+    scene *s = scene_document_take(l->scene_document, NULL);
     char *path = NULL;
     const status code = s ? folder_path_from(l->files, any, scene_path(s), &path, NULL) : STATUS_FAILURE;
     scene_destroy(s);
@@ -44,7 +44,7 @@ status api_media(call *c)
 status api_machine(call *c)
 {
     machine_account account = {0};
-    const status code = machine_look(&account, &c->why);
+    const status code = machine_measure(&account, &c->why);
     if (code == STATUS_OK)
         api_tell(c, machine_json(&account));
     machine_release(&account);
@@ -79,7 +79,7 @@ status api_open(call *c)
         return api_refuse(c, 400, "a new scene has no file yet", "give a file, or new");
     TRY(fresh ? new_scene(&s, &c->why) : read_scene(c, name, &s));
     lab_give_threads(c->l, s);
-    status code = desk_open(c->l->desk, s, name, &generation, &c->why);
+    status code = scene_document_open(c->l->scene_document, s, name, &generation, &c->why);
     return api_changed(c, code, generation);
 }
 
@@ -96,7 +96,7 @@ static bool is_scene_name(const char *name)
 /* Is it the file that is on the desk? */
 static bool is_open(const call *c, const char *name)
 {
-    char *file = api_desk_file(c);
+    char *file = api_document_file(c);
     const bool same = file && strcmp(file, name) == 0;
     free(file);
     return same;
@@ -105,13 +105,13 @@ static bool is_open(const call *c, const char *name)
 static status write_file(call *c, const char *name, const char *path)
 {
     uint64_t generation = 0;
-    scene *s = desk_take(c->l->desk, &generation);
+    scene *s = scene_document_take(c->l->scene_document, &generation);
     if (s)
         lab_forget_threads(c->l, s);
     const status code = s ? scene_write(s, path, false, &c->why) : out_of_memory(&c->why);
     scene_destroy(s);
     if (code == STATUS_OK)
-        desk_saved(c->l->desk, name, generation);
+        scene_document_saved(c->l->scene_document, name, generation);
     return api_changed(c, code, generation);
 }
 

@@ -26,7 +26,7 @@ static bool take_word(call *c, const char *key, const char *const *words, const 
 
 static bool has_slime(lab *l)
 {
-    scene *now = desk_take(l->desk, NULL);
+    scene *now = scene_document_take(l->scene_document, NULL);
     const bool has = now && scene_moves(now);
     scene_destroy(now);
     return has;
@@ -37,7 +37,7 @@ status api_slime(call *c)
     static const char *const orders[] = {
         [LIVE_PLAY] = "play", [LIVE_PAUSE] = "pause", [LIVE_RESTART] = "restart", [LIVE_OFF] = "off", NULL};
     static const char *const previews[] = {[LIVE_TRACED] = "traced", [LIVE_ZBUFFER] = "zbuffer", NULL};
-    live *toy = painter_live(c->l->painter);
+    live *toy = render_worker_live(c->l->render_worker);
     int what, preview;
     if (!take_word(c, "do", orders, "'do' is play, pause, restart or off", &what) ||
         !take_word(c, "preview", previews, "'preview' is traced or zbuffer", &preview))
@@ -89,13 +89,14 @@ status api_grab(call *c)
                           "give scene units; 0 or nothing: three tenths of the slime's radius");
     vec3 origin, direction, where;
     int hand = LIVE_MISSED;
-    scene *now = desk_take(c->l->desk, NULL);
+    scene *now = scene_document_take(c->l->scene_document, NULL);
     if (!now)
         return out_of_memory(&c->why);
     lab_camera_ray(now, x, y, &origin, &direction);
     scene_destroy(now);
     c->refused = 409; /* what does not go together with what is there now is no fault of the request */
-    const status code = live_grab(painter_live(c->l->painter), origin, direction, reach, &hand, &where, &c->why);
+    const status code =
+        live_grab(render_worker_live(c->l->render_worker), origin, direction, reach, &hand, &where, &c->why);
     if (code == STATUS_OK && hand == LIVE_MISSED)
         return api_refuse(c, 404, "there is no slime", "grab where the slime is seen");
     if (code == STATUS_OK)
@@ -123,10 +124,10 @@ status api_move_hand(call *c)
     int hand;
     if (!take_hand(c, true, &hand) || !take_place(c, &x, &y) || !api_take_number(c, "depth", false, &depth))
         return STATUS_BAD_INPUT;
-    live *toy = painter_live(c->l->painter);
+    live *toy = render_worker_live(c->l->render_worker);
     vec3 where;
     c->refused = 409;
-    scene *now = desk_take(c->l->desk, NULL);
+    scene *now = scene_document_take(c->l->scene_document, NULL);
     status code = now ? live_where(toy, hand, &where, &c->why) : out_of_memory(&c->why);
     THEN(code, live_move(toy, hand, way_to(now, x, y, depth, where), &c->why));
     scene_destroy(now);
@@ -141,5 +142,5 @@ status api_release(call *c)
         return STATUS_BAD_INPUT;
     c->refused = 409;
     api_tell(c, json_object());
-    return live_release(painter_live(c->l->painter), hand, &c->why);
+    return live_release(render_worker_live(c->l->render_worker), hand, &c->why);
 }

@@ -34,7 +34,7 @@ static status write_tree(trace_question *q, const scene *s, const probe *p, cons
     return text_writer_end(&writer, code, &q->bytes, &q->size, why);
 }
 
-static status grow_and_write(void *context, scene *s, diagnostic *why)
+static status build_and_write(void *context, scene *s, diagnostic *why)
 {
     trace_question *q = context;
     probe *p = NULL;
@@ -65,9 +65,10 @@ static status reply_trace(call *c, trace_writer *write, const char *type)
     trace_question q = {.lab = c->l, .write = write};
     if (!take_place(c, "x", &q.x) || !take_place(c, "y", &q.y))
         return STATUS_BAD_INPUT;
-    char *file = api_desk_file(c);
+    char *file = api_document_file(c);
     q.scene_name = file;
-    const status code = file ? painter_with_scene(c->l->painter, grow_and_write, &q, &c->why) : out_of_memory(&c->why);
+    const status code =
+        file ? render_worker_with_scene(c->l->render_worker, build_and_write, &q, &c->why) : out_of_memory(&c->why);
     free(file);
     if (code == STATUS_OK)
         return api_send(c, type, q.bytes, q.size);
@@ -106,5 +107,5 @@ static status look_for_notes(void *context, scene *s, diagnostic *why)
 status api_notes(call *c)
 {
     api_tell(c, json_pack("{s:[]}", "notes"));
-    return painter_with_scene(c->l->painter, look_for_notes, c, &c->why);
+    return render_worker_with_scene(c->l->render_worker, look_for_notes, c, &c->why);
 }

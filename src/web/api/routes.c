@@ -3,58 +3,58 @@
 
 #include <stdlib.h>
 
-typedef enum body_kind { NO_BODY, ANY_BODY, OBJECT, EMPTY } body_kind;
+typedef enum body_kind { NO_REGION, ANY_BODY, OBJECT, EMPTY } body_kind;
 
 static const struct api_route {
     const char *method, *pattern;
     api_handler *handle;
     body_kind body;
 } routes[] = {
-    {"GET", "/api/state", api_state, NO_BODY},
-    {"GET", "/api/scene", api_scene, NO_BODY},
+    {"GET", "/api/state", api_state, NO_REGION},
+    {"GET", "/api/scene", api_scene, NO_REGION},
     {"POST", "/api/set", api_set, ANY_BODY},
     {"POST", "/api/reset", api_reset, ANY_BODY},
-    {"POST", "/api/undo", api_undo, NO_BODY},
-    {"POST", "/api/redo", api_redo, NO_BODY},
+    {"POST", "/api/undo", api_undo, NO_REGION},
+    {"POST", "/api/redo", api_redo, NO_REGION},
     {"POST", "/api/camera", api_camera, ANY_BODY},
-    {"GET", "/api/scene.yaml", api_scene_file, NO_BODY},
-    {"GET", "/api/command", api_command, NO_BODY},
-    {"GET", "/api/picture.png", api_picture_png, NO_BODY},
-    {"GET", "/api/picture.jpg", api_picture_jpeg, NO_BODY},
-    {"GET", "/api/trace", api_trace_json, NO_BODY},
-    {"GET", "/api/trace.txt", api_trace_text, NO_BODY},
-    {"GET", "/api/trace.svg", api_trace_drawing, NO_BODY},
-    {"POST", "/api/pin", api_pin, NO_BODY},
-    {"DELETE", "/api/pin", api_unpin, NO_BODY},
-    {"GET", "/api/pin.png", api_pin_picture, NO_BODY},
-    {"GET", "/api/compare", api_compare, NO_BODY},
-    {"GET", "/api/compare.png", api_compare_map, NO_BODY},
+    {"GET", "/api/scene.yaml", api_scene_file, NO_REGION},
+    {"GET", "/api/command", api_command, NO_REGION},
+    {"GET", "/api/picture.png", api_image_png, NO_REGION},
+    {"GET", "/api/picture.jpg", api_image_jpeg, NO_REGION},
+    {"GET", "/api/trace", api_trace_json, NO_REGION},
+    {"GET", "/api/trace.txt", api_trace_text, NO_REGION},
+    {"GET", "/api/trace.svg", api_trace_drawing, NO_REGION},
+    {"POST", "/api/pin", api_set_reference, NO_REGION},
+    {"DELETE", "/api/pin", api_clear_reference, NO_REGION},
+    {"GET", "/api/pin.png", api_reference_image, NO_REGION},
+    {"GET", "/api/compare", api_compare, NO_REGION},
+    {"GET", "/api/compare.png", api_compare_map, NO_REGION},
     {"POST", "/api/objects", api_add, ANY_BODY},
-    {"DELETE", "/api/objects/{name}", api_remove, NO_BODY},
+    {"DELETE", "/api/objects/{name}", api_remove, NO_REGION},
     {"POST", "/api/objects/{name}/move", api_move, ANY_BODY},
     {"POST", "/api/objects/{name}/turn", api_turn, ANY_BODY},
     {"POST", "/api/objects/{name}/scale", api_scale, ANY_BODY},
     {"POST", "/api/objects/{name}/rename", api_rename, ANY_BODY},
     {"POST", "/api/objects/{name}/material", api_material, ANY_BODY},
-    {"POST", "/api/objects/{name}/copy", api_copy, NO_BODY},
-    {"GET", "/api/files", api_files, NO_BODY},
+    {"POST", "/api/objects/{name}/copy", api_copy, NO_REGION},
+    {"GET", "/api/files", api_files, NO_REGION},
     {"POST", "/api/open", api_open, ANY_BODY},
     {"POST", "/api/save", api_save, ANY_BODY},
-    {"GET", "/api/media", api_media, NO_BODY},
+    {"GET", "/api/media", api_media, NO_REGION},
     {"POST", "/api/slime", api_slime, OBJECT},
     {"POST", "/api/slime/grab", api_grab, OBJECT},
     {"POST", "/api/slime/move", api_move_hand, OBJECT},
     {"POST", "/api/slime/release", api_release, OBJECT},
-    {"GET", "/api/studies", api_studies, NO_BODY},
-    {"GET", "/api/studies/{name}", api_study, NO_BODY},
+    {"GET", "/api/studies", api_studies, NO_REGION},
+    {"GET", "/api/studies/{name}", api_study, NO_REGION},
     {"POST", "/api/studies/{name}/run", api_study_run, EMPTY},
     {"POST", "/api/studies/{name}/stop", api_study_stop, EMPTY},
-    {"GET", "/api/studies/{name}/rows", api_study_rows, NO_BODY},
-    {"GET", "/api/studies/{name}/compare", api_study_compare, NO_BODY},
+    {"GET", "/api/studies/{name}/rows", api_study_rows, NO_REGION},
+    {"GET", "/api/studies/{name}/compare", api_study_compare, NO_REGION},
     {"POST", "/api/studies/{name}/draw", api_study_draw, EMPTY},
-    {"GET", "/api/figures/{name}", api_figure, NO_BODY},
-    {"GET", "/api/machine", api_machine, NO_BODY},
-    {"GET", "/api/notes", api_notes, NO_BODY},
+    {"GET", "/api/figures/{name}", api_figure, NO_REGION},
+    {"GET", "/api/machine", api_machine, NO_REGION},
+    {"GET", "/api/notes", api_notes, NO_REGION},
 };
 enum { ROUTES = sizeof routes / sizeof *routes };
 
@@ -66,7 +66,7 @@ struct api_bound {
 /* False with the reply set. */
 static bool take_body(call *c, body_kind kind)
 {
-    if (kind == NO_BODY)
+    if (kind == NO_REGION)
         return true;
     c->body = http_body_json(c->request, c->reply);
     if (c->body && kind == OBJECT && !json_is_object(c->body))

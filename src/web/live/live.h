@@ -60,7 +60,7 @@ live_preview live_preview_of(live *l);
 /* The stage is a fresh copy of what is on the desk: takes its slimes over, from their beginning or as they lie now
  * where the slimes' own parameters are what they were. Call it whenever the stage was replaced, before it is loaded:
  * what is live is not computed up to its time_s. What is not live is left to be loaded. */
-status live_attach(live *l, scene *stage, diagnostic *why);
+status live_attach(live *l, scene *snapshot, diagnostic *why);
 /* The stage is about to go, and is not rendered any more: hands and motion are kept for the next one where that is
  * possible. */
 void live_detach(live *l);

@@ -18,7 +18,7 @@ void live_stand_still(live *l)
 
 static const mesh_entry *entry_of(const live *l, size_t i)
 {
-    return &l->stage->meshes[scene_motion_mesh(l->motion, i)];
+    return &l->snapshot->meshes[scene_motion_mesh(l->motion, i)];
 }
 
 static double longest_step_s(const live *l)
@@ -46,8 +46,8 @@ static void aim(live *l, double share)
         if (known->id == 0)
             continue;
         motion_hand *h = &l->hands[known->slime * SOFTBODY_HANDS_MAX + (size_t)known->number];
-        const vec3 way = vec3_sub(motion_hand_way(h, known->by), h->from);
-        h->to = share >= 1.0 ? motion_hand_way(h, known->by) : vec3_add(h->from, vec3_scale(way, share));
+        const vec3 way = vec3_sub(motion_hand_offset(h, known->by), h->from);
+        h->to = share >= 1.0 ? motion_hand_offset(h, known->by) : vec3_add(h->from, vec3_scale(way, share));
     }
     pthread_mutex_unlock(&l->lock);
 }
@@ -105,8 +105,8 @@ static bool is_quiet(const live *l)
 /* A long step is seen at its end alone, where a body that swings may just be turning: one look counts for little. */
 static void watch_rest(live *l, double gone_s)
 {
-    const double long_s = 0.25, look_s = long_s / 8.0;
-    l->quiet_s = is_quiet(l) ? l->quiet_s + fmin(gone_s, look_s) : 0.0;
+    const double long_s = 0.25, poll_s = long_s / 8.0;
+    l->quiet_s = is_quiet(l) ? l->quiet_s + fmin(gone_s, poll_s) : 0.0;
     if (l->quiet_s < long_s)
         return;
     pthread_mutex_lock(&l->lock);

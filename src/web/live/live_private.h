@@ -1,4 +1,4 @@
-/* The live slime, shared by live.c (what other threads ask), live_stage.c (which scene it is in, and orders) and
+/* The live slime, shared by live.c (what other threads ask), live_snapshot.c (which scene it is in, and orders) and
  * live_move.c (its motion). */
 #pragma once
 
@@ -56,7 +56,7 @@ struct live {
     live_account account;
 
     /* The painter's own. */
-    scene *stage;         /* NULL: none now */
+    scene *snapshot;      /* NULL: none now */
     scene_motion *motion; /* NULL: not begun */
     motion_hand *hands;   /* SOFTBODY_HANDS_MAX of each slime */
     double time_s;

@@ -83,7 +83,7 @@ json_t *studies_tell(studies *st)
                               st->running, "frames_done", (json_int_t)now->frames_done, "frames_all",
                               (json_int_t)now->frames_all, "left_s", json_of_real(now->left_s), "cell",
                               (json_int_t)now->cell, "share", json_of_real(now->share), "stage", stages[now->stage],
-                              "picture", (json_int_t)now->picture, "pictures", (json_int_t)now->pictures, "error",
+                              "picture", (json_int_t)now->img, "pictures", (json_int_t)now->images, "error",
                               st->failed ? json_of_diagnostic(&st->trouble) : json_null());
     pthread_mutex_unlock(&st->lock);
     return told;
@@ -121,14 +121,14 @@ static void *run(void *context)
     studies *st = context;
     float_environment_set();
     char *text = text_format("a study measures: %s", st->s->name);
-    painter_wait(st->l->painter, text ? text : "a study measures");
+    render_worker_suspend(st->l->render_worker, text ? text : "a study measures");
     free(text);
     lab_tell_state(st->l);
     const study_options options = {
         .results = st->l->settings.results, .stop = should_stop, .progressed = hear, .context = st};
     diagnostic why = {.what = ""};
     const status code = study_run(st->s, &options, NULL, &why);
-    painter_wait(st->l->painter, NULL);
+    render_worker_suspend(st->l->render_worker, NULL);
     pthread_mutex_lock(&st->lock);
     st->running = false;
     st->failed = code != STATUS_OK && code != STATUS_INTERRUPTED;

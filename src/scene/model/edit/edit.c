@@ -76,9 +76,9 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
     case PARAM_RENDER: return param_set_defaults(PARAM_RENDER, &s->render, why);
     case PARAM_CAMERA: s->camera.aimed = 1; return param_set_defaults(PARAM_CAMERA, &s->camera, why);
     case PARAM_BACKGROUND:
-        image_destroy(s->background.picture);
-        s->background.picture = NULL;
-        s->background.picture_line = s->background.picture_column = 0;
+        image_destroy(s->background.img);
+        s->background.img = NULL;
+        s->background.image_line = s->background.image_column = 0;
         return param_set_defaults(PARAM_BACKGROUND, &s->background, why);
     case PARAM_GROUP_COUNT: break;
     }

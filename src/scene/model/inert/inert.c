@@ -76,7 +76,7 @@ bool inert_ask(const scene *s, const char *path, const inert_witness *witness, i
     inert_case c = {.s = s, .witness = witness ? witness : &nobody, .out = out};
     c.frame = c.witness->frame && c.witness->frame->camera > 0 ? c.witness->frame : NULL;
     *out = (inert_answer){.rule = ""};
-    if (place_find(s, path, &c.at, NULL) != STATUS_OK || c.at.row->is_how)
+    if (place_find(s, path, &c.at, NULL) != STATUS_OK || c.at.row->performance_only)
         return false;
     c.name = place_group_name(s, c.at.group, c.at.index);
     if (!inert_layers(&c) && !ask_group(&c) && !inert_unmet(&c, path))

@@ -1,6 +1,6 @@
-/* Why a parameter of a surface does nothing on faces that look as a mesh's file says: see looks_face. */
+/* Why a parameter of a surface does nothing on faces that look as a mesh's file says: see shading_material_of_face. */
 #include "scene/model/inert/inert_private.h"
-#include "scene/model/looks.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
@@ -12,7 +12,7 @@ static bool is_row(const inert_case *c, const char *name)
 }
 
 /* What a body is made of. */
-static bool is_of_body(const inert_case *c)
+static bool is_of_region(const inert_case *c)
 {
     static const char *const of_body[] = {"ior",           "medium", "coefficients", "absorb_per_m", "absorb_spectrum",
                                           "tint_distance", NULL};
@@ -25,7 +25,7 @@ static bool is_straight(const inert_case *c)
 }
 
 /* Does the solid's own surface say it, on faces of which a material of the scene or of the file says the rest? */
-static bool is_own(const inert_case *c, const material *named, const face_look *given)
+static bool is_own(const inert_case *c, const material *named, const face_material *given)
 {
     static const char *const never_given[] = {"ambient", "reflectivity", "checker", "checker_color", NULL};
     const bool clear = !material_is_opaque(&c->owner->surface);
@@ -42,10 +42,10 @@ static bool is_own(const inert_case *c, const material *named, const face_look *
 /* The rules of a whole surface, on one kind of face. */
 static bool inert_on_slot(const inert_case *c, int slot)
 {
-    const surface_look look = looks_face(c->s, c->owner, &c->owner->surface, slot);
+    const shading_material mat = shading_material_of_face(c->s, c->owner, &c->owner->surface, slot);
     inert_case face = *c;
-    face.m = &look.surface;
-    return inert_look(&face);
+    face.m = &mat.surface;
+    return inert_appearance(&face);
 }
 
 static bool say_by_face(const inert_case *c)
@@ -57,20 +57,20 @@ static bool say_by_face(const inert_case *c)
 /* Before the mesh is there, nobody knows. */
 bool inert_faces(const inert_case *c)
 {
-    if (!looks_by_face(c->s, c->owner))
+    if (!has_face_materials(c->s, c->owner))
         return false;
-    if (is_of_body(c)) { /* which is clear where a face is */
+    if (is_of_region(c)) { /* which is clear where a face is */
         material clear = *c->m;
         clear.transparency = 1.0;
-        inert_case body = *c;
-        body.m = !looks_opaque(c->s, c->owner) && !is_row(c, "tint_distance") ? &clear : c->m;
-        return inert_look(&body);
+        inert_case region = *c;
+        region.m = !solid_is_opaque(c->s, c->owner) && !is_row(c, "tint_distance") ? &clear : c->m;
+        return inert_appearance(&region);
     }
     bool some = false;
-    for (int slot = 0; slot < looks_slots(c->s, c->owner); slot++) {
+    for (int slot = 0; slot < face_material_slots(c->s, c->owner); slot++) {
         const material *named;
-        const face_look *given;
-        looks_source(c->s, c->owner, slot, &named, &given);
+        const face_material *given;
+        face_material_source(c->s, c->owner, slot, &named, &given);
         if (!is_own(c, named, given))
             continue;
         some = true;
@@ -83,7 +83,7 @@ bool inert_faces(const inert_case *c)
 /* Of the scene's material that c is about: does a face that is named so take it? */
 static bool is_named_ones(const inert_case *c)
 {
-    if (is_of_body(c))
+    if (is_of_region(c))
         return false;
     if (is_row(c, "transparency"))
         return is_straight(c);
@@ -98,12 +98,12 @@ static bool say_of_solid(const inert_case *c)
 
 bool inert_named_faces(const inert_case *c)
 {
-    if (!looks_by_face(c->s, c->owner))
+    if (!has_face_materials(c->s, c->owner))
         return false;
-    for (int slot = 0; slot < looks_slots(c->s, c->owner); slot++) {
+    for (int slot = 0; slot < face_material_slots(c->s, c->owner); slot++) {
         const material *named;
-        const face_look *given;
-        looks_source(c->s, c->owner, slot, &named, &given);
+        const face_material *given;
+        face_material_source(c->s, c->owner, slot, &named, &given);
         if (named != &c->s->materials[c->at.index].value)
             continue;
         if (is_named_ones(c) ? !inert_on_slot(c, slot) : !say_of_solid(c))

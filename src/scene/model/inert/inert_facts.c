@@ -62,12 +62,12 @@ bool say_not_bent(const inert_case *c)
                      "no ray goes on through a surface: all that counts is which indices are equal");
 }
 
-bool is_dark_beyond(const scene *s)
+bool is_dark_at_depth_limit(const scene *s)
 {
     const background *b = &s->background;
     const bool dark_sky = is_black(b->color) &&
                           (b->kind == BACKGROUND_UNIFORM || (b->kind == BACKGROUND_GRADIENT && is_black(b->horizon)));
-    return s->render.beyond == BEYOND_BLACK || dark_sky;
+    return s->render.beyond == DEPTH_LIMIT_BLACK || dark_sky;
 }
 
 static bool shines(const light *l)
@@ -91,7 +91,7 @@ bool only_spheres_shine(const scene *s)
     return is_path(s);
 }
 
-bool may_look_by_face(const scene *s, const solid *owner)
+bool may_have_face_materials(const scene *s, const solid *owner)
 {
     const mesh_entry *m = owner->material_index < 0 ? scene_mesh_of(s, owner) : NULL;
     return m && (m->source == MESH_FILE || m->source == MESH_ARRAYS);
@@ -108,12 +108,12 @@ const solid *first_visible(const scene *s, solid_is *is)
 bool is_clear(const scene *s, const solid *one)
 {
     return one->surface.transparency > 0.0 ||
-           (s->render.transmission == TRANSMISSION_SIMPLE && may_look_by_face(s, one));
+           (s->render.transmission == TRANSMISSION_SIMPLE && may_have_face_materials(s, one));
 }
 
 bool shows_lamps(const scene *s, const solid *one)
 {
-    return is_lit_by_lamps(s, &one->surface) || may_look_by_face(s, one);
+    return is_lit_by_lamps(s, &one->surface) || may_have_face_materials(s, one);
 }
 
 static bool has_color(const material *m)
@@ -157,7 +157,7 @@ bool sends_rays_on(const scene *s, const solid *owner)
 {
     const material *m = &owner->surface;
     const bool matte = is_path(s) && m->diffuse > 0.0 && has_color(m);
-    return m->transparency > 0.0 || m->reflectivity > 0.0 || matte || may_look_by_face(s, owner);
+    return m->transparency > 0.0 || m->reflectivity > 0.0 || matte || may_have_face_materials(s, owner);
 }
 
 inert_remedy lamp_remedy(const scene *s)

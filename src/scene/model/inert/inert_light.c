@@ -42,7 +42,7 @@ bool inert_light(const inert_case *c)
 
 static bool background_color(const inert_case *c)
 {
-    return c->s->background.kind == BACKGROUND_PICTURE &&
+    return c->s->background.kind == BACKGROUND_IMAGE &&
            inert_say(c, "picture-sky", "set background.kind=uniform", "the sky is a picture");
 }
 
@@ -57,14 +57,14 @@ static bool kind(const inert_case *c)
 {
     const background *b = &c->s->background;
     const bool flat = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
-    return flat && b->kind != BACKGROUND_PICTURE && !b->picture_path[0] &&
+    return flat && b->kind != BACKGROUND_IMAGE && !b->image_path[0] &&
            inert_say(c, "flat-gradient", "set background.horizon=0.5,0.4,0.3",
                      "horizon is the color, too: a gradient between them is uniform");
 }
 
 static bool has_ambient(const scene *s, const solid *one)
 {
-    return shows_ambient(s, &one->surface) || may_look_by_face(s, one);
+    return shows_ambient(s, &one->surface) || may_have_face_materials(s, one);
 }
 
 static bool ambient(const inert_case *c)

@@ -166,7 +166,7 @@ static bool reflectivity_rule(const inert_case *c)
         return false;
     if (!follows_rays(s))
         return say_no_tree(c);
-    if (s->render.depth == 0 && is_dark_beyond(s))
+    if (s->render.depth == 0 && is_dark_at_depth_limit(s))
         return inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0, and what lies beyond it is black");
     if (material_is_mirror(c->m) && !scene_has_constant_shares(&s->render))
         return inert_say(c, "mirror", set_on(c, "transparency=0").text, "its index makes it a mirror already");
@@ -260,7 +260,7 @@ static bool no_interface(const inert_case *c)
         const solid *one = &s->solids[i];
         const material *m = &one->surface;
         const bool plain = m->reflectivity == 0.0 && m->emission == 0.0 && material_matches_surroundings(s, m);
-        if (one->visible && ((!material_is_opaque(m) && !plain) || may_look_by_face(s, one)))
+        if (one->visible && ((!material_is_opaque(m) && !plain) || may_have_face_materials(s, one)))
             return false;
     }
     return !material_is_opaque(c->m) && inert_say(c, "no-interface", set_on(c, "ior=1.5").text,
@@ -276,7 +276,7 @@ static bool covered(const inert_case *c)
                      "%s lies wholly inside %s, which wins there", c->owner->name, cover->name);
 }
 
-bool inert_look(const inert_case *c)
+bool inert_appearance(const inert_case *c)
 {
     static const inert_row rows[] = {
         {"color", color_rule},
@@ -303,7 +303,7 @@ bool inert_look(const inert_case *c)
 
 bool inert_surface(const inert_case *c)
 {
-    return may_look_by_face(c->s, c->owner) ? inert_faces(c) : inert_look(c);
+    return may_have_face_materials(c->s, c->owner) ? inert_faces(c) : inert_appearance(c);
 }
 
 static bool unused(const inert_case *c, const solid *hidden)
@@ -321,13 +321,13 @@ bool inert_material(const inert_case *c)
     inert_answer first = {.rule = ""}, other;
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        const bool by_face = may_look_by_face(s, one);
+        const bool by_face = may_have_face_materials(s, one);
         if (one->material_index != (int)c->at.index && !by_face)
             continue;
         hidden = one->visible || by_face ? hidden : one;
         inert_case user = *c;
         user.owner = one, user.m = &one->surface, user.out = first.rule[0] ? &other : &first;
-        if (one->visible && !(by_face ? inert_named_faces(&user) : inert_look(&user)))
+        if (one->visible && !(by_face ? inert_named_faces(&user) : inert_appearance(&user)))
             return false;
     }
     if (!first.rule[0])

@@ -94,8 +94,8 @@ bool inert_mesh(const inert_case *c)
 
 static bool uses_texture(const scene *s, const solid *one, const char *name)
 {
-    return one->visible &&
-           (may_look_by_face(s, one) || (strcmp(one->surface.texture, name) == 0 && shows_color(s, &one->surface)));
+    return one->visible && (may_have_face_materials(s, one) ||
+                            (strcmp(one->surface.texture, name) == 0 && shows_color(s, &one->surface)));
 }
 
 static bool unused_texture(const inert_case *c)

@@ -60,7 +60,7 @@ bool inert_solid(const inert_case *c);
 bool inert_surface(const inert_case *c);
 /* The same where all of it looks as c->m; where its faces look as a mesh's file says; and a row of the scene's material
  * that c is about on those of its faces that are named so (true without an answer where there are none). */
-bool inert_look(const inert_case *c);
+bool inert_appearance(const inert_case *c);
 bool inert_faces(const inert_case *c);
 bool inert_named_faces(const inert_case *c);
 /* Is the row's name one of a list that ends with NULL? */
@@ -84,13 +84,13 @@ bool say_not_bent(const inert_case *c);
 /* The word of render that stops rays at surfaces, and what to set. */
 bool say_no_tree(const inert_case *c);
 /* Light from beyond the depth limit is black. */
-bool is_dark_beyond(const scene *s);
+bool is_dark_at_depth_limit(const scene *s);
 /* Lights that shine; all of them spheres, which the path integrator alone knows. */
 size_t shining_lights(const scene *s);
 bool only_spheres_shine(const scene *s);
 
 /* The faces may look as the mesh's file says, and not as the solid's surface does. */
-bool may_look_by_face(const scene *s, const solid *owner);
+bool may_have_face_materials(const scene *s, const solid *owner);
 /* The first visible solid that is so (NULL: any); NULL if there is none. */
 typedef bool solid_is(const scene *s, const solid *one);
 const solid *first_visible(const scene *s, solid_is *is);

@@ -36,7 +36,8 @@ static bool may_hold_eye(const scene *s, const solid *one)
 
 static bool glows_in_dense(const scene *s, const solid *one)
 {
-    const bool glows = one->surface.emission > 0.0 || shows_ambient(s, &one->surface) || may_look_by_face(s, one);
+    const bool glows =
+        one->surface.emission > 0.0 || shows_ambient(s, &one->surface) || may_have_face_materials(s, one);
     return glows && may_lie_in_dense(s, one);
 }
 

@@ -58,12 +58,12 @@ static bool beyond(const inert_case *c)
     if (no_tree(c))
         return true;
     scene sky = *s; /* borrows what s owns */
-    sky.render.beyond = BEYOND_SKY;
-    if (is_dark_beyond(&sky))
+    sky.render.beyond = DEPTH_LIMIT_SKY;
+    if (is_dark_at_depth_limit(&sky))
         return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black, too");
     /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both
      * has no cut ray. */
-    const bool nothing_cut = s->render.beyond != BEYOND_BLACK
+    const bool nothing_cut = s->render.beyond != DEPTH_LIMIT_BLACK
                                  ? inert_same(c, "render.beyond=black")
                                  : inert_same(c, "render.beyond=sky") && inert_same(c, "render.beyond=mean");
     return nothing_cut && inert_say(c, "nothing-cut", s->render.depth > 1 ? "set render.depth=1" : "set render.depth=0",
@@ -81,14 +81,14 @@ static bool lighting(const inert_case *c)
     bool highlight = integrator_of(&s->render)->drawn && first_visible(s, is_clear);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
-        highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_look_by_face(s, one));
+        highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_have_face_materials(s, one));
     }
     if (highlight)
         return false;
     if (!integrator_of(&s->render)->tree)
         return inert_say(c, "no-highlight", WHITTED,
                          "no lamp makes a highlight, and no ray goes on under this render.integrator");
-    return (nothing_goes_on(s) || (s->render.depth == 0 && is_dark_beyond(s))) &&
+    return (nothing_goes_on(s) || (s->render.depth == 0 && is_dark_at_depth_limit(s))) &&
            inert_say(c, "no-highlight", mirror_remedy(s).text, "nothing visible has a highlight, reflects or refracts");
 }
 
@@ -117,7 +117,7 @@ static bool same_but_for(const inert_case *c, const char *one, const char *other
 
 static bool transmission(const inert_case *c)
 {
-    if (first_visible(c->s, may_look_by_face))
+    if (first_visible(c->s, may_have_face_materials))
         return false; /* a file's faces may be clear where light goes straight on */
     return no_clear(c) || same_but_for(c, "refract", "simple", c->s->render.transmission != TRANSMISSION_SIMPLE);
 }
@@ -210,7 +210,7 @@ static bool unit(const inert_case *c)
 
 static bool shows_texture(const scene *s, const solid *one)
 {
-    return (one->surface.texture[0] && shows_color(s, &one->surface)) || may_look_by_face(s, one);
+    return (one->surface.texture[0] && shows_color(s, &one->surface)) || may_have_face_materials(s, one);
 }
 
 static bool texturing(const inert_case *c)

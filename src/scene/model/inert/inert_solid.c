@@ -70,7 +70,7 @@ static bool mesh_shading(const inert_case *c)
 {
     const scene *s = c->s;
     const bool textured = c->m->texture[0] && shows_color(s, c->m); /* a texel's footprint depends on the normal */
-    if (textured || is_lit_by_lamps(s, c->m) || may_look_by_face(s, c->owner) ||
+    if (textured || is_lit_by_lamps(s, c->m) || may_have_face_materials(s, c->owner) ||
         (follows_rays(s) && sends_rays_on(s, c->owner)))
         return false;
     if (integrator_of(&s->render)->layers)

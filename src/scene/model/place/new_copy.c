@@ -3,7 +3,7 @@
 #include "scene/model/edit/edit.h"
 #include "scene/model/objects.h"
 #include "scene/model/params_path.h"
-#include "scene/model/place/spot.h"
+#include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
@@ -11,27 +11,27 @@
 
 static vec3 rounded(vec3 v, double size)
 {
-    return vec3_make(spot_round(v.x, size), spot_round(v.y, size), spot_round(v.z, size));
+    return vec3_make(placement_round(v.x, size), placement_round(v.y, size), placement_round(v.z, size));
 }
 
 /* How deep boxes around two solids, along the camera's ways, lie in each other once the first one has stepped; 0 where
  * something parts them. */
-static double depth(const scene *s, const spot *where, const solid *a, vec3 step, const solid *b)
+static double depth(const scene *s, const placement *where, const solid *a, vec3 step, const solid *b)
 {
     const vec3 along[] = {where->right, where->away, vec3_make(0, 1, 0)};
     vec3 from, to;
     double radius, least = INFINITY;
-    if (!spot_ball(s, a, &from, &radius) || !spot_ball(s, b, &to, &radius))
+    if (!placement_bounding_sphere(s, a, &from, &radius) || !placement_bounding_sphere(s, b, &to, &radius))
         return 0.0;
-    const vec3 way = vec3_sub(to, vec3_add(from, step));
+    const vec3 offset = vec3_sub(to, vec3_add(from, step));
     for (size_t i = 0; i < sizeof along / sizeof *along; i++)
-        least = fmin(least,
-                     spot_half_size(s, a, along[i]) + spot_half_size(s, b, along[i]) - fabs(vec3_dot(way, along[i])));
+        least = fmin(least, placement_half_size(s, a, along[i]) + placement_half_size(s, b, along[i]) -
+                                fabs(vec3_dot(offset, along[i])));
     return fmax(0.0, least);
 }
 
 /* What it stands in, its copy may stand in, too. */
-static double overlap_after(const scene *s, const spot *where, const solid *of, vec3 step)
+static double overlap_after(const scene *s, const placement *where, const solid *of, vec3 step)
 {
     double sum = depth(s, where, of, step, of);
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -45,22 +45,23 @@ static double overlap_after(const scene *s, const spot *where, const solid *of, 
 /* A little more than its size that way, so that something parts it and its copy. */
 static double stride(const scene *s, const solid *of, vec3 along, double radius)
 {
-    return 2.1 * fmax(spot_half_size(s, of, along), 0.01 * radius);
+    return 2.1 * fmax(placement_half_size(s, of, along), 0.01 * radius);
 }
 
 /* From it to where a second one is seen and stands free, or nearly so: to a side, or behind or before it. */
-static vec3 step_beside(const scene *s, const spot *where, const solid *of, vec3 centre, double radius)
+static vec3 step_beside(const scene *s, const placement *where, const solid *of, vec3 centre, double radius)
 {
-    static const double ways[][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},  {2, 0}, {-2, 0},
-                                     {1, 1}, {-1, 1}, {1, -1}, {-1, -1}, {0, 2}};
+    static const double offsets[][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},  {2, 0}, {-2, 0},
+                                        {1, 1}, {-1, 1}, {1, -1}, {-1, -1}, {0, 2}};
     const double aside = stride(s, of, where->right, radius), behind = stride(s, of, where->away, radius);
     vec3 best = where->right;
     double least = INFINITY;
-    for (size_t i = 0; i < sizeof ways / sizeof *ways && least > 0.0; i++) {
+    for (size_t i = 0; i < sizeof offsets / sizeof *offsets && least > 0.0; i++) {
         vec3 step =
-            vec3_add(vec3_scale(where->right, aside * ways[i][0]), vec3_scale(where->away, behind * ways[i][1]));
+            vec3_add(vec3_scale(where->right, aside * offsets[i][0]), vec3_scale(where->away, behind * offsets[i][1]));
         step = rounded(step, fmin(aside, behind));
-        const double bad = overlap_after(s, where, of, step) + (spot_in_view(s, vec3_add(centre, step)) ? 0.0 : radius);
+        const double bad =
+            overlap_after(s, where, of, step) + (placement_in_view(s, vec3_add(centre, step)) ? 0.0 : radius);
         if (bad < least) {
             least = bad;
             best = step;
@@ -83,11 +84,11 @@ static status copy_object(scene *s, param_group group, size_t of, const char *na
 /* A plane's stands behind its surface, where it changes nothing before it is moved. */
 static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
 {
-    const spot where = spot_of(s);
+    const placement where = placement_of(s);
     const vec3 normal = mat3_apply(rotation_from_deg(s->solids[of].shape.rotation_deg), vec3_make(0, 1, 0));
     vec3 centre, step = rounded(vec3_scale(normal, -where.size), where.size);
     double radius;
-    if (spot_ball(s, &s->solids[of], &centre, &radius))
+    if (placement_bounding_sphere(s, &s->solids[of], &centre, &radius))
         step = step_beside(s, &where, &s->solids[of], centre, radius);
     TRY(copy_object(s, PARAM_SOLID, of, name, why));
     return scene_move(s, name, step, why);
@@ -96,7 +97,7 @@ static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
 static status copy_light(scene *s, size_t of, const char *name, diagnostic *why)
 {
     TRY(copy_object(s, PARAM_LIGHT, of, name, why));
-    const spot where = spot_of(s);
+    const placement where = placement_of(s);
     return scene_move(s, name, rounded(vec3_scale(where.right, where.size), where.size), why);
 }
 

@@ -4,10 +4,10 @@
 #include "geometry/shapes/shape.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
-#include "scene/model/looks.h"
+#include "scene/model/face_materials.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
-#include "scene/model/place/spot.h"
+#include "scene/model/place/placement.h"
 #include "scene/model/scene.h"
 
 #include <ctype.h>
@@ -62,7 +62,7 @@ static void put_vector(scene *s, status *code, diagnostic *why, const char *name
 }
 
 /* A colour unlike the last one's. */
-static void put_look(scene *s, status *code, diagnostic *why, const char *name, size_t count)
+static void put_appearance(scene *s, status *code, diagnostic *why, const char *name, size_t count)
 {
     static const char *const colors[] = {"0.85,0.3,0.2", "0.2,0.5,0.85",  "0.3,0.7,0.3",
                                          "0.9,0.7,0.2",  "0.6,0.35,0.75", "0.2,0.7,0.7"};
@@ -78,34 +78,35 @@ static void put_above_others(scene *s, status *code, diagnostic *why, const char
     const int index = scene_find_solid(s, name);
     vec3 centre, other;
     double radius, its_radius;
-    if (*code != STATUS_OK || index < 0 || !spot_ball(s, &s->solids[index], &centre, &radius))
+    if (*code != STATUS_OK || index < 0 || !placement_bounding_sphere(s, &s->solids[index], &centre, &radius))
         return;
     int64_t priority = s->solids[index].priority;
     for (int i = 0; i < (int)s->solid_count; i++)
-        if (i != index && s->solids[i].visible && spot_ball(s, &s->solids[i], &other, &its_radius) &&
+        if (i != index && s->solids[i].visible && placement_bounding_sphere(s, &s->solids[i], &other, &its_radius) &&
             vec3_length(vec3_sub(other, centre)) < radius + its_radius && s->solids[i].priority >= priority)
             priority = s->solids[i].priority + (s->solids[i].priority < 1000000);
     put(s, code, why, name, "priority", "%lld", (long long)priority);
 }
 
 /* A floor under what is looked at; or, where there is one, a wall behind it. */
-static void put_plane(scene *s, status *code, diagnostic *why, const char *name, const spot *where)
+static void put_plane(scene *s, status *code, diagnostic *why, const char *name, const placement *where)
 {
     double y;
     vec3 at = where->looked_at;
-    if (spot_ground(s, at.x, at.z, &y)) {
+    if (placement_ground(s, at.x, at.z, &y)) {
         at = vec3_add(at, vec3_scale(where->away, where->distance));
         put(s, code, why, name, "rotation", "90,%.17g,0",
-            spot_round(atan2(-where->away.x, -where->away.z) * (180.0 / M_PI), 1.0));
+            placement_round(atan2(-where->away.x, -where->away.z) * (180.0 / M_PI), 1.0));
     } else {
         at.y -= 0.5 * where->size;
     }
     put_vector(s, code, why, name, "position",
-               vec3_make(spot_round(at.x, where->size), spot_round(at.y, where->size), spot_round(at.z, where->size)));
+               vec3_make(placement_round(at.x, where->size), placement_round(at.y, where->size),
+                         placement_round(at.z, where->size)));
 }
 
 /* A shape of a size, written with no more digits than it needs. */
-static void put_sizes(scene *s, status *code, diagnostic *why, const char *name, const spot *where)
+static void put_sizes(scene *s, status *code, diagnostic *why, const char *name, const placement *where)
 {
     solid fitted = s->solids[s->solid_count - 1];
     const shape_rule *rule = shape_of(&fitted.shape);
@@ -114,14 +115,14 @@ static void put_sizes(scene *s, status *code, diagnostic *why, const char *name,
         const param *row = param_find(PARAM_SOLID, *parameter);
         void *field = (char *)&fitted + row->offset;
         if (row->type == PARAM_REAL)
-            *(double *)field = spot_round(*(double *)field, 0.1 * *(double *)field);
+            *(double *)field = placement_round(*(double *)field, 0.1 * *(double *)field);
         char *text = param_value_text(row, -1, field);
         if (!text && *code == STATUS_OK)
             *code = out_of_memory(why);
         put(s, code, why, name, *parameter, "%s", text ? text : "");
         free(text);
     }
-    const vec3 low = spot_free(s, where, where->size);
+    const vec3 low = placement_free(s, where, where->size);
     put_vector(s, code, why, name, "position", vec3_sub(low, vec3_make(0, rule->extent(&fitted.shape).box.low.y, 0)));
 }
 
@@ -139,14 +140,14 @@ static status add_mesh_solid(scene *s, const char *solid_name, object_name mesh_
     return code;
 }
 
-static status new_mesh(scene *s, const char *name, const spot *where, diagnostic *why)
+static status new_mesh(scene *s, const char *name, const placement *where, diagnostic *why)
 {
     object_name mesh_name;
-    const vec3 low = spot_free(s, where, where->size);
+    const vec3 low = placement_free(s, where, where->size);
     status code = add_mesh_solid(s, name, mesh_name, why);
-    const double minor = spot_round(0.15 * where->size, 0.1 * where->size);
+    const double minor = placement_round(0.15 * where->size, 0.1 * where->size);
     put(s, &code, why, mesh_name, "generate", "torus");
-    put_number(s, &code, why, mesh_name, "major", spot_round(0.35 * where->size, 0.1 * where->size));
+    put_number(s, &code, why, mesh_name, "major", placement_round(0.35 * where->size, 0.1 * where->size));
     put_number(s, &code, why, mesh_name, "minor", minor);
     put_vector(s, &code, why, name, "position", vec3_add(low, vec3_make(0, minor, 0)));
     return code;
@@ -154,7 +155,7 @@ static status new_mesh(scene *s, const char *name, const spot *where, diagnostic
 
 status new_solid(scene *s, shape_kind shape, const char *wanted, object_name name, diagnostic *why)
 {
-    const spot where = spot_of(s);
+    const placement where = placement_of(s);
     const size_t count = s->solid_count;
     const shape_rule *rule = shape_of_kind(shape);
     TRY(name_for(s, wanted, rule->triangles ? "ring" : rule->word, name, why));
@@ -169,7 +170,7 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
             put_sizes(s, &code, why, name, &where);
         s->solids[s->solid_count - 1].visible = 1;
     }
-    put_look(s, &code, why, name, count);
+    put_appearance(s, &code, why, name, count);
     if (rule->unbounded)
         put(s, &code, why, name, "color", "0.72,0.7,0.66");
     put_above_others(s, &code, why, name);
@@ -178,7 +179,7 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
 
 status new_light(scene *s, const char *wanted, object_name name, diagnostic *why)
 {
-    const spot where = spot_of(s);
+    const placement where = placement_of(s);
     status code = name_for(s, wanted, "lamp", name, why);
     THEN(code, scene_add(s, PARAM_LIGHT, name, NULL, why));
     /* To the left and in front of it, alternately to the right, so that two do not shine from one point. */
@@ -187,10 +188,11 @@ status new_light(scene *s, const char *wanted, object_name name, diagnostic *why
     at = vec3_add(at, vec3_scale(where.away, -0.4 * where.distance));
     at.y += 0.8 * where.distance;
     put_vector(s, &code, why, name, "position",
-               vec3_make(spot_round(at.x, where.size), spot_round(at.y, where.size), spot_round(at.z, where.size)));
+               vec3_make(placement_round(at.x, where.size), placement_round(at.y, where.size),
+                         placement_round(at.z, where.size)));
     put_vector(s, &code, why, name, "target",
-               vec3_make(spot_round(where.looked_at.x, where.size), spot_round(where.looked_at.y, where.size),
-                         spot_round(where.looked_at.z, where.size)));
+               vec3_make(placement_round(where.looked_at.x, where.size), placement_round(where.looked_at.y, where.size),
+                         placement_round(where.looked_at.z, where.size)));
     put(s, &code, why, name, "intensity", "0.5");
     return code;
 }
@@ -200,15 +202,15 @@ status new_material(scene *s, const char *wanted, object_name name, diagnostic *
     const size_t count = s->material_count;
     status code = name_for(s, wanted, "paint", name, why);
     THEN(code, scene_add(s, PARAM_MATERIAL, name, NULL, why));
-    put_look(s, &code, why, name, count);
+    put_appearance(s, &code, why, name, count);
     return code;
 }
 
 status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why)
 {
-    spot where = spot_of(s);
-    const double size = spot_round(where.distance / 3.0, where.distance / 3.0), radius = 0.5 * size;
-    const vec3 low = spot_free(s, &where, size);
+    placement where = placement_of(s);
+    const double size = placement_round(where.distance / 3.0, where.distance / 3.0), radius = 0.5 * size;
+    const vec3 low = placement_free(s, &where, size);
     object_name mesh_name;
     TRY(name_for(s, wanted, "slime", name, why));
     TRY(add_mesh_solid(s, name, mesh_name, why));
@@ -261,17 +263,17 @@ status new_texture(scene *s, const char *path, const char *wanted, object_name n
 static void take_loaded(mesh_entry *m, const mesh_entry *from)
 {
     m->data = from->data;
-    m->looks = from->looks;
+    m->shading_materials = from->shading_materials;
     mesh_retain(m->data);
-    looks_retain(m->looks);
+    face_materials_retain(m->shading_materials);
 }
 
 status new_model(scene *s, const scene *loaded, const char *path, const char *wanted, object_name name, diagnostic *why)
 {
-    const spot where = spot_of(s);
+    const placement where = placement_of(s);
     const bounds3 b = loaded->meshes[0].data->bounds;
     const size_t count = s->solid_count;
-    const vec3 low = spot_free(s, &where, where.size), edges = vec3_sub(b.high, b.low);
+    const vec3 low = placement_free(s, &where, where.size), edges = vec3_sub(b.high, b.low);
     const double longest = fmax(fmax(edges.x, edges.y), edges.z);
     if (!(longest > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "choose another file", "the mesh has no extent");
@@ -283,12 +285,12 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
     THEN(code, row ? scene_set(s, row, path, why) : out_of_memory(why));
     free(row);
     /* Four digits, so that it does not stand deep in the ground or above it. */
-    const double scale = spot_round(where.size / longest, 0.01 * where.size / longest);
+    const double scale = placement_round(where.size / longest, 0.01 * where.size / longest);
     put_vector(s, &code, why, name, "scale", vec3_make(scale, scale, scale));
     put_vector(s, &code, why, name, "position",
                vec3_make(low.x - 0.5 * scale * (b.low.x + b.high.x), low.y - scale * b.low.y,
                          low.z - 0.5 * scale * (b.low.z + b.high.z)));
-    put_look(s, &code, why, name, count);
+    put_appearance(s, &code, why, name, count);
     if (code == STATUS_OK)
         take_loaded(&s->meshes[s->mesh_count - 1], &loaded->meshes[0]);
     put_above_others(s, &code, why, name);

@@ -1,6 +1,6 @@
-/* What can be added to a scene with one word: each stands where the camera looks (scene/model/place/spot.h), fits, and
- * can be seen. Called on a copy of the scene that is thrown away after an error. wanted: the name that it is to have;
- * NULL: one is made that is free, which name then says, wanted or not. Errors: STATUS_BAD_INPUT as
+/* What can be added to a scene with one word: each stands where the camera looks (scene/model/place/placement.h), fits,
+ * and can be seen. Called on a copy of the scene that is thrown away after an error. wanted: the name that it is to
+ * have; NULL: one is made that is free, which name then says, wanted or not. Errors: STATUS_BAD_INPUT as
  * scene/model/edit/edit.h has them. */
 #pragma once
 

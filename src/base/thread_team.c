@@ -1,0 +1,118 @@
+#include "base/thread_team.h"
+
+#include "base/float_environment.h"
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+typedef struct member {
+    thread_team *of;
+    int number;
+    pthread_t thread;
+} member;
+
+struct thread_team {
+    int size;
+    pthread_mutex_t lock;
+    pthread_cond_t begin, end;
+    unsigned long run; /* number of the present one */
+    int busy;          /* threads that have not finished it */
+    bool quit;
+    thread_team_task *task;
+    void *context;
+    size_t count;
+    atomic_size_t next;
+    member members[]; /* [0] is the caller */
+};
+
+static void work(thread_team *t, int number)
+{
+    for (;;) {
+        size_t index = atomic_fetch_add_explicit(&t->next, 1, memory_order_relaxed);
+        if (index >= t->count)
+            return;
+        t->task(t->context, index, number);
+    }
+}
+
+static void *attend(void *argument)
+{
+    member *m = argument;
+    thread_team *t = m->of;
+    unsigned long done = 0;
+    float_environment_set();
+    pthread_mutex_lock(&t->lock);
+    for (;;) {
+        while (t->run == done && !t->quit)
+            pthread_cond_wait(&t->begin, &t->lock);
+        if (t->quit)
+            break;
+        done = t->run;
+        pthread_mutex_unlock(&t->lock);
+        work(t, m->number);
+        pthread_mutex_lock(&t->lock);
+        if (--t->busy == 0)
+            pthread_cond_signal(&t->end);
+    }
+    pthread_mutex_unlock(&t->lock);
+    return NULL;
+}
+
+thread_team *thread_team_start(int threads)
+{
+    thread_team *t = malloc(sizeof *t + (size_t)threads * sizeof t->members[0]);
+    if (!t)
+        return NULL;
+    *t = (thread_team){.size = 1};
+    pthread_mutex_init(&t->lock, NULL);
+    pthread_cond_init(&t->begin, NULL);
+    pthread_cond_init(&t->end, NULL);
+    for (; t->size < threads; t->size++) {
+        member *m = &t->members[t->size];
+        m->of = t;
+        m->number = t->size;
+        if (pthread_create(&m->thread, NULL, attend, m))
+            break;
+    }
+    return t;
+}
+
+void thread_team_stop(thread_team *t)
+{
+    if (!t)
+        return;
+    pthread_mutex_lock(&t->lock);
+    t->quit = true;
+    pthread_cond_broadcast(&t->begin);
+    pthread_mutex_unlock(&t->lock);
+    for (int i = 1; i < t->size; i++)
+        pthread_join(t->members[i].thread, NULL);
+    pthread_cond_destroy(&t->begin);
+    pthread_cond_destroy(&t->end);
+    pthread_mutex_destroy(&t->lock);
+    free(t);
+}
+
+int thread_team_size(const thread_team *t)
+{
+    return t->size;
+}
+
+void thread_team_run(thread_team *t, thread_team_task *task, void *context, size_t count)
+{
+    pthread_mutex_lock(&t->lock);
+    t->task = task;
+    t->context = context;
+    t->count = count;
+    atomic_store_explicit(&t->next, 0, memory_order_relaxed);
+    t->busy = t->size - 1;
+    t->run++;
+    pthread_cond_broadcast(&t->begin);
+    pthread_mutex_unlock(&t->lock);
+    work(t, 0);
+    pthread_mutex_lock(&t->lock);
+    while (t->busy > 0)
+        pthread_cond_wait(&t->end, &t->lock);
+    pthread_mutex_unlock(&t->lock);
+}

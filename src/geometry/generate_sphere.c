@@ -1,0 +1,125 @@
+/* Spheres from the icosahedron. Each of its 20 faces has a triangular grid of vertices of its own, row i of f + 1
+ * holding i + 1 of them, so that texture coordinates need not meet across an edge; positions on a common edge are the
+ * same to the bit. */
+#include "base/single.h"
+#include "geometry/mesh_generators_parts.h"
+
+static const uint8_t faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                     {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                     {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                     {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+
+static vec3 icosahedron(int vertex)
+{
+    const double g = 0.5 * (1.0 + sqrt(5.0)); /* golden section */
+    const vec3 at[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                         {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+    return at[vertex];
+}
+
+static size_t row_start(size_t row)
+{
+    return row * (row + 1) / 2;
+}
+
+/* A mesh of 20 f f triangles whose vertices are still to be placed. */
+static status make_grids(size_t f, mesh **out, diagnostic *why)
+{
+    const size_t per_face = row_start(f + 1);
+    status result = mesh_create(20 * per_face, 20 * f * f, true, true, false, out, why);
+    mesh_triangle *triangle = result == STATUS_OK ? (*out)->triangles : NULL;
+    for (size_t face = 0; triangle && face < 20; face++) {
+        for (size_t i = 0; i < f; i++) {
+            for (size_t j = 0; j <= i; j++) {
+                const uint32_t here = (uint32_t)(face * per_face + row_start(i) + j),
+                               below = (uint32_t)(face * per_face + row_start(i + 1) + j);
+                *triangle++ = (mesh_triangle){{here, below, below + 1}};
+                if (j < i)
+                    *triangle++ = (mesh_triangle){{here, below + 1, here + 1}};
+            }
+        }
+    }
+    return result;
+}
+
+/* Normals and texture coordinates of a face, whose longitudes are taken near that of its middle. */
+static void clothe(mesh *m, size_t face, size_t per_face)
+{
+    const vec3 sum =
+        vec3_add(vec3_add(icosahedron(faces[face][0]), icosahedron(faces[face][1])), icosahedron(faces[face][2]));
+    const double middle_deg = generate_longitude_deg(sum);
+    for (size_t v = face * per_face; v < (face + 1) * per_face; v++) {
+        const vec3 p = m->vertices[v];
+        double away_deg =
+            p.x == 0.0 && p.z == 0.0 ? 0.0 : generate_longitude_deg(p) - middle_deg; /* a pole has none of its own */
+        away_deg += away_deg > 180.0 ? -360.0 : away_deg < -180.0 ? 360.0 : 0.0;
+        m->normals[v] = p;
+        m->uvs[v] = (mesh_uv){0.5 + (middle_deg + away_deg) / 360.0, generate_latitude_v(p)};
+    }
+}
+
+static vec3 singly(vec3 p)
+{
+    return vec3_make(single_round(p.x), single_round(p.y), single_round(p.z));
+}
+
+/* The flat face's points pushed out to the sphere. The order of the sum is part of the recipe. */
+static void place_flat(mesh *m, size_t face, size_t f)
+{
+    const vec3 a = icosahedron(faces[face][0]), b = icosahedron(faces[face][1]), c = icosahedron(faces[face][2]);
+    vec3 *vertex = m->vertices + face * row_start(f + 1);
+    for (size_t i = 0; i <= f; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            const vec3 sum = vec3_add(vec3_add(vec3_scale(a, (double)(f - i)), vec3_scale(b, (double)(i - j))),
+                                      vec3_scale(c, (double)j));
+            const vec3 p = vec3_make(sum.x / (double)f, sum.y / (double)f, sum.z / (double)f);
+            *vertex++ = singly(vec3_normalize(p));
+        }
+    }
+}
+
+/* Points between those that are `step` rows apart, until all f + 1 rows are there. */
+static void place_bisected(mesh *m, size_t face, size_t f)
+{
+    vec3 *grid = m->vertices + face * row_start(f + 1);
+    grid[0] = vec3_normalize(icosahedron(faces[face][0]));
+    grid[row_start(f)] = vec3_normalize(icosahedron(faces[face][1]));
+    grid[row_start(f) + f] = vec3_normalize(icosahedron(faces[face][2]));
+    for (size_t half = f / 2; half > 0; half /= 2) {
+        for (size_t i = 0; i <= f; i += half) {
+            const size_t up = i % (2 * half) ? half : 0; /* an odd row has its ends above and below, */
+            for (size_t j = 0; j <= i; j += half) {
+                const size_t left = j % (2 * half) ? half : 0; /* an odd column to the left and right */
+                if (up || left)
+                    grid[row_start(i) + j] = vec3_normalize(
+                        vec3_add(grid[row_start(i - up) + j - left], grid[row_start(i + up) + j + left]));
+            }
+        }
+    }
+}
+
+static status make_sphere(size_t f, void (*place)(mesh *m, size_t face, size_t f), mesh **out, diagnostic *why)
+{
+    mesh *m;
+    TRY(make_grids(f, &m, why));
+    for (size_t face = 0; face < 20; face++) {
+        place(m, face, f);
+        clothe(m, face, row_start(f + 1));
+    }
+    return body_end(m, true, out, why);
+}
+
+status generate_sphere(size_t count, mesh **out, diagnostic *why)
+{
+    if (count < 1 || count > MESH_TRIANGLES_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "a sphere of %zu triangles", count);
+    const size_t f = (size_t)floor(sqrt((double)count / 20.0) + 0.5);
+    return make_sphere(f < 1 ? 1 : f, place_flat, out, why);
+}
+
+status generate_icosphere(int level, mesh **out, diagnostic *why)
+{
+    if (level < 0 || level > ICOSPHERE_LEVEL_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 11", "level %d of an icosphere", level);
+    return make_sphere((size_t)1 << level, place_bisected, out, why);
+}

@@ -1,0 +1,243 @@
+#include "base/grow.h"
+#include "geometry/hierarchy_bvh.h"
+
+#include <stdlib.h>
+
+static uint32_t blocks_of(uint32_t triangles)
+{
+    return (triangles + BLOCK - 1) / BLOCK;
+}
+
+/* The least cost of `subtrees` of them out of both halves, 2..8. */
+static float best_share(const bvh_branch *b, int subtrees, uint8_t *share)
+{
+    const float *first = b->half[0]->cost, *second = b->half[1]->cost;
+    float least = INFINITY;
+    for (int k = 1; k < subtrees; k++) {
+        float cost = first[k] + second[subtrees - k];
+        if (cost < least) {
+            least = cost;
+            *share = (uint8_t)k;
+        }
+    }
+    return least;
+}
+
+void bvh_choose(bvh_branch *b)
+{
+    float area = bvh_half_area(b->low, b->high);
+    float as_leaf = b->count <= LEAF_TRIANGLES_MAX ? area * (float)blocks_of(b->count) : INFINITY;
+    b->cost[1] = as_leaf;
+    b->leaf = true;
+    if (!b->half[0]) {
+        for (int i = 2; i < WIDTH; i++)
+            b->cost[i] = as_leaf;
+        return;
+    }
+    uint8_t all = 1; /* shares of 1 and 7 can be had whatever the costs are (they may be infinite, or no numbers) */
+    b->share[WIDTH] = all;
+    float as_node = best_share(b, WIDTH, &b->share[WIDTH]) + area * COST_NODE;
+    if (!(as_leaf <= as_node)) {
+        b->cost[1] = as_node;
+        b->leaf = false;
+    }
+    for (int i = 2; i < WIDTH; i++) {
+        uint8_t share = 0;
+        float cost = best_share(b, i, &share);
+        b->cost[i] = cost < b->cost[i - 1] ? cost : b->cost[i - 1];
+        b->share[i] = cost < b->cost[i - 1] ? share : 0;
+    }
+}
+
+/* The branches that stand for b as `subtrees` subtrees; returns how many there are. */
+static int instance_set(bvh_branch *b, int subtrees, bvh_branch **out)
+{
+    while (subtrees > 1 && subtrees < WIDTH && (!b->half[0] || b->share[subtrees] == 0))
+        subtrees--;
+    if (subtrees == 1) {
+        *out = b;
+        return 1;
+    }
+    int count = instance_set(b->half[0], b->share[subtrees], out);
+    return count + instance_set(b->half[1], subtrees - b->share[subtrees], out + count);
+}
+
+static int children_of(bvh_branch *b, bool root, bvh_branch **out)
+{
+    if (root && b->leaf) {
+        *out = b;
+        return 1;
+    }
+    return instance_set(b, WIDTH, out);
+}
+
+/* Subtrees that are counted or written by one member each, and where they go. */
+typedef struct place {
+    bvh_branch *b;
+    size_t node, block;
+} place;
+typedef struct gathering {
+    hierarchy *h;
+    const bvh_ref *refs;
+    place *places;
+    size_t count, room;
+} gathering;
+
+static bool add_place(gathering *g, bvh_branch *b, size_t node, size_t block)
+{
+    if (!GROW(g->places, g->room, g->count + 1))
+        return false;
+    g->places[g->count++] = (place){b, node, block};
+    return true;
+}
+
+static bool small(const bvh_branch *b)
+{
+    return b->leaf || b->count <= TASK_TRIANGLES;
+}
+
+/* The subtrees below b, itself not one, that are small. */
+static bool find_small(gathering *g, bvh_branch *b, bool root)
+{
+    bvh_branch *children[WIDTH];
+    int count = children_of(b, root, children);
+    for (int i = 0; i < count; i++)
+        if (!(small(children[i]) ? add_place(g, children[i], 0, 0) : find_small(g, children[i], false)))
+            return false;
+    return true;
+}
+
+/* What becomes of b. small_known: what becomes of small subtrees below it is known already. */
+static void count_tree(bvh_branch *b, bool root, bool small_known)
+{
+    if (b->leaf && !root) {
+        b->nodes = b->depth = 0;
+        b->blocks = blocks_of(b->count);
+        b->leaves = 1;
+        return;
+    }
+    bvh_branch *children[WIDTH];
+    int count = children_of(b, root, children);
+    size_t nodes = 1, blocks = 0, leaves = 0;
+    uint32_t depth = 0;
+    for (int i = 0; i < count; i++) {
+        const bvh_branch *c = children[i]; /* b itself where the root is a leaf */
+        if (!small_known || !small(c))
+            count_tree(children[i], false, small_known);
+        nodes += c->nodes;
+        blocks += c->blocks;
+        leaves += c->leaves;
+        depth = c->depth > depth ? c->depth : depth;
+    }
+    b->nodes = nodes;
+    b->blocks = blocks;
+    b->leaves = leaves;
+    b->depth = depth + 1;
+}
+
+static void count_place(void *context, size_t index, int member)
+{
+    (void)member;
+    gathering *g = context;
+    count_tree(g->places[index].b, false, false);
+}
+
+static void write_leaf(hierarchy *h, const bvh_branch *b, const bvh_ref *refs, size_t first_block)
+{
+    uint32_t order[LEAF_TRIANGLES_MAX];
+    for (uint32_t i = 0; i < b->count; i++) {
+        uint32_t triangle = bvh_triangle(&refs[b->first + i]), k = i;
+        for (; k > 0 && order[k - 1] > triangle; k--)
+            order[k] = order[k - 1];
+        order[k] = triangle;
+    }
+    hierarchy_fill_blocks(h, order, b->count, first_block);
+}
+
+static void write_boxes(bvh_node *n, bvh_branch *const *children, int count)
+{
+    for (int i = 0; i < WIDTH; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            n->low[axis][i] = i < count ? children[i]->low[axis] : INFINITY;
+            n->high[axis][i] = i < count ? children[i]->high[axis] : -INFINITY;
+        }
+    n->child_count = (uint32_t)count;
+}
+
+/* Depth first: a node, then each child's subtree; blocks in the order of their leaves. With later: small subtrees are
+ * only noted there. false when there is no memory for that. */
+static bool write_tree(gathering *g, bvh_branch *b, bool root, size_t node, size_t block, gathering *later)
+{
+    bvh_branch *children[WIDTH];
+    int count = children_of(b, root, children);
+    bvh_node *n = &g->h->nodes[node++];
+    memset(n, 0, sizeof *n);
+    write_boxes(n, children, count);
+    for (int i = 0; i < count; i++) {
+        bvh_branch *c = children[i];
+        n->child[i] = c->leaf ? child_leaf((uint32_t)block, blocks_of(c->count)) : (uint32_t)node;
+        if (c->leaf)
+            write_leaf(g->h, c, g->refs, block);
+        else if (!(later && small(c) ? add_place(later, c, node, block) : write_tree(g, c, false, node, block, later)))
+            return false;
+        node += c->leaf ? 0 : c->nodes;
+        block += c->leaf ? blocks_of(c->count) : c->blocks;
+    }
+    return true;
+}
+
+static void write_place(void *context, size_t index, int member)
+{
+    (void)member;
+    gathering *g = context;
+    const place *p = &g->places[index];
+    write_tree(g, p->b, false, p->node, p->block, NULL);
+}
+
+static status make_room(hierarchy *h, size_t nodes, size_t blocks, diagnostic *why)
+{
+    if (blocks > child_first_block(UINT32_MAX) || nodes >= CHILD_LEAF)
+        return diagnose(why, STATUS_FAILURE, "a mesh of fewer triangles", "the hierarchy would have too many leaves");
+    h->nodes = aligned_alloc(64, nodes * sizeof *h->nodes);
+    h->node_count = nodes;
+    if (!h->nodes || !hierarchy_make_blocks(h, blocks))
+        return out_of_memory(why);
+    return STATUS_OK;
+}
+
+static status no_triangles(hierarchy *h, diagnostic *why)
+{
+    TRY(make_room(h, 1, 0, why));
+    memset(h->nodes, 0, sizeof *h->nodes);
+    write_boxes(h->nodes, NULL, 0);
+    h->report.nodes = 1;
+    h->report.depth = 1;
+    return STATUS_OK;
+}
+
+static status gather(gathering *g, bvh_branch *root, thread_team *t, diagnostic *why)
+{
+    if (!find_small(g, root, true))
+        return out_of_memory(why);
+    thread_team_run(t, count_place, g, g->count);
+    count_tree(root, true, true);
+    TRY(make_room(g->h, root->nodes, root->blocks, why));
+    g->count = 0;
+    if (!write_tree(g, root, true, 0, 0, g))
+        return out_of_memory(why);
+    thread_team_run(t, write_place, g, g->count);
+    g->h->report.nodes = root->nodes;
+    g->h->report.leaves = root->leaves;
+    g->h->report.depth = (int)root->depth;
+    return STATUS_OK;
+}
+
+status bvh_collapse(hierarchy *h, bvh_branch *root, const bvh_ref *refs, thread_team *t, diagnostic *why)
+{
+    if (!root)
+        return no_triangles(h, why);
+    gathering g = {.h = h, .refs = refs};
+    status code = gather(&g, root, t, why);
+    free(g.places);
+    return code;
+}

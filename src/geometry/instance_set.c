@@ -1,0 +1,215 @@
+#include "geometry/instance_set.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+vec3 instance_set_origin(const instanced_mesh *p, uint32_t copy)
+{
+    if (copy == 0)
+        return p->origin;
+    const uint32_t nx = p->copies[0], ny = p->copies[1];
+    const vec3 steps = vec3_make((double)(copy % nx), (double)(copy / nx % ny), (double)(copy / nx / ny));
+    const vec3 offset = vec3_make(steps.x * p->spacing.x, steps.y * p->spacing.y, steps.z * p->spacing.z);
+    return vec3_add(p->origin, mat3_apply(p->rotation, offset));
+}
+
+double instance_set_extent(const instance_set *f, int64_t face)
+{
+    const instanced_mesh *p = &f->parts[f->by_primitive[mesh_face_primitive(face)]];
+    const vec3 o = instance_set_origin(p, mesh_face_copy(face));
+    return fmax(fabs(o.x), fmax(fabs(o.y), fabs(o.z))) + p->reach;
+}
+
+vec3 instance_set_vertex_point(const instanced_mesh *p, uint32_t copy, uint32_t vertex)
+{
+    const vec3 v = p->triangles->vertices[vertex];
+    const vec3 scaled = vec3_make(v.x * p->scale.x, v.y * p->scale.y, v.z * p->scale.z);
+    return vec3_add(instance_set_origin(p, copy), p->turned ? mat3_apply(p->rotation, scaled) : scaled);
+}
+
+/* Normals go over by the inverse transposed matrix: R S^-1. */
+vec3 instance_set_vertex_normal(const instanced_mesh *p, uint32_t vertex)
+{
+    if (!p->triangles->normals)
+        return vec3_make(0.0, 0.0, 0.0);
+    const vec3 n = p->triangles->normals[vertex];
+    if (!p->scaled)
+        return p->turned ? mat3_apply(p->rotation, n) : n;
+    return vec3_normalize(mat3_apply(p->rotation, vec3_make(n.x / p->scale.x, n.y / p->scale.y, n.z / p->scale.z)));
+}
+
+static double largest_coordinate(const mesh *m, vec3 scale)
+{
+    if (m->triangle_count == 0)
+        return 0.0;
+    const double x = fmax(fabs(m->bounds.low.x), fabs(m->bounds.high.x)) * scale.x;
+    const double y = fmax(fabs(m->bounds.low.y), fabs(m->bounds.high.y)) * scale.y;
+    const double z = fmax(fabs(m->bounds.low.z), fabs(m->bounds.high.z)) * scale.z;
+    return fmax(x, fmax(y, z));
+}
+
+static instanced_mesh part_of(const instance_source *source, size_t first_instance)
+{
+    const solid_shape *shape = source->shape;
+    const vec3 turn = shape->rotation_deg, scale = shape->scale, copies = shape->copies;
+    return (instanced_mesh){.triangles = shape->mesh,
+                            .tree = source->tree,
+                            .primitive = source->primitive,
+                            .priority_index = source->priority_index,
+                            .closed = shape->mesh->closed,
+                            .turned = turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0,
+                            .scaled = scale.x != 1.0 || scale.y != 1.0 || scale.z != 1.0,
+                            .rotation = rotation_from_deg(turn),
+                            .scale = scale,
+                            .origin = shape->position,
+                            .spacing = shape->spacing,
+                            .copies = {(uint32_t)copies.x, (uint32_t)copies.y, (uint32_t)copies.z},
+                            .first_instance = first_instance,
+                            .reach = largest_coordinate(shape->mesh, scale)};
+}
+
+static size_t instances_of(const instanced_mesh *p)
+{
+    return (size_t)p->copies[0] * p->copies[1] * p->copies[2];
+}
+
+/* Bounds in the world of a box in a part's frame, about its origin; a little wider than rounding needs. */
+static bounds3 bounds_in_world(const instanced_mesh *p)
+{
+    const bounds3 b = p->triangles->bounds;
+    bounds3 world = {vec3_make(HUGE_VAL, HUGE_VAL, HUGE_VAL), vec3_make(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL)};
+    const double slack = p->reach * 0x1p-48;
+    for (int k = 0; k < 8; k++) {
+        const vec3 corner =
+            vec3_make((k & 1 ? b.high.x : b.low.x) * p->scale.x, (k & 2 ? b.high.y : b.low.y) * p->scale.y,
+                      (k & 4 ? b.high.z : b.low.z) * p->scale.z);
+        const vec3 v = mat3_apply(p->rotation, corner);
+        world.low =
+            vec3_make(fmin(world.low.x, v.x - slack), fmin(world.low.y, v.y - slack), fmin(world.low.z, v.z - slack));
+        world.high = vec3_make(fmax(world.high.x, v.x + slack), fmax(world.high.y, v.y + slack),
+                               fmax(world.high.z, v.z + slack));
+    }
+    return world;
+}
+
+/* In the part's place in the row; a mesh without triangles has no bounds, and the triangle of zeros stays, which no
+ * tree takes in. */
+static void span_copies(instance_set *f, const instanced_mesh *p)
+{
+    const bounds3 box = bounds_in_world(p);
+    for (size_t copy = 0; copy < instances_of(p) && p->triangles->triangle_count > 0; copy++) {
+        const vec3 o = instance_set_origin(p, (uint32_t)copy);
+        const double slack = (fabs(o.x) + fabs(o.y) + fabs(o.z)) * 0x1p-48;
+        const vec3 wider = vec3_make(slack, slack, slack);
+        const vec3 low = vec3_sub(vec3_add(box.low, o), wider), high = vec3_add(vec3_add(box.high, o), wider);
+        const size_t at = p->first_instance + copy;
+        vec3 *corner = &f->proxies->vertices[3 * at];
+        corner[0] = low;
+        corner[1] = high;
+        corner[2] = vec3_make(low.x, high.y, low.z);
+        f->proxies->triangles[at] =
+            (mesh_triangle){{(uint32_t)(3 * at), (uint32_t)(3 * at + 1), (uint32_t)(3 * at + 2)}};
+    }
+}
+
+/* A triangle that spans the bounds stands for each instance. */
+static status make_top(instance_set *f, diagnostic *why)
+{
+    status code = mesh_create(3 * f->instance_count, f->instance_count, false, false, false, &f->proxies, why);
+    for (int i = 0; i < f->part_count && code == STATUS_OK; i++)
+        span_copies(f, &f->parts[i]);
+    THEN(code, mesh_finish(f->proxies, why));
+    if (code == STATUS_BAD_INPUT)
+        code = diagnose(why, STATUS_BAD_INPUT, "scale them down, or stand them nearer",
+                        "meshes reach farther than 1e9 scene units");
+    return code == STATUS_OK ? hierarchy_build(f->proxies, HIERARCHY_BVH, 1, &f->top, why) : code;
+}
+
+status instance_set_build(const instance_source *sources, int count, instance_set **out, diagnostic *why)
+{
+    instance_set *f = calloc(1, sizeof *f);
+    instanced_mesh *parts = calloc((size_t)count, sizeof *parts);
+    if (!f || !parts) {
+        free(f);
+        free(parts);
+        return out_of_memory(why);
+    }
+    f->parts = parts;
+    f->part_count = count;
+    f->lowest = f->lowest_closed = INT_MAX;
+    memset(f->by_primitive, -1, sizeof f->by_primitive);
+    for (int i = 0; i < count; i++) {
+        instanced_mesh *p = &f->parts[i];
+        *p = part_of(&sources[i], f->instance_count);
+        f->instance_count += instances_of(p);
+        const uint64_t bit = (uint64_t)1 << p->primitive;
+        f->primitives |= bit;
+        *(p->closed ? &f->closed : &f->skins) |= bit;
+        f->by_primitive[p->primitive] = i;
+        if (p->priority_index < f->lowest)
+            f->lowest = p->priority_index;
+        if (p->closed && p->priority_index < f->lowest_closed)
+            f->lowest_closed = p->priority_index;
+    }
+    for (int priority_index = 0; priority_index <= PRIMITIVES_MAX; priority_index++)
+        for (int i = 0; i < count; i++)
+            if (parts[i].closed && parts[i].priority_index < priority_index)
+                f->closed_under[priority_index] |= (uint64_t)1 << parts[i].primitive;
+    status code = STATUS_OK;
+    if (f->instance_count > COPIES_MAX)
+        code = diagnose(why, STATUS_BAD_INPUT, "use fewer copies",
+                        "the meshes have %zu copies together, more than 4194304", f->instance_count);
+    if (code == STATUS_OK && f->instance_count > 1)
+        code = make_top(f, why);
+    if (code != STATUS_OK) {
+        instance_set_destroy(f);
+        return code;
+    }
+    *out = f;
+    return STATUS_OK;
+}
+
+void instance_set_destroy(instance_set *f)
+{
+    if (!f)
+        return;
+    hierarchy_destroy(f->top);
+    mesh_release(f->proxies);
+    free(f->parts);
+    free(f);
+}
+
+/* Does a back come before a front, along a direction of no axis and no diagonal? A front and a back at one place are
+ * copies that touch, or an edge: what comes behind them says it. */
+static bool is_inside(const instance_set *f, uint64_t bit, double reach, vec3 point)
+{
+    instance_ray ray = {.origin = point,
+                        .direction = vec3_make(0.5396, 0.6180, 0.5716),
+                        .t_max = HUGE_VAL,
+                        .start = FACE_NONE,
+                        .wanted = bit};
+    for (;;) {
+        instance_hit back, front;
+        ray.inside = bit; /* looks for backs */
+        instance_kernels_sse2.nearest(f, &ray, 1, &back);
+        ray.inside = 0;
+        instance_kernels_sse2.nearest(f, &ray, 1, &front);
+        const double first = fmin(back.t, front.t), tie = 0x1p-40 * (first + reach);
+        if (first == HUGE_VAL || fabs(back.t - front.t) > tie)
+            return back.t < front.t;
+        ray.t_min = first + tie;
+    }
+}
+
+uint64_t instance_set_inside(const instance_set *f, vec3 point)
+{
+    uint64_t inside = 0;
+    for (int i = 0; i < f->part_count; i++) {
+        const instanced_mesh *p = &f->parts[i];
+        const uint64_t bit = (uint64_t)1 << p->primitive;
+        const double reach = p->reach + fabs(p->origin.x) + fabs(p->origin.y) + fabs(p->origin.z);
+        inside |= p->closed && is_inside(f, bit, reach, point) ? bit : 0;
+    }
+    return inside;
+}

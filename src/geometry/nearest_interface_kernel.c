@@ -1,0 +1,548 @@
+/* Second pass over a batch: from the intervals of all primitives, who wins.
+ *
+ * While a ray is in the body of rank b the medium can change at two kinds of points only: where it leaves
+ * that body, and where it enters one of a higher rank. The nearest of these is the next change; everything
+ * that happens below rank b before it has no effect. So one pass over the bodies finds it.
+ *
+ * If the media on both sides are equal it is no interface: the crossing is marked as done in the intervals (the ray is
+ * not started anew) and the next change is sought, for those rays alone. Where another boundary lies near the crossing,
+ * contact_kernel.c decides whether they are one. */
+#include "geometry/kernels.h"
+
+#include "base/lanes.h"
+#include "geometry/instance_set.h"
+#include "geometry/primitives/primitive.h"
+#include <math.h>
+
+/* Beyond this a crossing is never: see roots.h. */
+#define NEVER 1e120
+ALWAYS_INLINE int64_t set_mask(uint64_t set, int bit)
+{
+    return -(int64_t)((set & (uint64_t)1 << bit) != 0);
+}
+
+/* In which bodies is the set; the highest of them. */
+static void ranks_of(const scene_geometry *a, int n, const uint64_t *restrict set, int64_t *restrict priority_index)
+{
+    for (int i = 0; i < n; i++)
+        priority_index[i] = 0;
+    for (int r = 1; r <= a->region_count; r++) {
+        const int outside = a->regions[r].outside, hollow = a->regions[r].hollow;
+        const uint64_t wanted = (uint64_t)1 << outside, both = wanted | (hollow < 0 ? 0 : (uint64_t)1 << hollow);
+        /* VECTORISE */
+        for (int i = 0; i < n; i++)
+            priority_index[i] = blend_int(-(int64_t)((set[i] & both) == wanted), r, priority_index[i]);
+    }
+}
+
+/* Next change by a body without a hollow. */
+static void next_of_plain(int n, int64_t priority_index, int64_t hit_primitive, const double *restrict in,
+                          const double *restrict out, const ray_scratch *restrict s, hit_batch *restrict c)
+{
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        int64_t within = set_mask(s->inside[i], (int)hit_primitive);
+        double t = blend(within, out[i], in[i]);
+        int64_t take = mask_less(t, c->t[i]) & -(int64_t)(c->before[i] <= priority_index);
+        c->t[i] = blend(take, t, c->t[i]);
+        c->hit_primitive[i] = blend_int(take, hit_primitive, c->hit_primitive[i]);
+    }
+}
+
+/* Next change by a body with a hollow. Its one boundary ahead is where it is left, if the ray is in it: out of its
+ * outside or into its hollow; else where it is entered: through its outside, or out of the hollow if that covers the
+ * entry. */
+static void next_of_hollow(int n, int64_t priority_index, int64_t outside, int64_t hollow, const double *restrict in,
+                           const double *restrict out, const double *restrict hollow_in,
+                           const double *restrict hollow_out, const ray_scratch *restrict s, hit_batch *restrict c)
+{
+    const uint64_t wanted = (uint64_t)1 << outside, both = wanted | (uint64_t)1 << hollow;
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        int64_t within = -(int64_t)((s->inside[i] & both) == wanted);
+        int64_t by_hollow = mask_less(hollow_in[i], out[i]);
+        double leave = blend(by_hollow, hollow_in[i], out[i]);
+        int64_t covered = mask_less_equal(hollow_in[i], in[i]) & mask_less(in[i], hollow_out[i]);
+        double emerge = blend(mask_less(hollow_out[i], out[i]), hollow_out[i], HUGE_VAL);
+        double enter = blend(covered, emerge, in[i]);
+        double t = blend(within, leave, enter);
+        int64_t through_hollow = blend_int(within, by_hollow, covered);
+        int64_t take = mask_less(t, c->t[i]) & -(int64_t)(c->before[i] <= priority_index);
+        c->t[i] = blend(take, t, c->t[i]);
+        c->hit_primitive[i] = blend_int(take, blend_int(through_hollow, hollow, outside), c->hit_primitive[i]);
+    }
+}
+
+/* Adds `many` primitives from the one numbered first to the sets just before and just behind t, and to the set of those
+ * whose interval reaches in between; the first call starts the sets. */
+ALWAYS_INLINE void sets_around(int n, int first, int many, ray_scratch *restrict s, hit_batch *restrict c)
+{
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        int64_t before = first == 0 ? 0 : (int64_t)c->inside_before[i],
+                after = first == 0 ? 0 : (int64_t)c->inside_after[i];
+        int64_t between = first == 0 ? 0 : (int64_t)s->near[i];
+        for (int k = 0; k < many; k++) {
+            const int64_t bit = (int64_t)((uint64_t)1 << (first + k));
+            double in = s->in[first + k][i], out = s->out[first + k][i];
+            before |= -(int64_t)((in <= s->low[i]) & (s->low[i] < out)) & bit;
+            after |= -(int64_t)((in <= s->high[i]) & (s->high[i] < out)) & bit;
+            between |= -(int64_t)((in <= s->high[i]) & (s->low[i] < out)) & bit;
+        }
+        c->inside_before[i] = (uint64_t)before;
+        c->inside_after[i] = (uint64_t)after;
+        s->near[i] = (uint64_t)between;
+    }
+}
+
+/* The bit of a row of further intervals becomes its primitive's. */
+static void fold_row(const scene_geometry *a, int row, int n, ray_scratch *restrict s, hit_batch *restrict c)
+{
+    int p = row;
+    while (a->further >> p & 1)
+        p--;
+    const uint64_t bit = (uint64_t)1 << row, keep = ~bit;
+    const int down = row - p;
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        c->inside_before[i] = (c->inside_before[i] & keep) | (c->inside_before[i] & bit) >> down;
+        c->inside_after[i] = (c->inside_after[i] & keep) | (c->inside_after[i] & bit) >> down;
+        s->near[i] = (s->near[i] & keep) | (s->near[i] & bit) >> down;
+    }
+}
+
+/* Constant counts, so that the inner loop unrolls. */
+static void all_sets_around(const scene_geometry *a, int n, ray_scratch *s, hit_batch *c)
+{
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        double close = BOUNDARY_CLOSE * (c->t[i] + s->slack[i]);
+        s->low[i] = c->t[i] - close;
+        s->high[i] = c->t[i] + close;
+    }
+    sets_around(n, 0, 1, s, c);
+    int k = 1;
+    for (; k + 4 <= a->primitive_count; k += 4)
+        sets_around(n, k, 4, s, c);
+    for (; k < a->primitive_count; k++)
+        sets_around(n, k, 1, s, c);
+    /* An interval that reaches in between and does not cover both ends has a boundary there. */
+    /* VECTORISE */
+    for (int i = 0; i < n; i++)
+        s->near[i] &= ~(c->inside_before[i] & c->inside_after[i]);
+    for (uint64_t left = a->further; left; left &= left - 1)
+        fold_row(a, __builtin_ctzll(left), n, s, c);
+}
+
+/* -1 where the body of that rank is opaque: bit rank - 1 of the set. */
+ALWAYS_INLINE int64_t opaque_mask(uint64_t opaque_regions, int64_t priority_index)
+{
+    const int64_t some = -(int64_t)(priority_index > 0);
+    return -(int64_t)(opaque_regions >> (uint64_t)(priority_index + some) & 1) & some;
+}
+
+/* Whose surface it is: scene_geometry_surface. */
+static void surfaces(uint64_t opaque_regions, int n, const int64_t *restrict before, const int64_t *restrict after,
+                     int64_t *restrict surface)
+{
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        const int64_t opaque_after = opaque_mask(opaque_regions, after[i]),
+                      opaque_before = opaque_mask(opaque_regions, before[i]);
+        const int64_t higher = blend_int(-(int64_t)(after[i] > before[i]), after[i], before[i]);
+        surface[i] = blend_int(opaque_after, after[i], blend_int(opaque_before, before[i], higher));
+    }
+}
+
+/* Columns that need a second, exact check: another boundary is near, or the media are perhaps equal. */
+static void mark_attention(const scene_geometry *a, int n, const ray_scratch *restrict s, const hit_batch *restrict c,
+                           int64_t *restrict attention)
+{
+    const int64_t doubt = -(int64_t)!a->distinct;
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        const int64_t met = -(int64_t)(c->hit_primitive[i] >= 0);
+        const uint64_t changed = c->inside_before[i] ^ c->inside_after[i];
+        /* 0 where all of these are the one bit that is crossed; gcc vectorises variable shifts to the right only */
+        const uint64_t shifted = changed >> (uint64_t)(c->hit_primitive[i] & met);
+        const uint64_t others = (s->near[i] ^ changed) | (changed & (changed - 1)) | (shifted ^ 1);
+        attention[i] = (~mask_same((int64_t)others, 0) | mask_same(c->before[i], c->after[i]) | doubt) & met;
+    }
+}
+
+/* The next change of medium of the first n columns. */
+static void next_changes(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+                         instance_hit *mesh_hits)
+{
+    ranks_of(a, n, s->inside, c->before);
+    for (int i = 0; i < n; i++) {
+        c->t[i] = NEVER;
+        c->hit_primitive[i] = -1;
+    }
+    for (int r = 1; r <= a->region_count; r++) {
+        const int o = a->regions[r].outside, h = a->regions[r].hollow;
+        if (is_mesh(a, o))
+            continue;
+        if (h < 0)
+            next_of_plain(n, r, o, s->in[o], s->out[o], s, c);
+        else
+            next_of_hollow(n, r, o, h, s->in[o], s->out[o], s->in[h], s->out[h], s, c);
+    }
+    if (a->meshes)
+        KERNEL(mesh_changes)(a, rays, n, s, c, mesh_hits);
+    all_sets_around(a, n, s, c);
+    if (a->meshes)
+        KERNEL(mesh_sets)(a, rays, n, s, c, mesh_hits);
+    ranks_of(a, n, c->inside_after, c->after);
+    surfaces(a->opaque_regions, n, c->before, c->after, c->surface);
+    mark_attention(a, n, s, c, s->attention);
+    for (int k = 0; a->meshes && k < n; k++) {
+        s->attention[k] |= -(int64_t)(c->hit_primitive[k] >= 0 && s->meshes->near[k]);
+        s->meshes->until[k] = greater(c->t[k], s->meshes->from[k]);
+        /* Through an edge a front and a back are at one place: the second crossing there is the last, or they would
+         * follow one another for ever. */
+        if (c->hit_primitive[k] >= 0 && c->t[k] <= s->meshes->from[k]) {
+            const bool on_mesh = is_mesh(a, (int)c->hit_primitive[k]);
+            const double extent =
+                on_mesh ? instance_set_extent(a->meshes, mesh_hits[k].face) : a->primitives[c->hit_primitive[k]].extent;
+            s->meshes->until[k] += POINT_ERROR * (c->t[k] + extent * steps_per_unit(rays, s->ray[k]));
+        }
+    }
+}
+
+/* Is column k an interface? */
+static bool is_interface(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
+                         instance_hit *mesh_hits)
+{
+    const uint64_t only = (uint64_t)1 << c->hit_primitive[k];
+    if (s->near[k] != only || (c->inside_before[k] ^ c->inside_after[k]) != only || (a->meshes && s->meshes->near[k]))
+        KERNEL(merge_contacts)(a, rays, k, s, c, mesh_hits);
+    return a->regions[c->before[k]].medium != a->regions[c->after[k]].medium;
+}
+
+/* The rows of a primitive of several intervals, behind t: those that are spent give way to the next. */
+static void pass_rows(int first, int rows, bool inside, int k, int m, double t, ray_scratch *s)
+{
+    int spent = 0;
+    while (spent < rows && (inside ? s->out[first + spent][k] : s->in[first + spent][k]) <= t)
+        spent++;
+    const bool leaves_now = inside && spent == rows;
+    for (int j = 0; j < rows; j++) {
+        const bool left = j + spent < rows;
+        s->in[first + j][m] = left ? s->in[first + spent + j][k] : HUGE_VAL;
+        s->out[first + j][m] = left ? s->out[first + spent + j][k] : -HUGE_VAL;
+    }
+    if (inside)
+        s->in[first][m] = -HUGE_VAL;
+    if (leaves_now)
+        s->out[first][m] = t;
+}
+
+/* Column k crosses without effect: what lies behind the crossing becomes column m, to be looked at again. */
+static void pass_on(const scene_geometry *a, int k, int m, ray_scratch *s, const hit_batch *c,
+                    const instance_hit *mesh_hits)
+{
+    const uint64_t set = c->inside_after[k] & ~(a->meshes ? a->meshes->skins : 0);
+    const double t = c->t[k];
+    for (int p = 0; p < a->primitive_count; p++) {
+        double in = s->in[p][k], out = s->out[p][k];
+        const bool endless = is_mesh(a, p);
+        if (a->primitives[p].rows > 1) {
+            const int rows = a->primitives[p].rows;
+            pass_rows(p, rows, set >> p & 1, k, m, t, s);
+            p += rows - 1;
+            continue;
+        }
+        bool inside = set >> p & 1, spent = !inside && in <= t;
+        s->in[p][m] = inside ? -HUGE_VAL : spent ? HUGE_VAL : in;
+        s->out[p][m] = spent ? -HUGE_VAL : inside && out < t ? t : out;
+        if (endless)
+            s->in[p][m] = inside ? -HUGE_VAL : HUGE_VAL, s->out[p][m] = -s->in[p][m];
+    }
+    if (a->meshes) {
+        s->meshes->from[m] = s->meshes->until[k];
+        s->meshes->last[m] = is_mesh(a, (int)c->hit_primitive[k]) ? mesh_hits[k].face : s->meshes->last[k];
+    }
+    s->inside[m] = set;
+    s->slack[m] = s->slack[k];
+    s->ray[m] = s->ray[k];
+    if (s->segments) {
+        s->segments->passed[m] = t;
+        s->segments->unit[m] = s->segments->unit[k];
+    }
+}
+
+/* Column k was followed on through one medium to its crossing, or to `end`. */
+static void record_segment(int k, double end, ray_scratch *s, const hit_batch *c)
+{
+    medium_segments *w = s->segments;
+    const double length = (lesser(c->t[k], end) - w->passed[k]) * w->unit[k];
+    if (w->count == SEGMENTS_MAX)
+        w->full(w->context);
+    w->segment[w->count++] = (medium_segment){s->ray[k], (int)c->before[k], length};
+}
+
+static void begin(const scene_geometry *a, const ray_batch *rays, ray_scratch *s)
+{
+    for (int i = 0; i < rays->count; i++) {
+        s->inside[i] = rays->inside[i];
+        s->ray[i] = i;
+    }
+    for (int i = 0; a->meshes && i < rays->count; i++) {
+        s->meshes->from[i] = 0.0;
+        s->meshes->last[i] = rays->start[i];
+    }
+    if (s->segments)
+        s->segments->count = 0;
+}
+
+/* The media up to each ray's first crossing. */
+static void record_first_segments(int n, ray_scratch *s, const hit_batch *hits)
+{
+    for (int i = 0; i < n; i++) {
+        s->segments->passed[i] = 0.0;
+        s->segments->unit[i] = 1.0;
+        record_segment(i, HUGE_VAL, s, hits);
+    }
+}
+
+static void copy_hit(const hit_batch *from, int k, hit_batch *to, int i)
+{
+    to->t[i] = from->t[k];
+    to->hit_primitive[i] = from->hit_primitive[k];
+    to->before[i] = from->before[k];
+    to->after[i] = from->after[k];
+    to->surface[i] = from->surface[k];
+    to->inside_before[i] = from->inside_before[k];
+    to->inside_after[i] = from->inside_after[k];
+}
+
+static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
+{
+    KERNEL(intervals_of)(a, rays, UINT64_MAX, s);
+    instance_hit *mesh_hits = a->meshes ? s->meshes->hit : NULL, *again = a->meshes ? s->meshes->again : NULL;
+    begin(a, rays, s);
+    for (int i = 0; i < rays->count; i++)
+        s->slack[i] = a->extent;
+    next_changes(a, rays, rays->count, s, hits, mesh_hits);
+    if (s->segments)
+        record_first_segments(rays->count, s, hits);
+    int left = 0;
+    for (int i = 0; i < rays->count; i++)
+        if (s->attention[i] && !is_interface(a, rays, i, s, hits, mesh_hits))
+            pass_on(a, i, left++, s, hits, mesh_hits);
+    while (left > 0) {
+        const int n = left;
+        next_changes(a, rays, n, s, &s->again, again);
+        left = 0;
+        for (int k = 0; k < n; k++) {
+            if (s->segments)
+                record_segment(k, HUGE_VAL, s, &s->again);
+            if (s->attention[k] && !is_interface(a, rays, k, s, &s->again, again)) {
+                pass_on(a, k, left++, s, &s->again, again);
+                continue;
+            }
+            copy_hit(&s->again, k, hits, s->ray[k]);
+            if (again)
+                mesh_hits[s->ray[k]] = again[k];
+        }
+    }
+    for (int i = 0; a->meshes && i < rays->count; i++)
+        hits->inside_after[i] &= ~a->meshes->skins; /* nothing is ever in a skin */
+}
+
+/* Does the path from 0 to 1 go through the body's matter in the interval of that row, whatever hides it? Where the ends
+ * of a piece of it lie within the filter's window they may be in contact: then, and where the body is doubtful, it is
+ * undecided. */
+static void touching(const scene_geometry *a, const region *b, int row, bool doubtful, int n,
+                     const double *restrict steps, const ray_scratch *restrict s, int64_t *restrict blocked,
+                     int64_t *restrict undecided)
+{
+    const double *restrict in = s->in[row], *restrict out = s->out[row];
+    const double extent = a->primitives[b->outside].extent;
+    const int64_t certain = ~mask_of(doubtful);
+    if (b->hollow < 0) {
+        /* VECTORISE */
+        for (int i = 0; i < n; i++) {
+            const int64_t met = mask_less(in[i], 1.0) & mask_less(0.0, out[i]);
+            blocked[i] |= met & certain & mask_less(BOUNDARY_CLOSE * (1.0 + extent * steps[i]), out[i] - in[i]);
+            undecided[i] |= met;
+        }
+        return;
+    }
+    const double *restrict hollow_in = s->in[b->hollow], *restrict hollow_out = s->out[b->hollow];
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        const double thin = BOUNDARY_CLOSE * (1.0 + extent * steps[i]);
+        const double first_out = lesser(out[i], hollow_in[i]), second_in = greater(in[i], hollow_out[i]);
+        const int64_t first = mask_less(in[i], lesser(first_out, 1.0)) & mask_less(0.0, first_out);
+        const int64_t second = mask_less(second_in, lesser(out[i], 1.0)) & mask_less(0.0, out[i]);
+        const int64_t thick =
+            (first & mask_less(thin, first_out - in[i])) | (second & mask_less(thin, out[i] - second_in));
+        blocked[i] |= thick & certain;
+        undecided[i] |= first | second;
+    }
+}
+
+/* The primitives of the bodies that first sight looks at. */
+static uint64_t first_sight_primitives(const scene_geometry *a, int solid_shadows)
+{
+    uint64_t wanted = 0;
+    for (int r = 1; r <= a->region_count; r++) {
+        const region *b = &a->regions[r];
+        if (region_casts_shadow(b, solid_shadows))
+            wanted |= (uint64_t)1 << b->outside | (b->hollow < 0 ? 0 : (uint64_t)1 << b->hollow);
+    }
+    return wanted;
+}
+
+static bool any_undecided(int n, const ray_scratch *s)
+{
+    int64_t any = 0;
+    for (int i = 0; i < n; i++)
+        any |= s->undecided[i] & ~s->blocked[i];
+    return any != 0;
+}
+
+/* First sight: blocked for certain by an opaque body that nothing clear can hide; undecided where order or attenuation
+ * matters, which is everywhere if the surroundings absorb. */
+static void first_sight(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s)
+{
+    const int n = rays->count;
+    const int64_t everywhere = mask_of(a->regions[0].absorbs);
+    /* VECTORISE */
+    for (int i = 0; i < n; i++) {
+        s->blocked[i] = 0, s->undecided[i] = everywhere;
+        s->low[i] = steps_per_unit(rays, i);
+    }
+    uint64_t sure = 0, unsure = 0; /* meshes */
+    bool hidden = false;           /* can a clear body of a higher rank hide this one? */
+    for (int r = a->region_count; r >= 1; r--) {
+        const region *b = &a->regions[r];
+        const bool doubtful = hidden || !b->opaque, casts = region_casts_shadow(b, solid_shadows);
+        if (casts && is_mesh(a, b->outside))
+            *(doubtful ? &unsure : &sure) |= (uint64_t)1 << b->outside;
+        else if (casts)
+            for (int k = 0; k < a->primitives[b->outside].rows; k++)
+                touching(a, b, b->outside + k, doubtful, n, s->low, s, s->blocked, s->undecided);
+        hidden |= !b->opaque;
+    }
+    if (sure)
+        KERNEL(mesh_shadows)(a, rays, sure, s->blocked, s->blocked);
+    if (unsure)
+        KERNEL(mesh_shadows)(a, rays, unsure, s->undecided, s->blocked);
+}
+
+/* The slot of the mesh that column k crosses; 0 where another body's surface bounds it. */
+static int slot_met(const scene_geometry *a, const region *met, const hit_batch *c, const instance_hit *mesh_hits,
+                    int k)
+{
+    if (c->hit_primitive[k] != met->outside || mesh_hits[k].face == FACE_NONE)
+        return 0;
+    const mesh *m = a->meshes->parts[a->meshes->by_primitive[met->outside]].triangles;
+    return m->slots ? m->slots[mesh_face_triangle(mesh_hits[k].face)] : 0;
+}
+
+/* One interface on the way of the shadow ray in column k: what of the light it lets through. */
+static double let_through(const scene_geometry *a, int solid_shadows, const hit_batch *c, const instance_hit *mesh_hits,
+                          int k)
+{
+    const region *before = &a->regions[c->before[k]], *after = &a->regions[c->after[k]];
+    if (solid_shadows || after->opaque || before->opaque)
+        return 0.0;
+    const region *met = c->before[k] > c->after[k] ? before : after;
+    return met->face_shadow_transmittance ? met->face_shadow_transmittance[slot_met(a, met, c, mesh_hits, k)]
+                                          : met->shadow_transmittance;
+}
+
+/* The interface that the shadow ray in column k crosses. */
+static void note_crossing(const scene_geometry *a, int k, ray_scratch *s, const hit_batch *c,
+                          const instance_hit *mesh_hits)
+{
+    ray_crossings *x = s->crossings;
+    if (x->count == CROSSINGS_MAX)
+        x->full(x->context);
+    const int met = (int)c->hit_primitive[k];
+    x->crossings[x->count++] =
+        (ray_crossing){.ray = s->ray[k],
+                       .primitive = met,
+                       .before = (int)c->before[k],
+                       .after = (int)c->after[k],
+                       .t = c->t[k],
+                       .inside = c->inside_before[k],
+                       .mesh = is_mesh(a, met) ? mesh_hits[k] : (instance_hit){.face = FACE_NONE}};
+}
+
+/* Moves the undecided columns to the front; returns how many. */
+static int keep_undecided(const scene_geometry *a, const ray_batch *rays, ray_scratch *s)
+{
+    int n = 0;
+    for (int i = 0; i < rays->count; i++) {
+        if (s->blocked[i] || !s->undecided[i])
+            continue;
+        double length = sqrt(rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i]);
+        s->slack[n] = a->extent / length;
+        s->inside[n] = rays->inside[i];
+        s->ray[n] = i;
+        if (a->meshes) {
+            s->meshes->from[n] = 0.0;
+            s->meshes->last[n] = rays->start[i];
+        }
+        if (s->segments) {
+            s->segments->passed[n] = 0.0;
+            s->segments->unit[n] = length;
+        }
+        for (int p = 0; p < a->primitive_count; p++) {
+            s->in[p][n] = s->in[p][i];
+            s->out[p][n] = s->out[p][i];
+        }
+        n++;
+    }
+    return n;
+}
+
+static void shadow(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s,
+                   double *transmitted)
+{
+    const uint64_t wanted = first_sight_primitives(a, solid_shadows);
+    if (s->segments)
+        s->segments->count = 0;
+    if (s->crossings)
+        s->crossings->count = 0;
+    KERNEL(intervals_of)(a, rays, wanted, s);
+    first_sight(a, rays, solid_shadows, s);
+    for (int i = 0; i < rays->count; i++)
+        transmitted[i] = s->blocked[i] ? 0.0 : 1.0;
+    if (!any_undecided(rays->count, s))
+        return;
+    KERNEL(intervals_of)(a, rays, ~wanted, s);
+    for (int left = keep_undecided(a, rays, s); left > 0;) {
+        const int n = left;
+        hit_batch *c = &s->again;
+        instance_hit *again = a->meshes ? s->meshes->again : NULL;
+        next_changes(a, rays, n, s, c, again);
+        left = 0;
+        for (int k = 0; k < n; k++) {
+            if (s->segments)
+                record_segment(k, 1.0, s, c);
+            if (a->regions[c->before[k]].opaque) /* the ray starts in an opaque solid */
+                transmitted[s->ray[k]] = 0.0;
+            if (c->hit_primitive[k] < 0 || c->t[k] >= 1.0)
+                continue;
+            if (!s->attention[k] || is_interface(a, rays, k, s, c, again)) {
+                transmitted[s->ray[k]] *= let_through(a, solid_shadows, c, again, k);
+                if (s->crossings && transmitted[s->ray[k]] > 0.0)
+                    note_crossing(a, k, s, c, again);
+            }
+            if (transmitted[s->ray[k]] > 0.0)
+                pass_on(a, k, left++, s, c, again);
+        }
+    }
+}
+
+static void surface(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points)
+{
+    p->rule->KERNEL_ISA->points(p, rays, t, bit, points);
+}
+
+const geometry_kernels KERNEL(geometry_kernels) = {nearest, shadow, surface};

@@ -1,0 +1,196 @@
+#include "render/core/worker_pool.h"
+
+#include "base/float_environment.h"
+#include <errno.h>
+#include <pthread.h>
+#include <semaphore.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { STACK_BYTES = 512 * 1024 };
+
+typedef struct worker {
+    worker_pool *owner;
+    int index;
+    pthread_t thread;
+    _Alignas(64) sem_t wake; /* on a line of its own: workers wake one another */
+} worker;
+
+struct worker_pool {
+    worker **workers;
+    int count;   /* threads that wait */
+    int running; /* of this run */
+    bool quit;
+    worker_pool_task *task;
+    void *context;
+    _Alignas(64) atomic_int left;
+    sem_t done;
+};
+
+worker_pool *worker_pool_create(void)
+{
+    worker_pool *p = aligned_alloc(64, (sizeof(worker_pool) + 63) / 64 * 64);
+    if (!p)
+        return NULL;
+    memset(p, 0, sizeof *p);
+    sem_init(&p->done, 0, 0);
+    return p;
+}
+
+static void end_of_task(worker_pool *p)
+{
+    if (atomic_fetch_sub(&p->left, 1) == 1)
+        sem_post(&p->done);
+}
+
+static void wait_for(sem_t *s)
+{
+    while (sem_wait(s) != 0 && errno == EINTR)
+        ;
+}
+
+static void *kept_worker(void *argument)
+{
+    worker *w = argument;
+    worker_pool *p = w->owner;
+    float_environment_set();
+    for (;;) {
+        wait_for(&w->wake);
+        if (p->quit)
+            return NULL;
+        for (int child = 2 * w->index + 1; child <= 2 * w->index + 2 && child < p->running; child++)
+            sem_post(&p->workers[child]->wake);
+        p->task(p->context, w->index);
+        end_of_task(p);
+    }
+}
+
+static void *fresh_worker(void *argument)
+{
+    worker *w = argument;
+    float_environment_set();
+    w->owner->task(w->owner->context, w->index);
+    end_of_task(w->owner);
+    return NULL;
+}
+
+static int start_thread(worker *w, void *(*region)(void *))
+{
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, STACK_BYTES);
+    int error = pthread_create(&w->thread, &attributes, region, w);
+    pthread_attr_destroy(&attributes);
+    return error;
+}
+
+static status no_thread(int have, int error, diagnostic *why)
+{
+    return diagnose(why, STATUS_FAILURE, "ask for fewer threads, or raise the limit (ulimit -u)",
+                    "cannot start thread %d: %s", have + 1, strerror(error));
+}
+
+status worker_pool_reserve(worker_pool *p, int count, diagnostic *why)
+{
+    if (count <= p->count)
+        return STATUS_OK;
+    worker **grown = realloc(p->workers, (size_t)count * sizeof *grown);
+    if (!grown)
+        return out_of_memory(why);
+    p->workers = grown;
+    while (p->count < count) {
+        worker *w = aligned_alloc(64, (sizeof *w + 63) / 64 * 64);
+        if (!w)
+            return out_of_memory(why);
+        memset(w, 0, sizeof *w);
+        w->owner = p;
+        w->index = p->count;
+        sem_init(&w->wake, 0, 0);
+        int error = start_thread(w, kept_worker);
+        if (error) {
+            sem_destroy(&w->wake);
+            free(w);
+            return no_thread(p->count, error, why);
+        }
+        p->workers[p->count++] = w;
+    }
+    return STATUS_OK;
+}
+
+void worker_pool_destroy(worker_pool *p)
+{
+    if (!p)
+        return;
+    p->quit = true;
+    for (int i = 0; i < p->count; i++)
+        sem_post(&p->workers[i]->wake);
+    for (int i = 0; i < p->count; i++) {
+        pthread_join(p->workers[i]->thread, NULL);
+        sem_destroy(&p->workers[i]->wake);
+        free(p->workers[i]);
+    }
+    sem_destroy(&p->done);
+    free(p->workers);
+    free(p);
+}
+
+/* Waits for the last worker, looking up now and then if there is somebody to tell. */
+static void wait_until_done(worker_pool *p, void (*watch)(void *), double every_s)
+{
+    if (!watch) {
+        wait_for(&p->done);
+        return;
+    }
+    for (;;) {
+        struct timespec until;
+        clock_gettime(CLOCK_REALTIME, &until);
+        until.tv_nsec += (long)(every_s * 1e9);
+        until.tv_sec += until.tv_nsec / 1000000000;
+        until.tv_nsec %= 1000000000;
+        if (sem_timedwait(&p->done, &until) == 0)
+            return;
+        if (errno == ETIMEDOUT)
+            watch(p->context);
+    }
+}
+
+static status run_fresh(worker_pool *p, int count, void (*watch)(void *), double every_s, diagnostic *why)
+{
+    worker *fresh = aligned_alloc(64, (size_t)count * sizeof *fresh);
+    if (!fresh)
+        return out_of_memory(why);
+    int started = 0, error = 0;
+    for (; started < count; started++) {
+        fresh[started].owner = p;
+        fresh[started].index = started;
+        error = start_thread(&fresh[started], fresh_worker);
+        if (error)
+            break;
+    }
+    int missing = count - started;
+    if (missing > 0 && atomic_fetch_sub(&p->left, missing) == missing)
+        sem_post(&p->done);
+    wait_until_done(p, watch, every_s);
+    for (int i = 0; i < started; i++)
+        pthread_join(fresh[i].thread, NULL);
+    free(fresh);
+    return missing > 0 ? no_thread(started, error, why) : STATUS_OK;
+}
+
+status worker_pool_run(worker_pool *p, int count, bool keep, worker_pool_task *task, void (*watch)(void *),
+                       double every_s, void *context, diagnostic *why)
+{
+    if (keep)
+        TRY(worker_pool_reserve(p, count, why));
+    p->task = task;
+    p->context = context;
+    p->running = count;
+    atomic_store(&p->left, count);
+    if (!keep)
+        return run_fresh(p, count, watch, every_s, why);
+    sem_post(&p->workers[0]->wake);
+    wait_until_done(p, watch, every_s);
+    return STATUS_OK;
+}

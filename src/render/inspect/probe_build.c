@@ -1,0 +1,357 @@
+/* How a tree grows: each ray goes through the tracer alone, and what the tracer leaves in its hits, its gathered group,
+ * its branches and its queues is written down. */
+#include "base/grow.h"
+#include "render/inspect/probe_private.h"
+
+#include "optics/interface.h"
+#include "scene/model/medium.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why)
+{
+    const double far = 1e6;
+    if (!(fabs(origin.x) <= far && fabs(origin.y) <= far && fabs(origin.z) <= far))
+        return diagnose(why, STATUS_BAD_INPUT, "start within 1e6 scene units of the middle",
+                        "the ray starts too far away");
+    if (!(isfinite(direction.x) && isfinite(direction.y) && isfinite(direction.z)))
+        return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the ray's direction is not finite");
+    if (direction.x == 0.0 && direction.y == 0.0 && direction.z == 0.0)
+        return diagnose(why, STATUS_BAD_INPUT, "give a direction that is not 0,0,0", "the ray has no direction");
+    return STATUS_OK;
+}
+
+ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction)
+{
+    const double largest = fmax(fabs(direction.x), fmax(fabs(direction.y), fabs(direction.z)));
+    /* So that no square over- or underflows; the quotient of a subnormal number would. */
+    const vec3 scaled = vec3_make(direction.x / largest, direction.y / largest, direction.z / largest);
+    const double length2 = vec3_dot(scaled, scaled);
+    ray_record r = {.origin = origin, .weight = {1.0, 1.0, 1.0}, .start = FACE_NONE, .depth = 0};
+    /* A unit vector but for rounding stays as it is, to the bit, so that a ray of one tree can be traced again. */
+    const bool is_unit = fabs(vec3_dot(direction, direction) - 1.0) <= 0x1p-50;
+    r.direction = is_unit ? direction : direction_tidy(vec3_scale(scaled, 1.0 / sqrt(length2)));
+    r.inside = scene_geometry_inside(p->scene->solids, origin);
+    r.medium_priority_index = scene_geometry_priority_index(p->scene->solids, r.inside);
+    return r;
+}
+
+static void take(const ray_queue *q, int i, ray_record *out)
+{
+    *out = (ray_record){.origin = vec3_make(q->ox[i], q->oy[i], q->oz[i]),
+                        .direction = vec3_make(q->dx[i], q->dy[i], q->dz[i]),
+                        .weight = {q->wr[i], q->wg[i], q->wb[i]},
+                        .stokes = {q->sq[i], q->su[i], q->sv[i]},
+                        .start = q->start[i],
+                        .inside = q->inside[i]};
+}
+
+void probe_take(const probe *p, int depth, int i, ray_record *out)
+{
+    take(&p->rays->queues.waiting[depth], i, out);
+    if (!p->scene->render.polarisation)
+        memset(out->stokes, 0, sizeof out->stokes);
+    out->depth = depth;
+    out->medium_priority_index = scene_geometry_priority_index(p->scene->solids, out->inside);
+}
+
+static void put(ray_queue *q, const ray_record *r)
+{
+    q->count = 1;
+    q->ox[0] = r->origin.x, q->oy[0] = r->origin.y, q->oz[0] = r->origin.z;
+    q->dx[0] = r->direction.x, q->dy[0] = r->direction.y, q->dz[0] = r->direction.z;
+    q->wr[0] = r->weight[0], q->wg[0] = r->weight[1], q->wb[0] = r->weight[2];
+    q->sq[0] = r->stokes[0], q->su[0] = r->stokes[1], q->sv[0] = r->stokes[2];
+    q->start[0] = r->start, q->inside[0] = r->inside, q->sample_key[0] = 0;
+}
+
+/* Runs a batch of one; brought is what it put into the film. */
+static void run_one(probe *p, int depth, double brought[3])
+{
+    int64_t before[3];
+    memcpy(before, p->img->sum, sizeof before);
+    tracer_run_batch(p->rays, depth);
+    for (int c = 0; c < 3; c++)
+        brought[c] = (double)(p->img->sum[c] - before[c]) / FILM_ONE;
+}
+
+static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind kind, int parent, size_t *at,
+                       diagnostic *why)
+{
+    if (tree->count >= PROBE_NODES_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "lower render.depth, or set render.min_weight",
+                        "the tree has more than %d rays", (int)PROBE_NODES_MAX);
+    if (!GROW(tree->node, tree->capacity, tree->count + 1))
+        return diagnose(why, STATUS_FAILURE, "lower render.depth", "out of memory");
+    *at = tree->count++;
+    tree->node[*at] = (ray_node){.kind = kind,
+                                 .end = RAY_END_SKY,
+                                 .depth = r->depth,
+                                 .parent = parent,
+                                 .first_child = RAY_NONE,
+                                 .next = RAY_NONE,
+                                 .origin = r->origin,
+                                 .direction = r->direction,
+                                 .throughput = {r->weight[0], r->weight[1], r->weight[2]},
+                                 .stokes = {1.0, r->stokes[0], r->stokes[1], r->stokes[2]},
+                                 .medium = p->scene->solids->regions[r->medium_priority_index].solid,
+                                 .n = p->scene->ior[r->medium_priority_index],
+                                 .light = RAY_NONE,
+                                 .let_through = 1.0};
+    return STATUS_OK;
+}
+
+/* Hangs a node under its parent, behind the children that are there. */
+static void hang(ray_tree *tree, int parent, size_t child)
+{
+    int *link = &tree->node[parent].first_child;
+    while (*link != RAY_NONE)
+        link = &tree->node[*link].next;
+    *link = (int)child;
+}
+
+/* What radiance from beyond the interface is multiplied by. Under simple transmission nothing is bent, and no index
+ * comes in. */
+static void read_gain(const probe *p, ray_hit *h)
+{
+    const render_settings *r = &p->scene->render;
+    const material *m = &p->rays->surface.mat->surface;
+    if (h->opaque || h->tir)
+        return;
+    h->T = m->transparency * (scene_has_constant_shares(r) ? 1.0 : 1.0 - h->R);
+    const double ratio = r->transmission == TRANSMISSION_SIMPLE ? 1.0 : h->n_from / h->n_to;
+    h->gain_classic = h->T;
+    h->gain_basic = ratio * ratio * h->T;
+}
+
+/* What the ray met; false for the background. */
+static bool read_hit(const probe *p, ray_node *node)
+{
+    const tracer *t = p->rays;
+    const scene_geometry *a = p->scene->solids;
+    if (t->batch.hits.hit_primitive[0] < 0)
+        return false;
+    const group *g = &t->surface.gathered;
+    const surface_batch *s = &g->points;
+    const int hit_primitive = (int)t->batch.hits.hit_primitive[0], priority_index = (int)t->batch.hits.surface[0];
+    const region *owner = &a->regions[priority_index],
+                 *bounded = &a->regions[a->primitives[hit_primitive].priority_index];
+    const fresnel f = fresnel_dielectric(s->cos_i[0], g->n_from[0], g->n_to[0]);
+    const bool opaque = surface_is_opaque(t, priority_index);
+    ray_hit *h = &node->hit;
+    *h = (ray_hit){.solid = owner->solid,
+                   .face_solid = bounded->solid,
+                   .opaque = opaque,
+                   .t = t->batch.hits.t[0],
+                   .point = vec3_make(s->px[0], s->py[0], s->pz[0]),
+                   .normal = vec3_make(s->nx[0], s->ny[0], s->nz[0]),
+                   .from = a->regions[t->batch.hits.before[0]].solid,
+                   .to = a->regions[t->batch.hits.after[0]].solid,
+                   .n_from = g->n_from[0],
+                   .n_to = g->n_to[0],
+                   .cos_i = s->cos_i[0],
+                   .cos_t = f.cos_t,
+                   .R_s = f.R_s,
+                   .R_p = f.R_p,
+                   .R = f.R,
+                   .tir = f.total != 0,
+                   .error_bound = s->error[0]};
+    h->face = is_mesh_face(s->face[0])
+                  ? (int)mesh_face_triangle(s->face[0])
+                  : (int)(s->face[0] % FACES_MAX) + (hit_primitive == bounded->hollow ? HOLLOW_FACES : 0);
+    const double coating = opaque ? 0.0 : material_coating(&t->surface.mat->surface, &p->scene->render);
+    h->R_s += (1.0 - h->R_s) * coating, h->R_p += (1.0 - h->R_p) * coating, h->R += (1.0 - h->R) * coating;
+    if (opaque) {
+        h->R_s = h->R_p = h->R = t->surface.mat->surface.reflectivity;
+        h->cos_t = 0.0;
+        h->tir = false;
+    }
+    if (!opaque && p->scene->render.transmission == TRANSMISSION_SIMPLE) {
+        h->R_s = h->R_p = h->R = t->surface.mat->surface.reflectivity;
+        h->cos_t = h->cos_i;
+        h->tir = false;
+    }
+    read_gain(p, h);
+    h->path_length_m = h->t * p->scene->render.unit_m;
+    for (int c = 0; c < 3; c++)
+        h->transmittance[c] = a->absorbs ? t->media->kept[c][0] : 1.0;
+    node->end = RAY_END_HIT;
+    return true;
+}
+
+/* The branches of the ray just traced: records, kinds, and how those ended that were not put in line. */
+typedef struct branches {
+    int count;
+    ray_record record[2];
+    ray_kind kind[2];
+    ray_end end[2];
+} branches;
+
+static bool is_too_light(const double weight[3], double least)
+{
+    return least > 0.0 && weight[0] < least && weight[1] < least && weight[2] < least;
+}
+
+static void add_branch(const probe *p, int depth, bool reflected, int *queued, branches *out)
+{
+    const tracer *t = p->rays;
+    const branch_group *b = &t->surface.branches;
+    const group *g = &t->surface.gathered;
+    const double share = reflected ? b->reflect[0] : b->refract[0];
+    if (!(share > 0.0))
+        return;
+    const int i = out->count++;
+    ray_record *r = &out->record[i];
+    *r = (ray_record){.origin = vec3_make(g->points.px[0], g->points.py[0], g->points.pz[0]),
+                      .direction =
+                          reflected ? vec3_make(b->rx[0], b->ry[0], b->rz[0]) : vec3_make(b->tx[0], b->ty[0], b->tz[0]),
+                      .weight = {g->wr[0] * share, g->wg[0] * share, g->wb[0] * share},
+                      .start = g->points.face[0],
+                      .inside = reflected ? g->inside_before[0] : g->inside_after[0],
+                      .depth = depth + 1,
+                      .medium_priority_index = (int)(reflected ? t->batch.hits.before[0] : t->batch.hits.after[0])};
+    if (p->scene->render.polarisation) {
+        const polar_group *v = &t->surface.polar;
+        r->stokes[0] = reflected ? v->rq[0] : v->tq[0];
+        r->stokes[1] = reflected ? v->ru[0] : v->tu[0];
+        r->stokes[2] = reflected ? v->rv[0] : v->tv[0];
+    }
+    out->kind[i] = reflected ? RAY_REFLECT : RAY_REFRACT;
+    out->end[i] = RAY_END_CUT_DEPTH;
+    if (depth == t->queues.depth_limit)
+        return;
+    if (is_too_light(r->weight, p->scene->render.min_weight)) {
+        out->end[i] = RAY_END_CUT_WEIGHT;
+        return;
+    }
+    out->end[i] = RAY_END_HIT; /* to be traced */
+    probe_take(p, depth + 1, (*queued)++, r);
+}
+
+static void read_branches(const probe *p, int depth, branches *out)
+{
+    const tracer *t = p->rays;
+    const int priority_index = (int)t->batch.hits.surface[0];
+    const bool opaque = surface_is_opaque(t, priority_index);
+    int queued = 0;
+    out->count = 0;
+    if (!follows_trees(&p->scene->render) || (opaque && t->surface.mat->surface.reflectivity == 0.0))
+        return;
+    add_branch(p, depth, true, &queued, out);
+    add_branch(p, depth, false, &queued, out);
+}
+
+/* The light that a shadow ray goes to: the first from `from` on that lies exactly at its end and shines that way. */
+static int light_of(const plan *of, const ray_record *r, int from)
+{
+    for (int k = from; k < of->light_count; k++) {
+        const vec3 way = vec3_sub(of->lights[k].position, r->origin);
+        if (light_share(&of->lights[k], &of->cones[k], vec3_scale(way, -1.0 / vec3_length(way))) == 0.0)
+            continue;
+        if (way.x == r->direction.x && way.y == r->direction.y && way.z == r->direction.z)
+            return k;
+    }
+    return RAY_NONE;
+}
+
+static status build_shadows(probe *p, ray_tree *tree, int parent, diagnostic *why)
+{
+    enum { LIGHTS = SCENE_LIGHTS_MAX };
+    tracer *t = p->rays;
+    ray_record record[LIGHTS];
+    const int count = t->queues.shadows.count;
+    const int depth = tree->node[parent].depth, priority_index = (int)t->batch.hits.before[0];
+    for (int i = 0; i < count; i++)
+        take(&t->queues.shadows, i, &record[i]);
+    t->queues.shadows.count = 0;
+    status code = STATUS_OK;
+    for (int i = 0, lamp = 0; i < count && code == STATUS_OK; i++) {
+        ray_record *r = &record[i];
+        r->depth = depth;
+        r->medium_priority_index = priority_index;
+        memset(r->stokes, 0, sizeof r->stokes);
+        size_t at = 0;
+        code = add_node(p, tree, r, RAY_SHADOW, parent, &at, why);
+        if (code != STATUS_OK)
+            break;
+        put(&t->queues.shadows, r);
+        ray_node *node = &tree->node[at];
+        run_one(p, -1, node->brought);
+        node->end = t->batch.transmitted[0] > 0.0 ? RAY_END_LIT : RAY_END_BLOCKED;
+        node->let_through = t->batch.transmitted[0];
+        node->light = light_of(p->scene, r, lamp);
+        node->light_distance = vec3_length(r->direction);
+        node->direction = vec3_scale(r->direction, 1.0 / node->light_distance);
+        lamp = node->light + 1;
+        hang(tree, parent, at);
+    }
+    return code;
+}
+
+/* Traces the ray of node `at`; its branches are handed back, its shadow rays wait in line. */
+static void trace_node(probe *p, ray_tree *tree, size_t at, const ray_record *ray, branches *out)
+{
+    tracer *t = p->rays;
+    ray_node *node = &tree->node[at];
+    put(&t->queues.waiting[ray->depth], ray);
+    run_one(p, ray->depth, node->brought);
+    out->count = 0;
+    if (read_hit(p, node))
+        read_branches(p, ray->depth, out);
+    if (ray->depth < t->queues.depth_limit)
+        t->queues.waiting[ray->depth + 1].count = 0;
+}
+
+static status add_cut(probe *p, ray_tree *tree, int parent, const branches *b, int i, diagnostic *why)
+{
+    size_t at = 0;
+    TRY(add_node(p, tree, &b->record[i], b->kind[i], parent, &at, why));
+    tree->node[at].end = b->end[i];
+    hang(tree, parent, at);
+    return STATUS_OK;
+}
+
+status probe_build(probe *p, ray_tree *tree, const ray_record *ray, ray_kind kind, int parent, size_t *at,
+                   diagnostic *why)
+{
+    TRY(add_node(p, tree, ray, kind, parent, at, why));
+    branches next;
+    trace_node(p, tree, *at, ray, &next);
+    status code = build_shadows(p, tree, (int)*at, why);
+    for (int i = 0; i < next.count && code == STATUS_OK; i++) {
+        if (next.end[i] != RAY_END_HIT) {
+            code = add_cut(p, tree, (int)*at, &next, i, why);
+            continue;
+        }
+        size_t child = 0;
+        code = probe_build(p, tree, &next.record[i], next.kind[i], (int)*at, &child, why);
+        if (code == STATUS_OK)
+            hang(tree, (int)*at, child);
+    }
+    return code;
+}
+
+status probe_follow(probe *p, ray_tree *tree, const ray_record *ray, int reflect_at, diagnostic *why)
+{
+    ray_record now = *ray;
+    ray_kind kind = RAY_CAMERA;
+    for (int parent = RAY_NONE, interface = 0;; interface++) {
+        size_t at = 0;
+        TRY(add_node(p, tree, &now, kind, parent, &at, why));
+        if (parent != RAY_NONE)
+            hang(tree, parent, at);
+        branches next;
+        trace_node(p, tree, at, &now, &next);
+        p->rays->queues.shadows.count = 0;
+        if (next.count == 0)
+            return STATUS_OK;
+        /* The refracted branch stands last. */
+        const int i = interface == reflect_at ? 0 : next.count - 1;
+        if (next.end[i] != RAY_END_HIT)
+            return add_cut(p, tree, (int)at, &next, i, why);
+        now = next.record[i];
+        kind = next.kind[i];
+        parent = (int)at;
+    }
+}

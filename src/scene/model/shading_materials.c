@@ -1,0 +1,103 @@
+#include "scene/model/face_materials.h"
+
+#include "scene/model/medium.h"
+#include "scene/model/scene.h"
+#include <string.h>
+
+/* The material of that name in the scene, which goes before the file's. */
+static const material *named_material_of(const scene *s, const char *name)
+{
+    for (size_t i = 0; name[0] && i < s->material_count; i++)
+        if (strcmp(s->materials[i].name, name) == 0)
+            return &s->materials[i].value;
+    return NULL;
+}
+
+static const texture *image_of(const scene *s, const material *m)
+{
+    const texture_entry *t = m->texture[0] ? scene_find_texture(s, m->texture) : NULL;
+    return t ? t->data : NULL;
+}
+
+void face_material_source(const scene *s, const solid *owner, int slot, const material **named,
+                          const face_material **given)
+{
+    const mesh_entry *m = scene_mesh_of(s, owner);
+    const char *name = m->data->slot_names[slot];
+    *named = named_material_of(s, name ? name : "");
+    *given = !*named && slot < face_materials_count(m->shading_materials) &&
+                     face_materials_at(m->shading_materials, slot)->given
+                 ? face_materials_at(m->shading_materials, slot)
+                 : NULL;
+}
+
+static void dress(shading_material *l, const material *own, const face_material *given)
+{
+    l->surface.color = given->color;
+    l->surface.diffuse = given->diffuse;
+    l->surface.ambient = own->ambient > 0.0 ? own->ambient : 0.1;
+    l->surface.specular = given->specular;
+    l->surface.emission = given->emission > 0.0 ? given->emission : own->emission;
+    l->surface.shininess = given->shininess;
+    l->img = given->img;
+}
+
+/* Where light is bent, what the body is made of is the solid's own, and a face's look changes what an opaque surface
+ * sends back. Where light goes straight on, a face lets through and reflects what its own material says. */
+shading_material shading_material_of_face(const scene *s, const solid *owner, const material *own, int slot)
+{
+    const material *named;
+    const face_material *given;
+    face_material_source(s, owner, slot, &named, &given);
+    shading_material l = {.surface = *own, .img = image_of(s, named ? named : own)};
+    if (named)
+        l.surface = *named;
+    else if (given)
+        dress(&l, own, given);
+    if (s->render.transmission == TRANSMISSION_SIMPLE) {
+        l.surface.transparency = named                           ? named->transparency
+                                 : given && given->opacity < 1.0 ? 1.0 - given->opacity
+                                                                 : own->transparency;
+        return l;
+    }
+    l.surface.transparency = own->transparency;
+    if (!material_is_opaque(own)) /* shares that add up to at most 1 */
+        l.surface.reflectivity = own->reflectivity;
+    return l;
+}
+
+shading_material shading_material_of_solid(const scene *s, const material *own)
+{
+    return (shading_material){.surface = *own, .img = image_of(s, own)};
+}
+
+int face_material_slots(const scene *s, const solid *owner)
+{
+    return has_face_materials(s, owner) ? scene_mesh_of(s, owner)->data->slot_count : 0;
+}
+
+bool solid_is_opaque(const scene *s, const solid *owner)
+{
+    const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? face_material_slots(s, owner) : 0;
+    bool opaque = slots > 0 || material_is_opaque(&owner->surface);
+    for (int slot = 0; slot < slots; slot++)
+        opaque &= shading_material_of_face(s, owner, &owner->surface, slot).surface.transparency == 0.0;
+    return opaque;
+}
+
+bool ignores_face_transparency(const scene *s, const solid *owner)
+{
+    const material *own = &owner->surface;
+    const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? 0 : face_material_slots(s, owner);
+    for (int slot = 0; slot < slots; slot++) {
+        const material *named;
+        const face_material *given;
+        face_material_source(s, owner, slot, &named, &given);
+        const bool clear = !material_is_opaque(own);
+        if ((named &&
+             (named->transparency != own->transparency || (clear && named->reflectivity != own->reflectivity))) ||
+            (!named && given && given->opacity < 1.0 && 1.0 - given->opacity != own->transparency))
+            return true;
+    }
+    return false;
+}

@@ -1,0 +1,217 @@
+/* The desk's part of the API: the state, the scene, its parameters, undo, the camera. See web/README.md. */
+#include "web/api/api.h"
+#include "base/number.h"
+#include "base/text_writer.h"
+#include "report/json.h"
+#include "scene/model/inert/inert.h"
+#include "scene/model/params.h"
+#include "scene/file/write.h"
+#include "scene/model/camera_moves.h"
+#include "scene/model/open.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+status api_state(call *c)
+{
+    return api_tell(c, lab_state(c->l));
+}
+
+status api_scene(call *c)
+{
+    uint64_t generation;
+    scene *now = scene_document_take(c->l->scene_document, &generation),
+          *opened = scene_document_take_opened(c->l->scene_document);
+    api_tell(c, now && opened ? scene_json(now, opened, generation) : NULL);
+    scene_destroy(now);
+    scene_destroy(opened);
+    return STATUS_OK;
+}
+
+/* --- set and reset --- */
+
+/* One number or word; false for what is neither. */
+static bool put_item(FILE *out, const json_t *value)
+{
+    char text[NUMBER_TEXT_MAX];
+    const char *word = json_is_boolean(value) ? (json_is_true(value) ? "on" : "off") : json_string_value(value);
+    if (json_is_number(value) && isfinite(json_number_value(value)))
+        word = number_format(json_number_value(value), text);
+    const bool good = word && (!json_is_string(value) || strlen(word) == json_string_length(value));
+    return good && fputs(word, out) >= 0;
+}
+
+/* As scene_set takes it, in fresh memory; NULL for what is no value (or memory that is out). */
+static char *value_text(const json_t *value)
+{
+    char *joined = NULL;
+    text_writer writer;
+    if (text_writer_open(&writer, NULL) != STATUS_OK)
+        return NULL;
+    bool good = json_is_array(value) || put_item(writer.stream, value);
+    for (size_t i = 0; i < json_array_size(value) && good; i++)
+        good = (i == 0 || fputc(',', writer.stream) >= 0) && put_item(writer.stream, json_array_get(value, i));
+    text_writer_end(&writer, good ? STATUS_OK : STATUS_BAD_INPUT, &joined, NULL, NULL);
+    return joined;
+}
+
+/* What is set, and notes on what of that does nothing (scene/model/inert/inert.h); NULL while there are none. */
+typedef struct set_request {
+    const json_t *values;
+    json_t *notes;
+} set_request;
+
+/* A slime that moves on the page does so whatever its time_s. */
+static void note_inert(set_request *x, const scene *s)
+{
+    const char *path;
+    json_t *value;
+    json_object_foreach((json_t *)(uintptr_t)x->values, path, value)
+    {
+        inert_answer answer;
+        if (!inert_ask(s, path, NULL, &answer) || strcmp(answer.rule, "time-0") == 0)
+            continue;
+        x->notes = x->notes ? x->notes : json_array();
+        json_array_append_new(x->notes, api_note(answer.note.place, answer.note.text, answer.note.remedy));
+    }
+}
+
+static status set_all(void *of, scene *s, diagnostic *why)
+{
+    set_request *x = of;
+    const json_t *values = x->values;
+    const char *path;
+    json_t *value;
+    status code = STATUS_OK;
+    json_object_foreach((json_t *)(uintptr_t)values, path, value)
+    {
+        char *text = code == STATUS_OK ? value_text(value) : NULL;
+        if (code == STATUS_OK && !text)
+            code = diagnose(why, STATUS_BAD_INPUT, "give a number, a text or a list of numbers",
+                            "%.200s: this is no value", path);
+        else if (code == STATUS_OK)
+            code = scene_set(s, path, text, why);
+        free(text);
+    }
+    json_decref(x->notes);
+    x->notes = NULL;
+    if (code == STATUS_OK)
+        note_inert(x, s);
+    return code;
+}
+
+status api_set(call *c)
+{
+    json_t *values = json_object_get(c->body, "set");
+    const char *gesture;
+    uint64_t generation = 0;
+    char what[128];
+    if (!json_is_object(values) || json_object_size(values) == 0)
+        return api_refuse(c, 400, "there is nothing to set", "give {\"set\": {PATH: VALUE}}");
+    if (!api_take_gesture(c, &gesture))
+        return STATUS_BAD_INPUT;
+    snprintf(what, sizeof what, "set %.100s", json_object_iter_key(json_object_iter(values)));
+    set_request x = {values, NULL};
+    const status code = scene_document_apply(c->l->scene_document, what, gesture, set_all, &x, &generation, &c->why);
+    if (code == STATUS_OK && x.notes)
+        api_tell(c, json_pack("{s:I, s:O}", "generation", (json_int_t)generation, "notes", x.notes));
+    else
+        api_changed(c, code, generation);
+    json_decref(x.notes);
+    return code;
+}
+
+status api_reset(call *c)
+{
+    enum { PATHS_MAX = 1000 };
+    const json_t *paths = json_object_get(c->body, "paths");
+    const size_t count = json_array_size(paths);
+    const char **text = calloc(count + 1, sizeof *text);
+    uint64_t generation = 0;
+    bool good =
+        text && json_is_object(c->body) && (!paths || (json_is_array(paths) && count > 0 && count <= PATHS_MAX));
+    for (size_t i = 0; i < count && good; i++)
+        good = (text[i] = json_string_value(json_array_get(paths, i))) != NULL;
+    const status code =
+        good ? scene_document_reset(c->l->scene_document, text, count, &generation, &c->why)
+             : api_refuse(c, 400, "'paths' is no list of paths", "give {\"paths\": [PATH, ..]}, or {} for all");
+    free(text);
+    return api_changed(c, code, generation);
+}
+
+static status go_back(call *c, bool redo)
+{
+    uint64_t generation = 0;
+    c->refused = 409;
+    return api_changed(c, scene_document_undo(c->l->scene_document, redo, &generation, &c->why), generation);
+}
+
+status api_undo(call *c)
+{
+    return go_back(c, false);
+}
+
+status api_redo(call *c)
+{
+    return go_back(c, true);
+}
+
+/* --- the camera --- */
+
+static bool take_pair(call *c, const char *key, double pair[2])
+{
+    const json_t *given = json_object_get(c->body, key);
+    for (size_t i = 0; given && i < 2; i++) {
+        const json_t *item = json_array_get(given, i);
+        if (json_array_size(given) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
+            api_refuse(c, 400, "an angle of the camera is no number", "give [YAW, PITCH] in degrees");
+            return false;
+        }
+        pair[i] = json_number_value(item);
+    }
+    return true;
+}
+
+status api_camera(call *c)
+{
+    camera_move move = {.step = {0.0, 0.0, 0.0}};
+    const char *gesture;
+    uint64_t generation = 0;
+    if (!take_pair(c, "orbit", move.orbit_deg) || !take_pair(c, "turn", move.turn_deg) ||
+        !api_take_vector(c, "step", false, move.step) || !api_take_gesture(c, &gesture))
+        return STATUS_BAD_INPUT;
+    return api_changed(c,
+                       scene_document_apply(c->l->scene_document, "move the camera", gesture, camera_move_apply, &move,
+                                            &generation, &c->why),
+                       generation);
+}
+
+/* --- the scene as a file, and as a command --- */
+
+status api_scene_file(call *c)
+{
+    char *text = NULL;
+    scene *now = scene_document_take(c->l->scene_document, NULL);
+    if (now)
+        lab_forget_threads(c->l, now);
+    const status code = now ? scene_write_text(now, scene_path(now), false, &text, &c->why) : out_of_memory(&c->why);
+    scene_destroy(now);
+    return code == STATUS_OK ? api_send(c, "application/yaml; charset=utf-8", text, strlen(text)) : code;
+}
+
+status api_command(call *c)
+{
+    char *text = NULL, *file = api_document_file(c);
+    bool complete = false;
+    scene *now = scene_document_take(c->l->scene_document, NULL);
+    const status code = now && file ? command_line(c->l->files, *file ? file : NULL, now, c->l->settings.threads, &text,
+                                                   &complete, &c->why)
+                                    : out_of_memory(&c->why);
+    if (code == STATUS_OK)
+        api_tell(c, json_pack("{s:o,s:b}", "command", json_of_text(text), "complete", (int)complete));
+    free(text);
+    free(file);
+    scene_destroy(now);
+    return code;
+}

@@ -1,0 +1,93 @@
+/* The picture's part of the API. See web/README.md. */
+#include "web/api/api.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void add_number(http_reply *r, const char *name, uint64_t value)
+{
+    char text[24];
+    snprintf(text, sizeof text, "%llu", (unsigned long long)value);
+    http_reply_header(r, name, text);
+}
+
+/* Only what cannot be mistaken for the end of the header's text. */
+static void name_download(http_reply *r, const char *name)
+{
+    char text[160], *at = text;
+    at += snprintf(text, sizeof text, "attachment; filename=\"");
+    for (const char *c = name; *c && at < text + sizeof text - 8; c++)
+        *at++ = isalnum((unsigned char)*c) || strchr("._-", *c) ? *c : '_';
+    snprintf(at, 2, "\"");
+    http_reply_header(r, "Content-Disposition", text);
+}
+
+/* A reply's own bytes. */
+static status encode_own(const shared_image *p, image_format format, int bits, unsigned char **bytes, size_t *size,
+                         diagnostic *why)
+{
+    if (format != IMAGE_PNG || bits != 8)
+        return image_encode(p->linear, format, bits, false, bytes, size, why);
+    const unsigned char *shared;
+    status code = shared_image_png(p, &shared, size, why);
+    *bytes = code == STATUS_OK ? malloc(*size) : NULL;
+    if (*bytes)
+        memcpy(*bytes, shared, *size);
+    else if (code == STATUS_OK)
+        code = out_of_memory(why);
+    return code;
+}
+
+/* Small ones, as they come while something moves, wait for nobody. */
+static status encode(lab *l, const shared_image *p, image_format format, int bits, unsigned char **bytes, size_t *size,
+                     diagnostic *why)
+{
+    const double small = 1e6; /* pixels */
+    if ((double)p->width * p->height <= small)
+        return encode_own(p, format, bits, bytes, size, why);
+    TRY(semaphore_acquire(l->heavy, why));
+    status code = encode_own(p, format, bits, bytes, size, why);
+    semaphore_release(l->heavy);
+    return code;
+}
+
+static status reply_image(call *c, image_format format, const char *type)
+{
+    const char *download = http_query_value(c->request, "download");
+    const shared_image *p = NULL;
+    unsigned char *bytes = NULL;
+    size_t size;
+    int bits;
+    if (!api_take_bits(c, &bits))
+        return api_refuse(c, 400, "a picture has no such number of bits", "give 8 or 16");
+    if (api_asks_for(c, "wait") && api_wait_for_final(c, &p) != STATUS_OK) {
+        c->refused = 409;
+        return STATUS_INTERRUPTED;
+    }
+    if (!p && !(p = render_worker_take(c->l->render_worker)))
+        return api_refuse(c, 404, "there is no picture yet", "ask with ?wait=1");
+    const status code = encode(c->l, p, format, bits, &bytes, &size, &c->why);
+    if (code == STATUS_OK) {
+        api_send(c, type, bytes, size);
+        add_number(c->reply, "X-Cuvette-Serial", p->serial);
+        add_number(c->reply, "X-Cuvette-Generation", p->generation);
+        add_number(c->reply, "X-Cuvette-Pass", (uint64_t)p->pass);
+        add_number(c->reply, "X-Cuvette-Final", p->final);
+        if (download)
+            name_download(c->reply, download);
+    }
+    shared_image_release(p);
+    return code;
+}
+
+status api_image_png(call *c)
+{
+    return reply_image(c, IMAGE_PNG, "image/png");
+}
+
+status api_image_jpeg(call *c)
+{
+    return reply_image(c, IMAGE_JPEG, "image/jpeg");
+}

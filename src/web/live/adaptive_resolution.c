@@ -1,0 +1,32 @@
+#include "web/live/adaptive_resolution.h"
+
+static const int shrinks[] = {1, 2, 3, 4, 6, 8, 12, 16};
+enum { STEPS = sizeof shrinks / sizeof *shrinks };
+
+int adaptive_resolution_divisor(const adaptive_resolution *p)
+{
+    return shrinks[p->step];
+}
+
+/* Pixels of one step over those of another. */
+static double growth(int from, int to)
+{
+    const double ratio = (double)shrinks[from] / shrinks[to];
+    return ratio * ratio;
+}
+
+static void go(adaptive_resolution *p, int step)
+{
+    p->frame_s *= growth(p->step, step);
+    p->step = step;
+}
+
+void adaptive_resolution_update(adaptive_resolution *p, double wall_s, double wanted_s)
+{
+    const double recent = 0.3, late = 1.3, early = 0.8;
+    p->frame_s = p->frame_s > 0.0 ? p->frame_s + recent * (wall_s - p->frame_s) : wall_s;
+    if (p->frame_s > late * wanted_s && p->step < STEPS - 1)
+        go(p, p->step + 1);
+    else if (p->step > 0 && p->frame_s * growth(p->step, p->step - 1) < early * wanted_s)
+        go(p, p->step - 1);
+}

@@ -1,0 +1,117 @@
+/* One pass of the painter: how it is rendered, and the picture that comes of it. See
+ * web/live/render_worker_private.h. */
+#include "web/live/render_worker_private.h"
+#include "measure/clock.h"
+#include "report/report.h"
+#include "scene/model/scene.h"
+
+/* How often a render looks up for something newer; how long a frame of the live slime may take. */
+static const double poll_s = 0.002, live_frame_s = 0.03;
+
+static void publish(render_worker *p, shared_image *shown)
+{
+    pthread_mutex_lock(&p->lock);
+    shown->serial = ++p->serial;
+    pthread_mutex_unlock(&p->lock);
+    const shared_image *made = shared_image_create(shown);
+    if (!made) {
+        shared_image_drop(shown);
+        return;
+    }
+    shared_image_retain(made); /* for the listener */
+    pthread_mutex_lock(&p->lock);
+    const shared_image *before = p->newest;
+    p->newest = made;
+    pthread_cond_broadcast(&p->news);
+    pthread_mutex_unlock(&p->lock);
+    shared_image_release(before);
+    p->listener.published(p->listener.context, made);
+    shared_image_release(made);
+}
+
+static bool is_raster(render_worker *p, bool moving)
+{
+    return moving && live_preview_of(p->toy) == LIVE_ZBUFFER;
+}
+
+/* The pass's own settings on a scene that is the stage's otherwise. tempo: of a film that moves; else NULL. */
+static scene pass_scene(const render_worker *p, int pass, const adaptive_resolution *tempo, bool raster)
+{
+    scene view = *p->snapshot;
+    view.render = tempo ? passes_settings(&p->snapshot->render, adaptive_resolution_divisor(tempo), true)
+                        : passes_settings(&p->snapshot->render, p->plan.shrink[pass], p->plan.single[pass]);
+    if (raster) {
+        draw_triangles(&view.render);
+        view.render.spectrum = SPECTRUM_RGB;
+    }
+    return view;
+}
+
+static bool describe(render_worker *p, const job_account *made, int pass, bool moving, shared_image *out)
+{
+    const film *shown = made->result->img;
+    image *linear = NULL;
+    if (film_image(shown, &linear, NULL) != STATUS_OK)
+        return false;
+    const bool final = !moving && pass == p->plan.count - 1;
+    *out = (shared_image){.generation = p->snapshot_generation,
+                          .pass = pass + 1,
+                          .passes = p->plan.count,
+                          .final = final,
+                          .width = shown->width,
+                          .height = shown->height,
+                          .full_width = (int)p->snapshot->render.width,
+                          .full_height = (int)p->snapshot->render.height,
+                          .numbers = report_page(made),
+                          .film_hash = final ? job_account_hash(made) : 0,
+                          .linear = linear,
+                          .of = final ? scene_clone(p->snapshot) : NULL};
+    if (out->numbers && (out->of || !final))
+        return true;
+    shared_image_drop(out);
+    return false;
+}
+
+static void take_rate(render_worker *p, int pass, const render_result *made)
+{
+    if (made->wall_s > 0.0)
+        p->rate = passes_work(&p->snapshot->render, p->plan.shrink[pass], p->plan.single[pass]) / made->wall_s;
+}
+
+void render_worker_render_pass(render_worker *p)
+{
+    const int pass = p->pass;
+    const bool moving = live_is_moving(p->toy);
+    const bool raster = is_raster(p, moving);
+    adaptive_resolution *tempo = !moving ? NULL : raster ? &p->raster : &p->traced;
+    const scene view = pass_scene(p, pass, tempo, raster);
+    const render_options options = {.progress_s = poll_s};
+    diagnostic why = {.line = 0};
+    job_account account;
+    shared_image shown;
+    bool good = false;
+    p->begun_s = clock_wall_s();
+    pthread_rwlock_rdlock(&p->snapshot_lock);
+    const status code = job_render(p->tracer, &view, &options, &account, &why);
+    const render_result *made = account.result;
+    if (code == STATUS_OK)
+        good = describe(p, &account, pass, moving, &shown);
+    pthread_rwlock_unlock(&p->snapshot_lock);
+    if (code == STATUS_OK) {
+        if (tempo)
+            adaptive_resolution_update(tempo, made->wall_s, live_frame_s);
+        else
+            take_rate(p, pass, made);
+        p->pass = moving ? p->plan.count : pass + 1;
+        p->ended = 0;
+    } else if (code == STATUS_INTERRUPTED) {
+        p->ended += pass == 0 && render_worker_is_stale(p);
+    } else {
+        p->pass = p->plan.count;
+    }
+    job_account_release(&account);
+    if (code != STATUS_INTERRUPTED)
+        render_worker_set_error(p, code, &why);
+    if (good)
+        publish(p, &shown);
+}

@@ -1,0 +1,81 @@
+/* Pictures that are shared: see web/live/render_worker.h. */
+#include "web/live/render_worker_private.h"
+#include "report/json.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+
+typedef struct shared_picture {
+    shared_image shown; /* first: a picture's address is this one's */
+    atomic_int owners;
+    pthread_mutex_t lock;
+    unsigned char *png;
+    size_t png_size;
+} shared_picture;
+
+static shared_picture *whole(const shared_image *p)
+{
+    return (shared_picture *)(uintptr_t)p;
+}
+
+void shared_image_drop(const shared_image *p)
+{
+    image_destroy((image *)(uintptr_t)p->linear);
+    scene_destroy((scene *)(uintptr_t)p->of);
+    json_decref((json_t *)(uintptr_t)p->numbers);
+}
+
+const shared_image *shared_image_create(const shared_image *shown)
+{
+    shared_picture *p = malloc(sizeof *p);
+    if (!p)
+        return NULL;
+    *p = (shared_picture){.shown = *shown, .owners = 1, .lock = PTHREAD_MUTEX_INITIALIZER};
+    return &p->shown;
+}
+
+void shared_image_retain(const shared_image *p)
+{
+    atomic_fetch_add(&whole(p)->owners, 1);
+}
+
+void shared_image_release(const shared_image *p)
+{
+    if (!p || atomic_fetch_sub(&whole(p)->owners, 1) > 1)
+        return;
+    shared_image_drop(p);
+    pthread_mutex_destroy(&whole(p)->lock);
+    free(whole(p)->png);
+    free(whole(p));
+}
+
+status shared_image_png(const shared_image *p, const unsigned char **bytes, size_t *size, diagnostic *why)
+{
+    shared_picture *w = whole(p);
+    status code = STATUS_OK;
+    pthread_mutex_lock(&w->lock);
+    if (!w->png)
+        code = image_encode(p->linear, IMAGE_PNG, 8, true, &w->png, &w->png_size, why);
+    *bytes = w->png;
+    *size = w->png_size;
+    pthread_mutex_unlock(&w->lock);
+    return code;
+}
+
+json_t *shared_image_json(const shared_image *p)
+{
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)p->film_hash);
+    json_t *o =
+        json_pack("{s:I,s:I,s:i,s:i,s:b,s:i,s:i,s:i,s:i}", "serial", (json_int_t)p->serial, "generation",
+                  (json_int_t)p->generation, "pass", p->pass, "passes", p->passes, "final", (int)p->final, "width",
+                  p->width, "height", p->height, "full_width", p->full_width, "full_height", p->full_height);
+    if (!o)
+        return NULL;
+    json_t *numbers = json_deep_copy(p->numbers); /* references are not counted across threads */
+    int bad = !numbers || json_object_update(o, numbers);
+    json_decref(numbers);
+    bad |= json_object_set_new(o, "film_hash", p->final ? json_string(hash) : json_null());
+    return json_whole(o, !bad);
+}

@@ -1,0 +1,343 @@
+#include "web/session/scene_document.h"
+#include "scene/model/params.h"
+#include "report/json.h"
+#include "scene/model/scene.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A scene as it was opened, for all versions that came of it. With the desk's lock. */
+typedef struct origin {
+    scene *s;
+    uint64_t number; /* of its version */
+    int owners;
+} origin;
+
+/* One state of the desk. Those that were keep nothing that was loaded: a hundred steps of undo must not hold a hundred
+ * meshes. */
+typedef struct version {
+    scene *s;
+    char *file;      /* NULL: of none */
+    char *what;      /* was done to it, for undo; of one to redo: led to it */
+    uint64_t number; /* of the version, which undo brings back */
+    origin *from;
+} version;
+
+typedef struct pile {
+    version item[DOCUMENT_UNDO_MAX];
+    size_t count;
+} pile;
+
+struct scene_document {
+    pthread_mutex_t lock;
+    const folder *files;
+    void (*changed)(void *context);
+    void *context;
+    version now;
+    uint64_t generation, numbers, saved_number;
+    char gesture[80]; /* of the last change; "" for none */
+    pile undo, redo;
+};
+
+static origin *origin_create(const scene *s, uint64_t number)
+{
+    origin *o = calloc(1, sizeof *o);
+    if (o)
+        *o = (origin){.s = scene_clone(s), .number = number, .owners = 1};
+    if (o && o->s)
+        return o;
+    free(o);
+    return NULL;
+}
+
+static void origin_release(origin *o)
+{
+    if (o && --o->owners == 0) {
+        scene_destroy(o->s);
+        free(o);
+    }
+}
+
+static void version_clear(version *v)
+{
+    scene_destroy(v->s);
+    origin_release(v->from);
+    free(v->file);
+    free(v->what);
+    *v = (version){0};
+}
+
+static void pile_clear(pile *p)
+{
+    while (p->count)
+        version_clear(&p->item[--p->count]);
+}
+
+static void unload(scene *s)
+{
+    for (size_t i = 0; i < s->mesh_count; i++)
+        if (s->meshes[i].source != MESH_ARRAYS)
+            mesh_entry_unload(&s->meshes[i]);
+    for (size_t i = 0; i < s->texture_count; i++)
+        texture_entry_unload(&s->textures[i]);
+    image_destroy(s->background.img);
+    s->background.img = NULL;
+}
+
+static void pile_put(pile *p, version v)
+{
+    unload(v.s);
+    if (p->count == DOCUMENT_UNDO_MAX) {
+        version_clear(&p->item[0]);
+        memmove(&p->item[0], &p->item[1], (DOCUMENT_UNDO_MAX - 1) * sizeof p->item[0]);
+        p->count--;
+    }
+    p->item[p->count++] = v;
+}
+
+static char *copy_or_null(const char *text)
+{
+    return text ? strdup(text) : NULL;
+}
+
+status scene_document_create(scene *first, const char *file, const folder *files, void (*changed)(void *context),
+                             void *context, scene_document **out, diagnostic *why)
+{
+    *out = NULL;
+    status code = first ? scene_document_check(first, files, why) : out_of_memory(why);
+    THEN(code, scene_document_limit(first, files, why));
+    scene_document *d = code == STATUS_OK ? calloc(1, sizeof *d) : NULL;
+    origin *from = d ? origin_create(first, 1) : NULL;
+    if (!from) {
+        free(d);
+        scene_destroy(first);
+        return code == STATUS_OK ? out_of_memory(why) : code;
+    }
+    *d = (scene_document){.lock = PTHREAD_MUTEX_INITIALIZER,
+                          .files = files,
+                          .changed = changed,
+                          .context = context,
+                          .generation = 1,
+                          .numbers = 1,
+                          .saved_number = file ? 1 : 0};
+    d->now = (version){.s = first, .file = copy_or_null(file), .number = 1, .from = from};
+    *out = d;
+    return STATUS_OK;
+}
+
+void scene_document_destroy(scene_document *d)
+{
+    if (!d)
+        return;
+    pile_clear(&d->undo);
+    pile_clear(&d->redo);
+    version_clear(&d->now);
+    pthread_mutex_destroy(&d->lock);
+    free(d);
+}
+
+/* Puts next in place of the scene, which goes to the undo pile, or is forgotten where the same gesture made it. next is
+ * the desk's from now on. from: the origin, which it takes, of a scene that is opened; NULL: the one that was. */
+static status replace(scene_document *d, scene *next, const char *file, origin *from, const char *what,
+                      const char *gesture, diagnostic *why)
+{
+    char *name = copy_or_null(file), *words = strdup(what);
+    if (!words || (file && !name)) {
+        free(name);
+        free(words);
+        return out_of_memory(why);
+    }
+    const bool goes_on = gesture && d->gesture[0] && strcmp(gesture, d->gesture) == 0;
+    snprintf(d->gesture, sizeof d->gesture, "%s", gesture ? gesture : "");
+    version before = d->now;
+    d->now = (version){.s = next, .file = name, .number = ++d->numbers, .from = from ? from : before.from};
+    if (from)
+        from->number = d->now.number;
+    else
+        before.from->owners++;
+    if (goes_on) {
+        free(words);
+        version_clear(&before);
+    } else {
+        before.what = words;
+        pile_put(&d->undo, before);
+    }
+    pile_clear(&d->redo);
+    d->generation++;
+    return STATUS_OK;
+}
+
+/* The end of every change: tells the caller its generation, unlocks, and says that there is something new. */
+static status finish(scene_document *d, status code, uint64_t *generation)
+{
+    if (code == STATUS_OK && generation)
+        *generation = d->generation;
+    pthread_mutex_unlock(&d->lock);
+    if (code == STATUS_OK && d->changed)
+        d->changed(d->context);
+    return code;
+}
+
+status scene_document_apply(scene_document *d, const char *what, const char *gesture, scene_document_change *change,
+                            void *context, uint64_t *generation, diagnostic *why)
+{
+    pthread_mutex_lock(&d->lock);
+    scene *next = scene_clone(d->now.s);
+    status code = next ? change(context, next, why) : out_of_memory(why);
+    THEN(code, scene_document_check(next, d->files, why));
+    THEN(code, replace(d, next, d->now.file, NULL, what, gesture, why));
+    if (code != STATUS_OK)
+        scene_destroy(next);
+    return finish(d, code, generation);
+}
+
+status scene_document_open(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why)
+{
+    status code = scene_document_check(s, d->files, why);
+    THEN(code, scene_document_limit(s, d->files, why));
+    origin *from = code == STATUS_OK ? origin_create(s, 0) : NULL;
+    if (!from) {
+        scene_destroy(s);
+        return code == STATUS_OK ? out_of_memory(why) : code;
+    }
+    char words[128];
+    snprintf(words, sizeof words, "open %.100s", file ? file : "a new scene");
+    pthread_mutex_lock(&d->lock);
+    code = replace(d, s, file, from, words, NULL, why);
+    if (code != STATUS_OK) {
+        origin_release(from);
+        scene_destroy(s);
+    } else if (file) {
+        d->saved_number = d->now.number;
+    }
+    return finish(d, code, generation);
+}
+
+status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, diagnostic *why)
+{
+    pthread_mutex_lock(&d->lock);
+    pile *from = redo ? &d->redo : &d->undo, *to = redo ? &d->undo : &d->redo;
+    if (from->count == 0)
+        return finish(d, diagnose(why, STATUS_BAD_INPUT, "", "there is nothing to %s", redo ? "redo" : "undo"), NULL);
+    version next = from->item[--from->count], before = d->now;
+    before.what = next.what; /* what lies between the two */
+    next.what = NULL;
+    scene_borrow_meshes(next.s, before.s);
+    pile_put(to, before);
+    d->now = next;
+    d->gesture[0] = 0;
+    d->generation++;
+    return finish(d, STATUS_OK, generation);
+}
+
+static status set_back(scene *s, const scene *opened, const char *path, diagnostic *why)
+{
+    char *value = NULL;
+    status code = scene_get(opened, path, &value, why);
+    THEN(code, scene_set(s, path, value, why));
+    free(value);
+    return code;
+}
+
+status scene_document_reset(scene_document *d, const char *const *paths, size_t count, uint64_t *generation,
+                            diagnostic *why)
+{
+    pthread_mutex_lock(&d->lock);
+    const origin *from = d->now.from;
+    scene *next = scene_clone(count ? d->now.s : from->s);
+    status code = next ? STATUS_OK : out_of_memory(why);
+    for (size_t i = 0; i < count && code == STATUS_OK; i++)
+        code = set_back(next, from->s, paths[i], why);
+    THEN(code, scene_document_check(next, d->files, why));
+    if (code == STATUS_OK) {
+        scene_borrow_meshes(next, d->now.s);
+        char words[128];
+        snprintf(words, sizeof words, count == 1 ? "reset %.100s" : "reset", count == 1 ? paths[0] : "");
+        code = replace(d, next, d->now.file, NULL, words, NULL, why);
+        if (code == STATUS_OK && count == 0)
+            d->now.number = from->number; /* it is that version again */
+    }
+    if (code != STATUS_OK)
+        scene_destroy(next);
+    return finish(d, code, generation);
+}
+
+scene *scene_document_take(scene_document *d, uint64_t *generation)
+{
+    pthread_mutex_lock(&d->lock);
+    scene *copy = scene_clone(d->now.s);
+    if (generation)
+        *generation = d->generation;
+    pthread_mutex_unlock(&d->lock);
+    return copy;
+}
+
+scene *scene_document_take_opened(scene_document *d)
+{
+    pthread_mutex_lock(&d->lock);
+    scene *copy = scene_clone(d->now.from->s);
+    pthread_mutex_unlock(&d->lock);
+    return copy;
+}
+
+uint64_t scene_document_generation(scene_document *d)
+{
+    pthread_mutex_lock(&d->lock);
+    const uint64_t generation = d->generation;
+    pthread_mutex_unlock(&d->lock);
+    return generation;
+}
+
+/* The two are copies of one: object for object the same. */
+static void lend(scene *s, const scene *loaded)
+{
+    for (size_t i = 0; i < s->texture_count; i++)
+        if (!s->textures[i].data && loaded->textures[i].data) {
+            s->textures[i].data = loaded->textures[i].data;
+            texture_retain(s->textures[i].data);
+        }
+    if (!s->background.img && loaded->background.img)
+        s->background.img = image_share(loaded->background.img);
+    scene_borrow_meshes(s, loaded);
+}
+
+void scene_document_lend(scene_document *d, const scene *loaded, uint64_t generation)
+{
+    pthread_mutex_lock(&d->lock);
+    if (generation == d->generation)
+        lend(d->now.s, loaded);
+    pthread_mutex_unlock(&d->lock);
+}
+
+void scene_document_saved(scene_document *d, const char *file, uint64_t generation)
+{
+    char *name = strdup(file);
+    pthread_mutex_lock(&d->lock);
+    if (name && generation == d->generation) {
+        free(d->now.file);
+        d->now.file = name;
+        d->saved_number = d->now.number;
+        name = NULL;
+    }
+    pthread_mutex_unlock(&d->lock);
+    free(name);
+    if (d->changed)
+        d->changed(d->context);
+}
+
+static json_t *top_of(const pile *p)
+{
+    return p->count ? json_of_text(p->item[p->count - 1].what) : json_null();
+}
+
+bool scene_document_json(scene_document *d, json_t *state)
+{
+    pthread_mutex_lock(&d->lock);
+    json_t *told =
+        json_pack("{s:I, s:o, s:o, s:b, s:o, s:o}", "generation", (json_int_t)d->generation, "file",
+                  d->now.file ? json_of_text(d->now.file) : json_null(), "title", json_of_text(d->now.s->title),
+                  "saved", d->now.number == d->saved_number, "undo", top_of(&d->undo), "redo", top_of(&d->redo));
+    pthread_mutex_unlock(&d->lock);
+    return json_object_update_new(state, told) == 0;
+}

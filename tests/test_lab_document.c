@@ -1,0 +1,319 @@
+/* The scene that all pages work at: changes, undo, gestures, resets, bounds. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "lab_fixture.h"
+#include "render_fixture.h"
+#include "web/session/scene_document.h"
+#include "scene/model/scene.h"
+#include <pthread.h>
+
+static int changes_seen;
+
+static void changed(void *context)
+{
+    (void)context;
+    __atomic_add_fetch(&changes_seen, 1, __ATOMIC_RELAXED);
+}
+
+static scene_document *open_document(const char *text)
+{
+    scene_document *d;
+    diagnostic why = {0};
+    worked(scene_document_create(scene_from(text), "ball.yaml", NULL, changed, NULL, &d, &why), &why);
+    return d;
+}
+
+static status set_one(void *of, scene *s, diagnostic *why)
+{
+    return scene_set_assignment(s, of, why);
+}
+
+static uint64_t apply_as(scene_document *d, const char *assignment, const char *gesture)
+{
+    uint64_t generation = 0;
+    diagnostic why = {0};
+    worked(scene_document_apply(d, assignment, gesture, set_one, (void *)(uintptr_t)assignment, &generation, &why),
+           &why);
+    return generation;
+}
+
+static uint64_t apply(scene_document *d, const char *assignment)
+{
+    return apply_as(d, assignment, NULL);
+}
+
+static void assert_value(scene_document *d, const char *path, const char *wanted)
+{
+    char *value = NULL;
+    scene *s = scene_document_take(d, NULL);
+    assert_int_equal(scene_get(s, path, &value, NULL), STATUS_OK);
+    assert_string_equal(value, wanted);
+    free(value);
+    scene_destroy(s);
+}
+
+static json_t *told(scene_document *d)
+{
+    json_t *state = json_object();
+    assert_true(scene_document_json(d, state));
+    return state;
+}
+
+static void assert_told(scene_document *d, const char *key, const char *text)
+{
+    json_t *state = told(d);
+    const json_t *value = json_object_get(state, key);
+    if (text)
+        assert_string_equal(json_string_value(value), text);
+    else
+        assert_true(json_is_null(value));
+    json_decref(state);
+}
+
+static void each_change_is_a_generation_and_can_be_undone(void **state)
+{
+    (void)state;
+    scene_document *d = open_document(BALL_SCENE);
+    changes_seen = 0;
+    assert_int_equal(scene_document_generation(d), 1);
+    assert_told(d, "undo", NULL);
+    assert_int_equal(apply(d, "ball.ior=1.6"), 2);
+    assert_int_equal(apply(d, "ball.ior=1.7"), 3);
+    assert_told(d, "undo", "ball.ior=1.7");
+    uint64_t generation;
+    assert_int_equal(scene_document_undo(d, false, &generation, NULL), STATUS_OK);
+    assert_int_equal(generation, 4);
+    assert_value(d, "ball.ior", "1.6");
+    assert_told(d, "redo", "ball.ior=1.7");
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    assert_value(d, "ball.ior", "1.5");
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(scene_document_undo(d, true, NULL, NULL), STATUS_OK);
+    assert_int_equal(scene_document_undo(d, true, NULL, NULL), STATUS_OK);
+    assert_int_equal(scene_document_undo(d, true, NULL, NULL), STATUS_BAD_INPUT);
+    assert_value(d, "ball.ior", "1.7");
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    apply(d, "ball.radius=0.5"); /* what was undone is gone now */
+    assert_told(d, "redo", NULL);
+    assert_int_equal(changes_seen, 8);
+    scene_document_destroy(d);
+}
+
+static void what_is_refused_changes_nothing(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {"ball.ior=-1", "ball.nothing=1", "camera.position=0,1,0", "render.width=0",
+                                      "render.width=65536"};
+    scene_document *d = open_document(BALL_SCENE);
+    apply(d, "render.height=4096");
+    changes_seen = 0;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        diagnostic why = {0};
+        assert_int_equal(scene_document_apply(d, "x", NULL, set_one, (void *)(uintptr_t)bad[i], NULL, &why),
+                         STATUS_BAD_INPUT);
+        assert_true(why.what[0] != 0);
+    }
+    assert_int_equal(scene_document_generation(d), 2);
+    assert_int_equal(changes_seen, 0);
+    assert_value(d, "render.width", "64");
+    assert_told(d, "undo", "render.height=4096");
+    scene_document_destroy(d);
+}
+
+static status ask_for_much(void *of, scene *s, diagnostic *why)
+{
+    const char *const *assignments = of;
+    status code = STATUS_OK;
+    for (size_t i = 0; assignments[i] && code == STATUS_OK; i++)
+        code = scene_set_assignment(s, assignments[i], why);
+    return code;
+}
+
+static void work_and_memory_are_bounded(void **state)
+{
+    (void)state;
+    static const char *const work[] = {"render.width=4096", "render.height=4096", "render.integrator=path",
+                                       "render.paths=1000000", NULL};
+    static const char *const triangles[] = {"soup.count=4000001", NULL}, *const enough[] = {"soup.count=4000000", NULL};
+    scene_document *d = open_document(
+        BALL_SCENE "  heap: {shape: mesh, mesh: soup, priority: 2}\nmeshes:\n  soup: {generate: sphere, count: 100}\n");
+    assert_int_equal(scene_document_apply(d, "x", NULL, ask_for_much, (void *)(uintptr_t)work, NULL, NULL),
+                     STATUS_BAD_INPUT);
+    assert_int_equal(scene_document_apply(d, "x", NULL, ask_for_much, (void *)(uintptr_t)triangles, NULL, NULL),
+                     STATUS_BAD_INPUT);
+    assert_int_equal(scene_document_apply(d, "x", NULL, ask_for_much, (void *)(uintptr_t)enough, NULL, NULL),
+                     STATUS_OK);
+    scene_document_destroy(d);
+}
+
+static void a_gesture_is_one_step(void **state)
+{
+    (void)state;
+    scene_document *d = open_document(BALL_SCENE);
+    for (int i = 0; i < 20; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "ball.ior=1.%d", 10 + i);
+        apply_as(d, text, "drag 1");
+    }
+    apply_as(d, "ball.radius=0.5", "drag 2");
+    assert_int_equal(scene_document_generation(d), 22);
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    assert_value(d, "ball.radius", "1");
+    assert_value(d, "ball.ior", "1.29");
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    assert_value(d, "ball.ior", "1.5");
+    apply_as(d, "ball.ior=1.2", "drag 2"); /* an undo lies between: a step of its own */
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    assert_value(d, "ball.ior", "1.5");
+    scene_document_destroy(d);
+}
+
+static void undo_remembers_so_many_and_no_more(void **state)
+{
+    (void)state;
+    scene_document *d = open_document(BALL_SCENE);
+    for (int i = 0; i < DOCUMENT_UNDO_MAX + 50; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "ball.ior=%d", 1 + i % 3);
+        apply(d, text);
+    }
+    int undone = 0;
+    while (scene_document_undo(d, false, NULL, NULL) == STATUS_OK)
+        undone++;
+    assert_int_equal(undone, DOCUMENT_UNDO_MAX);
+    scene_document_destroy(d);
+}
+
+static void resets_go_back_to_what_was_opened(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"ball.ior", "lamp.position"}, *const wrong[] = {"ball.nothing"};
+    scene_document *d = open_document(BALL_SCENE);
+    apply(d, "ball.ior=1.9");
+    apply(d, "lamp.position=1,2,3");
+    apply(d, "ball.radius=0.7");
+    assert_int_equal(scene_document_reset(d, paths, 2, NULL, NULL), STATUS_OK);
+    assert_value(d, "ball.ior", "1.5");
+    assert_value(d, "lamp.position", "4,7,-5");
+    assert_value(d, "ball.radius", "0.7");
+    assert_int_equal(scene_document_reset(d, wrong, 1, NULL, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(scene_document_reset(d, NULL, 0, NULL, NULL), STATUS_OK);
+    assert_value(d, "ball.radius", "1");
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    assert_value(d, "ball.radius", "0.7");
+    diagnostic why = {0};
+    worked(scene_document_open(d, scene_from(BALL_SCENE "  cube: {shape: box, size: [1, 1, 1], priority: 5}\n"),
+                               "other.yaml", NULL, &why),
+           &why);
+    apply(d, "cube.size=2,2,2");
+    assert_int_equal(scene_document_reset(d, NULL, 0, NULL, NULL), STATUS_OK);
+    assert_value(d, "cube.size", "1,1,1");
+    assert_told(d, "file", "other.yaml");
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    assert_told(d, "file", "ball.yaml"); /* opening can be undone */
+    assert_int_equal(scene_document_reset(d, NULL, 0, NULL, NULL),
+                     STATUS_OK); /* and resets know then what was opened before */
+    assert_value(d, "ball.radius", "1");
+    scene_document_destroy(d);
+}
+
+static bool is_saved(scene_document *d)
+{
+    json_t *state = told(d);
+    const bool saved = json_is_true(json_object_get(state, "saved"));
+    json_decref(state);
+    return saved;
+}
+
+static void it_knows_what_is_saved(void **state)
+{
+    (void)state;
+    scene_document *d = open_document(BALL_SCENE);
+    assert_true(is_saved(d));
+    const uint64_t generation = apply(d, "ball.ior=1.6");
+    assert_false(is_saved(d));
+    scene_document_undo(d, false, NULL, NULL);
+    assert_true(is_saved(d)); /* it is again what the file holds */
+    scene_document_reset(d, NULL, 0, NULL, NULL);
+    assert_true(is_saved(d));
+    apply(d, "ball.ior=1.6");
+    assert_false(is_saved(d));
+    scene_document_saved(d, "new.yaml", generation); /* of a scene that has gone */
+    assert_false(is_saved(d));
+    scene_document_saved(d, "new.yaml", scene_document_generation(d));
+    assert_true(is_saved(d));
+    assert_told(d, "file", "new.yaml");
+    scene_document_destroy(d);
+}
+
+static void what_was_loaded_is_shared(void **state)
+{
+    (void)state;
+    scene_document *d = open_document(
+        BALL_SCENE "  heap: {shape: mesh, mesh: soup, priority: 2}\nmeshes:\n  soup: {generate: sphere, count: 100}\n");
+    uint64_t generation;
+    scene *s = scene_document_take(d, &generation);
+    assert_int_equal(scene_load(s, NULL), STATUS_OK);
+    const mesh *loaded = s->meshes[0].data;
+    scene_document_lend(d, s, generation + 1); /* of another generation */
+    scene *other = scene_document_take(d, NULL);
+    assert_null(other->meshes[0].data);
+    scene_destroy(other);
+    scene_document_lend(d, s, generation);
+    apply(d, "ball.ior=1.6");
+    other = scene_document_take(d, NULL);
+    assert_ptr_equal(other->meshes[0].data, loaded);
+    scene_destroy(other);
+    apply(d, "soup.count=200");
+    other = scene_document_take(d, NULL);
+    assert_null(other->meshes[0].data);
+    scene_destroy(other);
+    scene_destroy(s);
+    scene_document_destroy(d);
+}
+
+enum { THREADS = 4, EACH = 200 };
+
+static void *change_often(void *of)
+{
+    for (int i = 0; i < EACH; i++) {
+        apply(of, i % 2 ? "ball.ior=1.5" : "ball.ior=1.4");
+        if (i % 10 == 9)
+            scene_document_undo(of, false, NULL, NULL);
+    }
+    return NULL;
+}
+
+static void threads_lose_no_change(void **state)
+{
+    (void)state;
+    scene_document *d = open_document(BALL_SCENE);
+    pthread_t thread[THREADS];
+    for (int i = 0; i < THREADS; i++)
+        assert_int_equal(pthread_create(&thread[i], NULL, change_often, d), 0);
+    for (int i = 0; i < THREADS; i++)
+        pthread_join(thread[i], NULL);
+    assert_int_equal(scene_document_generation(d), 1 + THREADS * (EACH + EACH / 10));
+    scene_document_destroy(d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest cases[] = {
+        cmocka_unit_test(each_change_is_a_generation_and_can_be_undone),
+        cmocka_unit_test(what_is_refused_changes_nothing),
+        cmocka_unit_test(work_and_memory_are_bounded),
+        cmocka_unit_test(a_gesture_is_one_step),
+        cmocka_unit_test(undo_remembers_so_many_and_no_more),
+        cmocka_unit_test(resets_go_back_to_what_was_opened),
+        cmocka_unit_test(it_knows_what_is_saved),
+        cmocka_unit_test(what_was_loaded_is_shared),
+        cmocka_unit_test(threads_lose_no_change),
+    };
+    return cmocka_run_group_tests_name("lab_desk", cases, NULL, NULL);
+}

@@ -1,0 +1,437 @@
+/* The painter: what is final is the film of the scene, newer changes win, trouble is told, waiting ends. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "lab_fixture.h"
+#include "measure/clock.h"
+#include "render_fixture.h"
+#include "web/live/render_worker.h"
+#include "web/live/passes.h"
+#include "scene/model/scene.h"
+#include <pthread.h>
+#include <stdatomic.h>
+#include <time.h>
+
+typedef struct studio {
+    scene_document *d;
+    render_worker *p;
+    pthread_mutex_t lock;
+    uint64_t serial, generation; /* of the last picture */
+    int images, passes_after_final, told;
+    bool final;
+} studio;
+
+/* Pictures come in order: serials grow, generations and passes do not go back. */
+static void take_image(void *of, const shared_image *shown)
+{
+    studio *s = of;
+    pthread_mutex_lock(&s->lock);
+    if (shown->serial <= s->serial || shown->generation < s->generation)
+        s->passes_after_final = -1000000;
+    if (s->final && shown->generation == s->generation)
+        s->passes_after_final++;
+    s->serial = shown->serial;
+    s->generation = shown->generation;
+    s->final = shown->final;
+    s->images++;
+    pthread_mutex_unlock(&s->lock);
+}
+
+static void be_told(void *of)
+{
+    studio *s = of;
+    pthread_mutex_lock(&s->lock);
+    s->told++;
+    pthread_mutex_unlock(&s->lock);
+}
+
+static void changed(void *of)
+{
+    studio *s = of;
+    render_worker_wake(s->p);
+}
+
+static void open_studio(studio *s, scene *first)
+{
+    *s = (studio){.lock = PTHREAD_MUTEX_INITIALIZER};
+    diagnostic why = {0};
+    worked(scene_document_create(first, "ball.yaml", NULL, changed, s, &s->d, &why), &why);
+    const render_worker_listener listener = {take_image, be_told, s};
+    worked(render_worker_create(s->d, isa_best(), &listener, &s->p, &why), &why);
+}
+
+static void close_studio(studio *s)
+{
+    render_worker_end(s->p);
+    render_worker_destroy(s->p);
+    scene_document_destroy(s->d);
+    assert_int_equal(s->passes_after_final, 0);
+}
+
+static status set_one(void *of, scene *s, diagnostic *why)
+{
+    return scene_set_assignment(s, of, why);
+}
+
+static void apply(studio *s, const char *assignment)
+{
+    diagnostic why = {0};
+    worked(scene_document_apply(s->d, assignment, NULL, set_one, (void *)(uintptr_t)assignment, NULL, &why), &why);
+}
+
+static uint64_t final_film(studio *s)
+{
+    const shared_image *shown;
+    diagnostic why = {0};
+    worked(render_worker_take_final(s->p, 60.0, &shown, &why), &why);
+    assert_true(shown->final);
+    assert_int_equal(shown->generation, scene_document_generation(s->d));
+    assert_non_null(shown->of);
+    assert_int_equal(shown->width, shown->full_width);
+    const uint64_t hash = shown->film_hash;
+    shared_image_release(shown);
+    return hash;
+}
+
+static uint64_t film_of(scene *s)
+{
+    diagnostic why = {0};
+    renderer *r;
+    render_result *made;
+    worked(renderer_create(isa_best(), NULL, &r, &why), &why);
+    worked(scene_load(s, &why), &why);
+    worked(renderer_render(r, s, NULL, &made, &why), &why);
+    const uint64_t hash = film_hash(made->img);
+    render_result_destroy(made);
+    renderer_destroy(r);
+    scene_destroy(s);
+    return hash;
+}
+
+static void the_final_picture_is_the_film(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, rod_scene("render.depth=8"));
+    assert_int_equal(final_film(&s), 0x804d2c54dfedd082);
+    apply(&s, "render.depth=4");
+    assert_int_equal(final_film(&s), 0xb92bb012fd9c5f71);
+    apply(&s, "liquid.ior=1.5");
+    assert_int_equal(final_film(&s), film_of(rod_scene("liquid.ior=1.5")));
+    close_studio(&s);
+}
+
+static void coarse_passes_come_first_and_change_no_film(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, rod_scene("render.width=400 render.height=300 render.samples=16"));
+    assert_int_equal(final_film(&s), film_of(rod_scene("render.width=400 render.height=300 render.samples=16")));
+    assert_true(s.images >= 2);
+    close_studio(&s);
+}
+
+static void the_last_of_many_changes_wins(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, rod_scene("render.width=320 render.height=240"));
+    for (int i = 0; i < 1000; i++) {
+        char text[32];
+        snprintf(text, sizeof text, "liquid.ior=%.3f", 1.0 + i * 0.001);
+        apply(&s, text);
+    }
+    assert_int_equal(final_film(&s), film_of(rod_scene("render.width=320 render.height=240 liquid.ior=1.999")));
+    close_studio(&s);
+}
+
+static void trouble_is_told_and_goes(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, scene_from(BALL_SCENE));
+    final_film(&s);
+    apply(&s, "background.img=/nowhere/sky.png");
+    const shared_image *shown;
+    diagnostic why = {0};
+    assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
+    assert_null(shown);
+    assert_non_null(strstr(why.what, "background.img"));
+    json_t *told = json_object();
+    assert_true(render_worker_json(s.p, told));
+    assert_true(json_is_object(json_object_get(told, "trouble")));
+    json_decref(told);
+    assert_int_equal(scene_document_undo(s.d, false, NULL, NULL), STATUS_OK);
+    final_film(&s);
+    apply(&s, "lamp.color=1000,1000,1000");
+    apply(&s, "lamp.intensity=10000"); /* brighter than a film holds: found while rendering */
+    apply(&s, "ball.transparency=0");
+    assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
+    close_studio(&s);
+}
+
+static void nothing_is_rendered_while_it_waits(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, scene_from(BALL_SCENE));
+    final_film(&s);
+    render_worker_suspend(s.p, "a study measures");
+    apply(&s, "ball.ior=1.7");
+    const shared_image *shown;
+    diagnostic why = {0};
+    assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_INTERRUPTED);
+    assert_non_null(strstr(why.what, "a study measures"));
+    shown = render_worker_take(s.p);
+    assert_int_equal(shown->generation, 1);
+    shared_image_release(shown);
+    render_worker_suspend(s.p, NULL);
+    final_film(&s);
+    close_studio(&s);
+}
+
+static void *wait_for_final(void *of)
+{
+    studio *s = of;
+    const shared_image *shown;
+    diagnostic why;
+    const status code = render_worker_take_final(s->p, 600.0, &shown, &why);
+    shared_image_release(shown);
+    return (void *)(intptr_t)code;
+}
+
+static void an_end_ends_all_waiting(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, rod_scene("render.integrator=path render.paths=1024 render.width=1600 render.height=1200"));
+    pthread_t waiting;
+    assert_int_equal(pthread_create(&waiting, NULL, wait_for_final, &s), 0);
+    render_worker_end(s.p); /* in the midst of a frame of minutes */
+    void *code;
+    pthread_join(waiting, &code);
+    assert_int_equal((intptr_t)code, STATUS_INTERRUPTED);
+    render_worker_destroy(s.p);
+    scene_document_destroy(s.d);
+}
+
+static void assert_whole(const pass_plan *plan)
+{
+    assert_in_range(plan->count, 1, PASSES_MAX);
+    assert_int_equal(plan->shrink[plan->count - 1], 1);
+    assert_false(plan->single[plan->count - 1]);
+    for (int i = 1; i < plan->count; i++)
+        assert_true(plan->shrink[i] < plan->shrink[i - 1] || (plan->single[i - 1] && !plan->single[i]));
+}
+
+static void passes_fit_the_time_that_there_is(void **state)
+{
+    (void)state;
+    const render_settings fast = {.width = 800, .height = 600, .samples = 1};
+    const render_settings slow = {
+        .width = 4000, .height = 3000, .samples = 64, .integrator = INTEGRATOR_PATH, .paths = 256};
+    pass_plan plan = passes_plan(&fast, 480000 / 0.03, 0.04); /* a frame takes 0.03 s */
+    assert_int_equal(plan.count, 1);
+    plan = passes_plan(&fast, 480000 / 0.5, 0.04);
+    assert_whole(&plan);
+    assert_true(passes_work(&fast, plan.shrink[0], plan.single[0]) / (480000 / 0.5) <= 0.04);
+    assert_int_equal(plan.shrink[0], 4);
+    for (double rate = 1; rate < 1e9; rate *= 7) {
+        plan = passes_plan(&slow, rate, 0.04);
+        assert_whole(&plan);
+    }
+    plan = passes_plan(&slow, 0.0, 0.04);
+    assert_whole(&plan);
+    const render_settings odd = {.width = 801, .height = 1, .samples = 4};
+    const render_settings pass = passes_settings(&odd, 8, true);
+    assert_int_equal(pass.width, 101);
+    assert_int_equal(pass.height, 1);
+    assert_int_equal(pass.samples, 1);
+}
+
+/* Long enough that loading it is asked whether to go on. */
+static void what_takes_long_to_load_is_shown(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(
+        &s,
+        scene_from("render: {width: 8, height: 8}\n"
+                   "camera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
+                   "meshes:\n"
+                   "  toy: {generate: slime, level: 3, position: [0, 0, 0], ground_y: -1, dt_s: 0.0005, time_s: 1}\n"
+                   "solids:\n"
+                   "  body: {shape: mesh, mesh: toy}\n"));
+    final_film(&s);
+    close_studio(&s);
+}
+
+#define SLIME_SCENE(time_s)                                                                       \
+    "render: {width: 8, height: 8}\n"                                                             \
+    "camera: {position: [0, 0, -5], target: [0, 0, 0]}\n"                                         \
+    "meshes:\n"                                                                                   \
+    "  toy: {generate: slime, level: 2, position: [0, 0, 0], ground_y: -1, time_s: " time_s "}\n" \
+    "solids:\n"                                                                                   \
+    "  body: {shape: mesh, mesh: toy}\n"
+
+/* Does the program come to rest? Looked at again and again, since others may keep it from resting for a while. */
+static bool comes_to_rest(void)
+{
+    enum { LOOKS = 100 };
+    const struct timespec while_away = {.tv_nsec = 100000000};
+    for (int i = 0; i < LOOKS; i++) {
+        const double cpu_s = clock_process_cpu_s();
+        nanosleep(&while_away, NULL);
+        if (clock_process_cpu_s() - cpu_s < 0.02)
+            return true;
+    }
+    return false;
+}
+
+static void what_cannot_be_painted_keeps_nobody_busy(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, scene_from(SLIME_SCENE("0")));
+    final_film(&s);
+    apply(&s, "background.img=/nowhere/sky.png");
+    const shared_image *shown;
+    diagnostic why = {0};
+    assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
+    assert_true(comes_to_rest());
+    live_give(render_worker_live(s.p), LIVE_PAUSE); /* an order is heard even so */
+    assert_true(comes_to_rest());
+    close_studio(&s);
+}
+
+/* Each change ends a load of hours; no number of them lets one through to its end. */
+static void what_takes_hours_keeps_no_newer_change_back(void **state)
+{
+    (void)state;
+    enum { CHANGES = 60 };
+    const struct timespec as_a_hand_drags = {.tv_nsec = 10000000};
+    studio s;
+    open_studio(&s, scene_from(SLIME_SCENE("80000")));
+    for (int i = 0; i < CHANGES; i++) {
+        char text[48];
+        snprintf(text, sizeof text, "toy.damping=%g", 0.04 + 0.01 * (i % 2));
+        apply(&s, text);
+        nanosleep(&as_a_hand_drags, NULL);
+    }
+    apply(&s, "toy.time_s=0");
+    final_film(&s);
+    close_studio(&s);
+}
+
+typedef struct looker {
+    studio *s;
+    atomic_bool *ends;
+    int looks, bare;
+} looker;
+
+static status look_at_meshes(void *of, scene *s, diagnostic *why)
+{
+    (void)why;
+    looker *l = of;
+    l->looks++;
+    for (size_t i = 0; i < s->mesh_count; i++)
+        l->bare += s->meshes[i].data == NULL;
+    return STATUS_OK;
+}
+
+static void *look_on_and_on(void *of)
+{
+    looker *l = of;
+    diagnostic why;
+    while (!atomic_load(l->ends))
+        render_worker_with_scene(l->s->p, look_at_meshes, l, &why);
+    return NULL;
+}
+
+/* Who looks without a gap keeps no change back, and sees no scene of which nothing was loaded. */
+static void lookers_see_what_is_loaded(void **state)
+{
+    (void)state;
+    enum { LOOKERS = 6, CHANGES = 300 };
+    static const char ring[] = "render: {width: 8, height: 8}\ncamera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
+                               "meshes: {ring: {generate: torus}}\nsolids: {body: {shape: mesh, mesh: ring}}\n";
+    studio s;
+    atomic_bool ends = false;
+    pthread_t thread[LOOKERS];
+    looker look[LOOKERS];
+    open_studio(&s, scene_from(ring));
+    final_film(&s);
+    for (int i = 0; i < LOOKERS; i++) {
+        look[i] = (looker){.s = &s, .ends = &ends};
+        assert_int_equal(pthread_create(&thread[i], NULL, look_on_and_on, &look[i]), 0);
+    }
+    for (int i = 0; i < CHANGES; i++) {
+        const shared_image *shown;
+        diagnostic why;
+        char text[48];
+        apply(&s, "background.img=/nowhere/sky.png");
+        snprintf(text, sizeof text, "ring.major=%d", 2 + i % 7);
+        apply(&s, text);
+        assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
+        apply(&s, "background.kind=uniform");
+        final_film(&s);
+    }
+    atomic_store(&ends, true);
+    for (int i = 0; i < LOOKERS; i++) {
+        pthread_join(thread[i], NULL);
+        assert_int_equal(look[i].bare, 0);
+        assert_true(look[i].looks > 0);
+    }
+    close_studio(&s);
+}
+
+/* Even where it is ordered to end before it has moved at all: while something else is loaded. */
+static void what_was_live_is_loaded_again(void **state)
+{
+    (void)state;
+    enum { TURNS = 20 };
+    static const char toys[] = "render: {width: 8, height: 8}\ncamera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
+                               "meshes:\n  toy: {generate: slime, level: 2, ground_y: -1, time_s: 0.001}\n  ring: "
+                               "{generate: torus, around: 500, tube: 100}\n"
+                               "solids:\n  body: {shape: mesh, mesh: toy}\n  hoop: {shape: mesh, mesh: ring}\n";
+    const struct timespec a_moment = {.tv_nsec = 2000000};
+    studio s;
+    open_studio(&s, scene_from(toys));
+    live *toy = render_worker_live(s.p);
+    final_film(&s);
+    for (int i = 0; i < TURNS; i++) {
+        render_worker_suspend(s.p, "a change comes");
+        apply(&s, i % 2 ? "ring.major=3" : "ring.major=4");
+        apply(&s, i % 2 ? "toy.time_s=0.002" : "toy.time_s=0.003");
+        live_give(toy, LIVE_PLAY);
+        render_worker_suspend(s.p, NULL);
+        nanosleep(&a_moment, NULL);
+        live_give(toy, LIVE_OFF);
+        final_film(&s);
+    }
+    render_worker_end(s.p);
+    render_worker_destroy(s.p);
+    scene_document_destroy(s.d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest cases[] = {
+        cmocka_unit_test(the_final_picture_is_the_film),
+        cmocka_unit_test(coarse_passes_come_first_and_change_no_film),
+        cmocka_unit_test(the_last_of_many_changes_wins),
+        cmocka_unit_test(trouble_is_told_and_goes),
+        cmocka_unit_test(nothing_is_rendered_while_it_waits),
+        cmocka_unit_test(an_end_ends_all_waiting),
+        cmocka_unit_test(what_takes_long_to_load_is_shown),
+        cmocka_unit_test(what_cannot_be_painted_keeps_nobody_busy),
+        cmocka_unit_test(what_takes_hours_keeps_no_newer_change_back),
+        cmocka_unit_test(lookers_see_what_is_loaded),
+        cmocka_unit_test(what_was_live_is_loaded_again),
+        cmocka_unit_test(passes_fit_the_time_that_there_is),
+    };
+    return cmocka_run_group_tests_name("lab_painter", cases, NULL, NULL);
+}

@@ -1,0 +1,266 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "optics/upsample.h"
+#include "color_difference.h"
+
+#define COUNT(a) (sizeof(a) / sizeof((a)[0]))
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+/* Simpson's rule on every 0.1 nm: much finer than the fit's own rule, and another one. */
+enum { WAVELENGTHS = 8001 };
+
+static double wavelength_nm(int k)
+{
+    return OBSERVER_LOW_NM + (OBSERVER_HIGH_NM - OBSERVER_LOW_NM) * k / (WAVELENGTHS - 1.0);
+}
+
+/* What each wavelength of a surface under D65 adds to XYZ; the caller frees. */
+static double (*daylight_weights(void))[3]
+{
+    double(*weights)[3] = malloc(WAVELENGTHS * sizeof *weights);
+    assert_non_null(weights);
+    for (int k = 0; k < WAVELENGTHS; k++) {
+        observer_weights(wavelength_nm(k), weights[k]);
+        double simpson = k == 0 || k == WAVELENGTHS - 1 ? 1.0 : k % 2 ? 4.0 : 2.0;
+        for (int i = 0; i < 3; i++)
+            weights[k][i] *= observer_d65(wavelength_nm(k)) * simpson / (3.0 * (WAVELENGTHS - 1));
+    }
+    return weights;
+}
+
+/* CIEDE2000 between a colour and its spectrum as seen under D65; checks that the spectrum is a reflectance. */
+static double round_trip(double (*weights)[3], const upsampled_spectrum *l, const double rgb[3])
+{
+    double xyz[3] = {0.0, 0.0, 0.0}, wanted[3], lab[3], wanted_lab[3];
+    for (int k = 0; k < WAVELENGTHS; k++) {
+        double s = upsampled_reflectance(l, wavelength_nm(k));
+        assert_true(s >= 0.0 && s <= 1.0);
+        for (int i = 0; i < 3; i++)
+            xyz[i] += l->scale * s * weights[k][i];
+    }
+    linear_srgb_to_xyz(rgb, wanted);
+    lab_from_xyz(xyz, lab);
+    lab_from_xyz(wanted, wanted_lab);
+    double difference = color_difference_2000(lab, wanted_lab);
+    assert_true(isfinite(difference));
+    return difference;
+}
+
+/* IEC 61966-2-1, 0 .. 1 */
+static double decoded(double v)
+{
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+/* Jakob and Hanika, eqs. 4 and 5, by hand. */
+static void spectra_are_sigmoids_of_a_parabola(void **state)
+{
+    (void)state;
+    const upsampled_spectrum flat = {.c = {0.0, 0.0, 0.0}, .scale = 1.0}, sloped = {.c = {0.0, 1.0, 0.0}, .scale = 1.0},
+                             bent = {.c = {0.75, 0.0, 0.0}, .scale = 3.0};
+    assert_true(upsampled_reflectance(&flat, 500.0) == 0.5);
+    assert_near(upsampled_reflectance(&sloped, 780.0), 0.5 + 0.5 / sqrt(2.0), 1e-15);
+    assert_near(upsampled_reflectance(&sloped, 380.0), 0.5 - 0.5 / sqrt(2.0), 1e-15);
+    assert_true(upsampled_reflectance(&sloped, 580.0) == 0.5);
+    assert_near(upsampled_reflectance(&bent, 380.0), 0.8, 1e-15); /* 3, 4, 5: 1/2 + 3/10 */
+    assert_near(upsampled_emission(&bent, 780.0), 3.0 * 0.8 * observer_d65(780.0), 1e-15);
+}
+
+/* ColorChecker Classic, sRGB under D65 (X-Rite; Pascale, "RGB coordinates of the Macbeth ColorChecker", 2006). */
+static void color_checker_comes_back(void **state)
+{
+    (void)state;
+    static const unsigned char patches[24][3] = {
+        {115, 82, 68},   {194, 150, 130}, {98, 122, 157},  {87, 108, 67},   {133, 128, 177}, {103, 189, 170},
+        {214, 126, 44},  {80, 91, 166},   {193, 90, 99},   {94, 60, 108},   {157, 188, 64},  {224, 163, 46},
+        {56, 61, 150},   {70, 148, 73},   {175, 54, 60},   {231, 199, 31},  {187, 86, 149},  {8, 133, 161},
+        {243, 243, 242}, {200, 200, 200}, {160, 160, 160}, {122, 122, 121}, {85, 85, 85},    {52, 52, 52}};
+    double(*weights)[3] = daylight_weights(), worst = 0.0;
+    for (size_t k = 0; k < COUNT(patches); k++) {
+        double rgb[3];
+        for (int i = 0; i < 3; i++)
+            rgb[i] = decoded(patches[k][i] / 255.0);
+        upsampled_spectrum l = upsample_reflectance(rgb), light = upsample_emission(rgb);
+        worst = fmax(worst, fmax(round_trip(weights, &l, rgb), round_trip(weights, &light, rgb)));
+    }
+    free(weights);
+    print_message("ColorChecker: largest CIEDE2000 %.2g\n", worst);
+    assert_true(worst < 1e-7);
+}
+
+/* Every 32nd step of the sRGB cube, its corners and edges too. */
+static void whole_cube_comes_back(void **state)
+{
+    (void)state;
+    double(*weights)[3] = daylight_weights(), worst = 0.0, sum = 0.0, worst_corner = 0.0;
+    for (int k = 0; k < 729; k++) {
+        const int steps[3] = {k % 9, k / 9 % 9, k / 81};
+        double rgb[3];
+        for (int i = 0; i < 3; i++)
+            rgb[i] = decoded(steps[i] / 8.0);
+        upsampled_spectrum l = upsample_reflectance(rgb);
+        double difference = round_trip(weights, &l, rgb);
+        sum += difference;
+        worst = fmax(worst, difference);
+        if (steps[0] % 8 == 0 && steps[1] % 8 == 0 && steps[2] % 8 == 0)
+            worst_corner = fmax(worst_corner, difference);
+    }
+    free(weights);
+    print_message("cube: mean CIEDE2000 %.2g, largest %.2g, at a corner %.2g\n", sum / 729, worst, worst_corner);
+    assert_true(sum / 729 < 1e-7 && worst < 1e-5 && worst_corner < 1e-5);
+}
+
+/* The steps of 8 bits next to black and white, where the fit is stiffest. */
+static void neighbours_of_black_and_white_come_back(void **state)
+{
+    (void)state;
+    static const int ends[] = {0, 1, 2, 253, 254, 255};
+    double(*weights)[3] = daylight_weights(), worst = 0.0;
+    for (int k = 0; k < 216; k++) {
+        const double rgb[3] = {decoded(ends[k % 6] / 255.0), decoded(ends[k / 6 % 6] / 255.0),
+                               decoded(ends[k / 36] / 255.0)};
+        upsampled_spectrum l = upsample_reflectance(rgb);
+        worst = fmax(worst, round_trip(weights, &l, rgb));
+    }
+    free(weights);
+    print_message("next to black and white: largest CIEDE2000 %.2g\n", worst);
+    assert_true(worst < 0.01);
+}
+
+/* Colours that no picture holds; what must hold is that nothing breaks, and nobody sees a difference (1 is just seen).
+ */
+static void far_corners_stay_finite(void **state)
+{
+    (void)state;
+    static const double ends[] = {0.0,  1e-310, 1e-40, 1e-15,      1e-9,        1e-6,
+                                  1e-3, 0.5,    0.999, 1.0 - 1e-9, 1.0 - 1e-15, 1.0};
+    enum { N = COUNT(ends) };
+    double(*weights)[3] = daylight_weights(), worst = 0.0;
+    for (int k = 0; k < N * N * N; k += 5) {
+        const double rgb[3] = {ends[k % N], ends[k / N % N], ends[k / N / N]};
+        upsampled_spectrum l = upsample_reflectance(rgb), light = upsample_emission(rgb);
+        for (int i = 0; i < 3; i++)
+            assert_true(isfinite(l.c[i]) && isfinite(light.c[i]));
+        worst = fmax(worst, round_trip(weights, &l, rgb));
+        assert_true(isfinite(upsampled_emission(&light, 550.0)) && upsampled_emission(&light, 550.0) >= 0.0);
+    }
+    free(weights);
+    print_message("far corners: largest CIEDE2000 %.2g\n", worst);
+    assert_true(worst < 0.02);
+}
+
+static void greys_are_constant(void **state)
+{
+    (void)state;
+    for (int k = 0; k <= 1000; k++) {
+        const double rgb[3] = {k / 1000.0, k / 1000.0, k / 1000.0};
+        upsampled_spectrum l = upsample_reflectance(rgb);
+        for (double nm = 380.0; nm <= 780.0; nm += 12.5) {
+            assert_near(upsampled_reflectance(&l, nm), k / 1000.0, 2.3e-16);
+            assert_true(upsampled_reflectance(&l, nm) == upsampled_reflectance(&l, 555.0));
+        }
+    }
+    const double black[3] = {0.0, 0.0, 0.0}, white[3] = {1.0, 1.0, 1.0};
+    upsampled_spectrum dark = upsample_reflectance(black), light = upsample_reflectance(white);
+    for (double nm = 380.0; nm <= 780.0; nm += 0.5)
+        assert_true(upsampled_reflectance(&dark, nm) == 0.0 && upsampled_reflectance(&light, nm) == 1.0);
+}
+
+static void out_of_range_is_taken_to_the_range(void **state)
+{
+    (void)state;
+    const double wild[3] = {-3.0, (double)NAN, 7.0}, tame[3] = {0.0, 0.0, 1.0};
+    upsampled_spectrum a = upsample_reflectance(wild), b = upsample_reflectance(tame);
+    upsampled_spectrum c = upsample_emission((double[3]){-1.0, (double)NAN, 4.0}),
+                       d = upsample_emission((double[3]){0.0, 0.0, 4.0});
+    upsampled_spectrum infinite = upsample_emission((double[3]){(double)INFINITY, 1.0, 2.0});
+    for (int i = 0; i < 3; i++)
+        assert_true(a.c[i] == b.c[i] && c.c[i] == d.c[i] && isfinite(infinite.c[i]));
+    assert_true(a.scale == 1.0 && c.scale == d.scale && isfinite(infinite.scale));
+}
+
+static void primaries_reflect_where_their_hue_is(void **state)
+{
+    (void)state;
+    upsampled_spectrum red = upsample_reflectance((double[3]){1.0, 0.0, 0.0}),
+                       green = upsample_reflectance((double[3]){0.0, 1.0, 0.0}),
+                       blue = upsample_reflectance((double[3]){0.0, 0.0, 1.0});
+    assert_true(upsampled_reflectance(&red, 650.0) > 0.95 && upsampled_reflectance(&red, 530.0) < 0.05);
+    assert_true(upsampled_reflectance(&green, 530.0) > 0.9 && upsampled_reflectance(&green, 650.0) < 0.05);
+    assert_true(upsampled_reflectance(&green, 440.0) < 0.05);
+    assert_true(upsampled_reflectance(&blue, 440.0) > 0.9 && upsampled_reflectance(&blue, 560.0) < 0.05);
+}
+
+static void white_light_is_daylight_exactly(void **state)
+{
+    (void)state;
+    static const double powers[] = {1.0, 0.25, 3.7, 1e-6, 12345.678};
+    for (size_t k = 0; k < COUNT(powers); k++) {
+        upsampled_spectrum l = upsample_emission((double[3]){powers[k], powers[k], powers[k]});
+        for (double nm = 380.0; nm <= 780.0; nm += 0.5)
+            assert_true(upsampled_emission(&l, nm) == powers[k] * observer_d65(nm));
+    }
+    upsampled_spectrum none = upsample_emission((double[3]){0.0, 0.0, 0.0});
+    assert_true(upsampled_emission(&none, 555.0) == 0.0);
+}
+
+static void emission_is_linear_in_its_scale(void **state)
+{
+    (void)state;
+    upsampled_spectrum one = upsample_emission((double[3]){0.9, 0.4, 0.1}),
+                       twice = upsample_emission((double[3]){1.8, 0.8, 0.2}),
+                       thrice = upsample_emission((double[3]){2.7, 1.2, 0.3});
+    for (double nm = 380.0; nm <= 780.0; nm += 0.5) {
+        double v = upsampled_emission(&one, nm);
+        assert_true(upsampled_emission(&twice, nm) == 2.0 * v);
+        assert_near(upsampled_emission(&thrice, nm), 3.0 * v, 1e-12);
+    }
+}
+
+/* Lights of any power are their colour, by the components relative to the largest. */
+static void lights_come_back(void **state)
+{
+    (void)state;
+    double(*weights)[3] = daylight_weights(), worst = 0.0;
+    for (int k = 1; k < 729; k++) {
+        const double rgb[3] = {40.0 * decoded(k % 9 / 8.0), 40.0 * decoded(k / 9 % 9 / 8.0),
+                               40.0 * decoded(k / 81 / 8.0)};
+        upsampled_spectrum l = upsample_emission(rgb);
+        double xyz[3] = {0.0, 0.0, 0.0}, back[3];
+        for (int j = 0; j < WAVELENGTHS; j++)
+            for (int i = 0; i < 3; i++)
+                xyz[i] += l.scale * upsampled_reflectance(&l, wavelength_nm(j)) * weights[j][i];
+        xyz_to_linear_srgb(xyz, back);
+        double largest = fmax(rgb[0], fmax(rgb[1], rgb[2]));
+        for (int i = 0; i < 3; i++)
+            worst = fmax(worst, fabs(back[i] - rgb[i]) / largest);
+    }
+    free(weights);
+    print_message("lights: largest error of a component %.2g of the largest component\n", worst);
+    assert_true(worst < 1e-8);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spectra_are_sigmoids_of_a_parabola),
+        cmocka_unit_test(color_checker_comes_back),
+        cmocka_unit_test(whole_cube_comes_back),
+        cmocka_unit_test(neighbours_of_black_and_white_come_back),
+        cmocka_unit_test(far_corners_stay_finite),
+        cmocka_unit_test(greys_are_constant),
+        cmocka_unit_test(out_of_range_is_taken_to_the_range),
+        cmocka_unit_test(primaries_reflect_where_their_hue_is),
+        cmocka_unit_test(white_light_is_daylight_exactly),
+        cmocka_unit_test(emission_is_linear_in_its_scale),
+        cmocka_unit_test(lights_come_back),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
