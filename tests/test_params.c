@@ -132,7 +132,7 @@ static void an_empty_scene_is_the_defaults(void **state)
     assert_int_equal(s->render.width, 800);
     assert_int_equal(s->render.shadows, SHADOWS_ATTENUATED);
     assert_int_equal(s->render.schedule, SCHEDULE_DYNAMIC);
-    assert_int_equal(s->render.worker_pool, 1);
+    assert_int_equal(s->render.pool, 1);
     assert_int_equal(s->camera.aimed, 1);
     scene_destroy(s);
 }

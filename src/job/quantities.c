@@ -144,7 +144,7 @@ static size_t solids_of(const job_account *a)
    "wall time of these, for this frame (render.keep off) or before it; not in wall_s", r->meshes.motion_s) \
  Q(drawn, "", COUNT, SAME, ROW, "meshes.drawn", NULL, \
    "of the depth buffer: triangles in the picture, analytic solids' too; else 0", r->meshes.drawn) \
- Q(raster_bytes, "B", COUNT, SAME, ROW, "meshes.drawn_bytes", NULL, \
+ Q(drawn_bytes, "B", COUNT, SAME, ROW, "meshes.drawn_bytes", NULL, \
    "memory of the depth buffer and of these triangles", r->meshes.raster_bytes) \
  Q(workers, "", COUNT, SAME, ROW, "workers", "threads", "threads of the frame", r->worker_count) \
  Q(workers_with_tiles, "", COUNT, LAST, ROW, "workers_with_tiles", NULL, "those that had a piece of the picture", \

@@ -26,7 +26,7 @@ typedef struct region_materials {
 } region_materials;
 
 typedef struct plan {
-    scene_geometry *solids;
+    scene_geometry *geometry;
     const material **materials;          /* by rank; [0] is NULL */
     region_materials *shading_materials; /* by rank; [0] is empty */
     hierarchy **own_trees;               /* of a plan that does not keep them with the meshes; by solid */

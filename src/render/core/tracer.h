@@ -16,7 +16,7 @@ typedef struct tracer tracer;
 /* What a frame is traced into. pixel_rays and pixel_ns may be NULL; kept is what the integrator keeps for the frame,
  * layers where it puts named layers if they are wanted; else NULL. */
 typedef struct tracer_target {
-    const plan *scene;
+    const plan *frame_plan;
     film *img;
     double *pixel_rays, *pixel_ns;
     void *kept;

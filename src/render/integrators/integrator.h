@@ -5,7 +5,9 @@
  *
  * A new integrator is a row of INTEGRATORS (scene/model/integrators.h) and a file here that defines its table of
  * functions, most of which may be NULL. All are called once for a frame, a piece, a batch or a group, never for a
- * single ray. They reach the tracer's inside through render/shade/shading.h.
+ * single ray. They reach the tracer's inside through render/shade/shading.h, which also declares the functions that
+ * several tables share: meet_nearest and background_sky (render/shade/shading.c), camera_samples
+ * (render/camera/camera_rays.c).
  *
  * Order of a frame: prepare; each step, by all workers and then by one; on each worker that gets a piece begin, then
  * for its pieces piece, and for its batches meet, background, place and shade; finish; release. The image must not
@@ -21,13 +23,14 @@
 #include "render/core/schedule.h"
 #include "render/core/tracer.h"
 
-/* The camera's rays of one pixel. */
-typedef struct camera_need {
+/* The camera rays of one pixel: numbers. The rays themselves are made by camera_rays_put_in_line
+ * (render/camera/camera_rays.c). */
+typedef struct camera_sampling {
     int64_t rays;
     int64_t points;   /* of the pixel that they go through, at most: the largest square grid of no more is taken */
     int64_t together; /* rays, one after another, through one point; the next ones through the next, round and round */
     int64_t marks;    /* bits that their tickets have besides pixel and sample (render/core/sample_key.h) */
-} camera_need;
+} camera_sampling;
 
 /* A step of a pre-pass. Steps wait for each other. */
 typedef struct integrator_step {
@@ -40,7 +43,7 @@ typedef struct integrator {
     bool by_sample; /* it wants to know of each ray which sample of its pixel it belongs to */
 
     /* --- a frame --- */
-    camera_need (*camera)(const render_settings *r);
+    camera_sampling (*sampling)(const render_settings *r);
     /* How many equal shares of a pixel's rays are exposed apart, so that their differences tell the noise; NULL: 1. */
     int (*shares)(const render_settings *r);
     status (*prepare)(const plan *p, void **frame, diagnostic *why);

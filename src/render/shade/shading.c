@@ -34,9 +34,9 @@ static inline void expose_at(tracer *t, int64_t place, double r, double g, doubl
  * rgb film's way keeps its registers. */
 static __attribute__((noinline)) void expose_by_sample_key(tracer *t, int64_t sample_key, double r, double g, double b)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const film *f = t->target.img;
-    const int64_t layer = f->layers == 1 ? 0 : sample_key_sample(sample_key) / p->render.samples % f->layers;
+    const int64_t layer = f->shares == 1 ? 0 : sample_key_sample(sample_key) / p->render.samples % f->shares;
     const int64_t place = sample_key_pixel(sample_key) + layer * f->width * f->height;
     if (p->spectral) {
         const double *eye = spectra_row(p->spectral, sample_key)->eye;
@@ -61,7 +61,7 @@ void shading_expose(tracer *t, int64_t sample_key, double r, double g, double b)
 static __attribute__((noinline)) void expose_sky_by_sample_key(tracer *t, int64_t sample_key, vec3 direction, double wr,
                                                                double wg, double wb)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     vec3 l;
     if (p->spectral)
         l.x = l.y = l.z = spectra_sky(spectra_row(p->spectral, sample_key), p->sky, direction);
@@ -74,7 +74,7 @@ static __attribute__((noinline)) void expose_sky_by_sample_key(tracer *t, int64_
 
 static inline void expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
-    const background *sky = t->target.scene->sky;
+    const background *sky = t->target.frame_plan->sky;
     if (t->by_sample_key) {
         expose_sky_by_sample_key(t, sample_key, direction, wr, wg, wb);
         return;
@@ -91,7 +91,7 @@ void shading_expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr
 /* What lies beyond the depth limit, along a branch that it cuts off. */
 static inline void expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     if (p->render.beyond != DEPTH_LIMIT_MEAN) {
         expose_sky(t, sample_key, direction, wr, wg, wb);
         return;
@@ -106,7 +106,7 @@ static inline void expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 dir
 
 void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
-    if (t->target.scene->render.beyond != DEPTH_LIMIT_BLACK)
+    if (t->target.frame_plan->render.beyond != DEPTH_LIMIT_BLACK)
         expose_at_depth_limit(t, sample_key, direction, wr, wg, wb);
 }
 
@@ -114,7 +114,7 @@ void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction
 static void expose_own_light(tracer *t, const material *m, bool ambient)
 {
     const group *g = &t->surface.gathered;
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const double k_a = ambient ? m->ambient : 0.0, k_e = m->emission;
     if (k_a == 0.0 && k_e == 0.0)
         return;
@@ -154,7 +154,7 @@ static void put_shadow_rays_in_line(tracer *t)
 /* One light on the gathered group, with the light's own spectrum where there is one. */
 static void direct_light(tracer *t, const material *m, int lamp, int priority_index)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     light l = p->lights[lamp];
     if (p->spectral)
         l.color = vec3_make(1.0, 1.0, 1.0), l.intensity = 1.0;
@@ -173,7 +173,7 @@ static void direct_light(tracer *t, const material *m, int lamp, int priority_in
 /* All that the surface sends out by itself, weighted. */
 static void send_out(tracer *t, int priority_index, light_terms terms)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const material *m = &t->surface.mat->surface;
     material dull;
     if (!terms.highlights) {
@@ -210,7 +210,7 @@ void cut_branches(tracer *t)
 {
     const group *g = &t->surface.gathered;
     const branch_group *b = &t->surface.branches;
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     if (CUVETTE_COUNTERS) {
         cut_sum sum;
         t->shade->cut(g, b, &sum);
@@ -268,7 +268,7 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
     const double least = t->least_weight;
     const int first = q->count;
     t->shade->append(&t->surface.gathered, dx, dy, dz, weight, inside, q);
-    if (t->target.scene->render.polarisation)
+    if (t->target.frame_plan->render.polarisation)
         return keep_polarised(t, q, first, dx == t->surface.branches.rx, weight, least);
     for (int i = t->surface.gathered.count - 1; i >= 0; i--)
         if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
@@ -278,7 +278,7 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
 
 void shading_branches(tracer *t, bool opaque)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const material *m = &t->surface.mat->surface;
     if (!opaque && p->render.transmission == TRANSMISSION_SIMPLE)
         t->shade->straight_branches(m, &t->surface.gathered, &t->surface.branches);
@@ -297,7 +297,7 @@ void shading_branches(tracer *t, bool opaque)
 void meet_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     (void)q, (void)first, (void)depth;
-    t->geometry->nearest(t->target.scene->solids, rays, &t->batch.scratch, &t->batch.hits);
+    t->geometry->nearest(t->target.frame_plan->geometry, rays, &t->batch.scratch, &t->batch.hits);
 }
 
 void background_sky(tracer *t, const ray_queue *q, int first, const int *list, int count)
@@ -311,10 +311,10 @@ void background_sky(tracer *t, const ray_queue *q, int first, const int *list, i
 /* A checker's cells lie in the frame of the solid whose surface it is, also where another solid's face exposes it. */
 static void color(tracer *t, int priority_index, const primitive *surface)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const primitive *frame = surface->priority_index == priority_index
                                  ? surface
-                                 : &p->solids->primitives[p->solids->regions[priority_index].outside];
+                                 : &p->geometry->primitives[p->geometry->regions[priority_index].outside];
     if (!p->spectral) {
         t->shade->color(&t->surface.mat->surface, frame, &t->surface.gathered);
         if (t->surface.mat->img)
@@ -331,8 +331,8 @@ static void color(tracer *t, int priority_index, const primitive *surface)
 
 static void shade_alike(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count)
 {
-    const plan *p = t->target.scene;
-    const primitive *surface = &p->solids->primitives[met];
+    const plan *p = t->target.frame_plan;
+    const primitive *surface = &p->geometry->primitives[met];
     group *g = &t->surface.gathered;
     group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, g);
     if (p->spectral)
@@ -348,7 +348,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int priority_i
     t->surface.texture_at = NULL;
     if (t->rule->place)
         t->rule->place(t, list);
-    const int owner = p->solids->regions[priority_index].solid;
+    const int owner = p->geometry->regions[priority_index].solid;
     COUNT(t->account.counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
         COUNT(t->account.counters.first_hits[owner] += (uint64_t)count);
@@ -358,7 +358,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int priority_i
 
 void shading_group(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count)
 {
-    const region_materials *shading_materials = &t->target.scene->shading_materials[priority_index];
+    const region_materials *shading_materials = &t->target.frame_plan->shading_materials[priority_index];
     t->surface.mat = shading_materials->mat;
     if (shading_materials->count == 1) {
         shade_alike(t, depth, first, met, priority_index, list, count);

@@ -18,12 +18,13 @@ void meet_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch
 void background_sky(tracer *t, const ray_queue *q, int first, const int *list, int count);
 
 /* Camera rays that see a pixel's samples, each at all of a spectral film's wavelengths. */
-camera_need camera_samples(const render_settings *r);
+camera_sampling camera_samples(const render_settings *r);
 
 /* Does no light pass the surface of that rank's body with the tracer's look? */
 static inline bool surface_is_opaque(const tracer *t, int priority_index)
 {
-    return t->target.scene->solids->regions[priority_index].opaque || t->surface.mat->surface.transparency == 0.0;
+    return t->target.frame_plan->geometry->regions[priority_index].opaque ||
+           t->surface.mat->surface.transparency == 0.0;
 }
 
 /* Terms of the light that a surface sends out by itself or gets from lamps. */

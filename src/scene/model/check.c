@@ -78,14 +78,14 @@ static status check_render(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "keep width times height within 268435456",
                         "a picture of %lld x %lld pixels is too large", (long long)s->render.width,
                         (long long)s->render.height);
-    if (s->render.polarisation && integrator_of(&s->render)->by_chance)
+    if (s->render.polarisation && integrator_traits_of(&s->render)->by_chance)
         return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
                         "the path integrator does not follow polarisation");
-    if (integrator_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
+    if (integrator_traits_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "the depth buffer draws red, green and blue: it knows no %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
-    if (integrator_of(&s->render)->layers && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
+    if (integrator_traits_of(&s->render)->layers && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "layers are of no light: they know no %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
@@ -100,7 +100,7 @@ static status check_render(const scene *s, diagnostic *why)
 
 static status check_light(const scene *s, const light *lamp, diagnostic *why)
 {
-    if (integrator_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0)
+    if (integrator_traits_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0)
         return diagnose(why, STATUS_BAD_INPUT,
                         "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
                         "%.80s: a sphere's light falls off with distance, and no reach says from where", lamp->name);

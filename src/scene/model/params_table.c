@@ -133,7 +133,7 @@ static const param table[] = {
          "wavelength at which the rgb film takes refractive indices; the default is the d line"),
     POSITIVE(PARAM_RENDER, render_settings, unit_m, "m", 1e6, "1", "length of one scene unit, for absorption"),
     PERFORMANCE_INTEGER(threads, "", 1, 1024, "1", "workers"),
-    PERFORMANCE_CHOICE(worker_pool, off_on, "on", "workers wait between frames; off starts fresh ones for each"),
+    PERFORMANCE_CHOICE(pool, off_on, "on", "workers wait between frames; off starts fresh ones for each"),
     PERFORMANCE_CHOICE(
         schedule, schedule_words, "dynamic",
         "how the picture is shared: fixed blocks of columns or rows, fixed tiles, or tiles as workers ask"),
