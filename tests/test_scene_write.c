@@ -432,7 +432,7 @@ static void assert_moved(const char *from, const char *img, const char *to, cons
     there = written(s, to, false);
     scene_destroy(s);
     worked(scene_read_text(to, there, strlen(there), &s, &why), &why);
-    worked(scene_get(s, "background.img", &value, &why), &why);
+    worked(scene_get(s, "background.picture", &value, &why), &why);
     assert_string_equal(value, expected);
     char *again = written(s, to, false);
     assert_string_equal(there, again);

@@ -107,7 +107,7 @@ static status load_sky(scene *s, diagnostic *why)
     }
     free(path);
     return code == STATUS_OK ? code
-                             : asset_error(s, "background.img", sky->image_line, sky->image_column, &bad, code, why);
+                             : asset_error(s, "background.picture", sky->image_line, sky->image_column, &bad, code, why);
 }
 
 static status load_texture(const scene *s, texture_entry *t, diagnostic *why)

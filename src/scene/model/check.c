@@ -123,7 +123,7 @@ static status check_camera(const scene *s, diagnostic *why)
 static status check_background(const scene *s, diagnostic *why)
 {
     if (s->background.kind == BACKGROUND_IMAGE && !s->background.image_path[0])
-        return diagnose(why, STATUS_BAD_INPUT, "set background.img to a PNG, JPEG, PFM or 24-bit BMP file",
+        return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG, PFM or 24-bit BMP file",
                         "the background is a picture, but which one is not said");
     return STATUS_OK;
 }
