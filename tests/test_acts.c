@@ -372,9 +372,9 @@ static bool open_with(const char *name, const char *assignments, acts *out, diag
 /* Room for the values of a parameter of the scene. */
 static const param *values_at(const acts *a, const char *path, acts_values *v)
 {
-    place at;
+    param_place at;
     char *now = NULL;
-    if (place_find(a->s, path, &at, NULL) != STATUS_OK || scene_get(a->s, path, &now, NULL) != STATUS_OK)
+    if (param_place_find(a->s, path, &at, NULL) != STATUS_OK || scene_get(a->s, path, &now, NULL) != STATUS_OK)
         return NULL;
     acts_values_of(a->s, at.row, now, v);
     free(now);

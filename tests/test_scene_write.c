@@ -211,10 +211,10 @@ static void every_parameter_survives_away_from_its_default(void **state)
     bool seen[512] = {false};
     for (size_t o = 0; o < sizeof owners / sizeof *owners; o++) {
         for (size_t i = 0; i < param_count(); i++) {
-            place at;
+            param_place at;
             char path[200];
             snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
-            if (place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
+            if (param_place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
                 continue;
             if (at.group == PARAM_MESH && strcmp(owners[o], at.row->makers               ? "toy"
                                                             : at.row->type == PARAM_PATH ? "model"
@@ -246,8 +246,8 @@ static void random_scenes_survive(void **state)
             char path[200], text[64][100];
             snprintf(path, sizeof path, "%s.%s", owners[(x >> 16) % 8], param_at(i)->name);
             size_t count = candidates(param_at(i), text, 64);
-            place at;
-            if (place_find(s, path, &at, NULL) == STATUS_OK && at.row == param_at(i) &&
+            param_place at;
+            if (param_place_find(s, path, &at, NULL) == STATUS_OK && at.row == param_at(i) &&
                 is_right(s, path, text[(x >> 20) % count]))
                 assert_int_equal(scene_set(s, path, text[(x >> 20) % count], NULL), STATUS_OK);
         }

@@ -1,3 +1,5 @@
+/* What no single range can say: parameters that need each other, names that must exist, combinations that cannot be.
+ * The range of one value is checked where it is set (params_value.c). */
 #include "scene/model/check.h"
 #include "geometry/shapes/shape.h"
 #include "base/counters.h"
@@ -49,8 +51,8 @@ static size_t count_name(const scene *s, const char *name)
 {
     size_t count = 0;
     for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
-        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++)
-            count += strcmp(place_group_name(s, (param_group)g, i), name) == 0;
+        for (size_t i = 0; i < param_place_group_size(s, (param_group)g); i++)
+            count += strcmp(param_place_group_name(s, (param_group)g, i), name) == 0;
     return count;
 }
 
@@ -263,8 +265,8 @@ static status check_names(const scene *s, diagnostic *why)
 {
     status code = STATUS_OK;
     for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
-        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
-            code = check_own_name(s, place_group_name(s, (param_group)g, i), why);
+        for (size_t i = 0; i < param_place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
+            code = check_own_name(s, param_place_group_name(s, (param_group)g, i), why);
     return code;
 }
 
@@ -289,7 +291,7 @@ status scene_check(const scene *s, diagnostic *why)
     status code = check_limits(s, why);
     THEN(code, check_names(s, why));
     for (int g = 0; g < PARAM_GROUP_COUNT; g++)
-        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
+        for (size_t i = 0; i < param_place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
             code = check_object(s, (param_group)g, i, why);
     return code;
 }

@@ -1,4 +1,5 @@
-/* The table itself: a new parameter is one new row here, and a field in scene.h. */
+/* The table itself: a new parameter is one new row here, and a field in the struct of its group (render_settings.h,
+ * material.h, light.h, solids.h, mesh_entry.h, view_settings.h). */
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
 #include "scene/model/mesh_entry.h"
@@ -261,6 +262,7 @@ static const param table[] = {
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which intensity holds, less with the square of the distance; 0 for the same everywhere"),
 
+    /* A solid has these too, by its own name (liquid.ior): see param_find. */
     COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1",
           "linear colour of ambient, diffuse and emitted light; inside a clear solid what is left of light after "
           "tint_distance"),

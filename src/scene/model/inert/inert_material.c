@@ -45,7 +45,7 @@ static bool not_bent(const inert_case *c)
         return false;
     if (goes_straight(c))
         return true;
-    const bool makes_equal = c->at.group == PARAM_MATERIAL && clear_users(c) > 1;
+    const bool makes_equal = c->at.object_group == PARAM_MATERIAL && clear_users(c) > 1;
     return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !material_matches_surroundings(s, c->m) &&
            !makes_equal && say_not_bent(c);
 }
