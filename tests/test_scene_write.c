@@ -216,12 +216,12 @@ static void every_parameter_survives_away_from_its_default(void **state)
             snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
             if (param_place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
                 continue;
-            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->makers               ? "toy"
-                                                            : at.row->type == PARAM_PATH ? "model"
-                                                                                         : "body") != 0)
+            if (at.object_group == PARAM_MESH && strcmp(owners[o], at.row->makers               ? "toy"
+                                                                   : at.row->type == PARAM_PATH ? "model"
+                                                                                                : "body") != 0)
                 continue; /* a file takes the place of what is generated, which a mesh that has a file is not; a slime's
                              rows are a slime's */
-            if (at.group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
+            if (at.object_group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
                 continue; /* one solid's will do */
             if (carry_row(s, owners[o], param_at(i)) == 0)
                 fail_msg("%s was not changed", path);
