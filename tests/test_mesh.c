@@ -230,7 +230,7 @@ static void wrong_numbers_are_refused_by_name(void **state)
     mesh *m = cubes(1);
     m->triangles[7].corner[1] = 8;
     assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "triangle 7 names vertex 8 of 8");
+    assert_string_equal(why.what, "triangle 7 refers to vertex 8 of 8");
     mesh_release(m);
     const double wrong[] = {(double)NAN, (double)INFINITY, -1.001e9};
     for (size_t k = 0; k < 3; k++) {
@@ -243,14 +243,14 @@ static void wrong_numbers_are_refused_by_name(void **state)
     assert_int_equal(mesh_create(3, 1, true, true, true, &m, NULL), STATUS_OK);
     m->normals[1].x = (double)NAN;
     assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "vertex 1 has a normal that is no number");
+    assert_string_equal(why.what, "vertex 1 has a normal that is not finite");
     m->normals[1].x = 0.0;
     m->uvs[2].v = (double)INFINITY;
     assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
     m->uvs[2].v = 0.0;
     m->slots[0] = 1;
     assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "triangle 0 names material slot 1 of 1");
+    assert_string_equal(why.what, "triangle 0 refers to material slot 1 of 1");
     m->slot_count = 2;
     assert_int_equal(mesh_finish(m, &why), STATUS_OK);
     mesh_release(m);
