@@ -1,7 +1,7 @@
-/* What the tracer counts: plain integers, one set a worker, summed after the join, so that counting
- * disturbs nothing and the totals do not depend on the number of threads. A ray is a straight piece
- * between two events: its counter goes up when it is traced (not when it is spawned). A build with
- * -DCUVETTE_COUNTERS=0 leaves the per-ray counters at zero. Ownership: values. */
+/* The ray counters of the tracer: plain integers, one set per worker, summed after the join, so that counting costs no
+ * synchronisation and the totals do not depend on the number of threads. A ray is one straight segment between two
+ * events; it is counted when it is traced, not when it is spawned. A build with -DCUVETTE_COUNTERS=0 leaves the per-ray
+ * counters at zero. Ownership: values. */
 #pragma once
 
 #include "base/lanes.h"
@@ -16,25 +16,25 @@ enum {
     COUNTERS_SOLID_MAX = 64  /* solids of a scene */
 };
 
-/* Throughput is summed in fixed point, CUT_ONE = 1.0, so that its sum has no order. */
+/* Throughput is summed in fixed point, CUT_ONE = 1.0, so that the sum is independent of the order. */
 #define COUNTERS_CUT_ONE 68719476736.0 /* 2^36 */
 
 typedef struct ray_counters {
     uint64_t camera, reflect, refract, shadow; /* rays traced, by kind */
     uint64_t by_depth[COUNTERS_DEPTH_MAX + 1]; /* camera, reflected and refracted rays by depth */
     uint64_t total_internal;                   /* total internal reflections */
-    uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
+    uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the maximum depth; under min_weight */
     int64_t cut_depth_throughput[3];           /* their throughput, RGB, in units of 1/COUNTERS_CUT_ONE */
     int64_t cut_weight_throughput[3];
-    uint64_t tests[COUNTERS_SOLID_MAX]; /* rays tested against the solid: all but shadow rays, and of these those of
-                                         * solids that can take light away by themselves (the further look at the few
-                                         * undecided shadow rays is not counted again) */
-    uint64_t hits[COUNTERS_SOLID_MAX];  /* interfaces met on the solid, not by shadow rays */
+    /* Rays tested against the solid: all except shadow rays, and the shadow rays tested against solids that can reduce
+     * light by themselves (the second, exact test of a few undecided shadow rays is not counted again). */
+    uint64_t tests[COUNTERS_SOLID_MAX];
+    uint64_t hits[COUNTERS_SOLID_MAX];       /* interfaces hit on the solid, without shadow rays */
     uint64_t first_hits[COUNTERS_SOLID_MAX]; /* camera rays whose first interface is on the solid */
 } ray_counters;
 
-/* Throughput (0 .. 1) in those units, to the nearest; by the bits of 1.5 2^52 + v, a conversion that every instruction
- * set has. */
+/* Throughput (0 .. 1) in those units, rounded to nearest; by the bits of 1.5 2^52 + v, a conversion that every
+ * instruction set supports. */
 static inline int64_t counters_cut_units(double throughput)
 {
     return lanes_bits(throughput * COUNTERS_CUT_ONE + 6755399441055744.0) - lanes_bits(6755399441055744.0);
