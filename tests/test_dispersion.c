@@ -1,3 +1,4 @@
+/* Tests of the dispersion laws. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +12,7 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabsl((long double)(a) - (long double)(b)) <= (long double)(tolerance))
 
-/* The formulas again, by libm's powers in long double. */
+/* The formulas again, with libm's powers in long double. */
 static long double expected(const dispersion *law, long double lambda_nm)
 {
     const double *c = law->coefficient;
@@ -74,7 +75,7 @@ static void laws_agree_with_their_formulas(void **state)
     }
 }
 
-/* Numbers that can be done in the head, at 500 nm or 1 um; each would be another under a neighbour's formula. */
+/* Numbers for mental arithmetic, at 500 nm or 1 um; each would differ under another law's formula. */
 static void laws_at_easy_numbers(void **state)
 {
     (void)state;
@@ -180,7 +181,7 @@ static void what_is_no_law_is_refused_with_a_reason(void **state)
         {{DISPERSION_TABLE, 6, {400.0, 1.5, 600.0, 1.5, 500.0, 1.5}, 0, 0}, "500 nm after 600 nm", "ascending"},
         {{DISPERSION_TABLE, 2, {0.0, 1.5}, 0, 0}, "0 nm after 0 nm", "above 0"},
         {{DISPERSION_TABLE, 6, {100.0, 0.05, 400.0, 1.5, 500.0, 1.5}, 0, 0}, "the index 0.05", "pairs"},
-        /* samples at whole nanometres see nothing of these */
+        /* samples at whole nanometres miss these */
         {{DISPERSION_SELLMEIER, 2, {1e-9, 0.30030400}, 0, 0}, "a resonance at 548 nm", "um^2"},
         {{DISPERSION_SELLMEIER_LENGTHS, 2, {1e-9, 0.5505}, 0, 0}, "a resonance at 550.5 nm", "um"},
         {{DISPERSION_SELLMEIER_LENGTHS, 2, {1e-9, -0.5505}, 0, 0}, "a resonance at 550.5 nm", "um"},
@@ -200,7 +201,7 @@ static void what_is_no_law_is_refused_with_a_reason(void **state)
     }
 }
 
-/* A term without weight, as short laws are padded with in catalogues, and resonances just outside the visible. */
+/* A term with zero weight, as catalogues pad short laws, and resonances just outside the visible. */
 static void laws_at_the_edge_are_accepted(void **state)
 {
     (void)state;
