@@ -1,3 +1,5 @@
+/* Tests of the library in every floating-point environment of a caller: bit-identical films, numbers, hits and motions,
+ * and the caller's environment unchanged. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,12 +15,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A host of the library in every floating-point environment: the same films, numbers, hits and motions, to the
- * bit, and the host's environment as it was. */
-
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-/* --- environments of hosts --- */
+/* --- environments of callers --- */
 
 enum { X86_DAZ = 0x0040, X86_FTZ = 0x8000, X87_PRECISION = 0x0300 };
 
@@ -32,7 +31,7 @@ typedef struct surroundings {
 static const int roundings[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
 static const unsigned flushings[] = {0, X86_FTZ, X86_DAZ, X86_FTZ | X86_DAZ};
 
-/* Every rounding with every flushing; then narrow registers and traps, alone and in all else that is unusual. */
+/* Every rounding mode with every flushing; then narrow registers and traps, alone and combined. */
 enum { PLAIN = COUNT(roundings) * COUNT(flushings), SURROUNDINGS = PLAIN + 4 };
 
 static surroundings surroundings_at(size_t i)
@@ -59,11 +58,11 @@ static void set_surroundings(const surroundings *wanted)
 #endif
     fesetround(wanted->rounding);
     if (!wanted->traps)
-        feraiseexcept(FE_OVERFLOW); /* the host has something to lose */
+        feraiseexcept(FE_OVERFLOW); /* the caller has something to lose */
     feenableexcept(wanted->traps);
 }
 
-/* What a host can notice of its environment. */
+/* The state of its environment that a caller can observe. */
 typedef struct noticed {
     int rounding, raised, traps;
     unsigned mxcsr, control;
@@ -91,7 +90,7 @@ static void expect_unchanged(const noticed *before)
                  after.control);
 }
 
-/* --- what a host asks for; no arithmetic on numbers here: it would be the host's own --- */
+/* --- the caller's requests; no arithmetic on numbers here: it would be the caller's own --- */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -138,7 +137,7 @@ static cuvette_scene *scene_of(const char *file, const char *assignments)
     return s;
 }
 
-/* The film, and what is made of it: floats, bytes. */
+/* The film, and images made from it: floats, bytes. */
 static uint64_t film_of(const cuvette_scene *s)
 {
     enum { WIDTH = 48, HEIGHT = 36 };
@@ -229,7 +228,7 @@ static void mix_note(void *context, const char *text)
     *hash = mix_text(*hash, text);
 }
 
-/* Decimal numbers that no double is, in and out; turns, which need sines. */
+/* Decimal numbers that are not doubles, parsed and formatted; rotations, which need sines. */
 static uint64_t ask_numbers(void)
 {
     static const char text[] =
@@ -242,7 +241,7 @@ static uint64_t ask_numbers(void)
         "         mote: {shape: sphere, radius: 0.01, position: [3e-310, 2, 0]}}\n";
     static char written[65536];
     static const double third[] = {1.0 / 3.0, 2.0 / 3.0, 0.1}, degrees[] = {10.7, -33.3, 71.1};
-    static const double subnormal[] = {1e-310, 0, 5e-324}; /* what flushing makes 0 */
+    static const double subnormal[] = {1e-310, 0, 5e-324}; /* values that flushing makes 0 */
     static const float pixels[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f, 1.0f, 0.15f, 0.25f};
     static const float corners[] = {-0.3f, 0.1f, 0.2f, 0.9f, 0.3f, -0.1f, 0.1f, 1.1f, 0.7f};
     static const uint32_t triangle[] = {0, 1, 2};
@@ -285,7 +284,7 @@ static uint64_t ask_numbers(void)
     return hash;
 }
 
-/* Rays of the camera, and those that go on behind what they meet. */
+/* Camera rays, and their continuations after the first hit. */
 static uint64_t ask_rays(void)
 {
     enum { SIDE = 12, RAYS = SIDE * SIDE };
@@ -348,7 +347,7 @@ static uint64_t ask_motion(void)
     return hash;
 }
 
-/* --- one answer in every environment --- */
+/* --- one result in every environment --- */
 
 static void expect_one_answer(question *ask)
 {
@@ -385,7 +384,7 @@ ONE_ANSWER(numbers_in_and_out, ask_numbers)
 ONE_ANSWER(rays_of_the_hosts_own, ask_rays)
 ONE_ANSWER(motions_and_hands, ask_motion)
 
-/* The hash that tests/test_determinism.c pins, and `cuvette render` prints. */
+/* The hash that tests/test_determinism.c pins and `cuvette render` prints. */
 static void the_golden_film(void **state)
 {
     (void)state;
@@ -409,7 +408,7 @@ static void the_golden_film(void **state)
     cuvette_scene_destroy(s);
 }
 
-/* --- the host's functions, and ways out --- */
+/* --- the caller's functions, and early returns --- */
 
 typedef struct listener {
     noticed expected;
@@ -482,7 +481,7 @@ static void the_hosts_functions_run_in_its_environment(void **state)
         const cuvette_status code = render_with(engine, s, &l);
         fine(cuvette_scene_each_parameter(s, hear_parameter, &l, &why), &why);
         fine(cuvette_scene_hints(s, hear_note, &l, &why), &why);
-        expect_unchanged(&l.expected); /* what the host changed stays */
+        expect_unchanged(&l.expected); /* the caller's changes remain */
         assert_int_equal(code, CUVETTE_OK);
         assert_int_equal(l.wrong, 0);
         assert_true(l.calls > 50);
@@ -534,7 +533,7 @@ static void sign_in_team(void *context, size_t index, int member)
 {
     roll *r = context;
     (void)index;
-    pthread_barrier_wait(&r->all_there); /* no member does two */
+    pthread_barrier_wait(&r->all_there); /* no member runs two */
     r->seen[member] = notice();
 }
 

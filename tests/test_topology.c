@@ -38,11 +38,11 @@ static void places_on_two_packages(void **state)
         assert_places(machine, PIN_COMPACT, count, along);
 
     assert_places(machine, PIN_SCATTER, 1, (int[]){0});
-    assert_places(machine, PIN_SCATTER, 2, (int[]){0, 8});        /* one a package */
+    assert_places(machine, PIN_SCATTER, 2, (int[]){0, 8});        /* one per package */
     assert_places(machine, PIN_SCATTER, 3, (int[]){0, 4, 8});     /* the first package takes the odd one */
     assert_places(machine, PIN_SCATTER, 4, (int[]){0, 4, 8, 12}); /* every other core */
     assert_places(machine, PIN_SCATTER, 8, (int[]){0, 2, 4, 6, 8, 10, 12, 14});
-    assert_places(machine, PIN_SCATTER, 10, (int[]){0, 2, 4, 6, 8, 10, 12, 14, 1, 9}); /* and again one a package */
+    assert_places(machine, PIN_SCATTER, 10, (int[]){0, 2, 4, 6, 8, 10, 12, 14, 1, 9}); /* and again one per package */
     assert_places(machine, PIN_SCATTER, 16, (int[]){0, 2, 4, 6, 8, 10, 12, 14, 1, 3, 5, 7, 9, 11, 13, 15});
     topology_destroy(machine);
 }

@@ -1,8 +1,9 @@
+/* The driver of the bvh builder: computes the references, builds the tree and collapses it. */
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>
 
-enum { PIECE = 16384 }; /* triangles that are referred to at a time */
+enum { PIECE = 16384 }; /* triangles per task when references are computed */
 
 static double least(double a, double b, double c)
 {
@@ -21,7 +22,7 @@ static bool same_place(const vec3 *a, const vec3 *b)
     return a->x == b->x && a->y == b->y && a->z == b->z;
 }
 
-/* A triangle with two corners in one place is hit by no ray and is left out. */
+/* A triangle with two corners at one position can never be hit and is left out. */
 static bool refer(const mesh *m, uint32_t triangle, bvh_ref *r)
 {
     const uint32_t *corner = m->triangles[triangle].corner;
@@ -42,7 +43,7 @@ static bool refer(const mesh *m, uint32_t triangle, bvh_ref *r)
 typedef struct reading {
     const mesh *m;
     bvh_ref *refs;
-    bvh_range *pieces; /* what became of each PIECE triangles; first is where they stand */
+    bvh_range *pieces; /* the references of each PIECE triangles; first is their position */
 } reading;
 
 static void read_piece(void *context, size_t index, int member)
@@ -89,7 +90,7 @@ static status build(hierarchy *h, thread_team *t, bvh_ref *refs, diagnostic *why
     return code;
 }
 
-/* More threads than tasks would only be waited for. */
+/* The number of threads for a build: no more than there are tasks. */
 static int useful(int threads, size_t triangles)
 {
     size_t most = triangles / TASK_TRIANGLES + 1;
