@@ -1,5 +1,5 @@
-/* Rays of the caller's, through the tracer's own kernels: batches are filled, asked, and their hits told in the scene's
- * terms. */
+/* Ray queries: the caller's rays are traced in batches by the tracer's own kernels, and their hits are converted to the
+ * scene's terms. */
 #include "engine/query_private.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #define FAR_ORIGIN 1e6
 
-/* A cuvette_start: word 0 is 1 for one that a hit filled in; then the face and the set of primitives. */
+/* A cuvette_start: word 0 is 1 if a hit filled it in; then follow the face and the set of primitives. */
 static cuvette_start start_at(int64_t face, uint64_t inside)
 {
     return (cuvette_start){{1, (uint64_t)face, inside, 0}};
@@ -18,7 +18,7 @@ bool engine_is_finite(const double *v)
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
 
-/* Is it the number of a face that there is? */
+/* True if the word is the number of an existing face. */
 static bool is_face(const scene_geometry *a, uint64_t word)
 {
     const int64_t face = (int64_t)word;
@@ -38,13 +38,13 @@ status engine_check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnos
     const double *o = ray->origin, *d = ray->direction;
     const char *what = NULL, *remedy = NULL;
     if (!(fabs(o[0]) <= FAR_ORIGIN && fabs(o[1]) <= FAR_ORIGIN && fabs(o[2]) <= FAR_ORIGIN))
-        what = "starts too far away", remedy = "start within 1e6 scene units of the middle";
+        what = "starts too far away", remedy = "start within 1e6 scene units of 0,0,0";
     else if (!engine_is_finite(d) || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0))
         what = "has no direction", remedy = "give a finite direction that is not 0,0,0";
     else if (!(ray->reach >= 0.0))
-        what = "has a negative reach", remedy = "give a distance, or 0 for any";
+        what = "has a negative reach", remedy = "give a distance, or 0 for no limit";
     else if (p && (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !is_face(p->solids, ray->start.word[1]))))
-        what = "has a start that no hit told", remedy = "copy it from a hit of this query, or zero it";
+        what = "has an invalid start", remedy = "copy it from a hit of this query, or zero it";
     if (!what)
         return STATUS_OK;
     return p ? diagnose(why, STATUS_BAD_INPUT, remedy, "ray %zu %s", i, what)
@@ -75,7 +75,7 @@ static ray_batch view_of(const bench *b, int count)
     return (ray_batch){count, b->ox, b->oy, b->oz, b->dx, b->dy, b->dz, b->start, b->inside};
 }
 
-/* A miss, as far as it can be told. */
+/* A miss: only the medium at the origin is known. */
 static cuvette_hit nothing_met(const cuvette_query *q, int priority_index)
 {
     cuvette_hit h;
@@ -115,7 +115,7 @@ static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int 
     return h;
 }
 
-/* Hits on one primitive: their points all at once. */
+/* Hits on one primitive: their points are computed together. */
 static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuvette_hit *out)
 {
     for (int k = 0; k < count; k++) {
@@ -189,7 +189,7 @@ cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_r
     return CUVETTE_OK;
 }
 
-/* Rays of one kind that were put in line: with a reach they end there, as shadow rays do at their light. */
+/* A batch of rays of one kind: those with a reach end there, as shadow rays end at their light. */
 static void occluded_batch(const cuvette_query *q, bench *b, int count, bool ends, unsigned char *blocked)
 {
     const ray_batch view = view_of(b, count);

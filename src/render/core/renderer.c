@@ -23,11 +23,11 @@ typedef struct event_list {
     size_t count, capacity;
 } event_list;
 
-/* What one worker writes during a frame, on cache lines of its own. */
+/* Data that one worker writes during a frame, on its own cache lines. */
 typedef struct worker_account {
     _Alignas(64) worker_report report;
     event_list events;
-    atomic_uint_fast64_t pixels; /* begun; read by the watcher */
+    atomic_uint_fast64_t pixels; /* begun; read by watch */
     bool out_of_memory, misplaced;
 } worker_account;
 
@@ -38,8 +38,8 @@ typedef struct frame {
     const plan *scene;
     const film *img;
     const integrator *rule;
-    void *kept;               /* what the integrator keeps for the frame */
-    void (*step)(void *kept); /* of its pre-pass: the one that is being done */
+    void *kept;               /* the integrator's state for the frame */
+    void (*step)(void *kept); /* the current step of its pre-pass */
     schedule pieces;
     worker_account *accounts;
     double began_s;
@@ -91,7 +91,8 @@ static pin_policy policy_of(const scene *s)
     return PIN_NONE;
 }
 
-/* Threads of a kept pool remember where they were put. False if a thread cannot be put where it belongs. */
+/* Binds the worker's thread to its processing unit; threads of a persistent pool remember their unit. False if the
+ * thread cannot be bound. */
 static bool take_place(const frame *f, int worker)
 {
     static _Thread_local int bound_to = -1;
@@ -120,7 +121,8 @@ static void note_tile(const frame *f, worker_account *d, int worker, const span 
         d->out_of_memory = true;
 }
 
-/* Pieces one after another; rays that do not fill a batch at the end of one piece go on with the next. */
+/* Traces one piece after another; rays that do not fill a batch at the end of a piece wait for the rays of the next
+ * one. */
 static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
 {
     const bool timeline = f->options && f->options->timeline, by_piece = f->options && f->options->piece_done;
@@ -205,7 +207,7 @@ static bool join_events(const worker_account *accounts, int count, render_result
     return true;
 }
 
-/* Rays that look for their nearest interface are tested against every visible solid, shadow rays against those that
+/* Rays that search for their nearest interface are tested against every visible solid, shadow rays against those that
  * cast shadows. */
 static void count_tests(const plan *p, ray_counters *c)
 {
@@ -217,7 +219,7 @@ static void count_tests(const plan *p, ray_counters *c)
     }
 }
 
-/* Sums up what the workers wrote into their accounts. */
+/* Collects the results of the workers' accounts. */
 static status collect(frame *f, bool in_range, render_result *result, diagnostic *why)
 {
     const int count = (int)f->s->render.threads;
@@ -242,12 +244,12 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
                         "a worker cannot be bound to its processing unit");
     if (overflow)
         return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
-                        "the picture is brighter than the film holds (262144 in one contribution, 524288 in a pixel)");
+                        "the radiance exceeds the film's range (262144 in one contribution, 524288 in a pixel)");
     return atomic_load(&f->stop) ? STATUS_INTERRUPTED : STATUS_OK;
 }
 
-/* Zeros that are written, so that no pixel's time holds the making of a page; of malloc and memset the compiler would
- * make a calloc, which writes nothing. */
+/* A map of zeros that are really written, so that no pixel's time includes the allocation of a page; compilers turn
+ * malloc and memset into calloc, which writes nothing. */
 static double *make_map(size_t pixels)
 {
     double *map = malloc(pixels * sizeof *map);
@@ -292,7 +294,7 @@ static status make_result(const scene *s, const render_options *options, render_
         if (layers_of(s) > 1)
             missing |= !(result->variance = make_map(3 * pixels));
         if (missing)
-            code = diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory");
+            code = diagnose(why, STATUS_FAILURE, "render a smaller image", "out of memory");
     }
     if (code != STATUS_OK) {
         render_result_destroy(result);
@@ -317,7 +319,7 @@ static void run_step(void *context, int worker)
     f->step(f->kept);
 }
 
-/* What the integrator does before any piece of the image can be made. */
+/* Runs the integrator's steps that precede all pieces of the image. */
 static status run_steps(frame *f, int count, diagnostic *why)
 {
     status code = STATUS_OK;
@@ -379,7 +381,7 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
     void *kept = NULL;
     render_result *result = NULL;
     if (code == STATUS_OK && s->background.kind == BACKGROUND_IMAGE && !s->background.img)
-        code = diagnose(why, STATUS_FAILURE, "call scene_load before", "the sky's picture is not loaded");
+        code = diagnose(why, STATUS_FAILURE, "call scene_load first", "the sky's image is not loaded");
     THEN(code, plan_build(s, &p, why));
     const integrator *rule = code == STATUS_OK ? integrator_for(&s->render) : NULL;
     if (rule && rule->prepare)

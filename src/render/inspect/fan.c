@@ -29,9 +29,9 @@ static status set_axes(const fan_rule *rule, fan *f, diagnostic *why)
     vec3 across_axis = vec3_sub(n, vec3_scale(f->axis, vec3_dot(n, f->axis)));
     if (!(length > 0.0 && isfinite(length)) || vec3_length(across_axis) < 1e-9 * length)
         return diagnose(why, STATUS_BAD_INPUT, "give a normal that is not along the axis",
-                        "the plane does not hold the axis");
+                        "the normal is zero or parallel to the axis");
     f->normal = vec3_normalize(across_axis);
-    /* Seen from above, or upright: to the left of the axis or up. */
+    /* Choose the sign: upwards, or for a horizontal plane, to the left of the axis seen from above. */
     f->across = vec3_cross(f->axis, f->normal);
     if (fabs(f->across.y) > 1e-9 ? f->across.y < 0.0 : f->axis.x * f->across.z - f->axis.z * f->across.x < 0.0)
         f->across = vec3_scale(f->across, -1.0);
@@ -88,7 +88,7 @@ static void read_exit(const fan *f, fan_ray *ray)
         meet_axis(f, ray);
 }
 
-/* Did two rays cross the same surfaces? */
+/* True if two rays crossed the same surfaces. */
 static bool same_direction(const fan *f, const fan_ray *a, const fan_ray *b)
 {
     if (a->count != b->count || !a->leaves || !b->leaves)
@@ -103,7 +103,7 @@ static bool same_direction(const fan *f, const fan_ray *a, const fan_ray *b)
     return true;
 }
 
-/* Two lines in the fan's plane: p + t d = q + s e. */
+/* Intersects two lines in the fan's plane: p + t d = q + s e. */
 static bool cross(const fan *f, const fan_ray *a, const fan_ray *b, vec3 *at)
 {
     const vec3 way = vec3_sub(b->exit_point, a->exit_point);
@@ -133,8 +133,8 @@ static bool is_bent(const fan_ray *ray)
     return ray->leaves && ray->count > 1;
 }
 
-/* Solves sum (1 - d d^T) x = sum (1 - d d^T) p by Cramer's rule, p from the first exit point on, so that nothing
- * cancels. */
+/* Solves sum (1 - d d^T) x = sum (1 - d d^T) p by Cramer's rule, with p relative to the first exit point to avoid
+ * cancellation. */
 static void find_focus(fan *f)
 {
     vec3 row[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, right = {0, 0, 0}, base = {0, 0, 0};
@@ -176,7 +176,8 @@ static void find_focus(fan *f)
 static status check_rule(const fan_rule *rule, diagnostic *why)
 {
     if (rule->rays < 1 || rule->rays > FAN_RAYS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000", "%d rays are out of range", rule->rays);
+        return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000 rays", "the number of rays %d is out of range",
+                        rule->rays);
     if (rule->spreads ? !(rule->spread_deg >= 0.0 && rule->spread_deg < 180.0)
                       : !(rule->width >= 0.0 && rule->width <= 1e6))
         return diagnose(why, STATUS_BAD_INPUT,

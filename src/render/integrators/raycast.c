@@ -1,5 +1,5 @@
-/* Ray casting (Appel, "Some techniques for shading machine renderings of solids", AFIPS 1968): the local light of what
- * camera rays meet, with its shadows. No ray goes on. */
+/* Ray casting (Appel, "Some techniques for shading machine renderings of solids", AFIPS 1968): the local light of
+ * camera rays' hits, with shadows. No secondary rays. */
 #include "render/shade/shading.h"
 
 static void shade(tracer *t, int depth, int priority_index)

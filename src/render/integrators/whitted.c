@@ -1,5 +1,5 @@
-/* Whitted's recursion ("An improved illumination model for shaded display", CACM 23(6), 1980): Phong's local light, and
- * where render.lighting follows them both branches of each ray, reflected and refracted, with their weights. */
+/* Whitted's recursion ("An improved illumination model for shaded display", CACM 23(6), 1980): Phong's local light,
+ * and, if render.lighting enables them, both branches of each ray, reflected and refracted, with their weights. */
 #include "render/shade/shading.h"
 
 static void branch(tracer *t, int depth, bool opaque)

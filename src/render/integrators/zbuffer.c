@@ -1,5 +1,6 @@
-/* The preview by a depth buffer (render/zbuffer): what it shows at the tracer's camera rays is shaded as if they had
- * been traced there. Its pre-pass takes the triangles into the picture; each piece is drawn before its rays set out. */
+/* The z-buffer preview: the surfaces that the depth buffer (render/zbuffer) shows at the tracer's camera rays are
+ * shaded as if they had been traced. Its pre-pass projects the triangles into the image; each piece is rasterised
+ * before its rays start. */
 #include "render/shade/shading.h"
 #include "render/zbuffer/zbuffer_private.h"
 
@@ -7,15 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One worker's: a square of the depth buffer, and of each ray of the batch the point of the grid and the triangle
+/* One worker's data: a square of the depth buffer, and for each ray of the batch its grid point and the triangle
  * there. */
 typedef struct raster_work {
     zbuffer_square square;
     int x[ROW], y[ROW];
     uint32_t number[ROW];
-    bool straight[ROW];               /* it meets a curved surface and looks straight on */
-    double vx[ROW], vy[ROW], vz[ROW]; /* and the straight view's direction there, of a frame with layers */
-    vec3 at[ROW]; /* of the gathered group: where a texture is looked up that runs straight across the picture */
+    bool straight[ROW];               /* it hits a curved surface along the undeflected view */
+    double vx[ROW], vy[ROW], vz[ROW]; /* direction of the undeflected view, in a frame with layers */
+    vec3 at[ROW];                     /* of the gathered group: points of affine texture lookup */
 } raster_work;
 
 static bool begin(tracer *t)
@@ -38,10 +39,10 @@ static void draw_piece(tracer *t, const span *piece)
     zbuffer_draw(t->target.kept, piece, &((raster_work *)t->own)->square);
 }
 
-/* The point of the grid that a ray goes through. */
+/* The grid point of a ray. */
 static size_t point_of(const zbuffer *z, int64_t sample_key, int *x, int *y)
 {
-    /* Short divisions are faster. */
+    /* 32-bit divisions are faster. */
     const uint32_t pixel = (uint32_t)sample_key_pixel(sample_key), sample = (uint32_t)sample_key_sample(sample_key);
     const uint32_t points = (uint32_t)z->points, width = (uint32_t)z->scene->render.width;
     const uint32_t row = pixel / width, line = points == 1 ? 0 : sample / points;
@@ -62,10 +63,10 @@ static met met_plane(const primitive *p, const camera_frame *view, vec3 d)
     return (met){.t = vec3_dot(n, vec3_sub(p->origin, view->eye)) / along, .leaving = along > 0.0};
 }
 
-/* Weights of the corners under the ray: what interpolating u / w, v / w and 1 / w across the picture comes to (Heckbert
- * and Moreton, "Interpolation for polygon texture mapping and shading", 1991), by the ray instead of the picture
- * because corners may be behind the eye (Moller and Trumbore, JGT 2(1), 1997). A ray that misses by what corners were
- * rounded takes the nearest edge. */
+/* Barycentric weights of the ray's hit: equal to interpolating u / w, v / w and 1 / w over the image (Heckbert and
+ * Moreton, "Interpolation for polygon texture mapping and shading", 1991), but computed from the ray because corners
+ * may be behind the camera (Moller and Trumbore, JGT 2(1), 1997). A ray that misses because corners were rounded takes
+ * the nearest edge. */
 static met met_triangle(const rasterised_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
 {
     const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
@@ -76,7 +77,7 @@ static met met_triangle(const rasterised_part *p, const screen_triangle *s, cons
     const vec3 h = vec3_cross(d, ac), q = vec3_cross(ab, a);
     const double size = vec3_dot(ab, h);
     double u = -vec3_dot(a, h) / size, v = vec3_dot(d, q) / size;
-    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen from its edge */
+    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen edge-on */
         u = v = 1.0 / 3.0;
     if (u < 0.0 || v < 0.0 || u + v > 1.0) {
         const double w = greater(1.0 - u - v, 0.0);
@@ -88,7 +89,7 @@ static met met_triangle(const rasterised_part *p, const screen_triangle *s, cons
     return (met){vec3_dot(at, d), u, v, size < 0.0};
 }
 
-/* The same by the plane of inverse depths, where neither weights nor sides are wanted. */
+/* The distance from the plane of inverse depths, if neither weights nor sides are needed. */
 static met met_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
 {
     const double near = lesser(greater(s->a * (x + 0.5) + (s->b * (y + 0.5) + s->c), s->least), s->most);
@@ -125,7 +126,7 @@ static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
     t->meshes->scratch.hit[i] = (instance_hit){m.t, m.u, m.v, face, m.leaving ? FACING_BACK : FACING_FRONT};
 }
 
-/* The straight views of a batch, whose directions may be bent: through the points of the grid. */
+/* The undeflected view directions through the grid points of a batch whose rays may be refracted. */
 static void straight_views(tracer *t, int count)
 {
     const zbuffer *z = t->target.kept;
@@ -140,7 +141,7 @@ static void straight_views(tracer *t, int count)
     t->shade->camera(view, count, u, v, w->vx, w->vy, w->vz);
 }
 
-/* A camera ray's own direction. */
+/* The view directions of camera rays are their own. */
 static void first_views(tracer *t, const ray_batch *rays)
 {
     const size_t bytes = (size_t)rays->count * sizeof(double);
@@ -148,7 +149,7 @@ static void first_views(tracer *t, const ray_batch *rays)
     memcpy(w->vx, rays->dx, bytes), memcpy(w->vy, rays->dy, bytes), memcpy(w->vz, rays->dz, bytes);
 }
 
-/* The straight way to a layer goes through one medium, which takes its share of the light. */
+/* Attenuates a ray by the one medium on the straight segment to a layer. */
 static void dim(const plan *p, ray_queue *q, int at, int priority_index, double length)
 {
     if (priority_index == 0 || !p->solids->regions[priority_index].absorbs)
@@ -174,9 +175,9 @@ static inline met met_layer(const tracer *t, int i, const rasterised_layer *l)
     return m;
 }
 
-/* The ray number `at` meets the next interface of its point's list, at `place` or behind what is passed: where the
- * straight view does, but along its own direction, as if it had set out towards that point. Where its list goes on it
- * takes along as its set. */
+/* Records the hit of ray `at` on the next interface of its point's list, at `place` or behind layers that are no
+ * interface: at the point of the undeflected view, but along the ray's own direction, as if it had started towards that
+ * point. The position in the list is stored as its set of primitives. */
 static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
     const zbuffer *z = t->target.kept;
@@ -247,10 +248,10 @@ static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch 
     }
 }
 
-/* At a curved surface the straight view does not meet what a bent ray would: where it leaves a ball near its outline,
- * the normal is another than where the ray does, and light that came in would not get out. So the view is bent there as
- * between the surface and one like it that it came in by: the part along the surface is as n sin is, the same in all
- * layers. */
+/* At a curved surface the undeflected view does not hit the point that a refracted ray would: where it leaves a ball
+ * near its outline, the normal differs from the refracted ray's, and light that entered could not leave. The view is
+ * therefore refracted there as if it had entered through a parallel surface: the tangential component follows from n
+ * sin, which is the same in all layers. */
 static void bend(tracer *t, const int *list)
 {
     const raster_work *w = t->own;
@@ -273,8 +274,8 @@ static void bend(tracer *t, const int *list)
     }
 }
 
-/* Weights straight across the picture, of the polygon that the planes left: not what they are in space, unless all
- * corners are equally far. */
+/* Affine weights in the image, of the clipped polygon: they differ from the weights in space unless all corners are
+ * equally far. */
 static void straight_weights(const zbuffer *z, const screen_triangle *s, double x, double y, double weight[3])
 {
     clip_corner polygon[POLYGON_MAX];
@@ -306,7 +307,7 @@ static void straighten_uv(tracer *t, const rasterised_part *p, const screen_tria
     t->meshes->points.tu[k] = u, t->meshes->points.tv[k] = v;
 }
 
-/* A plane's corners are infinitely far, where no straight way leads to. */
+/* An infinite plane has no affine interpolation: its corners are at infinity. */
 static void straighten(tracer *t, const int *list)
 {
     const zbuffer *z = t->target.kept;
@@ -343,8 +344,8 @@ static void place(tracer *t, const int *list)
     t->surface.texture_at = w->at;
 }
 
-/* What a clear surface does with the view: the sky's light along the reflected direction, and on to the next layer with
- * what is left. */
+/* A clear surface adds the sky radiance of the reflected direction and continues to the next layer with the remaining
+ * weight. */
 static void branch(tracer *t, int depth)
 {
     const group *g = &t->surface.gathered;
@@ -391,7 +392,7 @@ static status finish(void *frame, mesh_report *report, diagnostic *why)
 {
     report->drawn = zbuffer_triangles(frame);
     report->raster_bytes = zbuffer_bytes(frame);
-    return zbuffer_failed(frame) ? diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer clear solids",
+    return zbuffer_failed(frame) ? diagnose(why, STATUS_FAILURE, "render a smaller image or fewer clear solids",
                                             "out of memory for the layers of clear solids")
                                  : STATUS_OK;
 }

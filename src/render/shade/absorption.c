@@ -6,7 +6,7 @@
 
 #define LOG2_E 1.4426950408889634074
 
-/* Coefficients of a rank, by channel; of a spectral film at the ray's wavelength. */
+/* Coefficients of a priority index, by channel; in a spectral film at the ray's wavelength. */
 static vec3 coefficients(const plan *p, int priority_index, int64_t sample_key)
 {
     if (!p->spectral)
@@ -20,7 +20,7 @@ double absorption_left(double optical_depth)
     return elementary_exp2_inline(-LOG2_E * optical_depth);
 }
 
-/* The stretches' optical depths, into kept. */
+/* Adds the optical depths of the segments to kept. */
 static void add_depths(tracer *t)
 {
     const plan *p = t->target.scene;
@@ -37,7 +37,7 @@ static void add_depths(tracer *t)
     t->batch.scratch.segments->count = 0;
 }
 
-/* A way to the sky is spared here too: it is as long as can be. */
+/* Called when the list is full. Paths to the sky are exempt here too; they are recognised by their length. */
 static void make_room(void *context)
 {
     tracer *t = context;
@@ -68,7 +68,7 @@ void absorption_announce(tracer *t, const int64_t *sample_keys, int count)
     t->batch.scratch.segments->full = make_room;
     t->batch.scratch.segments->context = t;
     for (int i = 0; i < count; i++)
-        t->media->kept[0][i] = t->media->kept[1][i] = t->media->kept[2][i] = 0.0; /* optical depths first */
+        t->media->kept[0][i] = t->media->kept[1][i] = t->media->kept[2][i] = 0.0; /* optical depths at first */
 }
 
 static void absorption_shares(tracer *t, int count)
@@ -79,8 +79,8 @@ static void absorption_shares(tracer *t, int count)
             t->media->kept[c][i] = t->media->kept[c][i] > 0.0 ? absorption_left(t->media->kept[c][i]) : 1.0;
 }
 
-/* A way to the sky has no length to be dimmed over: its light is given where it arrives, at the surface that it goes on
- * from. */
+/* A path to the sky has no finite length: its light is taken to arrive unattenuated at the surface where the path
+ * starts. */
 void absorption_spare_sky(tracer *t)
 {
     const plan *p = t->target.scene;

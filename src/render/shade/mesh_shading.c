@@ -1,5 +1,5 @@
-/* Rays that met meshes: where, with which normal, and what a triangle that a normal only pretends to be curved lets
- * through. */
+/* Shading of rays that hit meshes: hit points, normals, and the correction for light that an interpolated normal would
+ * let through the triangle. */
 #include "render/shade/shading.h"
 
 #include "render/core/film.h"
@@ -50,7 +50,7 @@ bool mesh_lets_out(const tracer *t, int k, vec3 direction)
     return !t->surface.on_mesh || vec3_dot(geometric(t->meshes, k), direction) > 0.0;
 }
 
-/* No light reaches the ray's side of a triangle from behind it, whatever its normal. */
+/* No light from behind a triangle reaches the ray's side, whatever the shading normal. */
 void mesh_bound_light(tracer *t)
 {
     lit_group *l = &t->surface.lit;
@@ -62,8 +62,8 @@ void mesh_bound_light(tracer *t)
     }
 }
 
-/* A reflected ray stays on its side of the triangle, a refracted one leaves it; where the interpolated normal sends the
- * refracted ray back, all of the light is reflected, as at total reflection. */
+/* A reflected ray must stay on its side of the triangle, and a refracted one must leave it; if the interpolated normal
+ * sends the refracted ray back, all light is reflected, as in total reflection. */
 void mesh_bound_branches(tracer *t)
 {
     branch_group *b = &t->surface.branches;
@@ -87,7 +87,7 @@ bool mesh_has_corner_light(const tracer *t, int priority_index)
     return t->surface.on_mesh && t->target.scene->shading_materials[priority_index].shading == SHADING_GOURAUD;
 }
 
-/* The group as it would be if its rays met one corner of their triangles each. */
+/* The group as if each ray hit one corner of its triangle. */
 static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
 {
     group *c = &t->meshes->corner;
@@ -110,8 +110,8 @@ static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
     }
 }
 
-/* Gouraud, "Continuous shading of curved surfaces" (1971): light at a triangle's corners, and between them by their
- * weights. Shadows are the point's own. */
+/* Gouraud, "Continuous shading of curved surfaces" (1971): light at a triangle's corners, interpolated by the weights
+ * of the point. Shadows are those of the point itself. */
 void mesh_corner_light(tracer *t, const material *m, const light *lamp, int priority_index)
 {
     mesh_work *w = t->meshes;
@@ -119,7 +119,7 @@ void mesh_corner_light(tracer *t, const material *m, const light *lamp, int prio
     const group *g = &t->surface.gathered;
     const instance_set *f = t->target.scene->solids->meshes;
     const instanced_mesh *part = &f->parts[f->by_primitive[t->target.scene->solids->regions[priority_index].outside]];
-    t->shade->direct(m, lamp, g, l); /* for the ways to the light */
+    t->shade->direct(m, lamp, g, l); /* for the vectors to the light */
     for (int k = 0; k < g->count; k++)
         l->r[k] = l->g[k] = l->b[k] = 0.0;
     w->corner = *g;
@@ -152,7 +152,8 @@ static int slot_of(const tracer *t, int i)
     return m->slots ? m->slots[mesh_face_triangle(face)] : 0;
 }
 
-/* Brings those that look like the first one to the front of the list, each part in its order; returns how many. */
+/* Moves the rays with the material slot of the first one to the front of the list, both parts in order; returns their
+ * number. */
 int mesh_next_material(const tracer *t, int *list, int count, int *slot)
 {
     int others[BATCH], alike = 0, left = 0;

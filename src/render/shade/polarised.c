@@ -1,6 +1,6 @@
-/* Polarised light on its way back to the eye: each ray carries the analyser's Stokes vector (optics/mueller.h), of
- * which the first element is in its throughput and the others, relative to that, in the queue. Light comes unpolarised
- * from the sky, from lights and from matte surfaces, so that the first element alone weighs it. */
+/* Polarised light, traced from the camera: each ray carries the analyser's Stokes vector (optics/mueller.h), whose
+ * first element is part of its throughput; the others, relative to the first, are in the queue. Light from the sky,
+ * lights and matte surfaces is unpolarised, so that only the first element weights it. */
 #include "render/shade/shading.h"
 
 #include "optics/mueller.h"
@@ -20,7 +20,7 @@ static stokes stokes_add(stokes a, stokes b, double times)
     return (stokes){a.i + times * b.i, a.q + times * b.q, a.u + times * b.u, a.v + times * b.v};
 }
 
-/* The share of unpolarised light, at least 0, and the rest relative to it. */
+/* Splits a Stokes vector into the share of unpolarised light, at least 0, and the other elements relative to it. */
 static double take_apart(stokes s, double *q, double *u, double *v)
 {
     const double share = s.i > 0.0 ? s.i : 0.0, inverse = s.i > 0.0 ? 1.0 / s.i : 0.0;
@@ -28,7 +28,7 @@ static double take_apart(stokes s, double *q, double *u, double *v)
     return share;
 }
 
-/* After the branches' directions and unpolarised weights are known. */
+/* Called after the branches' directions and unpolarised weights are computed. */
 void polarised_branches(tracer *t, const material *m, bool opaque)
 {
     const group *g = &t->surface.gathered;

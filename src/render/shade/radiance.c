@@ -1,15 +1,15 @@
-/* Basic radiance (render.radiance). Where light is refracted from a medium of index n_1 into one of n_2 its cone of
- * directions narrows or widens: n^2 cos(theta) dA d(omega) stays as it is, and so, but for what is reflected, does
- * L / n^2 (Nicodemus, "Radiance", American Journal of Physics 31, 1963; Veach, Robust Monte Carlo Methods for Light
- * Transport Simulation, 1997, 5.2). A ray's throughput is its share of L / n^2: no interface puts an index into it.
- * Indices come in where light is sent out, in a medium of index n, and where the eye takes it, in one of n_eye:
- * radiance L there counts (n_eye / n)^2 times. The eye's factor is taken at that end too, so that throughputs, which
- * limits on a ray's weight compare, are shares of the camera ray whatever the eye stands in.
+/* Basic radiance (render.radiance). Where light is refracted from a medium of index n_1 into one of index n_2 its solid
+ * angle narrows or widens: n^2 cos(theta) dA d(omega) is invariant, and so, except for reflection, is L / n^2
+ * (Nicodemus, "Radiance", American Journal of Physics 31, 1963; Veach, Robust Monte Carlo Methods for Light Transport
+ * Simulation, 1997, 5.2). A ray's throughput is its share of L / n^2, so that interfaces add no factor of the index.
+ * The indices matter where light is emitted, in a medium of index n, and where the camera receives it, in one of index
+ * n_eye: radiance L there counts (n_eye / n)^2 times. The camera's factor is applied at the emitting end too, so that
+ * throughputs, which weight limits compare, are shares of the camera ray whatever the camera's medium.
  *
- * A shadow ray carries irradiance, in which the square of the index cancels against the solid angle: E = E_straight
- * T, with each interface's unpolarised transmittance. It is straight where light is bent. Its angle at an interface
- * is taken on the side of the lower index: there it is the true one for a lamp far above water, and for a pane in air
- * on both of its faces; and no angle there is beyond the critical one. */
+ * A shadow ray carries irradiance, in which the square of the index cancels against the solid angle: E = E_straight T,
+ * with each interface's unpolarised transmittance. It is straight where light would be refracted. Its angle at an
+ * interface is taken on the side of the lower index: this is correct for a lamp far above water, and for both faces of
+ * a pane in air; and no angle on that side exceeds the critical one. */
 #include "render/shade/shading.h"
 
 #include "optics/interface.h"
@@ -18,11 +18,11 @@
 
 struct radiance_work {
     ray_crossings crossings;
-    ray_batch rays;                   /* the shadow rays that crossings are noted of, ... */
-    const int64_t *sample_keys;       /* ... their tickets, ... */
+    ray_batch rays;                   /* the shadow rays whose crossings are recorded, ... */
+    const int64_t *sample_keys;       /* ... their sample keys, ... */
     double through[ROW];              /* ... and the product of the interfaces' transmittances, by ray */
     double kept[CROSSINGS_MAX];       /* transmittances, by crossing */
-    double wr[ROW], wg[ROW], wb[ROW]; /* the gathered group's throughput, while what its surface sends out is weighed */
+    double wr[ROW], wg[ROW], wb[ROW]; /* saved throughput of the gathered group while local light is weighted */
     surface_batch points;
     mesh_points on_mesh;
 };
@@ -78,7 +78,7 @@ void radiance_weigh_back(tracer *t)
     memcpy(g->wr, w->wr, bytes), memcpy(g->wg, w->wg, bytes), memcpy(g->wb, w->wb, bytes);
 }
 
-/* The shadow rays of crossings of one primitive, side by side, as kernels want them. */
+/* The shadow rays that cross one primitive, contiguous, as kernels require. */
 typedef struct straight_rays {
     double ox[ROW], oy[ROW], oz[ROW], dx[ROW], dy[ROW], dz[ROW], t[ROW];
     int64_t start[ROW];
@@ -109,7 +109,7 @@ static double transmittance(const plan *p, int64_t sample_key, const ray_crossin
     return 1.0 - fresnel_dielectric(cosine, low, high).R;
 }
 
-/* The interfaces of a primitive that the list holds of it. */
+/* Computes the transmittances of the listed crossings of one primitive. */
 static void cross_surface(tracer *t, int met, straight_rays *s)
 {
     const plan *p = t->target.scene;
@@ -129,8 +129,8 @@ static void cross_surface(tracer *t, int met, straight_rays *s)
     s->count = 0;
 }
 
-/* Empties the list of crossings: surfaces a primitive at a time, the product in the order along each ray, whatever
- * else is in the batch. */
+/* Processes and empties the list of crossings: surfaces one primitive at a time, the product in order along each ray,
+ * so that the result does not depend on the other rays of the batch. */
 static void take_crossings(void *context)
 {
     tracer *t = context;

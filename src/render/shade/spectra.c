@@ -6,13 +6,13 @@
 #include "scene/model/scene.h"
 #include <stdlib.h>
 
-/* Colours lifted, before they are looked up at each wavelength. */
+/* The scene's upsampled colours, before they are evaluated at each wavelength. */
 typedef struct upsampled_scene {
     const scene *s;
     const material *const *materials;
     const index_law *laws;
     upsampled_spectrum sky, horizon, ambient, basis[SKY_BASIS_COUNT];
-    upsampled_spectrum *color, *checker_color, *light; /* by rank, by rank, by light */
+    upsampled_spectrum *color, *checker_color, *light; /* by priority index, by priority index, by light */
 } upsampled_scene;
 
 static upsampled_spectrum upsample_light(vec3 color, double intensity)
@@ -76,7 +76,7 @@ static region_spectrum body_at(const upsampled_scene *l, size_t priority_index, 
     return b;
 }
 
-/* How many wavelengths share one offset. */
+/* Number of wavelengths that share one offset. */
 static int64_t wavelengths_together(const render_settings *render)
 {
     return integrator_of(render)->by_chance ? render->paths : render->wavelengths;
@@ -166,9 +166,9 @@ int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t 
     return sample_key_with_wavelength(sample_key, wavelength_of(sample % count, count, offset));
 }
 
-/* A texel as white, the best fitting secondary and the best fitting primary: Smits, "An RGB to Spectrum Conversion for
- * Reflectances", JGT 4(4), 1999, with the basis spectra lifted as all colours here. Linear where the order of the
- * channels stays. */
+/* A texel as a sum of white, a secondary and a primary colour: Smits, "An RGB to Spectrum Conversion for Reflectances",
+ * JGT 4(4), 1999, with basis spectra upsampled like all other colours. Linear as long as the order of the channels does
+ * not change. */
 static double texel_at(const spectral_row *row, vec3 rgb)
 {
     const double v[3] = {rgb.x, rgb.y, rgb.z};

@@ -1,5 +1,5 @@
-/* What is drawn: meshes as they are, analytic primitives as triangles on their surface. Light falls on the primitive
- * itself, so that the triangles show in outlines alone. */
+/* The rasterised parts: meshes as they are, analytic primitives as triangles on their surface. Shading uses the
+ * primitive itself, so that the triangles show only in outlines. */
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "geometry/shapes/shape.h"
@@ -17,7 +17,7 @@ static instanced_mesh part_of(const primitive *p, const mesh *triangles, vec3 sc
                             .copies = {1, 1, 1}};
 }
 
-/* The triangles of a primitive: its own, or those of another solid where only the scale tells them apart. */
+/* The triangles of a primitive: its own, or those of another solid that differs only in scale. */
 static status cut(const zbuffer *z, const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     const scene_geometry *a = z->scene->solids;
@@ -59,7 +59,7 @@ static status add(zbuffer *z, const region *b, int met, diagnostic *why)
     return code;
 }
 
-/* Those whose rank's bit is set. */
+/* Adds the regions whose priority index's bit is set. */
 static status add_regions(zbuffer *z, uint64_t priority_indices, diagnostic *why)
 {
     const scene_geometry *a = z->scene->solids;
