@@ -67,7 +67,7 @@ status engine_load(cuvette_scene *s, diagnostic *why);
 
 /* Copies content, of `known` bytes, into the caller's struct of an older or a newer version, up to the caller's size;
  * the size field with which both begin is not changed. */
-cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why);
+cuvette_status engine_copy_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why);
 
 bool engine_is_finite(const double *v); /* of three numbers */
 /* Checks a ray of the caller: ray i of a query on the plan p, or, if p is NULL, a single ray whose start is ignored. */
@@ -79,7 +79,7 @@ status engine_check_ray(const struct plan *p, const cuvette_ray *ray, size_t i, 
 vec3 engine_unit(const double *d);
 
 /* Copies content, which it frees, into the caller's memory. */
-cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why);
+cuvette_status engine_copy_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why);
 
 /* First statement of each function of cuvette.h that can fail: the function computes in the default floating-point
  * environment, and the caller's is restored on every return (the cleanup attribute is one of gcc and clang). Callbacks

@@ -63,7 +63,7 @@ cuvette_status engine_need(const char *names, const void *const *arguments, cuve
     return engine_missing(strcmp(name, "s") == 0 ? "scene" : name, why);
 }
 
-cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why)
+cuvette_status engine_copy_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
     size_t size;

@@ -84,19 +84,19 @@ cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counte
 {
     ENGINE_CALL(frame, out);
     const ray_counters *c = &frame->account.result->counters;
-    cuvette_counters told = {.camera = c->camera,
-                             .reflect = c->reflect,
-                             .refract = c->refract,
-                             .shadow = c->shadow,
-                             .total_internal = c->total_internal,
-                             .cut_depth = c->cut_depth,
-                             .cut_weight = c->cut_weight};
+    cuvette_counters result = {.camera = c->camera,
+                               .reflect = c->reflect,
+                               .refract = c->refract,
+                               .shadow = c->shadow,
+                               .total_internal = c->total_internal,
+                               .cut_depth = c->cut_depth,
+                               .cut_weight = c->cut_weight};
     for (int i = 0; i < 3; i++) {
-        told.cut_depth_throughput[i] = (double)c->cut_depth_throughput[i] / COUNTERS_CUT_ONE;
-        told.cut_weight_throughput[i] = (double)c->cut_weight_throughput[i] / COUNTERS_CUT_ONE;
+        result.cut_depth_throughput[i] = (double)c->cut_depth_throughput[i] / COUNTERS_CUT_ONE;
+        result.cut_weight_throughput[i] = (double)c->cut_weight_throughput[i] / COUNTERS_CUT_ONE;
     }
-    memcpy(told.by_depth, c->by_depth, sizeof told.by_depth);
-    return engine_give_struct(&told, sizeof told, out, why);
+    memcpy(result.by_depth, c->by_depth, sizeof result.by_depth);
+    return engine_copy_struct(&result, sizeof result, out, why);
 }
 
 cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t index, cuvette_solid_counters *out,
@@ -109,19 +109,19 @@ cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t i
                                       frame->solid_count),
                              &inner, why);
     const ray_counters *c = &frame->account.result->counters;
-    const cuvette_solid_counters told = {
+    const cuvette_solid_counters result = {
         .tests = c->tests[index], .hits = c->hits[index], .first_hits = c->first_hits[index]};
-    return engine_give_struct(&told, sizeof told, out, why);
+    return engine_copy_struct(&result, sizeof result, out, why);
 }
 
 cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_statistics *out, cuvette_diagnostic *why)
 {
     ENGINE_CALL(frame, out);
     const render_result *r = frame->account.result;
-    const cuvette_statistics told = {.wall_s = r->wall_s,
-                                     .cpu_s = r->cpu_s,
-                                     .preview_s = frame->preview_s,
-                                     .threads = r->worker_count,
-                                     .noise_rms = render_noise_rms(r)};
-    return engine_give_struct(&told, sizeof told, out, why);
+    const cuvette_statistics result = {.wall_s = r->wall_s,
+                                       .cpu_s = r->cpu_s,
+                                       .preview_s = frame->preview_s,
+                                       .threads = r->worker_count,
+                                       .noise_rms = render_noise_rms(r)};
+    return engine_copy_struct(&result, sizeof result, out, why);
 }

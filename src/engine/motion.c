@@ -164,21 +164,21 @@ cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *na
         return engine_report(code, &inner, why);
     const softbody *body = scene_motion_body(motion->bodies, i);
     const softbody_account a = softbody_measure(body);
-    cuvette_slime told = {.time_s = a.time_s,
-                          .steps = a.steps,
-                          .substeps = a.substeps,
-                          .masses = softbody_mass_count(body),
-                          .held = a.held,
-                          .kinetic = a.kinetic,
-                          .elastic = a.elastic,
-                          .compression = a.compression,
-                          .gravity = a.gravity,
-                          .volume = a.volume,
-                          .volume_at_rest = a.volume_at_rest,
-                          .low = a.low,
-                          .high = a.high,
-                          .speed_max = a.speed_max};
-    put_vector(a.center, told.center);
-    put_vector(a.momentum, told.momentum);
-    return engine_give_struct(&told, sizeof told, out, why);
+    cuvette_slime result = {.time_s = a.time_s,
+                            .steps = a.steps,
+                            .substeps = a.substeps,
+                            .masses = softbody_mass_count(body),
+                            .held = a.held,
+                            .kinetic = a.kinetic,
+                            .elastic = a.elastic,
+                            .compression = a.compression,
+                            .gravity = a.gravity,
+                            .volume = a.volume,
+                            .volume_at_rest = a.volume_at_rest,
+                            .low = a.low,
+                            .high = a.high,
+                            .speed_max = a.speed_max};
+    put_vector(a.center, result.center);
+    put_vector(a.momentum, result.momentum);
+    return engine_copy_struct(&result, sizeof result, out, why);
 }

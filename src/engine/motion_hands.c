@@ -22,7 +22,7 @@ static status pick(const cuvette_motion *m, const char *name, const cuvette_ray 
     return code;
 }
 
-static void tell(const motion_place *found, double *where)
+static void report_point(const motion_place *found, double *where)
 {
     if (where && isfinite(found->distance))
         where[0] = found->where.x, where[1] = found->where.y, where[2] = found->where.z;
@@ -38,7 +38,7 @@ cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *nam
     const status code = pick(motion, name, ray, &slime, &found, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    tell(&found, where);
+    report_point(&found, where);
     *distance = found.distance;
     return CUVETTE_OK;
 }
@@ -60,7 +60,7 @@ cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, con
                                  &number, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    tell(&found, where);
+    report_point(&found, where);
     *hand = number < 0 ? CUVETTE_NO_HAND : (int)slime * SOFTBODY_HANDS_MAX + number;
     return CUVETTE_OK;
 }

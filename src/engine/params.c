@@ -85,7 +85,7 @@ cuvette_status cuvette_scene_get(const cuvette_scene *s, const char *path, char 
     if (size > 0)
         ENGINE_NEED(text);
     ENGINE_TRY(get(s, path, &value, why));
-    return engine_give_text(value, text, size, length, why);
+    return engine_copy_text(value, text, size, length, why);
 }
 
 static cuvette_status is_no_number(const char *path, const char *value, const char *kind, cuvette_diagnostic *why)

@@ -23,7 +23,7 @@ typedef struct bench {
     instance_hit mesh_hits[ROW];
     mesh_points on_mesh;
     double transmitted[ROW];
-    size_t asked[ROW]; /* the index of the caller's ray in each column */
+    size_t caller_index[ROW]; /* the index of the caller's ray in each column */
     struct bench *next;
 } bench;
 

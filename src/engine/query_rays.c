@@ -76,7 +76,7 @@ static ray_batch view_of(const bench *b, int count)
 }
 
 /* A miss: only the medium at the origin is known. */
-static cuvette_hit nothing_met(const cuvette_query *q, int priority_index)
+static cuvette_hit no_hit(const cuvette_query *q, int priority_index)
 {
     cuvette_hit h;
     memset(&h, 0, sizeof h);
@@ -88,13 +88,13 @@ static cuvette_hit nothing_met(const cuvette_query *q, int priority_index)
     return h;
 }
 
-static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int k, int met)
+static cuvette_hit hit_of(const cuvette_query *q, const bench *b, int column, int k, int hit_primitive)
 {
     const plan *p = q->ready;
     const hit_batch *hits = &b->hits;
     const surface_batch *s = &b->points;
-    cuvette_hit h = nothing_met(q, (int)hits->before[column]);
-    const region *bounded = &p->solids->regions[p->solids->primitives[met].priority_index];
+    cuvette_hit h = no_hit(q, (int)hits->before[column]);
+    const region *bounded = &p->solids->regions[p->solids->primitives[hit_primitive].priority_index];
     h.distance = hits->t[column];
     h.point[0] = s->px[k], h.point[1] = s->py[k], h.point[2] = s->pz[k];
     h.normal[0] = s->nx[k], h.normal[1] = s->ny[k], h.normal[2] = s->nz[k];
@@ -108,7 +108,7 @@ static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int 
         h.slot = (int32_t)b->on_mesh.slot[k];
         h.u = b->on_mesh.weight[1][k], h.v = b->on_mesh.weight[2][k];
     } else {
-        h.face = (int32_t)(s->face[k] % FACES_MAX) + (met == bounded->hollow ? HOLLOW_FACES : 0);
+        h.face = (int32_t)(s->face[k] % FACES_MAX) + (hit_primitive == bounded->hollow ? HOLLOW_FACES : 0);
     }
     h.reflected = start_at(s->face[k], hits->inside_before[column]);
     h.transmitted = start_at(s->face[k], hits->inside_after[column]);
@@ -116,7 +116,7 @@ static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int 
 }
 
 /* Hits on one primitive: their points are computed together. */
-static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuvette_hit *out)
+static void report_hits(const cuvette_query *q, bench *b, int hit_primitive, int count, cuvette_hit *out)
 {
     for (int k = 0; k < count; k++) {
         const int i = b->list[k];
@@ -126,15 +126,15 @@ static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuv
     }
     const ray_batch rays = {count, b->gox, b->goy, b->goz, b->gdx, b->gdy, b->gdz, b->gstart, b->ginside};
     const scene_geometry *a = q->ready->solids;
-    if (!a->primitives[met].rule) {
+    if (!a->primitives[hit_primitive].rule) {
         for (int k = 0; k < count; k++)
             b->mesh_hits[k] = b->meshes.hit[b->list[k]];
         instance_set_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);
     } else {
-        q->kernels->surface(&a->primitives[met], &rays, b->t, met, &b->points);
+        q->kernels->surface(&a->primitives[hit_primitive], &rays, b->t, hit_primitive, &b->points);
     }
     for (int k = 0; k < count; k++)
-        out[b->list[k]] = told(q, b, b->list[k], k, met);
+        out[b->list[k]] = hit_of(q, b, b->list[k], k, hit_primitive);
 }
 
 static bool within(double distance, double reach)
@@ -151,16 +151,16 @@ static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *r
     q->kernels->nearest(a, &view, &b->scratch, &b->hits);
     for (int i = 0; i < count; i++)
         if (b->hits.hit_primitive[i] < 0 || !within(b->hits.t[i], rays[i].reach)) {
-            hits[i] = nothing_met(q, scene_geometry_priority_index(a, b->inside[i]));
+            hits[i] = no_hit(q, scene_geometry_priority_index(a, b->inside[i]));
             b->hits.hit_primitive[i] = -1;
         }
-    for (int met = 0; met < a->primitive_count; met++) {
+    for (int hit_primitive = 0; hit_primitive < a->primitive_count; hit_primitive++) {
         int listed = 0;
         for (int i = 0; i < count; i++)
-            if (b->hits.hit_primitive[i] == met)
+            if (b->hits.hit_primitive[i] == hit_primitive)
                 b->list[listed++] = i;
         if (listed > 0)
-            tell_group(q, b, met, listed, hits);
+            report_hits(q, b, hit_primitive, listed, hits);
     }
 }
 
@@ -198,7 +198,7 @@ static void occluded_batch(const cuvette_query *q, bench *b, int count, bool end
     else
         q->kernels->nearest(q->ready->solids, &view, &b->scratch, &b->hits);
     for (int i = 0; i < count; i++)
-        blocked[b->asked[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.hit_primitive[i] >= 0;
+        blocked[b->caller_index[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.hit_primitive[i] >= 0;
 }
 
 static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, size_t count, bool ends,
@@ -209,7 +209,7 @@ static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, 
         if ((rays[i].reach > 0.0 && isfinite(rays[i].reach)) != ends)
             continue;
         put_ray(q, b, waiting, &rays[i], ends ? rays[i].reach : 1.0);
-        b->asked[waiting++] = i;
+        b->caller_index[waiting++] = i;
         if (waiting == BATCH) {
             occluded_batch(q, b, waiting, ends, blocked);
             waiting = 0;

@@ -196,7 +196,7 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
     return CUVETTE_OK;
 }
 
-cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
+cuvette_status engine_copy_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
 {
     const size_t needed = strlen(content);
     if (length)
@@ -232,5 +232,5 @@ cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size
     cuvette_scene *held = hold(s);
     const status code = scene_write_text(held->model, NULL, false, &content, &inner);
     pthread_mutex_unlock(&held->loading);
-    return code == STATUS_OK ? engine_give_text(content, text, size, length, why) : engine_report(code, &inner, why);
+    return code == STATUS_OK ? engine_copy_text(content, text, size, length, why) : engine_report(code, &inner, why);
 }

@@ -159,7 +159,7 @@ static status prepare(job *j, const scene *s, const render_options *requested, d
     if (code != STATUS_OK)
         return code;
     if (machine)
-        renderer_know_machine(j->tracer, machine);
+        renderer_set_machine(j->tracer, machine);
     return renderer_prepare(j->tracer, s, why);
 }
 

@@ -16,7 +16,7 @@ static int64_t cells_across(int64_t points)
     return k;
 }
 
-void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
+void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
 {
     const plan *p = t->target.scene;
     const render_settings *r = &p->render;

@@ -38,8 +38,8 @@ typedef struct frame {
     const plan *scene;
     const film *img;
     const integrator *rule;
-    void *kept;               /* the integrator's state for the frame */
-    void (*step)(void *kept); /* the current step of its pre-pass */
+    void *state;               /* the integrator's state for the frame */
+    void (*step)(void *state); /* the current step of its pre-pass */
     schedule pieces;
     worker_account *accounts;
     double began_s;
@@ -71,7 +71,7 @@ void renderer_destroy(renderer *r)
     free(r);
 }
 
-void renderer_know_machine(renderer *r, const topology *machine)
+void renderer_set_machine(renderer *r, const topology *machine)
 {
     r->machine = machine;
 }
@@ -316,7 +316,7 @@ static void run_step(void *context, int worker)
 {
     const frame *f = context;
     (void)worker;
-    f->step(f->kept);
+    f->step(f->state);
 }
 
 /* Runs the integrator's steps that precede all pieces of the image. */
@@ -327,18 +327,18 @@ static status run_steps(frame *f, int count, diagnostic *why)
         f->step = step->together;
         code = worker_pool_run(f->owner->threads, count, f->s->render.worker_pool, run_step, NULL, 0.0, f, why);
         if (code == STATUS_OK && step->alone)
-            code = step->alone(f->kept, why);
+            code = step->alone(f->state, why);
     }
     return code;
 }
 
-static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, void *kept,
+static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, void *state,
                         render_result *result, diagnostic *why)
 {
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
     worker_account *accounts = make_accounts(count);
-    const tracer_target target = {p, result->img, result->pixel_rays, result->pixel_ns, kept, result->layers};
+    const tracer_target target = {p, result->img, result->pixel_rays, result->pixel_ns, state, result->layers};
     bool has_memory = f && accounts && tracer_pool_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
     if (code == STATUS_OK) {
@@ -349,7 +349,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->scene = p;
         f->img = result->img;
         f->rule = integrator_for(&s->render);
-        f->kept = kept;
+        f->state = state;
         f->accounts = accounts;
         schedule_start(&f->pieces, &s->render);
         const double cpu_s = clock_process_cpu_s();
@@ -364,7 +364,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
             const bool in_range = film_add_layers(result->img, result->variance);
             code = collect(f, in_range, result, why);
             if (code == STATUS_OK && f->rule->finish)
-                code = f->rule->finish(kept, &result->meshes, why);
+                code = f->rule->finish(state, &result->meshes, why);
         }
         for (int i = 0; i < count; i++)
             free(accounts[i].events.event);
@@ -378,21 +378,21 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
 {
     status code = scene_check(s, why);
     plan *p = NULL;
-    void *kept = NULL;
+    void *state = NULL;
     render_result *result = NULL;
     if (code == STATUS_OK && s->background.kind == BACKGROUND_IMAGE && !s->background.img)
         code = diagnose(why, STATUS_FAILURE, "call scene_load first", "the sky's image is not loaded");
     THEN(code, plan_build(s, &p, why));
     const integrator *rule = code == STATUS_OK ? integrator_for(&s->render) : NULL;
     if (rule && rule->prepare)
-        code = rule->prepare(p, &kept, why);
+        code = rule->prepare(p, &state, why);
     THEN(code, make_result(s, options, &result, why));
     if (code == STATUS_OK) {
         result->meshes = p->meshes;
-        code = run_frame(r, s, options, p, kept, result, why);
+        code = run_frame(r, s, options, p, state, result, why);
     }
     if (rule && rule->release)
-        rule->release(kept);
+        rule->release(state);
     plan_destroy(p);
     if (code != STATUS_OK && code != STATUS_INTERRUPTED) {
         render_result_destroy(result);

@@ -21,7 +21,7 @@ status renderer_create(isa level, const topology *machine, renderer **out, diagn
 void renderer_destroy(renderer *r);
 
 /* Sets the machine of a renderer that was created without it. */
-void renderer_know_machine(renderer *r, const topology *machine);
+void renderer_set_machine(renderer *r, const topology *machine);
 
 /* One worker's report of a frame; times are seconds from the frame's start. */
 typedef struct worker_report {

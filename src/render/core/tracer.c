@@ -121,13 +121,15 @@ static void sort_by_primitive(tracer *t, int count)
     const int foreign = a->primitive_count, none = foreign + 1;
     memset(t->batch.listed, 0, ((size_t)none + 1) * sizeof *t->batch.listed);
     for (int i = 0; i < count;) {
-        const int64_t met = t->batch.hits.hit_primitive[i], priority_index = t->batch.hits.surface[i];
-        const int at = met < 0 ? none : priority_index == a->primitives[met].priority_index ? (int)met : foreign;
+        const int64_t hit_primitive = t->batch.hits.hit_primitive[i], priority_index = t->batch.hits.surface[i];
+        const int at = hit_primitive < 0                                               ? none
+                       : priority_index == a->primitives[hit_primitive].priority_index ? (int)hit_primitive
+                                                                                       : foreign;
         int *list = t->batch.list[at], listed = t->batch.listed[at];
         do /* neighbours often hit the same primitive */
             list[listed++] = i++;
-        while (i < count && t->batch.hits.hit_primitive[i] == met &&
-               (t->batch.hits.surface[i] == priority_index || met < 0));
+        while (i < count && t->batch.hits.hit_primitive[i] == hit_primitive &&
+               (t->batch.hits.surface[i] == priority_index || hit_primitive < 0));
         t->batch.listed[at] = listed;
     }
 }
@@ -138,16 +140,17 @@ static void shade_foreign(tracer *t, int depth, int first)
     const int foreign = t->target.scene->solids->primitive_count;
     int *list = t->batch.list[foreign], left = t->batch.listed[foreign], same[BATCH];
     while (left > 0) {
-        const int64_t met = t->batch.hits.hit_primitive[list[0]], priority_index = t->batch.hits.surface[list[0]];
+        const int64_t hit_primitive = t->batch.hits.hit_primitive[list[0]],
+                      priority_index = t->batch.hits.surface[list[0]];
         int count = 0, others = 0;
         for (int k = 0; k < left; k++) {
             const int i = list[k];
-            if (t->batch.hits.hit_primitive[i] == met && t->batch.hits.surface[i] == priority_index)
+            if (t->batch.hits.hit_primitive[i] == hit_primitive && t->batch.hits.surface[i] == priority_index)
                 same[count++] = i;
             else
                 list[others++] = i;
         }
-        shading_group(t, depth, first, (int)met, (int)priority_index, same, count);
+        shading_group(t, depth, first, (int)hit_primitive, (int)priority_index, same, count);
         left = others;
     }
 }
@@ -182,7 +185,7 @@ static void trace_batch(tracer *t, int depth)
     if (t->batch.scratch.segments)
         absorption_announce(t, q->sample_key + first, rays.count);
     const int64_t began_ns = visibility_begins(t);
-    t->rule->meet(t, q, first, depth, &rays);
+    t->rule->intersect(t, q, first, depth, &rays);
     visibility_ends(t, began_ns);
     if (t->batch.scratch.segments) {
         absorption_spare_sky(t);
@@ -192,10 +195,10 @@ static void trace_batch(tracer *t, int depth)
     const int primitives = p->solids->primitive_count, none = primitives + 1;
     if (t->batch.listed[none] > 0)
         t->rule->background(t, q, first, t->batch.list[none], t->batch.listed[none]);
-    for (int met = 0; met < primitives; met++)
-        if (t->batch.listed[met] > 0)
-            shading_group(t, depth, first, met, p->solids->primitives[met].priority_index, t->batch.list[met],
-                          t->batch.listed[met]);
+    for (int hit_primitive = 0; hit_primitive < primitives; hit_primitive++)
+        if (t->batch.listed[hit_primitive] > 0)
+            shading_group(t, depth, first, hit_primitive, p->solids->primitives[hit_primitive].priority_index,
+                          t->batch.list[hit_primitive], t->batch.listed[hit_primitive]);
     shade_foreign(t, depth, first);
 }
 
@@ -275,7 +278,7 @@ static int rays_at_once(int64_t each)
 int tracer_camera_rays(tracer *t, int x, int y)
 {
     const int count = (int)t->rule->camera(&t->target.scene->render).rays;
-    camera_rays_put_in_line(t, y, x, 0, count);
+    camera_rays_enqueue(t, y, x, 0, count);
     return count;
 }
 
@@ -313,7 +316,7 @@ static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each, const atom
     const int64_t all = each * (x1 - x0);
     const int at_once = rays_at_once(each);
     for (int64_t ray = 0; ray < all; ray += at_once) {
-        camera_rays_put_in_line(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
+        camera_rays_enqueue(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
         while (run_full(t))
             if (stopped(stop))
                 return false;

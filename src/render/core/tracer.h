@@ -13,13 +13,13 @@
 
 typedef struct tracer tracer;
 
-/* The outputs of a frame. pixel_rays and pixel_ns may be NULL; kept is the integrator's state for the frame; layers
+/* The outputs of a frame. pixel_rays and pixel_ns may be NULL; state is the integrator's state for the frame; layers
  * receives named layers, NULL if they are not requested. */
 typedef struct tracer_target {
     const plan *scene;
     film *img;
     double *pixel_rays, *pixel_ns;
-    void *kept;
+    void *state;
     layer_set *layers;
 } tracer_target;
 

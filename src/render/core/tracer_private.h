@@ -77,4 +77,4 @@ void tracer_run_batch(tracer *t, int depth);
 int tracer_camera_rays(tracer *t, int x, int y);
 
 /* camera_rays.c: enqueues rays first .. first + count - 1 of a row of pixels that starts at x0. */
-void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count);
+void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count);

@@ -76,12 +76,12 @@ static void *fresh_worker(void *argument)
     return NULL;
 }
 
-static int start_thread(worker *w, void *(*region)(void *))
+static int start_thread(worker *w, void *(*run)(void *))
 {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
     pthread_attr_setstacksize(&attributes, STACK_BYTES);
-    int error = pthread_create(&w->thread, &attributes, region, w);
+    int error = pthread_create(&w->thread, &attributes, run, w);
     pthread_attr_destroy(&attributes);
     return error;
 }

@@ -174,7 +174,7 @@ static bool read_hit(const probe *p, ray_node *node)
     read_gain(p, h);
     h->path_length_m = h->t * p->scene->render.unit_m;
     for (int c = 0; c < 3; c++)
-        h->transmittance[c] = a->absorbs ? t->media->kept[c][0] : 1.0;
+        h->transmittance[c] = a->absorbs ? t->media->transmittance[c][0] : 1.0;
     node->end = RAY_END_HIT;
     return true;
 }
@@ -187,7 +187,7 @@ typedef struct branches {
     ray_end end[2];
 } branches;
 
-static bool is_too_light(const double weight[3], double least)
+static bool is_below_least_weight(const double weight[3], double least)
 {
     return least > 0.0 && weight[0] < least && weight[1] < least && weight[2] < least;
 }
@@ -220,7 +220,7 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
     out->end[i] = RAY_END_CUT_DEPTH;
     if (depth == t->queues.depth_limit)
         return;
-    if (is_too_light(r->weight, p->scene->render.min_weight)) {
+    if (is_below_least_weight(r->weight, p->scene->render.min_weight)) {
         out->end[i] = RAY_END_CUT_WEIGHT;
         return;
     }
@@ -246,10 +246,10 @@ static void read_branches(const probe *p, int depth, branches *out)
 static int light_of(const plan *of, const ray_record *r, int from)
 {
     for (int k = from; k < of->light_count; k++) {
-        const vec3 way = vec3_sub(of->lights[k].position, r->origin);
-        if (light_share(&of->lights[k], &of->cones[k], vec3_scale(way, -1.0 / vec3_length(way))) == 0.0)
+        const vec3 to_light = vec3_sub(of->lights[k].position, r->origin);
+        if (light_share(&of->lights[k], &of->cones[k], vec3_scale(to_light, -1.0 / vec3_length(to_light))) == 0.0)
             continue;
-        if (way.x == r->direction.x && way.y == r->direction.y && way.z == r->direction.z)
+        if (to_light.x == r->direction.x && to_light.y == r->direction.y && to_light.z == r->direction.z)
             return k;
     }
     return RAY_NONE;

@@ -50,13 +50,13 @@ static void add_piece(cutter *c, int from, int to, int a, int b)
 static int add_junction(cutter *c, section_point at)
 {
     if (c->junctions == c->junction_capacity) {
-        const int wanted = 2 * c->junction_capacity;
-        section_point *more = realloc(c->crossing, (size_t)(c->edges + wanted) * sizeof *more);
+        const int capacity = 2 * c->junction_capacity;
+        section_point *more = realloc(c->crossing, (size_t)(c->edges + capacity) * sizeof *more);
         c->failed |= !more;
         if (!more)
             return 0;
         c->crossing = more;
-        c->junction_capacity = wanted;
+        c->junction_capacity = capacity;
     }
     c->crossing[c->edges + c->junctions] = at;
     return c->edges + c->junctions++;
@@ -97,7 +97,7 @@ static section_point meeting_point(const cutter *c, int i, int j)
 
 /* Joins all crossings of a cell in a junction. Corners 0 .. 3 are counterclockwise, and side k is between corners k and
  * k + 1. A boundary that enters through side k has the medium of corner k on its left. */
-static void meet(cutter *c, int i, int j, const int *side, const int *corner)
+static void join_all(cutter *c, int i, int j, const int *side, const int *corner)
 {
     section_point at = {0.0, 0.0};
     bool framed = false, found = false;
@@ -127,24 +127,23 @@ static void part_corners(cutter *c, int i, int j, const int *side, const int *co
             add_piece(c, side[m - 1], side[m % 4], middle, corner[m % 4]);
         return;
     }
-    meet(c, i, j, side, corner);
+    join_all(c, i, j, side, corner);
 }
 
 void section_march(cutter *c, int i, int j)
 {
     const int corner[4] = {label(c, i, j), label(c, i + 1, j), label(c, i + 1, j + 1), label(c, i, j + 1)};
     const int side[4] = {edge_across(c, i, j), edge_up(c, i + 1, j), edge_across(c, i, j + 1), edge_up(c, i, j)};
-    int hit_primitive[4], count = 0;
+    int crossed[4], count = 0;
     for (int k = 0; k < 4; k++)
         if (corner[k] != corner[(k + 1) % 4])
-            hit_primitive[count++] = k;
+            crossed[count++] = k;
     if (count == 0)
         return;
     if (count == 4)
         part_corners(c, i, j, side, corner);
     else if (count == 3)
-        meet(c, i, j, side, corner);
+        join_all(c, i, j, side, corner);
     else
-        add_piece(c, side[hit_primitive[0]], side[hit_primitive[1]], corner[hit_primitive[0]],
-                  corner[(hit_primitive[0] + 1) % 4]);
+        add_piece(c, side[crossed[0]], side[crossed[1]], corner[crossed[0]], corner[(crossed[0] + 1) % 4]);
 }

@@ -105,7 +105,7 @@ static void shade(tracer *t, int depth, int priority_index)
 {
     const group *g = &t->surface.gathered;
     const layer_rule show = (layer_rule)t->target.scene->render.layer;
-    const double *scale = t->target.kept;
+    const double *scale = t->target.state;
     (void)depth;
     for (int layer = 0; layer < LAYER_COUNT; layer++) {
         if (!t->target.layers && layer != (int)show)
@@ -132,6 +132,6 @@ const integrator integrator_of_aov = {.traced = true,
                                       .camera = one_ray,
                                       .prepare = prepare,
                                       .release = free,
-                                      .meet = meet_nearest,
+                                      .intersect = intersect_nearest,
                                       .background = leave_empty,
                                       .shade = shade};

@@ -8,10 +8,10 @@
  * access the tracer's internals through render/shade/shading.h.
  *
  * Order of calls in a frame: prepare; each step, by all workers and then by one; on each worker that gets a piece
- * begin, then for its pieces piece, and for its batches meet, background, place and shade; finish; release. The image
- * must not depend on the order or thread of these calls (design, decision 5). Ownership: what prepare returns belongs
- * to the frame until release; what begin stores in t->own belongs to the worker, is kept for later frames of the same
- * integrator, and is released by end. */
+ * begin, then for its pieces piece, and for its batches intersect, background, place and shade; finish; release. The
+ * image must not depend on the order or thread of these calls (design, decision 5). Ownership: what prepare returns
+ * belongs to the frame until release; what begin stores in t->own belongs to the worker, is kept for later frames of
+ * the same integrator, and is released by end. */
 #pragma once
 
 #include "geometry/rays.h"
@@ -56,8 +56,8 @@ typedef struct integrator {
 
     /* --- a piece, a batch, a group --- */
     void (*piece)(tracer *t, const span *piece); /* called before the piece's camera rays */
-    /* Fills t->batch.hits; a traced integrator uses meet_nearest. */
-    void (*meet)(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
+    /* Fills t->batch.hits; a traced integrator uses intersect_nearest. */
+    void (*intersect)(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
     /* Handles rays list[0 .. count - 1] of the batch, which hit nothing. */
     void (*background)(tracer *t, const ray_queue *q, int first, const int *list, int count);
     /* May move points of the gathered group before its colours are computed; list: its rays in the batch. */

@@ -40,11 +40,11 @@ static vec3 light_color(const tracer *t, int lamp, int64_t sample_key)
 /* Distance at which the ray hits the sphere from outside, or HUGE_VAL. */
 static double distance_to_light(const light *l, vec3 origin, vec3 direction)
 {
-    const vec3 way = vec3_sub(l->position, origin);
-    const double along = vec3_dot(way, direction);
-    const vec3 across = vec3_sub(way, vec3_scale(direction, along));
+    const vec3 to_light = vec3_sub(l->position, origin);
+    const double along = vec3_dot(to_light, direction);
+    const vec3 across = vec3_sub(to_light, vec3_scale(direction, along));
     const double discriminant = l->radius * l->radius - vec3_dot(across, across);
-    if (!(discriminant > 0.0) || vec3_dot(way, way) <= l->radius * l->radius || along <= 0.0)
+    if (!(discriminant > 0.0) || vec3_dot(to_light, to_light) <= l->radius * l->radius || along <= 0.0)
         return (double)HUGE_VAL;
     return along - sqrt(discriminant);
 }
@@ -74,12 +74,12 @@ static int lamp_of(int64_t hit_primitive)
     return (int)(-2 - hit_primitive);
 }
 
-static void meet_lights(tracer *t, const ray_queue *q, int first, int i)
+static void intersect_lights(tracer *t, const ray_queue *q, int first, int i)
 {
     const plan *p = t->target.scene;
     const int at = first + i;
     double nearest = t->batch.hits.t[i];
-    int met = -1;
+    int nearest_lamp = -1;
     for (int k = 0; k < p->light_count && q->sample_key[at] & SAMPLE_KEY_SPECULAR_BOUNCE; k++) {
         if (p->lights[k].radius == 0.0)
             continue;
@@ -87,20 +87,20 @@ static void meet_lights(tracer *t, const ray_queue *q, int first, int i)
         const double distance = distance_to_light(&p->lights[k], origin, vec3_make(q->dx[at], q->dy[at], q->dz[at]));
         if (distance < nearest) {
             nearest = distance;
-            met = k;
+            nearest_lamp = k;
         }
     }
-    if (met < 0)
+    if (nearest_lamp < 0)
         return;
-    t->batch.hits.hit_primitive[i] = mark_of(met);
+    t->batch.hits.hit_primitive[i] = mark_of(nearest_lamp);
     clip_segments(t->batch.scratch.segments, i, nearest);
 }
 
-static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+static void intersect(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
-    meet_nearest(t, q, first, depth, rays);
+    intersect_nearest(t, q, first, depth, rays);
     for (int i = 0; i < rays->count; i++)
-        meet_lights(t, q, first, i);
+        intersect_lights(t, q, first, i);
 }
 
 static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int priority_index)
@@ -117,11 +117,11 @@ static void expose_background(tracer *t, const ray_queue *q, int first, const in
 {
     for (int k = 0; k < count; k++) {
         const int i = list[k];
-        const int64_t met = t->batch.hits.hit_primitive[i];
-        if (met == -1)
+        const int64_t hit = t->batch.hits.hit_primitive[i];
+        if (hit == -1)
             background_sky(t, q, first, &i, 1);
         else
-            expose_light(t, q, first + i, lamp_of(met), (int)t->batch.hits.before[i]);
+            expose_light(t, q, first + i, lamp_of(hit), (int)t->batch.hits.before[i]);
     }
 }
 
@@ -137,21 +137,23 @@ static vec3 direction_about(vec3 axis, double cosine, double sine, double turn)
 }
 
 /* Enqueues a shadow ray from record k of the group to a random point of a light's sphere. */
-static void look_for_light(tracer *t, int k, const material *m, bool opaque, int lamp, int depth)
+static void sample_light(tracer *t, int k, const material *m, bool opaque, int lamp, int depth)
 {
     const plan *p = t->target.scene;
     const group *g = &t->surface.gathered;
     const light *l = &p->lights[lamp];
     const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
-    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]), way = vec3_sub(l->position, point);
-    const double distance2 = vec3_dot(way, way), share2 = l->radius * l->radius / distance2;
+    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]),
+               to_light = vec3_sub(l->position, point);
+    const double distance2 = vec3_dot(to_light, to_light), share2 = l->radius * l->radius / distance2;
     if (share2 >= 1.0)
         return;
     /* cap = 1 - least_cos, without cancellation. */
     const double least_cos = sqrt(1.0 - share2), cap = share2 / (1.0 + least_cos);
     const random_words drawn = draw(p->render.seed, g->sample_key[k], depth, DRAW_LIGHT + lamp);
     const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
-    const vec3 to = direction_about(vec3_scale(way, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
+    const vec3 to =
+        direction_about(vec3_scale(to_light, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
     const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to),
                  within = l->radius * l->radius - distance2 * sine * sine;
     if (!(n_l > 0.0) || radiance == 0.0 || !mesh_lets_out(t, k, to))
@@ -286,7 +288,7 @@ static void shade(tracer *t, int depth, int priority_index)
     for (int k = 0; lit && k < t->surface.gathered.count; k++)
         for (int lamp = 0; lamp < p->light_count; lamp++)
             if (p->lights[lamp].radius > 0.0)
-                look_for_light(t, k, m, opaque, lamp, depth);
+                sample_light(t, k, m, opaque, lamp, depth);
     radiance_weigh_back(t);
     shading_branches(t, opaque);
     for (int k = 0; k < t->surface.gathered.count; k++)
@@ -314,6 +316,6 @@ const integrator integrator_of_path = {.traced = true,
                                        .by_sample = true,
                                        .camera = paths_of,
                                        .shares = shares,
-                                       .meet = meet,
+                                       .intersect = intersect,
                                        .background = expose_background,
                                        .shade = shade};

@@ -8,5 +8,8 @@ static void shade(tracer *t, int depth, int priority_index)
     local_light(t, priority_index, light_terms_of(&t->target.scene->render));
 }
 
-const integrator integrator_of_raycast = {
-    .traced = true, .camera = camera_samples, .meet = meet_nearest, .background = background_sky, .shade = shade};
+const integrator integrator_of_raycast = {.traced = true,
+                                          .camera = camera_samples,
+                                          .intersect = intersect_nearest,
+                                          .background = background_sky,
+                                          .shade = shade};

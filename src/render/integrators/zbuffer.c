@@ -36,7 +36,7 @@ static void end(void *own)
 
 static void draw_piece(tracer *t, const span *piece)
 {
-    zbuffer_draw(t->target.kept, piece, &((raster_work *)t->own)->square);
+    zbuffer_draw(t->target.state, piece, &((raster_work *)t->own)->square);
 }
 
 /* The grid point of a ray. */
@@ -51,23 +51,23 @@ static size_t point_of(const zbuffer *z, int64_t sample_key, int *x, int *y)
     return (size_t)*y * (size_t)z->width + (size_t)*x;
 }
 
-typedef struct met {
+typedef struct raster_hit {
     double t, u, v;
     bool leaving;
-} met;
+} raster_hit;
 
-static met met_plane(const primitive *p, const camera_frame *view, vec3 d)
+static raster_hit hit_plane(const primitive *p, const camera_frame *view, vec3 d)
 {
     const vec3 n = vec3_make(p->rotation.row[0].y, p->rotation.row[1].y, p->rotation.row[2].y);
     const double along = vec3_dot(n, d);
-    return (met){.t = vec3_dot(n, vec3_sub(p->origin, view->eye)) / along, .leaving = along > 0.0};
+    return (raster_hit){.t = vec3_dot(n, vec3_sub(p->origin, view->eye)) / along, .leaving = along > 0.0};
 }
 
 /* Barycentric weights of the ray's hit: equal to interpolating u / w, v / w and 1 / w over the image (Heckbert and
  * Moreton, "Interpolation for polygon texture mapping and shading", 1991), but computed from the ray because corners
  * may be behind the camera (Moller and Trumbore, JGT 2(1), 1997). A ray that misses because corners were rounded takes
  * the nearest edge. */
-static met met_triangle(const rasterised_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
+static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
 {
     const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
     const vec3 o = vec3_sub(instance_set_origin(&p->at, s->copy), view->eye);
@@ -86,14 +86,14 @@ static met met_triangle(const rasterised_part *p, const screen_triangle *s, cons
         u /= sum, v /= sum;
     }
     const vec3 at = vec3_add(a, vec3_add(vec3_scale(ab, u), vec3_scale(ac, v)));
-    return (met){vec3_dot(at, d), u, v, size < 0.0};
+    return (raster_hit){vec3_dot(at, d), u, v, size < 0.0};
 }
 
 /* The distance from the plane of inverse depths, if neither weights nor sides are needed. */
-static met met_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
+static raster_hit hit_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
 {
     const double near = lesser(greater(s->a * (x + 0.5) + (s->b * (y + 0.5) + s->c), s->least), s->most);
-    return (met){.t = 1.0 / (near * vec3_dot(z->scene->view.forward, d))};
+    return (raster_hit){.t = 1.0 / (near * vec3_dot(z->scene->view.forward, d))};
 }
 
 static void note_nothing(tracer *t, int i)
@@ -103,33 +103,33 @@ static void note_nothing(tracer *t, int i)
     t->batch.hits.surface[i] = 0;
 }
 
-static met met_by(const zbuffer *z, const screen_triangle *s, vec3 d)
+static raster_hit hit_part(const zbuffer *z, const screen_triangle *s, vec3 d)
 {
     const rasterised_part *p = &z->parts[s->part];
-    return p->plane ? met_plane(&z->scene->solids->primitives[p->met], &z->scene->view, d)
-                    : met_triangle(p, s, &z->scene->view, d);
+    return p->plane ? hit_plane(&z->scene->solids->primitives[p->primitive], &z->scene->view, d)
+                    : hit_triangle(p, s, &z->scene->view, d);
 }
 
-static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
+static void note_hit(tracer *t, int i, const screen_triangle *s, raster_hit m)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const rasterised_part *p = &z->parts[s->part];
-    const primitive *surface = &z->scene->solids->primitives[p->met];
+    const primitive *surface = &z->scene->solids->primitives[p->primitive];
     hit_batch *h = &t->batch.hits;
     h->t[i] = m.t;
-    h->hit_primitive[i] = p->met;
+    h->hit_primitive[i] = p->primitive;
     h->surface[i] = h->after[i] = surface->priority_index;
-    h->inside_before[i] = m.leaving ? (uint64_t)1 << p->met : 0;
+    h->inside_before[i] = m.leaving ? (uint64_t)1 << p->primitive : 0;
     if (surface->rule)
         return;
-    const int64_t face = mesh_face_number(p->met, s->copy, s->triangle);
+    const int64_t face = mesh_face_number(p->primitive, s->copy, s->triangle);
     t->meshes->scratch.hit[i] = (instance_hit){m.t, m.u, m.v, face, m.leaving ? FACING_BACK : FACING_FRONT};
 }
 
 /* The undeflected view directions through the grid points of a batch whose rays may be refracted. */
-static void straight_views(tracer *t, int count)
+static void undeflected_views(tracer *t, int count)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const camera_frame *view = &z->scene->view;
     raster_work *w = t->own;
     const double across = 1.0 / z->units_x, down = 1.0 / z->units_y;
@@ -164,13 +164,13 @@ static const rasterised_layer *layer_at(const zbuffer *z, uint32_t place)
     return &z->blocks[place / BLOCK_LAYERS][place % BLOCK_LAYERS];
 }
 
-static inline met met_layer(const tracer *t, int i, const rasterised_layer *l)
+static inline raster_hit hit_layer(const tracer *t, int i, const rasterised_layer *l)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const raster_work *w = t->own;
     const screen_triangle *s = &z->triangles[l->number - 1];
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
-    met m = l->ends || !z->parts[s->part].own ? met_by(z, s, view) : met_depth(z, s, w->x[i], w->y[i], view);
+    raster_hit m = l->ends || !z->parts[s->part].own ? hit_part(z, s, view) : hit_depth(z, s, w->x[i], w->y[i], view);
     m.leaving = l->ends ? m.leaving : l->leaving;
     return m;
 }
@@ -180,7 +180,7 @@ static inline met met_layer(const tracer *t, int i, const rasterised_layer *l)
  * point. The position in the list is stored as its set of primitives. */
 static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const plan *p = z->scene;
     const rasterised_layer *l = layer_at(z, place);
     raster_work *w = t->own;
@@ -188,18 +188,18 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     double passed = vec3_dot(vec3_sub(vec3_make(q->ox[at], q->oy[at], q->oz[at]), p->view.eye), view);
     w->straight[i] = false;
     for (; l->passed; l = layer_at(z, ++place)) {
-        const double end = greater(met_layer(t, i, l).t, passed);
+        const double end = greater(hit_layer(t, i, l).t, passed);
         dim(p, q, at, l->before, end - passed);
         passed = end;
     }
     w->number[i] = l->number - 1;
     if (l->number == 0) {
-        const double for_ever = 1e100;
+        const double infinite_length = 1e100;
         note_nothing(t, i);
-        dim(p, q, at, l->before, for_ever);
+        dim(p, q, at, l->before, infinite_length);
         return;
     }
-    met m = met_layer(t, i, l);
+    raster_hit m = hit_layer(t, i, l);
     const vec3 point = vec3_add(p->view.eye, vec3_scale(view, m.t));
     const double length = greater(m.t - passed, 0.0);
     const screen_triangle *s = &z->triangles[l->number - 1];
@@ -217,9 +217,9 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     dim(p, q, at, l->before, length);
 }
 
-static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+static void find_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     raster_work *w = t->own;
     uint32_t seen[ROW];
     for (int i = 0; i < rays->count; i++)
@@ -227,7 +227,7 @@ static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch 
     if (depth == 0)
         first_views(t, rays);
     else
-        straight_views(t, rays->count);
+        undeflected_views(t, rays->count);
     for (int i = 0; i < rays->count; i++) {
         t->batch.hits.before[i] = t->batch.hits.after[i] = 0;
         t->batch.hits.inside_before[i] = t->batch.hits.inside_after[i] = 0;
@@ -241,7 +241,7 @@ static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch 
         w->straight[i] = false;
         if (seen[i]) {
             const screen_triangle *s = &z->triangles[seen[i] - 1];
-            note_hit(t, i, s, met_by(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
+            note_hit(t, i, s, hit_part(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
         } else {
             note_nothing(t, i);
         }
@@ -255,7 +255,7 @@ static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch 
 static void bend(tracer *t, const int *list)
 {
     const raster_work *w = t->own;
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     group *g = &t->surface.gathered;
     if (!z->layered || z->scene->render.transmission == TRANSMISSION_SIMPLE)
         return;
@@ -310,7 +310,7 @@ static void straighten_uv(tracer *t, const rasterised_part *p, const screen_tria
 /* An infinite plane has no affine interpolation: its corners are at infinity. */
 static void straighten(tracer *t, const int *list)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const surface_batch *points = &t->surface.gathered.points;
     raster_work *w = t->own;
     for (int k = 0; k < t->surface.gathered.count; k++) {
@@ -359,7 +359,7 @@ static void branch(tracer *t, int depth)
         if (b->reflect[i] > 0.0)
             shading_expose_sky(t, g->sample_key[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i],
                                g->wg[i] * b->reflect[i], g->wb[i] * b->reflect[i]);
-    put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
+    enqueue_children(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
 }
 
 static void shade(tracer *t, int depth, int priority_index)
@@ -413,7 +413,7 @@ const integrator integrator_of_zbuffer = {.by_sample = true,
                                           .begin = begin,
                                           .end = end,
                                           .piece = draw_piece,
-                                          .meet = meet,
+                                          .intersect = find_hits,
                                           .background = background_sky,
                                           .place = place,
                                           .shade = shade};

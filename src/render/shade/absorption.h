@@ -7,8 +7,8 @@
 
 typedef struct media_work {
     medium_segments segments;
-    const int64_t *sample_keys; /* of the batch whose medium segments are recorded */
-    double kept[3][ROW];        /* transmittance of the path to the hit, by channel */
+    const int64_t *sample_keys;   /* of the batch whose medium segments are recorded */
+    double transmittance[3][ROW]; /* transmittance of the path to the hit, by channel */
 } media_work;
 
 /* Begins a frame; absorbs: some of its media absorb. False when out of memory. */

@@ -58,7 +58,7 @@ void mesh_bound_light(tracer *t)
         if (mesh_lets_out(t, k, vec3_make(l->lx[k], l->ly[k], l->lz[k])))
             continue;
         l->r[k] = l->g[k] = l->b[k] = 0.0;
-        l->shows[k] = 0;
+        l->contributes[k] = 0;
     }
 }
 
@@ -97,12 +97,12 @@ static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
         const uint32_t vertex = m->corner[corner][k];
         const vec3 at = instance_set_vertex_point(part, mesh_face_copy(g->points.face[k]), vertex),
                    o = vec3_make(g->ox[k], g->oy[k], g->oz[k]);
-        const vec3 side = geometric(t->meshes, k), way = vec3_sub(at, o);
+        const vec3 side = geometric(t->meshes, k), to_corner = vec3_sub(at, o);
         vec3 n = instance_set_vertex_normal(part, vertex);
         n = vec3_dot(n, n) > 0.0 ? n : side;
         n = vec3_dot(n, side) < 0.0 ? vec3_scale(n, -1.0) : n;
-        const double length = vec3_length(way);
-        const vec3 d = length > 0.0 ? vec3_scale(way, 1.0 / length) : vec3_make(g->dx[k], g->dy[k], g->dz[k]);
+        const double length = vec3_length(to_corner);
+        const vec3 d = length > 0.0 ? vec3_scale(to_corner, 1.0 / length) : vec3_make(g->dx[k], g->dy[k], g->dz[k]);
         c->points.px[k] = at.x, c->points.py[k] = at.y, c->points.pz[k] = at.z;
         c->points.nx[k] = n.x, c->points.ny[k] = n.y, c->points.nz[k] = n.z;
         c->points.cos_i[k] = -vec3_dot(d, n) > 1e-12 ? -vec3_dot(d, n) : 1e-12;
@@ -139,7 +139,7 @@ void mesh_corner_light(tracer *t, const material *m, const light *lamp, int prio
     }
     const double least = 0.5 / FILM_ONE;
     for (int k = 0; k < g->count; k++)
-        l->shows[k] = -(int64_t) !(l->r[k] < least && l->g[k] < least && l->b[k] < least);
+        l->contributes[k] = -(int64_t) !(l->r[k] < least && l->g[k] < least && l->b[k] < least);
 }
 
 static int slot_of(const tracer *t, int i)

@@ -18,11 +18,11 @@
 
 struct radiance_work {
     ray_crossings crossings;
-    ray_batch rays;                   /* the shadow rays whose crossings are recorded, ... */
-    const int64_t *sample_keys;       /* ... their sample keys, ... */
-    double through[ROW];              /* ... and the product of the interfaces' transmittances, by ray */
-    double kept[CROSSINGS_MAX];       /* transmittances, by crossing */
-    double wr[ROW], wg[ROW], wb[ROW]; /* saved throughput of the gathered group while local light is weighted */
+    ray_batch rays;                       /* the shadow rays whose crossings are recorded, ... */
+    const int64_t *sample_keys;           /* ... their sample keys, ... */
+    double through[ROW];                  /* ... and the product of the interfaces' transmittances, by ray */
+    double transmittances[CROSSINGS_MAX]; /* transmittances, by crossing */
+    double wr[ROW], wg[ROW], wb[ROW];     /* saved throughput of the gathered group while local light is weighted */
     surface_batch points;
     mesh_points on_mesh;
 };
@@ -93,10 +93,10 @@ static void add_ray(const radiance_work *w, int number, straight_rays *s)
     const ray_crossing *x = &w->crossings.crossings[number];
     const ray_batch *rays = &w->rays;
     const int i = x->ray, at = s->count++;
-    const vec3 way = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]);
-    const double length = vec3_length(way);
+    const vec3 along = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]);
+    const double length = vec3_length(along);
     s->ox[at] = rays->ox[i], s->oy[at] = rays->oy[i], s->oz[at] = rays->oz[i];
-    s->dx[at] = way.x / length, s->dy[at] = way.y / length, s->dz[at] = way.z / length;
+    s->dx[at] = along.x / length, s->dy[at] = along.y / length, s->dz[at] = along.z / length;
     s->t[at] = x->t * length;
     s->start[at] = rays->start[i], s->inside[at] = x->inside, s->mesh[at] = x->mesh;
     s->number[at] = number;
@@ -110,21 +110,21 @@ static double transmittance(const plan *p, int64_t sample_key, const ray_crossin
 }
 
 /* Computes the transmittances of the listed crossings of one primitive. */
-static void cross_surface(tracer *t, int met, straight_rays *s)
+static void cross_surface(tracer *t, int hit_primitive, straight_rays *s)
 {
     const plan *p = t->target.scene;
     radiance_work *w = t->basic;
-    const primitive *surface = &p->solids->primitives[met];
+    const primitive *surface = &p->solids->primitives[hit_primitive];
     const ray_batch rays = {s->count, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->start, s->inside};
     if (!surface->rule)
         instance_set_surface(p->solids->meshes, &rays, s->mesh,
                              p->shading_materials[surface->priority_index].shading == SHADING_SMOOTH, &w->points,
                              &w->on_mesh);
     else
-        t->geometry->surface(surface, &rays, s->t, met, &w->points);
+        t->geometry->surface(surface, &rays, s->t, hit_primitive, &w->points);
     for (int k = 0; k < s->count; k++) {
         const ray_crossing *x = &w->crossings.crossings[s->number[k]];
-        w->kept[s->number[k]] = transmittance(p, w->sample_keys[x->ray], x, w->points.cos_i[k]);
+        w->transmittances[s->number[k]] = transmittance(p, w->sample_keys[x->ray], x, w->points.cos_i[k]);
     }
     s->count = 0;
 }
@@ -137,19 +137,20 @@ static void take_crossings(void *context)
     radiance_work *w = t->basic;
     straight_rays s;
     s.count = 0;
-    for (int met = 0; w->crossings.count > 0 && met < t->target.scene->solids->primitive_count; met++) {
+    for (int hit_primitive = 0; w->crossings.count > 0 && hit_primitive < t->target.scene->solids->primitive_count;
+         hit_primitive++) {
         for (int k = 0; k < w->crossings.count; k++) {
-            if (w->crossings.crossings[k].primitive != met)
+            if (w->crossings.crossings[k].primitive != hit_primitive)
                 continue;
             add_ray(w, k, &s);
             if (s.count == BATCH)
-                cross_surface(t, met, &s);
+                cross_surface(t, hit_primitive, &s);
         }
         if (s.count > 0)
-            cross_surface(t, met, &s);
+            cross_surface(t, hit_primitive, &s);
     }
     for (int k = 0; k < w->crossings.count; k++)
-        w->through[w->crossings.crossings[k].ray] *= w->kept[k];
+        w->through[w->crossings.crossings[k].ray] *= w->transmittances[k];
     w->crossings.count = 0;
 }
 

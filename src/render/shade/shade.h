@@ -24,7 +24,7 @@ typedef struct group {
 typedef struct lit_group {
     double lx[ROW], ly[ROW], lz[ROW]; /* from the point to the light, not normalised */
     double r[ROW], g[ROW], b[ROW];
-    int64_t shows[ROW]; /* -1 where it can change the film: at least half a film unit in some channel */
+    int64_t contributes[ROW]; /* -1 where it can change the film: at least half a film unit in some channel */
 } lit_group;
 
 /* The two branches at an interface: directions and weights; a weight of 0 is a branch that does not exist. */

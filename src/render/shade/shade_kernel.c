@@ -105,7 +105,8 @@ static void fall_off(double reach, int count, lit_group *restrict lit)
         lit->r[i] *= share;
         lit->g[i] *= share;
         lit->b[i] *= share;
-        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+        lit->contributes[i] =
+            ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
 }
 
@@ -142,7 +143,8 @@ static void direct(const material *m, const light *lamp, const group *g, lit_gro
         lit->g[i] = blend(facing, g->wg[i] * ig * (diffuse * g->cg[i] + highlight), 0.0);
         lit->b[i] = blend(facing, g->wb[i] * ib * (diffuse * g->cb[i] + highlight), 0.0);
         /* A NaN counts as visible, so that it is detected. */
-        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+        lit->contributes[i] =
+            ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
     if (lamp->reach > 0.0)
         fall_off(lamp->reach, count, lit);
@@ -160,7 +162,8 @@ ALWAYS_INLINE void within_cone(const light_cone *cone, bool soft, const group *g
         lit->r[i] *= share;
         lit->g[i] *= share;
         lit->b[i] *= share;
-        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+        lit->contributes[i] =
+            ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
 }
 

@@ -133,7 +133,7 @@ static void expose_own_light(tracer *t, const material *m, bool ambient)
 }
 
 /* Enqueues shadow rays to lights that can change the film. */
-static void put_shadow_rays_in_line(tracer *t)
+static void enqueue_shadow_rays(tracer *t)
 {
     const group *g = &t->surface.gathered;
     const lit_group *l = &t->surface.lit;
@@ -141,7 +141,7 @@ static void put_shadow_rays_in_line(tracer *t)
     int worth[ROW], count = 0;
     for (int i = 0; i < g->count; i++) {
         worth[count] = i;
-        count -= (int)l->shows[i];
+        count -= (int)l->contributes[i];
     }
     for (int k = 0; k < count; k++) {
         const int i = worth[k], at = q->count++;
@@ -190,11 +190,11 @@ static void send_out(tracer *t, int priority_index, light_terms terms)
             continue;
         direct_light(t, m, k, priority_index);
         if (p->render.shadows != SHADOWS_OFF) {
-            put_shadow_rays_in_line(t);
+            enqueue_shadow_rays(t);
             continue;
         }
         for (int i = 0; i < t->surface.gathered.count; i++)
-            if (t->surface.lit.shows[i])
+            if (t->surface.lit.contributes[i])
                 expose(t, t->surface.gathered.sample_key[i], t->surface.lit.r[i], t->surface.lit.g[i],
                        t->surface.lit.b[i]);
     }
@@ -235,7 +235,7 @@ void cut_branches(tracer *t)
     }
 }
 
-static bool too_light(tracer *t, const ray_queue *q, int i, double least)
+static bool is_below_least_weight(tracer *t, const ray_queue *q, int i, double least)
 {
     if (q->wr[i] >= least || q->wg[i] >= least || q->wb[i] >= least)
         return false;
@@ -255,15 +255,15 @@ static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, co
     memcpy(q->su + first, reflected ? p->ru : p->tu, bytes);
     memcpy(q->sv + first, reflected ? p->rv : p->tv, bytes);
     for (int i = t->surface.gathered.count - 1; i >= 0; i--)
-        if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
+        if (weight[i] == 0.0 || (least > 0.0 && is_below_least_weight(t, q, first + i, least)))
             queue_move_polarised(q, first + i, --q->count);
     return q->count - first;
 }
 
 /* Enqueues children of one kind: appends all of them at once, then fills the place of each one that does not exist or
  * has too small a weight with the last one. Returns their number. */
-int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz,
-                         const double *weight, const uint64_t *inside)
+int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
+                     const uint64_t *inside)
 {
     ray_queue *q = &t->queues.waiting[depth];
     const double least = t->least_weight;
@@ -272,7 +272,7 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
     if (t->target.scene->render.polarisation)
         return keep_polarised(t, q, first, dx == t->surface.branches.rx, weight, least);
     for (int i = t->surface.gathered.count - 1; i >= 0; i--)
-        if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
+        if (weight[i] == 0.0 || (least > 0.0 && is_below_least_weight(t, q, first + i, least)))
             queue_move(q, first + i, --q->count);
     return q->count - first;
 }
@@ -295,7 +295,7 @@ void shading_branches(tracer *t, bool opaque)
         COUNT(t->account.counters.total_internal += (uint64_t)t->surface.branches.total);
 }
 
-void meet_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+void intersect_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     (void)q, (void)first, (void)depth;
     t->geometry->nearest(t->target.scene->solids, rays, &t->batch.scratch, &t->batch.hits);
@@ -330,10 +330,11 @@ static void color(tracer *t, int priority_index, const primitive *surface)
     spectral_colors(t, priority_index);
 }
 
-static void shade_alike(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count)
+static void shade_one_material(tracer *t, int depth, int first, int hit_primitive, int priority_index, const int *list,
+                               int count)
 {
     const plan *p = t->target.scene;
-    const primitive *surface = &p->solids->primitives[met];
+    const primitive *surface = &p->solids->primitives[hit_primitive];
     group *g = &t->surface.gathered;
     group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, g);
     if (p->spectral)
@@ -345,7 +346,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int priority_i
     if (t->surface.on_mesh)
         mesh_surface(t, priority_index, list);
     else
-        t->geometry->surface(surface, &rays, g->t, met, &g->points);
+        t->geometry->surface(surface, &rays, g->t, hit_primitive, &g->points);
     t->surface.texture_at = NULL;
     if (t->rule->place)
         t->rule->place(t, list);
@@ -357,12 +358,12 @@ static void shade_alike(tracer *t, int depth, int first, int met, int priority_i
     t->rule->shade(t, depth, priority_index);
 }
 
-void shading_group(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count)
+void shading_group(tracer *t, int depth, int first, int hit_primitive, int priority_index, const int *list, int count)
 {
     const region_materials *shading_materials = &t->target.scene->shading_materials[priority_index];
     t->surface.mat = shading_materials->mat;
     if (shading_materials->count == 1) {
-        shade_alike(t, depth, first, met, priority_index, list, count);
+        shade_one_material(t, depth, first, hit_primitive, priority_index, list, count);
         return;
     }
     int left[BATCH];
@@ -371,7 +372,7 @@ void shading_group(tracer *t, int depth, int first, int met, int priority_index,
         int slot;
         const int alike = mesh_next_material(t, left + begin, count - begin, &slot);
         t->surface.mat = &shading_materials->mat[slot < shading_materials->count ? slot : 0];
-        shade_alike(t, depth, first, met, priority_index, left + begin, alike);
+        shade_one_material(t, depth, first, hit_primitive, priority_index, left + begin, alike);
         begin += alike;
     }
 }

@@ -13,7 +13,7 @@ void shading_expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr
 void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb);
 
 /* The nearest interfaces of a batch, and the sky for rays that hit nothing: the defaults of most integrators. */
-void meet_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
+void intersect_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays);
 void background_sky(tracer *t, const ray_queue *q, int first, const int *list, int count);
 
 /* Camera rays for a pixel's samples, each at all of a spectral film's wavelengths. */
@@ -44,13 +44,13 @@ void shading_branches(tracer *t, bool opaque);
 void cut_branches(tracer *t);
 
 /* Enqueues children of one kind, with the sample keys of the gathered rays. Returns their number. */
-int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz,
-                         const double *weight, const uint64_t *inside);
+int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
+                     const uint64_t *inside);
 
-/* Gathers rays list[0 .. count-1] of the batch at `first` in the queue of a depth, all of which hit primitive `met` on
- * the surface of the region with that priority index, computes their colours and passes them to the integrator, split
- * by shading material. */
-void shading_group(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count);
+/* Gathers rays list[0 .. count-1] of the batch at `first` in the queue of a depth, all of which hit primitive
+ * `hit_primitive` on the surface of the region with that priority index, computes their colours and passes them to the
+ * integrator, split by shading material. */
+void shading_group(tracer *t, int depth, int first, int hit_primitive, int priority_index, const int *list, int count);
 
 /* texture_shading.c: multiplies the gathered group's colours by the material's texture. */
 void texture_colors(tracer *t, const primitive *surface);

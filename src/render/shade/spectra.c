@@ -61,7 +61,7 @@ static spectral_row row_at(const upsampled_scene *l, double lambda_nm)
     return row;
 }
 
-static region_spectrum body_at(const upsampled_scene *l, size_t priority_index, double lambda_nm)
+static region_spectrum region_at(const upsampled_scene *l, size_t priority_index, double lambda_nm)
 {
     region_spectrum b = {.index = index_law_at(&l->laws[priority_index], lambda_nm)};
     if (!l->materials[priority_index]) {
@@ -114,7 +114,7 @@ static bool fill_tables(const upsampled_scene *l, spectra *p)
         const double lambda_nm = spectra_lambda((int64_t)i);
         p->rows[i] = row_at(l, lambda_nm);
         for (size_t r = 0; r < p->priority_indices; r++)
-            p->regions[i * p->priority_indices + r] = body_at(l, r, lambda_nm);
+            p->regions[i * p->priority_indices + r] = region_at(l, r, lambda_nm);
         for (size_t k = 0; k < p->light_count; k++)
             p->lights[i * p->light_count + k] = upsampled_emission(&l->light[k], lambda_nm);
     }

@@ -34,6 +34,6 @@ void spectral_light(tracer *t, int lamp)
     for (int k = 0; k < g->count; k++) {
         const double radiance = spectra_light(t->target.scene->spectral, g->sample_key[k], lamp);
         l->r[k] *= radiance, l->g[k] *= radiance, l->b[k] *= radiance;
-        l->shows[k] = -(int64_t) !(l->r[k] < least);
+        l->contributes[k] = -(int64_t) !(l->r[k] < least);
     }
 }

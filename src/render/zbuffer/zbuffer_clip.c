@@ -26,7 +26,7 @@ void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, 
                      clip_corner out[POLYGON_MAX])
 {
     if (p->plane) {
-        plane_corners(z, &z->scene->solids->primitives[p->met], triangle, out);
+        plane_corners(z, &z->scene->solids->primitives[p->primitive], triangle, out);
     } else {
         const camera_frame *view = &z->scene->view;
         const mesh_triangle tri = p->at.triangles->triangles[triangle];

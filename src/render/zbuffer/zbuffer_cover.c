@@ -89,8 +89,8 @@ void zbuffer_find_layers(zbuffer *z)
         /* A camera in an opaque solid sees it from inside, whether it is a layer or not. */
         if (!a->regions[r].opaque && eye_in(a, &a->regions[r], z->scene->view.eye))
             z->eye_inside |= bit;
-        const bool skin = a->meshes && a->meshes->skins >> a->regions[r].outside & 1;
-        z->skins |= skin ? bit : 0;
+        const bool is_open = a->meshes && a->meshes->skins >> a->regions[r].outside & 1;
+        z->open_surfaces |= is_open ? bit : 0;
     }
     z->eye_index = z->scene->ior[z->eye_inside ? 64 - __builtin_clzll(z->eye_inside) : 0];
 }

@@ -117,7 +117,7 @@ static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint
             break;
         opaque |= is_opaque(z, &f[n]);
         const uint64_t bit = bit_of(z, &f[n]);
-        *inside = z->skins & bit ? *inside | bit : *inside ^ bit;
+        *inside = z->open_surfaces & bit ? *inside | bit : *inside ^ bit;
         n++;
     } while (n < count && f[0].nearness - f[n].nearness <= TOGETHER * f[0].nearness);
     return n;
@@ -168,7 +168,7 @@ static void list_layers(const zbuffer *z, const rasterised_fragment *f, int coun
             l->layer[l->count] = layer_of(z, f + k, together, inside, before, after);
             l->layer[l->count++].passed = true;
         }
-        inside = behind & ~z->skins;
+        inside = behind & ~z->open_surfaces;
         before = highest(inside);
         k += together;
     }

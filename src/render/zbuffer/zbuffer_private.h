@@ -43,7 +43,7 @@ typedef struct clip_corner {
 /* A part of the rasterised scene: a mesh's instances, or one primitive as triangles in its own frame. */
 typedef struct rasterised_part {
     instanced_mesh at;
-    int met;        /* primitive */
+    int primitive;  /* primitive */
     double nearest; /* near clip depth; from the part's own extent, so that no other solid affects the result */
     bool hollow;    /* the inside of a cup */
     bool plane;     /* four triangles from the camera's foot point on the plane to the horizon */
@@ -81,9 +81,9 @@ struct zbuffer {
     rasterised_part parts[PRIMITIVES_MAX];
     uint64_t
         layered; /* bit r - 1: the region of priority index r is drawn as layers; 0: there is nothing to see through */
-    uint64_t eye_inside; /* regions that contain the camera */
-    uint64_t skins;      /* regions that are open meshes */
-    double eye_index;    /* refractive index at the camera */
+    uint64_t eye_inside;    /* regions that contain the camera */
+    uint64_t open_surfaces; /* regions that are open meshes */
+    double eye_index;       /* refractive index at the camera */
     int first_layered_part;
     size_t first_layered;      /* triangle */
     rasterised_layer **blocks; /* of lists of layers */

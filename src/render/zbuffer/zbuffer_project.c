@@ -63,7 +63,7 @@ static void put(chunk *c, const zbuffer *z, screen_triangle *t)
 }
 
 /* True if all corners are outside one edge of the image. */
-static bool is_beside(const zbuffer *z, const clip_corner *c)
+static bool is_off_screen(const zbuffer *z, const clip_corner *c)
 {
     const double wide = 0.5 * z->width / z->units_x, high = 0.5 * z->height / z->units_y;
     bool left = true, right = true, below = true, above = true, behind = true;
@@ -94,7 +94,7 @@ static void project_triangle(const zbuffer *z, chunk *c, const rasterised_part *
     int32_t x[POLYGON_MAX], y[POLYGON_MAX];
     screen_triangle t = {.triangle = triangle, .copy = copy, .part = (uint16_t)c->part};
     zbuffer_corners(z, p, copy, triangle, polygon);
-    if (is_beside(z, polygon) || !depth_plane(z, p, polygon, &t))
+    if (is_off_screen(z, polygon) || !depth_plane(z, p, polygon, &t))
         return;
     t.curved = z->layered && is_curved(z, p, triangle);
     const int count = zbuffer_clip(z, p, polygon);

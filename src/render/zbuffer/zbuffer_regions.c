@@ -23,7 +23,7 @@ static status cut(const zbuffer *z, const solid_shape *shape, int part, mesh **o
     const scene_geometry *a = z->scene->solids;
     const shape_rule *rule = shape_of(shape);
     for (int k = 0; rule->one_tessellation && k < z->part_count; k++) {
-        if (shape_of(&a->shapes[a->primitives[z->parts[k].met].priority_index]) == rule) {
+        if (shape_of(&a->shapes[a->primitives[z->parts[k].primitive].priority_index]) == rule) {
             *out = z->parts[k].own;
             mesh_retain(*out);
             return STATUS_OK;
@@ -38,16 +38,17 @@ static double nearest_depth(const primitive *p, vec3 eye)
     return nearest > 0.0 ? nearest : 0x1p-30;
 }
 
-static status add(zbuffer *z, const region *b, int met, diagnostic *why)
+static status add(zbuffer *z, const region *b, int index, diagnostic *why)
 {
     const scene_geometry *a = z->scene->solids;
-    const primitive *p = &a->primitives[met];
+    const primitive *p = &a->primitives[index];
     rasterised_part *part = &z->parts[z->part_count];
     const solid_shape *shape = &a->shapes[p->priority_index];
     const shape_rule *rule = shape_of(shape);
-    *part = (rasterised_part){.met = met, .hollow = met == b->hollow, .nearest = nearest_depth(p, z->scene->view.eye)};
+    *part = (rasterised_part){
+        .primitive = index, .hollow = index == b->hollow, .nearest = nearest_depth(p, z->scene->view.eye)};
     if (rule->triangles) {
-        part->at = a->meshes->parts[a->meshes->by_primitive[met]];
+        part->at = a->meshes->parts[a->meshes->by_primitive[index]];
         z->part_count++;
         return STATUS_OK;
     }
