@@ -285,8 +285,8 @@ fan "fan of too many rays" "integer from 1" --to 3,1,0 --rays 100001
 fan "fan with width and spread" "exclude each other" --to 3,1,0 --width 1 --spread 10
 fan "fan of a negative width" "out of range" --to 3,1,0 --width=-1
 fan "fan of a half circle" "out of range" --to 3,1,0 --spread 180
-fan "fan in a plane across its axis" "does not hold the axis" --to 3,1,0 --plane 1,0,0
-fan "fan in no plane" "does not hold the axis" --to 3,1,0 --plane 0,0,0
+fan "fan in a plane across its axis" "zero or parallel to the axis" --to 3,1,0 --plane 1,0,0
+fan "fan in no plane" "zero or parallel to the axis" --to 3,1,0 --plane 0,0,0
 fan "fan into an unknown ending" "x.png: .*\.csv" --to 3,1,0 -o x.png
 fan "fan to standard output" "-o -: " --to 3,1,0 -o -
 fan "fan of a wrong depth" "--depth deep: " --to 3,1,0 --depth deep

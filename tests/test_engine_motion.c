@@ -414,7 +414,7 @@ static void a_motion_ends_when_its_slimes_are_others(void **state)
     cuvette_motion *m = begin(s);
     turn(s, "camera.position", "0,2,-4"); /* all else may change */
     turn(s, "toy.time_s", "0.3");
-    expect_ended(m, "no longer");
+    expect_ended(m, "out of date");
     m = begin(s);
     assert_int_equal(cuvette_scene_set(s, "toy.stiffness", "-1", &why), CUVETTE_BAD_INPUT); /* nothing was changed */
     turn(s, "jelly.position", "0,0,1");
@@ -427,13 +427,13 @@ static void a_motion_ends_when_its_slimes_are_others(void **state)
     fine(cuvette_scene_remove(s, "needle", &why), &why);
     advance(m, 0.2);
     fine(cuvette_scene_remove(s, "pin", &why), &why); /* those behind it move up */
-    expect_ended(m, "no longer");
+    expect_ended(m, "out of date");
     m = begin(s);
     turn(s, "more.generate", "slime");
-    expect_ended(m, "no longer");
+    expect_ended(m, "out of date");
     m = begin(s);
     turn(s, "goo.generate", "sphere");
-    expect_ended(m, "no longer");
+    expect_ended(m, "out of date");
     m = begin(s);
     cuvette_motion *second = begin(s);
     expect_ended(m, "another motion");

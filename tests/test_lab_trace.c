@@ -150,7 +150,7 @@ static void refused(const lab_room *room, const char *target, const char *words)
 
 static void what_is_no_pixel_is_refused(void **state)
 {
-    refused(*state, "/api/trace?x=80&y=0", "pixel 80,0 is outside the picture of 80 x 60");
+    refused(*state, "/api/trace?x=80&y=0", "pixel 80,0 is outside the image of 80 x 60");
     refused(*state, "/api/trace?x=0&y=60", "outside");
     refused(*state, "/api/trace?x=-1&y=0", "outside");
     refused(*state, "/api/trace.svg?x=0&y=-1", "outside");

@@ -1,4 +1,4 @@
-/* Meshes and textures: named by a file or a body, or handed over as arrays. */
+/* Meshes and textures: read from a file, generated, or given as arrays. */
 #include "engine/engine_private.h"
 
 #include "scene/model/edit/edit.h"
@@ -17,7 +17,7 @@ cuvette_status cuvette_scene_add_texture(cuvette_scene *s, const char *name, cuv
     return engine_report(scene_add(s->model, PARAM_TEXTURE, name, NULL, &inner), &inner, why);
 }
 
-/* Element i of whichever array there is. */
+/* Element i of the array that is not NULL. */
 static double element(const double *doubles, const float *floats, size_t i)
 {
     return doubles ? doubles[i] : (double)floats[i];
@@ -66,14 +66,14 @@ static status make_mesh(const cuvette_triangles *t, mesh **out, diagnostic *why)
 static status check_arrays(const cuvette_triangles *t, diagnostic *why)
 {
     if (t->size < sizeof *t) /* there is no earlier version yet */
-        return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_triangles)", "the triangles' size is %zu",
-                        t->size);
+        return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_triangles)",
+                        "the triangles' size is %zu, which is too small", t->size);
     if ((!t->vertices == !t->vertices_float && t->vertex_count > 0) || (!t->corners && t->triangle_count > 0))
-        return diagnose(why, STATUS_BAD_INPUT, "give vertices, as doubles or as floats, and corners",
-                        "the triangles' arrays are not all there");
+        return diagnose(why, STATUS_BAD_INPUT, "give vertices, as doubles or floats, and corners",
+                        "the triangles lack vertices or corners, or have vertices twice");
     if ((t->normals && t->normals_float) || (t->uvs && t->uvs_float))
-        return diagnose(why, STATUS_BAD_INPUT, "give doubles or floats",
-                        "normals or texture coordinates are there twice");
+        return diagnose(why, STATUS_BAD_INPUT, "give either doubles or floats",
+                        "normals or texture coordinates are given twice");
     return STATUS_OK;
 }
 
@@ -103,12 +103,11 @@ cuvette_status cuvette_scene_add_pixels(cuvette_scene *s, const char *name, int 
     image *img = NULL;
     texture *made = NULL;
     size_t index = 0;
-    status code =
-        width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX &&
-                width <= SCENE_PIXELS_MAX / height
-            ? image_create(width, height, &img, &inner)
-            : diagnose(&inner, STATUS_BAD_INPUT, "keep both from 1 to 65536, and their product within 268435456",
-                       "a texture cannot be %d x %d", width, height);
+    status code = width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX &&
+                          width <= SCENE_PIXELS_MAX / height
+                      ? image_create(width, height, &img, &inner)
+                      : diagnose(&inner, STATUS_BAD_INPUT, "use sides from 1 to 65536, and at most 268435456 pixels",
+                                 "a texture cannot be %d x %d", width, height);
     if (code == STATUS_OK) {
         memcpy(img->pixel, rgb, 3 * (size_t)width * (size_t)height * sizeof *rgb);
         code = texture_create(img, TEXTURE_LINEAR, TEXTURE_REPEAT, TEXTURE_REPEAT, TEXTURE_TRILINEAR, &made, &inner);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 256 /* pixels that are converted at once */ };
+enum { CHUNK = 256 /* pixels converted at a time */ };
 
 static int lesser(int a, int b)
 {
@@ -32,7 +32,7 @@ void canvas_close(canvas *c)
     free(c->noted);
 }
 
-/* One value of the film for width x height pixels of the buffers. */
+/* Fills width x height pixels of the buffers with one value. */
 static void fill_square(const canvas *c, const float *rgb, int x, int y, int width, int height)
 {
     const cuvette_request *r = c->request;
@@ -109,7 +109,7 @@ status canvas_hand_out(canvas *c, diagnostic *why)
     cuvette_piece *pieces = c->noted;
     const size_t count = c->count;
     const bool out_of_memory = c->out_of_memory;
-    c->noted = NULL; /* the callback may take its time, and the workers go on */
+    c->noted = NULL; /* the callback may be slow; workers continue to add pieces */
     c->count = c->capacity = 0;
     pthread_mutex_unlock(&c->lock);
     for (size_t i = 0; i < count; i++)

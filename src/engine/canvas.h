@@ -1,6 +1,6 @@
-/* The caller's buffers, and the pieces of them that are finished: workers fill in pieces and note them, the calling
- * thread hands the notes to the caller. Ownership: canvas_open gives memory, canvas_close takes it; film and request
- * are borrowed. */
+/* The canvas: the caller's buffers and the list of their finished pieces. Workers fill pieces and record them; the
+ * calling thread passes the records to the caller. Ownership: canvas_open allocates, canvas_close releases; film and
+ * request are borrowed. */
 #pragma once
 
 #include "base/float_environment.h"
@@ -11,9 +11,9 @@
 
 typedef struct canvas {
     const cuvette_request *request; /* checked; strides are not 0 */
-    float_environment *host;        /* the caller's, for the caller's functions */
-    codec_bytes *bytes;             /* NULL unless bytes are wanted */
-    pthread_mutex_t lock;           /* of what follows */
+    float_environment *host;        /* the caller's, for callbacks */
+    codec_bytes *bytes;             /* NULL unless the request has srgb */
+    pthread_mutex_t lock;           /* protects the fields below */
     cuvette_piece *noted;
     size_t count, capacity;
     bool out_of_memory;
@@ -22,15 +22,17 @@ typedef struct canvas {
 status canvas_open(const cuvette_request *request, float_environment *host, canvas *c, diagnostic *why);
 void canvas_close(canvas *c);
 
-/* Copies a rectangle of the film, whose pixels each become a square of `coarse`, cut off at the picture's edge. */
+/* Copies a rectangle of the film; each of its pixels becomes a square of `coarse` x `coarse` pixels, clipped at the
+ * image's edge. */
 void canvas_fill(const canvas *c, const film *f, int x0, int y0, int x1, int y1, int coarse);
 
-/* Notes a piece, from any thread; hands out the noted ones, on the caller's. */
+/* canvas_note records a piece, from any thread; canvas_hand_out passes the recorded pieces to the callback, on the
+ * caller's thread. */
 void canvas_note(canvas *c, cuvette_piece piece);
 status canvas_hand_out(canvas *c, diagnostic *why);
-/* Hands out one alone. */
+/* Passes a single piece to the callback. */
 void canvas_hand_piece(canvas *c, const cuvette_piece *piece);
 
-/* A rectangle of the film as sRGB bytes; stride: bytes from one row to the next. */
+/* Writes a rectangle of the film as sRGB bytes; stride: bytes from one row to the next. */
 void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x1, int y1, unsigned char *srgb,
                   size_t stride);

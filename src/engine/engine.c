@@ -1,4 +1,4 @@
-/* Engines, and how a request becomes a frame: checks, a preview, the film, the caller's buffers and callbacks. */
+/* Engines, and the rendering of a request: checks, a preview, the film, the caller's buffers and callbacks. */
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
 
@@ -17,13 +17,12 @@ status engine_isa(const char *name, isa *out, diagnostic *why)
         if (strcmp(isa_name((isa)level), name) != 0)
             continue;
         if ((isa)level > isa_best())
-            return diagnose(why, STATUS_BAD_INPUT, "take NULL for the best that there is", "this processor has no %s",
-                            name);
+            return diagnose(why, STATUS_BAD_INPUT, "pass NULL for the best supported one",
+                            "this processor does not support %s", name);
         *out = (isa)level;
         return STATUS_OK;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "take sse2, avx2, avx512, or NULL", "no instruction set is called '%.64s'",
-                    name);
+    return diagnose(why, STATUS_BAD_INPUT, "use sse2, avx2, avx512, or NULL", "unknown instruction set '%.64s'", name);
 }
 
 cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **out, cuvette_diagnostic *why)
@@ -57,15 +56,15 @@ void cuvette_engine_cancel(cuvette_engine *engine)
         job_cancel(engine->workers);
 }
 
-/* One render under way. */
+/* One render in progress. */
 typedef struct stage {
     cuvette_engine *engine;
     const cuvette_request *request;
-    float_environment *host; /* the caller's, for the caller's functions */
+    float_environment *host; /* the caller's, for callbacks */
     canvas buffers;
-    double share; /* reported so far */
+    double share; /* largest share reported so far */
     bool is_preview;
-    status noted; /* of handing out pieces */
+    status noted; /* of passing pieces to the callback */
 } stage;
 
 static bool caller_goes_on(stage *now)
@@ -100,24 +99,25 @@ static void take_piece(void *context, const film *img, int x0, int y0, int x1, i
     canvas_note(&now->buffers, (cuvette_piece){x0, y0, x1, y1, 1});
 }
 
-/* The request as this library knows it: one of an earlier version has fewer fields. */
+/* Copies a request into the library's current version of it: one of an earlier version has fewer fields. */
 static status read_request(const cuvette_request *given, const scene *s, cuvette_request *out, diagnostic *why)
 {
     *out = CUVETTE_REQUEST;
     if (!given)
         return STATUS_OK;
     if (given->size < sizeof *out) /* there is no earlier version yet */
-        return diagnose(why, STATUS_BAD_INPUT, "begin with CUVETTE_REQUEST", "a request's size is %zu", given->size);
+        return diagnose(why, STATUS_BAD_INPUT, "initialise the request with CUVETTE_REQUEST",
+                        "the request's size is %zu, which is too small", given->size);
     memcpy(out, given, sizeof *out);
     if (out->preview != 0 && (out->preview < 2 || out->preview > PREVIEW_MAX))
-        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or from 2 to 64", "a request's preview is %d",
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or from 2 to 64", "the request's preview is %d",
                         out->preview);
     if (!out->rgb && !out->srgb)
         return STATUS_OK;
     if (out->width != s->render.width || out->height != s->render.height)
         return diagnose(why, STATUS_BAD_INPUT,
-                        "make the buffers as large as the picture, or set render.width and render.height",
-                        "the buffers are %d x %d, and the picture is %lld x %lld", out->width, out->height,
+                        "make the buffers as large as the image, or set render.width and render.height",
+                        "the buffers are %d x %d, but the image is %lld x %lld", out->width, out->height,
                         (long long)s->render.width, (long long)s->render.height);
     const size_t row = 3 * (size_t)out->width;
     if (out->rgb_stride == 0)
@@ -126,11 +126,11 @@ static status read_request(const cuvette_request *given, const scene *s, cuvette
         out->srgb_stride = row;
     if (out->rgb_stride < row || out->srgb_stride < row)
         return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width",
-                        "a request's stride is shorter than a row");
+                        "the request's stride is shorter than a row");
     return STATUS_OK;
 }
 
-/* The whole picture at a part of its size. */
+/* Renders the whole image at reduced size. */
 static status render_preview(stage *now, const scene *s, diagnostic *why)
 {
     const int coarse = now->request->preview;
@@ -185,7 +185,7 @@ static status render(stage *now, const scene *s, cuvette_frame *frame, diagnosti
     return code;
 }
 
-/* The engine and the scene are held; request is the caller's. */
+/* The caller holds the engine and the scene; `given` is the caller's request. */
 static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvette_request *given,
                           float_environment *host, cuvette_frame *frame, diagnostic *why)
 {
@@ -211,12 +211,12 @@ cuvette_status cuvette_engine_render(cuvette_engine *engine, const cuvette_scene
         *out = NULL;
     ENGINE_NEED(engine, s);
     if (atomic_exchange(&engine->busy, true)) {
-        engine_report(diagnose(&inner, STATUS_BAD_INPUT, "wait for it to end, or make a second engine",
+        engine_report(diagnose(&inner, STATUS_BAD_INPUT, "wait for the render to end, or create a second engine",
                                "the engine is rendering"),
                       &inner, why);
         return CUVETTE_BUSY;
     }
-    cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* every handle was made by us, none is constant */
+    cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* handles are never const objects */
     const cuvette_status begun = engine_begin_render(held, why);
     if (begun != CUVETTE_OK) {
         atomic_store(&engine->busy, false);

@@ -1,5 +1,5 @@
-/* What the engine's handles hold, and how its files turn the library's errors into those of cuvette.h. Not seen from
- * outside. Ownership as cuvette.h says. */
+/* Internals of the engine: the content of its handles, and the conversion of the library's errors into those of
+ * cuvette.h. Ownership as in cuvette.h. */
 #pragma once
 
 #include "base/vec3.h"
@@ -13,12 +13,13 @@
 
 struct cuvette_scene {
     scene *model;
-    pthread_mutex_t loading; /* held while pictures are read; afterwards they are only looked at */
-    atomic_int renders;      /* under way */
-    atomic_bool advancing;   /* a motion moves its slimes */
-    /* the handle and the motions made of it: the last one frees this struct, the handle's end the model */
+    pthread_mutex_t loading; /* held while images are loaded, which are read-only afterwards */
+    atomic_int renders;      /* in progress */
+    atomic_bool advancing;   /* a motion advances its slimes */
+    /* the handle and the motions created from it: the last owner frees this struct; destroying the handle frees the
+     * model */
     atomic_int owners;
-    uint64_t slimes_changed; /* how often what a motion holds of it has: its slimes, their number, their motion */
+    uint64_t slimes_changed; /* number of changes that invalidate a motion: of its slimes, their number, their motion */
 };
 
 struct cuvette_engine {
@@ -32,64 +33,65 @@ struct cuvette_frame {
     double preview_s;
 };
 
-/* The library's status and diagnostic as the caller's; why is written only when code is not STATUS_OK. */
+/* Converts the library's status and diagnostic to the caller's; why is written only when code is not STATUS_OK. */
 cuvette_status engine_report(status code, const diagnostic *inner, cuvette_diagnostic *why);
 
 /* CUVETTE_BAD_INPUT: `name` must not be NULL. */
 cuvette_status engine_missing(const char *name, cuvette_diagnostic *why);
 
-/* CUVETTE_OK when none of the arguments is NULL, whose names stand in a row, "name, by"; &engine_list_end ends them. */
+/* CUVETTE_OK when none of the arguments is NULL; names lists them as "name, by", and &engine_list_end ends
+ * arguments. */
 cuvette_status engine_need(const char *names, const void *const *arguments, cuvette_diagnostic *why);
-/* The same, and that the first of them, a scene, may be changed now. */
+/* The same, and the first argument, a scene, must not be in use by a render or an advance. */
 cuvette_status engine_need_change(const char *names, const void *const *arguments, cuvette_diagnostic *why);
 extern const char engine_list_end;
 
-/* The instruction set of that name, or the one to use when it is NULL. */
+/* The instruction set of that name, or the default one if name is NULL. */
 status engine_isa(const char *name, isa *out, diagnostic *why);
 
-/* A render and an advance keep each other out: whoever finds the other there goes away with CUVETTE_BUSY. */
+/* A render and an advance exclude each other: the one that comes second returns CUVETTE_BUSY. */
 cuvette_status engine_begin_render(cuvette_scene *s, cuvette_diagnostic *why);
 void engine_end_render(cuvette_scene *s);
 cuvette_status engine_begin_advance(cuvette_scene *s, cuvette_diagnostic *why);
 void engine_end_advance(cuvette_scene *s);
-cuvette_status engine_is_advancing(cuvette_diagnostic *why); /* CUVETTE_BUSY, and why */
+cuvette_status engine_is_advancing(cuvette_diagnostic *why); /* always CUVETTE_BUSY, with a diagnostic */
 
-/* One owner less. */
+/* Releases one owner. */
 void engine_release_scene(cuvette_scene *s);
 
-/* scene_check, beside others that load the scene. */
+/* scene_check while other threads may load the scene. */
 status engine_check(const cuvette_scene *s, diagnostic *why);
 
-/* Reads the files that the scene names, once. */
+/* Loads the files that the scene names, once. */
 status engine_load(cuvette_scene *s, diagnostic *why);
 
-/* Copies as much of content, of `known` bytes, as the caller's struct, an older or a newer one, has room for; its own
- * size, with which both begin, stays. */
-cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why);
+/* Copies content, of `known` bytes, into the caller's struct of an older or a newer version, up to the caller's size;
+ * the size field with which both begin is not changed. */
+cuvette_status engine_copy_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why);
 
-bool engine_is_finite(const double *v); /* of three */
-/* Says what is wrong with a ray of the caller's: the i-th that a plan's query is asked, or one alone where p is NULL,
- * whose start does not count. */
+bool engine_is_finite(const double *v); /* of three numbers */
+/* Checks a ray of the caller: ray i of a query on the plan p, or, if p is NULL, a single ray whose start is ignored. */
 struct plan;
 status engine_check_ray(const struct plan *p, const cuvette_ray *ray, size_t i, diagnostic *why);
 
-/* d / |d|, without over- or underflow on the way; a unit vector but for rounding stays as it is, to the bit. */
+/* d / |d|, without intermediate over- or underflow; a vector that is a unit vector up to rounding is returned
+ * unchanged, to the bit. */
 vec3 engine_unit(const double *d);
 
-/* Copies text, which it frees, into the caller's memory. */
-cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why);
+/* Copies content, which it frees, into the caller's memory. */
+cuvette_status engine_copy_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why);
 
-/* Stands first in each function of cuvette.h that can fail: it computes in the default floating-point environment,
- * and whichever way it returns, the caller's is put back (the attribute is one of gcc and clang). The caller's
- * functions run in the caller's: around a call of one stand float_environment_leave(&host) and
- * float_environment_enter(&host). inner is what the library's own functions tell. */
+/* First statement of each function of cuvette.h that can fail: the function computes in the default floating-point
+ * environment, and the caller's is restored on every return (the cleanup attribute is one of gcc and clang). Callbacks
+ * run in the caller's environment: put float_environment_leave(&host) before and float_environment_enter(&host) after a
+ * call of one. inner receives the diagnostics of the library's functions. */
 #define ENGINE_ENTER()                                                        \
     float_environment host __attribute__((cleanup(float_environment_leave))); \
     float_environment_enter(&host);                                           \
     __attribute__((unused)) diagnostic inner = {.line = 0}
 
-/* Leaves with CUVETTE_BAD_INPUT, told to why, when one of the arguments is NULL. Where cuvette.h's name of it is a type
- * of the library, the definition has another one: s for a scene, or what ENGINE_NEED_NAMED is told. */
+/* Returns CUVETTE_BAD_INPUT, with a diagnostic in why, when one of the arguments is NULL. If its name in cuvette.h is a
+ * type of the library, the definition uses another name: s for a scene, or the argument of ENGINE_NEED_NAMED. */
 #define ENGINE_NEED_NAMED(argument, name)     \
     do {                                      \
         if (!(argument))                      \
@@ -97,8 +99,8 @@ cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *
     } while (0)
 #define ENGINE_NEED(...) ENGINE_TRY(engine_need(#__VA_ARGS__, ENGINE_LIST(__VA_ARGS__), why))
 
-/* The beginning of a function that needs these arguments; and of one that changes the scene, which is the first of
- * them: that leaves also when the scene is being rendered. */
+/* First statement of a function that needs these arguments; ENGINE_CHANGE for one that changes the scene, its first
+ * argument: it also returns when the scene is being rendered. */
 #define ENGINE_CALL(...) \
     ENGINE_ENTER();      \
     ENGINE_NEED(__VA_ARGS__)
@@ -107,7 +109,7 @@ cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *
     ENGINE_TRY(engine_need_change(#__VA_ARGS__, ENGINE_LIST(__VA_ARGS__), why))
 
 #define ENGINE_LIST(...) ((const void *const[]){__VA_ARGS__, &engine_list_end})
-/* Leaves with what the call returns unless that is CUVETTE_OK. */
+/* Returns the call's result unless that is CUVETTE_OK. */
 #define ENGINE_TRY(call)                    \
     do {                                    \
         const cuvette_status needed = call; \

@@ -11,10 +11,11 @@ const char *cuvette_version(void)
     return VERSION_TEXT(CUVETTE_VERSION_MAJOR, CUVETTE_VERSION_MINOR, CUVETTE_VERSION_PATCH);
 }
 
-_Static_assert((int)CUVETTE_DIAGNOSTIC_TEXT_MAX == (int)DIAGNOSTIC_TEXT_MAX, "one limit of texts");
-_Static_assert(sizeof(((cuvette_diagnostic *)0)->what) == sizeof(((diagnostic *)0)->what), "nothing is cut off");
-_Static_assert(sizeof(((cuvette_diagnostic *)0)->remedy) == sizeof(((diagnostic *)0)->remedy), "nothing is cut off");
-_Static_assert(sizeof(((cuvette_diagnostic *)0)->file) == sizeof(((diagnostic *)0)->file), "nothing is cut off");
+_Static_assert((int)CUVETTE_DIAGNOSTIC_TEXT_MAX == (int)DIAGNOSTIC_TEXT_MAX, "both text limits are equal");
+_Static_assert(sizeof(((cuvette_diagnostic *)0)->what) == sizeof(((diagnostic *)0)->what), "texts are not truncated");
+_Static_assert(sizeof(((cuvette_diagnostic *)0)->remedy) == sizeof(((diagnostic *)0)->remedy),
+               "texts are not truncated");
+_Static_assert(sizeof(((cuvette_diagnostic *)0)->file) == sizeof(((diagnostic *)0)->file), "texts are not truncated");
 
 static void copy_out(const diagnostic *inner, cuvette_diagnostic *why)
 {
@@ -41,9 +42,9 @@ cuvette_status engine_report(status code, const diagnostic *inner, cuvette_diagn
 cuvette_status engine_missing(const char *name, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
-    return engine_report(
-        diagnose(&inner, STATUS_BAD_INPUT, "give what cuvette.h asks for there", "the argument '%s' is NULL", name),
-        &inner, why);
+    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "pass the value that cuvette.h describes",
+                                  "the argument '%s' is NULL", name),
+                         &inner, why);
 }
 
 const char engine_list_end = 0;
@@ -62,15 +63,15 @@ cuvette_status engine_need(const char *names, const void *const *arguments, cuve
     return engine_missing(strcmp(name, "s") == 0 ? "scene" : name, why);
 }
 
-cuvette_status engine_give_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why)
+cuvette_status engine_copy_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
     size_t size;
     memcpy(&size, out, sizeof size);
     if (size <= sizeof size || size > 65536)
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT,
-                                      "set its size to the sizeof of its type before the call",
-                                      "the struct to be filled in says that it has %zu bytes", size),
+                                      "set its field size to the sizeof of its type before the call",
+                                      "the output struct has the invalid size %zu", size),
                              &inner, why);
     memset((char *)out + sizeof size, 0, size - sizeof size);
     memcpy((char *)out + sizeof size, (const char *)content + sizeof size, (size < known ? size : known) - sizeof size);

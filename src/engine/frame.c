@@ -1,4 +1,4 @@
-/* What a frame tells: pixels, hash, counts, times. */
+/* Access to a frame: pixels, hash, counts, times. */
 #include "engine/canvas.h"
 #include "engine/engine_private.h"
 
@@ -29,14 +29,14 @@ uint64_t cuvette_frame_hash(const cuvette_frame *frame)
     return frame ? job_account_hash(&frame->account) : 0;
 }
 
-/* *stride: 0 becomes that of rows without room between them. */
+/* *stride: 0 is replaced by that of contiguous rows. */
 static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, size_t *stride, diagnostic *why)
 {
     if (*stride == 0)
         *stride = 3 * (size_t)(x1 - x0);
     if (x0 < 0 || y0 < 0 || x1 > f->width || y1 > f->height || x0 >= x1 || y0 >= y1)
         return diagnose(why, STATUS_BAD_INPUT, "keep 0 <= x0 < x1 <= width, and y likewise",
-                        "no part of a picture of %d x %d lies from %d,%d to %d,%d", f->width, f->height, x0, y0, x1,
+                        "an image of %d x %d has no rectangle from %d,%d to %d,%d", f->width, f->height, x0, y0, x1,
                         y1);
     if (*stride < 3 * (size_t)(x1 - x0))
         return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width",
@@ -72,30 +72,31 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
     ENGINE_CALL(frame, path);
     status code = bits == 8 || bits == 16
                       ? STATUS_OK
-                      : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "a picture cannot have %d bits", bits);
+                      : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "unsupported bit depth %d", bits);
     THEN(code, record_image(frame->account.result->img, path, bits, &inner));
     return engine_report(code, &inner, why);
 }
 
-_Static_assert(sizeof(((cuvette_counters *)0)->by_depth) == sizeof(((ray_counters *)0)->by_depth), "as many depths");
+_Static_assert(sizeof(((cuvette_counters *)0)->by_depth) == sizeof(((ray_counters *)0)->by_depth),
+               "the arrays have the same length");
 
 cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cuvette_counters *out, cuvette_diagnostic *why)
 {
     ENGINE_CALL(frame, out);
     const ray_counters *c = &frame->account.result->counters;
-    cuvette_counters told = {.camera = c->camera,
-                             .reflect = c->reflect,
-                             .refract = c->refract,
-                             .shadow = c->shadow,
-                             .total_internal = c->total_internal,
-                             .cut_depth = c->cut_depth,
-                             .cut_weight = c->cut_weight};
+    cuvette_counters result = {.camera = c->camera,
+                               .reflect = c->reflect,
+                               .refract = c->refract,
+                               .shadow = c->shadow,
+                               .total_internal = c->total_internal,
+                               .cut_depth = c->cut_depth,
+                               .cut_weight = c->cut_weight};
     for (int i = 0; i < 3; i++) {
-        told.cut_depth_throughput[i] = (double)c->cut_depth_throughput[i] / COUNTERS_CUT_ONE;
-        told.cut_weight_throughput[i] = (double)c->cut_weight_throughput[i] / COUNTERS_CUT_ONE;
+        result.cut_depth_throughput[i] = (double)c->cut_depth_throughput[i] / COUNTERS_CUT_ONE;
+        result.cut_weight_throughput[i] = (double)c->cut_weight_throughput[i] / COUNTERS_CUT_ONE;
     }
-    memcpy(told.by_depth, c->by_depth, sizeof told.by_depth);
-    return engine_give_struct(&told, sizeof told, out, why);
+    memcpy(result.by_depth, c->by_depth, sizeof result.by_depth);
+    return engine_copy_struct(&result, sizeof result, out, why);
 }
 
 cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t index, cuvette_solid_counters *out,
@@ -103,23 +104,24 @@ cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t i
 {
     ENGINE_CALL(frame, out);
     if (index >= frame->solid_count)
-        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "count them from 0",
-                                      "there is no solid %zu among the scene's %zu", index, frame->solid_count),
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "count solids from 0",
+                                      "solid index %zu is out of range: the scene has %zu solids", index,
+                                      frame->solid_count),
                              &inner, why);
     const ray_counters *c = &frame->account.result->counters;
-    const cuvette_solid_counters told = {
+    const cuvette_solid_counters result = {
         .tests = c->tests[index], .hits = c->hits[index], .first_hits = c->first_hits[index]};
-    return engine_give_struct(&told, sizeof told, out, why);
+    return engine_copy_struct(&result, sizeof result, out, why);
 }
 
 cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_statistics *out, cuvette_diagnostic *why)
 {
     ENGINE_CALL(frame, out);
     const render_result *r = frame->account.result;
-    const cuvette_statistics told = {.wall_s = r->wall_s,
-                                     .cpu_s = r->cpu_s,
-                                     .preview_s = frame->preview_s,
-                                     .threads = r->worker_count,
-                                     .noise_rms = render_noise_rms(r)};
-    return engine_give_struct(&told, sizeof told, out, why);
+    const cuvette_statistics result = {.wall_s = r->wall_s,
+                                       .cpu_s = r->cpu_s,
+                                       .preview_s = frame->preview_s,
+                                       .threads = r->worker_count,
+                                       .noise_rms = render_noise_rms(r)};
+    return engine_copy_struct(&result, sizeof result, out, why);
 }

@@ -1,4 +1,5 @@
-/* Motions: the slimes of a scene from their beginning on, as far as the scene stays the one that they were made of. */
+/* Motions: advance the slimes of a scene in time, as long as the scene's slimes are those that the motion was created
+ * for. */
 #include "engine/motion_private.h"
 
 #include "geometry/shapes/shape.h"
@@ -8,22 +9,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double time_max_s = 86400; /* of the parameter time_s, which the scene has afterwards */
+static const double time_max_s = 86400; /* the maximum of the parameter time_s, which an advance sets in the scene */
 
 void cuvette_motion_destroy(cuvette_motion *motion)
 {
     if (!motion)
         return;
-    scene_motion_destroy(motion->bodies); /* looks at no scene, which may be gone */
+    scene_motion_destroy(motion->bodies); /* does not access the scene, which may have been destroyed */
     engine_release_scene(motion->of);
     free(motion->hands);
     free(motion);
 }
 
-/* The scene is held. */
+/* The caller holds the scene. */
 static status begin(cuvette_motion *m, diagnostic *why)
 {
-    m->of->slimes_changed++; /* ends the motion before this one, whose skins these would be */
+    m->of->slimes_changed++; /* invalidates the previous motion of these slimes */
     m->slimes_changed = m->of->slimes_changed;
     pthread_mutex_lock(&m->of->loading);
     status code = scene_check(m->of->model, why);
@@ -59,15 +60,15 @@ cuvette_status cuvette_motion_create(cuvette_scene *s, cuvette_motion **out, cuv
 
 static status check_alive(const cuvette_motion *m, diagnostic *why)
 {
-    static const char remedy[] = "destroy it, and make another one";
+    static const char remedy[] = "destroy it and create another one";
     if (!m->of->model)
         return diagnose(why, STATUS_BAD_INPUT, remedy, "the motion's scene is destroyed");
     if (m->of->slimes_changed != m->slimes_changed)
         return diagnose(
             why, STATUS_BAD_INPUT, remedy,
-            "the scene's slimes are no longer the motion's: one was changed, a mesh removed, or another motion made");
+            "the motion is out of date: a slime was changed, a mesh was removed, or another motion was created");
     if (m->failed)
-        return diagnose(why, STATUS_BAD_INPUT, remedy, "the motion ended when an advance failed");
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "the motion ended because an advance failed");
     return STATUS_OK;
 }
 
@@ -78,12 +79,12 @@ cuvette_status motion_is_alive(const cuvette_motion *m, cuvette_diagnostic *why)
                                           : engine_report(check_alive(m, &inner), &inner, why);
 }
 
-/* What can be seen before a body has moved: the motion goes on when it is refused. */
+/* Checks that need no simulation: the motion stays valid if they fail. */
 static status check_time(const cuvette_motion *m, double time_s, diagnostic *why)
 {
     if (!(time_s >= m->time_s && time_s <= time_max_s))
-        return diagnose(why, STATUS_BAD_INPUT, "give a time from its last one to 86400 s, or make another motion",
-                        "the motion cannot go from %g s to %g s", m->time_s, time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "give a time from the current one to 86400 s, or create another motion",
+                        "the motion cannot advance from %g s to %g s", m->time_s, time_s);
     status code = STATUS_OK;
     for (size_t i = 0; i < scene_motion_count(m->bodies) && code == STATUS_OK; i++) {
         mesh_entry then = m->of->model->meshes[scene_motion_mesh(m->bodies, i)];
@@ -142,7 +143,8 @@ status motion_find(const cuvette_motion *m, const char *name, size_t *index, int
             *index = i;
             return STATUS_OK;
         }
-    return diagnose(why, STATUS_BAD_INPUT, "name a slime's mesh, or a solid that shows one", "%.80s is no slime", name);
+    return diagnose(why, STATUS_BAD_INPUT, "name a slime's mesh, or a solid that shows one", "%.80s is not a slime",
+                    name);
 }
 
 static void put_vector(vec3 v, double *out)
@@ -162,21 +164,21 @@ cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *na
         return engine_report(code, &inner, why);
     const softbody *body = scene_motion_body(motion->bodies, i);
     const softbody_account a = softbody_measure(body);
-    cuvette_slime told = {.time_s = a.time_s,
-                          .steps = a.steps,
-                          .substeps = a.substeps,
-                          .masses = softbody_mass_count(body),
-                          .held = a.held,
-                          .kinetic = a.kinetic,
-                          .elastic = a.elastic,
-                          .compression = a.compression,
-                          .gravity = a.gravity,
-                          .volume = a.volume,
-                          .volume_at_rest = a.volume_at_rest,
-                          .low = a.low,
-                          .high = a.high,
-                          .speed_max = a.speed_max};
-    put_vector(a.center, told.center);
-    put_vector(a.momentum, told.momentum);
-    return engine_give_struct(&told, sizeof told, out, why);
+    cuvette_slime result = {.time_s = a.time_s,
+                            .steps = a.steps,
+                            .substeps = a.substeps,
+                            .masses = softbody_mass_count(body),
+                            .held = a.held,
+                            .kinetic = a.kinetic,
+                            .elastic = a.elastic,
+                            .compression = a.compression,
+                            .gravity = a.gravity,
+                            .volume = a.volume,
+                            .volume_at_rest = a.volume_at_rest,
+                            .low = a.low,
+                            .high = a.high,
+                            .speed_max = a.speed_max};
+    put_vector(a.center, result.center);
+    put_vector(a.momentum, result.momentum);
+    return engine_copy_struct(&result, sizeof result, out, why);
 }

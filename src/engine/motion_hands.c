@@ -1,4 +1,4 @@
-/* Hands of the caller's: what cuvette.h promises of them, done by scene/motion/motion_hands.h. */
+/* The hands of cuvette.h, implemented with scene/motion/motion_hands.h. */
 #include "engine/motion_private.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@ static vec3 vector_of(const double *v)
     return vec3_make(v[0], v[1], v[2]);
 }
 
-/* Under which solid the ray meets the slime of that name; best->distance is infinite where it misses. */
+/* Finds the solid on which the ray hits the slime of that name; best->distance is infinite on a miss. */
 static status pick(const cuvette_motion *m, const char *name, const cuvette_ray *ray, size_t *slime, motion_place *best,
                    diagnostic *why)
 {
@@ -22,7 +22,7 @@ static status pick(const cuvette_motion *m, const char *name, const cuvette_ray 
     return code;
 }
 
-static void tell(const motion_place *found, double *where)
+static void report_point(const motion_place *found, double *where)
 {
     if (where && isfinite(found->distance))
         where[0] = found->where.x, where[1] = found->where.y, where[2] = found->where.z;
@@ -38,7 +38,7 @@ cuvette_status cuvette_motion_pick(const cuvette_motion *motion, const char *nam
     const status code = pick(motion, name, ray, &slime, &found, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    tell(&found, where);
+    report_point(&found, where);
     *distance = found.distance;
     return CUVETTE_OK;
 }
@@ -53,19 +53,19 @@ cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, con
     int number = CUVETTE_NO_HAND;
     status code = STATUS_OK;
     if (!(reach > 0.0 && isfinite(reach)))
-        code = diagnose(&inner, STATUS_BAD_INPUT, "give a length above 0", "a hand cannot reach %g", reach);
+        code = diagnose(&inner, STATUS_BAD_INPUT, "give a length above 0", "a hand's reach cannot be %g", reach);
     THEN(code, pick(motion, name, ray, &slime, &found, &inner));
     if (code == STATUS_OK && isfinite(found.distance))
         code = scene_motion_grab(motion->bodies, slime, &found, reach, &motion->hands[slime * SOFTBODY_HANDS_MAX],
                                  &number, &inner);
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
-    tell(&found, where);
+    report_point(&found, where);
     *hand = number < 0 ? CUVETTE_NO_HAND : (int)slime * SOFTBODY_HANDS_MAX + number;
     return CUVETTE_OK;
 }
 
-/* The hand of that number, which holds something. */
+/* The hand of that number, which must hold something. */
 static cuvette_status find_hand(cuvette_motion *m, int number, motion_hand **out, cuvette_diagnostic *why)
 {
     ENGINE_TRY(motion_is_alive(m, why));
@@ -75,7 +75,7 @@ static cuvette_status find_hand(cuvette_motion *m, int number, motion_hand **out
     if (holds)
         *out = &m->hands[number];
     else
-        diagnose(&inner, STATUS_BAD_INPUT, "give the number that cuvette_motion_grab told", "hand %d holds nothing",
+        diagnose(&inner, STATUS_BAD_INPUT, "give a number that cuvette_motion_grab returned", "hand %d holds nothing",
                  number);
     return engine_report(holds ? STATUS_OK : STATUS_BAD_INPUT, &inner, why);
 }
@@ -87,7 +87,8 @@ cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const doubl
     ENGINE_TRY(find_hand(motion, hand, &h, why));
     if (!engine_is_finite(by))
         return engine_report(
-            diagnose(&inner, STATUS_BAD_INPUT, "give three finite numbers", "the hand moves to nowhere"), &inner, why);
+            diagnose(&inner, STATUS_BAD_INPUT, "give three finite numbers", "the hand's displacement is not finite"),
+            &inner, why);
     h->to = motion_hand_offset(h, vector_of(by));
     return CUVETTE_OK;
 }

@@ -1,4 +1,4 @@
-/* Lights, materials and solids come, go, move and turn. */
+/* Lights, materials and solids: adding, removing, translating, rotating, scaling. */
 #include "engine/engine_private.h"
 
 #include "scene/model/edit/edit.h"
@@ -37,7 +37,7 @@ cuvette_status cuvette_scene_remove(cuvette_scene *s, const char *name, cuvette_
     ENGINE_CHANGE(s, name);
     const size_t meshes = s->model->mesh_count;
     const status code = scene_remove(s->model, name, &inner);
-    s->slimes_changed += s->model->mesh_count != meshes; /* those behind it have other places now */
+    s->slimes_changed += s->model->mesh_count != meshes; /* the indices of later meshes have changed */
     return engine_report(code, &inner, why);
 }
 

@@ -1,5 +1,5 @@
-/* Parameters by name: everything goes through the one table's own text, so that a value set by number is the value set
- * by its digits. */
+/* Parameters by name: every value passes through the parameter table as text, so that a value set as a number equals
+ * the value set by its digits. */
 #include "engine/engine_private.h"
 
 #include "base/number.h"
@@ -23,7 +23,7 @@ cuvette_status cuvette_scene_set(cuvette_scene *s, const char *path, const char 
     const bool was_slime = is_slime(s->model, path);
     const status code = scene_set(s->model, path, value, &inner);
     if (code == STATUS_OK &&
-        (was_slime || is_slime(s->model, path))) /* also one that has only now become one, or ceased to be one */
+        (was_slime || is_slime(s->model, path))) /* also if the mesh became a slime or ceased to be one */
         s->slimes_changed++;
     return engine_report(code, &inner, why);
 }
@@ -61,7 +61,7 @@ cuvette_status cuvette_scene_set_vector(cuvette_scene *s, const char *path, cons
     size_t length = 1;
     if (count > 0)
         ENGINE_NEED(values);
-    if (count > MOST) /* one too many is refused by the table, in its own words */
+    if (count > MOST) /* the table reports a list that is too long */
         count = MOST;
     for (size_t i = 0; i < count; i++)
         length += (size_t)snprintf(text + length, sizeof text - length, "%s%s", i ? "," : "",
@@ -85,14 +85,14 @@ cuvette_status cuvette_scene_get(const cuvette_scene *s, const char *path, char 
     if (size > 0)
         ENGINE_NEED(text);
     ENGINE_TRY(get(s, path, &value, why));
-    return engine_give_text(value, text, size, length, why);
+    return engine_copy_text(value, text, size, length, why);
 }
 
 static cuvette_status is_no_number(const char *path, const char *value, const char *kind, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
-    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "use cuvette_scene_get, which gives text",
-                                  "%.128s is '%.128s', which is no %s", path, value, kind),
+    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "use cuvette_scene_get, which returns text",
+                                  "%.128s is '%.128s', not of type %s", path, value, kind),
                          &inner, why);
 }
 
@@ -132,7 +132,7 @@ cuvette_status cuvette_scene_get_int(const cuvette_scene *s, const char *path, i
     return code;
 }
 
-/* "[1, 2, 3]", "1,2,3", or one number alone; how many there are, or -1. text is cut up. */
+/* Parses "[1, 2, 3]", "1,2,3", or a single number; returns their count, or -1. Modifies text. */
 static int parse_numbers(char *text, double numbers[NUMBER_LIST_MAX])
 {
     int count = 0;
@@ -161,8 +161,7 @@ cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path
         return is_no_number(path, "a word", "vector", why);
     *count = (size_t)found;
     if ((size_t)found > room) {
-        diagnose(&inner, STATUS_BAD_INPUT, "make room for as many as are reported", "%.128s has %d numbers", path,
-                 found);
+        diagnose(&inner, STATUS_BAD_INPUT, "make room for the reported count", "%.128s has %d numbers", path, found);
         return engine_report(STATUS_BAD_INPUT, &inner, why);
     }
     memcpy(values, numbers, (size_t)found * sizeof *numbers);
@@ -172,7 +171,7 @@ cuvette_status cuvette_scene_get_vector(const cuvette_scene *s, const char *path
 typedef struct visitor {
     bool (*visit)(void *context, const cuvette_parameter *one);
     void *context;
-    float_environment *host; /* the caller's, for the caller's function */
+    float_environment *host; /* the caller's, for the callback */
 } visitor;
 
 static status visit_one(void *context, const char *path, const param *row, const char *value)

@@ -1,5 +1,5 @@
-/* A scene made ready for rays of the caller's. A query is not changed once it is made; what a call works on (a bench)
- * is taken from a shelf and put back, so that any number of threads may ask, and a single ray costs no allocation. */
+/* Queries: a scene prepared for the caller's rays. A query is immutable; the scratch memory of a call (a bench) is
+ * taken from a shelf and put back, so that any number of threads may query, and a single ray costs no allocation. */
 #include "engine/query_private.h"
 #include "scene/model/scene.h"
 
@@ -32,10 +32,10 @@ static const geometry_kernels *kernels_of(isa level)
 static status prepare(cuvette_query *q, const scene *s, const char *instructions, diagnostic *why)
 {
     isa level = ISA_SSE2;
-    scene without_sky = *s; /* no ray of a query looks at it */
+    scene without_sky = *s; /* no query uses it */
     without_sky.background.img = NULL;
     if (integrator_traits_of(&s->render)->drawn)
-        trace_trees(&without_sky.render); /* rays need the hierarchies that drawing does without */
+        trace_trees(&without_sky.render); /* rays need the hierarchies, which rasterisation does not build */
     status code = engine_isa(instructions, &level, why);
     THEN(code, scene_check(s, why));
     if (code != STATUS_OK)
@@ -56,8 +56,7 @@ cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instruct
         free(q);
         return engine_report(out_of_memory(&inner), &inner, why);
     }
-    status code =
-        engine_load((cuvette_scene *)(uintptr_t)s, &inner); /* every handle was made by us, none is constant */
+    status code = engine_load((cuvette_scene *)(uintptr_t)s, &inner); /* handles are never const objects */
     THEN(code, prepare(q, s->model, instructions, &inner));
     if (code != STATUS_OK) {
         cuvette_query_destroy(q);
@@ -69,7 +68,7 @@ cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instruct
 
 bench *query_take_bench(const cuvette_query *query)
 {
-    cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* every handle was made by us, none is constant */
+    cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
     pthread_mutex_lock(&q->lock);
     bench *b = q->shelf;
     if (b)
@@ -96,9 +95,8 @@ cuvette_status cuvette_query_camera_ray(const cuvette_query *query, double x, do
 {
     ENGINE_CALL(query, out);
     if (!isfinite(x) || !isfinite(y))
-        return engine_report(
-            diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point of the picture is not finite"), &inner,
-            why);
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the image point is not finite"),
+                             &inner, why);
     const vec3 eye = query->ready->view.eye, d = camera_direction(&query->ready->view, &query->ready->render, x, y);
     memset(out, 0, sizeof *out);
     out->origin[0] = eye.x, out->origin[1] = eye.y, out->origin[2] = eye.z;

@@ -1,4 +1,5 @@
-/* A query and what a call works on, shared by query.c (what it is) and query_rays.c (what it is asked). */
+/* Internals of a query, shared by query.c (creation) and query_rays.c (ray queries): the query and the scratch memory
+ * of a call. */
 #pragma once
 
 #include "engine/engine_private.h"
@@ -12,7 +13,7 @@ typedef struct bench {
     _Alignas(64) double ox[ROW], oy[ROW], oz[ROW], dx[ROW], dy[ROW], dz[ROW];
     int64_t start[ROW];
     uint64_t inside[ROW];
-    /* Those of the batch that met one primitive, side by side. */
+    /* The rays of the batch that hit one primitive, contiguous. */
     _Alignas(64) double gox[ROW], goy[ROW], goz[ROW], gdx[ROW], gdy[ROW], gdz[ROW], t[ROW];
     int64_t gstart[ROW];
     uint64_t ginside[ROW];
@@ -22,18 +23,18 @@ typedef struct bench {
     instance_hit mesh_hits[ROW];
     mesh_points on_mesh;
     double transmitted[ROW];
-    size_t asked[ROW]; /* which of the caller's rays a column is */
+    size_t caller_index[ROW]; /* the index of the caller's ray in each column */
     struct bench *next;
 } bench;
 
 struct cuvette_query {
-    scene *model; /* its own copy, which the plan borrows from */
+    scene *model; /* its own copy, from which the plan borrows */
     plan *ready;
     const geometry_kernels *kernels;
     pthread_mutex_t lock;
     bench *shelf;
 };
 
-/* From the shelf, or new; NULL when memory is out. */
+/* Takes a bench from the shelf, or a new one; NULL when out of memory. */
 bench *query_take_bench(const cuvette_query *query);
 void query_give_bench(const cuvette_query *query, bench *b);

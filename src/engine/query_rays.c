@@ -1,5 +1,5 @@
-/* Rays of the caller's, through the tracer's own kernels: batches are filled, asked, and their hits told in the scene's
- * terms. */
+/* Ray queries: the caller's rays are traced in batches by the tracer's own kernels, and their hits are converted to the
+ * scene's terms. */
 #include "engine/query_private.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #define FAR_ORIGIN 1e6
 
-/* A cuvette_start: word 0 is 1 for one that a hit filled in; then the face and the set of primitives. */
+/* A cuvette_start: word 0 is 1 if a hit filled it in; then follow the face and the set of primitives. */
 static cuvette_start start_at(int64_t face, uint64_t inside)
 {
     return (cuvette_start){{1, (uint64_t)face, inside, 0}};
@@ -18,7 +18,7 @@ bool engine_is_finite(const double *v)
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
 
-/* Is it the number of a face that there is? */
+/* True if the word is the number of an existing face. */
 static bool is_face(const scene_geometry *a, uint64_t word)
 {
     const int64_t face = (int64_t)word;
@@ -38,13 +38,13 @@ status engine_check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnos
     const double *o = ray->origin, *d = ray->direction;
     const char *what = NULL, *remedy = NULL;
     if (!(fabs(o[0]) <= FAR_ORIGIN && fabs(o[1]) <= FAR_ORIGIN && fabs(o[2]) <= FAR_ORIGIN))
-        what = "starts too far away", remedy = "start within 1e6 scene units of the middle";
+        what = "starts too far away", remedy = "start within 1e6 scene units of 0,0,0";
     else if (!engine_is_finite(d) || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0))
         what = "has no direction", remedy = "give a finite direction that is not 0,0,0";
     else if (!(ray->reach >= 0.0))
-        what = "has a negative reach", remedy = "give a distance, or 0 for any";
+        what = "has a negative reach", remedy = "give a distance, or 0 for no limit";
     else if (p && (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !is_face(p->geometry, ray->start.word[1]))))
-        what = "has a start that no hit told", remedy = "copy it from a hit of this query, or zero it";
+        what = "has an invalid start", remedy = "copy it from a hit of this query, or zero it";
     if (!what)
         return STATUS_OK;
     return p ? diagnose(why, STATUS_BAD_INPUT, remedy, "ray %zu %s", i, what)
@@ -75,8 +75,8 @@ static ray_batch view_of(const bench *b, int count)
     return (ray_batch){count, b->ox, b->oy, b->oz, b->dx, b->dy, b->dz, b->start, b->inside};
 }
 
-/* A miss, as far as it can be told. */
-static cuvette_hit nothing_met(const cuvette_query *q, int priority_index)
+/* A miss: only the medium at the origin is known. */
+static cuvette_hit no_hit(const cuvette_query *q, int priority_index)
 {
     cuvette_hit h;
     memset(&h, 0, sizeof h);
@@ -88,13 +88,13 @@ static cuvette_hit nothing_met(const cuvette_query *q, int priority_index)
     return h;
 }
 
-static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int k, int met)
+static cuvette_hit hit_of(const cuvette_query *q, const bench *b, int column, int k, int hit_primitive)
 {
     const plan *p = q->ready;
     const hit_batch *hits = &b->hits;
     const surface_batch *s = &b->points;
-    cuvette_hit h = nothing_met(q, (int)hits->before[column]);
-    const region *bounded = &p->geometry->regions[p->geometry->primitives[met].priority_index];
+    cuvette_hit h = no_hit(q, (int)hits->before[column]);
+    const region *bounded = &p->geometry->regions[p->geometry->primitives[hit_primitive].priority_index];
     h.distance = hits->t[column];
     h.point[0] = s->px[k], h.point[1] = s->py[k], h.point[2] = s->pz[k];
     h.normal[0] = s->nx[k], h.normal[1] = s->ny[k], h.normal[2] = s->nz[k];
@@ -108,15 +108,15 @@ static cuvette_hit told(const cuvette_query *q, const bench *b, int column, int 
         h.slot = (int32_t)b->on_mesh.slot[k];
         h.u = b->on_mesh.weight[1][k], h.v = b->on_mesh.weight[2][k];
     } else {
-        h.face = (int32_t)(s->face[k] % FACES_MAX) + (met == bounded->hollow ? HOLLOW_FACES : 0);
+        h.face = (int32_t)(s->face[k] % FACES_MAX) + (hit_primitive == bounded->hollow ? HOLLOW_FACES : 0);
     }
     h.reflected = start_at(s->face[k], hits->inside_before[column]);
     h.transmitted = start_at(s->face[k], hits->inside_after[column]);
     return h;
 }
 
-/* Hits on one primitive: their points all at once. */
-static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuvette_hit *out)
+/* Hits on one primitive: their points are computed together. */
+static void report_hits(const cuvette_query *q, bench *b, int hit_primitive, int count, cuvette_hit *out)
 {
     for (int k = 0; k < count; k++) {
         const int i = b->list[k];
@@ -126,15 +126,15 @@ static void tell_group(const cuvette_query *q, bench *b, int met, int count, cuv
     }
     const ray_batch rays = {count, b->gox, b->goy, b->goz, b->gdx, b->gdy, b->gdz, b->gstart, b->ginside};
     const scene_geometry *a = q->ready->geometry;
-    if (!a->primitives[met].rule) {
+    if (!a->primitives[hit_primitive].rule) {
         for (int k = 0; k < count; k++)
             b->mesh_hits[k] = b->meshes.hit[b->list[k]];
         instance_set_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);
     } else {
-        q->kernels->surface(&a->primitives[met], &rays, b->t, met, &b->points);
+        q->kernels->surface(&a->primitives[hit_primitive], &rays, b->t, hit_primitive, &b->points);
     }
     for (int k = 0; k < count; k++)
-        out[b->list[k]] = told(q, b, b->list[k], k, met);
+        out[b->list[k]] = hit_of(q, b, b->list[k], k, hit_primitive);
 }
 
 static bool within(double distance, double reach)
@@ -151,16 +151,16 @@ static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *r
     q->kernels->nearest(a, &view, &b->scratch, &b->hits);
     for (int i = 0; i < count; i++)
         if (b->hits.hit_primitive[i] < 0 || !within(b->hits.t[i], rays[i].reach)) {
-            hits[i] = nothing_met(q, scene_geometry_priority_index(a, b->inside[i]));
+            hits[i] = no_hit(q, scene_geometry_priority_index(a, b->inside[i]));
             b->hits.hit_primitive[i] = -1;
         }
-    for (int met = 0; met < a->primitive_count; met++) {
+    for (int hit_primitive = 0; hit_primitive < a->primitive_count; hit_primitive++) {
         int listed = 0;
         for (int i = 0; i < count; i++)
-            if (b->hits.hit_primitive[i] == met)
+            if (b->hits.hit_primitive[i] == hit_primitive)
                 b->list[listed++] = i;
         if (listed > 0)
-            tell_group(q, b, met, listed, hits);
+            report_hits(q, b, hit_primitive, listed, hits);
     }
 }
 
@@ -189,7 +189,7 @@ cuvette_status cuvette_query_nearest(const cuvette_query *query, const cuvette_r
     return CUVETTE_OK;
 }
 
-/* Rays of one kind that were put in line: with a reach they end there, as shadow rays do at their light. */
+/* A batch of rays of one kind: those with a reach end there, as shadow rays end at their light. */
 static void occluded_batch(const cuvette_query *q, bench *b, int count, bool ends, unsigned char *blocked)
 {
     const ray_batch view = view_of(b, count);
@@ -198,7 +198,7 @@ static void occluded_batch(const cuvette_query *q, bench *b, int count, bool end
     else
         q->kernels->nearest(q->ready->geometry, &view, &b->scratch, &b->hits);
     for (int i = 0; i < count; i++)
-        blocked[b->asked[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.hit_primitive[i] >= 0;
+        blocked[b->caller_index[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.hit_primitive[i] >= 0;
 }
 
 static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, size_t count, bool ends,
@@ -209,7 +209,7 @@ static void occluded(const cuvette_query *q, bench *b, const cuvette_ray *rays, 
         if ((rays[i].reach > 0.0 && isfinite(rays[i].reach)) != ends)
             continue;
         put_ray(q, b, waiting, &rays[i], ends ? rays[i].reach : 1.0);
-        b->asked[waiting++] = i;
+        b->caller_index[waiting++] = i;
         if (waiting == BATCH) {
             occluded_batch(q, b, waiting, ends, blocked);
             waiting = 0;

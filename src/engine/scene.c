@@ -1,4 +1,4 @@
-/* Scenes as handles: made, read, copied, checked, written. */
+/* Scene handles: creating, reading, cloning, checking, writing. */
 #include "engine/engine_private.h"
 
 #include "scene/model/hints.h"
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Takes over the model; destroys it when memory is out. */
+/* Takes ownership of the model; destroys it when out of memory. */
 static cuvette_status wrap(scene *model, cuvette_scene **out, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
@@ -50,11 +50,11 @@ cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_
     return code == STATUS_OK ? wrap(model, out, why) : engine_report(code, &inner, why);
 }
 
-/* What is loaded is looked at where it is there, so that nobody may be loading it meanwhile: renders of one scene may
- * begin together. */
+/* Locks the scene against loading by another thread: renders of one scene may begin together, and each checks what is
+ * loaded. */
 static cuvette_scene *hold(const cuvette_scene *s)
 {
-    cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* every handle was made by us, none is constant */
+    cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* handles are never const objects */
     pthread_mutex_lock(&held->loading);
     return held;
 }
@@ -83,7 +83,7 @@ void cuvette_scene_destroy(cuvette_scene *s)
     if (!s)
         return;
     scene_destroy(s->model);
-    s->model = NULL; /* its motions find out */
+    s->model = NULL; /* shows its motions that the scene is destroyed */
     engine_release_scene(s);
 }
 
@@ -101,7 +101,7 @@ static cuvette_status is_rendered(cuvette_diagnostic *why)
 
 cuvette_status engine_is_advancing(cuvette_diagnostic *why)
 {
-    return busy("wait for cuvette_motion_advance to return", "the scene's slimes are being moved", why);
+    return busy("wait for cuvette_motion_advance to return", "the scene's slimes are being advanced", why);
 }
 
 cuvette_status engine_need_change(const char *names, const void *const *arguments, cuvette_diagnostic *why)
@@ -112,7 +112,8 @@ cuvette_status engine_need_change(const char *names, const void *const *argument
                                              : engine_need(names, arguments, why);
 }
 
-/* Each says that it is there before it looks for the other: of two that begin at once at least one sees the other. */
+/* Each side announces itself before it checks for the other: of two that begin at the same time at least one sees the
+ * other. */
 cuvette_status engine_begin_render(cuvette_scene *s, cuvette_diagnostic *why)
 {
     atomic_fetch_add(&s->renders, 1);
@@ -167,7 +168,7 @@ cuvette_status cuvette_scene_check(const cuvette_scene *s, cuvette_diagnostic *w
 typedef struct host_call {
     void (*note)(void *context, const char *text);
     void *context;
-    float_environment *host; /* the caller's, for the caller's function */
+    float_environment *host; /* the caller's, for the callback */
 } host_call;
 
 static void call_host(void *context, const scene_note *note)
@@ -195,7 +196,7 @@ cuvette_status cuvette_scene_hints(const cuvette_scene *s, void (*note)(void *co
     return CUVETTE_OK;
 }
 
-cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
+cuvette_status engine_copy_text(char *content, char *text, size_t size, size_t *length, cuvette_diagnostic *why)
 {
     const size_t needed = strlen(content);
     if (length)
@@ -207,8 +208,8 @@ cuvette_status engine_give_text(char *content, char *text, size_t size, size_t *
     if (fits)
         return CUVETTE_OK;
     diagnostic inner = {.line = 0};
-    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "make room for the length that is reported, and one more",
-                                  "the text has %zu characters, and there is room for %zu bytes", needed, size),
+    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "make room for the reported length plus 1",
+                                  "the text has %zu characters, but the buffer only %zu bytes", needed, size),
                          &inner, why);
 }
 
@@ -231,5 +232,5 @@ cuvette_status cuvette_scene_write_text(const cuvette_scene *s, char *text, size
     cuvette_scene *held = hold(s);
     const status code = scene_write_text(held->model, NULL, false, &content, &inner);
     pthread_mutex_unlock(&held->loading);
-    return code == STATUS_OK ? engine_give_text(content, text, size, length, why) : engine_report(code, &inner, why);
+    return code == STATUS_OK ? engine_copy_text(content, text, size, length, why) : engine_report(code, &inner, why);
 }

@@ -55,9 +55,9 @@ typedef struct region {
     /* The same by material slot, for a mesh whose faces differ; shadow_transmittance is then the least. Borrowed, or
      * NULL. */
     const double *face_shadow_transmittance;
-    bool attenuates;  /* its medium attenuates light along the path */
-    bool reflects; /* by angle: crossings of its surface by shadow rays are recorded (see ray_crossings) */
-    int solid;     /* index of the solid it came from */
+    bool attenuates; /* its medium attenuates light along the path */
+    bool reflects;   /* by angle: crossings of its surface by shadow rays are recorded (see ray_crossings) */
+    int solid;       /* index of the solid it came from */
 } region;
 
 typedef struct scene_geometry {
@@ -70,7 +70,7 @@ typedef struct scene_geometry {
     uint64_t further;            /* rows for further intervals of the primitive before them */
     uint64_t opaque_regions;     /* bit r - 1: the region of priority index r is opaque */
     bool distinct;               /* no two regions have equal media, and none has the surrounding medium */
-    bool attenuates;                /* a region or the surrounding medium does */
+    bool attenuates;             /* a region or the surrounding medium does */
     struct instance_set *meshes; /* all meshes; NULL without meshes */
     vec3 *normals;               /* of all primitives with sides */
     int normal_count;

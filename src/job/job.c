@@ -12,9 +12,9 @@ struct job {
     isa level;
     job_settings settings;
     renderer *renderer;
-    topology *machine;          /* NULL until it is needed: reading it takes longer than many a frame */
+    topology *machine;          /* NULL until needed: reading it takes longer than many frames */
     hardware_counter *hardware; /* NULL unless measured */
-    shelf meshes;               /* empty unless kept */
+    shelf meshes;               /* empty unless keeps_meshes */
     atomic_bool cancelled;
 };
 
@@ -26,7 +26,7 @@ status job_create(const job_settings *settings, job **out, diagnostic *why)
         return out_of_memory(why);
     j->settings = *settings;
     if (settings->measured)
-        j->hardware = hardware_counter_create(); /* before the pool: it counts threads that start after it */
+        j->hardware = hardware_counter_create(); /* before the pool: it counts only threads that start after it */
     status code = STATUS_OK;
     if (settings->level)
         j->level = *settings->level;
@@ -64,7 +64,7 @@ status job_machine(job *j, const topology **out, diagnostic *why)
     return code;
 }
 
-/* --- the wish to stop --- */
+/* --- stop requests --- */
 
 void job_cancel(job *j)
 {
@@ -111,77 +111,77 @@ status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why)
 
 /* --- frames --- */
 
-/* Frames under way. */
+/* The frames that are being rendered. */
 typedef struct work {
     job *of;
-    const render_options *wanted;
-    size_t frame, frames; /* now, of how many */
-    double begun_s;       /* this frame */
-    bool late;
+    const render_options *requested;
+    size_t frame, frames; /* current frame, total number */
+    double begun_s;       /* start of this frame */
+    bool timed_out;
 } work;
 
 static bool go_on(void *of, double share_done)
 {
     work *w = of;
     const double limit_s = w->of->settings.time_s;
-    w->late |= limit_s > 0.0 && clock_wall_s() - w->begun_s > limit_s;
-    if (w->late || job_must_stop(w->of))
+    w->timed_out |= limit_s > 0.0 && clock_wall_s() - w->begun_s > limit_s;
+    if (w->timed_out || job_must_stop(w->of))
         return false;
-    return !w->wanted->progress ||
-           w->wanted->progress(w->wanted->context, ((double)w->frame + share_done) / (double)w->frames);
+    return !w->requested->progress ||
+           w->requested->progress(w->requested->context, ((double)w->frame + share_done) / (double)w->frames);
 }
 
 static void pass_on_piece(void *of, const film *img, int x0, int y0, int x1, int y1)
 {
     const work *w = of;
-    w->wanted->piece_done(w->wanted->context, img, x0, y0, x1, y1);
+    w->requested->piece_done(w->requested->context, img, x0, y0, x1, y1);
 }
 
-static status check_quota(const job *j, const scene *s, const render_options *wanted, diagnostic *why)
+static status check_quota(const job *j, const scene *s, const render_options *requested, diagnostic *why)
 {
-    const uint64_t quota = j->settings.memory_bytes, needed = renderer_result_bytes(s, wanted);
+    const uint64_t quota = j->settings.memory_bytes, needed = renderer_result_bytes(s, requested);
     if (quota == 0 || needed <= quota)
         return STATUS_OK;
-    return diagnose(why, STATUS_BAD_INPUT, "render a smaller image, or keep fewer maps of it",
-                    "the film and its maps take %" PRIu64 " bytes, and the quota is %" PRIu64, needed, quota);
+    return diagnose(why, STATUS_BAD_INPUT, "render a smaller image, or request fewer maps",
+                    "the film and its maps need %" PRIu64 " bytes, more than the quota of %" PRIu64, needed, quota);
 }
 
-/* All that comes before a frame and is not measured. */
-static status prepare(job *j, const scene *s, const render_options *wanted, diagnostic *why)
+/* The unmeasured preparation of a frame. */
+static status prepare(job *j, const scene *s, const render_options *requested, diagnostic *why)
 {
     const topology *machine = NULL;
     if (job_must_stop(j))
         return interrupted(why);
     status code = scene_check(s, why);
-    THEN(code, check_quota(j, s, wanted, why));
+    THEN(code, check_quota(j, s, requested, why));
     if (code == STATUS_OK && s->render.pin != PIN_RULE_NONE)
         code = job_machine(j, &machine, why);
     if (code != STATUS_OK)
         return code;
     if (machine)
-        renderer_know_machine(j->renderer, machine);
+        renderer_set_machine(j->renderer, machine);
     return renderer_prepare(j->renderer, s, why);
 }
 
-/* With the maps or without. */
+/* Renders one frame, with or without the maps. */
 static status trace(work *w, const scene *s, bool maps, render_result **out, diagnostic *why)
 {
-    render_options options = {.progress = go_on, .progress_s = w->wanted->progress_s, .context = w};
-    if (w->wanted->piece_done)
+    render_options options = {.progress = go_on, .progress_s = w->requested->progress_s, .context = w};
+    if (w->requested->piece_done)
         options.piece_done = pass_on_piece;
     if (maps) {
-        options.pixel_rays = w->wanted->pixel_rays;
-        options.pixel_time = w->wanted->pixel_time;
-        options.timeline = w->wanted->timeline;
-        options.layers = w->wanted->layers;
+        options.pixel_rays = w->requested->pixel_rays;
+        options.pixel_time = w->requested->pixel_time;
+        options.timeline = w->requested->timeline;
+        options.layers = w->requested->layers;
     }
     w->begun_s = clock_wall_s();
-    w->late = false;
+    w->timed_out = false;
     *out = NULL;
     const status code = renderer_render(w->of->renderer, s, &options, out, why);
     if (code != STATUS_INTERRUPTED)
         return code;
-    if (!w->late)
+    if (!w->timed_out)
         return interrupted(why);
     render_result_destroy(*out);
     *out = NULL;
@@ -189,7 +189,7 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
                     w->of->settings.time_s);
 }
 
-/* Takes the new result in place of the one before, if it may. A whole frame says more than a part of one. */
+/* Replaces the account's result by the new one. An interrupted frame does not replace a complete one. */
 static status keep(job_account *a, render_result *result, status ended, diagnostic *why)
 {
     if (ended == STATUS_INTERRUPTED && a->result) {
@@ -199,7 +199,8 @@ static status keep(job_account *a, render_result *result, status ended, diagnost
     const uint64_t hash = a->result ? film_hash(result->img) : 0;
     if (a->result && job_account_hash(a) != hash) {
         render_result_destroy(result);
-        return diagnose(why, STATUS_FAILURE, "report this as a bug, with the scene", "two frames of one scene differ");
+        return diagnose(why, STATUS_FAILURE, "report this as a bug, with the scene",
+                        "two frames of the same scene differ");
     }
     render_result_destroy(a->result);
     a->result = result;
@@ -222,7 +223,7 @@ static status render_one(work *w, const scene *s, bool maps, job_account *a, dia
     return code;
 }
 
-/* The maps of one further frame go to the result of the last measured one, whose times stay undisturbed. */
+/* Moves the maps of one additional frame into the result of the last measured one, whose times stay undisturbed. */
 static status add_maps(work *w, const scene *s, job_account *a, diagnostic *why)
 {
     render_result *result = NULL, *measured = a->result;
@@ -246,7 +247,7 @@ static int64_t now_ms(void)
     return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
-/* Counters read first and last, so that they hold the frames and nothing else. */
+/* The counters are read first and last, so that they cover only the frames. */
 static status measure_all(work *w, const scene *s, size_t count, bool maps, job_account *a, diagnostic *why)
 {
     const job *j = w->of;
@@ -275,12 +276,12 @@ status job_repeat(job *j, const scene *s, size_t frames, const render_options *o
                   diagnostic *why)
 {
     static const render_options none = {.progress = NULL};
-    const render_options *wanted = options ? options : &none;
-    const bool maps = wanted->pixel_rays || wanted->pixel_time || wanted->timeline || wanted->layers;
+    const render_options *requested = options ? options : &none;
+    const bool maps = requested->pixel_rays || requested->pixel_time || requested->timeline || requested->layers;
     const bool extra = frames > 1 && maps;
-    work w = {.of = j, .wanted = wanted, .frames = frames + extra};
+    work w = {.of = j, .requested = requested, .frames = frames + extra};
     status code = job_account_begin(s, j->level, frames, out, why);
-    THEN(code, prepare(j, s, wanted, why));
+    THEN(code, prepare(j, s, requested, why));
     THEN(code, measure_all(&w, s, frames, maps && !extra, out, why));
     if (code == STATUS_OK && extra)
         code = add_maps(&w, s, out, why);

@@ -1,56 +1,57 @@
-/* The one way to render: program, studies, laboratory and engine all hold a job. A job chooses the instruction set,
- * keeps the renderer with its threads from frame to frame, knows the machine where a scene pins threads, loads scenes,
- * renders frames, watches them (progress, a wish to stop, a limit of time, a quota of memory) and says what they came
- * to (job/account.h).
+/* The job: the single interface for rendering, used by the program, studies, the laboratory and the engine. A job
+ * chooses the instruction set, keeps the renderer and its threads between frames, reads the machine's topology when a
+ * scene pins threads, loads scenes, renders frames, supervises them (progress, stop requests, a time limit, a memory
+ * quota) and returns their results (job/account.h).
  *
- * Ownership: job_create gives, job_destroy releases; scenes are borrowed for a call; accounts are the caller's. One
- * thread at a time works with a job, but job_cancel may be called from any, and from signal handlers. No global state:
- * several jobs may live in one process.
+ * Ownership: job_create allocates, job_destroy releases; scenes are borrowed for a call; the caller owns accounts. One
+ * thread at a time uses a job, but job_cancel may be called from any thread, and from signal handlers. No global state:
+ * several jobs may exist in one process.
  *
- * Errors: STATUS_INTERRUPTED after a wish to stop, with what was finished in the account; STATUS_BAD_INPUT for a wrong
- * scene and for a frame over the quota; STATUS_FAILURE for a frame over its time, and where memory, threads or places
- * for them are out. What is to be said of it stands in the diagnostic. */
+ * Errors: STATUS_INTERRUPTED after a stop request, with the finished part in the account; STATUS_BAD_INPUT for an
+ * invalid scene and for a frame over the quota; STATUS_FAILURE for a frame over its time limit, when out of memory, and
+ * when threads cannot be started or bound. The diagnostic describes the error. */
 #pragma once
 
 #include "job/account.h"
 
 typedef struct job job;
 
-/* All zeros are good settings. */
+/* Zeros are valid settings. */
 typedef struct job_settings {
     const isa *level; /* NULL: isa_choose */
-    bool measured; /* take usage and hardware counters of frames, and their hashes: some 0.1 ms and a film's reading */
-    bool fresh_peak;   /* the peak of memory counts from each frame's beginning, where the system lets it be reset */
-    bool keeps_meshes; /* of scenes that were loaded, for those that are loaded later (job/shelf.h) */
-    /* Asked before a frame, while it is rendered and while a scene is loaded; true ends that. May be NULL. */
+    /* measure usage, hardware counters and hashes of frames: costs about 0.1 ms and one pass over the film */
+    bool measured;
+    bool fresh_peak;   /* reset the peak of memory at the beginning of each frame, if the system allows it */
+    bool keeps_meshes; /* keep meshes of loaded scenes for scenes that are loaded later (job/shelf.h) */
+    /* Called before and during a frame and while a scene is loaded; return true to stop. May be NULL. */
     bool (*stop)(void *context);
     void *context;
-    double time_s;         /* no frame takes longer; 0: any time */
-    uint64_t memory_bytes; /* no frame's film and maps take more; 0: any amount */
+    double time_s;         /* time limit of a frame; 0: none */
+    uint64_t memory_bytes; /* limit for a frame's film and maps; 0: none */
 } job_settings;
 
 status job_create(const job_settings *settings, job **out, diagnostic *why);
 void job_destroy(job *j); /* NULL is allowed */
 
 isa job_isa(const job *j);
-/* The machine, read at the first call; the job's. */
+/* The machine's topology, read at the first call; the job owns it. */
 status job_machine(job *j, const topology **out, diagnostic *why);
 
-/* Ends what is under way, and all that follows until job_renew. */
+/* Stops the current operation, and all further ones until job_renew. */
 void job_cancel(job *j);
 void job_renew(job *j);
-/* Is there a wish to stop? */
+/* True after a stop request. */
 bool job_must_stop(const job *j);
 
-/* Checks the scene and loads what it names. watch: as for scene_load_until, or NULL. */
+/* Checks the scene and loads the files that it names. watch: as for scene_load_until, or NULL. */
 status job_load(job *j, scene *s, const load_watch *watch, diagnostic *why);
 
-/* One frame of a loaded scene. options: as for renderer_render, or NULL; its progress need not ask whether to stop.
- * *out is to be released whatever is returned. */
+/* Renders one frame of a loaded scene. options: as for renderer_render, or NULL; its progress need not check for stop
+ * requests. Release *out whatever the return value. */
 status job_render(job *j, const scene *s, const render_options *options, job_account *out, diagnostic *why);
 
-/* `frames` frames of it, whose films must have one hash: otherwise their times are those of different work, and that is
- * a failure. What options wants beside the film disturbs the times: with more than one frame it is taken from one
- * further frame, which is not measured. progress hears the share of all frames. */
+/* Renders `frames` frames, whose films must have equal hashes: otherwise their times would measure different work,
+ * which is a failure. Outputs that options requests in addition to the film disturb the times: with more than one frame
+ * they are taken from one additional frame, which is not measured. progress receives the share of all frames. */
 status job_repeat(job *j, const scene *s, size_t frames, const render_options *options, job_account *out,
                   diagnostic *why);

@@ -1,32 +1,32 @@
-/* The one list of what is known of frames: name, unit, type and meaning of each quantity, how several frames make one
- * value of it, where it is shown, and how it is read from an account. Columns of rows.csv and workers.csv
- * (study/rows.c), `cuvette render --json` and the page's numbers (report/report.c), the dictionary in results/README.md
- * and the manual's part on the JSON account are all made from it (make dictionary renews the last two). A new quantity
- * is one new line in quantities.c; summaries of studies and the page name those that they show (study/summary.c,
- * web/page/status.js, compare_numbers.js, study_data.js). Ownership: constant; values borrow from the account. Nothing
- * fails. */
+/* The list of measured quantities: name, unit, type and meaning of each, how the values of several frames are combined,
+ * where it is shown, and how it is read from an account. Everything that shows them is generated from it: the columns
+ * of rows.csv and workers.csv (study/rows.c), `cuvette render --json` and the page's numbers (report/report.c), the
+ * dictionary in results/README.md and the manual's section on the JSON account (make dictionary renews the last two). A
+ * new quantity is one new line in quantities.c; summaries of studies and the page name the quantities that they show
+ * (study/summary.c, web/page/status.js, compare_numbers.js, study_data.js). Ownership: constant; values borrow from the
+ * account. Nothing fails. */
 #pragma once
 
 #include "job/account.h"
 
 typedef enum quantity_type {
-    QUANTITY_COUNT,  /* value.count; under 0: not known */
-    QUANTITY_NUMBER, /* the same, but JSON has -1 for what is not known */
+    QUANTITY_COUNT,  /* value.count; below 0: unknown */
+    QUANTITY_NUMBER, /* the same, but JSON has -1 for an unknown value */
     QUANTITY_TRUTH,  /* value.count, 0 or 1 */
-    QUANTITY_REAL,   /* value.real[0]; NaN: not known */
+    QUANTITY_REAL,   /* value.real[0]; NaN: unknown */
     QUANTITY_COLOR,  /* value.real */
     QUANTITY_HASH,   /* value.hash */
     QUANTITY_WORD,   /* value.word */
     QUANTITY_DEPTHS, /* value.list: a count for each depth, from 0 to render.depth */
-    QUANTITY_SOLIDS  /* value.list: a count for each of the scene's solids; a column for each, NAME.<solid> */
+    QUANTITY_SOLIDS  /* value.list: a count for each of the scene's solids, each in a column NAME.<solid> */
 } quantity_type;
 
-/* Frames of one scene, rendered one after another. */
+/* How the values of several frames of one scene are combined. */
 typedef enum quantity_merge {
-    QUANTITY_SAME,   /* each has the same */
+    QUANTITY_SAME,   /* equal in all frames */
     QUANTITY_MEDIAN, /* of all frames */
-    QUANTITY_OVER,   /* from the beginning of the first to the end of the last */
-    QUANTITY_LAST    /* of the last one */
+    QUANTITY_OVER,   /* from the start of the first frame to the end of the last */
+    QUANTITY_LAST    /* of the last frame */
 } quantity_merge;
 
 typedef struct quantity_value {
@@ -42,16 +42,16 @@ typedef struct quantity {
     const char *name, *unit, *meaning;
     quantity_type type;
     quantity_merge merge;
-    bool column;      /* of rows.csv or workers.csv, under its name */
-    const char *json; /* key in the JSON account, "rays.camera" for one in an object; NULL: not there */
-    const char *page; /* key in the page's numbers of an image; NULL: not there */
+    bool column;      /* in rows.csv or workers.csv, under its name */
+    const char *json; /* key in the JSON account, "rays.camera" for one in an object; NULL: none */
+    const char *page; /* key in the page's numbers of an image; NULL: none */
     quantity_value (*read)(const job_account *a, int worker);
 } quantity;
 
-/* Of frames: worker is not looked at. In the order of the columns, the film's hash first. */
+/* Quantities of a frame; their read function ignores worker. In the order of the columns, the film's hash first. */
 extern const quantity frame_quantities[];
 extern const size_t frame_quantity_count;
-/* Of one worker, by its number. In JSON in the objects of the list `threads`. */
+/* Quantities of one worker, by its number. In JSON, members of the objects in the list `threads`. */
 extern const quantity worker_quantities[];
 extern const size_t worker_quantity_count;
 

@@ -15,7 +15,7 @@ static size_t triangles_of(const scene *s)
     return sum;
 }
 
-/* Does it lack nothing that the shelf would lend to others? */
+/* True if the scene has all meshes that the shelf could share. */
 static bool is_whole(const scene *s)
 {
     bool whole = true;
@@ -24,7 +24,7 @@ static bool is_whole(const scene *s)
     return whole;
 }
 
-/* When it is full it is emptied: cells come round again and again, so no order of leaving is better than another. */
+/* A full shelf is cleared: the cells of a study repeat in cycles, so no replacement order is better than another. */
 static void keep(shelf *s, const scene *setting)
 {
     size_t triangles = triangles_of(setting);
@@ -32,7 +32,7 @@ static void keep(shelf *s, const scene *setting)
         triangles += triangles_of(s->scenes[i]);
     if (s->count == SHELF_SCENES || triangles > SHELF_TRIANGLES)
         shelf_clear(s);
-    scene *copy = scene_clone(setting); /* without it the mesh is only made again */
+    scene *copy = scene_clone(setting); /* if this fails, the mesh is merely built again */
     if (copy)
         s->scenes[s->count++] = copy;
 }

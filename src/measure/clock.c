@@ -3,7 +3,7 @@
 #include <time.h>
 
 enum { QUALITY_STEPS = 200 };
-static const int64_t quality_limit_ns = 20000000; /* spent on one clock: a coarse one may tick only every 10 ms */
+static const int64_t quality_limit_ns = 20000000; /* time limit for one clock: a coarse one may tick only every 10 ms */
 
 static int64_t read_ns(clockid_t clock)
 {
@@ -68,7 +68,7 @@ static clock_quality quality(clockid_t clock)
     end = clock_wall_ns();
 
     struct timespec resolution;
-    if (tick == 0 && clock_getres(clock, &resolution) == 0) /* it never moved: believe what the kernel says of it */
+    if (tick == 0 && clock_getres(clock, &resolution) == 0) /* no tick was seen: use the kernel's value */
         tick = (int64_t)resolution.tv_sec * 1000000000 + resolution.tv_nsec;
     return (clock_quality){.tick_s = (double)tick * 1e-9, .overhead_s = (double)(end - begin) * 1e-9 / COST_READINGS};
 }

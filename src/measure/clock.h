@@ -1,5 +1,5 @@
-/* Clocks, in seconds. wall: CLOCK_MONOTONIC; thread CPU: CLOCK_THREAD_CPUTIME_ID; process CPU:
- * CLOCK_PROCESS_CPUTIME_ID. Pure reads; cannot fail on Linux. */
+/* Clocks, in seconds (and the wall clock in nanoseconds). wall: CLOCK_MONOTONIC; thread CPU: CLOCK_THREAD_CPUTIME_ID;
+ * process CPU: CLOCK_PROCESS_CPUTIME_ID. Pure reads; cannot fail on Linux. */
 #pragma once
 
 #include <stdint.h>
@@ -10,10 +10,10 @@ int64_t clock_wall_ns(void);
 double clock_thread_cpu_s(void);
 double clock_process_cpu_s(void);
 
-/* CLOCK_MONOTONIC that long from now: until when pthread_cond_clockwait waits. */
+/* The CLOCK_MONOTONIC time that many seconds from now, as pthread_cond_clockwait requires. */
 struct timespec clock_after(double seconds);
 
-/* What a clock can resolve, measured now: the smallest step seen, and the cost of one reading, in seconds. */
+/* The resolution of a clock, measured now: the smallest step seen, and the cost of one reading, in seconds. */
 typedef struct clock_quality {
     double tick_s, overhead_s;
 } clock_quality;

@@ -26,7 +26,7 @@ __attribute__((format(printf, 2, 3))) static void say(const report *to, const ch
     to->line(to->context, text);
 }
 
-/* The first word of a file; false if there is none. */
+/* Reads the first word of a file; false if there is none. */
 static bool read_word(const report *from, const char *path, char *word, size_t size)
 {
     if (!small_file_read(from->root, path, word, size))
@@ -41,7 +41,8 @@ static bool reads_as(const report *from, const char *path, const char *expected)
     return read_word(from, path, word, sizeof word) && strcmp(word, expected) == 0;
 }
 
-/* Each policy directory is a group of units that share one frequency; the first unlike "performance" is named. */
+/* Each policy directory is a group of units that share a frequency; only the first governor other than "performance" is
+ * reported. */
 static void check_governor(const report *to)
 {
     enum { POLICY_MAX = 1024 };
@@ -67,7 +68,7 @@ static void check_settings(const report *to)
 
 static void check_hypervisor(const report *to)
 {
-    char text[8192]; /* more than the entry of the first processor */
+    char text[8192]; /* longer than the entry of the first processor */
     small_file_read(to->root, "/proc/cpuinfo", text, sizeof text);
     const char *flags = strstr(text, "\nflags");
     const char *word = flags ? strstr(flags, " hypervisor") : NULL;
@@ -76,7 +77,7 @@ static void check_hypervisor(const report *to)
         say(to, "virtual machine: its hypervisor may run others on the same cores");
 }
 
-/* CPU time that the control group may use, as units: cpu.max of cgroup 2, or the pair of cgroup 1. */
+/* The CPU quota of the control group, in units: cpu.max of cgroup 2, or the two files of cgroup 1. */
 static void check_quota(const report *to)
 {
     char text[64];
@@ -102,7 +103,7 @@ static void check_load(const report *to)
     if (!read_word(to, "/proc/loadavg", word, sizeof word))
         return;
     char *end;
-    long whole = strtol(word, &end, 10); /* in two integers: the kernel writes "0.52" whatever LC_NUMERIC says */
+    long whole = strtol(word, &end, 10); /* parsed as two integers: the kernel writes "0.52" whatever LC_NUMERIC is */
     long tenths = *end == '.' && end[1] >= '0' && end[1] <= '9' ? end[1] - '0' : 0;
     if (whole > 0 || tenths >= 3)
         say(to, "load %ld.%ld", whole, tenths);

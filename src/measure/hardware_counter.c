@@ -10,7 +10,7 @@
 enum { EVENTS = 4 };
 
 struct hardware_counter {
-    int file[EVENTS]; /* perf_event_open(2), -1 where the kernel refused */
+    int file[EVENTS]; /* from perf_event_open(2); -1 if the kernel refused */
 };
 
 static const uint64_t event_codes[EVENTS] = {
@@ -20,8 +20,8 @@ static const uint64_t event_codes[EVENTS] = {
     PERF_COUNT_HW_CACHE_MISSES,
 };
 
-/* Each event alone, not as one group: a group that does not fit the processor's registers counts nothing at all,
- * and inherit excludes the reading of groups. */
+/* Events are opened one by one, not as a group: a group that does not fit the processor's registers counts nothing at
+ * all, and inherit excludes reading of groups. */
 static int open_event(uint64_t code)
 {
     struct perf_event_attr attributes;
@@ -30,7 +30,7 @@ static int open_event(uint64_t code)
     attributes.size = sizeof attributes;
     attributes.config = code;
     attributes.inherit = 1;
-    attributes.exclude_kernel = 1; /* all that perf_event_paranoid = 2, the usual value, lets a user count */
+    attributes.exclude_kernel = 1; /* perf_event_paranoid = 2, the usual value, lets a user count nothing more */
     attributes.exclude_hv = 1;
     attributes.read_format = PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING;
     return (int)syscall(SYS_perf_event_open, &attributes, 0, -1, -1, PERF_FLAG_FD_CLOEXEC);
@@ -46,7 +46,7 @@ hardware_counter *hardware_counter_create(void)
     return counter;
 }
 
-/* The count, scaled by time enabled / time running where the kernel shared the register among events. */
+/* The count, scaled by time enabled / time running if the kernel multiplexed the register. */
 static int64_t read_event(int file)
 {
     struct {

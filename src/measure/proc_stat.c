@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The columns of a line "cpu ". Guest time, which follows, is contained in user and nice already. */
+/* The columns of a line "cpu ". Guest time, which follows, is already included in user and nice. */
 enum { USER, NICE, SYSTEM, IDLE, IOWAIT, IRQ, SOFTIRQ, STEAL, COLUMNS };
 
 static const char *next_line(const char *at)

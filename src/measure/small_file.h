@@ -1,12 +1,12 @@
-/* Small files of /proc and /sys, whose size is not known beforehand. Inside this room. */
+/* Readers of small files in /proc and /sys, whose size is not known in advance. Private to src/measure. */
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* Reads at most size - 1 bytes of the file root/path into text and ends them with 0; false, and text empty, if there is
- * no such file. root may be "". */
+/* Reads at most size - 1 bytes of the file root/path into text and terminates them with 0; returns false and an empty
+ * text if there is no such file. root may be "". */
 bool small_file_read(const char *root, const char *path, char *text, size_t size);
 
 /* The decimal integer after "key:" at the start of a line, as in /proc/meminfo; -1 if there is none. */

@@ -19,7 +19,7 @@ static double student_two_sided(double theta, size_t v)
     return v % 2 == 1 ? (theta + s * sum) / half_pi : s * sum;
 }
 
-/* Expansion around the normal quantile; Abramowitz and Stegun 26.7.5. Its first term left out is of order v^-5. */
+/* Expansion around the normal quantile; Abramowitz and Stegun 26.7.5. The first omitted term is of order v^-5. */
 static double student_expanded(double v)
 {
     double x = normal_975, x2 = x * x;
@@ -49,9 +49,9 @@ double student_t_975(size_t degrees_of_freedom)
     return sqrt((double)degrees_of_freedom) * tan(0.5 * (low + high));
 }
 
-/* The largest rank k (from 1) for which the k-th smallest and the k-th largest of n values enclose the median with at
- * least 95%: P(B < k) <= 2.5% for B binomial(n, 1/2); 0 if there is none. David and Nagaraja, Order Statistics, 7.1.
- * The binomial weights are taken relative to the one in the middle, so that no n underflows. */
+/* The largest rank k (from 1) for which the k-th smallest and the k-th largest of n values enclose the median with a
+ * probability of at least 95%: P(B < k) <= 2.5% for B binomial(n, 1/2); 0 if there is none. David and Nagaraja, Order
+ * Statistics, 7.1. The binomial weights are relative to the central one, so that nothing underflows for large n. */
 static size_t median_rank(size_t n)
 {
     const double negligible = 1e-30;

@@ -1,4 +1,4 @@
-/* Honest summaries of repeated measurements. Pure; no allocation but where said. */
+/* Summaries of repeated measurements, with confidence intervals. Pure; no allocation. */
 #pragma once
 
 #include <stddef.h>
@@ -12,7 +12,7 @@ typedef struct summary {
                                           than 6 values, where no such interval exists */
 } summary;
 
-/* Sorts values in place. With no value, or a NaN among them, all but count is NaN. */
+/* Sorts values in place. Without values, or with a NaN among them, all fields except count are NaN. */
 summary summarize(double *values, size_t count);
 
 /* Width of the 95% interval of the mean, divided by the mean; NaN if unknown. */

@@ -20,13 +20,13 @@ static int units_of(hwloc_topology_t tree)
     return hwloc_get_nbobjs_by_type(tree, HWLOC_OBJ_PU);
 }
 
-/* Cores, or units where the machine shows no cores. */
+/* Cores, or units if the machine does not report cores. */
 static hwloc_obj_type_t core_type(hwloc_topology_t tree)
 {
     return hwloc_get_nbobjs_by_type(tree, HWLOC_OBJ_CORE) > 0 ? HWLOC_OBJ_CORE : HWLOC_OBJ_PU;
 }
 
-/* The r-th unit (from 0) of every core that has so many; the set is empty when none has. */
+/* Sets `set` to the r-th unit (from 0) of every core that has more than r units; to the empty set if no core has. */
 static void units_of_round(hwloc_topology_t tree, int r, hwloc_bitmap_t set)
 {
     hwloc_obj_type_t type = core_type(tree);
@@ -43,7 +43,7 @@ static int restrict_tree(hwloc_topology_t tree, hwloc_const_bitmap_t set)
 {
     if (hwloc_topology_restrict(tree, set, 0) != 0)
         return -1;
-    return hwloc_topology_refresh(tree); /* so that threads may read the tree together */
+    return hwloc_topology_refresh(tree); /* so that several threads may read the tree */
 }
 
 static void drop_rounds(topology *machine)
@@ -78,7 +78,8 @@ static bool make_rounds(topology *machine)
     return good;
 }
 
-/* The XML of the tree goes into manifests that people publish: it keeps the hardware, not whose it is. */
+/* Removes private data: the tree's XML goes into published manifests, which describe the hardware but must not identify
+ * its owner. */
 static void forget_owner(hwloc_topology_t tree)
 {
     static const char *const private_infos[] = {"HostName", "Serial", "UUID", "AssetTag"};
@@ -89,7 +90,7 @@ static void forget_owner(hwloc_topology_t tree)
                 root->infos[i].value[0] = '\0';
 }
 
-/* synthetic NULL means this machine. */
+/* synthetic: NULL for this machine. */
 static status load(topology *machine, const char *synthetic, diagnostic *why)
 {
     if (hwloc_topology_init(&machine->tree) != 0) {
@@ -97,8 +98,8 @@ static status load(topology *machine, const char *synthetic, diagnostic *why)
         return no_room(why);
     }
     if (synthetic && hwloc_topology_set_synthetic(machine->tree, synthetic) != 0)
-        return diagnose(why, STATUS_BAD_INPUT, "write it as hwloc does: \"pack:2 core:4 pu:2\"",
-                        "'%s' describes no machine", synthetic);
+        return diagnose(why, STATUS_BAD_INPUT, "use hwloc's synthetic format, such as \"pack:2 core:4 pu:2\"",
+                        "'%s' is not a description of a machine", synthetic);
     if (hwloc_topology_load(machine->tree) != 0)
         return diagnose(why, STATUS_FAILURE, "", "hwloc cannot read the topology of the machine");
     machine->installed = hwloc_bitmap_weight(hwloc_topology_get_complete_cpuset(machine->tree));
@@ -106,7 +107,7 @@ static status load(topology *machine, const char *synthetic, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Where the system does not say what the process is bound to, it may use all that the tree holds. */
+/* If the system does not report the process's binding, all units of the tree are used. */
 static status respect_binding(topology *machine, diagnostic *why)
 {
     hwloc_bitmap_t own = hwloc_bitmap_alloc();
@@ -116,7 +117,7 @@ static status respect_binding(topology *machine, diagnostic *why)
     if (hwloc_get_cpubind(machine->tree, own, HWLOC_CPUBIND_PROCESS) == 0 &&
         hwloc_bitmap_intersects(own, hwloc_topology_get_topology_cpuset(machine->tree)) &&
         restrict_tree(machine->tree, own) != 0)
-        result = diagnose(why, STATUS_FAILURE, "", "hwloc cannot restrict the machine to the process's own units");
+        result = diagnose(why, STATUS_FAILURE, "", "hwloc cannot restrict the topology to the process's own units");
     hwloc_bitmap_free(own);
     return result;
 }
@@ -158,8 +159,8 @@ status topology_restrict(topology *machine, const char *units, diagnostic *why)
     status result = STATUS_OK;
     if (hwloc_bitmap_list_sscanf(set, units) != 0 ||
         !hwloc_bitmap_intersects(set, hwloc_topology_get_topology_cpuset(machine->tree)))
-        result =
-            diagnose(why, STATUS_BAD_INPUT, "write a list such as 0-3,8", "'%s' names no unit of this machine", units);
+        result = diagnose(why, STATUS_BAD_INPUT, "give a list such as 0-3,8",
+                          "'%s' contains no processing unit of this machine", units);
     else if (restrict_tree(machine->tree, set) != 0 || !make_rounds(machine))
         result = no_room(why);
     hwloc_bitmap_free(set);
@@ -198,7 +199,7 @@ static int unit_index(hwloc_topology_t tree, hwloc_const_bitmap_t within, int n)
     return pu ? (int)pu->os_index : -1;
 }
 
-/* The unit of one worker among count <= units, spread by hwloc_distrib over the whole tree. */
+/* The unit of one worker among count <= units, distributed by hwloc_distrib over the whole tree. */
 static int distribute(hwloc_topology_t tree, int worker, int count)
 {
     hwloc_obj_t root = hwloc_get_root_obj(tree);
@@ -226,8 +227,9 @@ int topology_place(const topology *machine, pin_policy policy, int worker, int c
     if (policy == PIN_COMPACT)
         return unit_index(machine->tree, hwloc_topology_get_topology_cpuset(machine->tree), worker);
 
-    /* hwloc_distrib weighs subtrees by their units, so that it may fill a package whose cores have two before it has
-     * used every core of one whose cores have one. Spread over one unit a core first, then over the second ones. */
+    /* hwloc_distrib weights subtrees by their number of units, so it may fill a package with two units per core before
+     * it has used every core of a package with one unit per core. Therefore distribute over one unit per core first,
+     * then over the second units. */
     for (int r = 0; r < machine->rounds; r++) {
         int room = units_of(machine->round[r]);
         if (worker < room)
@@ -242,7 +244,7 @@ status topology_bind_thread(const topology *machine, int pu, diagnostic *why)
 {
     hwloc_const_bitmap_t own = hwloc_topology_get_topology_cpuset(machine->tree);
     if (pu >= 0 && !hwloc_bitmap_isset(own, (unsigned)pu))
-        return diagnose(why, STATUS_BAD_INPUT, "`cuvette machine` lists those that there are",
+        return diagnose(why, STATUS_BAD_INPUT, "`cuvette machine` lists the available units",
                         "this process may not use processing unit %d", pu);
     hwloc_bitmap_t set = hwloc_bitmap_dup(own);
     if (!set)

@@ -35,7 +35,7 @@ static void append_size(line *to, const char *name, uint64_t bytes)
     append(to, part);
 }
 
-/* The first cache of each level: on a machine of unlike cores, that of the first core. */
+/* The first cache of each level; on a machine with different kinds of cores, that of the first core. */
 static void append_caches(line *to, hwloc_topology_t tree)
 {
     static const struct {

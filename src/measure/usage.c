@@ -9,7 +9,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-/* VmHWM rather than ru_maxrss: the latter survives exec, so that a small program started by a large one seems large. */
+/* VmHWM rather than ru_maxrss: the latter survives exec, so that a small program started by a large one would appear
+ * large. */
 static int64_t peak_rss_bytes(int64_t maxrss_kib)
 {
     char text[4096];
@@ -25,7 +26,7 @@ static void read_machine(usage *u)
 {
     enum {
         PROC_STAT_MAX = 65536
-    }; /* a line is under 128 bytes: over 500 units; interrupts, which follow, may be cut */
+    }; /* a line is shorter than 128 bytes, so this holds over 500 units; the interrupts after them may be cut off */
     char text[PROC_STAT_MAX];
     proc_stat machine;
     long units = sysconf(_SC_NPROCESSORS_ONLN);
@@ -56,7 +57,7 @@ usage usage_now(void)
     return u;
 }
 
-/* Linux forgets the highest resident memory so far when 5 is written there (proc(5)). */
+/* Linux resets the peak resident memory when 5 is written to this file (proc(5)). */
 void usage_forget_peak(void)
 {
     int fd = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
@@ -89,5 +90,5 @@ double usage_others_share(const usage *d)
     if (!(capacity_s > 0.0) || isnan(d->machine_busy_s) || isnan(d->cpu_s))
         return NAN;
     double share = (d->machine_busy_s - d->cpu_s) / capacity_s;
-    return share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share; /* ticks of 10 ms can push it over either end */
+    return share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share; /* rounding to 10 ms ticks can exceed either end */
 }

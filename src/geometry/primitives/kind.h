@@ -172,7 +172,7 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool 
 
 /* Define rows and points with a body that is compiled for both values of is_general, an expression in p: whether rays
  * must be transformed into the primitive's frame (it is rotated or scaled). */
-#define DEFINE_ROWS(is_general, body)                                                                   \
+#define DEFINE_ROWS(is_general, body)                                                               \
     static void rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                               \
         if (is_general)                                                                             \
@@ -181,7 +181,7 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool 
             body(p, false, bit, rays, s);                                                           \
     }
 /* The same for a convex primitive. */
-#define DEFINE_SPANS(is_general, span)                                                                             \
+#define DEFINE_SPANS(is_general, span)                                                                         \
     ALWAYS_INLINE void spans(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                                          \
         spans_in(p, span, general, bit, rays, s);                                                              \

@@ -1,4 +1,4 @@
-/* Where the rays of the camera go through the picture. */
+/* Camera rays: their number per pixel, sample positions and directions. */
 #include "render/shade/shading.h"
 
 camera_sampling camera_samples(const render_settings *r)
@@ -7,7 +7,7 @@ camera_sampling camera_samples(const render_settings *r)
     return (camera_sampling){.rays = r->samples * together, .points = r->samples, .together = together};
 }
 
-/* Cells across the largest square grid of no more than so many. */
+/* Cells along one side of the largest square grid with at most `points` cells. */
 static int64_t cells_across(int64_t points)
 {
     int64_t k = 1;
@@ -16,7 +16,7 @@ static int64_t cells_across(int64_t points)
     return k;
 }
 
-void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
+void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
 {
     const plan *p = t->target.frame_plan;
     const render_settings *r = &p->render;
@@ -29,9 +29,9 @@ void camera_rays_put_in_line(tracer *t, int y, int x0, int64_t first, int count)
     for (int k = 0; k < count; k++) {
         int64_t x = x0 + first + k, ray = 0;
         double sx = 0.5, sy = 0.5;
-        if (each > 1) { /* else nothing needs to be divided */
+        if (each > 1) { /* avoids divisions with one ray per pixel */
             x = x0 + (first + k) / each, ray = (first + k) % each;
-            const int64_t s = ray / need.together % (cells * cells); /* line by line */
+            const int64_t s = ray / need.together % (cells * cells); /* row by row */
             sx = ((double)(s % cells) + 0.5) / (double)cells, sy = ((double)(s / cells) + 0.5) / (double)cells;
         }
         u[k] = camera_u(&p->view, pixel, (double)x + sx);

@@ -1,5 +1,5 @@
-/* What is drawn by chance: a function of the seed, the pixel, the sample, the depth and the purpose, so that a picture
- * does not depend on who draws when (design, decision 5). Pure. */
+/* Random draws: a pure function of the seed, pixel, sample, depth and purpose, so that an image does not depend on
+ * which worker draws when (design, decision 5). */
 #pragma once
 
 #include "base/random.h"
@@ -7,8 +7,8 @@
 #include "scene/model/light.h"
 #include <assert.h>
 
-/* These numbers are part of every image and never change. A new purpose counts on from DRAW_NEXT: those from DRAW_LIGHT
- * on are the lights', one each. */
+/* These numbers affect every image and must never change. New purposes are numbered from DRAW_NEXT; each light has its
+ * own number from DRAW_LIGHT on. */
 enum {
     DRAW_WAVELENGTH = 0,
     DRAW_BRANCH = 1,
@@ -17,7 +17,7 @@ enum {
     DRAW_LIGHT = 4,
     DRAW_NEXT = 0x1000
 };
-static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_NEXT, "lights draw by numbers of their own");
+static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_NEXT, "the lights' numbers do not reach the next purpose");
 
 static inline random_words draw(int64_t seed, int64_t sample_key, int depth, int purpose)
 {

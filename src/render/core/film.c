@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Two cache lines, which processors fetch together: where the picture's and the tiles' widths are multiples
- * of 16, tiles then share none, and workers do not take lines from one another. */
+/* Two cache lines, which processors fetch together: if the widths of the image and the tiles are multiples of 16, tiles
+ * share no line, and workers do not contend for lines. */
 enum { ALIGNMENT = 128 };
 
 static size_t values_of(const film *f)
@@ -19,14 +19,14 @@ status film_create(int width, int height, int shares, film_space space, film **o
     const size_t bytes = (size_t)width * (size_t)height * 3 * sizeof(int64_t) * (size_t)shares;
     film *f = calloc(1, sizeof *f);
     if (f)
-        f->memory = malloc(bytes + ALIGNMENT); /* aligned_alloc would leave gaps that the next film does not fit into */
+        f->memory = malloc(bytes + ALIGNMENT); /* aligned_alloc would leave gaps that are too small for the next film */
     if (!f || !f->memory) {
         free(f);
-        return diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory for a film of %d x %d", width,
+        return diagnose(why, STATUS_FAILURE, "render a smaller image", "out of memory for a film of %d x %d", width,
                         height);
     }
     f->sum = (int64_t *)(((uintptr_t)f->memory + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
-    memset(f->sum, 0, bytes); /* the pages are there before the clock starts */
+    memset(f->sum, 0, bytes); /* allocates the pages before the clock starts */
     f->width = width;
     f->height = height;
     f->shares = shares;
@@ -54,14 +54,14 @@ bool film_merge_shares(film *f, double *variance)
         int64_t sum = 0;
         for (size_t k = 0; k < shares; k++) {
             sum = (int64_t)((uint64_t)sum + (uint64_t)f->sum[k * count + i]);
-            signs |= sum; /* as its sign tells: no share's sum is negative */
+            signs |= sum; /* a negative sum means overflow: no share's sum is negative */
             total += (double)f->sum[k * count + i] / FILM_ONE;
         }
         for (size_t k = 0; k < shares; k++) {
             const double from_mean = (double)f->sum[k * count + i] / FILM_ONE - total / (double)shares;
             squares += from_mean * from_mean;
         }
-        if (variance) /* a sum of n values of variance squares / (n - 1) each */
+        if (variance) /* of a sum of n values, each with variance squares / (n - 1) */
             variance[i] = squares * (double)shares / (double)(shares - 1);
         f->sum[i] = sum;
     }

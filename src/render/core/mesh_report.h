@@ -1,16 +1,16 @@
-/* What the meshes of a frame are, and what their hierarchies took. A plain value. */
+/* The mesh statistics of a frame: sizes of meshes, and time and memory of their hierarchies. A plain value. */
 #pragma once
 
 #include <stdint.h>
 
-/* Hierarchies count once a mesh, however often it stands there. */
+/* A hierarchy is counted once per mesh, whatever the number of instances. */
 typedef struct mesh_report {
-    uint64_t triangles, instances; /* instances: copies of meshes; triangles: of all of them as they stand there */
+    uint64_t triangles, instances; /* instances: copies of meshes; triangles: in all instances */
     uint64_t bytes;                /* of hierarchies */
-    double build_s;                /* wall time of their builds, whether for this frame or before */
-    uint64_t motion_steps; /* of slimes, from their beginnings to the moments that are shown; substeps counted */
-    double motion_s;       /* wall time of these, when the scene was loaded */
-    uint64_t drawn,
-        raster_bytes; /* of a frame that is drawn: triangles in the picture, analytic solids' too, and memory
-                                    of the depth buffer */
+    double build_s;                /* wall time of their builds, for this frame or before it */
+    uint64_t motion_steps;         /* of slimes, from their initial states to the rendered times, substeps included */
+    double motion_s;               /* wall time of these steps, when the scene was loaded */
+    /* of a rasterised frame: triangles in the image, including those of analytic solids, and memory of the depth
+     * buffer */
+    uint64_t drawn, raster_bytes;
 } mesh_report;

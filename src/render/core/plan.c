@@ -5,9 +5,9 @@
 #include "scene/model/scene.h"
 #include <stdlib.h>
 
-/* Under Fresnel's weights equal indices are one medium, and a crossing between them is no interface unless it is coated
- * or shines; with constant shares, as in the report, every surface reflects whatever its index. laws: by solid,
- * [solid_count] the surroundings'. */
+/* Under Fresnel weights equal refractive indices are one medium, and a boundary between them is no interface unless it
+ * is coated or emits light; with constant weights, as in the report, every surface reflects whatever its index. laws:
+ * by solid; [solid_count] is that of the surrounding medium. */
 static bool shows_itself(const scene *s, const material *m)
 {
     return m->emission > 0.0 || material_coating(m, &s->render) > 0.0;
@@ -29,13 +29,13 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
     return solid_index + 1;
 }
 
-/* The hierarchy of the solid's mesh: the mesh's own, or one for this frame, of which solids of one mesh share the
- * first's. */
+/* The hierarchy of the solid's mesh: the mesh's own, or one built for this frame, which the first of the solids with
+ * that mesh owns and the others share. */
 static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
 {
     const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
     if (integrator_traits_of(&s->render)->drawn)
-        return STATUS_OK; /* what is drawn needs none */
+        return STATUS_OK; /* rasterisation needs none */
     if (s->render.keep)
         return hierarchy_of_mesh(m, kind, scene_build_threads(&s->render), out, why);
     for (size_t k = 0; k < i; k++) {
@@ -72,7 +72,7 @@ static status fetch_mesh(const scene *s, size_t i, plan *p, solid_shape *shape, 
     const solid *one = &s->solids[i];
     const mesh_entry *m = scene_find_mesh(s, one->mesh);
     if (!m || !m->data)
-        return diagnose(why, STATUS_FAILURE, "call scene_load before", "%.80s: the mesh is not loaded", one->name);
+        return diagnose(why, STATUS_FAILURE, "call scene_load first", "%.80s: the mesh is not loaded", one->name);
     *shape = one->shape;
     shape->mesh = m->data;
     source->shape = shape;
@@ -138,7 +138,7 @@ static status aim_cones(const scene *s, plan *p, diagnostic *why)
     return STATUS_OK;
 }
 
-/* By solid; the last one is that of the surroundings. */
+/* By solid; the last one is that of the surrounding medium. */
 static status laws_of(const scene *s, index_law *laws, diagnostic *why)
 {
     status code = STATUS_OK;
@@ -148,7 +148,7 @@ static status laws_of(const scene *s, index_law *laws, diagnostic *why)
     return code;
 }
 
-/* A solid's material as it is traced. */
+/* The material with which a solid is traced. */
 static const material *material_of(const scene *s, plan *p, int solid_index)
 {
     const material *m = &s->solids[solid_index].surface;
@@ -162,7 +162,7 @@ static const material *material_of(const scene *s, plan *p, int solid_index)
     return mirror;
 }
 
-/* What each rank's body is made of. */
+/* Fills the tables by priority index: materials, refractive indices, absorption, shading materials. */
 static status fill_priority_indices(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
     const size_t priority_indices = (size_t)p->geometry->region_count + 1;

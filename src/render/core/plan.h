@@ -1,6 +1,6 @@
-/* A scene made ready for tracing: solids in order of rank, materials and indices by rank, the camera's frame. Built
- * once a frame, then read by all workers. Ownership: plan_build gives, plan_destroy releases; it borrows the scene's
- * lights and sky. */
+/* The render plan: a scene prepared for tracing, with solids in order of priority, materials and refractive indices by
+ * priority index, and the camera frame. It is built once per frame and then read by all workers. Ownership: plan_build
+ * allocates, plan_destroy releases; it borrows the scene's lights and sky. */
 #pragma once
 
 #include "geometry/scene_geometry.h"
@@ -18,7 +18,7 @@
 #include "scene/model/solids.h"
 #include "scene/model/view_settings.h"
 
-/* By a mesh's slots, or one for all. */
+/* The shading materials of a region: one for each slot of its mesh, or one for all faces. */
 typedef struct region_materials {
     int count;
     shading_material *mat;
@@ -27,37 +27,38 @@ typedef struct region_materials {
 
 typedef struct plan {
     scene_geometry *geometry;
-    const material **materials;          /* by rank; [0] is NULL */
-    region_materials *shading_materials; /* by rank; [0] is empty */
-    hierarchy **own_trees;               /* of a plan that does not keep them with the meshes; by solid */
+    const material **materials;          /* by priority index; [0] is NULL */
+    region_materials *shading_materials; /* by priority index; [0] is empty */
+    hierarchy **own_trees; /* by solid; hierarchies that the plan owns because the meshes do not keep them */
     size_t own_tree_count;
-    double **shadow_transmittance; /* by solid: of its faces by slot, or NULL; as many as own_trees */
+    double **shadow_transmittance; /* by solid: that of its faces by slot, or NULL; own_tree_count entries */
     mesh_report meshes;
-    material *mirrors; /* by solid: clear materials whose index makes them mirrors, as opaque ones */
-    double *ior;       /* by rank; [0] is the surrounding medium's; at render.lambda_nm */
-    index_law *laws;   /* by rank: what ior was taken from */
-    vec3 *absorption;  /* by rank: Beer and Lambert's coefficients and tints, by channel, in 1 / scene unit */
-    spectra *spectral; /* of a spectral film, else NULL */
+    material *mirrors; /* by solid: opaque substitutes of clear materials whose refractive index makes them mirrors */
+    double *ior;       /* by priority index; [0] is the surrounding medium's; at render.lambda_nm */
+    index_law *laws;   /* by priority index: the source of ior */
+    vec3 *absorption;  /* by priority index: Beer-Lambert coefficients and tints, by channel, in 1 / scene unit */
+    spectra *spectral; /* for a spectral film, else NULL */
     camera_frame view;
-    uint64_t eye_inside;       /* the set of primitives that the camera stands in */
-    int camera_priority_index; /* and the medium there */
-    bool basic;                /* rays carry basic radiance: see radiance.c */
+    uint64_t eye_inside;       /* the set of primitives that contain the camera */
+    int camera_priority_index; /* and of the medium there */
+    bool basic;                /* rays carry basic radiance (L / n^2): see radiance.c */
     render_settings render;
-    /* every solid blocks a light: it is asked for, or what comes through is found by random paths */
+    /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
     const background *sky;
-    vec3 sky_mean; /* over all directions; worked out where render.beyond is mean */
+    vec3 sky_mean; /* over all directions; computed if render.beyond is mean */
     const light *lights;
-    light_cone *cones; /* by light; of a point light it means nothing */
+    light_cone *cones; /* by light; undefined for a point light */
     int light_count;
 } plan;
 
-/* scene_load must have been called. */
+/* Call scene_load first. */
 status plan_build(const scene *s, plan **out, diagnostic *why);
 void plan_destroy(plan *p);
 
-/* Fills *out for a body of that solid, whose own surface is that material; false when memory is out. For plan.c. */
+/* Fills *out with the shading materials of a region of the solid `owner`, with `surface` as the solid's own surface;
+ * false when out of memory. For plan.c. */
 bool region_materials_make(const scene *s, const solid *owner, const material *surface, region_materials *out);
-/* What a shadow ray keeps at its surface: the least, and by slot where faces differ, else NULL; *by_slot is the
- * caller's. False when memory is out. */
+/* The share of a shadow ray that a solid's surface transmits: sets the least over its faces, and *by_slot to the share
+ * for each slot where faces differ, else NULL; the caller frees *by_slot. False when out of memory. */
 bool region_shadow_transmittance(const scene *s, const solid *owner, double *least, double **by_slot);

@@ -1,10 +1,11 @@
-/* How each body's surface looks: its own material, or those that its mesh's file gives to its faces. */
+/* The shading materials of each region's surface: the solid's own material, or those that the mesh file assigns to its
+ * faces. */
 #include "render/core/plan.h"
 #include "scene/model/scene.h"
 
 #include <stdlib.h>
 
-/* See shading_material. A copy of a scene's material that was changed keeps its number. */
+/* The number of a shading material, see shading_material. A modified copy of a scene's material keeps its number. */
 static int number_of(const scene *s, const solid *owner, const material *named)
 {
     for (size_t i = 0; named && i < s->material_count; i++)

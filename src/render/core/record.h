@@ -1,24 +1,24 @@
-/* What a frame leaves on disk beside its numbers: the picture, maps of a quantity by pixel, the timeline. Every file
- * appears whole or not at all; results are borrowed. */
+/* The files of a frame: the image, maps of a quantity by pixel, the timeline. Every file is written completely or not
+ * at all; results are borrowed. */
 #pragma once
 
 #include "render/core/renderer.h"
 
-/* The film as a picture, by the ending of path; bits as image_write takes them. */
+/* Writes the film as an image in the format of the path's ending; bits as image_write takes them. */
 status record_image(const film *f, const char *path, int bits, diagnostic *why);
 
-/* values, one a pixel of f: in false colours with a key and a title; or, in a file that ends in .pfm, the numbers
- * themselves (the same in all three channels). */
+/* Writes values, one per pixel of f, as a false-colour image with a colour key and a title; or, if path ends in .pfm,
+ * the numbers themselves (equal in all three channels). */
 status record_map(const double *values, const film *f, const char *title, const char *path, diagnostic *why);
 
-/* Of a result with named layers: the path of one, PREFIX-WORD.pfm, fresh memory, NULL when that is out; and all of them
- * written there, one number in all three channels. */
+/* record_layer_path returns the path of a named layer, PREFIX-WORD.pfm, in newly allocated memory, NULL when out of
+ * memory; record_layers writes all layers to these paths, a layer of one channel into all three. */
 char *record_layer_path(const char *prefix, int layer);
 status record_layers(const render_result *result, const char *prefix, diagnostic *why);
 
-/* The timeline in Chrome's trace event format (Google 2016): one row a worker, one bar a tile, microseconds from the
- * frame's start. Opens in chrome://tracing and in Perfetto. Needs a result with events. */
-/* The standard error of each pixel, root of the mean over its channels; result has a variance. */
+/* Writes the standard error of each pixel, root mean square over its channels; result must have a variance. */
 status record_noise(const render_result *result, const char *path, diagnostic *why);
 
+/* Writes the timeline in Chrome's trace event format (Google 2016): one row per worker, one bar per tile, in
+ * microseconds from the frame's start. Open it in chrome://tracing or Perfetto. result must have events. */
 status record_timeline(const render_result *result, const char *path, diagnostic *why);

@@ -23,11 +23,11 @@ typedef struct event_list {
     size_t count, capacity;
 } event_list;
 
-/* What one worker writes during a frame, on cache lines of its own. */
+/* Data that one worker writes during a frame, on its own cache lines. */
 typedef struct worker_account {
     _Alignas(64) worker_report report;
     event_list events;
-    atomic_uint_fast64_t pixels; /* begun; read by the watcher */
+    atomic_uint_fast64_t pixels; /* begun; read by watch */
     bool out_of_memory, misplaced;
 } worker_account;
 
@@ -38,8 +38,8 @@ typedef struct frame {
     const plan *frame_plan;
     const film *img;
     const integrator *rule;
-    void *kept;               /* what the integrator keeps for the frame */
-    void (*step)(void *kept); /* of its pre-pass: the one that is being done */
+    void *state;               /* the integrator's state for the frame */
+    void (*step)(void *state); /* the current step of its pre-pass */
     schedule pieces;
     worker_account *accounts;
     double began_s;
@@ -71,7 +71,7 @@ void renderer_destroy(renderer *r)
     free(r);
 }
 
-void renderer_know_machine(renderer *r, const topology *machine)
+void renderer_set_machine(renderer *r, const topology *machine)
 {
     r->machine = machine;
 }
@@ -91,7 +91,8 @@ static pin_policy policy_of(const scene *s)
     return PIN_NONE;
 }
 
-/* Threads of a kept pool remember where they were put. False if a thread cannot be put where it belongs. */
+/* Binds the worker's thread to its processing unit; threads of a persistent pool remember their unit. False if the
+ * thread cannot be bound. */
 static bool take_place(const frame *f, int worker)
 {
     static _Thread_local int bound_to = -1;
@@ -120,7 +121,8 @@ static void note_tile(const frame *f, worker_account *d, int worker, const span 
         d->out_of_memory = true;
 }
 
-/* Pieces one after another; rays that do not fill a batch at the end of one piece go on with the next. */
+/* Traces one piece after another; rays that do not fill a batch at the end of a piece wait for the rays of the next
+ * one. */
 static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
 {
     const bool timeline = f->options && f->options->timeline, by_piece = f->options && f->options->piece_done;
@@ -205,7 +207,7 @@ static bool join_events(const worker_account *accounts, int count, render_result
     return true;
 }
 
-/* Rays that look for their nearest interface are tested against every visible solid, shadow rays against those that
+/* Rays that search for their nearest interface are tested against every visible solid, shadow rays against those that
  * cast shadows. */
 static void count_tests(const plan *p, ray_counters *c)
 {
@@ -217,7 +219,7 @@ static void count_tests(const plan *p, ray_counters *c)
     }
 }
 
-/* Sums up what the workers wrote into their accounts. */
+/* Collects the results of the workers' accounts. */
 static status collect(frame *f, bool in_range, render_result *result, diagnostic *why)
 {
     const int count = (int)f->s->render.threads;
@@ -242,12 +244,12 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
                         "a worker cannot be bound to its processing unit");
     if (overflow)
         return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
-                        "the picture is brighter than the film holds (262144 in one contribution, 524288 in a pixel)");
+                        "the radiance exceeds the film's range (262144 in one contribution, 524288 in a pixel)");
     return atomic_load(&f->stop) ? STATUS_INTERRUPTED : STATUS_OK;
 }
 
-/* Zeros that are written, so that no pixel's time holds the making of a page; of malloc and memset the compiler would
- * make a calloc, which writes nothing. */
+/* A map of zeros that are really written, so that no pixel's time includes the allocation of a page; compilers turn
+ * malloc and memset into calloc, which writes nothing. */
 static double *make_map(size_t pixels)
 {
     double *map = malloc(pixels * sizeof *map);
@@ -292,7 +294,7 @@ static status make_result(const scene *s, const render_options *options, render_
         if (shares_of(s) > 1)
             missing |= !(result->variance = make_map(3 * pixels));
         if (missing)
-            code = diagnose(why, STATUS_FAILURE, "render a smaller picture", "out of memory");
+            code = diagnose(why, STATUS_FAILURE, "render a smaller image", "out of memory");
     }
     if (code != STATUS_OK) {
         render_result_destroy(result);
@@ -314,10 +316,10 @@ static void run_step(void *context, int worker)
 {
     const frame *f = context;
     (void)worker;
-    f->step(f->kept);
+    f->step(f->state);
 }
 
-/* What the integrator does before any piece of the image can be made. */
+/* Runs the integrator's steps that precede all pieces of the image. */
 static status run_steps(frame *f, int count, diagnostic *why)
 {
     status code = STATUS_OK;
@@ -325,18 +327,18 @@ static status run_steps(frame *f, int count, diagnostic *why)
         f->step = step->together;
         code = worker_pool_run(f->owner->threads, count, f->s->render.pool, run_step, NULL, 0.0, f, why);
         if (code == STATUS_OK && step->alone)
-            code = step->alone(f->kept, why);
+            code = step->alone(f->state, why);
     }
     return code;
 }
 
-static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, void *kept,
+static status run_frame(renderer *r, const scene *s, const render_options *options, const plan *p, void *state,
                         render_result *result, diagnostic *why)
 {
     const int count = (int)s->render.threads;
     frame *f = aligned_alloc(64, (sizeof *f + 63) / 64 * 64);
     worker_account *accounts = make_accounts(count);
-    const tracer_target target = {p, result->img, result->pixel_rays, result->pixel_ns, kept, result->layers};
+    const tracer_target target = {p, result->img, result->pixel_rays, result->pixel_ns, state, result->layers};
     bool has_memory = f && accounts && tracer_pool_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
     if (code == STATUS_OK) {
@@ -347,7 +349,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->frame_plan = p;
         f->img = result->img;
         f->rule = integrator_for(&s->render);
-        f->kept = kept;
+        f->state = state;
         f->accounts = accounts;
         schedule_start(&f->pieces, &s->render);
         const double cpu_s = clock_process_cpu_s();
@@ -361,7 +363,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
             const bool in_range = film_merge_shares(result->img, result->variance);
             code = collect(f, in_range, result, why);
             if (code == STATUS_OK && f->rule->finish)
-                code = f->rule->finish(kept, &result->meshes, why);
+                code = f->rule->finish(state, &result->meshes, why);
         }
         for (int i = 0; i < count; i++)
             free(accounts[i].events.event);
@@ -375,21 +377,21 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
 {
     status code = scene_check(s, why);
     plan *p = NULL;
-    void *kept = NULL;
+    void *state = NULL;
     render_result *result = NULL;
     if (code == STATUS_OK && s->background.kind == BACKGROUND_IMAGE && !s->background.img)
-        code = diagnose(why, STATUS_FAILURE, "call scene_load before", "the sky's picture is not loaded");
+        code = diagnose(why, STATUS_FAILURE, "call scene_load first", "the sky's image is not loaded");
     THEN(code, plan_build(s, &p, why));
     const integrator *rule = code == STATUS_OK ? integrator_for(&s->render) : NULL;
     if (rule && rule->prepare)
-        code = rule->prepare(p, &kept, why);
+        code = rule->prepare(p, &state, why);
     THEN(code, make_result(s, options, &result, why));
     if (code == STATUS_OK) {
         result->meshes = p->meshes;
-        code = run_frame(r, s, options, p, kept, result, why);
+        code = run_frame(r, s, options, p, state, result, why);
     }
     if (rule && rule->release)
-        rule->release(kept);
+        rule->release(state);
     plan_destroy(p);
     if (code != STATUS_OK && code != STATUS_INTERRUPTED) {
         render_result_destroy(result);

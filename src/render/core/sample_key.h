@@ -1,6 +1,6 @@
-/* What a ray knows of where it belongs, in one number: the pixel, and for films of more than one sample a pixel
- * (spectral ones, those of random paths) the sample too, and of spectral ones the wavelength. An rgb film of Whitted's
- * rays has the pixel alone.
+/* The sample key: one number that identifies the pixel of a ray, for films with more than one sample per pixel
+ * (spectral films, random paths) also the sample, and for spectral films also the wavelength. An rgb film with
+ * Whitted's rays uses only the pixel.
  *     bits 0..27 the pixel, fewer than SCENE_PIXELS_MAX
  *          28..49 the sample: at most 1048576 paths, 64 x 65536 wavelengths
  *          50..61 the wavelength's number (render/shade/spectra.h)
@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-/* The ray may meet a light that shines: it comes from the eye or from a mirror-like surface. */
+/* The ray may hit a light source and collect its emission: it starts at the camera or at a specular surface. */
 #define SAMPLE_KEY_SPECULAR_BOUNCE ((int64_t)1 << 62)
 
 static inline int64_t sample_key_make(int64_t pixel, int64_t sample)

@@ -17,7 +17,7 @@ static int clamp(int64_t v, int most)
     return v < most ? (int)v : most;
 }
 
-/* The worker's share of length units, ceil(length / workers) each, as the report deals them out. */
+/* The worker's block of `length` units, ceil(length / workers) each, as in the report. */
 static bool block(int length, int workers, int worker, int *from, int *to)
 {
     int64_t each = (length + workers - 1) / workers;

@@ -1,6 +1,6 @@
-/* Which worker does which piece of the picture. columns and rows: one block a worker, as the report; tiles: square
- * tiles dealt out in turn; dynamic: the next tile to whoever asks. Ownership: a value; next is the only field that
- * workers share. */
+/* The schedule: which worker renders which piece of the image. columns and rows: one block per worker, as in the
+ * report; tiles: square tiles assigned in turn; dynamic: the next tile to the next free worker. Ownership: a plain
+ * value; next is the only field that workers share. */
 #pragma once
 
 #include "scene/model/render_settings.h"
@@ -19,5 +19,5 @@ typedef struct schedule {
 
 void schedule_start(schedule *s, const render_settings *settings);
 
-/* The next piece for a worker that has had `taken` of them so far; false when there is none left. */
+/* The next piece for a worker that has had `taken` pieces; false when there is none left. */
 bool schedule_next(schedule *s, int worker, uint64_t taken, span *out);

@@ -42,7 +42,7 @@ void tracer_destroy(tracer *t)
     free(t);
 }
 
-/* Each depth gets at most two children for every ray of a batch, on top of less than a batch that waits. */
+/* A queue must hold less than one waiting batch plus two children for every ray of a batch. */
 static bool make_queues(tracer *t, int depths)
 {
     if (depths <= t->queues.made)
@@ -79,7 +79,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     const render_settings *r = &p->render;
     t->target = *target;
     t->queues.depth_limit = (int)r->depth;
-    /* Of a spectral film a camera ray is one for each wavelength, each with its part of the weight. */
+    /* In a spectral film each wavelength has its own camera ray, with its share of the weight. */
     t->least_weight = r->spectrum == SPECTRUM_SPECTRAL ? r->min_weight / (double)r->wavelengths : r->min_weight;
     const int shadows_at_once = BATCH * (p->light_count + 1);
     if (t->queues.shadows.capacity < shadows_at_once) {
@@ -113,46 +113,49 @@ bool tracer_overflowed(const tracer *t)
     return t->account.overflow < 0;
 }
 
-/* Rays by the primitive they met. Those that met another body's surface there (an opaque one behind a clear one's, or
- * two in one place) are listed last but one, those that met nothing last. */
+/* Lists rays by the primitive that they hit. Rays that hit another region's surface there (an opaque one behind a clear
+ * one's, or two in one place) are in the last list but one, misses in the last. */
 static void sort_by_primitive(tracer *t, int count)
 {
     const scene_geometry *a = t->target.frame_plan->geometry;
     const int foreign = a->primitive_count, none = foreign + 1;
     memset(t->batch.listed, 0, ((size_t)none + 1) * sizeof *t->batch.listed);
     for (int i = 0; i < count;) {
-        const int64_t met = t->batch.hits.hit_primitive[i], priority_index = t->batch.hits.surface[i];
-        const int at = met < 0 ? none : priority_index == a->primitives[met].priority_index ? (int)met : foreign;
+        const int64_t hit_primitive = t->batch.hits.hit_primitive[i], priority_index = t->batch.hits.surface[i];
+        const int at = hit_primitive < 0                                               ? none
+                       : priority_index == a->primitives[hit_primitive].priority_index ? (int)hit_primitive
+                                                                                       : foreign;
         int *list = t->batch.list[at], listed = t->batch.listed[at];
-        do /* neighbours often meet the same */
+        do /* neighbours often hit the same primitive */
             list[listed++] = i++;
-        while (i < count && t->batch.hits.hit_primitive[i] == met &&
-               (t->batch.hits.surface[i] == priority_index || met < 0));
+        while (i < count && t->batch.hits.hit_primitive[i] == hit_primitive &&
+               (t->batch.hits.surface[i] == priority_index || hit_primitive < 0));
         t->batch.listed[at] = listed;
     }
 }
 
-/* The few rays on foreign surfaces, in groups of one primitive and one body. */
+/* Shades the few rays on foreign surfaces, in groups of one primitive and one region. */
 static void shade_foreign(tracer *t, int depth, int first)
 {
     const int foreign = t->target.frame_plan->geometry->primitive_count;
     int *list = t->batch.list[foreign], left = t->batch.listed[foreign], same[BATCH];
     while (left > 0) {
-        const int64_t met = t->batch.hits.hit_primitive[list[0]], priority_index = t->batch.hits.surface[list[0]];
+        const int64_t hit_primitive = t->batch.hits.hit_primitive[list[0]],
+                      priority_index = t->batch.hits.surface[list[0]];
         int count = 0, others = 0;
         for (int k = 0; k < left; k++) {
             const int i = list[k];
-            if (t->batch.hits.hit_primitive[i] == met && t->batch.hits.surface[i] == priority_index)
+            if (t->batch.hits.hit_primitive[i] == hit_primitive && t->batch.hits.surface[i] == priority_index)
                 same[count++] = i;
             else
                 list[others++] = i;
         }
-        shading_group(t, depth, first, (int)met, (int)priority_index, same, count);
+        shading_group(t, depth, first, (int)hit_primitive, (int)priority_index, same, count);
         left = others;
     }
 }
 
-/* What a depth buffer shows behind a layer is no other ray. */
+/* The continuation of a depth buffer's view behind a layer does not count as another ray. */
 static bool is_counted(const tracer *t, int depth)
 {
     return depth == 0 || t->rule->traced;
@@ -182,7 +185,7 @@ static void trace_batch(tracer *t, int depth)
     if (t->batch.scratch.segments)
         absorption_announce(t, q->sample_key + first, rays.count);
     const int64_t began_ns = visibility_begins(t);
-    t->rule->meet(t, q, first, depth, &rays);
+    t->rule->intersect(t, q, first, depth, &rays);
     visibility_ends(t, began_ns);
     if (t->batch.scratch.segments) {
         absorption_spare_sky(t);
@@ -192,10 +195,10 @@ static void trace_batch(tracer *t, int depth)
     const int primitives = p->geometry->primitive_count, none = primitives + 1;
     if (t->batch.listed[none] > 0)
         t->rule->background(t, q, first, t->batch.list[none], t->batch.listed[none]);
-    for (int met = 0; met < primitives; met++)
-        if (t->batch.listed[met] > 0)
-            shading_group(t, depth, first, met, p->geometry->primitives[met].priority_index, t->batch.list[met],
-                          t->batch.listed[met]);
+    for (int hit_primitive = 0; hit_primitive < primitives; hit_primitive++)
+        if (t->batch.listed[hit_primitive] > 0)
+            shading_group(t, depth, first, hit_primitive, p->geometry->primitives[hit_primitive].priority_index,
+                          t->batch.list[hit_primitive], t->batch.listed[hit_primitive]);
     shade_foreign(t, depth, first);
 }
 
@@ -245,7 +248,7 @@ void tracer_run_batch(tracer *t, int depth)
     }
 }
 
-/* The deepest full batch, shadow rays before all; false when there is none. */
+/* Traces the deepest full batch, shadow rays first; returns false when there is none. */
 static bool run_full(tracer *t)
 {
     if (t->queues.shadows.count >= BATCH) {
@@ -266,7 +269,7 @@ static bool stopped(const atomic_bool *stop)
     return atomic_load_explicit(stop, memory_order_relaxed);
 }
 
-/* Whole pixels at once, as many as fit into a batch. */
+/* As many whole pixels as fit into a batch. */
 static int rays_at_once(int64_t each)
 {
     return each >= BATCH ? BATCH : (int)(BATCH / each * each);
@@ -275,11 +278,11 @@ static int rays_at_once(int64_t each)
 int tracer_camera_rays(tracer *t, int x, int y)
 {
     const int count = (int)t->rule->sampling(&t->target.frame_plan->render).rays;
-    camera_rays_put_in_line(t, y, x, 0, count);
+    camera_rays_enqueue(t, y, x, 0, count);
     return count;
 }
 
-/* What the integrator does before a piece: its pixels have equal shares of the time. */
+/* Runs the integrator's preparation of a piece; each of its pixels gets an equal share of the time. */
 static void begin_piece(tracer *t, const span *piece)
 {
     const int64_t began = t->target.pixel_ns ? clock_wall_ns() : 0;
@@ -293,8 +296,8 @@ static void begin_piece(tracer *t, const span *piece)
             t->target.pixel_ns[(int64_t)y * t->target.frame_plan->render.width + x] += share;
 }
 
-/* Edges of the blocks of pixels whose rays fill a batch: square ones where there are meshes, in whose hierarchies rays
- * that are close together go the same way; else a row's. */
+/* The size of the blocks of pixels whose rays fill a batch: square blocks for meshes, because nearby rays take the same
+ * path through their hierarchies; otherwise a row. */
 typedef struct pixel_block {
     int width, height;
 } pixel_block;
@@ -307,13 +310,13 @@ static pixel_block block_of(const plan *p, const span *piece, int64_t each)
     return (pixel_block){piece->x1 - piece->x0, 1};
 }
 
-/* A row of a block; false when the frame was stopped. */
+/* Traces a row of a block; false when the frame was stopped. */
 static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each, const atomic_bool *stop)
 {
     const int64_t all = each * (x1 - x0);
     const int at_once = rays_at_once(each);
     for (int64_t ray = 0; ray < all; ray += at_once) {
-        camera_rays_put_in_line(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
+        camera_rays_enqueue(t, y, x0, ray, all - ray < at_once ? (int)(all - ray) : at_once);
         while (run_full(t))
             if (stopped(stop))
                 return false;
@@ -340,7 +343,7 @@ void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, cons
     }
 }
 
-/* With no full batch left anywhere, the shallowest rays go first: their children fill the deeper queues again. */
+/* When no full batch is left, the shallowest rays go first: their children refill the deeper queues. */
 void tracer_finish(tracer *t, const atomic_bool *stop)
 {
     for (int d = 0; d <= t->queues.depth_limit && !stopped(stop); d++) {

@@ -1,6 +1,6 @@
-/* One worker's tracer: queues of rays by depth, run a batch at a time, deepest full batch first, so that what waits
- * stays small whatever the depth; the film, the counters and the scratch it works on. There is no other tracer: a
- * single ray is a batch of one. Ownership: tracer_create gives, tracer_destroy releases; plan and film are borrowed. */
+/* The tracer of one worker: queues of rays by depth, traced one batch at a time, deepest full batch first, so that few
+ * rays wait whatever the depth; also the worker's counters and scratch memory. There is no other tracer: a single ray
+ * is a batch of one. Ownership: tracer_create allocates, tracer_destroy releases; plan and film are borrowed. */
 #pragma once
 
 #include "base/counters.h"
@@ -13,32 +13,32 @@
 
 typedef struct tracer tracer;
 
-/* What a frame is traced into. pixel_rays and pixel_ns may be NULL; kept is what the integrator keeps for the frame,
- * layers where it puts named layers if they are wanted; else NULL. */
+/* The outputs of a frame. pixel_rays and pixel_ns may be NULL; state is the integrator's state for the frame; layers
+ * receives named layers, NULL if they are not requested. */
 typedef struct tracer_target {
     const plan *frame_plan;
     film *img;
     double *pixel_rays, *pixel_ns;
-    void *kept;
+    void *state;
     layer_set *layers;
 } tracer_target;
 
 tracer *tracer_create(isa level);
 void tracer_destroy(tracer *t);
 
-/* Begins a frame: counters to zero, queues for its depth. False when memory is out. */
+/* Begins a frame: resets the counters and creates queues for the frame's depth. False when out of memory. */
 bool tracer_begin(tracer *t, const tracer_target *target);
 
-/* Puts the camera rays of a piece of the picture in line and traces until fewer than a batch of anything waits. Adds
- * the pixels of each row to *begun when they are in line. */
+/* Enqueues the camera rays of a piece of the image and traces until every queue holds less than a batch. Adds the
+ * pixels of each row to *begun when they are enqueued. */
 void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop);
 
-/* Traces what still waits; when told to stop, drops it. Nothing waits afterwards. */
+/* Traces the remaining rays, or discards them when *stop is set. All queues are empty afterwards. */
 void tracer_finish(tracer *t, const atomic_bool *stop);
 
 const ray_counters *tracer_counters(const tracer *t);
-/* Time in which it was found out what rays meet and what stands in a light's way. Of a scene without meshes it is not
- * measured, and 0: there the clock would be asked too often. */
+/* Time spent in visibility queries (nearest hits and shadows). For a scene without meshes it is not measured, and 0:
+ * reading the clock that often would cost too much. */
 double tracer_visibility_s(const tracer *t);
-/* Did a contribution or a pixel's sum leave the film's range, or was it not a number? */
+/* True when a contribution or a pixel's sum left the film's range or was not a number. */
 bool tracer_overflowed(const tracer *t);

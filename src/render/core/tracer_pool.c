@@ -7,10 +7,10 @@
 struct tracer_pool {
     isa level;
     pthread_mutex_t lock;
-    tracer **all, **idle; /* idle: a stack of those that nobody holds */
+    tracer **all, **idle; /* idle: a stack of those that no worker holds */
     int capacity, count, idle_count;
     tracer_target target;
-    uint64_t frame; /* running number; a tracer says in which one it was last begun */
+    uint64_t frame; /* serial number; a tracer stores the one in which it last began */
 };
 
 tracer_pool *tracer_pool_create(isa level)

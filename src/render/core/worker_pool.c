@@ -15,13 +15,13 @@ typedef struct worker {
     worker_pool *owner;
     int index;
     pthread_t thread;
-    _Alignas(64) sem_t wake; /* on a line of its own: workers wake one another */
+    _Alignas(64) sem_t wake; /* on its own cache line: workers wake one another */
 } worker;
 
 struct worker_pool {
     worker **workers;
-    int count;   /* threads that wait */
-    int running; /* of this run */
+    int count;   /* threads in the pool */
+    int running; /* number of workers of this run */
     bool quit;
     worker_pool_task *task;
     void *context;
@@ -76,19 +76,19 @@ static void *fresh_worker(void *argument)
     return NULL;
 }
 
-static int start_thread(worker *w, void *(*region)(void *))
+static int start_thread(worker *w, void *(*run)(void *))
 {
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
     pthread_attr_setstacksize(&attributes, STACK_BYTES);
-    int error = pthread_create(&w->thread, &attributes, region, w);
+    int error = pthread_create(&w->thread, &attributes, run, w);
     pthread_attr_destroy(&attributes);
     return error;
 }
 
 static status no_thread(int have, int error, diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, "ask for fewer threads, or raise the limit (ulimit -u)",
+    return diagnose(why, STATUS_FAILURE, "use fewer threads, or raise the limit (ulimit -u)",
                     "cannot start thread %d: %s", have + 1, strerror(error));
 }
 
@@ -136,7 +136,7 @@ void worker_pool_destroy(worker_pool *p)
     free(p);
 }
 
-/* Waits for the last worker, looking up now and then if there is somebody to tell. */
+/* Waits for the last worker, calling watch every every_s seconds unless it is NULL. */
 static void wait_until_done(worker_pool *p, void (*watch)(void *), double every_s)
 {
     if (!watch) {

@@ -15,11 +15,11 @@ void fan_release(fan *f)
 
 static status set_axes(const fan_rule *rule, fan *f, diagnostic *why)
 {
-    const vec3 way = vec3_sub(rule->to, rule->from);
-    if (!(vec3_length(way) > 0.0 && isfinite(vec3_length(way))))
+    const vec3 axis = vec3_sub(rule->to, rule->from);
+    if (!(vec3_length(axis) > 0.0 && isfinite(vec3_length(axis))))
         return diagnose(why, STATUS_BAD_INPUT, "give two points", "from and to are the same point");
     f->from = rule->from;
-    f->axis = vec3_normalize(way);
+    f->axis = vec3_normalize(axis);
     vec3 n = rule->normal;
     if (!rule->has_normal) {
         const vec3 level = vec3_cross(f->axis, vec3_make(0, 1, 0));
@@ -29,9 +29,9 @@ static status set_axes(const fan_rule *rule, fan *f, diagnostic *why)
     vec3 across_axis = vec3_sub(n, vec3_scale(f->axis, vec3_dot(n, f->axis)));
     if (!(length > 0.0 && isfinite(length)) || vec3_length(across_axis) < 1e-9 * length)
         return diagnose(why, STATUS_BAD_INPUT, "give a normal that is not along the axis",
-                        "the plane does not hold the axis");
+                        "the normal is zero or parallel to the axis");
     f->normal = vec3_normalize(across_axis);
-    /* Seen from above, or upright: to the left of the axis or up. */
+    /* Choose the sign: upwards, or for a horizontal plane, to the left of the axis seen from above. */
     f->across = vec3_cross(f->axis, f->normal);
     if (fabs(f->across.y) > 1e-9 ? f->across.y < 0.0 : f->axis.x * f->across.z - f->axis.z * f->across.x < 0.0)
         f->across = vec3_scale(f->across, -1.0);
@@ -53,18 +53,18 @@ static void start_of(const fan *f, const fan_rule *rule, int i, fan_ray *ray, ve
     *direction = vec3_add(vec3_scale(f->axis, cosine), vec3_scale(f->across, sine));
 }
 
-static status keep_nodes(fan *f, const ray_tree *way, fan_ray *ray, diagnostic *why)
+static status append_nodes(fan *f, const ray_tree *path, fan_ray *ray, diagnostic *why)
 {
-    if (!GROW(f->node, f->node_capacity, f->node_count + way->count))
+    if (!GROW(f->node, f->node_capacity, f->node_count + path->count))
         return diagnose(why, STATUS_FAILURE, "give fewer rays", "out of memory");
-    memcpy(f->node + f->node_count, way->node, way->count * sizeof *way->node);
+    memcpy(f->node + f->node_count, path->node, path->count * sizeof *path->node);
     ray->first = f->node_count;
-    ray->count = way->count;
-    f->node_count += way->count;
+    ray->count = path->count;
+    f->node_count += path->count;
     return STATUS_OK;
 }
 
-static void meet_axis(const fan *f, fan_ray *ray)
+static void cross_axis(const fan *f, fan_ray *ray)
 {
     const vec3 from_axis = vec3_sub(ray->exit_point, f->from);
     const double off = vec3_dot(from_axis, f->across), slope = vec3_dot(ray->exit_direction, f->across);
@@ -85,10 +85,10 @@ static void read_exit(const fan *f, fan_ray *ray)
     const vec3 turned = vec3_cross(first->direction, last->direction);
     ray->deviation_deg = elementary_atan2_deg(vec3_length(turned), vec3_dot(first->direction, last->direction));
     if (ray->leaves)
-        meet_axis(f, ray);
+        cross_axis(f, ray);
 }
 
-/* Did two rays cross the same surfaces? */
+/* True if two rays crossed the same surfaces. */
 static bool same_direction(const fan *f, const fan_ray *a, const fan_ray *b)
 {
     if (a->count != b->count || !a->leaves || !b->leaves)
@@ -103,11 +103,11 @@ static bool same_direction(const fan *f, const fan_ray *a, const fan_ray *b)
     return true;
 }
 
-/* Two lines in the fan's plane: p + t d = q + s e. */
+/* Intersects two lines in the fan's plane: p + t d = q + s e. */
 static bool cross(const fan *f, const fan_ray *a, const fan_ray *b, vec3 *at)
 {
-    const vec3 way = vec3_sub(b->exit_point, a->exit_point);
-    const double wx = vec3_dot(way, f->axis), wy = vec3_dot(way, f->across);
+    const vec3 between = vec3_sub(b->exit_point, a->exit_point);
+    const double wx = vec3_dot(between, f->axis), wy = vec3_dot(between, f->across);
     const double dx = vec3_dot(a->exit_direction, f->axis), dy = vec3_dot(a->exit_direction, f->across);
     const double ex = vec3_dot(b->exit_direction, f->axis), ey = vec3_dot(b->exit_direction, f->across);
     const double turn = dx * ey - dy * ex;
@@ -133,8 +133,8 @@ static bool is_bent(const fan_ray *ray)
     return ray->leaves && ray->count > 1;
 }
 
-/* Solves sum (1 - d d^T) x = sum (1 - d d^T) p by Cramer's rule, p from the first exit point on, so that nothing
- * cancels. */
+/* Solves sum (1 - d d^T) x = sum (1 - d d^T) p by Cramer's rule, with p relative to the first exit point to avoid
+ * cancellation. */
 static void find_focus(fan *f)
 {
     vec3 row[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, right = {0, 0, 0}, base = {0, 0, 0};
@@ -176,7 +176,8 @@ static void find_focus(fan *f)
 static status check_rule(const fan_rule *rule, diagnostic *why)
 {
     if (rule->rays < 1 || rule->rays > FAN_RAYS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000", "%d rays are out of range", rule->rays);
+        return diagnose(why, STATUS_BAD_INPUT, "give 1 to 100000 rays", "the number of rays %d is out of range",
+                        rule->rays);
     if (rule->spreads ? !(rule->spread_deg >= 0.0 && rule->spread_deg < 180.0)
                       : !(rule->width >= 0.0 && rule->width <= 1e6))
         return diagnose(why, STATUS_BAD_INPUT,
@@ -187,17 +188,17 @@ static status check_rule(const fan_rule *rule, diagnostic *why)
 
 static status follow_all(probe *p, const fan_rule *rule, fan *f, diagnostic *why)
 {
-    ray_tree way = {0};
+    ray_tree path = {0};
     status result = STATUS_OK;
     for (int i = 0; i < f->count && result == STATUS_OK; i++) {
         vec3 origin, direction;
         start_of(f, rule, i, &f->ray[i], &origin, &direction);
-        result = probe_path(p, origin, direction, -1, &way, why);
-        THEN(result, keep_nodes(f, &way, &f->ray[i], why));
+        result = probe_path(p, origin, direction, -1, &path, why);
+        THEN(result, append_nodes(f, &path, &f->ray[i], why));
         if (result == STATUS_OK)
             read_exit(f, &f->ray[i]);
     }
-    ray_tree_release(&way);
+    ray_tree_release(&path);
     return result;
 }
 

@@ -20,7 +20,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
         r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
         if (integrator_traits_of(r)->by_chance || integrator_traits_of(r)->drawn || integrator_traits_of(r)->layers)
-            trace_trees(r); /* all branches, not one by chance or none */
+            trace_trees(r); /* trace all branches, not a random one or none */
         code = scene_check(p->setting, why);
     }
     THEN(code, plan_build(p->setting, &p->frame_plan, why));
@@ -35,7 +35,7 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
     return STATUS_OK;
 }
 
-/* By channel, or of a spectral film at the one wavelength. */
+/* By channel, or for a spectral film at the tree's wavelength. */
 static vec3 tint_of(const probe *p, const material *m)
 {
     vec3 share = m->color;
@@ -99,7 +99,7 @@ static status finish(probe *p, ray_tree *tree, status code, diagnostic *why)
         tree->radiance[c] = film_value(p->img, 0, 0, c);
     if (code == STATUS_OK && tracer_overflowed(p->rays))
         return diagnose(why, STATUS_BAD_INPUT, "lower the lights' intensity, the colours or the sky",
-                        "the ray is brighter than the film holds");
+                        "the ray's radiance exceeds the film's range");
     return code;
 }
 
@@ -108,7 +108,7 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
     const render_settings *r = &p->frame_plan->render;
     if (x < 0 || y < 0 || x >= r->width || y >= r->height)
         return diagnose(why, STATUS_BAD_INPUT, "count pixels from 0,0 at the top left",
-                        "pixel %d,%d is outside the picture of %lld x %lld", x, y, (long long)r->width,
+                        "pixel %d,%d is outside the image of %lld x %lld", x, y, (long long)r->width,
                         (long long)r->height);
     TRY(begin(p, tree, why));
     status code = STATUS_OK;
@@ -128,13 +128,13 @@ status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
     return finish(p, tree, code, why);
 }
 
-/* Begins a tree with a ray of the caller's. */
+/* Begins a tree with the caller's ray. */
 static status begin_free(probe *p, vec3 origin, vec3 direction, ray_tree *tree, ray_record *root, diagnostic *why)
 {
     TRY(probe_check_ray(origin, direction, why));
     TRY(begin(p, tree, why));
     *root = probe_free_ray(p, origin, direction);
-    p->frame_plan->camera_priority_index = root->medium_priority_index; /* an eye stands where the ray starts */
+    p->frame_plan->camera_priority_index = root->medium_priority_index; /* the camera is at the ray's origin */
     return STATUS_OK;
 }
 
@@ -171,7 +171,7 @@ int probe_medium_at(const probe *p, vec3 point)
     const scene *s = p->setting;
     const scene_geometry *a = p->frame_plan->geometry;
     int best = RAY_OUTSIDE;
-    if (a->meshes) /* only who has their triangles in order knows what is in them */
+    if (a->meshes) /* only the scene geometry can test points against meshes */
         return a->regions[scene_geometry_priority_index(a, scene_geometry_inside(a, point))].solid;
     for (int i = 0; i < (int)s->solid_count; i++) {
         const solid *one = &s->solids[i];

@@ -1,9 +1,9 @@
-/* One ray, taken apart: the whole tree of rays that a camera ray, or any ray, grows into, as the tracer traces it. A
- * probe drives the same tracer with batches of one ray and writes down what it sees, so that what it reports is what a
- * render does, to the bit: a tree's radiance is the film's value of that pixel.
+/* The probe: the complete ray tree of a camera ray, or of any ray, as the tracer traces it. A probe drives the same
+ * tracer with batches of one ray and records them, so that its result is bit-identical to a render: a tree's radiance
+ * is the film's value of that pixel.
  *
- * Ownership: probe_create gives, probe_destroy releases; it borrows the scene, whose pictures are loaded. A ray_tree is
- * the caller's; zero it before its first use (its memory is used again by the next ray), and release it with
+ * Ownership: probe_create allocates, probe_destroy releases; it borrows the scene, whose images must be loaded. The
+ * caller owns a ray_tree: zero it before its first use (the next ray reuses its memory), and release it with
  * ray_tree_release. One probe serves one thread. */
 #pragma once
 
@@ -16,8 +16,8 @@
 
 typedef enum ray_kind { RAY_CAMERA, RAY_REFLECT, RAY_REFRACT, RAY_SHADOW } ray_kind;
 
-/* How a ray ended: at an interface; in the background; not traced because of the depth limit, or of render.min_weight;
- * of a shadow ray, whether its light came through (a part of it, perhaps). */
+/* The end of a ray: at an interface; in the background; not traced because of the depth limit, or of render.min_weight;
+ * for a shadow ray, whether (part of) its light passed. */
 typedef enum ray_end {
     RAY_END_HIT,
     RAY_END_SKY,
@@ -27,45 +27,47 @@ typedef enum ray_end {
     RAY_END_BLOCKED
 } ray_end;
 
-/* A medium: the index in scene.solids of the solid that it belongs to, or RAY_OUTSIDE for what surrounds all solids. */
+/* A medium: the index in scene.solids of its solid, or RAY_OUTSIDE for the medium around all solids. */
 enum { RAY_OUTSIDE = -1, RAY_NONE = -1 };
 
 typedef struct ray_hit {
-    int solid; /* index in scene.solids: whose surface it is */
-    int face_solid,
-        face;    /* the geometric surface that was crossed: the solid that it bounds, and probe_face_name's number */
-    bool opaque; /* nothing goes on behind it */
-    double t;    /* distance from the ray's origin, scene units */
+    int solid; /* index in scene.solids of the solid whose surface it is */
+    /* the geometric surface that was hit: the solid that it bounds, and the number that probe_face_name takes */
+    int face_solid, face;
+    bool opaque;        /* no ray continues behind it */
+    double t;           /* distance from the ray's origin, scene units */
     vec3 point, normal; /* normal: unit vector towards the ray */
     int from, to;       /* media before and behind it */
     double n_from, n_to;
     double cos_i, cos_t; /* cos_t is 0 under total internal reflection */
-    double R_s, R_p, R;  /* power reflectances of the interface with its coating; of an opaque surface or under simple
-                          * transmission,  its reflectivity */
+    /* power reflectances of the interface with its coating; for an opaque surface or simple transmission, its
+     * reflectivity */
+    double R_s, R_p, R;
     bool tir;
-    double T; /* power transmittance of the surface, with coating and transparency; 0 of an opaque one */
-    double gain_classic, gain_basic; /* what radiance from beyond is multiplied by: T, and T (n_from / n_to)^2 */
-    double path_length_m;            /* length of the ray up to here in metres: t render.unit_m */
-    double transmittance[3]; /* share of the light that the medium lets through over it (Beer and Lambert), RGB */
-    double error_bound;      /* on the point's distance from the exact one across the surface, scene units */
+    double T; /* power transmittance of the surface, with coating and transparency; 0 for an opaque one */
+    double gain_classic, gain_basic; /* factor of radiance from behind: T, and T (n_from / n_to)^2 */
+    double path_length_m;            /* length of the ray to this hit in metres: t render.unit_m */
+    double transmittance[3];         /* of the medium over this length (Beer and Lambert), RGB */
+    double error_bound;              /* bound on the point's distance from the exact surface, scene units */
 } ray_hit;
 
 typedef struct ray_node {
     ray_kind kind;
     ray_end end;
-    int depth;                     /* 0: camera ray; of a shadow ray, that of the ray whose hit it leaves */
-    int parent, first_child, next; /* indices in the tree; RAY_NONE */
-    vec3 origin, direction;        /* unit vector; of a shadow ray, towards the light */
-    double throughput[3]; /* RGB weight at the ray's start (with basic radiance of L / n^2); of a shadow ray the
-                           * radiance that it brings if nothing is in the way */
+    int depth;                     /* 0: camera ray; for a shadow ray, the depth of the ray at whose hit it starts */
+    int parent, first_child, next; /* indices in the tree, or RAY_NONE */
+    vec3 origin, direction;        /* unit vector; for a shadow ray, towards the light */
+    /* RGB weight at the ray's start (with basic radiance, of L / n^2); for a shadow ray the radiance that it
+     * contributes if unblocked */
+    double throughput[3];
     double stokes[4]; /* with render.polarisation: the analyser's Stokes vector relative to its first element, in the
                        * ray's canonical frame (optics/mueller.h); else 1 0 0 0 */
-    int medium;       /* in which it sets out */
+    int medium;       /* in which it starts */
     double n;
-    int light;             /* of a shadow ray: index in scene.lights, else RAY_NONE */
-    double let_through;    /* of a shadow ray: share that the surfaces in its path let through; else 1 */
-    double light_distance; /* of a shadow ray: from its origin to the light */
-    double brought[3];     /* radiance that this ray itself puts into the film (its children's not counted) */
+    int light;             /* for a shadow ray: index in scene.lights, else RAY_NONE */
+    double let_through;    /* for a shadow ray: transmittance of the surfaces in its path; else 1 */
+    double light_distance; /* for a shadow ray: from its origin to the light */
+    double brought[3];     /* radiance that this ray itself adds to the film, without its children */
     ray_hit hit;           /* when end is RAY_END_HIT */
 } ray_node;
 
@@ -73,8 +75,8 @@ typedef struct ray_tree {
     ray_node *node; /* node[0] is the first root */
     size_t count, capacity;
     int depth_limit;
-    double lambda_nm;   /* at which indices of refraction were taken */
-    double radiance[3]; /* what the film holds after the tree, exactly */
+    double lambda_nm;   /* wavelength of the refractive indices */
+    double radiance[3]; /* the exact film value after the tree */
 } ray_tree;
 
 void ray_tree_release(ray_tree *tree);
@@ -84,32 +86,33 @@ typedef struct probe probe;
 status probe_create(const scene *s, isa level, probe **out, diagnostic *why);
 void probe_destroy(probe *p);
 
-/* From now on absorption by wavelength is taken at render.lambda_nm for all channels, as indices are; of a scene whose
- * picture is spectral that is so from the start. Its pixels are then not those of an rgb film. */
+/* From this call on, absorption by wavelength is evaluated at render.lambda_nm for all channels, as refractive indices
+ * are; for a spectral scene this is always so. The pixel values then differ from those of an rgb film. */
 void probe_one_wavelength(probe *p);
 
-/* The tree of a pixel; with more samples a pixel it has as many roots, linked by next. STATUS_BAD_INPUT outside the
- * picture, and for a tree of more than PROBE_NODES_MAX rays. */
+/* The tree of a pixel; with several samples per pixel it has as many roots, linked by next. STATUS_BAD_INPUT outside
+ * the image, and for a tree of more than PROBE_NODES_MAX rays. */
 enum { PROBE_NODES_MAX = 2000000 };
 status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why);
 
-/* The tree of any ray; the direction need not be a unit vector. It sets out in the medium at its origin. */
+/* The tree of any ray; the direction need not be a unit vector. The ray starts in the medium at its origin. */
 status probe_ray(probe *p, vec3 origin, vec3 direction, ray_tree *tree, diagnostic *why);
 
-/* The same, but of a hit's branches only one is followed, as an array of nodes each of which is its predecessor's
- * child: the refracted one where there is any, else the reflected one; or with `reflect_at` >= 0, at the interface of
- * that number (counted from 0) the reflected one. No shadow rays. */
+/* Follows only one branch of each hit; the result is an array of nodes, each the child of the one before. The refracted
+ * branch is followed if there is one, else the reflected one; with `reflect_at` >= 0, the reflected one at the
+ * interface of that number (counted from 0). No shadow rays. */
 status probe_path(probe *p, vec3 origin, vec3 direction, int reflect_at, ray_tree *tree, diagnostic *why);
 
-/* "vessel", or the catalogue's name of its medium; "air" for what surrounds all when its index is 1. */
+/* The solid's name, such as "vessel", or the catalogue name of its medium; "air" for the surrounding medium if its
+ * index is 1. */
 const char *probe_medium_name(const probe *p, int at);
 
-/* "outer side", "floor", "top": the name of a hit's face. */
+/* The name of a hit's face: "outer side", "floor", "top". */
 const char *probe_face_name(const probe *p, const ray_hit *hit);
 
-/* Which solid holds a point by the rule of priorities, or RAY_OUTSIDE: read from the solids' own shapes, not from the
- * tracer; where there are meshes, by the arrangement. An open mesh holds nothing. */
+/* The solid that contains a point by the rule of priorities, or RAY_OUTSIDE: computed from the solids' own shapes,
+ * independent of the tracer; with meshes, from the scene geometry. An open mesh contains nothing. */
 int probe_medium_at(const probe *p, vec3 point);
 
-/* A camera ray's direction through a point of the picture, in pixels from its top left corner; unit vector. */
+/* The direction of the camera ray through a point of the image, in pixels from the top left corner; a unit vector. */
 vec3 probe_camera_direction(const probe *p, double x, double y);

@@ -1,5 +1,5 @@
-/* How a tree grows: each ray goes through the tracer alone, and what the tracer leaves in its hits, its gathered group,
- * its branches and its queues is written down. */
+/* Building a ray tree: each ray is traced alone, and the tracer's hits, gathered group, branches and queues are read
+ * back. */
 #include "base/grow.h"
 #include "render/inspect/probe_private.h"
 
@@ -13,8 +13,7 @@ status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why)
 {
     const double far = 1e6;
     if (!(fabs(origin.x) <= far && fabs(origin.y) <= far && fabs(origin.z) <= far))
-        return diagnose(why, STATUS_BAD_INPUT, "start within 1e6 scene units of the middle",
-                        "the ray starts too far away");
+        return diagnose(why, STATUS_BAD_INPUT, "start within 1e6 scene units of 0,0,0", "the ray starts too far away");
     if (!(isfinite(direction.x) && isfinite(direction.y) && isfinite(direction.z)))
         return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "the ray's direction is not finite");
     if (direction.x == 0.0 && direction.y == 0.0 && direction.z == 0.0)
@@ -25,11 +24,11 @@ status probe_check_ray(vec3 origin, vec3 direction, diagnostic *why)
 ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction)
 {
     const double largest = fmax(fabs(direction.x), fmax(fabs(direction.y), fabs(direction.z)));
-    /* So that no square over- or underflows; the quotient of a subnormal number would. */
+    /* Avoids over- and underflow of squares; the reciprocal of a subnormal number would overflow. */
     const vec3 scaled = vec3_make(direction.x / largest, direction.y / largest, direction.z / largest);
     const double length2 = vec3_dot(scaled, scaled);
     ray_record r = {.origin = origin, .weight = {1.0, 1.0, 1.0}, .start = FACE_NONE, .depth = 0};
-    /* A unit vector but for rounding stays as it is, to the bit, so that a ray of one tree can be traced again. */
+    /* A vector that is a unit vector up to rounding is kept to the bit, so that a ray of a tree can be traced again. */
     const bool is_unit = fabs(vec3_dot(direction, direction) - 1.0) <= 0x1p-50;
     r.direction = is_unit ? direction : direction_tidy(vec3_scale(scaled, 1.0 / sqrt(length2)));
     r.inside = scene_geometry_inside(p->frame_plan->geometry, origin);
@@ -66,7 +65,7 @@ static void put(ray_queue *q, const ray_record *r)
     q->start[0] = r->start, q->inside[0] = r->inside, q->sample_key[0] = 0;
 }
 
-/* Runs a batch of one; brought is what it put into the film. */
+/* Traces a batch of one ray; brought is the radiance that it added to the film. */
 static void run_one(probe *p, int depth, double brought[3])
 {
     int64_t before[3];
@@ -102,7 +101,7 @@ static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind k
     return STATUS_OK;
 }
 
-/* Hangs a node under its parent, behind the children that are there. */
+/* Appends a node to its parent's children. */
 static void hang(ray_tree *tree, int parent, size_t child)
 {
     int *link = &tree->node[parent].first_child;
@@ -111,8 +110,8 @@ static void hang(ray_tree *tree, int parent, size_t child)
     *link = (int)child;
 }
 
-/* What radiance from beyond the interface is multiplied by. Under simple transmission nothing is bent, and no index
- * comes in. */
+/* The factors of radiance from behind the interface. Simple transmission does not refract, so the indices do not
+ * matter. */
 static void read_gain(const probe *p, ray_hit *h)
 {
     const render_settings *r = &p->frame_plan->render;
@@ -125,7 +124,7 @@ static void read_gain(const probe *p, ray_hit *h)
     h->gain_basic = ratio * ratio * h->T;
 }
 
-/* What the ray met; false for the background. */
+/* Reads the ray's hit; false for the background. */
 static bool read_hit(const probe *p, ray_node *node)
 {
     const tracer *t = p->rays;
@@ -175,12 +174,12 @@ static bool read_hit(const probe *p, ray_node *node)
     read_gain(p, h);
     h->path_length_m = h->t * p->frame_plan->render.unit_m;
     for (int c = 0; c < 3; c++)
-        h->transmittance[c] = a->attenuates ? t->media->kept[c][0] : 1.0;
+        h->transmittance[c] = a->attenuates ? t->media->transmittance[c][0] : 1.0;
     node->end = RAY_END_HIT;
     return true;
 }
 
-/* The branches of the ray just traced: records, kinds, and how those ended that were not put in line. */
+/* The branches of the ray just traced: their records, kinds, and for those that were not enqueued how they ended. */
 typedef struct branches {
     int count;
     ray_record record[2];
@@ -188,7 +187,7 @@ typedef struct branches {
     ray_end end[2];
 } branches;
 
-static bool is_too_light(const double weight[3], double least)
+static bool is_below_least_weight(const double weight[3], double least)
 {
     return least > 0.0 && weight[0] < least && weight[1] < least && weight[2] < least;
 }
@@ -221,7 +220,7 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
     out->end[i] = RAY_END_CUT_DEPTH;
     if (depth == t->queues.depth_limit)
         return;
-    if (is_too_light(r->weight, p->frame_plan->render.min_weight)) {
+    if (is_below_least_weight(r->weight, p->frame_plan->render.min_weight)) {
         out->end[i] = RAY_END_CUT_WEIGHT;
         return;
     }
@@ -242,14 +241,15 @@ static void read_branches(const probe *p, int depth, branches *out)
     add_branch(p, depth, false, &queued, out);
 }
 
-/* The light that a shadow ray goes to: the first from `from` on that lies exactly at its end and shines that way. */
+/* The light of a shadow ray: the first light from index `from` that is exactly at its end and emits in its
+ * direction. */
 static int light_of(const plan *of, const ray_record *r, int from)
 {
     for (int k = from; k < of->light_count; k++) {
-        const vec3 way = vec3_sub(of->lights[k].position, r->origin);
-        if (light_share(&of->lights[k], &of->cones[k], vec3_scale(way, -1.0 / vec3_length(way))) == 0.0)
+        const vec3 to_light = vec3_sub(of->lights[k].position, r->origin);
+        if (light_share(&of->lights[k], &of->cones[k], vec3_scale(to_light, -1.0 / vec3_length(to_light))) == 0.0)
             continue;
-        if (way.x == r->direction.x && way.y == r->direction.y && way.z == r->direction.z)
+        if (to_light.x == r->direction.x && to_light.y == r->direction.y && to_light.z == r->direction.z)
             return k;
     }
     return RAY_NONE;
@@ -289,7 +289,7 @@ static status build_shadows(probe *p, ray_tree *tree, int parent, diagnostic *wh
     return code;
 }
 
-/* Traces the ray of node `at`; its branches are handed back, its shadow rays wait in line. */
+/* Traces the ray of node `at`; returns its branches in *out and leaves its shadow rays in the queue. */
 static void trace_node(probe *p, ray_tree *tree, size_t at, const ray_record *ray, branches *out)
 {
     tracer *t = p->rays;
@@ -346,7 +346,7 @@ status probe_follow(probe *p, ray_tree *tree, const ray_record *ray, int reflect
         p->rays->queues.shadows.count = 0;
         if (next.count == 0)
             return STATUS_OK;
-        /* The refracted branch stands last. */
+        /* The refracted branch is last. */
         const int i = interface == reflect_at ? 0 : next.count - 1;
         if (next.end[i] != RAY_END_HIT)
             return add_cut(p, tree, (int)at, &next, i, why);

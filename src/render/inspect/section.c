@@ -45,8 +45,8 @@ section_point section_bisect(const cutter *c, section_point a, section_point b, 
     return between(a, b, 0.5 * (low + high));
 }
 
-/* The crossing on an edge; on one that leads out of the window it is the window's own point. The lower medium's end is
- * sought, so that all edges across one thin layer find the same side of it. */
+/* Computes the crossing on an edge; on an edge that leaves the window it is the window's own point. Bisection always
+ * starts from the lower medium, so that all edges across one thin layer find the same side of it. */
 static void cross(cutter *c, int edge, int i, int j, int i2, int j2)
 {
     const int a = label(c, i, j), b = label(c, i2, j2);

@@ -3,14 +3,14 @@
 
 #include <stdlib.h>
 
-/* Appends a piece's inner points, from its end number `from` on. */
+/* Appends a piece's inner points, starting at its end number `from`. */
 static void append_piece(cutter *c, const piece *one, int from)
 {
     for (size_t k = 0; k < one->count; k++)
         section_add_point(c, c->out->point[one->first + (from == 0 ? k : one->count - 1 - k)]);
 }
 
-/* Follows pieces from an end on until a junction, or once around, and makes one line of them. */
+/* Follows pieces from an end to a junction, or once around, and joins them into one line. */
 static void chain(cutter *c, size_t start, int from)
 {
     section *s = c->out;
@@ -40,7 +40,7 @@ static void chain(cutter *c, size_t start, int from)
     line->count = s->point_count - line->first;
 }
 
-/* Lines from junction to junction first; what is left is closed. */
+/* Lines between junctions first; the remaining pieces form closed lines. */
 void section_chain_all(cutter *c)
 {
     for (size_t i = 0; i < c->piece_count && !c->failed; i++)

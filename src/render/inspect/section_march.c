@@ -3,12 +3,13 @@
 
 #include <stdlib.h>
 
-/* How often a piece of a boundary is halved, and how straight it must be (share of a cell) not to be. */
+/* Largest number of halvings of a piece of boundary; a piece that deviates from a straight line by less than STRAIGHT
+ * (share of a cell) is not halved. */
 enum { HALVINGS = 9, JUNCTION_STEPS = 12 };
 #define STRAIGHT 1e-4
 
-/* Adds the points of the boundary between media a (on the left of the way from `from` to `to`) and b, both ends left
- * out. */
+/* Adds the points of the boundary between media a (on the left in the direction from `from` to `to`) and b, without
+ * both ends. */
 static void refine(cutter *c, section_point from, section_point to, int a, int b, int halvings)
 {
     const double du = to.u - from.u, dv = to.v - from.v, length2 = du * du + dv * dv;
@@ -29,7 +30,7 @@ static void refine(cutter *c, section_point from, section_point to, int a, int b
     refine(c, on, to, a, b, halvings - 1);
 }
 
-/* The piece of a boundary between two crossings of a cell, or a crossing and a junction. */
+/* Adds the piece of boundary between two crossings of a cell, or a crossing and a junction. */
 static void add_piece(cutter *c, int from, int to, int a, int b)
 {
     c->failed |= !GROW(c->pieces, c->piece_capacity, c->piece_count + 1);
@@ -49,13 +50,13 @@ static void add_piece(cutter *c, int from, int to, int a, int b)
 static int add_junction(cutter *c, section_point at)
 {
     if (c->junctions == c->junction_capacity) {
-        const int wanted = 2 * c->junction_capacity;
-        section_point *more = realloc(c->crossing, (size_t)(c->edges + wanted) * sizeof *more);
+        const int capacity = 2 * c->junction_capacity;
+        section_point *more = realloc(c->crossing, (size_t)(c->edges + capacity) * sizeof *more);
         c->failed |= !more;
         if (!more)
             return 0;
         c->crossing = more;
-        c->junction_capacity = wanted;
+        c->junction_capacity = capacity;
     }
     c->crossing[c->edges + c->junctions] = at;
     return c->edges + c->junctions++;
@@ -73,7 +74,7 @@ static int distinct(const int *media)
     return count;
 }
 
-/* Where three media meet: the quarter of the cell whose corners see most of them, again and again. */
+/* The point where three media meet: repeatedly takes the quarter of the cell whose corners are in the most media. */
 static section_point meeting_point(const cutter *c, int i, int j)
 {
     section_point low = grid_point(c, i, j);
@@ -94,9 +95,9 @@ static section_point meeting_point(const cutter *c, int i, int j)
     return (section_point){low.u + 0.5 * du, low.v + 0.5 * dv};
 }
 
-/* A cell with corners 0 .. 3 counterclockwise and sides 0 .. 3 that follow them. A boundary that goes in through side
- * k, between corners k and k + 1, has the medium of corner k on its left. */
-static void meet(cutter *c, int i, int j, const int *side, const int *corner)
+/* Joins all crossings of a cell in a junction. Corners 0 .. 3 are counterclockwise, and side k is between corners k and
+ * k + 1. A boundary that enters through side k has the medium of corner k on its left. */
+static void join_all(cutter *c, int i, int j, const int *side, const int *corner)
 {
     section_point at = {0.0, 0.0};
     bool framed = false, found = false;
@@ -113,7 +114,8 @@ static void meet(cutter *c, int i, int j, const int *side, const int *corner)
             add_piece(c, side[k], junction, corner[k], corner[(k + 1) % 4]);
 }
 
-/* Four crossings: the medium in the middle joins two opposite corners that are of it, or else all meet. */
+/* Four crossings: the medium in the middle connects two opposite corners of the same medium, otherwise all boundaries
+ * meet. */
 static void part_corners(cutter *c, int i, int j, const int *side, const int *corner)
 {
     const section_point low = grid_point(c, i, j);
@@ -125,24 +127,23 @@ static void part_corners(cutter *c, int i, int j, const int *side, const int *co
             add_piece(c, side[m - 1], side[m % 4], middle, corner[m % 4]);
         return;
     }
-    meet(c, i, j, side, corner);
+    join_all(c, i, j, side, corner);
 }
 
 void section_march(cutter *c, int i, int j)
 {
     const int corner[4] = {label(c, i, j), label(c, i + 1, j), label(c, i + 1, j + 1), label(c, i, j + 1)};
     const int side[4] = {edge_across(c, i, j), edge_up(c, i + 1, j), edge_across(c, i, j + 1), edge_up(c, i, j)};
-    int hit_primitive[4], count = 0;
+    int crossed[4], count = 0;
     for (int k = 0; k < 4; k++)
         if (corner[k] != corner[(k + 1) % 4])
-            hit_primitive[count++] = k;
+            crossed[count++] = k;
     if (count == 0)
         return;
     if (count == 4)
         part_corners(c, i, j, side, corner);
     else if (count == 3)
-        meet(c, i, j, side, corner);
+        join_all(c, i, j, side, corner);
     else
-        add_piece(c, side[hit_primitive[0]], side[hit_primitive[1]], corner[hit_primitive[0]],
-                  corner[(hit_primitive[0] + 1) % 4]);
+        add_piece(c, side[crossed[0]], side[crossed[1]], corner[crossed[0]], corner[(crossed[0] + 1) % 4]);
 }

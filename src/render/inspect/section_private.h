@@ -1,11 +1,10 @@
-/* The section's inside, shared by section.c (the grid), section_march.c (one cell after another) and section_chain.c
- * (lines out of pieces, areas out of lines). */
+/* Internals of the section, shared by section.c (the grid), section_march.c (marching squares) and section_chain.c
+ * (lines from pieces, areas from lines). */
 #pragma once
 
 #include "render/inspect/section.h"
 
-/* Labels of the grid's points, with a frame of SECTION_EDGE around them; the crossings on its edges; and pieces between
- * them. */
+/* A piece of boundary within one cell, between two crossings of the grid's edges. */
 typedef struct piece {
     int end[2]; /* crossings, or junctions (from `edges` on) */
     int a, b;
@@ -17,13 +16,13 @@ typedef struct cutter {
     const probe *p;
     const section_plane *plane;
     section *out;
-    int nu, nv; /* points, frame included */
+    int nu, nv; /* grid points, including the frame of SECTION_EDGE around them */
     double du, dv;
     int *label;
-    int edges;               /* how many; horizontal ones first */
+    int edges;               /* number of edges; horizontal ones first */
     section_point *crossing; /* by edge, then by junction */
     int junctions, junction_capacity;
-    int (*at)[2]; /* by edge: the pieces that end there, -1 for none */
+    int (*at)[2]; /* by edge: the pieces that end on it, -1 for none */
     piece *pieces;
     size_t piece_count, piece_capacity;
     bool failed; /* out of memory */
@@ -31,13 +30,13 @@ typedef struct cutter {
 
 void section_add_point(cutter *c, section_point at);
 
-/* Where medium `own`, which is at a and not at b, ends. */
+/* The end of medium `own` between a, which is in it, and b, which is not. */
 section_point section_bisect(const cutter *c, section_point a, section_point b, int own);
 
-/* Adds the pieces of boundary in the cell with its low corner at grid point i, j. */
+/* Adds the pieces of boundary in the cell whose low corner is grid point i, j. */
 void section_march(cutter *c, int i, int j);
 
-/* Makes lines of all pieces. */
+/* Joins all pieces into lines. */
 void section_chain_all(cutter *c);
 
 static inline int medium_at(const cutter *c, section_point at)

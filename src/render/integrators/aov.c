@@ -1,14 +1,14 @@
-/* Layers of what camera rays meet first ("arbitrary output variables", as renderers' hosts call them): one ray through
- * the middle of each pixel, to the nearest interface, and of the point there
- *   normal    the unit normal against the ray, of a smooth mesh the interpolated one
+/* Layers of camera rays' first hits ("arbitrary output variables", AOVs): one ray through the middle of each pixel, to
+ * the nearest interface, with these values of the hit point:
+ *   normal    the unit normal towards the ray, interpolated on a smooth mesh
  *   albedo    the surface's colour C, with its checker and texture; linear RGB
  *   depth     the distance along the ray, scene units
- *   solid     the solid whose surface it is: 1 for the first of the scene
- *   material  1 for the scene's first; of a surface that is none of them their number and the solid's
+ *   solid     the solid whose surface was hit: 1 for the first of the scene
+ *   material  1 for the scene's first; a solid's own surface has the number of materials plus the solid's number
  *   position  the point, scene units
- * and 0 in all of them where nothing is met. The film shows one of them, render.layer, as a display would: normals as
- * (n + 1) / 2, as normal maps do; depths d as s / (s + d), with s how far solids are away, and positions likewise, 1/2
- * at 0; numbers by colours that keep apart. */
+ * and 0 in all of them for a miss. The film shows one of them, render.layer, as an image: normals as (n + 1) / 2, as
+ * normal maps do; depths d as s / (s + d), with s the mean distance of the solids, and positions likewise, 1/2 at 0;
+ * numbers as distinct colours. */
 #include "render/shade/shading.h"
 
 #include "geometry/shapes/shape.h"
@@ -22,7 +22,7 @@ static camera_sampling one_ray(const render_settings *r)
     return (camera_sampling){.rays = 1, .points = 1, .together = 1};
 }
 
-/* --- what a frame keeps: the length that views of lengths are relative to --- */
+/* --- state of a frame: the length scale of depth and position views --- */
 
 static status prepare(const plan *p, void **frame, diagnostic *why)
 {
@@ -42,14 +42,14 @@ static status prepare(const plan *p, void **frame, diagnostic *why)
     return STATUS_OK;
 }
 
-/* --- views: linear light that a display shows as the number meant --- */
+/* --- views: linear light whose sRGB encoding is the intended value --- */
 
 static double shown(double share)
 {
     return srgb_decode(share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share);
 }
 
-/* Hues a golden section of the circle apart: no two near numbers look alike. */
+/* Hues that differ by a golden section of the circle: numbers close to each other get distinct colours. */
 static vec3 color_of(double number)
 {
     const double turns = 0.618033988749895 * number, hue = 6.0 * (turns - floor(turns));
@@ -105,7 +105,7 @@ static void shade(tracer *t, int depth, int priority_index)
 {
     const group *g = &t->surface.gathered;
     const layer_rule show = (layer_rule)t->target.frame_plan->render.layer;
-    const double *scale = t->target.kept;
+    const double *scale = t->target.state;
     (void)depth;
     for (int layer = 0; layer < LAYER_COUNT; layer++) {
         if (!t->target.layers && layer != (int)show)
@@ -122,7 +122,7 @@ static void shade(tracer *t, int depth, int priority_index)
     }
 }
 
-/* Nothing is met: all stays 0. */
+/* A miss: all values stay 0. */
 static void leave_empty(tracer *t, const ray_queue *q, int first, const int *list, int count)
 {
     (void)t, (void)q, (void)first, (void)list, (void)count;
@@ -132,6 +132,6 @@ const integrator integrator_of_aov = {.traced = true,
                                       .sampling = one_ray,
                                       .prepare = prepare,
                                       .release = free,
-                                      .meet = meet_nearest,
+                                      .intersect = intersect_nearest,
                                       .background = leave_empty,
                                       .shade = shade};

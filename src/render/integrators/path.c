@@ -1,14 +1,14 @@
-/* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is drawn by chance,
- * weighed so that the mean over all paths is the whole tree's. What stands for the light's way:
- *   a clear surface  reflects or refracts with Fresnel's shares as odds, so that the weight does not change;
- *   a matte surface  is lit by every light, at a point of the light's sphere drawn evenly over the cone in which it is
- *                    seen (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting
- *                    Calculations", TOG 15(1), 1996), and sends the path on by the cosine law, or like a
- *                    mirror by its reflectivity.
- * A sphere that shines is met by rays from the eye and from clear or mirror-like surfaces alone: matte ones have looked
- * for it already. That is how light through a vessel makes caustics. Beside a sphere, points of light too are blocked
- * by clear solids. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as
- * bright as in Phong's sum. Ambient light is left out: here it is what the sky and the other surfaces send. */
+/* Path tracing (Kajiya, "The Rendering Equation", SIGGRAPH 1986): at each surface one continuation is sampled at
+ * random, weighted so that the mean over all paths is that of the whole tree. Sampling by surface:
+ *   a clear surface  reflects or refracts with Fresnel's weights as probabilities, so the throughput stays the same;
+ *   a matte surface  is lit by every light, at a point of the light's sphere sampled uniformly over the cone of
+ *                    directions to it (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting
+ *                    Calculations", TOG 15(1), 1996), and continues the path by the cosine law, or like a mirror
+ *                    with its reflectivity.
+ * Only rays from the camera and from specular surfaces hit light spheres: matte surfaces have sampled them directly.
+ * This is how light through a vessel makes caustics. In a scene with light spheres, clear solids block point lights
+ * too. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as bright as in
+ * Phong's model. There is no ambient term: light from the sky and from other surfaces replaces it. */
 #include "render/shade/shading.h"
 
 #include "base/elementary.h"
@@ -16,11 +16,11 @@
 #include "render/core/draw.h"
 #include <string.h>
 
-/* Below this depth every path goes on; after it faint ones end by chance. */
+/* Below this depth every path continues; from it on faint paths end by Russian roulette. */
 enum { ROULETTE_DEPTH = 3 };
 
-/* Radiance that a ray along a unit vector meets on a light's sphere, for a colour of 1. Of a cone each point of the
- * sphere shines into the cone alone, so that far away it is the cone of a point. */
+/* Radiance of a light's sphere towards a ray along a unit vector, for a colour of 1. For a cone light each point of the
+ * sphere emits only into the cone, so that from far away it is the cone of a point. */
 static double radiance_along(const plan *p, int lamp, vec3 direction)
 {
     const light *l = &p->lights[lamp];
@@ -37,19 +37,19 @@ static vec3 light_color(const tracer *t, int lamp, int64_t sample_key)
     return vec3_make(radiance, radiance, radiance);
 }
 
-/* Distance to a sphere that the ray runs into from outside, or HUGE_VAL. */
+/* Distance at which the ray hits the sphere from outside, or HUGE_VAL. */
 static double distance_to_light(const light *l, vec3 origin, vec3 direction)
 {
-    const vec3 way = vec3_sub(l->position, origin);
-    const double along = vec3_dot(way, direction);
-    const vec3 across = vec3_sub(way, vec3_scale(direction, along));
+    const vec3 to_light = vec3_sub(l->position, origin);
+    const double along = vec3_dot(to_light, direction);
+    const vec3 across = vec3_sub(to_light, vec3_scale(direction, along));
     const double discriminant = l->radius * l->radius - vec3_dot(across, across);
-    if (!(discriminant > 0.0) || vec3_dot(way, way) <= l->radius * l->radius || along <= 0.0)
+    if (!(discriminant > 0.0) || vec3_dot(to_light, to_light) <= l->radius * l->radius || along <= 0.0)
         return (double)HUGE_VAL;
     return along - sqrt(discriminant);
 }
 
-/* What a ray went through ends at the light. */
+/* Clips the medium segments of a ray at the light. */
 static void clip_segments(medium_segments *w, int ray, double end)
 {
     double start = 0.0;
@@ -63,7 +63,7 @@ static void clip_segments(medium_segments *w, int ray, double end)
     }
 }
 
-/* Rays that end at a light's sphere are marked by its number in hits.crossed. */
+/* Rays that end at a light's sphere have its number encoded in hits.hit_primitive. */
 static int64_t mark_of(int lamp)
 {
     return -2 - lamp;
@@ -74,12 +74,12 @@ static int lamp_of(int64_t hit_primitive)
     return (int)(-2 - hit_primitive);
 }
 
-static void meet_lights(tracer *t, const ray_queue *q, int first, int i)
+static void intersect_lights(tracer *t, const ray_queue *q, int first, int i)
 {
     const plan *p = t->target.frame_plan;
     const int at = first + i;
     double nearest = t->batch.hits.t[i];
-    int met = -1;
+    int nearest_lamp = -1;
     for (int k = 0; k < p->light_count && q->sample_key[at] & SAMPLE_KEY_SPECULAR_BOUNCE; k++) {
         if (p->lights[k].radius == 0.0)
             continue;
@@ -87,20 +87,20 @@ static void meet_lights(tracer *t, const ray_queue *q, int first, int i)
         const double distance = distance_to_light(&p->lights[k], origin, vec3_make(q->dx[at], q->dy[at], q->dz[at]));
         if (distance < nearest) {
             nearest = distance;
-            met = k;
+            nearest_lamp = k;
         }
     }
-    if (met < 0)
+    if (nearest_lamp < 0)
         return;
-    t->batch.hits.hit_primitive[i] = mark_of(met);
+    t->batch.hits.hit_primitive[i] = mark_of(nearest_lamp);
     clip_segments(t->batch.scratch.segments, i, nearest);
 }
 
-static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+static void intersect(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
-    meet_nearest(t, q, first, depth, rays);
+    intersect_nearest(t, q, first, depth, rays);
     for (int i = 0; i < rays->count; i++)
-        meet_lights(t, q, first, i);
+        intersect_lights(t, q, first, i);
 }
 
 static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int priority_index)
@@ -117,15 +117,15 @@ static void expose_background(tracer *t, const ray_queue *q, int first, const in
 {
     for (int k = 0; k < count; k++) {
         const int i = list[k];
-        const int64_t met = t->batch.hits.hit_primitive[i];
-        if (met == -1)
+        const int64_t hit = t->batch.hits.hit_primitive[i];
+        if (hit == -1)
             background_sky(t, q, first, &i, 1);
         else
-            expose_light(t, q, first + i, lamp_of(met), (int)t->batch.hits.before[i]);
+            expose_light(t, q, first + i, lamp_of(hit), (int)t->batch.hits.before[i]);
     }
 }
 
-/* A unit vector at the angle whose cosine and sine are given, about an axis. */
+/* A unit vector at an angle from the axis, given by its cosine and sine; turn: azimuth as a share of a full turn. */
 static vec3 direction_about(vec3 axis, double cosine, double sine, double turn)
 {
     vec3 x, y;
@@ -136,28 +136,30 @@ static vec3 direction_about(vec3 axis, double cosine, double sine, double turn)
     return vec3_normalize(vec3_add(vec3_scale(axis, cosine), across));
 }
 
-/* A shadow ray from record k of the group to a point of a light's sphere, drawn by chance. */
-static void look_for_light(tracer *t, int k, const material *m, bool opaque, int lamp, int depth)
+/* Enqueues a shadow ray from record k of the group to a random point of a light's sphere. */
+static void sample_light(tracer *t, int k, const material *m, bool opaque, int lamp, int depth)
 {
     const plan *p = t->target.frame_plan;
     const group *g = &t->surface.gathered;
     const light *l = &p->lights[lamp];
     const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
-    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]), way = vec3_sub(l->position, point);
-    const double distance2 = vec3_dot(way, way), share2 = l->radius * l->radius / distance2;
+    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]),
+               to_light = vec3_sub(l->position, point);
+    const double distance2 = vec3_dot(to_light, to_light), share2 = l->radius * l->radius / distance2;
     if (share2 >= 1.0)
         return;
-    /* 1 - least_cos, without its cancellation. */
+    /* cap = 1 - least_cos, without cancellation. */
     const double least_cos = sqrt(1.0 - share2), cap = share2 / (1.0 + least_cos);
     const random_words drawn = draw(p->render.seed, g->sample_key[k], depth, DRAW_LIGHT + lamp);
     const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
-    const vec3 to = direction_about(vec3_scale(way, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
+    const vec3 to =
+        direction_about(vec3_scale(to_light, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
     const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to),
                  within = l->radius * l->radius - distance2 * sine * sine;
     if (!(n_l > 0.0) || radiance == 0.0 || !mesh_lets_out(t, k, to))
         return;
     const double reach = sqrt(distance2) * cosine - sqrt(within > 0.0 ? within : 0.0);
-    /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)); Phong's highlight by the same light. */
+    /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)), plus Phong's highlight from the same light. */
     const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
     const double r_v = 2.0 * n_l * g->points.cos_i[k] + vec3_dot(d, to);
     const double shine = opaque && m->specular > 0.0 && r_v > 0.0
@@ -175,7 +177,7 @@ static void look_for_light(tracer *t, int k, const material *m, bool opaque, int
     q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k], q->inside[at] = g->inside_before[k];
 }
 
-/* A continuation: where to, through which media, with which share of each channel. */
+/* The continuation of a path: direction, throughput factor by channel, and media. */
 typedef struct continuation {
     vec3 direction, share;
     uint64_t inside;
@@ -221,7 +223,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
     return mesh_lets_out(t, k, c->direction);
 }
 
-/* Ends a faint path by chance; the others carry its weight. */
+/* Russian roulette: ends a faint path at random; the survivors take over its weight. */
 static bool survives(const tracer *t, int k, int depth, vec3 *share)
 {
     const render_settings *r = &t->target.frame_plan->render;
@@ -281,26 +283,27 @@ static void shade(tracer *t, int depth, int priority_index)
     const plan *p = t->target.frame_plan;
     const material *m = &t->surface.mat->surface;
     const bool opaque = surface_is_opaque(t, priority_index), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
-    local_light(t, priority_index, (light_terms){.highlights = true}); /* of points; spheres follow */
+    local_light(t, priority_index, (light_terms){.highlights = true}); /* of point lights; spheres follow */
     radiance_weigh(t);
     for (int k = 0; lit && k < t->surface.gathered.count; k++)
         for (int lamp = 0; lamp < p->light_count; lamp++)
             if (p->lights[lamp].radius > 0.0)
-                look_for_light(t, k, m, opaque, lamp, depth);
+                sample_light(t, k, m, opaque, lamp, depth);
     radiance_weigh_back(t);
     shading_branches(t, opaque);
     for (int k = 0; k < t->surface.gathered.count; k++)
         continue_one(t, m, opaque, k, depth);
 }
 
-/* Fewer points where there are fewer paths than samples: the first lines of the grid alone would move the picture. */
+/* Uses fewer sample points if there are fewer paths than samples: with only the first rows of the grid the image would
+ * shift. */
 static camera_sampling paths_of(const render_settings *r)
 {
     const int64_t points = r->paths < r->samples ? r->paths : r->samples;
     return (camera_sampling){.rays = r->paths, .points = points, .together = 1, .marks = SAMPLE_KEY_SPECULAR_BOUNCE};
 }
 
-/* As many as there can be. Each has all of the pixel's points. */
+/* The largest possible number of shares. Each covers all sample points of the pixel. */
 static int shares(const render_settings *r)
 {
     int count = r->paths % r->samples == 0 ? FILM_SHARES_MAX : 1;
@@ -313,6 +316,6 @@ const integrator integrator_of_path = {.traced = true,
                                        .by_sample = true,
                                        .sampling = paths_of,
                                        .shares = shares,
-                                       .meet = meet,
+                                       .intersect = intersect,
                                        .background = expose_background,
                                        .shade = shade};

@@ -1,5 +1,5 @@
-/* Ray casting (Appel, "Some techniques for shading machine renderings of solids", AFIPS 1968): the local light of what
- * camera rays meet, with its shadows. No ray goes on. */
+/* Ray casting (Appel, "Some techniques for shading machine renderings of solids", AFIPS 1968): the local light of
+ * camera rays' hits, with shadows. No secondary rays. */
 #include "render/shade/shading.h"
 
 static void shade(tracer *t, int depth, int priority_index)
@@ -8,5 +8,8 @@ static void shade(tracer *t, int depth, int priority_index)
     local_light(t, priority_index, light_terms_of(&t->target.frame_plan->render));
 }
 
-const integrator integrator_of_raycast = {
-    .traced = true, .sampling = camera_samples, .meet = meet_nearest, .background = background_sky, .shade = shade};
+const integrator integrator_of_raycast = {.traced = true,
+                                          .sampling = camera_samples,
+                                          .intersect = intersect_nearest,
+                                          .background = background_sky,
+                                          .shade = shade};

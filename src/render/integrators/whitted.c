@@ -1,5 +1,5 @@
-/* Whitted's recursion ("An improved illumination model for shaded display", CACM 23(6), 1980): Phong's local light, and
- * where render.lighting follows them both branches of each ray, reflected and refracted, with their weights. */
+/* Whitted's recursion ("An improved illumination model for shaded display", CACM 23(6), 1980): Phong's local light,
+ * and, if render.lighting enables them, both branches of each ray, reflected and refracted, with their weights. */
 #include "render/shade/shading.h"
 
 static void branch(tracer *t, int depth, bool opaque)
@@ -13,8 +13,8 @@ static void branch(tracer *t, int depth, bool opaque)
         cut_branches(t);
         return;
     }
-    const int reflected = put_children_in_line(t, depth + 1, b->rx, b->ry, b->rz, b->reflect, g->inside_before);
-    const int refracted = put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
+    const int reflected = enqueue_children(t, depth + 1, b->rx, b->ry, b->rz, b->reflect, g->inside_before);
+    const int refracted = enqueue_children(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
     COUNT(t->account.counters.reflect += (uint64_t)reflected);
     COUNT(t->account.counters.refract += (uint64_t)refracted);
 }
@@ -27,5 +27,8 @@ static void shade(tracer *t, int depth, int priority_index)
         branch(t, depth, surface_is_opaque(t, priority_index));
 }
 
-const integrator integrator_of_whitted = {
-    .traced = true, .sampling = camera_samples, .meet = meet_nearest, .background = background_sky, .shade = shade};
+const integrator integrator_of_whitted = {.traced = true,
+                                          .sampling = camera_samples,
+                                          .intersect = intersect_nearest,
+                                          .background = background_sky,
+                                          .shade = shade};

@@ -1,5 +1,6 @@
-/* The preview by a depth buffer (render/zbuffer): what it shows at the tracer's camera rays is shaded as if they had
- * been traced there. Its pre-pass takes the triangles into the picture; each piece is drawn before its rays set out. */
+/* The z-buffer preview: the surfaces that the depth buffer (render/zbuffer) shows at the tracer's camera rays are
+ * shaded as if they had been traced. Its pre-pass projects the triangles into the image; each piece is rasterised
+ * before its rays start. */
 #include "render/shade/shading.h"
 #include "render/zbuffer/zbuffer_private.h"
 
@@ -7,15 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One worker's: a square of the depth buffer, and of each ray of the batch the point of the grid and the triangle
+/* One worker's data: a square of the depth buffer, and for each ray of the batch its grid point and the triangle
  * there. */
 typedef struct raster_work {
     zbuffer_square square;
     int x[ROW], y[ROW];
     uint32_t number[ROW];
-    bool straight[ROW];               /* it meets a curved surface and looks straight on */
-    double vx[ROW], vy[ROW], vz[ROW]; /* and the straight view's direction there, of a frame with layers */
-    vec3 at[ROW]; /* of the gathered group: where a texture is looked up that runs straight across the picture */
+    bool straight[ROW];               /* it hits a curved surface along the undeflected view */
+    double vx[ROW], vy[ROW], vz[ROW]; /* direction of the undeflected view, in a frame with layers */
+    vec3 at[ROW];                     /* of the gathered group: points of affine texture lookup */
 } raster_work;
 
 static bool begin(tracer *t)
@@ -35,13 +36,13 @@ static void end(void *own)
 
 static void draw_piece(tracer *t, const span *piece)
 {
-    zbuffer_draw(t->target.kept, piece, &((raster_work *)t->own)->square);
+    zbuffer_draw(t->target.state, piece, &((raster_work *)t->own)->square);
 }
 
-/* The point of the grid that a ray goes through. */
+/* The grid point of a ray. */
 static size_t point_of(const zbuffer *z, int64_t sample_key, int *x, int *y)
 {
-    /* Short divisions are faster. */
+    /* 32-bit divisions are faster. */
     const uint32_t pixel = (uint32_t)sample_key_pixel(sample_key), sample = (uint32_t)sample_key_sample(sample_key);
     const uint32_t points = (uint32_t)z->points, width = (uint32_t)z->frame_plan->render.width;
     const uint32_t row = pixel / width, line = points == 1 ? 0 : sample / points;
@@ -50,23 +51,23 @@ static size_t point_of(const zbuffer *z, int64_t sample_key, int *x, int *y)
     return (size_t)*y * (size_t)z->width + (size_t)*x;
 }
 
-typedef struct met {
+typedef struct raster_hit {
     double t, u, v;
     bool leaving;
-} met;
+} raster_hit;
 
-static met met_plane(const primitive *p, const camera_frame *view, vec3 d)
+static raster_hit hit_plane(const primitive *p, const camera_frame *view, vec3 d)
 {
     const vec3 n = vec3_make(p->rotation.row[0].y, p->rotation.row[1].y, p->rotation.row[2].y);
     const double along = vec3_dot(n, d);
-    return (met){.t = vec3_dot(n, vec3_sub(p->origin, view->eye)) / along, .leaving = along > 0.0};
+    return (raster_hit){.t = vec3_dot(n, vec3_sub(p->origin, view->eye)) / along, .leaving = along > 0.0};
 }
 
-/* Weights of the corners under the ray: what interpolating u / w, v / w and 1 / w across the picture comes to (Heckbert
- * and Moreton, "Interpolation for polygon texture mapping and shading", 1991), by the ray instead of the picture
- * because corners may be behind the eye (Moller and Trumbore, JGT 2(1), 1997). A ray that misses by what corners were
- * rounded takes the nearest edge. */
-static met met_triangle(const rasterised_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
+/* Barycentric weights of the ray's hit: equal to interpolating u / w, v / w and 1 / w over the image (Heckbert and
+ * Moreton, "Interpolation for polygon texture mapping and shading", 1991), but computed from the ray because corners
+ * may be behind the camera (Moller and Trumbore, JGT 2(1), 1997). A ray that misses because corners were rounded takes
+ * the nearest edge. */
+static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *s, const camera_frame *view, vec3 d)
 {
     const mesh_triangle tri = p->at.triangles->triangles[s->triangle];
     const vec3 o = vec3_sub(instance_set_origin(&p->at, s->copy), view->eye);
@@ -76,7 +77,7 @@ static met met_triangle(const rasterised_part *p, const screen_triangle *s, cons
     const vec3 h = vec3_cross(d, ac), q = vec3_cross(ab, a);
     const double size = vec3_dot(ab, h);
     double u = -vec3_dot(a, h) / size, v = vec3_dot(d, q) / size;
-    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen from its edge */
+    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen edge-on */
         u = v = 1.0 / 3.0;
     if (u < 0.0 || v < 0.0 || u + v > 1.0) {
         const double w = greater(1.0 - u - v, 0.0);
@@ -85,14 +86,14 @@ static met met_triangle(const rasterised_part *p, const screen_triangle *s, cons
         u /= sum, v /= sum;
     }
     const vec3 at = vec3_add(a, vec3_add(vec3_scale(ab, u), vec3_scale(ac, v)));
-    return (met){vec3_dot(at, d), u, v, size < 0.0};
+    return (raster_hit){vec3_dot(at, d), u, v, size < 0.0};
 }
 
-/* The same by the plane of inverse depths, where neither weights nor sides are wanted. */
-static met met_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
+/* The distance from the plane of inverse depths, if neither weights nor sides are needed. */
+static raster_hit hit_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
 {
     const double near = lesser(greater(s->a * (x + 0.5) + (s->b * (y + 0.5) + s->c), s->least), s->most);
-    return (met){.t = 1.0 / (near * vec3_dot(z->frame_plan->view.forward, d))};
+    return (raster_hit){.t = 1.0 / (near * vec3_dot(z->frame_plan->view.forward, d))};
 }
 
 static void note_nothing(tracer *t, int i)
@@ -102,33 +103,33 @@ static void note_nothing(tracer *t, int i)
     t->batch.hits.surface[i] = 0;
 }
 
-static met met_by(const zbuffer *z, const screen_triangle *s, vec3 d)
+static raster_hit hit_part(const zbuffer *z, const screen_triangle *s, vec3 d)
 {
     const rasterised_part *p = &z->parts[s->part];
-    return p->plane ? met_plane(&z->frame_plan->geometry->primitives[p->met], &z->frame_plan->view, d)
-                    : met_triangle(p, s, &z->frame_plan->view, d);
+    return p->plane ? hit_plane(&z->frame_plan->geometry->primitives[p->primitive], &z->frame_plan->view, d)
+                    : hit_triangle(p, s, &z->frame_plan->view, d);
 }
 
-static void note_hit(tracer *t, int i, const screen_triangle *s, met m)
+static void note_hit(tracer *t, int i, const screen_triangle *s, raster_hit m)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const rasterised_part *p = &z->parts[s->part];
-    const primitive *surface = &z->frame_plan->geometry->primitives[p->met];
+    const primitive *surface = &z->frame_plan->geometry->primitives[p->primitive];
     hit_batch *h = &t->batch.hits;
     h->t[i] = m.t;
-    h->hit_primitive[i] = p->met;
+    h->hit_primitive[i] = p->primitive;
     h->surface[i] = h->after[i] = surface->priority_index;
-    h->inside_before[i] = m.leaving ? (uint64_t)1 << p->met : 0;
+    h->inside_before[i] = m.leaving ? (uint64_t)1 << p->primitive : 0;
     if (surface->rule)
         return;
-    const int64_t face = mesh_face_number(p->met, s->copy, s->triangle);
+    const int64_t face = mesh_face_number(p->primitive, s->copy, s->triangle);
     t->meshes->scratch.hit[i] = (instance_hit){m.t, m.u, m.v, face, m.leaving ? FACING_BACK : FACING_FRONT};
 }
 
-/* The straight views of a batch, whose directions may be bent: through the points of the grid. */
-static void straight_views(tracer *t, int count)
+/* The undeflected view directions through the grid points of a batch whose rays may be refracted. */
+static void undeflected_views(tracer *t, int count)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const camera_frame *view = &z->frame_plan->view;
     raster_work *w = t->own;
     const double across = 1.0 / z->units_x, down = 1.0 / z->units_y;
@@ -140,7 +141,7 @@ static void straight_views(tracer *t, int count)
     t->shade->camera(view, count, u, v, w->vx, w->vy, w->vz);
 }
 
-/* A camera ray's own direction. */
+/* The view directions of camera rays are their own. */
 static void first_views(tracer *t, const ray_batch *rays)
 {
     const size_t bytes = (size_t)rays->count * sizeof(double);
@@ -148,7 +149,7 @@ static void first_views(tracer *t, const ray_batch *rays)
     memcpy(w->vx, rays->dx, bytes), memcpy(w->vy, rays->dy, bytes), memcpy(w->vz, rays->dz, bytes);
 }
 
-/* The straight way to a layer goes through one medium, which takes its share of the light. */
+/* Attenuates a ray by the one medium on the straight segment to a layer. */
 static void dim(const plan *p, ray_queue *q, int at, int priority_index, double length)
 {
     if (priority_index == 0 || !p->geometry->regions[priority_index].attenuates)
@@ -163,23 +164,23 @@ static const rasterised_layer *layer_at(const zbuffer *z, uint32_t place)
     return &z->blocks[place / BLOCK_LAYERS][place % BLOCK_LAYERS];
 }
 
-static inline met met_layer(const tracer *t, int i, const rasterised_layer *l)
+static inline raster_hit hit_layer(const tracer *t, int i, const rasterised_layer *l)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const raster_work *w = t->own;
     const screen_triangle *s = &z->triangles[l->number - 1];
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
-    met m = l->ends || !z->parts[s->part].own ? met_by(z, s, view) : met_depth(z, s, w->x[i], w->y[i], view);
+    raster_hit m = l->ends || !z->parts[s->part].own ? hit_part(z, s, view) : hit_depth(z, s, w->x[i], w->y[i], view);
     m.leaving = l->ends ? m.leaving : l->leaving;
     return m;
 }
 
-/* The ray number `at` meets the next interface of its point's list, at `place` or behind what is passed: where the
- * straight view does, but along its own direction, as if it had set out towards that point. Where its list goes on it
- * takes along as its set. */
+/* Records the hit of ray `at` on the next interface of its point's list, at `place` or behind layers that are no
+ * interface: at the point of the undeflected view, but along the ray's own direction, as if it had started towards that
+ * point. The position in the list is stored as its set of primitives. */
 static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const plan *p = z->frame_plan;
     const rasterised_layer *l = layer_at(z, place);
     raster_work *w = t->own;
@@ -187,18 +188,18 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     double passed = vec3_dot(vec3_sub(vec3_make(q->ox[at], q->oy[at], q->oz[at]), p->view.eye), view);
     w->straight[i] = false;
     for (; l->passed; l = layer_at(z, ++place)) {
-        const double end = greater(met_layer(t, i, l).t, passed);
+        const double end = greater(hit_layer(t, i, l).t, passed);
         dim(p, q, at, l->before, end - passed);
         passed = end;
     }
     w->number[i] = l->number - 1;
     if (l->number == 0) {
-        const double for_ever = 1e100;
+        const double infinite_length = 1e100;
         note_nothing(t, i);
-        dim(p, q, at, l->before, for_ever);
+        dim(p, q, at, l->before, infinite_length);
         return;
     }
-    met m = met_layer(t, i, l);
+    raster_hit m = hit_layer(t, i, l);
     const vec3 point = vec3_add(p->view.eye, vec3_scale(view, m.t));
     const double length = greater(m.t - passed, 0.0);
     const screen_triangle *s = &z->triangles[l->number - 1];
@@ -216,9 +217,9 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     dim(p, q, at, l->before, length);
 }
 
-static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+static void find_hits(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     raster_work *w = t->own;
     uint32_t seen[ROW];
     for (int i = 0; i < rays->count; i++)
@@ -226,7 +227,7 @@ static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch 
     if (depth == 0)
         first_views(t, rays);
     else
-        straight_views(t, rays->count);
+        undeflected_views(t, rays->count);
     for (int i = 0; i < rays->count; i++) {
         t->batch.hits.before[i] = t->batch.hits.after[i] = 0;
         t->batch.hits.inside_before[i] = t->batch.hits.inside_after[i] = 0;
@@ -240,21 +241,21 @@ static void meet(tracer *t, ray_queue *q, int first, int depth, const ray_batch 
         w->straight[i] = false;
         if (seen[i]) {
             const screen_triangle *s = &z->triangles[seen[i] - 1];
-            note_hit(t, i, s, met_by(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
+            note_hit(t, i, s, hit_part(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
         } else {
             note_nothing(t, i);
         }
     }
 }
 
-/* At a curved surface the straight view does not meet what a bent ray would: where it leaves a ball near its outline,
- * the normal is another than where the ray does, and light that came in would not get out. So the view is bent there as
- * between the surface and one like it that it came in by: the part along the surface is as n sin is, the same in all
- * layers. */
+/* At a curved surface the undeflected view does not hit the point that a refracted ray would: where it leaves a ball
+ * near its outline, the normal differs from the refracted ray's, and light that entered could not leave. The view is
+ * therefore refracted there as if it had entered through a parallel surface: the tangential component follows from n
+ * sin, which is the same in all layers. */
 static void bend(tracer *t, const int *list)
 {
     const raster_work *w = t->own;
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     group *g = &t->surface.gathered;
     if (!z->layered || z->frame_plan->render.transmission == TRANSMISSION_SIMPLE)
         return;
@@ -273,8 +274,8 @@ static void bend(tracer *t, const int *list)
     }
 }
 
-/* Weights straight across the picture, of the polygon that the planes left: not what they are in space, unless all
- * corners are equally far. */
+/* Affine weights in the image, of the clipped polygon: they differ from the weights in space unless all corners are
+ * equally far. */
 static void straight_weights(const zbuffer *z, const screen_triangle *s, double x, double y, double weight[3])
 {
     clip_corner polygon[POLYGON_MAX];
@@ -306,10 +307,10 @@ static void straighten_uv(tracer *t, const rasterised_part *p, const screen_tria
     t->meshes->points.tu[k] = u, t->meshes->points.tv[k] = v;
 }
 
-/* A plane's corners are infinitely far, where no straight way leads to. */
+/* An infinite plane has no affine interpolation: its corners are at infinity. */
 static void straighten(tracer *t, const int *list)
 {
-    const zbuffer *z = t->target.kept;
+    const zbuffer *z = t->target.state;
     const surface_batch *points = &t->surface.gathered.points;
     raster_work *w = t->own;
     for (int k = 0; k < t->surface.gathered.count; k++) {
@@ -343,8 +344,8 @@ static void place(tracer *t, const int *list)
     t->surface.texture_at = w->at;
 }
 
-/* What a clear surface does with the view: the sky's light along the reflected direction, and on to the next layer with
- * what is left. */
+/* A clear surface adds the sky radiance of the reflected direction and continues to the next layer with the remaining
+ * weight. */
 static void branch(tracer *t, int depth)
 {
     const group *g = &t->surface.gathered;
@@ -358,7 +359,7 @@ static void branch(tracer *t, int depth)
         if (b->reflect[i] > 0.0)
             shading_expose_sky(t, g->sample_key[i], vec3_make(b->rx[i], b->ry[i], b->rz[i]), g->wr[i] * b->reflect[i],
                                g->wg[i] * b->reflect[i], g->wb[i] * b->reflect[i]);
-    put_children_in_line(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
+    enqueue_children(t, depth + 1, b->tx, b->ty, b->tz, b->refract, g->inside_after);
 }
 
 static void shade(tracer *t, int depth, int priority_index)
@@ -391,7 +392,7 @@ static status finish(void *frame, mesh_report *report, diagnostic *why)
 {
     report->drawn = zbuffer_triangles(frame);
     report->raster_bytes = zbuffer_bytes(frame);
-    return zbuffer_failed(frame) ? diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer clear solids",
+    return zbuffer_failed(frame) ? diagnose(why, STATUS_FAILURE, "render a smaller image or fewer clear solids",
                                             "out of memory for the layers of clear solids")
                                  : STATUS_OK;
 }
@@ -412,7 +413,7 @@ const integrator integrator_of_zbuffer = {.by_sample = true,
                                           .begin = begin,
                                           .end = end,
                                           .piece = draw_piece,
-                                          .meet = meet,
+                                          .intersect = find_hits,
                                           .background = background_sky,
                                           .place = place,
                                           .shade = shade};

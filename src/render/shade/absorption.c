@@ -6,7 +6,7 @@
 
 #define LOG2_E 1.4426950408889634074
 
-/* Coefficients of a rank, by channel; of a spectral film at the ray's wavelength. */
+/* Coefficients of a priority index, by channel; in a spectral film at the ray's wavelength. */
 static vec3 coefficients(const plan *p, int priority_index, int64_t sample_key)
 {
     if (!p->spectral)
@@ -20,7 +20,7 @@ double absorption_left(double optical_depth)
     return elementary_exp2_inline(-LOG2_E * optical_depth);
 }
 
-/* The stretches' optical depths, into kept. */
+/* Adds the optical depths of the segments to transmittance. */
 static void add_depths(tracer *t)
 {
     const plan *p = t->target.frame_plan;
@@ -30,21 +30,21 @@ static void add_depths(tracer *t)
         if (!p->geometry->regions[s->priority_index].attenuates)
             continue;
         const vec3 a = coefficients(p, s->priority_index, sample_keys[s->ray]);
-        t->media->kept[0][s->ray] += a.x * s->length;
-        t->media->kept[1][s->ray] += a.y * s->length;
-        t->media->kept[2][s->ray] += a.z * s->length;
+        t->media->transmittance[0][s->ray] += a.x * s->length;
+        t->media->transmittance[1][s->ray] += a.y * s->length;
+        t->media->transmittance[2][s->ray] += a.z * s->length;
     }
     t->batch.scratch.segments->count = 0;
 }
 
-/* A way to the sky is spared here too: it is as long as can be. */
+/* Called when the list is full. Paths to the sky are exempt here too; they are recognised by their length. */
 static void make_room(void *context)
 {
     tracer *t = context;
-    const double for_ever = 1e100;
+    const double infinite_length = 1e100;
     for (int k = 0; k < t->batch.scratch.segments->count; k++)
         if (t->batch.scratch.segments->segment[k].priority_index == 0 &&
-            t->batch.scratch.segments->segment[k].length > for_ever)
+            t->batch.scratch.segments->segment[k].length > infinite_length)
             t->batch.scratch.segments->segment[k].length = 0.0;
     add_depths(t);
 }
@@ -67,8 +67,9 @@ void absorption_announce(tracer *t, const int64_t *sample_keys, int count)
     t->media->sample_keys = sample_keys;
     t->batch.scratch.segments->full = make_room;
     t->batch.scratch.segments->context = t;
+    /* optical depths at first */
     for (int i = 0; i < count; i++)
-        t->media->kept[0][i] = t->media->kept[1][i] = t->media->kept[2][i] = 0.0; /* optical depths first */
+        t->media->transmittance[0][i] = t->media->transmittance[1][i] = t->media->transmittance[2][i] = 0.0;
 }
 
 static void absorption_shares(tracer *t, int count)
@@ -76,11 +77,12 @@ static void absorption_shares(tracer *t, int count)
     add_depths(t);
     for (int i = 0; i < count; i++)
         for (int c = 0; c < 3; c++)
-            t->media->kept[c][i] = t->media->kept[c][i] > 0.0 ? absorption_left(t->media->kept[c][i]) : 1.0;
+            t->media->transmittance[c][i] =
+                t->media->transmittance[c][i] > 0.0 ? absorption_left(t->media->transmittance[c][i]) : 1.0;
 }
 
-/* A way to the sky has no length to be dimmed over: its light is given where it arrives, at the surface that it goes on
- * from. */
+/* A path to the sky has no finite length: its light is taken to arrive unattenuated at the surface where the path
+ * starts. */
 void absorption_spare_sky(tracer *t)
 {
     const plan *p = t->target.frame_plan;
@@ -95,8 +97,8 @@ void absorption_dim(tracer *t, ray_queue *q, int first, int count)
 {
     absorption_shares(t, count);
     for (int i = 0; i < count; i++) {
-        q->wr[first + i] *= t->media->kept[0][i];
-        q->wg[first + i] *= t->media->kept[1][i];
-        q->wb[first + i] *= t->media->kept[2][i];
+        q->wr[first + i] *= t->media->transmittance[0][i];
+        q->wg[first + i] *= t->media->transmittance[1][i];
+        q->wb[first + i] *= t->media->transmittance[2][i];
     }
 }

@@ -1,4 +1,4 @@
-/* What the media that rays pass through leave of their light. Ownership: absorption_begin gives the tracer its memory,
+/* Absorption by the media that rays pass through. Ownership: absorption_begin allocates the tracer's memory,
  * absorption_end frees it. */
 #pragma once
 
@@ -7,16 +7,17 @@
 
 typedef struct media_work {
     medium_segments segments;
-    const int64_t *sample_keys; /* of the batch whose ways are noted */
-    double kept[3][ROW];        /* share of light that the way to the hit left, by channel */
+    const int64_t *sample_keys;   /* of the batch whose medium segments are recorded */
+    double transmittance[3][ROW]; /* transmittance of the path to the hit, by channel */
 } media_work;
 
-/* For a frame whose media absorb, if they do: false when memory is out. */
+/* Begins a frame; absorbs: some of its media absorb. False when out of memory. */
 bool absorption_begin(tracer *t, bool absorbs);
 void absorption_end(tracer *t);
 
-/* Before a batch is looked at, whose ways are then noted; of one that looked for its nearest interfaces, the
- * surroundings are spared on ways to the sky; and the batch dimmed. */
+/* absorption_announce: called before a batch is traced, turns on the recording of its medium segments.
+ * absorption_spare_sky: after a search for nearest interfaces, removes absorption by the surrounding medium from paths
+ * to the sky. absorption_dim: multiplies the batch's throughput by the transmittance. */
 void absorption_announce(tracer *t, const int64_t *sample_keys, int count);
 void absorption_spare_sky(tracer *t);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);

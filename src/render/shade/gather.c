@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* A group that is one stretch of the batch, as where a whole batch meets the ground. */
+/* A group that is contiguous in the batch, as when a whole batch hits the ground. */
 static void gather_segment(const ray_queue *q, int from, const hit_batch *hits, int i, group *g)
 {
     const size_t bytes = (size_t)g->count * sizeof(double);

@@ -1,6 +1,5 @@
-/* The cone that a light's light stays in: of a spotlight's `cone` all of it up to the half-angle a from the axis, of a
- * `soft_cone` a share that falls from 1 on the axis to 0 at the half-angle, linear in the cosine: (cos t - cos a) / (1
- * - cos a). Pure. */
+/* The cone of a spotlight: a `cone` emits all its light within the half-angle a from the axis, a `soft_cone` a share
+ * that falls from 1 on the axis to 0 at the half-angle, linear in the cosine: (cos t - cos a) / (1 - cos a). Pure. */
 #pragma once
 
 #include "base/elementary.h"
@@ -14,24 +13,24 @@ typedef struct light_cone {
     double opening; /* 1 - cos a */
 } light_cone;
 
-/* Of a light that is a cone and does not stand at its own target. 1 - cos a = 2 sin^2(a / 2), which does not cancel. */
+/* The cone of a cone light, which must not be at its own target. 1 - cos a = 2 sin^2(a / 2) avoids cancellation. */
 static inline light_cone light_cone_of(const light *l)
 {
     double sine, cosine;
     elementary_sincos_deg(0.5 * l->half_angle_deg, &sine, &cosine);
-    const bool all_around = l->kind == LIGHT_CONE && l->half_angle_deg == 180.0; /* whatever is rounded */
+    const bool all_around = l->kind == LIGHT_CONE && l->half_angle_deg == 180.0; /* whatever the rounding */
     return (light_cone){vec3_normalize(vec3_sub(l->target, l->position)), all_around ? 3.0 : 2.0 * sine * sine};
 }
 
-/* 1 - cos t of a direction from the light, a unit vector: half the square of what it is off the axis, which does not
- * cancel. */
+/* 1 - cos t of a direction from the light, a unit vector: half the squared distance from the axis, which avoids
+ * cancellation. */
 static inline double light_cone_off(const light_cone *c, vec3 direction)
 {
     const vec3 off = vec3_sub(direction, c->axis);
     return 0.5 * vec3_dot(off, off);
 }
 
-/* The share of the light that goes into a direction, 0..1. */
+/* The share of the light that is emitted in a direction, 0..1. */
 static inline double light_cone_share(const light_cone *c, bool soft, vec3 direction)
 {
     const double off = light_cone_off(c, direction);
@@ -39,7 +38,7 @@ static inline double light_cone_share(const light_cone *c, bool soft, vec3 direc
     return soft ? linear : hard;
 }
 
-/* The same of any light. */
+/* The same for any light. */
 static inline double light_share(const light *l, const light_cone *c, vec3 direction)
 {
     return l->kind == LIGHT_POINT ? 1.0 : light_cone_share(c, l->kind == LIGHT_SOFT_CONE, direction);

@@ -1,5 +1,5 @@
-/* Rays that met meshes: where, with which normal, and what a triangle that a normal only pretends to be curved lets
- * through. */
+/* Shading of rays that hit meshes: hit points, normals, and the correction for light that an interpolated normal would
+ * let through the triangle. */
 #include "render/shade/shading.h"
 
 #include "render/core/film.h"
@@ -50,7 +50,7 @@ bool mesh_lets_out(const tracer *t, int k, vec3 direction)
     return !t->surface.on_mesh || vec3_dot(geometric(t->meshes, k), direction) > 0.0;
 }
 
-/* No light reaches the ray's side of a triangle from behind it, whatever its normal. */
+/* No light from behind a triangle reaches the ray's side, whatever the shading normal. */
 void mesh_bound_light(tracer *t)
 {
     lit_group *l = &t->surface.lit;
@@ -58,12 +58,12 @@ void mesh_bound_light(tracer *t)
         if (mesh_lets_out(t, k, vec3_make(l->lx[k], l->ly[k], l->lz[k])))
             continue;
         l->r[k] = l->g[k] = l->b[k] = 0.0;
-        l->shows[k] = 0;
+        l->contributes[k] = 0;
     }
 }
 
-/* A reflected ray stays on its side of the triangle, a refracted one leaves it; where the interpolated normal sends the
- * refracted ray back, all of the light is reflected, as at total reflection. */
+/* A reflected ray must stay on its side of the triangle, and a refracted one must leave it; if the interpolated normal
+ * sends the refracted ray back, all light is reflected, as in total reflection. */
 void mesh_bound_branches(tracer *t)
 {
     branch_group *b = &t->surface.branches;
@@ -87,7 +87,7 @@ bool mesh_has_corner_light(const tracer *t, int priority_index)
     return t->surface.on_mesh && t->target.frame_plan->shading_materials[priority_index].shading == SHADING_GOURAUD;
 }
 
-/* The group as it would be if its rays met one corner of their triangles each. */
+/* The group as if each ray hit one corner of its triangle. */
 static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
 {
     group *c = &t->meshes->corner;
@@ -97,12 +97,12 @@ static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
         const uint32_t vertex = m->corner[corner][k];
         const vec3 at = instance_set_vertex_point(part, mesh_face_copy(g->points.face[k]), vertex),
                    o = vec3_make(g->ox[k], g->oy[k], g->oz[k]);
-        const vec3 side = geometric(t->meshes, k), way = vec3_sub(at, o);
+        const vec3 side = geometric(t->meshes, k), to_corner = vec3_sub(at, o);
         vec3 n = instance_set_vertex_normal(part, vertex);
         n = vec3_dot(n, n) > 0.0 ? n : side;
         n = vec3_dot(n, side) < 0.0 ? vec3_scale(n, -1.0) : n;
-        const double length = vec3_length(way);
-        const vec3 d = length > 0.0 ? vec3_scale(way, 1.0 / length) : vec3_make(g->dx[k], g->dy[k], g->dz[k]);
+        const double length = vec3_length(to_corner);
+        const vec3 d = length > 0.0 ? vec3_scale(to_corner, 1.0 / length) : vec3_make(g->dx[k], g->dy[k], g->dz[k]);
         c->points.px[k] = at.x, c->points.py[k] = at.y, c->points.pz[k] = at.z;
         c->points.nx[k] = n.x, c->points.ny[k] = n.y, c->points.nz[k] = n.z;
         c->points.cos_i[k] = -vec3_dot(d, n) > 1e-12 ? -vec3_dot(d, n) : 1e-12;
@@ -110,8 +110,8 @@ static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
     }
 }
 
-/* Gouraud, "Continuous shading of curved surfaces" (1971): light at a triangle's corners, and between them by their
- * weights. Shadows are the point's own. */
+/* Gouraud, "Continuous shading of curved surfaces" (1971): light at a triangle's corners, interpolated by the weights
+ * of the point. Shadows are those of the point itself. */
 void mesh_corner_light(tracer *t, const material *m, const light *lamp, int priority_index)
 {
     mesh_work *w = t->meshes;
@@ -120,7 +120,7 @@ void mesh_corner_light(tracer *t, const material *m, const light *lamp, int prio
     const instance_set *f = t->target.frame_plan->geometry->meshes;
     const instanced_mesh *part =
         &f->parts[f->by_primitive[t->target.frame_plan->geometry->regions[priority_index].outside]];
-    t->shade->direct(m, lamp, g, l); /* for the ways to the light */
+    t->shade->direct(m, lamp, g, l); /* for the vectors to the light */
     for (int k = 0; k < g->count; k++)
         l->r[k] = l->g[k] = l->b[k] = 0.0;
     w->corner = *g;
@@ -140,7 +140,7 @@ void mesh_corner_light(tracer *t, const material *m, const light *lamp, int prio
     }
     const double least = 0.5 / FILM_ONE;
     for (int k = 0; k < g->count; k++)
-        l->shows[k] = -(int64_t) !(l->r[k] < least && l->g[k] < least && l->b[k] < least);
+        l->contributes[k] = -(int64_t) !(l->r[k] < least && l->g[k] < least && l->b[k] < least);
 }
 
 static int slot_of(const tracer *t, int i)
@@ -153,7 +153,8 @@ static int slot_of(const tracer *t, int i)
     return m->slots ? m->slots[mesh_face_triangle(face)] : 0;
 }
 
-/* Brings those that look like the first one to the front of the list, each part in its order; returns how many. */
+/* Moves the rays with the material slot of the first one to the front of the list, both parts in order; returns their
+ * number. */
 int mesh_next_material(const tracer *t, int *list, int count, int *slot)
 {
     int others[BATCH], alike = 0, left = 0;

@@ -1,4 +1,4 @@
-/* Rays that met meshes. Ownership: mesh_begin gives the tracer its memory, mesh_end frees it. */
+/* Shading of rays that hit meshes. Ownership: mesh_begin allocates the tracer's memory, mesh_end frees it. */
 #pragma once
 
 #include "geometry/instance_set.h"
@@ -9,16 +9,17 @@ typedef struct mesh_work {
     mesh_scratch scratch;
     instance_hit hits[ROW]; /* of the gathered group */
     mesh_points points;
-    group corner; /* Gouraud's: the group with a corner of each triangle in place of the point */
+    group corner; /* for Gouraud shading: the group with a corner of each triangle in place of the hit point */
     lit_group corner_light;
 } mesh_work;
 
-bool mesh_begin(tracer *t); /* a frame; false when memory is out */
+bool mesh_begin(tracer *t); /* begins a frame; false when out of memory */
 void mesh_end(tracer *t);
 
-/* Points of the gathered group on a mesh; the light and the branches that its triangles do not let through; Gouraud's
- * light; which directions lead out of the triangle of record k; and how the group's list falls into faces that look
- * alike. */
+/* mesh_surface: hit points of the gathered group on a mesh. mesh_bound_light, mesh_bound_branches: remove light and
+ * branches that are behind the geometric triangle. mesh_lets_out: true if a direction leads out of the triangle of
+ * record k. mesh_corner_light: Gouraud's light. mesh_next_material: splits the group's list into faces of equal
+ * material. */
 void mesh_surface(tracer *t, int priority_index, const int *list);
 void mesh_bound_light(tracer *t);
 void mesh_bound_branches(tracer *t);

@@ -1,6 +1,6 @@
-/* Polarised light on its way back to the eye: each ray carries the analyser's Stokes vector (optics/mueller.h), of
- * which the first element is in its throughput and the others, relative to that, in the queue. Light comes unpolarised
- * from the sky, from lights and from matte surfaces, so that the first element alone weighs it. */
+/* Polarised light, traced from the camera: each ray carries the analyser's Stokes vector (optics/mueller.h), whose
+ * first element is part of its throughput; the others, relative to the first, are in the queue. Light from the sky,
+ * lights and matte surfaces is unpolarised, so that only the first element weights it. */
 #include "render/shade/shading.h"
 
 #include "optics/mueller.h"
@@ -20,15 +20,15 @@ static stokes stokes_add(stokes a, stokes b, double times)
     return (stokes){a.i + times * b.i, a.q + times * b.q, a.u + times * b.u, a.v + times * b.v};
 }
 
-/* The share of unpolarised light, at least 0, and the rest relative to it. */
-static double take_apart(stokes s, double *q, double *u, double *v)
+/* Splits a Stokes vector into the share of unpolarised light, at least 0, and the other elements relative to it. */
+static double split_stokes(stokes s, double *q, double *u, double *v)
 {
     const double share = s.i > 0.0 ? s.i : 0.0, inverse = s.i > 0.0 ? 1.0 / s.i : 0.0;
     *q = s.q * inverse, *u = s.u * inverse, *v = s.v * inverse;
     return share;
 }
 
-/* After the branches' directions and unpolarised weights are known. */
+/* Called after the branches' directions and unpolarised weights are computed. */
 void polarised_branches(tracer *t, const material *m, bool opaque)
 {
     const group *g = &t->surface.gathered;
@@ -44,16 +44,16 @@ void polarised_branches(tracer *t, const material *m, bool opaque)
         const double cos_i = g->points.cos_i[k];
         if (opaque) {
             b->reflect[k] =
-                m->reflectivity * take_apart(analyser_mirror(row, d, n, reflected), &p->rq[k], &p->ru[k], &p->rv[k]);
+                m->reflectivity * split_stokes(analyser_mirror(row, d, n, reflected), &p->rq[k], &p->ru[k], &p->rv[k]);
             continue;
         }
         stokes r = analyser_reflect(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected);
         if (coating > 0.0)
             r = stokes_add(r, analyser_coating(row, d, n, cos_i, g->n_from[k], g->n_to[k], reflected), coating);
-        b->reflect[k] = take_apart(r, &p->rq[k], &p->ru[k], &p->rv[k]);
+        b->reflect[k] = split_stokes(r, &p->rq[k], &p->ru[k], &p->rv[k]);
         if (b->refract[k] == 0.0) /* total reflection: there is no direction */
             continue;
         const stokes s = analyser_refract(row, d, n, cos_i, g->n_from[k], g->n_to[k], refracted);
-        b->refract[k] = m->transparency * (1.0 - coating) * take_apart(s, &p->tq[k], &p->tu[k], &p->tv[k]);
+        b->refract[k] = m->transparency * (1.0 - coating) * split_stokes(s, &p->tq[k], &p->tu[k], &p->tv[k]);
     }
 }

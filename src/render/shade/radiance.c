@@ -1,15 +1,15 @@
-/* Basic radiance (render.radiance). Where light is refracted from a medium of index n_1 into one of n_2 its cone of
- * directions narrows or widens: n^2 cos(theta) dA d(omega) stays as it is, and so, but for what is reflected, does
- * L / n^2 (Nicodemus, "Radiance", American Journal of Physics 31, 1963; Veach, Robust Monte Carlo Methods for Light
- * Transport Simulation, 1997, 5.2). A ray's throughput is its share of L / n^2: no interface puts an index into it.
- * Indices come in where light is sent out, in a medium of index n, and where the eye takes it, in one of n_eye:
- * radiance L there counts (n_eye / n)^2 times. The eye's factor is taken at that end too, so that throughputs, which
- * limits on a ray's weight compare, are shares of the camera ray whatever the eye stands in.
+/* Basic radiance (render.radiance). Where light is refracted from a medium of index n_1 into one of index n_2 its solid
+ * angle narrows or widens: n^2 cos(theta) dA d(omega) is invariant, and so, except for reflection, is L / n^2
+ * (Nicodemus, "Radiance", American Journal of Physics 31, 1963; Veach, Robust Monte Carlo Methods for Light Transport
+ * Simulation, 1997, 5.2). A ray's throughput is its share of L / n^2, so that interfaces add no factor of the index.
+ * The indices matter where light is emitted, in a medium of index n, and where the camera receives it, in one of index
+ * n_eye: radiance L there counts (n_eye / n)^2 times. The camera's factor is applied at the emitting end too, so that
+ * throughputs, which weight limits compare, are shares of the camera ray whatever the camera's medium.
  *
- * A shadow ray carries irradiance, in which the square of the index cancels against the solid angle: E = E_straight
- * T, with each interface's unpolarised transmittance. It is straight where light is bent. Its angle at an interface
- * is taken on the side of the lower index: there it is the true one for a lamp far above water, and for a pane in air
- * on both of its faces; and no angle there is beyond the critical one. */
+ * A shadow ray carries irradiance, in which the square of the index cancels against the solid angle: E = E_straight T,
+ * with each interface's unpolarised transmittance. It is straight where light would be refracted. Its angle at an
+ * interface is taken on the side of the lower index: this is correct for a lamp far above water, and for both faces of
+ * a pane in air; and no angle on that side exceeds the critical one. */
 #include "render/shade/shading.h"
 
 #include "optics/interface.h"
@@ -18,11 +18,11 @@
 
 struct radiance_work {
     ray_crossings crossings;
-    ray_batch rays;                   /* the shadow rays that crossings are noted of, ... */
-    const int64_t *sample_keys;       /* ... their tickets, ... */
-    double through[ROW];              /* ... and the product of the interfaces' transmittances, by ray */
-    double kept[CROSSINGS_MAX];       /* transmittances, by crossing */
-    double wr[ROW], wg[ROW], wb[ROW]; /* the gathered group's throughput, while what its surface sends out is weighed */
+    ray_batch rays;                       /* the shadow rays whose crossings are recorded, ... */
+    const int64_t *sample_keys;           /* ... their sample keys, ... */
+    double through[ROW];                  /* ... and the product of the interfaces' transmittances, by ray */
+    double transmittances[CROSSINGS_MAX]; /* transmittances, by crossing */
+    double wr[ROW], wg[ROW], wb[ROW];     /* saved throughput of the gathered group while local light is weighted */
     surface_batch points;
     mesh_points on_mesh;
 };
@@ -78,7 +78,7 @@ void radiance_weigh_back(tracer *t)
     memcpy(g->wr, w->wr, bytes), memcpy(g->wg, w->wg, bytes), memcpy(g->wb, w->wb, bytes);
 }
 
-/* The shadow rays of crossings of one primitive, side by side, as kernels want them. */
+/* The shadow rays that cross one primitive, contiguous, as kernels require. */
 typedef struct straight_rays {
     double ox[ROW], oy[ROW], oz[ROW], dx[ROW], dy[ROW], dz[ROW], t[ROW];
     int64_t start[ROW];
@@ -93,10 +93,10 @@ static void add_ray(const radiance_work *w, int number, straight_rays *s)
     const ray_crossing *x = &w->crossings.crossings[number];
     const ray_batch *rays = &w->rays;
     const int i = x->ray, at = s->count++;
-    const vec3 way = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]);
-    const double length = vec3_length(way);
+    const vec3 along = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]);
+    const double length = vec3_length(along);
     s->ox[at] = rays->ox[i], s->oy[at] = rays->oy[i], s->oz[at] = rays->oz[i];
-    s->dx[at] = way.x / length, s->dy[at] = way.y / length, s->dz[at] = way.z / length;
+    s->dx[at] = along.x / length, s->dy[at] = along.y / length, s->dz[at] = along.z / length;
     s->t[at] = x->t * length;
     s->start[at] = rays->start[i], s->inside[at] = x->inside, s->mesh[at] = x->mesh;
     s->number[at] = number;
@@ -109,47 +109,48 @@ static double transmittance(const plan *p, int64_t sample_key, const ray_crossin
     return 1.0 - fresnel_dielectric(cosine, low, high).R;
 }
 
-/* The interfaces of a primitive that the list holds of it. */
-static void cross_surface(tracer *t, int met, straight_rays *s)
+/* Computes the transmittances of the listed crossings of one primitive. */
+static void cross_surface(tracer *t, int hit_primitive, straight_rays *s)
 {
     const plan *p = t->target.frame_plan;
     radiance_work *w = t->basic;
-    const primitive *surface = &p->geometry->primitives[met];
+    const primitive *surface = &p->geometry->primitives[hit_primitive];
     const ray_batch rays = {s->count, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->start, s->inside};
     if (!surface->rule)
         instance_set_surface(p->geometry->meshes, &rays, s->mesh,
                              p->shading_materials[surface->priority_index].shading == SHADING_SMOOTH, &w->points,
                              &w->on_mesh);
     else
-        t->geometry->surface(surface, &rays, s->t, met, &w->points);
+        t->geometry->surface(surface, &rays, s->t, hit_primitive, &w->points);
     for (int k = 0; k < s->count; k++) {
         const ray_crossing *x = &w->crossings.crossings[s->number[k]];
-        w->kept[s->number[k]] = transmittance(p, w->sample_keys[x->ray], x, w->points.cos_i[k]);
+        w->transmittances[s->number[k]] = transmittance(p, w->sample_keys[x->ray], x, w->points.cos_i[k]);
     }
     s->count = 0;
 }
 
-/* Empties the list of crossings: surfaces a primitive at a time, the product in the order along each ray, whatever
- * else is in the batch. */
+/* Processes and empties the list of crossings: surfaces one primitive at a time, the product in order along each ray,
+ * so that the result does not depend on the other rays of the batch. */
 static void take_crossings(void *context)
 {
     tracer *t = context;
     radiance_work *w = t->basic;
     straight_rays s;
     s.count = 0;
-    for (int met = 0; w->crossings.count > 0 && met < t->target.frame_plan->geometry->primitive_count; met++) {
+    for (int hit_primitive = 0;
+         w->crossings.count > 0 && hit_primitive < t->target.frame_plan->geometry->primitive_count; hit_primitive++) {
         for (int k = 0; k < w->crossings.count; k++) {
-            if (w->crossings.crossings[k].primitive != met)
+            if (w->crossings.crossings[k].primitive != hit_primitive)
                 continue;
             add_ray(w, k, &s);
             if (s.count == BATCH)
-                cross_surface(t, met, &s);
+                cross_surface(t, hit_primitive, &s);
         }
         if (s.count > 0)
-            cross_surface(t, met, &s);
+            cross_surface(t, hit_primitive, &s);
     }
     for (int k = 0; k < w->crossings.count; k++)
-        w->through[w->crossings.crossings[k].ray] *= w->kept[k];
+        w->through[w->crossings.crossings[k].ray] *= w->transmittances[k];
     w->crossings.count = 0;
 }
 

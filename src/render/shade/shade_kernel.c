@@ -7,12 +7,12 @@
 #include "optics/interface.h"
 #include "render/core/film.h"
 
-/* Highest whole shininess that is raised by squaring. */
+/* Largest integer exponent that is computed by repeated squaring. */
 enum { SHININESS_SQUARED_MAX = 4096 };
 
-/* base[i]^exponent in place. Whole exponents by squaring (relative error below exponent half-ulps); bases so small that
- * the power is under 2^-200, far below the film's unit, are zero, which keeps the squares out of the slow subnormal
- * range. */
+/* Computes base[i]^exponent in place. Integer exponents by repeated squaring (relative error below exponent half-ulps);
+ * bases whose power is below 2^-200, far below the film's unit, are set to zero, which avoids slow subnormal
+ * numbers. */
 static void raise_to(double exponent, int count, double *restrict base)
 {
     const unsigned whole = exponent >= 1.0 && exponent <= SHININESS_SQUARED_MAX ? (unsigned)exponent : 0;
@@ -39,10 +39,11 @@ static void raise_to(double exponent, int count, double *restrict base)
     }
 }
 
-/* For each flat face of a primitive: which coordinate is constant there, and the one to look up the cell with instead,
- * half a cell inside; of a half-space the surface itself. Rounding across the face must not choose the cell. */
+/* For each flat face of a primitive: the coordinate that is constant there, and its replacement for looking up the
+ * checker cell, half a cell inside; for a half-space the surface itself. Rounding across the face must not choose the
+ * cell. */
 typedef struct flat_faces {
-    int64_t face[FLATS_MAX];                                   /* FACE_NONE behind the last */
+    int64_t face[FLATS_MAX];                                   /* FACE_NONE after the last */
     int64_t is_x[FLATS_MAX], is_y[FLATS_MAX], is_z[FLATS_MAX]; /* masks */
     double at[FLATS_MAX];
 } flat_faces;
@@ -74,7 +75,7 @@ static void color(const material *m, const primitive *p, group *restrict g)
         return;
     }
     const vec3 origin = p->origin;
-    const mat3 rotation = p->rotation; /* the identity where it is not turned, which changes no bit */
+    const mat3 rotation = p->rotation; /* the identity if not rotated, which leaves the result bit-identical */
     const double size = m->checker;
     const flat_faces flat = flat_faces_of(p, size);
     for (int i = 0; i < count; i++) {
@@ -94,7 +95,7 @@ static void color(const material *m, const primitive *p, group *restrict g)
     }
 }
 
-/* The inverse square of the distance, 1 at the light's reach. */
+/* Multiplies by the inverse square of the distance, 1 at the light's reach. */
 static void fall_off(double reach, int count, lit_group *restrict lit)
 {
     const double least = 0.5 / FILM_ONE, reach2 = reach * reach;
@@ -104,12 +105,13 @@ static void fall_off(double reach, int count, lit_group *restrict lit)
         lit->r[i] *= share;
         lit->g[i] *= share;
         lit->b[i] *= share;
-        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+        lit->contributes[i] =
+            ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
 }
 
-/* Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975: k_d I_L C (N.L) + k_s I_L (R.V)^n with
- * R = 2(N.L)N - L; both terms only where the light stands on the ray's side (N.L > 0). */
+/* Phong, "Illumination for Computer Generated Pictures", CACM 18(6), 1975: k_d I_L C (N.L) + k_s I_L (R.V)^n with R =
+ * 2(N.L)N - L; both terms only if the light is on the ray's side (N.L > 0). */
 static void direct(const material *m, const light *lamp, const group *g, lit_group *restrict lit)
 {
     const double ir = lamp->color.x * lamp->intensity, ig = lamp->color.y * lamp->intensity,
@@ -140,8 +142,9 @@ static void direct(const material *m, const light *lamp, const group *g, lit_gro
         lit->r[i] = blend(facing, g->wr[i] * ir * (diffuse * g->cr[i] + highlight), 0.0);
         lit->g[i] = blend(facing, g->wg[i] * ig * (diffuse * g->cg[i] + highlight), 0.0);
         lit->b[i] = blend(facing, g->wb[i] * ib * (diffuse * g->cb[i] + highlight), 0.0);
-        /* What is no number shows, so that it is found out. */
-        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+        /* A NaN counts as visible, so that it is detected. */
+        lit->contributes[i] =
+            ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
     if (lamp->reach > 0.0)
         fall_off(lamp->reach, count, lit);
@@ -159,11 +162,12 @@ ALWAYS_INLINE void within_cone(const light_cone *cone, bool soft, const group *g
         lit->r[i] *= share;
         lit->g[i] *= share;
         lit->b[i] *= share;
-        lit->shows[i] = ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
+        lit->contributes[i] =
+            ~(mask_less(lit->r[i], least) & mask_less(lit->g[i], least) & mask_less(lit->b[i], least));
     }
 }
 
-/* Two loops without a choice in them. */
+/* Two branch-free loops. */
 static void spot(const light_cone *c, bool soft, const group *g, lit_group *restrict lit)
 {
     if (soft)
@@ -183,7 +187,7 @@ ALWAYS_INLINE fresnel branch_directions(const group *g, int i, branch_group *b)
     return f;
 }
 
-/* Total reflections among the group's rays, from their number among the padded lanes. */
+/* The number of total reflections of the group's rays, from their number over the padded lanes. */
 static int64_t without_padding(const group *g, int64_t among_padded)
 {
     const int last = g->count - 1;
@@ -207,7 +211,7 @@ static void fresnel_branches(const material *m, const group *g, branch_group *re
     b->total = without_padding(g, total);
 }
 
-/* Under total internal reflection the light that cannot pass goes back too. */
+/* Under total internal reflection the transmitted share is reflected too. */
 static void constant_branches(const material *m, bool opaque, const group *g, branch_group *restrict b)
 {
     const double reflectivity = m->reflectivity, transparency = opaque ? 0.0 : m->transparency;

@@ -1,13 +1,14 @@
-/* What becomes of rays that met a surface: local light, shadow rays, reflected and refracted children, and the film. */
+/* Shading of rays that hit a surface: local light, shadow rays, reflected and refracted children, and contributions to
+ * the film. */
 #include "render/shade/shading.h"
 
 #include "render/shade/sky.h"
 #include <string.h>
 
-/* Is it in the film's range? Not if it is no number. */
+/* True if the radiance is in the film's range; false for NaN. */
 static inline bool is_exposable(double radiance)
 {
-    const double limit = 262144.0; /* half of what a channel holds */
+    const double limit = 262144.0; /* half of a channel's range */
     return (int)(radiance >= 0.0) & (int)(radiance < limit);
 }
 
@@ -30,8 +31,8 @@ static inline void expose_at(tracer *t, int64_t place, double r, double g, doubl
     t->account.overflow |= red | green | blue;
 }
 
-/* The ticket's layer and pixel; of a spectral film as what the eye makes of its wavelength. Never inline, so that the
- * rgb film's way keeps its registers. */
+/* Exposes the layer and pixel of a sample key; in a spectral film with the observer's weights at its wavelength. Never
+ * inlined, so that the rgb film's code path keeps its registers. */
 static __attribute__((noinline)) void expose_by_sample_key(tracer *t, int64_t sample_key, double r, double g, double b)
 {
     const plan *p = t->target.frame_plan;
@@ -67,7 +68,7 @@ static __attribute__((noinline)) void expose_sky_by_sample_key(tracer *t, int64_
         l.x = l.y = l.z = spectra_sky(spectra_row(p->spectral, sample_key), p->sky, direction);
     else
         l = sky_radiance(p->sky, direction);
-    if (p->basic) /* the sky lies in the surroundings, wherever a ray ends that is given its light */
+    if (p->basic) /* the sky is in the surrounding medium, wherever the ray ends */
         l = vec3_scale(l, radiance_share(p, sample_key, 0));
     expose_by_sample_key(t, sample_key, wr * l.x, wg * l.y, wb * l.z);
 }
@@ -88,7 +89,7 @@ void shading_expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr
     expose_sky(t, sample_key, direction, wr, wg, wb);
 }
 
-/* What lies beyond the depth limit, along a branch that it cuts off. */
+/* Adds the fallback radiance of a branch that the depth limit cuts off. */
 static inline void expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
     const plan *p = t->target.frame_plan;
@@ -110,7 +111,7 @@ void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction
         expose_at_depth_limit(t, sample_key, direction, wr, wg, wb);
 }
 
-/* Light that needs no lamp: ambient and emitted; of a spectral film as daylight, white's spectrum. */
+/* Ambient and emitted light; in a spectral film with the spectrum of white, daylight. */
 static void expose_own_light(tracer *t, const material *m, bool ambient)
 {
     const group *g = &t->surface.gathered;
@@ -131,8 +132,8 @@ static void expose_own_light(tracer *t, const material *m, bool ambient)
         expose(t, g->sample_key[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
 }
 
-/* A shadow ray is worth its while only if its light can change the film. */
-static void put_shadow_rays_in_line(tracer *t)
+/* Enqueues shadow rays to lights that can change the film. */
+static void enqueue_shadow_rays(tracer *t)
 {
     const group *g = &t->surface.gathered;
     const lit_group *l = &t->surface.lit;
@@ -140,7 +141,7 @@ static void put_shadow_rays_in_line(tracer *t)
     int worth[ROW], count = 0;
     for (int i = 0; i < g->count; i++) {
         worth[count] = i;
-        count -= (int)l->shows[i];
+        count -= (int)l->contributes[i];
     }
     for (int k = 0; k < count; k++) {
         const int i = worth[k], at = q->count++;
@@ -151,7 +152,7 @@ static void put_shadow_rays_in_line(tracer *t)
     }
 }
 
-/* One light on the gathered group, with the light's own spectrum where there is one. */
+/* The light of one lamp on the gathered group, with its spectrum in a spectral film. */
 static void direct_light(tracer *t, const material *m, int lamp, int priority_index)
 {
     const plan *p = t->target.frame_plan;
@@ -170,7 +171,7 @@ static void direct_light(tracer *t, const material *m, int lamp, int priority_in
         spectral_light(t, lamp);
 }
 
-/* All that the surface sends out by itself, weighted. */
+/* Adds the weighted emission and direct light of the surface. */
 static void send_out(tracer *t, int priority_index, light_terms terms)
 {
     const plan *p = t->target.frame_plan;
@@ -189,11 +190,11 @@ static void send_out(tracer *t, int priority_index, light_terms terms)
             continue;
         direct_light(t, m, k, priority_index);
         if (p->render.shadows != SHADOWS_OFF) {
-            put_shadow_rays_in_line(t);
+            enqueue_shadow_rays(t);
             continue;
         }
         for (int i = 0; i < t->surface.gathered.count; i++)
-            if (t->surface.lit.shows[i])
+            if (t->surface.lit.contributes[i])
                 expose(t, t->surface.gathered.sample_key[i], t->surface.lit.r[i], t->surface.lit.g[i],
                        t->surface.lit.b[i]);
     }
@@ -234,7 +235,7 @@ void cut_branches(tracer *t)
     }
 }
 
-static bool too_light(tracer *t, const ray_queue *q, int i, double least)
+static bool is_below_least_weight(tracer *t, const ray_queue *q, int i, double least)
 {
     if (q->wr[i] >= least || q->wg[i] >= least || q->wb[i] >= least)
         return false;
@@ -245,7 +246,7 @@ static bool too_light(tracer *t, const ray_queue *q, int i, double least)
     return true;
 }
 
-/* The same as below, with the Stokes vectors. */
+/* The compaction below, including the Stokes vectors. */
 static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, const double *weight, double least)
 {
     const polar_group *p = &t->surface.polar;
@@ -254,15 +255,15 @@ static int keep_polarised(tracer *t, ray_queue *q, int first, bool reflected, co
     memcpy(q->su + first, reflected ? p->ru : p->tu, bytes);
     memcpy(q->sv + first, reflected ? p->rv : p->tv, bytes);
     for (int i = t->surface.gathered.count - 1; i >= 0; i--)
-        if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
+        if (weight[i] == 0.0 || (least > 0.0 && is_below_least_weight(t, q, first + i, least)))
             queue_move_polarised(q, first + i, --q->count);
     return q->count - first;
 }
 
-/* Puts a kind of children in line: all of them at once, then the last one into each hole of those that do not exist or
- * weigh too little. Returns how many there are. */
-int put_children_in_line(tracer *t, int depth, const double *dx, const double *dy, const double *dz,
-                         const double *weight, const uint64_t *inside)
+/* Enqueues children of one kind: appends all of them at once, then fills the place of each one that does not exist or
+ * has too small a weight with the last one. Returns their number. */
+int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
+                     const uint64_t *inside)
 {
     ray_queue *q = &t->queues.waiting[depth];
     const double least = t->least_weight;
@@ -271,7 +272,7 @@ int put_children_in_line(tracer *t, int depth, const double *dx, const double *d
     if (t->target.frame_plan->render.polarisation)
         return keep_polarised(t, q, first, dx == t->surface.branches.rx, weight, least);
     for (int i = t->surface.gathered.count - 1; i >= 0; i--)
-        if (weight[i] == 0.0 || (least > 0.0 && too_light(t, q, first + i, least)))
+        if (weight[i] == 0.0 || (least > 0.0 && is_below_least_weight(t, q, first + i, least)))
             queue_move(q, first + i, --q->count);
     return q->count - first;
 }
@@ -294,7 +295,7 @@ void shading_branches(tracer *t, bool opaque)
         COUNT(t->account.counters.total_internal += (uint64_t)t->surface.branches.total);
 }
 
-void meet_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
+void intersect_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     (void)q, (void)first, (void)depth;
     t->geometry->nearest(t->target.frame_plan->geometry, rays, &t->batch.scratch, &t->batch.hits);
@@ -308,7 +309,7 @@ void background_sky(tracer *t, const ray_queue *q, int first, const int *list, i
     }
 }
 
-/* A checker's cells lie in the frame of the solid whose surface it is, also where another solid's face exposes it. */
+/* A checker's cells are in the frame of the solid whose surface it is, even where another solid's face exposes it. */
 static void color(tracer *t, int priority_index, const primitive *surface)
 {
     const plan *p = t->target.frame_plan;
@@ -321,7 +322,7 @@ static void color(tracer *t, int priority_index, const primitive *surface)
             texture_colors(t, surface);
         return;
     }
-    /* Which of the two colours, and then its spectrum. */
+    /* First find which of the two colours applies, then its spectrum. */
     material marked = t->surface.mat->surface;
     marked.color = vec3_make(1.0, 0.0, 0.0);
     marked.checker_color = vec3_make(0.0, 1.0, 0.0);
@@ -329,10 +330,11 @@ static void color(tracer *t, int priority_index, const primitive *surface)
     spectral_colors(t, priority_index);
 }
 
-static void shade_alike(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count)
+static void shade_one_material(tracer *t, int depth, int first, int hit_primitive, int priority_index, const int *list,
+                               int count)
 {
     const plan *p = t->target.frame_plan;
-    const primitive *surface = &p->geometry->primitives[met];
+    const primitive *surface = &p->geometry->primitives[hit_primitive];
     group *g = &t->surface.gathered;
     group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, g);
     if (p->spectral)
@@ -344,7 +346,7 @@ static void shade_alike(tracer *t, int depth, int first, int met, int priority_i
     if (t->surface.on_mesh)
         mesh_surface(t, priority_index, list);
     else
-        t->geometry->surface(surface, &rays, g->t, met, &g->points);
+        t->geometry->surface(surface, &rays, g->t, hit_primitive, &g->points);
     t->surface.texture_at = NULL;
     if (t->rule->place)
         t->rule->place(t, list);
@@ -356,12 +358,12 @@ static void shade_alike(tracer *t, int depth, int first, int met, int priority_i
     t->rule->shade(t, depth, priority_index);
 }
 
-void shading_group(tracer *t, int depth, int first, int met, int priority_index, const int *list, int count)
+void shading_group(tracer *t, int depth, int first, int hit_primitive, int priority_index, const int *list, int count)
 {
     const region_materials *shading_materials = &t->target.frame_plan->shading_materials[priority_index];
     t->surface.mat = shading_materials->mat;
     if (shading_materials->count == 1) {
-        shade_alike(t, depth, first, met, priority_index, list, count);
+        shade_one_material(t, depth, first, hit_primitive, priority_index, list, count);
         return;
     }
     int left[BATCH];
@@ -370,7 +372,7 @@ void shading_group(tracer *t, int depth, int first, int met, int priority_index,
         int slot;
         const int alike = mesh_next_material(t, left + begin, count - begin, &slot);
         t->surface.mat = &shading_materials->mat[slot < shading_materials->count ? slot : 0];
-        shade_alike(t, depth, first, met, priority_index, left + begin, alike);
+        shade_one_material(t, depth, first, hit_primitive, priority_index, left + begin, alike);
         begin += alike;
     }
 }

@@ -48,9 +48,9 @@ vec3 sky_radiance(const background *sky, vec3 direction)
     return sky->color;
 }
 
-/* What a row of texels weighs in the mean: the integral of its interpolation, a hat from the row above to the row
- * below, times the sine of the polar angle. With rows h apart that is sin(angle) 2 (1 - cos h) / h; a row next to a
- * pole holds up to the pole: 1 - 2 cos h sin(h / 2) / h. All of them add up to 2. */
+/* The weight of a row of texels in the mean: the integral of its interpolation, a hat function from the row above to
+ * the row below, times the sine of the polar angle. With rows h apart that is sin(angle) 2 (1 - cos h) / h; a row next
+ * to a pole is constant up to the pole: 1 - 2 cos h sin(h / 2) / h. The weights add up to 2. */
 static double row_weight(int y, int height)
 {
     const double h_deg = 180.0 / height, h = 3.141592653589793 / height;

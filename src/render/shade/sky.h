@@ -1,5 +1,5 @@
-/* Radiance from where there is nothing: uniform, a vertical gradient, or an equirectangular picture whose
- * middle column is +z and whose right half is +x, top row straight up. Pure; cannot fail. */
+/* The sky: radiance of the background, which is uniform, a vertical gradient, or an equirectangular image whose middle
+ * column is +z, whose right half is +x, and whose top row is straight up. Pure; cannot fail. */
 #pragma once
 
 #include "scene/model/view_settings.h"
@@ -7,6 +7,6 @@
 /* direction: unit vector. */
 vec3 sky_radiance(const background *sky, vec3 direction);
 
-/* Its mean over all directions, each solid angle counting alike: of a gradient (3 horizon + zenith) / 4, since the mean
- * of max(0, sin(elevation)) over the sphere is 1/4; of a picture, of its texels as they are interpolated. */
+/* The mean radiance over all directions, by solid angle: for a gradient (3 horizon + zenith) / 4, since the mean of
+ * max(0, sin(elevation)) over the sphere is 1/4; for an image, that of its interpolated texels. */
 vec3 sky_mean(const background *sky);

@@ -6,13 +6,13 @@
 #include "scene/model/scene.h"
 #include <stdlib.h>
 
-/* Colours lifted, before they are looked up at each wavelength. */
+/* The scene's upsampled colours, before they are evaluated at each wavelength. */
 typedef struct upsampled_scene {
     const scene *s;
     const material *const *materials;
     const index_law *laws;
     upsampled_spectrum sky, horizon, ambient, basis[SKY_BASIS_COUNT];
-    upsampled_spectrum *color, *checker_color, *light; /* by rank, by rank, by light */
+    upsampled_spectrum *color, *checker_color, *light; /* by priority index, by priority index, by light */
 } upsampled_scene;
 
 static upsampled_spectrum upsample_light(vec3 color, double intensity)
@@ -61,7 +61,7 @@ static spectral_row row_at(const upsampled_scene *l, double lambda_nm)
     return row;
 }
 
-static region_spectrum body_at(const upsampled_scene *l, size_t priority_index, double lambda_nm)
+static region_spectrum region_at(const upsampled_scene *l, size_t priority_index, double lambda_nm)
 {
     region_spectrum b = {.index = index_law_at(&l->laws[priority_index], lambda_nm)};
     if (!l->materials[priority_index]) {
@@ -76,7 +76,7 @@ static region_spectrum body_at(const upsampled_scene *l, size_t priority_index, 
     return b;
 }
 
-/* How many wavelengths share one offset. */
+/* Number of wavelengths that share one offset. */
 static int64_t wavelengths_together(const render_settings *render)
 {
     return integrator_traits_of(render)->by_chance ? render->paths : render->wavelengths;
@@ -114,7 +114,7 @@ static bool fill_tables(const upsampled_scene *l, spectra *p)
         const double lambda_nm = spectra_lambda((int64_t)i);
         p->rows[i] = row_at(l, lambda_nm);
         for (size_t r = 0; r < p->priority_indices; r++)
-            p->regions[i * p->priority_indices + r] = body_at(l, r, lambda_nm);
+            p->regions[i * p->priority_indices + r] = region_at(l, r, lambda_nm);
         for (size_t k = 0; k < p->light_count; k++)
             p->lights[i * p->light_count + k] = upsampled_emission(&l->light[k], lambda_nm);
     }
@@ -166,9 +166,9 @@ int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t 
     return sample_key_with_wavelength(sample_key, wavelength_of(sample % count, count, offset));
 }
 
-/* A texel as white, the best fitting secondary and the best fitting primary: Smits, "An RGB to Spectrum Conversion for
- * Reflectances", JGT 4(4), 1999, with the basis spectra lifted as all colours here. Linear where the order of the
- * channels stays. */
+/* A texel as a sum of white, a secondary and a primary colour: Smits, "An RGB to Spectrum Conversion for Reflectances",
+ * JGT 4(4), 1999, with basis spectra upsampled like all other colours. Linear as long as the order of the channels does
+ * not change. */
 static double texel_at(const spectral_row *row, vec3 rgb)
 {
     const double v[3] = {rgb.x, rgb.y, rgb.z};

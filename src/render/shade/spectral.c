@@ -1,4 +1,4 @@
-/* What a group of rays of different wavelengths sees: each its own index, reflectance and light. */
+/* Spectral shading: refractive indices, reflectances and light of a group of rays with different wavelengths. */
 #include "render/shade/shading.h"
 
 #include "render/core/film.h"
@@ -15,7 +15,7 @@ void spectral_indices(tracer *t, const int *list)
         g->n_from[k] = g->n_from[g->count - 1], g->n_to[k] = g->n_to[g->count - 1];
 }
 
-/* The group's colours are (1, 0, 0) where the material's first colour is, else (0, 1, 0). */
+/* On entry the group's colours are (1, 0, 0) for the material's first colour, else (0, 1, 0). */
 void spectral_colors(tracer *t, int priority_index)
 {
     group *g = &t->surface.gathered;
@@ -25,7 +25,7 @@ void spectral_colors(tracer *t, int priority_index)
     }
 }
 
-/* The group's light was reckoned for a lamp of radiance 1. */
+/* On entry the group's light is that of a lamp of radiance 1. */
 void spectral_light(tracer *t, int lamp)
 {
     const group *g = &t->surface.gathered;
@@ -34,6 +34,6 @@ void spectral_light(tracer *t, int lamp)
     for (int k = 0; k < g->count; k++) {
         const double radiance = spectra_light(t->target.frame_plan->spectral, g->sample_key[k], lamp);
         l->r[k] *= radiance, l->g[k] *= radiance, l->b[k] *= radiance;
-        l->shows[k] = -(int64_t) !(l->r[k] < least);
+        l->contributes[k] = -(int64_t) !(l->r[k] < least);
     }
 }

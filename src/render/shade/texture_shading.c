@@ -1,10 +1,10 @@
-/* Textures on what rays met: coordinates of the point, how far a pixel reaches there, and the picture's colour. */
+/* Texture shading: texture coordinates of hit points, pixel footprints, and texture colours. */
 #include "render/shade/shading.h"
 
 #include "geometry/primitives/primitive.h"
 
-/* Width of a pixel at the point, across the ray: the camera's rays spread by the pixel's angle. Of a ray of a deeper
- * level the way from the eye is taken for straight; so it is too narrow there by what mirrors and lenses add. */
+/* Width of a pixel at the point, across the ray: camera rays spread by the pixel's angle. For deeper rays the path from
+ * the camera is treated as straight, which ignores magnification by mirrors and lenses. */
 static double pixel_width(const plan *p, vec3 point)
 {
     return 2.0 * p->view.half_height / (double)p->render.height * vec3_length(vec3_sub(point, p->view.eye));

@@ -6,7 +6,7 @@
 
 static status no_room(diagnostic *why)
 {
-    return diagnose(why, STATUS_FAILURE, "render a smaller picture or fewer triangles",
+    return diagnose(why, STATUS_FAILURE, "render a smaller image or fewer triangles",
                     "out of memory for the depth buffer");
 }
 
@@ -65,8 +65,8 @@ status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why)
     make_grid(z);
     if (z->width > 2 * REACH || z->height > 2 * REACH) {
         zbuffer_destroy(z);
-        return diagnose(why, STATUS_BAD_INPUT, "take fewer samples, or a smaller picture",
-                        "the depth buffer has at most %d points across", 2 * REACH);
+        return diagnose(why, STATUS_BAD_INPUT, "use fewer samples or a smaller image",
+                        "the depth buffer is limited to %d points per side", 2 * REACH);
     }
     z->seen = malloc((size_t)z->width * (size_t)z->height * sizeof *z->seen);
     z->first = calloc((size_t)z->across * (size_t)z->down + 1, sizeof *z->first);
@@ -103,7 +103,7 @@ void zbuffer_destroy(zbuffer *z)
     free(z);
 }
 
-/* All chunks' triangles one behind the other, in the chunks' order. */
+/* Concatenates the triangles of all chunks, in the chunks' order. */
 static bool join_chunks(zbuffer *z)
 {
     for (size_t k = 0; k < z->chunk_count; k++)
@@ -128,7 +128,7 @@ static bool join_chunks(zbuffer *z)
 
 typedef struct box {
     int x0, y0, x1, y1;
-} box; /* of squares, all within */
+} box; /* of squares, inclusive */
 
 static int clamp(int v, int most)
 {
@@ -159,7 +159,7 @@ status zbuffer_sort(zbuffer *z, diagnostic *why)
                 z->first[(size_t)y * (size_t)z->across + (size_t)x]++;
     }
     size_t sum = 0;
-    for (size_t k = 0; k <= squares; k++) { /* each square's end for now */
+    for (size_t k = 0; k <= squares; k++) { /* the end of each square's list for now */
         sum += k < squares ? z->first[k] : 0;
         z->first[k] = sum;
     }

@@ -1,5 +1,5 @@
-/* From a triangle to the polygon of it that stands before the eye. Corners are homogeneous, so that a plane's may be
- * infinitely far. */
+/* Clipping: the polygon of a triangle that is in front of the camera. Corners are homogeneous, so that those of a plane
+ * may be at infinity. */
 #include "render/zbuffer/zbuffer_private.h"
 
 static clip_corner in_camera(const camera_frame *view, vec3 v, double h)
@@ -8,7 +8,7 @@ static clip_corner in_camera(const camera_frame *view, vec3 v, double h)
         .x = vec3_dot(view->right, v), .y = vec3_dot(view->up, v), .z = vec3_dot(view->forward, v), .h = h};
 }
 
-/* From the foot of the perpendicular from the eye to the four ends of two axes. */
+/* A triangle from the camera's foot point on the plane to the ends of two of its axes. */
 static void plane_corners(const zbuffer *z, const primitive *p, uint32_t triangle, clip_corner out[3])
 {
     const camera_frame *view = &z->frame_plan->view;
@@ -26,7 +26,7 @@ void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, 
                      clip_corner out[POLYGON_MAX])
 {
     if (p->plane) {
-        plane_corners(z, &z->frame_plan->geometry->primitives[p->met], triangle, out);
+        plane_corners(z, &z->frame_plan->geometry->primitives[p->primitive], triangle, out);
     } else {
         const camera_frame *view = &z->frame_plan->view;
         const mesh_triangle tri = p->at.triangles->triangles[triangle];
@@ -39,7 +39,7 @@ void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, 
             out[k].weight[j] = k == j ? 1.0 : 0.0;
 }
 
-/* How far a corner is on the right side of a plane: the nearest depth, and the four sides. */
+/* Signed distance of a corner from a clip plane, positive inside: the near plane, and the four sides. */
 static double side_of(const zbuffer *z, double nearest, const clip_corner *c, int plane)
 {
     switch (plane) {
@@ -51,7 +51,7 @@ static double side_of(const zbuffer *z, double nearest, const clip_corner *c, in
     }
 }
 
-/* Always from the inner end, so that triangles with a common edge cut it at the same place. */
+/* Always interpolates from the inner end, so that triangles with a common edge cut it at the same point. */
 static clip_corner cut(const clip_corner *in, const clip_corner *out, double inner, double outer)
 {
     const double t = inner / (inner - outer);
@@ -65,7 +65,7 @@ static clip_corner cut(const clip_corner *in, const clip_corner *out, double inn
     return c;
 }
 
-/* Sutherland and Hodgman, "Reentrant polygon clipping", CACM 17(1), 1974: one plane. */
+/* Clips at one plane: Sutherland and Hodgman, "Reentrant polygon clipping", CACM 17(1), 1974. */
 static int clip_at(const zbuffer *z, double nearest, int plane, clip_corner *polygon, int count)
 {
     clip_corner from[POLYGON_MAX];
@@ -96,7 +96,7 @@ int zbuffer_clip(const zbuffer *z, const rasterised_part *p, clip_corner polygon
     int count = 3;
     for (int plane = 0; plane < 5 && count >= 3; plane++)
         count = clip_at(z, p->nearest, plane, polygon, count);
-    for (int k = 0; k < count; k++) { /* a direction across the view, an eye on a corner, what is no number */
+    for (int k = 0; k < count; k++) { /* rejects directions across the view, a camera on a corner, and NaN */
         const clip_corner *c = &polygon[k];
         if (!(c->z > 0.0 && fabs(c->x) <= 1.001 * z->reach_x * c->z && fabs(c->y) <= 1.001 * z->reach_y * c->z))
             return 0;

@@ -1,12 +1,12 @@
-/* Which solids are drawn as layers: clear ones, through which the view goes on, and opaque ones that a clear one of a
- * higher rank may hide a piece of. Of all others the nearest surface is all that shows. */
+/* Selection of the solids that are drawn as layers: clear ones, through which the view continues, and opaque ones that
+ * a clear one of higher priority may partly hide. For all others only the nearest surface is visible. */
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "base/elementary.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/shapes/shape.h"
 
-/* Does the box reach below the half-space's plane? */
+/* True if the box extends below the half-space's plane. */
 static bool dips_into(const primitive *half, bounds3 b)
 {
     const vec3 n = vec3_make(half->rotation.row[0].y, half->rotation.row[1].y, half->rotation.row[2].y);
@@ -38,9 +38,9 @@ static bool is_layered(const scene_geometry *a, int priority_index)
     return layered;
 }
 
-/* Is the eye in one of the mesh's copies? By the solid angle that the triangles fill (van Oosterom and Strackee, "The
- * solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983): all of it or none. A drawn frame has no
- * hierarchy to ask. */
+/* True if the camera is in one of the mesh's instances: the triangles' solid angle (van Oosterom and Strackee, "The
+ * solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983) is then the full sphere, otherwise 0. A
+ * rasterised frame has no hierarchy for this query. */
 static bool eye_in_mesh(const instanced_mesh *p, vec3 eye)
 {
     for (uint32_t copy = 0; copy < p->copies[0] * p->copies[1] * p->copies[2]; copy++) {
@@ -86,11 +86,11 @@ void zbuffer_find_layers(zbuffer *z)
             continue;
         const uint64_t bit = (uint64_t)1 << (r - 1);
         z->layered |= bit;
-        /* An eye in an opaque solid sees it from within, whether it is a layer or not. */
+        /* A camera in an opaque solid sees it from inside, whether it is a layer or not. */
         if (!a->regions[r].opaque && eye_in(a, &a->regions[r], z->frame_plan->view.eye))
             z->eye_inside |= bit;
-        const bool skin = a->meshes && a->meshes->skins >> a->regions[r].outside & 1;
-        z->skins |= skin ? bit : 0;
+        const bool is_open = a->meshes && a->meshes->skins >> a->regions[r].outside & 1;
+        z->open_surfaces |= is_open ? bit : 0;
     }
     z->eye_index = z->frame_plan->ior[z->eye_inside ? 64 - __builtin_clzll(z->eye_inside) : 0];
 }

@@ -1,18 +1,18 @@
-/* Drawing: which points of the grid each triangle covers, and which of the triangles there is the nearest. */
+/* Rasterisation: the grid points that each triangle covers, and the nearest triangle at each point. */
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "base/lanes.h"
 
 typedef struct window {
     int x0, y0, x1, y1;
-} window; /* points of the grid, x0 <= x < x1 */
+} window; /* grid points, x0 <= x < x1 */
 
-/* An edge's function is dx (y - ya) - dy (x - xa), in steps: not negative inside. */
+/* An edge function: dx (y - ya) - dy (x - xa), in steps; not negative inside. */
 typedef struct edge {
     int64_t along_x, along_y, at;
-} edge; /* for one unit of the grid, and at the first point */
+} edge; /* increments per unit of the grid, and the value at the first point */
 
-/* A point on an edge is the triangle's whose upper or left edge it is. */
+/* A point on an edge belongs to the triangle whose top or left edge it is. */
 static edge edge_between(const screen_triangle *t, int from, int to, int x, int y)
 {
     const int64_t dx = t->x[to] - t->x[from], dy = t->y[to] - t->y[from];
@@ -27,7 +27,7 @@ static int64_t floor_divide(int64_t a, int64_t b) /* b > 0 */
     return a / b - (a % b < 0);
 }
 
-/* Where a row's points are inside: first + from .. first + to. */
+/* Narrows a row's range of points inside the edge: first + from .. first + to. */
 static void narrow(const edge *e, int64_t *from, int64_t *to)
 {
     if (e->along_x == 0 && e->at < 0) {
@@ -95,7 +95,7 @@ static void draw_square(zbuffer *z, int x, int y, const window *w, zbuffer_squar
     const size_t at = (size_t)y * (size_t)z->across + (size_t)x;
     const int points = (w->x1 - w->x0) * (w->y1 - w->y0);
     for (int k = 0; k < points; k++)
-        square->nearness[k] = -1.0; /* what is infinitely far is nearer than nothing */
+        square->nearness[k] = -1.0; /* points at infinity (nearness 0) still count as visible */
     for (int k = 0; k < points && z->layered; k++)
         square->newest[k] = -1;
     square->count = 0;

@@ -1,13 +1,13 @@
-/* What one sees through: of each point of the grid the surfaces before the nearest opaque one, in the order of their
- * depth (Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984), and of them those where the
- * medium changes, by priority as for rays. */
+/* Layers of clear solids: for each grid point the surfaces in front of the nearest opaque one, in order of depth
+ * (Carpenter, "The A-buffer, an antialiased hidden surface method", SIGGRAPH 1984), reduced to those where the medium
+ * changes, by priority as for rays. */
 #include "base/grow.h"
 #include "render/zbuffer/zbuffer_private.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Surfaces whose depths differ by less than this share are crossed at once, as at a contact. */
+/* Surfaces whose depths differ by less than this relative difference are crossed together, as at a contact. */
 #define TOGETHER 1e-9
 
 void zbuffer_square_begin(zbuffer_square *s)
@@ -59,8 +59,8 @@ static bool is_opaque(const zbuffer *z, const rasterised_fragment *f)
     return z->frame_plan->geometry->regions[z->parts[f->part].at.priority_index].opaque;
 }
 
-/* Is it before the opaque surface that is drawn without layers? Of two opaque ones the nearer is seen however close
- * they are, and of two equally near that of the higher rank, as where nothing clear is drawn. */
+/* True if the fragment is in front of the opaque surface that is drawn without layers. Of two opaque ones the nearer is
+ * visible however close they are, and of two equally near the one of higher priority, as without clear solids. */
 static bool is_in_front(const zbuffer *z, const rasterised_fragment *f, double nearness, uint32_t seen)
 {
     if (!is_opaque(z, f))
@@ -70,7 +70,7 @@ static bool is_in_front(const zbuffer *z, const rasterised_fragment *f, double n
     return z->parts[f->part].at.priority_index > z->parts[z->triangles[seen - 1].part].at.priority_index;
 }
 
-/* The point's fragments before its nearest opaque surface, the nearest first; how many. */
+/* Collects the point's fragments in front of its nearest opaque surface, nearest first; returns their number. */
 static int collect(zbuffer *z, zbuffer_square *s, int point, uint32_t seen)
 {
     int count = 0;
@@ -93,7 +93,7 @@ typedef struct layer_list {
     rasterised_layer layer[LAYERS_MAX];
 } layer_list;
 
-/* Sets of bodies have the bit r - 1 for the rank r: the medium is that of the highest. */
+/* Sets of regions have bit r - 1 for priority index r: the medium is that of the highest bit. */
 static uint64_t bit_of(const zbuffer *z, const rasterised_fragment *f)
 {
     return (uint64_t)1 << (z->parts[f->part].at.priority_index - 1);
@@ -104,10 +104,10 @@ static int highest(uint64_t inside)
     return inside ? 64 - __builtin_clzll(inside) : 0;
 }
 
-/* Crosses what lies together at the front of the column: each surface leads into its body or out of it, whatever way
- * its triangle looks, so that near an outline, where front and back are as near, their order does not matter. What is
- * drawn of a cup's outside and of its hollow bounds its matter. Only one of them is opaque. Returns how many there
- * were. */
+/* Crosses the surfaces that are together at the front of the column: each surface enters or leaves its region, whatever
+ * the facing of its triangle, so that near an outline, where front and back are equally near, their order does not
+ * matter. The drawn outside and hollow of a cup bound its material. At most one of them is opaque. Returns their
+ * number. */
 static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint64_t *inside)
 {
     int n = 0;
@@ -117,13 +117,13 @@ static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint
             break;
         opaque |= is_opaque(z, &f[n]);
         const uint64_t bit = bit_of(z, &f[n]);
-        *inside = z->skins & bit ? *inside | bit : *inside ^ bit;
+        *inside = z->open_surfaces & bit ? *inside | bit : *inside ^ bit;
         n++;
     } while (n < count && f[0].nearness - f[n].nearness <= TOGETHER * f[0].nearness);
     return n;
 }
 
-/* Of the surfaces that are crossed together that of the body whose surface it is. */
+/* The layer for surfaces that are crossed together: that of the region whose surface it is. */
 static inline rasterised_layer layer_of(const zbuffer *z, const rasterised_fragment *f, int count, uint64_t inside,
                                         int before, int after)
 {
@@ -146,8 +146,8 @@ static bool absorb_alike(const plan *p, int before, int after)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
-/* Every layer but the last is a clear interface, no more of them than the depth limit lets through, or is passed; the
- * last one is what ends the view. */
+/* Lists the layers of a point. Every layer except the last is a clear interface, limited in number by the depth limit,
+ * or no interface; the last one ends the view. */
 static void list_layers(const zbuffer *z, const rasterised_fragment *f, int count, uint32_t base, layer_list *l)
 {
     const scene_geometry *a = z->frame_plan->geometry;
@@ -168,7 +168,7 @@ static void list_layers(const zbuffer *z, const rasterised_fragment *f, int coun
             l->layer[l->count] = layer_of(z, f + k, together, inside, before, after);
             l->layer[l->count++].passed = true;
         }
-        inside = behind & ~z->skins;
+        inside = behind & ~z->open_surfaces;
         before = highest(inside);
         k += together;
     }
@@ -182,7 +182,7 @@ static void list_layers(const zbuffer *z, const rasterised_fragment *f, int coun
     }
 }
 
-/* Room for a list in the worker's own block of them, or a fresh one. NULL when memory is out. */
+/* Space for a list in the worker's own block, or in a new one. NULL when out of memory. */
 static rasterised_layer *room_for(zbuffer *z, zbuffer_square *s, int count, uint32_t *place)
 {
     if (!s->block || s->used + (uint32_t)count > BLOCK_LAYERS) {
@@ -198,8 +198,8 @@ static rasterised_layer *room_for(zbuffer *z, zbuffer_square *s, int count, uint
     return s->block + s->used - count;
 }
 
-/* Is one thing all that shows, through nothing but the surroundings? Whether its solid is drawn as layers or not then
- * makes no difference. */
+/* True if a single surface is visible, through the surrounding medium only. Then it does not matter whether its solid
+ * is drawn as layers. */
 static bool shows_alone(const zbuffer *z, const layer_list *l)
 {
     const rasterised_layer *f = &l->layer[0];
@@ -208,7 +208,7 @@ static bool shows_alone(const zbuffer *z, const layer_list *l)
     return f->number == 0 || z->parts[z->triangles[f->number - 1].part].at.priority_index == f->surface;
 }
 
-/* What is seen at a point. */
+/* Resolves the visible surfaces at a point. */
 static void resolve_point(zbuffer *z, zbuffer_square *s, int point, uint32_t *seen, size_t *listed)
 {
     layer_list l;

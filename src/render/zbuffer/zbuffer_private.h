@@ -1,10 +1,9 @@
-/* The depth buffer's inside, for src/render/zbuffer/.
+/* Internals of the depth buffer, for src/render/zbuffer/.
  *
- * Points where the picture is looked at form a grid: one a pixel, or n by n; its unit is the way from one to the next,
- * its origin the picture's upper left corner, so that point i stands at i + 1/2. Corners of triangles are rounded to
- * 2^-12 of that unit. From there on all that decides which points a triangle covers is whole numbers; two triangles
- * that share an edge share its rounded ends, and by the rule of top and left edges no point on it is drawn twice or
- * left out. */
+ * The sample points of the image form a grid: one per pixel, or n by n. Its unit is the distance between two points,
+ * its origin the image's upper left corner, so that point i is at i + 1/2. Corners of triangles are rounded to 2^-12 of
+ * that unit. From then on the coverage of points is computed in integers: two triangles that share an edge share its
+ * rounded ends, and by the top-left rule no point on the edge is drawn twice or left out. */
 #pragma once
 
 #include "geometry/instance_set.h"
@@ -12,55 +11,56 @@
 #include <stdatomic.h>
 
 enum {
-    SUBPIXEL = 4096, /* steps of a corner's place in one unit of the grid */
-    REACH = 3 << 16, /* units: corners lie no farther from the picture's middle, or by a rounding. Sums of two products
-                      * of differences stay under 2^63 */
-    SQUARE_PIXELS = 32, /* at most: fewer where pixels have more points than two by two */
-    POLYGON_MAX = 8,    /* a triangle's corners and one for each plane that cuts it */
+    SUBPIXEL = 4096, /* steps of a corner's position per unit of the grid */
+    /* units: largest distance of corners from the image's centre, up to rounding. Sums of two products of differences
+     * stay under 2^63 */
+    REACH = 3 << 16,
+    SQUARE_PIXELS = 32, /* at most: fewer if pixels have more than 2 x 2 points */
+    POLYGON_MAX = 8,    /* a triangle's corners and one for each clip plane */
     CHUNK_TRIANGLES = 4096,
     LAYERS_MAX = 160, /* of a point: more than the largest render.depth */
     BLOCK_LAYERS = 1 << 16,
     BLOCKS_MAX = 1 << 15
 };
-#define SEEN_LAYERS 0x80000000U /* of zbuffer.seen: the rest is where the point's list begins */
+#define SEEN_LAYERS 0x80000000U /* flag in zbuffer.seen: the other bits are the start of the point's list */
 
-/* What is seen at a point, one behind the other: see zbuffer_layers.c. */
+/* One of the surfaces visible at a point, one behind the other: see zbuffer_layers.c. */
 typedef struct rasterised_layer {
-    uint32_t number;       /* of the triangle and 1; 0: the sky */
-    uint8_t before, after; /* ranks of the media */
-    uint8_t surface;       /* rank of the body whose surface it is */
-    bool leaving : 1;      /* the primitive; of the last one its triangle says so */
-    bool ends : 1;         /* it is opaque, or the sky */
-    bool passed : 1;       /* no interface: two media of one index meet that absorb differently */
+    uint32_t number;       /* of the triangle, plus 1; 0: the sky */
+    uint8_t before, after; /* priority indices of the media */
+    uint8_t surface;       /* priority index of the region whose surface it is */
+    bool leaving : 1;      /* the ray leaves the primitive; a layer that ends the view uses its triangle instead */
+    bool ends : 1;         /* opaque, or the sky */
+    bool passed : 1;       /* no interface: two media of equal index but different absorption */
 } rasterised_layer;
 
-/* A point in the camera's frame, right, up, forward; distance 0 is a direction, infinitely far. */
+/* A homogeneous point in the camera frame: right, up, forward; h = 0 is a direction, a point at infinity. */
 typedef struct clip_corner {
     double x, y, z, h;
     double weight[3]; /* of the triangle's own corners */
 } clip_corner;
 
-/* What is drawn: a mesh's copies, or one primitive as triangles in its own frame. */
+/* A part of the rasterised scene: a mesh's instances, or one primitive as triangles in its own frame. */
 typedef struct rasterised_part {
     instanced_mesh at;
-    int met;        /* primitive */
-    double nearest; /* depth that is drawn; by the part's own extent, so that no other solid shows in it */
-    bool hollow;    /* of a cup */
-    bool plane;     /* four triangles from the foot of the eye's perpendicular to the horizon */
+    int primitive;  /* primitive */
+    double nearest; /* near clip depth; from the part's own extent, so that no other solid affects the result */
+    bool hollow;    /* the inside of a cup */
+    bool plane;     /* four triangles from the camera's foot point on the plane to the horizon */
     mesh *own;      /* an analytic solid's triangles; NULL for a mesh */
 } rasterised_part;
 
 typedef struct screen_triangle {
-    int32_t x[3], y[3]; /* in steps, so that the area is positive (clockwise as one sees it) */
-    double a, b, c;     /* 1 / depth at (x, y) of the grid is a x + b y + c, */
-    double least, most; /* within what its corners have */
+    int32_t x[3], y[3]; /* in steps, ordered so that the area is positive (clockwise on the image) */
+    double a, b, c;     /* 1 / depth at (x, y) of the grid is a x + b y + c, ... */
+    double least, most; /* ... clamped to the range of its corners */
     uint32_t triangle, copy;
     uint16_t part;
-    uint8_t piece; /* of the polygon that the planes left */
-    bool curved;   /* a piece of a curved surface; only known where any are layers */
+    uint8_t piece; /* of the clipped polygon */
+    bool curved;   /* a piece of a curved surface; set only if there are layers */
 } screen_triangle;
 
-/* Triangles of one part, numbered through its copies, and what came of them. */
+/* A range of triangles of one part, numbered through its instances, and the screen triangles made from them. */
 typedef struct chunk {
     int part, count;
     uint64_t first;
@@ -73,15 +73,17 @@ struct zbuffer {
     int points;              /* along a pixel's edge: 1 to 8 */
     int side;                /* of a square, in pixels */
     int width, height;       /* of the grid */
-    double units_x, units_y; /* of the grid, in one of x / z and y / z */
-    double reach_x, reach_y; /* largest of |x| / z and |y| / z */
+    double units_x, units_y; /* grid units per unit of x / z and y / z */
+    double reach_x, reach_y; /* largest |x| / z and |y| / z */
     int part_count;
-    rasterised_part parts[PRIMITIVES_MAX]; /* the highest rank first, so that of equally near triangles the one with the
-                                       * lower number is drawn; layers last */
-    uint64_t layered;    /* bit r - 1: the body of rank r is drawn as layers; 0: there is nothing to see through */
-    uint64_t eye_inside; /* those that the eye is in */
-    uint64_t skins;      /* those that are open meshes */
-    double eye_index;    /* refractive index where the eye is */
+    /* highest priority index first, so that of equally near triangles the one with the lower number is drawn; layers
+     * last */
+    rasterised_part parts[PRIMITIVES_MAX];
+    uint64_t
+        layered; /* bit r - 1: the region of priority index r is drawn as layers; 0: there is nothing to see through */
+    uint64_t eye_inside;    /* regions that contain the camera */
+    uint64_t open_surfaces; /* regions that are open meshes */
+    double eye_index;       /* refractive index at the camera */
     int first_layered_part;
     size_t first_layered;      /* triangle */
     rasterised_layer **blocks; /* of lists of layers */
@@ -94,23 +96,24 @@ struct zbuffer {
     screen_triangle *triangles;
     size_t triangle_count;
     int across, down; /* squares */
-    size_t *first;    /* by square, into listed; one more */
+    size_t *first;    /* by square, index into listed; one more at the end */
     uint32_t *listed;
-    uint32_t *seen; /* by point of the grid: number of the triangle there and 1; 0 for none */
+    uint32_t *seen; /* by grid point: number of its triangle, plus 1; 0 for none */
 };
 
-/* zbuffer_cover.c: fills layered and eye_inside. */
+/* zbuffer_cover.c: computes layered and eye_inside. */
 void zbuffer_find_layers(zbuffer *z);
 
 /* zbuffer_regions.c */
 status zbuffer_cut(zbuffer *z, diagnostic *why);
 
-/* zbuffer_layers.c: a point of a layered triangle; and all points of a window once its triangles are drawn. */
+/* zbuffer_layers.c: adds a point of a layered triangle, and resolves all points of a window after its triangles are
+ * drawn. */
 void zbuffer_add_fragment(zbuffer *z, zbuffer_square *s, int point, double nearness, uint32_t number);
 void zbuffer_resolve(zbuffer *z, int x0, int y0, int x1, int y1, zbuffer_square *s);
 
-/* zbuffer_clip.c: the triangle's corners as seen from the camera; what the planes leave of it, in order; where a corner
- * is on the grid. */
+/* zbuffer_clip.c: the triangle's corners in the camera frame; the polygon that remains after clipping, in order; the
+ * position of a corner on the grid. */
 void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, uint32_t triangle,
                      clip_corner out[POLYGON_MAX]);
 int zbuffer_clip(const zbuffer *z, const rasterised_part *p, clip_corner polygon[POLYGON_MAX]);
@@ -121,7 +124,8 @@ static inline uint32_t zbuffer_number(const rasterised_part *p)
     return p->plane ? 4 : (uint32_t)p->at.triangles->triangle_count;
 }
 
-/* A corner of a part that is no plane, relative to the eye; o: the copy's origin less the eye. */
+/* A corner of a part that is not a plane, relative to the camera; o: the instance's origin minus the camera's
+ * position. */
 static inline vec3 zbuffer_vertex(const instanced_mesh *p, vec3 o, uint32_t vertex)
 {
     const vec3 v = p->triangles->vertices[vertex];

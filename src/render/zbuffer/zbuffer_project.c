@@ -1,4 +1,4 @@
-/* Triangles into the picture: corners to the grid, and the plane of inverse depths. */
+/* Projection of triangles into the image: corners on the grid, and the plane of inverse depths. */
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "base/grow.h"
@@ -6,8 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of the plane through a triangle, 1 / depth is linear in the picture (Blinn, "Hyperbolic interpolation", 1992): N.r /
- * N.P along the ray r = (x/z, y/z, 1). False when one looks along it. corners: the triangle's own. */
+/* The plane of inverse depths: 1 / depth of a triangle's plane is linear in the image (Blinn, "Hyperbolic
+ * interpolation", 1992): N.r / N.P along the ray r = (x/z, y/z, 1). False if the plane is seen edge-on. corners: the
+ * triangle's own. */
 static bool depth_plane(const zbuffer *z, const rasterised_part *p, const clip_corner *corners, screen_triangle *t)
 {
     const vec3 a = vec3_make(corners[0].x, corners[0].y, corners[0].z),
@@ -35,7 +36,7 @@ static int32_t largest3(const int32_t v[3])
     return m > v[2] ? m : v[2];
 }
 
-/* Is there a point of the picture's grid in its box? */
+/* True if the triangle's box contains a grid point of the image. */
 static bool may_show(const zbuffer *z, const screen_triangle *t)
 {
     const int half = SUBPIXEL / 2;
@@ -61,8 +62,8 @@ static void put(chunk *c, const zbuffer *z, screen_triangle *t)
         c->made_count = SIZE_MAX;
 }
 
-/* Are all corners beyond one edge of the picture? */
-static bool is_beside(const zbuffer *z, const clip_corner *c)
+/* True if all corners are outside one edge of the image. */
+static bool is_off_screen(const zbuffer *z, const clip_corner *c)
 {
     const double wide = 0.5 * z->width / z->units_x, high = 0.5 * z->height / z->units_y;
     bool left = true, right = true, below = true, above = true, behind = true;
@@ -74,7 +75,7 @@ static bool is_beside(const zbuffer *z, const clip_corner *c)
     return left || right || below || above || behind;
 }
 
-/* Do the normals at its corners differ? A mesh that is shaded flat is what it is. */
+/* True if the normals at the corners differ; a mesh with flat shading is not curved. */
 static bool is_curved(const zbuffer *z, const rasterised_part *p, uint32_t triangle)
 {
     const mesh *m = p->at.triangles;
@@ -93,7 +94,7 @@ static void project_triangle(const zbuffer *z, chunk *c, const rasterised_part *
     int32_t x[POLYGON_MAX], y[POLYGON_MAX];
     screen_triangle t = {.triangle = triangle, .copy = copy, .part = (uint16_t)c->part};
     zbuffer_corners(z, p, copy, triangle, polygon);
-    if (is_beside(z, polygon) || !depth_plane(z, p, polygon, &t))
+    if (is_off_screen(z, polygon) || !depth_plane(z, p, polygon, &t))
         return;
     t.curved = z->layered && is_curved(z, p, triangle);
     const int count = zbuffer_clip(z, p, polygon);

@@ -1,5 +1,5 @@
-/* What is drawn: meshes as they are, analytic primitives as triangles on their surface. Light falls on the primitive
- * itself, so that the triangles show in outlines alone. */
+/* The rasterised parts: meshes as they are, analytic primitives as triangles on their surface. Shading uses the
+ * primitive itself, so that the triangles show only in outlines. */
 #include "render/zbuffer/zbuffer_private.h"
 
 #include "geometry/shapes/shape.h"
@@ -17,13 +17,13 @@ static instanced_mesh part_of(const primitive *p, const mesh *triangles, vec3 sc
                             .copies = {1, 1, 1}};
 }
 
-/* The triangles of a primitive: its own, or those of another solid where only the scale tells them apart. */
+/* The triangles of a primitive: its own, or those of another solid that differs only in scale. */
 static status cut(const zbuffer *z, const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     const scene_geometry *a = z->frame_plan->geometry;
     const shape_rule *rule = shape_of(shape);
     for (int k = 0; rule->one_tessellation && k < z->part_count; k++) {
-        if (shape_of(&a->shapes[a->primitives[z->parts[k].met].priority_index]) == rule) {
+        if (shape_of(&a->shapes[a->primitives[z->parts[k].primitive].priority_index]) == rule) {
             *out = z->parts[k].own;
             mesh_retain(*out);
             return STATUS_OK;
@@ -38,17 +38,17 @@ static double nearest_depth(const primitive *p, vec3 eye)
     return nearest > 0.0 ? nearest : 0x1p-30;
 }
 
-static status add(zbuffer *z, const region *b, int met, diagnostic *why)
+static status add(zbuffer *z, const region *b, int index, diagnostic *why)
 {
     const scene_geometry *a = z->frame_plan->geometry;
-    const primitive *p = &a->primitives[met];
+    const primitive *p = &a->primitives[index];
     rasterised_part *part = &z->parts[z->part_count];
     const solid_shape *shape = &a->shapes[p->priority_index];
     const shape_rule *rule = shape_of(shape);
-    *part =
-        (rasterised_part){.met = met, .hollow = met == b->hollow, .nearest = nearest_depth(p, z->frame_plan->view.eye)};
+    *part = (rasterised_part){
+        .primitive = index, .hollow = index == b->hollow, .nearest = nearest_depth(p, z->frame_plan->view.eye)};
     if (rule->triangles) {
-        part->at = a->meshes->parts[a->meshes->by_primitive[met]];
+        part->at = a->meshes->parts[a->meshes->by_primitive[index]];
         z->part_count++;
         return STATUS_OK;
     }
@@ -60,7 +60,7 @@ static status add(zbuffer *z, const region *b, int met, diagnostic *why)
     return code;
 }
 
-/* Those whose rank's bit is set. */
+/* Adds the regions whose priority index's bit is set. */
 static status add_regions(zbuffer *z, uint64_t priority_indices, diagnostic *why)
 {
     const scene_geometry *a = z->frame_plan->geometry;
