@@ -35,7 +35,7 @@ void bvh_choose(bvh_branch *b)
             b->cost[i] = as_leaf;
         return;
     }
-    uint8_t all = 1; /* valid shares even if the costs are infinite or NaN */
+    uint8_t all = 1; /* valid shares (1 and 7), even if the costs are infinite or NaN */
     b->share[WIDTH] = all;
     float as_node = best_share(b, WIDTH, &b->share[WIDTH]) + area * COST_NODE;
     if (!(as_leaf <= as_node)) {
