@@ -333,7 +333,7 @@ check "an unknown body is refused with the nearest" matches "$code $(<err)" \
     "^2 cuvette: --generate: .*'toru'; did you mean 'torus'"
 run mesh --generate torus --minor 2
 check "wrong radii are refused with the remedy" matches "$code $(<err)" \
-    "^2 cuvette: --generate: a torus of radii 1 and 2; use radii"
+    "^2 cuvette: --generate: invalid torus radii 1 and 2; use radii"
 run mesh --generate lathe --profile 0,0,1
 check "a profile wants pairs" matches "$code $(<err)" \
     "^2 cuvette: --generate: body: the profile has an odd number of numbers; "

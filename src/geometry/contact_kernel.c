@@ -99,7 +99,7 @@ typedef struct mesh_contact {
     double reach;
 } mesh_contact;
 
-static void take_contact(void *context, const instance_hit *hit)
+static void collect_contact(void *context, const instance_hit *hit)
 {
     mesh_contact *m = context;
     const crossing other = mesh_crossing_of(m->a, m->rays, m->ray, hit);
@@ -112,7 +112,7 @@ static double mesh_reach(const scene_geometry *a, const ray_batch *rays, int k, 
                          const crossing *at, int p)
 {
     mesh_contact m = {a, rays, s->ray[k], at, -1.0};
-    KERNEL(mesh_each_near)(a, rays, k, s, p, at->t, take_contact, &m);
+    KERNEL(mesh_each_near)(a, rays, k, s, p, at->t, collect_contact, &m);
     return m.reach < 0.0 ? m.reach : m.reach + 0.5 * at->bound;
 }
 
@@ -150,8 +150,8 @@ static void cross_mesh_of_owner(const scene_geometry *a, const ray_batch *rays, 
 
 /* Of several boundaries in contact at column k's crossing, selects that of the region that owns the surface: its
  * normal, frame and material are used for shading. */
-static void cross_the_owners(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
-                             instance_hit *mesh_hits, const crossing *at)
+static void select_owner(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
+                         instance_hit *mesh_hits, const crossing *at)
 {
     const region *owner = &a->regions[c->surface[k]];
     const int pieces[2] = {owner->outside, owner->hollow};
@@ -200,5 +200,5 @@ void KERNEL(merge_contacts)(const scene_geometry *a, const ray_batch *rays, int 
         merge_meshes(a, rays, k, s, c, &at);
     c->after[k] = scene_geometry_priority_index(a, c->inside_after[k]);
     c->surface[k] = scene_geometry_surface(a, (int)c->before[k], (int)c->after[k]);
-    cross_the_owners(a, rays, k, s, c, mesh_hits, &at);
+    select_owner(a, rays, k, s, c, mesh_hits, &at);
 }

@@ -11,7 +11,7 @@ static const struct {
 status generate_box(vec3 size, mesh **out, diagnostic *why)
 {
     if (!generate_is_length(size.x) || !generate_is_length(size.y) || !generate_is_length(size.z))
-        return diagnose(why, STATUS_BAD_INPUT, "use edges greater than 0, at most 1e9", "a box of %g by %g by %g",
+        return diagnose(why, STATUS_BAD_INPUT, "use edges greater than 0, at most 1e9", "invalid box size %g x %g x %g",
                         size.x, size.y, size.z);
     mesh *m;
     TRY(mesh_create(24, 12, true, true, false, &m, why));

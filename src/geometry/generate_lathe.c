@@ -36,17 +36,18 @@ static bool equal(profile_point a, profile_point b)
 static status check(const profile_point *profile, size_t count, int around, double crease_deg, diagnostic *why)
 {
     if (around < 3)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 3", "a surface of revolution of %d segments", around);
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 3", "a surface of revolution cannot have %d segments",
+                        around);
     if (!(crease_deg >= 0.0 && crease_deg <= 180.0))
-        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 180", "a crease at %g degrees", crease_deg);
+        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 180 degrees", "crease angle %g is out of range", crease_deg);
     if (count < 2 || count > MESH_VERTICES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 2", "a profile of %zu points", count);
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 2", "a profile cannot have %zu points", count);
     bool off_axis = false;
     for (size_t k = 0; k < count; k++) {
         const profile_point p = profile[k];
         if (!(p.radius >= 0.0 && p.radius <= MESH_FAR && fabs(p.height) <= MESH_FAR))
             return diagnose(why, STATUS_BAD_INPUT, "use a radius of 0 to 1e9 and a height of -1e9 to 1e9",
-                            "point %zu of the profile is %g, %g", k, p.radius, p.height);
+                            "point %zu of the profile is out of range: %g, %g", k, p.radius, p.height);
         if (k > 0 && equal(p, profile[k - 1]))
             return diagnose(why, STATUS_BAD_INPUT, "remove one of them", "points %zu and %zu of the profile are equal",
                             k - 1, k);

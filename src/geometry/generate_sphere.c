@@ -113,7 +113,7 @@ static status make_sphere(size_t f, void (*place)(mesh *m, size_t face, size_t f
 status generate_sphere(size_t count, mesh **out, diagnostic *why)
 {
     if (count < 1 || count > MESH_TRIANGLES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "a sphere of %zu triangles", count);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "a sphere cannot have %zu triangles", count);
     const size_t f = (size_t)floor(sqrt((double)count / 20.0) + 0.5);
     return make_sphere(f < 1 ? 1 : f, place_flat, out, why);
 }
@@ -121,6 +121,6 @@ status generate_sphere(size_t count, mesh **out, diagnostic *why)
 status generate_icosphere(int level, mesh **out, diagnostic *why)
 {
     if (level < 0 || level > ICOSPHERE_LEVEL_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 11", "level %d of an icosphere", level);
+        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 11", "icosphere level %d is out of range", level);
     return make_sphere((size_t)1 << level, place_bisected, out, why);
 }

@@ -10,17 +10,18 @@ typedef struct field {
 static status check(const field *f, diagnostic *why)
 {
     if (f->columns < 2 || f->rows < 2)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 2 by 2", "a height field with too few heights");
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 2 by 2", "too few heights in a height field");
     if (!generate_is_length(f->size_x) || !generate_is_length(f->size_z))
-        return diagnose(why, STATUS_BAD_INPUT, "use sizes greater than 0, at most 1e9", "a height field of %g by %g",
-                        f->size_x, f->size_z);
+        return diagnose(why, STATUS_BAD_INPUT, "use sizes greater than 0, at most 1e9",
+                        "invalid height field size %g x %g", f->size_x, f->size_z);
     if (!(f->depth >= 0.0 && f->depth <= MESH_FAR))
-        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 1e9", "a height field of depth %g", f->depth);
+        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 1e9", "invalid height field depth %g", f->depth);
     for (size_t k = 0; k < f->columns * f->rows; k++) {
         const double height = f->heights[k];
         if (!(fabs(height) <= MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "use -1e9 to 1e9", "height %g in column %zu of row %zu", height,
-                            k % f->columns, k / f->columns);
+            return diagnose(why, STATUS_BAD_INPUT, "use -1e9 to 1e9",
+                            "height %g in column %zu of row %zu is out of range", height, k % f->columns,
+                            k / f->columns);
         if (f->depth > 0.0 && !(height > -f->depth))
             return diagnose(why, STATUS_BAD_INPUT, "use a greater depth",
                             "height %g in column %zu of row %zu is not above the bottom at %g", height, k % f->columns,

@@ -7,10 +7,10 @@ static status check(double major, double minor, int around, int tube, diagnostic
 {
     if (!generate_is_length(major) || !generate_is_length(minor) || !(minor < major) || !(major + minor <= MESH_FAR))
         return diagnose(why, STATUS_BAD_INPUT, "use radii greater than 0, with the tube's the smaller one",
-                        "a torus of radii %g and %g", major, minor);
+                        "invalid torus radii %g and %g", major, minor);
     if (around < 3 || tube < 3)
         return diagnose(why, STATUS_BAD_INPUT, "use at least 3 segments",
-                        "a torus of %d segments around and %d around the tube", around, tube);
+                        "a torus cannot have %d segments around and %d around the tube", around, tube);
     return STATUS_OK;
 }
 

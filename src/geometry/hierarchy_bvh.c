@@ -23,7 +23,7 @@ static bool same_place(const vec3 *a, const vec3 *b)
 }
 
 /* A triangle with two corners at one position can never be hit and is left out. */
-static bool refer(const mesh *m, uint32_t triangle, bvh_ref *r)
+static bool make_reference(const mesh *m, uint32_t triangle, bvh_ref *r)
 {
     const uint32_t *corner = m->triangles[triangle].corner;
     const vec3 *a = &m->vertices[corner[0]], *b = &m->vertices[corner[1]], *c = &m->vertices[corner[2]];
@@ -40,20 +40,20 @@ static bool refer(const mesh *m, uint32_t triangle, bvh_ref *r)
     return true;
 }
 
-typedef struct reading {
+typedef struct reference_job {
     const mesh *m;
     bvh_ref *refs;
     bvh_range *pieces; /* the references of each PIECE triangles; first is their position */
-} reading;
+} reference_job;
 
 static void read_piece(void *context, size_t index, int member)
 {
     (void)member;
-    const reading *r = context;
+    const reference_job *r = context;
     size_t first = index * PIECE, end = first + PIECE < r->m->triangle_count ? first + PIECE : r->m->triangle_count;
     bvh_range piece = {.box = bvh_box_empty(), .centers = bvh_box_empty(), .first = (uint32_t)first};
     for (size_t i = first; i < end; i++)
-        if (refer(r->m, (uint32_t)i, &r->refs[first + piece.count]))
+        if (make_reference(r->m, (uint32_t)i, &r->refs[first + piece.count]))
             bvh_range_add(&piece, &r->refs[first + piece.count++]);
     r->pieces[index] = piece;
 }
@@ -61,7 +61,7 @@ static void read_piece(void *context, size_t index, int member)
 static status read_triangles(const mesh *m, thread_team *t, bvh_ref *refs, bvh_range *all, diagnostic *why)
 {
     size_t count = (m->triangle_count + PIECE - 1) / PIECE;
-    reading r = {m, refs, aligned_alloc(64, (count + 1) * 64 * ((sizeof(bvh_range) + 63) / 64))};
+    reference_job r = {m, refs, aligned_alloc(64, (count + 1) * 64 * ((sizeof(bvh_range) + 63) / 64))};
     if (!r.pieces)
         return out_of_memory(why);
     thread_team_run(t, read_piece, &r, count);

@@ -35,7 +35,7 @@ void bvh_choose(bvh_branch *b)
             b->cost[i] = as_leaf;
         return;
     }
-    uint8_t all = 1; /* valid shares even if the costs are infinite or NaN */
+    uint8_t all = 1; /* valid shares (1 and 7), even if the costs are infinite or NaN */
     b->share[WIDTH] = all;
     float as_node = best_share(b, WIDTH, &b->share[WIDTH]) + area * COST_NODE;
     if (!(as_leaf <= as_node)) {
@@ -73,22 +73,22 @@ static int children_of(bvh_branch *b, bool root, bvh_branch **out)
 }
 
 /* A subtree that a single thread counts or writes, and its position in the arrays. */
-typedef struct place {
+typedef struct subtree {
     bvh_branch *b;
     size_t node, block;
-} place;
+} subtree;
 typedef struct collapse_job {
     hierarchy *h;
     const bvh_ref *refs;
-    place *places;
+    subtree *list;
     size_t count, room;
 } collapse_job;
 
-static bool add_place(collapse_job *g, bvh_branch *b, size_t node, size_t block)
+static bool add_subtree(collapse_job *g, bvh_branch *b, size_t node, size_t block)
 {
-    if (!GROW(g->places, g->room, g->count + 1))
+    if (!GROW(g->list, g->room, g->count + 1))
         return false;
-    g->places[g->count++] = (place){b, node, block};
+    g->list[g->count++] = (subtree){b, node, block};
     return true;
 }
 
@@ -103,7 +103,7 @@ static bool find_small(collapse_job *g, bvh_branch *b, bool root)
     bvh_branch *children[WIDTH];
     int count = children_of(b, root, children);
     for (int i = 0; i < count; i++)
-        if (!(small(children[i]) ? add_place(g, children[i], 0, 0) : find_small(g, children[i], false)))
+        if (!(small(children[i]) ? add_subtree(g, children[i], 0, 0) : find_small(g, children[i], false)))
             return false;
     return true;
 }
@@ -136,11 +136,11 @@ static void count_tree(bvh_branch *b, bool root, bool small_known)
     b->depth = depth + 1;
 }
 
-static void count_place(void *context, size_t index, int member)
+static void count_subtree(void *context, size_t index, int member)
 {
     (void)member;
     collapse_job *g = context;
-    count_tree(g->places[index].b, false, false);
+    count_tree(g->list[index].b, false, false);
 }
 
 static void write_leaf(hierarchy *h, const bvh_branch *b, const bvh_ref *refs, size_t first_block)
@@ -179,7 +179,8 @@ static bool write_tree(collapse_job *g, bvh_branch *b, bool root, size_t node, s
         n->child[i] = c->leaf ? child_leaf((uint32_t)block, blocks_of(c->count)) : (uint32_t)node;
         if (c->leaf)
             write_leaf(g->h, c, g->refs, block);
-        else if (!(later && small(c) ? add_place(later, c, node, block) : write_tree(g, c, false, node, block, later)))
+        else if (!(later && small(c) ? add_subtree(later, c, node, block)
+                                     : write_tree(g, c, false, node, block, later)))
             return false;
         node += c->leaf ? 0 : c->nodes;
         block += c->leaf ? blocks_of(c->count) : c->blocks;
@@ -187,11 +188,11 @@ static bool write_tree(collapse_job *g, bvh_branch *b, bool root, size_t node, s
     return true;
 }
 
-static void write_place(void *context, size_t index, int member)
+static void write_subtree(void *context, size_t index, int member)
 {
     (void)member;
     collapse_job *g = context;
-    const place *p = &g->places[index];
+    const subtree *p = &g->list[index];
     write_tree(g, p->b, false, p->node, p->block, NULL);
 }
 
@@ -221,13 +222,13 @@ static status collapse(collapse_job *g, bvh_branch *root, thread_team *t, diagno
 {
     if (!find_small(g, root, true))
         return out_of_memory(why);
-    thread_team_run(t, count_place, g, g->count);
+    thread_team_run(t, count_subtree, g, g->count);
     count_tree(root, true, true);
     TRY(make_room(g->h, root->nodes, root->blocks, why));
     g->count = 0;
     if (!write_tree(g, root, true, 0, 0, g))
         return out_of_memory(why);
-    thread_team_run(t, write_place, g, g->count);
+    thread_team_run(t, write_subtree, g, g->count);
     g->h->report.nodes = root->nodes;
     g->h->report.leaves = root->leaves;
     g->h->report.depth = (int)root->depth;
@@ -240,6 +241,6 @@ status bvh_collapse(hierarchy *h, bvh_branch *root, const bvh_ref *refs, thread_
         return no_triangles(h, why);
     collapse_job g = {.h = h, .refs = refs};
     status code = collapse(&g, root, t, why);
-    free(g.places);
+    free(g.list);
     return code;
 }

@@ -54,7 +54,7 @@ static void add_bins(bvh_bins *sum, const bvh_bins *s)
 
 /* Joins the partitions of the pieces. Each piece holds its lower references, then its upper ones. Upper ones before the
  * end of all lower ones are swapped with the lower ones after it; both have the same number. */
-static void settle(const job *j, size_t pieces)
+static void join_partitions(const job *j, size_t pieces)
 {
     uint32_t upper = 0, lower = j->count, upper_end = 0, lower_begin = j->count; /* empty ranges of both kinds */
     size_t from_front = 0, from_back = pieces;
@@ -105,7 +105,7 @@ status bvh_split_together(thread_team *t, bvh_ref *refs, const bvh_range *range,
             for (int k = 0; k < 2; k++)
                 bvh_box_add(&centers[k], j.pieces[i].centers[k].low, j.pieces[i].centers[k].high);
         }
-        settle(&j, pieces);
+        join_partitions(&j, pieces);
         bvh_describe_halves(range, &j.bins, j.cut, j.lower, centers, half);
     } else {
         bvh_split_at_median(refs, range, half);

@@ -23,7 +23,7 @@ typedef struct packet {
     _Alignas(64) float t_min[TOGETHER], t_best[TOGETHER];
     _Alignas(64) double origin[3][TOGETHER], shear[3][TOGETHER]; /* along the query's axes x, y, z */
     _Alignas(64) double t_limit[TOGETHER], t_start[TOGETHER];    /* each query's t_best and t_min */
-    _Alignas(64) double place[3][TOGETHER],
+    _Alignas(64) double mesh_origin[3][TOGETHER],
         inverse[3][TOGETHER]; /* origin and inverse direction along the mesh's axes */
     _Alignas(64) int64_t parallel[3][TOGETHER], skip[TOGETHER], wanted[TOGETHER], best[TOGETHER], facing[TOGETHER];
     _Alignas(64) double weight_u[TOGETHER], weight_v[TOGETHER], det[TOGETHER]; /* of the best hits */
@@ -91,7 +91,7 @@ static void packet_start(packet *p, ray_query *const *rays, int count)
         p->weight_u[i] = p->weight_v[i] = p->det[i] = 0.0, p->facing[i] = 0;
         p->skip[i] = q->skip, p->wanted[i] = q->wanted, p->best[i] = q->best;
         for (int k = 0; k < 3; k++) {
-            p->place[k][i] = q->origin[k], p->inverse[k][i] = q->inverse[k];
+            p->mesh_origin[k][i] = q->origin[k], p->inverse[k][i] = q->inverse[k];
             p->parallel[k][i] = mask_less(magnitude(q->direction[k]), PARALLEL);
         }
         p->alive.bits[i / LANES] |= (uint8_t)((i < count) << i % LANES);
@@ -170,7 +170,7 @@ static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, con
 
 /* Updates t_farthest, the largest distance that any ray still looks for; it only decreases. Non-negative floats sort by
  * their bits, and the maximum of integers is independent of the order. */
-static void note_farthest(packet *p)
+static void update_farthest(packet *p)
 {
     int32_t bits[TOGETHER], farthest = 0;
     memcpy(bits, p->t_best, sizeof bits);
@@ -233,7 +233,7 @@ ALWAYS_INLINE int8x64 clamp_together(const packet *p, int i, const double (*corn
     double8 near = double8_all(-(double)INFINITY), far = double8_all((double)INFINITY);
     int8x64 hit = {-1, -1, -1, -1, -1, -1, -1, -1};
     for (int k = 0; k < 3; k++) {
-        const double8 o = doubles_at(&p->place[k][i]), inverse = doubles_at(&p->inverse[k][i]);
+        const double8 o = doubles_at(&p->mesh_origin[k][i]), inverse = doubles_at(&p->inverse[k][i]);
         const double8 low = double8_all(least_of(corner[k])) - o, high = double8_all(most_of(corner[k])) - o;
         const int8x64 parallel = ints_at(&p->parallel[k][i]);
         const int8x64 aside = (low > zero + PARALLEL_MARGIN) | (high < zero - PARALLEL_MARGIN);
@@ -288,7 +288,7 @@ ALWAYS_INLINE int8x64 consider_together(packet *p, int i, int8x64 mask, const pa
 }
 
 /* Updates the float limits of eight rays from the exact ones; a finished ray gets a limit that nothing is below. */
-ALWAYS_INLINE void note_limits(packet *p, int group)
+ALWAYS_INLINE void update_limits(packet *p, int group)
 {
     for (int k = 0; k < LANES; k++) {
         const int i = group * LANES + k;
@@ -339,7 +339,7 @@ static void triangle_together(packet *p, const ray_set *set, enum query_mode mod
         if (!bits)
             continue;
         p->alive.bits[g] &= (uint8_t)(mode == QUERY_ANY ? ~bits : 255);
-        note_limits(p, g);
+        update_limits(p, g);
     }
 }
 
@@ -358,11 +358,11 @@ static void leaf_together(const hierarchy *h, packet *p, const ray_set *set, enu
         }
     }
     if (p->changed)
-        note_farthest(p);
+        update_farthest(p);
 }
 
 /* Copies a ray's best hit from the packet to its query, and back. */
-static void give_back(const packet *p, int i)
+static void store_hit(const packet *p, int i)
 {
     ray_query *q = p->ray[i];
     q->t_best = p->t_limit[i];
@@ -371,7 +371,7 @@ static void give_back(const packet *p, int i)
     q->best_facing = (int)p->facing[i];
 }
 
-static void take_over(packet *p, int i)
+static void load_hit(packet *p, int i)
 {
     const ray_query *q = p->ray[i];
     p->t_limit[i] = q->t_best;
@@ -381,7 +381,7 @@ static void take_over(packet *p, int i)
 }
 
 /* Traverses from a child with each of the few rays of a set alone. */
-static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t child)
+static void traverse_alone(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t child)
 {
     for (int g = 0; g < p->groups; g++) {
         for (uint8_t bits = set->bits[g]; bits; bits = (uint8_t)LANES_LESS_FIRST(bits)) {
@@ -393,14 +393,14 @@ static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum que
             }
             b.t_min = p->t_min[i];
             const uint32_t before = p->ray[i]->best;
-            give_back(p, i);
+            store_hit(p, i);
             KERNEL(walk_bvh_from)(h, p->ray[i], &b, mode, child);
-            take_over(p, i);
+            load_hit(p, i);
             p->alive.bits[g] &= (uint8_t) ~((mode == QUERY_ANY && p->ray[i]->best != before) << lane);
             p->t_best[i] = p->alive.bits[g] >> lane & 1 ? float_above(p->t_limit[i]) : 0.0f;
         }
     }
-    note_farthest(p);
+    update_farthest(p);
 }
 
 /* Pushes a node's children that any ray may hit, the nearest on top. */
@@ -414,10 +414,10 @@ static int push_children(const packet *p, const bvh_node *nodes, uint32_t at, co
     for (uint64_t hit = lanes_of8((n <= f) & (n <= float8_all(p->t_farthest)) & (f >= float8_all(p->all.t_min))); hit;
          hit = LANES_LESS_FIRST(hit)) {
         const unsigned slot = lane_first(hit);
-        int place = top++;
-        for (; place > bottom && stack[place - 1].near < near[slot]; place--)
-            stack[place] = stack[place - 1];
-        stack[place] = (waiting){nodes[at].child[slot], at, slot, near[slot], *set};
+        int position = top++;
+        for (; position > bottom && stack[position - 1].near < near[slot]; position--)
+            stack[position] = stack[position - 1];
+        stack[position] = (waiting){nodes[at].child[slot], at, slot, near[slot], *set};
     }
     return top;
 }
@@ -438,7 +438,7 @@ static void packet_walk(const hierarchy *h, packet *p, enum query_mode mode)
         if (count == 0)
             continue;
         if (count <= ALONE)
-            go_alone(h, p, &rays, mode, next.child);
+            traverse_alone(h, p, &rays, mode, next.child);
         else if (next.child & CHILD_LEAF)
             leaf_together(h, p, &rays, mode, next.child);
         else
@@ -447,7 +447,7 @@ static void packet_walk(const hierarchy *h, packet *p, enum query_mode mode)
 }
 
 /* The class of a ray: rays of one packet have the same direction signs and major axis. */
-static int kind_of(const ray_query *q)
+static int ray_class(const ray_query *q)
 {
     return (q->direction[0] < 0.0) | (q->direction[1] < 0.0) << 1 | (q->direction[2] < 0.0) << 2 | q->z << 3;
 }
@@ -456,27 +456,27 @@ void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int c
 {
     enum { KINDS = 24, FEW = 12 };
     packet p;
-    ray_query *alike[TOGETHER];
+    ray_query *coherent[TOGETHER];
     bool taken[TOGETHER] = {false};
     for (int first = 0; first < count; first++) {
         if (taken[first])
             continue;
-        const int kind = kind_of(rays[first]);
+        const int kind = ray_class(rays[first]);
         int n = 0;
         for (int i = first; i < count; i++) {
-            if (taken[i] || kind_of(rays[i]) != kind)
+            if (taken[i] || ray_class(rays[i]) != kind)
                 continue;
             taken[i] = true;
-            alike[n++] = rays[i];
+            coherent[n++] = rays[i];
         }
         if (n < FEW) {
             for (int i = 0; i < n; i++)
-                KERNEL(walk_bvh)(h, alike[i], mode);
+                KERNEL(walk_bvh)(h, coherent[i], mode);
             continue;
         }
-        packet_start(&p, alike, n);
+        packet_start(&p, coherent, n);
         packet_walk(h, &p, mode);
         for (int i = 0; i < n; i++)
-            give_back(&p, i);
+            store_hit(&p, i);
     }
 }

@@ -111,7 +111,7 @@ static bool ray_in(const traversal *q, const instanced_mesh *p, uint32_t copy, m
 }
 
 /* At equal distances the lower face number wins, so that the result is independent of the order. */
-static void take(traversal *q, const instanced_mesh *p, uint32_t copy, const mesh_hit *hit)
+static void accept_hit(traversal *q, const instanced_mesh *p, uint32_t copy, const mesh_hit *hit)
 {
     if (hit->triangle == TRIANGLE_NONE)
         return;
@@ -161,7 +161,7 @@ static void ask_copy(traversal *q, size_t instance)
     }
     mesh_hit hit;
     TREES.nearest(p->tree, &local, &hit);
-    take(q, p, copy, &hit);
+    accept_hit(q, p, copy, &hit);
 }
 
 static double come_by(void *context, uint32_t instance, double t_max)
@@ -209,7 +209,7 @@ static void nearest_of_copy(const instance_set *f, size_t instance, const instan
     TREES.nearest_batch(p->tree, local, queued, found);
     for (int k = 0; k < queued; k++) {
         traversal q = {.best = &hits[ray[k]]};
-        take(&q, p, copy, &found[k]);
+        accept_hit(&q, p, copy, &found[k]);
     }
 }
 

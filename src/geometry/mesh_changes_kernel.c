@@ -61,7 +61,7 @@ typedef struct others {
     uint64_t set;
 } others;
 
-static void take_others(void *context, const instance_hit *hit)
+static void collect_others(void *context, const instance_hit *hit)
 {
     others *o = context;
     const int p = mesh_face_primitive(hit->face);
@@ -84,7 +84,7 @@ static uint64_t near_meshes(const instance_set *f, const ray_batch *rays, int k,
     ray.t_max = c->t[k] + close;
     ray.wanted = f->primitives;
     others o = {on_mesh ? hit->face : FACE_NONE, 0};
-    INSTANCE_SET.each(f, &ray, take_others, &o);
+    INSTANCE_SET.each(f, &ray, collect_others, &o);
     return o.set;
 }
 

@@ -28,7 +28,7 @@ static status check_vertices(const mesh *m, diagnostic *why)
 status mesh_check(const mesh *m, diagnostic *why)
 {
     if (m->slot_count < 1 || m->slot_count > MESH_SLOTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 256", "a mesh of %d material slots", m->slot_count);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 256", "a mesh cannot have %d material slots", m->slot_count);
     for (size_t t = 0; t < m->triangle_count; t++) {
         for (int k = 0; k < 3; k++) {
             if (m->triangles[t].corner[k] >= m->vertex_count)

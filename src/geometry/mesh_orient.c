@@ -41,7 +41,7 @@ static size_t flood(const mesh *m, mesh_neighbours *n, size_t first, size_t *at)
 }
 
 /* Chooses one of the two directions of a connected part. */
-static void settle(const mesh *m, mesh_neighbours *n, size_t first, size_t end)
+static void choose_direction(const mesh *m, mesh_neighbours *n, size_t first, size_t end)
 {
     const vec3 middle = m->vertices[m->triangles[n->queue[first]].corner[0]];
     size_t turned = 0;
@@ -71,7 +71,7 @@ bool mesh_orient(mesh *m, mesh_neighbours *n, size_t *at)
         end = flood(m, n, first, at);
         if (end == 0)
             return false;
-        settle(m, n, first, end);
+        choose_direction(m, n, first, end);
     }
     for (size_t t = 0; t < m->triangle_count; t++)
         if (n->turned[t])

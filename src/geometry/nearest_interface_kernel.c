@@ -222,7 +222,7 @@ static bool is_interface(const scene_geometry *a, const ray_batch *rays, int k, 
 }
 
 /* Advances the rows of a primitive with several intervals past t: finished intervals are replaced by the next ones. */
-static void pass_rows(int first, int rows, bool inside, int k, int m, double t, ray_scratch *s)
+static void advance_rows(int first, int rows, bool inside, int k, int m, double t, ray_scratch *s)
 {
     int spent = 0;
     while (spent < rows && (inside ? s->out[first + spent][k] : s->in[first + spent][k]) <= t)
@@ -240,8 +240,8 @@ static void pass_rows(int first, int rows, bool inside, int k, int m, double t, 
 }
 
 /* Column k's crossing has no effect: the ray after the crossing becomes column m, for another search. */
-static void pass_on(const scene_geometry *a, int k, int m, ray_scratch *s, const hit_batch *c,
-                    const instance_hit *mesh_hits)
+static void skip_crossing(const scene_geometry *a, int k, int m, ray_scratch *s, const hit_batch *c,
+                          const instance_hit *mesh_hits)
 {
     const uint64_t set = c->inside_after[k] & ~(a->meshes ? a->meshes->skins : 0);
     const double t = c->t[k];
@@ -250,7 +250,7 @@ static void pass_on(const scene_geometry *a, int k, int m, ray_scratch *s, const
         const bool endless = is_mesh(a, p);
         if (a->primitives[p].rows > 1) {
             const int rows = a->primitives[p].rows;
-            pass_rows(p, rows, set >> p & 1, k, m, t, s);
+            advance_rows(p, rows, set >> p & 1, k, m, t, s);
             p += rows - 1;
             continue;
         }
@@ -331,7 +331,7 @@ static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch 
     int left = 0;
     for (int i = 0; i < rays->count; i++)
         if (s->attention[i] && !is_interface(a, rays, i, s, hits, mesh_hits))
-            pass_on(a, i, left++, s, hits, mesh_hits);
+            skip_crossing(a, i, left++, s, hits, mesh_hits);
     while (left > 0) {
         const int n = left;
         next_changes(a, rays, n, s, &s->again, again);
@@ -340,7 +340,7 @@ static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch 
             if (s->segments)
                 record_segment(k, HUGE_VAL, s, &s->again);
             if (s->attention[k] && !is_interface(a, rays, k, s, &s->again, again)) {
-                pass_on(a, k, left++, s, &s->again, again);
+                skip_crossing(a, k, left++, s, &s->again, again);
                 continue;
             }
             copy_hit(&s->again, k, hits, s->ray[k]);
@@ -354,9 +354,9 @@ static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch 
 
 /* Does the range 0..1 of the ray overlap the region in the interval of that row, whatever hides it? If the ends of an
  * overlap are within the filter's window, they may be in contact: then, and if `doubtful`, it is undecided. */
-static void touching(const scene_geometry *a, const region *b, int row, bool doubtful, int n,
-                     const double *restrict steps, const ray_scratch *restrict s, int64_t *restrict blocked,
-                     int64_t *restrict undecided)
+static void mark_overlap(const scene_geometry *a, const region *b, int row, bool doubtful, int n,
+                         const double *restrict steps, const ray_scratch *restrict s, int64_t *restrict blocked,
+                         int64_t *restrict undecided)
 {
     const double *restrict in = s->in[row], *restrict out = s->out[row];
     const double extent = a->primitives[b->outside].extent;
@@ -424,7 +424,7 @@ static void quick_shadow_test(const scene_geometry *a, const ray_batch *rays, in
             *(doubtful ? &unsure : &sure) |= (uint64_t)1 << b->outside;
         else if (casts)
             for (int k = 0; k < a->primitives[b->outside].rows; k++)
-                touching(a, b, b->outside + k, doubtful, n, s->low, s, s->blocked, s->undecided);
+                mark_overlap(a, b, b->outside + k, doubtful, n, s->low, s, s->blocked, s->undecided);
         hidden |= !b->opaque;
     }
     if (sure)
@@ -534,7 +534,7 @@ static void shadow(const scene_geometry *a, const ray_batch *rays, int solid_sha
                     record_crossing(a, k, s, c, again);
             }
             if (transmitted[s->ray[k]] > 0.0)
-                pass_on(a, k, left++, s, c, again);
+                skip_crossing(a, k, left++, s, c, again);
         }
     }
 }

@@ -42,8 +42,8 @@ typedef struct medium_segment {
 
 /* A hit of a ray on a mesh. */
 typedef struct instance_hit {
-    double t, u, v; /* as a mesh_hit's (geometry/hierarchy.h); t infinite for a miss */
-    int64_t face;   /* as in mesh_hit (geometry/hierarchy.h); t is infinite for a miss */
+    double t, u, v; /* as in mesh_hit (geometry/hierarchy.h); t is infinite for a miss */
+    int64_t face;   /* mesh_face_number (geometry/instance_set.h); FACE_NONE for a miss */
     int facing;
 } instance_hit;
 

@@ -134,14 +134,14 @@ typedef struct local_point {
 typedef local_point point_function(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving);
 
 /* Stores the point of ray i. */
-ALWAYS_INLINE void store_point(const primitive *p, point_function *put_back, bool general, const ray_batch *rays,
+ALWAYS_INLINE void store_point(const primitive *p, point_function *project, bool general, const ray_batch *rays,
                                const double *__restrict t, int i, int bit, surface_batch *__restrict s)
 {
     local_ray r =
         ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
     vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), way = vec3_scale(d, t[i]), q = vec3_add(o, way);
     int64_t at = rays->start[i] - p->first_face, leaving = -(int64_t)((rays->inside[i] & (uint64_t)1 << bit) != 0);
-    local_point l = put_back(p, general, r, q, at, leaving);
+    local_point l = project(p, general, r, q, at, leaving);
     double side = blend(leaving, -1.0, 1.0); /* the normal faces the ray */
     vec3 n = vec3_scale(l.normal, side), point = l.point;
     double cosine = -vec3_dot(d, n);
@@ -162,12 +162,12 @@ ALWAYS_INLINE void store_point(const primitive *p, point_function *put_back, boo
     s->face[i] = l.face;
 }
 
-ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool general, const ray_batch *rays,
+ALWAYS_INLINE void points_on(const primitive *p, point_function *project, bool general, const ray_batch *rays,
                              const double *__restrict t, int bit, surface_batch *__restrict s)
 {
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++)
-        store_point(p, put_back, general, rays, t, i, bit, s);
+        store_point(p, project, general, rays, t, i, bit, s);
 }
 
 /* Define rows and points with a body that is compiled for both values of is_general, an expression in p: whether rays

@@ -13,8 +13,7 @@ static status check(const solid_shape *shape, diagnostic *why)
     status code = check_length(shape->radius, "radius", why);
     THEN(code, check_length(shape->height, "height", why));
     if (code == STATUS_OK && (shape->sides < 3 || shape->sides > SIDES_MAX))
-        code = diagnose(why, STATUS_BAD_INPUT, "use 3 to 60 sides, or a cylinder", "a prism of %lld sides",
-                        (long long)shape->sides);
+        code = diagnose(why, STATUS_BAD_INPUT, "use 3 to 60, or a cylinder", "sides is %lld", (long long)shape->sides);
     return code;
 }
 
