@@ -1,3 +1,4 @@
+/* Renders an animation frame by frame, into numbered images or one stream. */
 #include "cli/animate.h"
 #include "base/file.h"
 #include "cli/terminal.h"
@@ -11,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A film in the making. */
+/* An animation being rendered. */
 typedef struct film_job {
     const animate_request *request;
     const animate_names *names; /* NULL: one stream */
@@ -20,7 +21,7 @@ typedef struct film_job {
     scene_motion *motion;
     job *with;
     file_writer stream;
-    animate_rows *rows; /* NULL: none wanted */
+    animate_rows *rows; /* NULL: no table */
     int64_t frame, count;
     progress_line line;
     char label[64];
@@ -37,18 +38,18 @@ static bool show_progress(void *context, double share_done)
 
 static status say_interrupted(const film_job *f, diagnostic *why)
 {
-    const char *remedy = f->names ? "run it again, and it goes on there" : "";
+    const char *remedy = f->names ? "run the same command again to resume" : "";
     return diagnose_at(why, f->request->output, STATUS_INTERRUPTED, remedy, "interrupted at %s%s", f->label,
-                       f->stream.temporary ? ", and nothing is left of the film" : "");
+                       f->stream.temporary ? "; nothing is written" : "");
 }
 
-/* Is that frame's picture there, and its row where rows are wanted? */
+/* Returns whether the frame's image exists, and its row where a table is written. */
 static bool is_there(const film_job *f, const char *path)
 {
     return path && access(path, F_OK) == 0 && (!f->rows || animate_rows_have(f->rows, f->frame));
 }
 
-/* Frames are of equal length but for the way to the first one, which has a line of its own. */
+/* Frames take equal time, except the motion up to the first one, which has a progress line of its own. */
 static bool show_motion(void *context, double share_done)
 {
     film_job *f = context;
@@ -63,7 +64,7 @@ static status advance(film_job *f, double to_s, bool skins, diagnostic *why)
     const load_watch watch = {show_motion, f};
     const bool own_line = f->frame == 0 && to_s > 0;
     if (own_line)
-        progress_start(&f->line, "moving to the first frame");
+        progress_start(&f->line, "simulating up to the first frame");
     status result = scene_motion_advance_until(f->motion, to_s, skins, &watch, why);
     if (own_line) {
         progress_erase(&f->line);
@@ -80,15 +81,16 @@ static status advance(film_job *f, double to_s, bool skins, diagnostic *why)
     return STATUS_OK;
 }
 
-/* A reader has each frame at once; one who left is a failure without words, as for all that goes to standard output. */
+/* Flushes after each frame for the reader of a pipe. A closed pipe is a failure without a message, as for all
+ * output. */
 static status flush_stream(film_job *f, diagnostic *why)
 {
     if (fflush(f->stream.stream) == 0 && !ferror(f->stream.stream))
         return STATUS_OK;
     if (errno == EPIPE)
         return STATUS_FAILURE;
-    status result = file_writer_commit(&f->stream, why); /* knows best why it failed */
-    return result == STATUS_OK ? diagnose(why, STATUS_FAILURE, "", "cannot write the film") : result;
+    status result = file_writer_commit(&f->stream, why); /* has the reason of the failure */
+    return result == STATUS_OK ? diagnose(why, STATUS_FAILURE, "", "cannot write the animation") : result;
 }
 
 static status write_image(film_job *f, const char *path, const film *img, diagnostic *why)

@@ -1,3 +1,4 @@
+/* Notes on command-line and study parameters that have no effect on the image. */
 #include "cli/inert_notes.h"
 #include "cli/terminal.h"
 #include "scene/model/hints.h"
@@ -8,7 +9,7 @@
 
 enum { PATH_MAX_HERE = 200 };
 
-/* The path of a change, which may stand before the value. */
+/* Copies the path of a change: path, or the part of text before '='. */
 static bool path_of(const char *path, const char *text, char out[PATH_MAX_HERE])
 {
     const size_t length = path ? strlen(path) : strcspn(text, "=");
@@ -51,7 +52,7 @@ void inert_note_assignment(const scene *s, const char *assignment)
         say(&answer);
 }
 
-/* Set again later on the command line. */
+/* Returns whether a later option sets the same path. */
 static bool is_set_again(const scene_input *input, size_t at, const char *path)
 {
     char other[PATH_MAX_HERE];
@@ -61,7 +62,7 @@ static bool is_set_again(const scene_input *input, size_t at, const char *path)
     return false;
 }
 
-/* A film moves its slimes: their time_s does not count. */
+/* An animation sets time_s of its slimes, so that its value on the command line has no effect. */
 static scene *in_motion(const scene *s)
 {
     scene *moved = scene_clone(s);
@@ -71,7 +72,7 @@ static scene *in_motion(const scene *s)
     return moved;
 }
 
-/* Says which changes of the command line do nothing: with a witness, only what it alone can tell. */
+/* Notes the changes of the command line that have no effect; with a witness, only those that need it. */
 static void note_changes(const scene *s, const scene_input *input, const inert_witness *witness)
 {
     for (size_t i = 0; i < input->count; i++) {
@@ -92,7 +93,7 @@ void inert_note_changes(const scene *s, const scene_input *input)
     scene_destroy(moved);
 }
 
-/* --- what a frame tells --- */
+/* --- notes that need a rendered frame --- */
 
 typedef struct frame_of {
     const job_account *frame;

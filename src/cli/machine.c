@@ -1,3 +1,4 @@
+/* `cuvette machine`: hardware, clocks, and what disturbs measurements. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "cli/options.h"
@@ -12,10 +13,10 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .excess_remedy = "leave it out",
-    .excess = "'%.128s' is one argument too many",
-    .about = "Print what this machine is: its processors and caches, the step and the cost of its clocks, the vector "
-             "instructions in use, and what could disturb a measurement now.",
+    .excess_remedy = "remove it",
+    .excess = "unexpected argument '%.128s'",
+    .about = "Describe this machine: processors and caches, resolution and overhead of the clocks, the vector "
+             "instruction set in use, and what could currently disturb a measurement.",
 };
 
 static void print_text(const machine_account *a)
@@ -25,10 +26,13 @@ static void print_text(const machine_account *a)
     free(summary);
     printf("usable          processing units %d, cores %d, packages %d\n", topology_pu_count(a->machine),
            topology_core_count(a->machine), topology_package_count(a->machine));
-    printf("instructions    %s in use, %s is the best of this processor\n", isa_name(a->chosen), isa_name(a->best));
+    printf("instructions    %s in use, %s is the best that this processor has\n", isa_name(a->chosen),
+           isa_name(a->best));
     printf("kernel          %s %s %s\n", a->kernel.sysname, a->kernel.release, a->kernel.machine);
-    printf("wall clock      tick %.0f ns, a reading costs %.0f ns\n", a->wall.tick_s * 1e9, a->wall.overhead_s * 1e9);
-    printf("thread clock    tick %.0f ns, a reading costs %.0f ns\n", a->cpu.tick_s * 1e9, a->cpu.overhead_s * 1e9);
+    printf("wall clock      resolution %.0f ns, overhead %.0f ns a reading\n", a->wall.tick_s * 1e9,
+           a->wall.overhead_s * 1e9);
+    printf("thread clock    resolution %.0f ns, overhead %.0f ns a reading\n", a->cpu.tick_s * 1e9,
+           a->cpu.overhead_s * 1e9);
     printf("hw counters     %s\n", a->has_hardware_counters ? "available" : "not available");
     printf("build           cuvette %s, compiler %s, %s\n", CUVETTE_VERSION, __VERSION__, CUVETTE_COMPILER_FLAGS);
     size_t i;
@@ -36,7 +40,7 @@ static void print_text(const machine_account *a)
     json_array_foreach(a->disturbances, i, line)
         printf("%-15s %s\n", i == 0 ? "disturbances" : "", json_string_value(line));
     if (json_array_size(a->disturbances) == 0)
-        printf("disturbances    none seen\n");
+        printf("disturbances    none found\n");
 }
 
 status command_machine(int argc, char **argv, diagnostic *why)

@@ -1,3 +1,4 @@
+/* `cuvette motion`: the motion of a scene's slimes against closed-form mechanics, as a table, CSV or JSON. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "cli/scene_input.h"
@@ -25,7 +26,7 @@ static status check_request(void *asked, diagnostic *why)
 {
     const motion_request *request = asked;
     return request->json && request->csv
-               ? options_wrong("motion", NULL, why, "leave one of them out", "JSON and CSV do not go together")
+               ? options_wrong("motion", NULL, why, "give only one of them", "--json and --csv exclude each other")
                : STATUS_OK;
 }
 
@@ -33,8 +34,8 @@ static status check_scene(void *asked, const scene *s, diagnostic *why)
 {
     const motion_request *request = asked;
     return scene_moves(s) ? STATUS_OK
-                          : options_wrong(request->input.path, NULL, why, "give a mesh 'generate: slime'",
-                                          "nothing moves in this scene");
+                          : options_wrong(request->input.path, NULL, why, "add a mesh with 'generate: slime'",
+                                          "nothing moves in this scene: it has no slime");
 }
 
 static const char *motion_word(const mesh_entry *m)
@@ -140,14 +141,15 @@ static const scene_command motion_command = {
              .words = "SCENE",
              SCENE_WORD("motion"),
              .about =
-                 "Measure how each slime of the scene file SCENE moves with its stiffness, its integrator and its "
-                 "step, beside the closed forms of mechanics: a spring's swing, a fall, a bounce, what a free body "
-                 "keeps, its volume, the longest stable step, and how fast it is computed.\vFor example:\n"
+                 "Compare the motion of each slime of the scene file SCENE, with its stiffness, integrator and time "
+                 "step, with closed-form mechanics: oscillation of a spring, fall, bounce, quantities that a free "
+                 "body conserves, volume, longest stable step; also measure the simulation speed.\vFor example:\n"
                  "  cuvette motion experiments/scenes/slime.yaml\n"
-                 "  cuvette motion experiments/scenes/slime.yaml --set toy.integrator=verlet --set toy.dt_s=0.0005"},
+                 "  cuvette motion experiments/scenes/slime.yaml --set toy.integrator=verlet \\\n    --set "
+                 "toy.dt_s=0.0005"},
     .check = check_request,
     .check_scene = check_scene,
-    .unloaded = true, /* the trials move slimes of their own */
+    .unloaded = true, /* the trials simulate slimes of their own */
     .run = run,
 };
 

@@ -1,3 +1,4 @@
+/* `cuvette realism`: metrics of a traced scene against closed-form optics, as a table, CSV, JSON or a curve. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "cli/options.h"
@@ -28,8 +29,8 @@ static const command_option options[] = {
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, realism_request, json)},
     OPTION_CSV(realism_request),
     {"curve", 0, "NAME",
-     "print a curve as CSV instead, x, measured, theory: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption "
-     "or edges",
+     "print one curve (x, measured, theory) as CSV: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption or "
+     "edges",
      .take = take_curve},
     {0},
 };
@@ -38,7 +39,7 @@ static status check_request(void *asked, diagnostic *why)
 {
     const realism_request *request = asked;
     return request->json && (request->csv || request->curve >= 0)
-               ? options_wrong("realism", NULL, why, "leave one of them out", "JSON and CSV do not go together")
+               ? options_wrong("realism", NULL, why, "give only one of them", "--json excludes --csv and --curve")
                : STATUS_OK;
 }
 
@@ -65,7 +66,7 @@ static void print_text(const realism_report *r)
     }
     printf("%d of %d pass", passed, defined);
     if (defined < r->count)
-        printf("; %d are not defined for this scene", r->count - defined);
+        printf("; %d not defined for this scene", r->count - defined);
     putchar('\n');
 }
 
@@ -153,11 +154,12 @@ static const scene_command realism_command = {
     .form = {.options = options,
              .words = "SCENE",
              SCENE_WORD("realism"),
-             .about = "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a "
-                      "cup), a liquid in it (a cylinder) and a rod (a box); or a prism, a drop, or two plates. It "
-                      "succeeds whether the metrics pass or not.\vFor example:\n"
+             .about = "Compare the traced optics of the scene file SCENE with closed-form theory. The scene holds a "
+                      "vessel (a cup), a liquid in it (a cylinder) and a rod (a box); or a prism, a drop, or two "
+                      "plates. The exit status is 0 whether or not the metrics pass. On a terminal the table is "
+                      "shortened to its width.\vFor example:\n"
                       "  cuvette realism experiments/scenes/rod.yaml\n"
-                      "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set "
+                      "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant \\\n    --set "
                       "clear.reflectivity=0.1 --set clear.transparency=0.9\n"
                       "  cuvette realism experiments/scenes/prism.yaml"},
     .check = check_request,

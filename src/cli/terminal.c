@@ -1,3 +1,4 @@
+/* Terminal and signals of the program: stop request, checked standard output, colour, progress line. */
 #include "cli/terminal.h"
 #include "measure/clock.h"
 #include <errno.h>
@@ -25,8 +26,8 @@ bool terminal_stop_asked(void *unused)
     return stop_asked != 0;
 }
 
-/* A picture must never land in descriptor 1 because the caller had closed it: hold the place with something that
- * cannot be written (read, for standard input). */
+/* An image file must never get descriptor 1 because the caller has closed it: a closed descriptor is opened on
+ * /dev/null, in the direction that fails (write-only for standard input, read-only for the outputs). */
 static void hold_standard_descriptors(void)
 {
     for (int fd = 0; fd <= 2; fd++)
@@ -34,7 +35,7 @@ static void hold_standard_descriptors(void)
             (void)!open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
 }
 
-/* The errno of an earlier failed write is gone: a pipe without a reader can still be told. */
+/* The errno of an earlier failed write is lost, but poll still reports a pipe without a reader. */
 static bool reader_left(void)
 {
     struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
@@ -49,13 +50,13 @@ status terminal_flush(diagnostic *why)
         return STATUS_OK;
     int error = errno ? errno : EIO;
     __fpurge(stdout);
-    clearerr(stdout); /* said once */
+    clearerr(stdout); /* report the error once */
     if (error == EPIPE || reader_left())
         return STATUS_FAILURE;
     return diagnose(why, STATUS_FAILURE, "", "cannot write to standard output: %s", strerror(error));
 }
 
-/* For the ways out through exit(), such as argp's help. */
+/* For exits through exit(), such as argp's --help. */
 static void check_stdout_at_exit(void)
 {
     if (__fpending(stdout) == 0 && !ferror(stdout))
@@ -105,7 +106,7 @@ void terminal_error(const diagnostic *why)
     if (why->what[0] == '\0')
         return;
     diagnostic_text(why, text, sizeof text);
-    for (char *c = text; *c; c++) /* a file's name may hold anything; an error is one line */
+    for (char *c = text; *c; c++) /* a file name may hold control characters; an error is one line */
         if ((unsigned char)*c < ' ' || *c == 127)
             *c = '?';
     bool color = has_color(STDERR_FILENO);

@@ -1,4 +1,4 @@
-/* A diagram's ground: media as areas, boundaries as lines, and the key to them. */
+/* The background of a diagram: media as areas, boundaries as lines, and their legend. */
 #include "report/diagram_parts.h"
 #include "scene/model/medium.h"
 #include "image/image.h"
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Refractive index at render.lambda_nm; 1 for what cannot be told. */
+/* Refractive index at render.lambda_nm; 1 where it is unknown. */
 static double index_of(const scene *s, int i)
 {
     index_law law;
@@ -20,7 +20,7 @@ static bool is_opaque(const scene *s, int i)
     return material_is_opaque(&s->solids[i].surface);
 }
 
-/* Opaque solids in a pale tone of their colour, clear ones the bluer the more they refract. */
+/* Opaque solids have a pale tone of their colour; the blue of transparent ones deepens with their refractive index. */
 static void write_fill(FILE *out, const scene *s, int i)
 {
     if (is_opaque(s, i)) {
@@ -71,7 +71,7 @@ static void write_boundary(const diagram *d, const section_line *line)
     fputs("\"/>\n", d->out);
 }
 
-/* Squared distance of p from the piece a b, scene units. */
+/* Squared distance of p from the segment ab, in scene units squared. */
 static double distance2(section_point p, section_point a, section_point b)
 {
     const double du = b.u - a.u, dv = b.v - a.v, length2 = du * du + dv * dv;
@@ -81,7 +81,7 @@ static double distance2(section_point p, section_point a, section_point b)
     return off_u * off_u + off_v * off_v;
 }
 
-/* Marks the points without which a line would change visibly: Douglas and Peucker 1973. */
+/* Marks the points that the line needs within the tolerance (Douglas and Peucker 1973). */
 static void keep_needed(diagram *d, size_t first, size_t last)
 {
     const double tolerance = 0.03 / d->scale; /* pixels */
@@ -144,7 +144,7 @@ double diagram_media_key(FILE *out, const probe *p, const scene *s, double left,
         key_words(p, s, i, text, sizeof text);
         for (const char *c = text; *c; c++)
             letters += ((unsigned char)*c & 0xc0) != 0x80;
-        const double width = 39.0 + 6.9 * letters; /* no font is measured: about */
+        const double width = 39.0 + 6.9 * letters; /* estimated: 6.9 px per letter at font size 11 */
         if (x > left && x + width > right)
             x = left, y += DIAGRAM_ROW;
         if (out) {

@@ -1,3 +1,4 @@
+/* The media catalogue as a table, one medium in detail, or JSON. */
 #include "report/media_rows.h"
 #include "report/json.h"
 #include "base/number.h"
@@ -12,7 +13,7 @@ typedef struct spectral_line {
 static const spectral_line lines[] = {
     {"n_d", LINE_HELIUM_D_NM}, {"n_F", LINE_HYDROGEN_F_NM}, {"n_C", LINE_HYDROGEN_C_NM}, {"n_D", LINE_SODIUM_D_NM}};
 
-enum { LINES_TABLE = 3, LINES_ALL = 4 }; /* the table leaves out the sodium line */
+enum { LINES_TABLE = 3, LINES_ALL = 4 }; /* the table has no column for the sodium line */
 
 char *media_range_text(const medium *m, char text[MEDIA_RANGE_MAX])
 {
@@ -91,7 +92,7 @@ void media_rows_details(FILE *stream, const medium *m, double at_nm)
         fprintf(stream, "V_d             %.4f%s\n", abbe,
                 dispersion_covers(&m->law, LINE_HYDROGEN_F_NM, LINE_HYDROGEN_C_NM) ? "" : ", extrapolated");
     else
-        fprintf(stream, "V_d             none: the law has no dispersion\n");
+        fprintf(stream, "V_d             none: the index is constant\n");
     if (at_nm > 0.0)
         print_index(stream, m, "n_at", at_nm);
     fprintf(stream, "relative to     %s\n", reference_of(m));
@@ -107,7 +108,7 @@ void media_rows_details(FILE *stream, const medium *m, double at_nm)
         fprintf(stream, "note            %s\n", m->note);
 }
 
-/* The lines' indices, published or relative to vacuum. */
+/* The indices at the spectral lines, as published or relative to vacuum (absolute). */
 static json_t *indices_json(const medium *m, bool absolute)
 {
     json_t *o = json_object();

@@ -1,3 +1,4 @@
+/* The parameter table as text, as JSON, and as roff for the manual page. */
 #include "geometry/solid.h"
 #include "report/param_rows.h"
 #include "geometry/shapes/shape.h"
@@ -9,7 +10,7 @@
 static int wider(int width, const char *text)
 {
     int length = (int)strlen(text);
-    return length > width && length <= 48 ? length : width; /* one long value must not push the table apart */
+    return length > width && length <= 48 ? length : width; /* a single long value must not widen the column */
 }
 
 static const char *or_dash(const char *text)
