@@ -719,6 +719,51 @@ if command -v script >/dev/null; then
     check "progress has a percentage and the time left" grep -q 'rendering: .*%, .* left' tty.txt
 fi
 
+# --- tables on a terminal are wrapped to its width; a pipe gets the whole lines
+widest() { awk '{if (length > w) w = length} END {print w + 0}' "$1"; }
+words() { tr -d ';' <"$1" | tr -s ' \t' '\n' | sed '/^-*$/d' | sort; } # FILE: its words in any order
+# on_terminal COLUMNS ARGUMENT...: runs the program on a terminal of that width; its output is in tty.txt
+on_terminal() {
+    local shell
+    printf -v shell '%q ' "$program" "${@:2}"
+    script -qec "stty cols $1 rows 24; $shell" /dev/null </dev/null 2>&1 | tr -d '\r' >tty.txt
+}
+tables=(params "params $scene" "params ${scene%/*}/slime.yaml toy" media "media --at 500" "media glycerol --at 600"
+    "realism $scene" machine)
+if command -v script >/dev/null; then
+    for words in "${tables[@]}"; do
+        # shellcheck disable=SC2086
+        "$program" $words >pipe.txt
+        for columns in 24 40 79 80 100 132 200; do
+            # shellcheck disable=SC2086
+            on_terminal $columns $words
+            check "${words%% *} fits $columns columns: ${words##*/}" \
+                holds "$(wc -l <tty.txt) > 1 && $(widest tty.txt) <= $columns"
+        done
+        [[ $words == machine ]] && continue # its clocks differ from run to run
+        # shellcheck disable=SC2086
+        on_terminal 80 $words
+        check "80 columns have every word: ${words##*/}" cmp <(words pipe.txt) <(words tty.txt)
+        # shellcheck disable=SC2086
+        on_terminal 500 $words
+        check "500 columns need no wrapping: ${words##*/}" cmp pipe.txt tty.txt
+    done
+    on_terminal 80 params
+    check "no line of a table ends in a blank" is "$(grep -c ' $' tty.txt)" 0
+    check "a meaning without room is below its row" is "$(grep -A1 '^render.depth ' tty.txt | tail -1)" \
+        "    integer 0..64; recursion depth: 0 follows camera rays only"
+    on_terminal 80 realism "$scene" --csv
+    check "CSV is not wrapped" holds "$(widest tty.txt) > 80"
+    COLUMNS=60 on_terminal 0 media
+    check "COLUMNS is the width of a terminal that does not report it" holds "$(widest tty.txt) <= 60"
+    COLUMNS=60 on_terminal 200 media
+    check "but not of one that does" holds "$(widest tty.txt) > 100"
+    COLUMNS=wide on_terminal 0 media
+    check "and 80 without both" holds "$(widest tty.txt) > 70 && $(widest tty.txt) <= 80"
+    COLUMNS=40 run media
+    check "COLUMNS does not wrap a pipe" holds "$(widest out) > 100"
+fi
+
 # --- scene
 run scene "$scene"
 check "scene writes to standard output" silent_success

@@ -3,9 +3,11 @@
 #include "report/json.h"
 #include "report/media_rows.h"
 #include "cli/options.h"
+#include "cli/terminal.h"
 #include "base/number.h"
 #include <stdbool.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 typedef struct media_request {
     const char *name; /* NULL: all */
@@ -40,7 +42,7 @@ static const command_form form = {
              "temperature of the measurement, reference (air or vacuum) and source. With a name, print all data of "
              "that medium: the dispersion formula with its coefficients, and caveats.\vIndices are as published, "
              "relative to air or to vacuum; for one medium the index relative to vacuum is printed too. A star marks "
-             "an index outside the measured range. --at never extrapolates. On a terminal the table is shortened to "
+             "an index outside the measured range. --at never extrapolates. On a terminal the lines are wrapped to "
              "its width; a pipe or a file gets the full lines.",
 };
 
@@ -75,10 +77,11 @@ static status print(const media_request *request, const medium *only, diagnostic
 {
     if (request->json)
         return json_print(media_rows_json(only, request->at_nm), why);
+    const int columns = terminal_columns(STDOUT_FILENO);
     if (only)
-        media_rows_details(stdout, only, request->at_nm);
+        media_rows_details(stdout, only, request->at_nm, columns);
     else
-        media_rows_table(stdout, request->at_nm);
+        media_rows_table(stdout, request->at_nm, columns);
     return STATUS_OK;
 }
 

@@ -1,7 +1,10 @@
 /* `cuvette motion`: the motion of a scene's slimes against closed-form mechanics, as a table, CSV or JSON. */
 #include "cli/cli.h"
 #include "report/json.h"
+#include "report/wrap.h"
+#include "base/number.h"
 #include "cli/scene_input.h"
+#include "cli/terminal.h"
 #include "scene/motion/motion.h"
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
@@ -9,6 +12,8 @@
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <unistd.h>
 
 typedef struct motion_request {
     scene_input input;
@@ -43,25 +48,50 @@ static const char *motion_word(const mesh_entry *m)
     return param_find(PARAM_MESH, "integrator")->choices[m->slime.integrator];
 }
 
-static void print_number(double value, int digits, int width)
+static const char *number_text(double value, int digits, char text[NUMBER_TEXT_MAX])
 {
-    if (isfinite(value))
-        printf(" %*.*g", width, digits, value);
-    else
-        printf(" %*s", width, "-");
+    if (!isfinite(value))
+        return "-";
+    snprintf(text, NUMBER_TEXT_MAX, "%.*g", digits, value);
+    return text;
 }
 
-static void print_text(const mesh_entry *m, const softbody_trial_report *r)
+/* The cells of a row as text; unit and what may have any length. */
+typedef struct trial_cells {
+    const char *name, *measured, *theory, *error, *unit, *what;
+} trial_cells;
+
+/* Width of the columns before `what`. A terminal without room for more gets the unit in the last column. */
+enum { TABLE_WIDTH = 88, CELLS_MAX = 256 };
+
+static void print_cells(const trial_cells *c, int columns)
 {
+    char start[CELLS_MAX];
+    const bool wide = !columns || columns > TABLE_WIDTH;
+    snprintf(start, sizeof start, "  %-24s %16s %16s %9s  ", c->name, c->measured, c->theory, c->error);
+    if (wide)
+        snprintf(start + strlen(start), sizeof start - strlen(start), "%-12s ", c->unit);
+    if (wide || !c->unit[0])
+        wrap_row(stdout, columns, start, "%s", c->what);
+    else
+        wrap_row(stdout, columns, start, "%s; %s", c->unit, c->what);
+}
+
+static void print_text(const mesh_entry *m, const softbody_trial_report *r, int columns)
+{
+    static const trial_cells titles = {"", "measured", "theory", "error", "unit", "what"};
+    char measured[NUMBER_TEXT_MAX], theory[NUMBER_TEXT_MAX], error[NUMBER_TEXT_MAX];
     printf("%s: level %lld, %s, steps of %g s\n", m->name, (long long)m->level, motion_word(m), m->slime.dt_s);
-    printf("  %-24s %16s %16s %9s  %-12s %s\n", "", "measured", "theory", "error", "unit", "what");
+    print_cells(&titles, columns);
     for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++) {
         const softbody_trial *v = &r->value[i];
-        printf("  %-24s", v->name);
-        print_number(v->measured, 10, 16);
-        print_number(v->theory, 10, 16);
-        print_number(softbody_trial_error(v), 2, 9);
-        printf("  %-12s %s\n", v->unit, v->what);
+        const trial_cells cells = {v->name,
+                                   number_text(v->measured, 10, measured),
+                                   number_text(v->theory, 10, theory),
+                                   number_text(softbody_trial_error(v), 2, error),
+                                   v->unit,
+                                   v->what};
+        print_cells(&cells, columns);
     }
 }
 
@@ -127,7 +157,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
         else if (request->csv)
             print_csv(m, &report);
         else if (!request->json)
-            print_text(m, &report);
+            print_text(m, &report, terminal_columns(STDOUT_FILENO));
     }
     if (result == STATUS_OK && request->json)
         result = write_json(request, slimes, why);

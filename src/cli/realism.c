@@ -1,12 +1,15 @@
 /* `cuvette realism`: metrics of a traced scene against closed-form optics, as a table, CSV, JSON or a curve. */
 #include "cli/cli.h"
 #include "report/json.h"
+#include "report/wrap.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
+#include "cli/terminal.h"
 #include "realism/realism.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct realism_request {
     scene_input input;
@@ -48,21 +51,53 @@ static const char *verdict(const realism_value *v)
     return !realism_is_defined(v) ? "none" : realism_passes(v) ? "pass" : "FAIL";
 }
 
-static void print_text(const realism_report *r)
+/* The cells of a row as text; unit and what may have any length. */
+typedef struct metric_cells {
+    const char *verdict, *metric, *measured, *theory, *error, *tolerance, *unit, *what;
+} metric_cells;
+
+/* Width of the columns before `what`. A terminal without room for more gets tolerance and unit in the last column. */
+enum { TABLE_WIDTH = 103, CELLS_MAX = 256 };
+
+static void print_cells(const metric_cells *c, int columns)
 {
+    char start[CELLS_MAX];
+    if (!columns || columns > TABLE_WIDTH) {
+        snprintf(start, sizeof start, "%-4s  %-24s %18s %18s %9s %9s  %-12s ", c->verdict, c->metric, c->measured,
+                 c->theory, c->error, c->tolerance, c->unit);
+        wrap_row(stdout, columns, start, "%s", c->what);
+        return;
+    }
+    snprintf(start, sizeof start, "%-4s  %-24s %18s %18s %9s  ", c->verdict, c->metric, c->measured, c->theory,
+             c->error);
+    if (c->tolerance[0] == '-')
+        wrap_row(stdout, columns, start, "%s", c->what);
+    else
+        wrap_row(stdout, columns, start, "%s%s%s; %s", c->tolerance, c->unit[0] ? " " : "", c->unit, c->what);
+}
+
+static void print_value(const realism_value *v, int columns)
+{
+    char measured[32] = "-", theory[32] = "-", error[32] = "-", tolerance[32] = "-";
+    if (realism_is_defined(v)) {
+        snprintf(measured, sizeof measured, "%.12g", v->measured);
+        snprintf(theory, sizeof theory, "%.12g", v->theory);
+        snprintf(error, sizeof error, "%.1e", realism_error(v));
+        snprintf(tolerance, sizeof tolerance, "%.1e", v->tolerance);
+    }
+    const metric_cells cells = {verdict(v), v->metric, measured, theory, error, tolerance, v->unit, v->what};
+    print_cells(&cells, columns);
+}
+
+static void print_text(const realism_report *r, int columns)
+{
+    static const metric_cells titles = {"", "metric", "measured", "theory", "error", "tolerance", "unit", "what"};
     int defined = 0, passed = 0;
-    printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", "", "metric", "measured", "theory", "error", "tolerance",
-           "unit", "what");
+    print_cells(&titles, columns);
     for (int i = 0; i < r->count; i++) {
-        const realism_value *v = &r->value[i];
-        defined += realism_is_defined(v);
-        passed += realism_passes(v);
-        if (realism_is_defined(v))
-            printf("%-4s  %-24s %18.12g %18.12g %9.1e %9.1e  %-12s %s\n", verdict(v), v->metric, v->measured, v->theory,
-                   realism_error(v), v->tolerance, v->unit, v->what);
-        else
-            printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", verdict(v), v->metric, "-", "-", "-", "-", v->unit,
-                   v->what);
+        defined += realism_is_defined(&r->value[i]);
+        passed += realism_passes(&r->value[i]);
+        print_value(&r->value[i], columns);
     }
     printf("%d of %d pass", passed, defined);
     if (defined < r->count)
@@ -145,7 +180,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
     if (request->csv)
         print_csv(&report);
     else
-        print_text(&report);
+        print_text(&report, terminal_columns(STDOUT_FILENO));
     return STATUS_OK;
 }
 
@@ -156,8 +191,8 @@ static const scene_command realism_command = {
              SCENE_WORD("realism"),
              .about = "Compare the traced optics of the scene file SCENE with closed-form theory. The scene holds a "
                       "vessel (a cup), a liquid in it (a cylinder) and a rod (a box); or a prism, a drop, or two "
-                      "plates. The exit status is 0 whether or not the metrics pass. On a terminal the table is "
-                      "shortened to its width.\vFor example:\n"
+                      "plates. The exit status is 0 whether or not the metrics pass. On a terminal the lines "
+                      "are wrapped to its width.\vFor example:\n"
                       "  cuvette realism experiments/scenes/rod.yaml\n"
                       "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant \\\n    --set "
                       "clear.reflectivity=0.1 --set clear.transparency=0.9\n"

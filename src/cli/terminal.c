@@ -1,5 +1,6 @@
 /* Terminal and signals of the program: stop request, checked standard output, colour, progress line. */
 #include "cli/terminal.h"
+#include "base/number.h"
 #include "measure/clock.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -87,11 +88,16 @@ bool terminal_is_smart(int fd)
 
 int terminal_columns(int fd)
 {
-    enum { COLUMNS = 80 }; /* of a terminal that does not say */
+    enum { COLUMNS_DEFAULT = 80, COLUMNS_MAX = 10000 };
     struct winsize size;
+    int64_t columns;
     if (!isatty(fd))
         return 0;
-    return ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : COLUMNS;
+    if (ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 1)
+        return size.ws_col;
+    const char *given = getenv("COLUMNS");
+    return given && number_parse_int(given, &columns) && columns > 1 && columns <= COLUMNS_MAX ? (int)columns
+                                                                                               : COLUMNS_DEFAULT;
 }
 
 static bool has_color(int fd)

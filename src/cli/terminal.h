@@ -19,7 +19,8 @@ status terminal_flush(diagnostic *why);
 /* Returns whether fd is a terminal with cursor movement and colour; TERM=dumb has neither. */
 bool terminal_is_smart(int fd);
 
-/* Columns of the terminal that fd is; 0 when it is none. */
+/* Width of the terminal fd in columns: as the terminal reports it, otherwise COLUMNS, otherwise 80. 0 if fd is not a
+ * terminal. */
 int terminal_columns(int fd);
 
 /* Prints "cuvette: ..." as one line on standard error; nothing for an empty diagnostic. */

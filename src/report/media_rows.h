@@ -11,8 +11,9 @@ enum { MEDIA_RANGE_MAX = 72 };
 /* "210..3710"; "589.3" for a single wavelength; "-" if the range is unknown. Returns text. */
 char *media_range_text(const medium *m, char text[MEDIA_RANGE_MAX]);
 
-void media_rows_table(FILE *stream, double at_nm);
-void media_rows_details(FILE *stream, const medium *m, double at_nm);
+/* columns: width of the terminal to which lines are wrapped; 0: no wrapping. */
+void media_rows_table(FILE *stream, double at_nm, int columns);
+void media_rows_details(FILE *stream, const medium *m, double at_nm, int columns);
 
 /* All media, or one medium unless only is NULL; NULL when memory is out. */
 json_t *media_rows_json(const medium *only, double at_nm);
