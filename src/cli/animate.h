@@ -2,7 +2,7 @@
  * index, its table of rows, and the rendering. Frames are written atomically, one file each. An interrupted animation
  * can be resumed: existing frames are not rendered again, but the motion is simulated again from the start, so that the
  * frames are bit-identical with those of an uninterrupted run. A stream (YUV4MPEG2) always starts again. Ownership:
- * words of the command line are borrowed; *_create and *_parse allocate, *_release frees. Errors are located. */
+ * arguments of the command line are borrowed; *_create and *_parse allocate, *_release frees. Errors are located. */
 #pragma once
 
 #include "cli/scene_input.h"
@@ -89,9 +89,9 @@ status animate_names_check(const animate_names *names, const scene *s, diagnosti
  * animate_rows_close frees. */
 typedef struct animate_rows animate_rows;
 
-/* Opens or creates the file. anew: all frames are rendered again, so the file must not have rows yet. STATUS_BAD_INPUT
- * for rows of another animation or with other columns, and while another process writes the file. */
-status animate_rows_open(const char *path, uint64_t definition, bool anew, animate_rows **out, diagnostic *why);
+/* Opens or creates the file. restart: all frames are rendered again, so the file must not have rows yet.
+ * STATUS_BAD_INPUT for rows of another animation or with other columns, and while another process writes the file. */
+status animate_rows_open(const char *path, uint64_t definition, bool restart, animate_rows **out, diagnostic *why);
 void animate_rows_close(animate_rows *rows); /* NULL is allowed */
 
 /* Returns whether the file had a row of that frame when it was opened. */
@@ -102,8 +102,8 @@ typedef struct animate_row {
     uint64_t definition;
     int64_t frame;
     double time_s;
-    const job_account *made;
-    scene_motion_report moved; /* motion since the previous frame, or since the start */
+    const job_account *account;
+    scene_motion_report motion; /* motion since the previous frame, or since the start */
     const softbody *body;
 } animate_row;
 

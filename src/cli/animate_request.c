@@ -33,9 +33,9 @@ static int64_t common_divisor(int64_t a, int64_t b)
     return a;
 }
 
-static status take_rate(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_rate(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    animate_request *request = into;
+    animate_request *request = context;
     (void)o;
     char whole[32];
     const size_t length = strcspn(value, "/");
@@ -118,9 +118,9 @@ static status find_script(animate_request *request, diagnostic *why)
     return options_wrong("--script", request->script, why, "check the path", "cannot open: %s", strerrordesc_np(errno));
 }
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
-    animate_request *request = asked;
+    animate_request *request = context;
     TRY(check_output(request, why));
     TRY(check_rows(request, why));
     return find_script(request, why);
@@ -129,7 +129,7 @@ static status check_request(void *asked, diagnostic *why)
 static const scene_command animate_command = {
     .name = "animate",
     .form = {.options = options,
-             .words = "SCENE",
+             .synopsis = "SCENE",
              SCENE_WORD("animate"),
              .about =
                  "Render an animation of the scene file SCENE, whose slimes move.\vFrame k shows the time START + k / "

@@ -60,7 +60,8 @@ status command_dispatch(const command *table, size_t count, const char *about, i
     if (!help)
         return out_of_memory(why);
     const char *word = NULL;
-    const command_form form = {.words = "COMMAND [ARGUMENT...]", .about = help, .words_most = 1, .ends_at_word = true};
+    const command_form form = {
+        .synopsis = "COMMAND [ARGUMENT...]", .about = help, .argument_limit = 1, .ends_at_argument = true};
     status result = command_form_read(&form, argc, argv, &word, why);
     free(help);
     if (result != STATUS_OK)

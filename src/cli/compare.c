@@ -21,9 +21,9 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .words = "A B",
-    .words_at = offsetof(compare_request, paths),
-    .words_most = 2,
+    .synopsis = "A B",
+    .arguments_at = offsetof(compare_request, paths),
+    .argument_limit = 2,
     .excess_remedy = "compare takes two images",
     .excess = "unexpected argument '%.128s'",
     .about = "Compare the images A and B as a display shows them: mean squared error, peak signal-to-noise ratio, "

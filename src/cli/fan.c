@@ -30,9 +30,9 @@ static status take_vector(const command_option *o, void *request, const char *va
     return result;
 }
 
-static status take_size(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_size(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    fan_request *request = into;
+    fan_request *request = context;
     const bool spreads = strcmp(o->name, "spread") == 0;
     const char *name = spreads ? "--spread" : "--width";
     const status result = options_reals(name, value, spreads ? "degrees" : "scene units", 1,
@@ -66,10 +66,10 @@ static const command_option options[] = {
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
     static const char *const endings[] = {".svg", ".csv"};
-    fan_request *request = asked;
+    fan_request *request = context;
     request->rule.rays = (int)request->rays;
     if (isnan(request->rule.from.x) || isnan(request->rule.to.x))
         return options_wrong("fan", NULL, why, "give --from X,Y,Z and --to X,Y,Z", "the axis of the fan is not given");
@@ -115,9 +115,9 @@ static status follow(const fan_request *request, const scene *s, probe *p, diagn
     return result;
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const fan_request *request = asked;
+    const fan_request *request = context;
     probe *p = NULL;
     status result = scene_input_probe(&request->input, s, level, &p, why);
     if (result == STATUS_OK) {
@@ -131,7 +131,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 static const scene_command fan_command = {
     .name = "fan",
     .form = {.options = options,
-             .words = "SCENE --from X,Y,Z --to X,Y,Z -o FILE",
+             .synopsis = "SCENE --from X,Y,Z --to X,Y,Z -o FILE",
              SCENE_WORD("fan"),
              .about =
                  "Trace a fan of rays in one plane, parallel or from one point, along their refracted paths; find "

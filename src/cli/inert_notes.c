@@ -38,7 +38,7 @@ static bool is_hinted(const scene *s, const char *path)
     return x.found;
 }
 
-static void say(const inert_answer *answer)
+static void print_note(const inert_answer *answer)
 {
     char line[NOTE_LINE_MAX];
     terminal_note(note_line(&answer->note, line, sizeof line));
@@ -49,7 +49,7 @@ void inert_note_assignment(const scene *s, const char *assignment)
     char path[PATH_MAX_HERE];
     inert_answer answer;
     if (path_of(NULL, assignment, path) && inert_ask(s, path, NULL, &answer))
-        say(&answer);
+        print_note(&answer);
 }
 
 /* Returns whether a later option sets the same path. */
@@ -82,7 +82,7 @@ static void note_changes(const scene *s, const scene_input *input, const inert_w
             continue;
         const bool is_plain = inert_ask(s, path, NULL, &answer);
         if (witness ? !is_plain && inert_ask(s, path, witness, &answer) : is_plain && !is_hinted(s, path))
-            say(&answer);
+            print_note(&answer);
     }
 }
 
@@ -134,7 +134,7 @@ static status note_in_all_cells(const study *s, const char *path, diagnostic *wh
         scene_destroy(setting);
     }
     if (inert)
-        say(&answer);
+        print_note(&answer);
     return STATUS_OK;
 }
 

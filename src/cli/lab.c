@@ -37,9 +37,9 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .words = "[SCENE]",
-    .words_at = offsetof(lab_request, scene),
-    .words_most = 1,
+    .synopsis = "[SCENE]",
+    .arguments_at = offsetof(lab_request, scene),
+    .argument_limit = 1,
     .excess_remedy = "give one SCENE",
     .excess = "unexpected argument '%.128s'",
     .about = "Open the laboratory in the browser: view a scene, change any of its parameters, inspect the rays of a "
@@ -90,7 +90,7 @@ static void open_browser(const char *address)
 
 static void wait_for_stop(void)
 {
-    while (!terminal_stop_asked(NULL))
+    while (!terminal_stop_requested(NULL))
         usleep(50000);
 }
 

@@ -15,9 +15,9 @@ typedef struct media_request {
     bool json;
 } media_request;
 
-static status take_wavelength(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_wavelength(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    media_request *request = into;
+    media_request *request = context;
     (void)o;
     return number_parse_real(value, &request->at_nm) && request->at_nm > 0.0
                ? STATUS_OK
@@ -33,9 +33,9 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .words = "[NAME]",
-    .words_at = offsetof(media_request, name),
-    .words_most = 1,
+    .synopsis = "[NAME]",
+    .arguments_at = offsetof(media_request, name),
+    .argument_limit = 1,
     .excess_remedy = "give one medium, or none for all",
     .excess = "unexpected argument '%.128s'",
     .about = "Print the media catalogue: refractive index at the lines d, F and C, Abbe number, wavelength range and "

@@ -22,9 +22,9 @@ typedef struct mesh_request {
     bool json;
 } mesh_request;
 
-static status take_format(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_format(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    mesh_request *request = into;
+    mesh_request *request = context;
     (void)o;
     const char *names[MESH_FORMAT_COUNT];
     for (int format = 0; format < MESH_FORMAT_COUNT; format++)
@@ -32,9 +32,9 @@ static status take_format(const command_option *o, void *into, const char *value
     return options_choice("--format", "format", value, names, MESH_FORMAT_COUNT, &request->format, why);
 }
 
-static status take_parameter(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_parameter(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    mesh_request *request = into;
+    mesh_request *request = context;
     char path[64], name[64];
     snprintf(path, sizeof path, "body.%s", o->parameter ? o->parameter : o->name);
     snprintf(name, sizeof name, "--%s", o->name);
@@ -71,9 +71,9 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .words = "FILE\n--generate BODY",
-    .words_at = offsetof(mesh_request, file),
-    .words_most = 1,
+    .synopsis = "FILE\n--generate BODY",
+    .arguments_at = offsetof(mesh_request, file),
+    .argument_limit = 1,
     .about = "Read a triangle mesh (OBJ, PLY, STL, glTF) or generate one, and describe it: triangle and vertex counts, "
              "bounds, area, whether it is closed, and its volume or first hole. With --format, write its triangles "
              "instead.\vFor example:\n"

@@ -27,17 +27,17 @@ static const command_option options[] = {
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
-    const motion_request *request = asked;
+    const motion_request *request = context;
     return request->json && request->csv
                ? options_wrong("motion", NULL, why, "give only one of them", "--json and --csv exclude each other")
                : STATUS_OK;
 }
 
-static status check_scene(void *asked, const scene *s, diagnostic *why)
+static status check_scene(void *context, const scene *s, diagnostic *why)
 {
-    const motion_request *request = asked;
+    const motion_request *request = context;
     return scene_moves(s) ? STATUS_OK
                           : options_wrong(request->input.path, NULL, why, "add a mesh with 'generate: slime'",
                                           "nothing moves in this scene: it has no slime");
@@ -139,9 +139,9 @@ static status write_json(const motion_request *request, json_t *slimes, diagnost
     return json_print(o, why);
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const motion_request *request = asked;
+    const motion_request *request = context;
     json_t *slimes = json_array();
     status result = STATUS_OK;
     if (request->csv)
@@ -168,7 +168,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 static const scene_command motion_command = {
     .name = "motion",
     .form = {.options = options,
-             .words = "SCENE",
+             .synopsis = "SCENE",
              SCENE_WORD("motion"),
              .about =
                  "Compare the motion of each slime of the scene file SCENE, with its stiffness, integrator and time "

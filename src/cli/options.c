@@ -133,7 +133,7 @@ typedef struct form_reading {
     const command_form *form;
     const char *program;
     void *request;
-    size_t words;
+    size_t arguments;
     diagnostic *why;
     status wrong; /* the status behind EINVAL */
 } form_reading;
@@ -141,17 +141,17 @@ typedef struct form_reading {
 static error_t take_word(form_reading *reading, const char *word, struct argp_state *state)
 {
     const command_form *form = reading->form;
-    if (form->word)
-        return form->word(reading->request, word), 0;
-    if (reading->words == form->words_most && !form->excess)
+    if (form->take_argument)
+        return form->take_argument(reading->request, word), 0;
+    if (reading->arguments == form->argument_limit && !form->excess)
         return ARGP_ERR_UNKNOWN;
-    if (reading->words == form->words_most) {
+    if (reading->arguments == form->argument_limit) {
         options_wrong(NULL, NULL, reading->why, form->excess_remedy, form->excess, word);
         options_locate(reading->why, reading->program);
         return EINVAL;
     }
-    ((const char **)((char *)reading->request + form->words_at))[reading->words++] = word;
-    if (form->ends_at_word)
+    ((const char **)((char *)reading->request + form->arguments_at))[reading->arguments++] = word;
+    if (form->ends_at_argument)
         state->next = state->argc;
     return 0;
 }
@@ -175,12 +175,12 @@ status command_form_read(const command_form *form, int argc, char **argv, void *
 {
     struct argp_option options[OPTIONS_MAX + 1] = {{0}};
     form_reading reading = {form, argv[0], request, 0, why, STATUS_BAD_INPUT};
-    const unsigned flags = form->ends_at_word ? ARGP_IN_ORDER : 0;
+    const unsigned flags = form->ends_at_argument ? ARGP_IN_ORDER : 0;
     for (int i = 0; form->options && form->options[i].name && i < OPTIONS_MAX; i++) {
         const command_option *o = &form->options[i];
         options[i] = (struct argp_option){o->name, o->letter ? o->letter : KEY_FIRST + i, o->form, 0, o->purpose, 0};
     }
-    const struct argp argp = {.options = options, .parser = take_key, .args_doc = form->words, .doc = form->about};
+    const struct argp argp = {.options = options, .parser = take_key, .args_doc = form->synopsis, .doc = form->about};
     TRY(check(&argp, flags, argc, argv, why));
     const error_t error = argp_parse(&argp, argc, argv, flags, NULL, &reading);
     if (error == EINVAL)

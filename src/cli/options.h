@@ -36,11 +36,11 @@ status option_integer(const command_option *o, void *request, const char *value,
 /* A command line: its options, and its arguments, which are stored in an array of const char * in the request. */
 typedef struct command_form {
     const command_option *options; /* ended by an entry without a name; NULL for none */
-    const char *words, *about;
-    size_t words_at, words_most;
-    const char *excess, *excess_remedy; /* error for a surplus argument, with one %s; NULL: argp's own error */
-    void (*word)(void *request, const char *word); /* takes any number of arguments in place of the array; or NULL */
-    bool ends_at_word;                             /* parsing stops after the first argument */
+    const char *synopsis, *about;
+    size_t arguments_at, argument_limit; /* offset of the array in the request, and its length */
+    const char *excess, *excess_remedy;  /* error for a surplus argument, with one %s; NULL: argp's own error */
+    void (*take_argument)(void *request, const char *argument); /* takes each argument, without a limit; or NULL */
+    bool ends_at_argument;                                      /* parsing stops after the first argument */
 } command_form;
 
 /* Reads a command line into the request. */

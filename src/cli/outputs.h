@@ -16,10 +16,10 @@ char *outputs_folder_of(const char *path);
 bool outputs_same_entry(const char *a, const char *b);
 bool outputs_ends_with(const char *path, const char *ending); /* ignores case */
 
-/* Calls is_it with each file that a scene reads until it returns true, and returns whether it did. Paths are relative
+/* Calls matches with each file that a scene reads until it returns true, and returns whether it did. Paths are relative
  * to the working folder: the scene file, its environment image, textures, meshes and scripts of slimes, but not files
  * that a mesh file refers to. */
-bool scene_files_any(const scene *s, bool (*is_it)(void *context, const char *path), void *context);
+bool scene_files_any(const scene *s, bool (*matches)(void *context, const char *path), void *context);
 
 /* Checks endings and folders, and that no output equals another one or a file that the scene reads. */
 status outputs_check(const outputs *o, const scene *s, diagnostic *why);

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 typedef struct params_request {
-    const char *words[2]; /* scene and filter, one of the two, or none */
+    const char *arguments[2]; /* scene and filter, one of the two, or none */
     const char *scene_path, *filter;
     bool json, manual;
 } params_request;
@@ -24,9 +24,9 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .words = "[SCENE] [PATH-OR-WORD]",
-    .words_at = offsetof(params_request, words),
-    .words_most = 2,
+    .synopsis = "[SCENE] [PATH-OR-WORD]",
+    .arguments_at = offsetof(params_request, arguments),
+    .argument_limit = 2,
     .excess_remedy = "give at most one scene and one path or word",
     .excess = "unexpected argument '%.128s'",
     .about = "Print the parameter table: name, default, unit, range, meaning. With a scene, print the parameters of "
@@ -51,9 +51,9 @@ static bool names_scene(const char *word)
            (stat(word, &found) == 0 && S_ISREG(found.st_mode));
 }
 
-static status sort_words(params_request *request, diagnostic *why)
+static status sort_arguments(params_request *request, diagnostic *why)
 {
-    const char *first = request->words[0], *second = request->words[1];
+    const char *first = request->arguments[0], *second = request->arguments[1];
     if (first && (second || names_scene(first)))
         request->scene_path = first;
     request->filter = request->scene_path ? second : first;
@@ -82,7 +82,7 @@ status command_params(int argc, char **argv, diagnostic *why)
     params_request request = {0};
     scene *s = NULL;
     status result = command_form_read(&form, argc, argv, &request, why);
-    THEN(result, sort_words(&request, why));
+    THEN(result, sort_arguments(&request, why));
     if (result == STATUS_OK && request.scene_path)
         result = scene_read(request.scene_path, &s, why);
     THEN(result, print(&request, s, why));

@@ -17,9 +17,9 @@ typedef struct realism_request {
     int curve; /* realism_curve, or -1 */
 } realism_request;
 
-static status take_curve(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_curve(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    realism_request *request = into;
+    realism_request *request = context;
     const char *names[REALISM_CURVE_COUNT];
     (void)o;
     for (int i = 0; i < REALISM_CURVE_COUNT; i++)
@@ -38,9 +38,9 @@ static const command_option options[] = {
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
-    const realism_request *request = asked;
+    const realism_request *request = context;
     return request->json && (request->csv || request->curve >= 0)
                ? options_wrong("realism", NULL, why, "give only one of them", "--json excludes --csv and --curve")
                : STATUS_OK;
@@ -166,9 +166,9 @@ static status print_curve(const scene *s, isa level, realism_curve which, diagno
     return STATUS_OK;
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const realism_request *request = asked;
+    const realism_request *request = context;
     if (!request->json && !request->csv && request->curve < 0)
         scene_input_note_hints(s);
     if (request->curve >= 0)
@@ -187,7 +187,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 static const scene_command realism_command = {
     .name = "realism",
     .form = {.options = options,
-             .words = "SCENE",
+             .synopsis = "SCENE",
              SCENE_WORD("realism"),
              .about = "Compare the traced optics of the scene file SCENE with closed-form theory. The scene holds a "
                       "vessel (a cup), a liquid in it (a cylinder) and a rod (a box); or a prism, a drop, or two "

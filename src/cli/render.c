@@ -17,9 +17,9 @@ typedef struct render_request {
     int64_t repeat; /* 0: not given */
 } render_request;
 
-static status take_bits(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_bits(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    render_request *request = into;
+    render_request *request = context;
     int64_t bits = 8;
     (void)o;
     const status result = options_integer("--bits", value, 8, 16, &bits, why);
@@ -51,9 +51,9 @@ static const command_option options[] = {
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
-    const render_request *request = asked;
+    const render_request *request = context;
     const outputs *files = &request->files;
     if (files->img || files->rays || files->time || files->noise || files->timeline || files->layers || request->json)
         return STATUS_OK;
@@ -61,9 +61,9 @@ static status check_request(void *asked, diagnostic *why)
                          "no output is given");
 }
 
-static status check_scene(void *asked, const scene *s, diagnostic *why)
+static status check_scene(void *context, const scene *s, diagnostic *why)
 {
-    const render_request *request = asked;
+    const render_request *request = context;
     return outputs_check(&request->files, s, why);
 }
 
@@ -100,7 +100,7 @@ static status write_results(const render_request *request, const job_account *f,
     return STATUS_OK;
 }
 
-static status say_interrupted(const render_request *request, const job_account *f, diagnostic *why)
+static status report_interrupted(const render_request *request, const job_account *f, diagnostic *why)
 {
     if (!f->result)
         return diagnose(why, STATUS_INTERRUPTED, "", "interrupted before the first pixel");
@@ -121,15 +121,16 @@ static status render_and_write(const render_request *request, const scene *s, jo
 {
     const outputs *files = &request->files;
     progress_line line;
-    const render_options wanted = {.pixel_rays = files->rays,
-                                   .pixel_time = files->time,
-                                   .timeline = files->timeline,
-                                   .layers = files->layers,
-                                   .progress = show_progress,
-                                   .context = &line};
+    const render_options frame_options = {.pixel_rays = files->rays,
+                                          .pixel_time = files->time,
+                                          .timeline = files->timeline,
+                                          .layers = files->layers,
+                                          .progress = show_progress,
+                                          .context = &line};
     job_account measured;
     progress_start(&line, "rendering");
-    status result = job_repeat(with, s, request->repeat > 0 ? (size_t)request->repeat : 1, &wanted, &measured, why);
+    status result =
+        job_repeat(with, s, request->repeat > 0 ? (size_t)request->repeat : 1, &frame_options, &measured, why);
     progress_erase(&line);
     if ((result == STATUS_OK || result == STATUS_INTERRUPTED) && measured.result) {
         status written = write_results(request, &measured, why);
@@ -138,14 +139,14 @@ static status render_and_write(const render_request *request, const scene *s, jo
     if (result == STATUS_OK && !request->json)
         inert_note_frame(&request->input, with, &measured);
     if (result == STATUS_INTERRUPTED)
-        result = say_interrupted(request, &measured, why);
+        result = report_interrupted(request, &measured, why);
     job_account_release(&measured);
     return result;
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const render_request *request = asked;
+    const render_request *request = context;
     job *with = NULL;
     status result = scene_input_job(true, &with, why);
     if (result == STATUS_OK && !request->json) {
@@ -160,7 +161,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 static const scene_command render_command = {
     .name = "render",
     .form = {.options = options,
-             .words = "SCENE",
+             .synopsis = "SCENE",
              SCENE_WORD("render"),
              .about = "Render the scene file SCENE.\vFor example:\n"
                       "  cuvette render experiments/scenes/rod.yaml -o rod.png --set render.depth=4\n"

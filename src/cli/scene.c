@@ -13,26 +13,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct asked_edit {
+typedef struct edit_option {
     const scene_edit *edit;
     const char *text;
-} asked_edit;
+} edit_option;
 
 typedef struct scene_request {
     const char *path, *output; /* path NULL: no file; output NULL: standard output */
-    asked_edit *edits;
+    edit_option *edits;
     size_t edit_count;
     bool begins_empty, only_checks, only_lists, writes_all;
 } scene_request;
 
 enum { OPTIONS_MOST = 16 };
 
-static status take_edit(const command_option *o, void *into, const char *text, diagnostic *why)
+static status take_edit(const command_option *o, void *context, const char *text, diagnostic *why)
 {
-    scene_request *request = into;
+    scene_request *request = context;
     if (!room_for_one(&request->edits, request->edit_count, sizeof *request->edits))
         return out_of_memory(why);
-    request->edits[request->edit_count++] = (asked_edit){&scene_edits[o->at], text};
+    request->edits[request->edit_count++] = (edit_option){&scene_edits[o->at], text};
     return STATUS_OK;
 }
 
@@ -160,9 +160,9 @@ status command_scene(int argc, char **argv, diagnostic *why)
     command_option options[OPTIONS_MOST];
     make_options(options);
     const command_form form = {.options = options,
-                               .words = "[FILE]",
-                               .words_at = offsetof(scene_request, path),
-                               .words_most = 1,
+                               .synopsis = "[FILE]",
+                               .arguments_at = offsetof(scene_request, path),
+                               .argument_limit = 1,
                                .excess_remedy = "give one scene file",
                                .excess = "only one scene can be given",
                                .about = about};

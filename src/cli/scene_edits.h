@@ -1,5 +1,5 @@
 /* The edits of `cuvette scene`, applied in the order of the command line. Errors are located at their option.
- * Ownership: words of the command line are borrowed. */
+ * Ownership: arguments of the command line are borrowed. */
 #pragma once
 
 #include "scene/model/open.h"

@@ -88,7 +88,7 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
 static bool show_motion(void *context, double share_done)
 {
     progress_draw(context, share_done);
-    return !terminal_stop_asked(NULL);
+    return !terminal_stop_requested(NULL);
 }
 
 status scene_input_load(scene *s, diagnostic *why)
@@ -109,7 +109,7 @@ status scene_input_isa(isa *level, diagnostic *why)
 status scene_input_job(bool measured, job **out, diagnostic *why)
 {
     isa level = ISA_SSE2;
-    const job_settings settings = {.level = &level, .measured = measured, .stop = terminal_stop_asked};
+    const job_settings settings = {.level = &level, .measured = measured, .stop = terminal_stop_requested};
     TRY(scene_input_isa(&level, why));
     return job_create(&settings, out, why);
 }

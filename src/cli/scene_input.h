@@ -1,6 +1,6 @@
 /* The common part of all commands on a scene: SCENE, --set and its short forms, the instruction set. Errors are located
- * at their option. Ownership: reading the command line allocates, scene_input_release frees; words of the command line
- * are borrowed. */
+ * at their option. Ownership: reading the command line allocates, scene_input_release frees; arguments of the command
+ * line are borrowed. */
 #pragma once
 
 #include "cli/options.h"
@@ -48,7 +48,7 @@ status scene_input_probe(const scene_input *input, const scene *s, isa level, pr
 
 /* The one argument of these commands, SCENE. */
 #define SCENE_WORD(command)                                                           \
-    .words_at = offsetof(scene_input, path), .words_most = 1,                         \
+    .arguments_at = offsetof(scene_input, path), .argument_limit = 1,                 \
     .excess_remedy = command " takes one scene; use --set PATH=VALUE for parameters", \
     .excess = "unexpected argument '%.128s'"
 

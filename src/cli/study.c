@@ -110,7 +110,7 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .shard = request->shard,
                                    .shards = request->shards,
                                    .progress = terminal,
-                                   .stop = terminal_stop_asked};
+                                   .stop = terminal_stop_requested};
     size_t rows = 0;
     status result = request->quiet ? STATUS_OK : lint(s, request, why);
     THEN(result, study_run(s, &options, &rows, why));

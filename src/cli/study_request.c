@@ -8,9 +8,9 @@
 
 enum { SHARDS_MAX = 10000 };
 
-static status take_shard(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_shard(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    study_request *request = into;
+    study_request *request = context;
     char part[24];
     int64_t shard, shards;
     const char *slash = strchr(value, '/');
@@ -49,27 +49,27 @@ static const command_option results_options[] = {
 
 static const command_form forms[STUDY_VERB_COUNT] = {
     [STUDY_RUN] = {.options = run_options,
-                   .word = take_file,
-                   .words = "FILE...",
+                   .take_argument = take_file,
+                   .synopsis = "FILE...",
                    .about =
                        "Measure the missing rows of each study.\vAn interrupted or killed study resumes when it is "
                        "run again. Rows are never rewritten."},
-    [STUDY_LIST] = {.word = take_file,
-                    .words = "[DIR]",
+    [STUDY_LIST] = {.take_argument = take_file,
+                    .synopsis = "[DIR]",
                     .about = "List the study files of a folder (default: experiments)."},
     [STUDY_STATUS] =
         {.options = results_options,
-         .word = take_file,
-         .words = "FILE...",
+         .take_argument = take_file,
+         .synopsis = "FILE...",
          .about =
              "Print the number of finished cells of each study, and of rows marked because their film hash differs."},
     [STUDY_MERGE] = {.options = results_options,
-                     .word = take_file,
-                     .words = "FILE...",
+                     .take_argument = take_file,
+                     .synopsis = "FILE...",
                      .about = "Merge the rows of a study's shards into its rows.csv."},
     [STUDY_SUMMARY] = {.options = results_options,
-                       .word = take_file,
-                       .words = "FILE",
+                       .take_argument = take_file,
+                       .synopsis = "FILE",
                        .about = "Print one line per cell: medians, 95% confidence intervals, counts.\vA terminal gets "
                                 "the most important columns; a pipe or a file gets all of them, separated by tabs."},
 };

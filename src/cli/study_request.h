@@ -1,5 +1,5 @@
 /* The command lines of `cuvette study`, and the table of its summary. Ownership: study_request_release frees a request,
- * also after a parsing error; words are borrowed from argv. */
+ * also after a parsing error; strings are borrowed from argv. */
 #pragma once
 
 #include "base/status.h"

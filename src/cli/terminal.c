@@ -13,18 +13,18 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t stop_asked;
+static volatile sig_atomic_t stop_requested;
 
-static void ask_stop(int signal_number)
+static void request_stop(int signal_number)
 {
     (void)signal_number;
-    stop_asked = 1;
+    stop_requested = 1;
 }
 
-bool terminal_stop_asked(void *unused)
+bool terminal_stop_requested(void *unused)
 {
     (void)unused;
-    return stop_asked != 0;
+    return stop_requested != 0;
 }
 
 /* An image file must never get descriptor 1 because the caller has closed it: a closed descriptor is opened on
@@ -72,7 +72,7 @@ static void check_stdout_at_exit(void)
 void terminal_prepare(void)
 {
     hold_standard_descriptors();
-    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = (int)SA_RESETHAND};
+    struct sigaction action = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);

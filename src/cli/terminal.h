@@ -10,7 +10,7 @@
 void terminal_prepare(void);
 
 /* Returns whether SIGINT or SIGTERM has arrived. unused: lets the function serve as a callback. */
-bool terminal_stop_asked(void *unused);
+bool terminal_stop_requested(void *unused);
 
 /* Flushes standard output. STATUS_FAILURE where data could not be written; if the reader of a pipe has closed it, *why
  * stays empty, so that nothing is printed. */

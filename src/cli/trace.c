@@ -17,9 +17,9 @@ typedef struct trace_request {
     double pixel[2], ray[6];
 } trace_request;
 
-static status take_format(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_format(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    trace_request *request = into;
+    trace_request *request = context;
     const trace_format format = strcmp(o->name, "text") == 0   ? FORMAT_TEXT
                                 : strcmp(o->name, "json") == 0 ? FORMAT_JSON
                                                                : FORMAT_SVG;
@@ -31,9 +31,9 @@ static status take_format(const command_option *o, void *into, const char *value
     return STATUS_OK;
 }
 
-static status take_pixel(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_pixel(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    trace_request *request = into;
+    trace_request *request = context;
     (void)o;
     request->by_pixel = true;
     const status result = options_reals("--pixel", value, "X,Y as two integers", 2, request->pixel, why);
@@ -43,9 +43,9 @@ static status take_pixel(const command_option *o, void *into, const char *value,
     return result;
 }
 
-static status take_ray(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_ray(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    trace_request *request = into;
+    trace_request *request = context;
     request->by_ray = true;
     return options_reals("--ray", value, o->form, 6, request->ray, why);
 }
@@ -63,10 +63,10 @@ static const command_option options[] = {
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
     static const char *const endings[] = {".txt", ".json", ".svg"};
-    trace_request *request = asked;
+    trace_request *request = context;
     if (request->by_pixel == request->by_ray)
         return options_wrong("trace", NULL, why, "give --pixel X,Y or --ray OX,OY,OZ,DX,DY,DZ",
                              request->by_ray ? "--pixel and --ray exclude each other" : "no ray is given");
@@ -108,9 +108,9 @@ static status write_as(const void *content, FILE *out, diagnostic *why)
     return trace_write_text(&f->tree, out, why);
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const trace_request *request = asked;
+    const trace_request *request = context;
     probe *p = NULL;
     ray_tree tree = {0};
     status result = scene_input_probe(&request->input, s, level, &p, why);
@@ -129,7 +129,7 @@ static const scene_command trace_command = {
     .name = "trace",
     .form =
         {.options = options,
-         .words = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ)",
+         .synopsis = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ)",
          SCENE_WORD("trace"),
          .about =
              "Trace one ray and print its ray tree: media, angles, reflectances, and the contribution of each ray to "

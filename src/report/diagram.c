@@ -64,7 +64,7 @@ status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, cons
 void diagram_end(diagram *d)
 {
     section_release(&d->cut);
-    free(d->kept);
+    free(d->needed);
 }
 
 /* Clips a segment to the window (Liang and Barsky 1984). Returns false if nothing is left. */

@@ -35,7 +35,7 @@ typedef struct diagram {
     const scene *s;
     section_plane plane; /* its extent is the window */
     section cut;
-    bool *kept; /* per point of the section: needed at this scale */
+    bool *needed; /* per point of the section: needed at this scale */
     diagram_frame frame;
     double scale; /* pixels per scene unit */
 } diagram;

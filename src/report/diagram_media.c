@@ -52,7 +52,7 @@ static status write_area(const diagram *d, int of, section_step *steps, diagnost
         for (size_t k = steps[i].starts_ring ? 0 : 1; k < line->count; k++) {
             const size_t index = line->first + (steps[i].backwards ? line->count - 1 - k : k);
             const section_point at = cut->point[index];
-            if (d->kept[index])
+            if (d->needed[index])
                 fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", diagram_x(d, at.u), diagram_y(d, at.v));
         }
     }
@@ -65,7 +65,7 @@ static void write_boundary(const diagram *d, const section_line *line)
     fputs("<path d=\"", d->out);
     for (size_t k = 0; k < line->count; k++) {
         const section_point at = d->cut.point[line->first + k];
-        if (d->kept[line->first + k])
+        if (d->needed[line->first + k])
             fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", diagram_x(d, at.u), diagram_y(d, at.v));
     }
     fputs("\"/>\n", d->out);
@@ -82,12 +82,12 @@ static double distance2(section_point p, section_point a, section_point b)
 }
 
 /* Marks the points that the line needs within the tolerance (Douglas and Peucker 1973). */
-static void keep_needed(diagram *d, size_t first, size_t last)
+static void mark_needed(diagram *d, size_t first, size_t last)
 {
     const double tolerance = 0.03 / d->scale; /* pixels */
     size_t farthest = first;
     double most = tolerance * tolerance;
-    d->kept[first] = d->kept[last] = true;
+    d->needed[first] = d->needed[last] = true;
     for (size_t k = first + 1; k < last; k++) {
         const double off = distance2(d->cut.point[k], d->cut.point[first], d->cut.point[last]);
         if (off > most)
@@ -95,17 +95,17 @@ static void keep_needed(diagram *d, size_t first, size_t last)
     }
     if (farthest == first)
         return;
-    keep_needed(d, first, farthest);
-    keep_needed(d, farthest, last);
+    mark_needed(d, first, farthest);
+    mark_needed(d, farthest, last);
 }
 
 status diagram_media(diagram *d, diagnostic *why)
 {
     section_step *steps = calloc(d->cut.line_count + 1, sizeof *steps);
-    d->kept = calloc(d->cut.point_count + 1, sizeof *d->kept);
-    for (size_t i = 0; i < d->cut.line_count && d->kept; i++)
-        keep_needed(d, d->cut.line[i].first, d->cut.line[i].first + d->cut.line[i].count - 1);
-    if (!steps || !d->kept) {
+    d->needed = calloc(d->cut.point_count + 1, sizeof *d->needed);
+    for (size_t i = 0; i < d->cut.line_count && d->needed; i++)
+        mark_needed(d, d->cut.line[i].first, d->cut.line[i].first + d->cut.line[i].count - 1);
+    if (!steps || !d->needed) {
         free(steps);
         return out_of_memory(why);
     }
