@@ -570,7 +570,7 @@ mkdir -p elsewhere
 refused_lab "two scenes" "lab: 'here.yaml' is one argument too many; give one SCENE" here.yaml here.yaml
 refused_lab "a scene that is not there" 'nowhere.yaml: ' nowhere.yaml
 refused_lab "a scene outside of its folder" 'here.yaml: is not in the folder' --folder elsewhere here.yaml
-refused_lab "a folder that is none" "'nowhere' is no folder" --folder nowhere
+refused_lab "a folder that is none" "'nowhere' is not a folder" --folder nowhere
 refused_lab "a port that is none" '--port 70000' --port 70000
 refused_lab "results elsewhere" '.*results' --folder elsewhere --results results
 
