@@ -158,9 +158,9 @@ static void what_is_no_pixel_is_refused(void **state)
     refused(*state, "/api/trace?x=1", "y is missing");
     refused(*state, "/api/trace", "x is missing");
     refused(*state, "/api/trace?x=1.5&y=1", "x is not an integer: '1.5'");
-    refused(*state, "/api/trace?x=1&y=", "y is no integer");
-    refused(*state, "/api/trace?x=99999999999&y=1", "x is no integer");
-    refused(*state, "/api/trace?x=1&y=99999999999999999999", "y is no integer");
+    refused(*state, "/api/trace?x=1&y=", "y is not an integer");
+    refused(*state, "/api/trace?x=99999999999&y=1", "x is not an integer");
+    refused(*state, "/api/trace?x=1&y=99999999999999999999", "y is not an integer");
 }
 
 static void a_tree_that_is_too_large_is_refused(void **state)
