@@ -572,7 +572,7 @@ mkdir -p elsewhere
 refused_lab "two scenes" "lab: unexpected argument 'here.yaml'; give one SCENE" here.yaml here.yaml
 refused_lab "a missing scene" 'nowhere.yaml: ' nowhere.yaml
 refused_lab "a scene outside of its folder" 'here.yaml: is not in the folder' --folder elsewhere here.yaml
-refused_lab "a missing folder" "'nowhere' is no folder" --folder nowhere
+refused_lab "a missing folder" "'nowhere' is not a folder" --folder nowhere
 refused_lab "an invalid port" '--port 70000' --port 70000
 refused_lab "results elsewhere" '.*results' --folder elsewhere --results results
 
