@@ -219,7 +219,7 @@ setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install what the benches compa
 # --- tests ---
 
 # Checks that read the sources; one run of them is enough, whatever the configuration.
-source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh
+source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh
 scripts := $(filter-out $(source_checks),$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
@@ -240,9 +240,12 @@ test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and 
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
-# What people read of the list of quantities (src/job/quantities.c); the test compares them.
+# What people read of the list of quantities (src/job/quantities.c) and of the table of parameters; tests compare them.
 .PHONY: dictionary
-dictionary: $(build)/tests/test_quantities ## renew the tables of results/README.md and the manual's account
+dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables of results/README.md and the manual's parameters and account
+	@$(build)/cuvette params --man >$(build)/parameters.roff
+	@sed -i -e '/^\.\\" begin parameters/,/^\.\\" end parameters/{//!d}' \
+	  -e '/^\.\\" begin parameters/r $(build)/parameters.roff' src/cli/cuvette.1
 	@CUVETTE_RENEW=1 $< >/dev/null 2>&1 && $<
 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for pictures of every view. After what else

@@ -126,8 +126,8 @@ value("n") > 0 {
         if (rays) ray_of[key] = cpu / rays
     }
     # What a method keeps beside triangles and film: hierarchies, or the depth buffer and what was drawn into it.
-    if (study == "hidden" && value("accel_bytes") + value("raster_bytes") > 0)
-        set(key "/memory", sprintf("%.1f", (value("accel_bytes") + value("raster_bytes")) / 1048576))
+    if (study == "hidden" && value("accel_bytes") + value("drawn_bytes") > 0)
+        set(key "/memory", sprintf("%.1f", (value("accel_bytes") + value("drawn_bytes")) / 1048576))
     # One thread: all of its busy time is the frame's.
     if (study == "slime-frame" && value("visibility_s_sum") && wall && rays) {
         set(key "/visible-share", sprintf("%.0f", value("visibility_s_sum") / wall * 100))

@@ -320,7 +320,7 @@ static const condition conditions[] = {
     {"rod", "rod.checker_color=0.85,0.15,0.1", "rod.checker", "one-color", true},
     {"rod", "rod.position=0,50,0 rod.priority=0", "rod.color", "unseen", false},
     {"rod", "rod.position=0,50,0 rod.priority=0", "rod.priority", "apart", false},
-    {"rod", "background.img=models.jpg", "background.color", "picture-sky", true},
+    {"rod", "background.picture=models.jpg", "background.color", "picture-sky", true},
     {"slime", "toy.script= toy.time_s=0", "toy.stiffness", "time-0", true},
     {"slime", "toy.script= toy.ground=off", "toy.friction", "no-floor", true},
     {"slime", "floor.texture=", "tiles.filter", "unused-texture", true},
@@ -372,9 +372,9 @@ static bool open_with(const char *name, const char *assignments, acts *out, diag
 /* Room for the values of a parameter of the scene. */
 static const param *values_at(const acts *a, const char *path, acts_values *v)
 {
-    place at;
+    param_place at;
     char *now = NULL;
-    if (place_find(a->s, path, &at, NULL) != STATUS_OK || scene_get(a->s, path, &now, NULL) != STATUS_OK)
+    if (param_place_find(a->s, path, &at, NULL) != STATUS_OK || scene_get(a->s, path, &now, NULL) != STATUS_OK)
         return NULL;
     acts_values_of(a->s, at.row, now, v);
     free(now);
@@ -546,7 +546,7 @@ static const struct {
     {"rod", "lamp.intensity=0 background.ambient=0,0,0 clear.color=0.9,0.8,0.7"},
     {"solids", "render.integrator=zbuffer key.kind=cone"},
     {"solids", "render.integrator=path render.paths=1 render.roulette=on glass.diffuse=0.2"},
-    {"solids", "background.img=models.jpg clay.transparency=0.3"},
+    {"solids", "background.picture=models.jpg clay.transparency=0.3"},
     {"models", "render.integrator=zbuffer render.texturing=affine"},
     {"models", "render.integrator=path render.paths=1 silver.texture=tiles"},
     {"models", "bowl.visible=off lamp.intensity=0 render.shadows=opaque"},

@@ -194,7 +194,7 @@ check "or those in whose meaning it stands" is "$(tail -n +2 out | cut -d' ' -f1
 run params --man
 check "params --man is roff" grep -q '^\.SS ' out
 sed '/^\.\\" begin parameters/,/^\.\\" end parameters/!d' "$page" | sed '1d;$d' >page.txt
-check "cuvette.1 has these parameters (to renew: put 'cuvette params --man' between its begin and end marks)" cmp out \
+check "cuvette.1 has these parameters (to renew: make dictionary)" cmp out \
     page.txt
 missing=0
 while read -r path _; do

@@ -91,7 +91,7 @@ static void threads_schedules_tiles_and_pool(void **state)
                 s->render.threads = threads[t];
                 s->render.schedule = rule;
                 s->render.tile = tiles[k];
-                s->render.worker_pool = (t + k) % 2 == 0;
+                s->render.pool = (t + k) % 2 == 0;
                 render_result *result = NULL;
                 assert_int_equal(renderer_render(r, s, NULL, &result, NULL), STATUS_OK);
                 const fingerprint f = {film_hash(result->img), result->counters};
@@ -111,7 +111,7 @@ static void a_thousand_threads(void **state)
     set(s, "render.threads=1024");
     for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++) {
         s->render.schedule = rule;
-        s->render.worker_pool = rule % 2;
+        s->render.pool = rule % 2;
         const fingerprint f = fingerprint_at(s, rule == SCHEDULE_ROWS ? ISA_SSE2 : isa_best(), NULL);
         expect_same(&f, &wanted);
     }

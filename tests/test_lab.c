@@ -283,7 +283,7 @@ static void a_command_of_a_file_in_another_folder(void **state)
     assert_non_null(length);
     assert_int_equal(fwrite(reply_body(png), 1, strtoul(length + 16, NULL, 10), out), strtoul(length + 16, NULL, 10));
     assert_int_equal(fclose(out), 0);
-    room_post(&room, "/api/set", "{\"set\": {\"background.img\": \"sky.png\"}}");
+    room_post(&room, "/api/set", "{\"set\": {\"background.picture\": \"sky.png\"}}");
     free(room_film(&room));
     room_post(&room, "/api/save", "{\"file\": \"inner/moved.yaml\"}");
     room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.25}}");

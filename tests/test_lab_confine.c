@@ -330,7 +330,7 @@ static void test_a_new_scene(void **state)
 {
     const room *r = *state;
     char *change =
-        text_format("{\"set\": {\"background.kind\": \"picture\", \"background.img\": \"%s/p.png\"}}", r->inside);
+        text_format("{\"set\": {\"background.kind\": \"picture\", \"background.picture\": \"%s/p.png\"}}", r->inside);
     for (int opened = 0; opened < 2; opened++) { /* the first one, another one */
         if (opened)
             room_post(&r->lab, "/api/open", "{\"new\": true}");
@@ -340,7 +340,7 @@ static void test_a_new_scene(void **state)
         room_post(&r->lab, "/api/set", change);
         put_link(r, "p.png", "../p.png");
         render_worker_suspend(r->lab.lab->render_worker, NULL);
-        is_refused(r, "a sky", "background.img");
+        is_refused(r, "a sky", "background.picture");
     }
     free(change);
 }

@@ -196,7 +196,7 @@ static void test_files(void **state)
     assert_string_equal(json_string_value(json_object_get(files, "prefix")), "../");
     json_decref(files);
     /* With its prefix a name is a path as the scene gives it. */
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.img\": \"../picture.png\"}}");
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
     char hash[64];
     film(r, hash);
     json_t *media = ask(r, 200, "GET", "/api/media", NULL);
@@ -273,7 +273,7 @@ static void test_save(void **state)
     assert_false(is_there(r, "new.yaml"));
     char before[64], after[64], text[256];
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\"}");
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.img\": \"../picture.png\"}}");
+    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
     film(r, before);
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
@@ -319,7 +319,7 @@ static void test_paths_of_parameters(void **state)
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
     const json_int_t before = generation(r);
-    tell(r, 400, "POST", "/api/set", "{\"set\": {\"background.img\": \"../../outside.png\"}}");
+    tell(r, 400, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../../outside.png\"}}");
     tell(r, 400, "POST", "/api/set", "{\"set\": {\"cloth.file\": \"../../outside.png\"}}");
     tell(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.file\": \"../../outside.obj\"}}");
     tell(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.script\": \"/etc/passwd\"}}");

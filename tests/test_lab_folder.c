@@ -254,7 +254,7 @@ static status check_naming(const room *r, const char *row, const char *path)
 static void test_what_scenes_name(void **state)
 {
     const room *r = *state;
-    static const char *const rows[] = {"background.img", "body.file", "body.script", "cloth.file"};
+    static const char *const rows[] = {"background.picture", "body.file", "body.script", "cloth.file"};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         assert_int_equal(check_naming(r, rows[i], "pull.yaml"), STATUS_OK);
         assert_int_equal(check_naming(r, rows[i], "../a scene.yaml"), STATUS_OK);

@@ -200,7 +200,7 @@ static const char *const targets[][3] = {
     {"POST", "/api/set", "{\"set\": {\"ball.ior\": %r}}"},
     {"POST", "/api/set", "{\"set\": {\"%w.%w\": %r, \"ball.radius\": %r}}"},
     {"POST", "/api/set", "{\"set\": {\"render.depth\": %n, \"lamp.position\": [%r, %r, %r]}, \"gesture\": \"%w\"}"},
-    {"POST", "/api/set", "{\"set\": {\"background.img\": \"%w\"}}"},
+    {"POST", "/api/set", "{\"set\": {\"background.picture\": \"%w\"}}"},
     {"POST", "/api/reset", "{\"paths\": [\"ball.ior\", \"%w.ior\"]}"},
     {"POST", "/api/reset", "{}"},
     {"POST", "/api/undo", "{}"},

@@ -154,12 +154,12 @@ static void trouble_is_told_and_goes(void **state)
     studio s;
     open_studio(&s, scene_from(BALL_SCENE));
     final_film(&s);
-    apply(&s, "background.img=/nowhere/sky.png");
+    apply(&s, "background.picture=/nowhere/sky.png");
     const shared_image *shown;
     diagnostic why = {0};
     assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
     assert_null(shown);
-    assert_non_null(strstr(why.what, "background.img"));
+    assert_non_null(strstr(why.what, "background.picture"));
     json_t *told = json_object();
     assert_true(render_worker_json(s.p, told));
     assert_true(json_is_object(json_object_get(told, "trouble")));
@@ -297,7 +297,7 @@ static void what_cannot_be_painted_keeps_nobody_busy(void **state)
     studio s;
     open_studio(&s, scene_from(SLIME_SCENE("0")));
     final_film(&s);
-    apply(&s, "background.img=/nowhere/sky.png");
+    apply(&s, "background.picture=/nowhere/sky.png");
     const shared_image *shown;
     diagnostic why = {0};
     assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
@@ -372,7 +372,7 @@ static void lookers_see_what_is_loaded(void **state)
         const shared_image *shown;
         diagnostic why;
         char text[48];
-        apply(&s, "background.img=/nowhere/sky.png");
+        apply(&s, "background.picture=/nowhere/sky.png");
         snprintf(text, sizeof text, "ring.major=%d", 2 + i % 7);
         apply(&s, text);
         assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);

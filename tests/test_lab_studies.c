@@ -260,7 +260,7 @@ static void nothing_outside_is_read(void **state)
     room_write(room, "inside/scene.yaml", BALL_SCENE);
     room_write(room, "inside/far.study", "study: far\nscene: ../scene.yaml\n");
     room_write(room, "inside/sky.study",
-               "study: sky\nscene: scene.yaml\ngrid: [{background.img: [near.png, ../../far.png]}]\n");
+               "study: sky\nscene: scene.yaml\ngrid: [{background.picture: [near.png, ../../far.png]}]\n");
     room_write(room, "inside/away.study", "study: away\nscene: scene.yaml\nrepetitions: 1\n");
     assert_int_equal(symlink(away, link), 0);
     lab_room inner = {.lab = NULL};

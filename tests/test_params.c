@@ -132,7 +132,7 @@ static void an_empty_scene_is_the_defaults(void **state)
     assert_int_equal(s->render.width, 800);
     assert_int_equal(s->render.shadows, SHADOWS_ATTENUATED);
     assert_int_equal(s->render.schedule, SCHEDULE_DYNAMIC);
-    assert_int_equal(s->render.worker_pool, 1);
+    assert_int_equal(s->render.pool, 1);
     assert_int_equal(s->camera.aimed, 1);
     scene_destroy(s);
 }
@@ -155,8 +155,8 @@ static void every_type_is_set_and_got(void **state)
         {"camera.position", "0,2.75,-6", "0,2.75,-6"},
         {"camera.position", "[0, 1e2, -.5]", "0,100,-0.5"},
         {"camera.position.y", "3", "3"},
-        {"background.img", "sky 1.png", "sky 1.png"},
-        {"background.img", "", ""},
+        {"background.picture", "sky 1.png", "sky 1.png"},
+        {"background.picture", "", ""},
         {"lamp.color", "1,0.5,0.25", "1,0.5,0.25"},
         {"lamp.color.g", "0.75", "0.75"},
         {"vessel.ior", "1.3", "1.3"},
@@ -232,13 +232,13 @@ static void a_picture_makes_the_background_one(void **state)
 {
     (void)state;
     scene *s = make();
-    set(s, "background.img", "");
+    set(s, "background.picture", "");
     assert_value(s, "background.kind", "uniform");
-    set(s, "background.img", "sky.png");
+    set(s, "background.picture", "sky.png");
     assert_value(s, "background.kind", "picture");
     set(s, "background.kind", "gradient"); /* the last one wins */
     assert_value(s, "background.kind", "gradient");
-    assert_value(s, "background.img", "sky.png");
+    assert_value(s, "background.picture", "sky.png");
     scene_destroy(s);
 }
 
@@ -283,7 +283,7 @@ static void what_is_printed_makes_the_same_scene(void **state)
     set(s, "vessel.reflectivity", "0.1");
     set(s, "glass.reflectivity", "0.3");
     set(s, "render.shadows", "opaque");
-    set(s, "background.img", "a b.png");
+    set(s, "background.picture", "a b.png");
     set(s, "camera.target", "0.1,0.2,0.30000000000000004");
     expect_reproduced(s);
     set(s, "background.kind", "gradient"); /* beside a picture that is not shown */
@@ -368,7 +368,7 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"lamp.color=0,-1,0", "lamp.color.g: -1 is out of range; give a number 0..10000"},
         {"block.size.x=0", "block.size.x: 0 is out of range; give a number > 0, at most 1000000"},
         {"vessel.ior=0x1p3", "vessel.ior: '0x1p3' is not a finite number; give a number 0.1..1000000000"},
-        {"background.img=a\nb", "background.img: the path holds a control character; give a path of a file"},
+        {"background.picture=a\nb", "background.picture: the path holds a control character; give a path of a file"},
     };
     scene *s = make(), *untouched = make();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -416,7 +416,7 @@ static void odd_paths_are_refused(void **state)
     huge[sizeof huge - 1] = 0;
     assert_int_equal(scene_set(s, huge, "1", NULL), STATUS_BAD_INPUT);
     assert_int_equal(scene_set(s, "render.depth", huge, NULL), STATUS_BAD_INPUT);
-    assert_int_equal(scene_set(s, "background.img", huge, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(scene_set(s, "background.picture", huge, NULL), STATUS_BAD_INPUT);
     scene_destroy(s);
 }
 
@@ -424,8 +424,8 @@ static void an_assignment_splits_at_its_first_equals_sign(void **state)
 {
     (void)state;
     scene *s = make();
-    assert_int_equal(scene_set_assignment(s, "background.img=a=b.png", NULL), STATUS_OK);
-    assert_value(s, "background.img", "a=b.png");
+    assert_int_equal(scene_set_assignment(s, "background.picture=a=b.png", NULL), STATUS_OK);
+    assert_value(s, "background.picture", "a=b.png");
     scene_destroy(s);
 }
 

@@ -137,8 +137,8 @@ static const char *const settings[] = {
     "background.ior=1.4",
     "vessel.medium=bk7 liquid.medium=water background.medium=air render.lambda_nm=450",
     "camera.position=3,0.5,-4 rod.rotation=0,30,0 rod.position=-0.2,2.1,0.3 vessel.inner_radius=0.7",
-    "liquid.priority=3 vessel.position=0.5,0.001,0.25 liquid.position=0.5,0.051,0.25 rod.position=0.4,2.1,0.2 "
-    "rod.priority=4",
+    ("liquid.priority=3 vessel.position=0.5,0.001,0.25 liquid.position=0.5,0.051,0.25 rod.position=0.4,2.1,0.2 "
+     "rod.priority=4"),
     "liquid.absorb_per_m=0.7,0.2,0 render.unit_m=0.05 render.depth=0 render.samples=4",
     "render.radiance=basic background.ior=1.1",
 };

@@ -127,7 +127,7 @@ static void stop_some_frames(scene *large, scene *small, int count)
     renderer *r = NULL;
     assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
     for (int i = 0; i < count; i++) {
-        large->render.worker_pool = i % 2;
+        large->render.pool = i % 2;
         stop_and_go_on(r, large, small, undisturbed);
     }
     renderer_destroy(r);

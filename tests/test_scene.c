@@ -297,7 +297,7 @@ static void a_sky_is_neither_negative_nor_endless(void **state)
         assert_true(is_bad == !s->background.img);
         if (is_bad) {
             diagnostic_text(&why, said, sizeof said);
-            assert_memory_equal(said, "s.yaml:1:23: background.img: ", 33);
+            assert_memory_equal(said, "s.yaml:1:23: background.picture: ", 33);
             assert_non_null(strstr(said, "pixel 2,1 is "));
         }
         scene_destroy(s);
@@ -329,15 +329,15 @@ static void a_sky_picture_is_found_beside_its_scene(void **state)
     assert_true(loaded && loaded->width == 4 && loaded->height == 2 && loaded->pixel[3] == 0.5f);
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
     assert_ptr_equal(s->background.img, loaded); /* once */
-    assert_int_equal(scene_set(s, "background.img", "other.pfm", NULL), STATUS_OK);
+    assert_int_equal(scene_set(s, "background.picture", "other.pfm", NULL), STATUS_OK);
     assert_null(s->background.img); /* another path, another picture */
     diagnostic why = {.what = ""};
     assert_int_equal(scene_load(s, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.file, "other.pfm"));
-    assert_int_equal(scene_set(s, "background.img", image_path, NULL), STATUS_OK); /* absolute */
+    assert_int_equal(scene_set(s, "background.picture", image_path, NULL), STATUS_OK); /* absolute */
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
     assert_non_null(s->background.img);
-    assert_int_equal(scene_set(s, "background.img", "none.png", NULL), STATUS_OK);
+    assert_int_equal(scene_set(s, "background.picture", "none.png", NULL), STATUS_OK);
     assert_int_equal(scene_set(s, "background.kind", "uniform", NULL), STATUS_OK);
     assert_int_equal(scene_load(s, NULL), STATUS_OK); /* not wanted, not read */
     scene_destroy(s);
@@ -345,7 +345,7 @@ static void a_sky_picture_is_found_beside_its_scene(void **state)
     s = read_file(scene_path); /* which names a picture that is no more */
     scene *c = scene_clone(s);
     char where[200], text[DIAGNOSTIC_TEXT_MAX];
-    snprintf(where, sizeof where, "%s:1:23: background.img: %s: ", scene_path, image_path);
+    snprintf(where, sizeof where, "%s:1:23: background.picture: %s: ", scene_path, image_path);
     assert_int_equal(scene_load(c, &why), STATUS_BAD_INPUT);
     assert_int_equal(strncmp(diagnostic_text(&why, text, sizeof text), where, strlen(where)), 0);
     scene_destroy(c);

@@ -211,17 +211,17 @@ static void every_parameter_survives_away_from_its_default(void **state)
     bool seen[512] = {false};
     for (size_t o = 0; o < sizeof owners / sizeof *owners; o++) {
         for (size_t i = 0; i < param_count(); i++) {
-            place at;
+            param_place at;
             char path[200];
             snprintf(path, sizeof path, "%s.%s", owners[o], param_at(i)->name);
-            if (place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
+            if (param_place_find(s, path, &at, NULL) != STATUS_OK || at.row != param_at(i))
                 continue;
-            if (at.group == PARAM_MESH && strcmp(owners[o], at.row->makers               ? "toy"
-                                                            : at.row->type == PARAM_PATH ? "model"
-                                                                                         : "body") != 0)
+            if (at.object_group == PARAM_MESH && strcmp(owners[o], at.row->makers               ? "toy"
+                                                                   : at.row->type == PARAM_PATH ? "model"
+                                                                                                : "body") != 0)
                 continue; /* a file takes the place of what is generated, which a mesh that has a file is not; a slime's
                              rows are a slime's */
-            if (at.group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
+            if (at.object_group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
                 continue; /* one solid's will do */
             if (carry_row(s, owners[o], param_at(i)) == 0)
                 fail_msg("%s was not changed", path);
@@ -246,8 +246,8 @@ static void random_scenes_survive(void **state)
             char path[200], text[64][100];
             snprintf(path, sizeof path, "%s.%s", owners[(x >> 16) % 8], param_at(i)->name);
             size_t count = candidates(param_at(i), text, 64);
-            place at;
-            if (place_find(s, path, &at, NULL) == STATUS_OK && at.row == param_at(i) &&
+            param_place at;
+            if (param_place_find(s, path, &at, NULL) == STATUS_OK && at.row == param_at(i) &&
                 is_right(s, path, text[(x >> 20) % count]))
                 assert_int_equal(scene_set(s, path, text[(x >> 20) % count], NULL), STATUS_OK);
         }
@@ -432,7 +432,7 @@ static void assert_moved(const char *from, const char *img, const char *to, cons
     there = written(s, to, false);
     scene_destroy(s);
     worked(scene_read_text(to, there, strlen(there), &s, &why), &why);
-    worked(scene_get(s, "background.img", &value, &why), &why);
+    worked(scene_get(s, "background.picture", &value, &why), &why);
     assert_string_equal(value, expected);
     char *again = written(s, to, false);
     assert_string_equal(there, again);

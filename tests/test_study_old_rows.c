@@ -138,9 +138,9 @@ static void the_first_definition_ends_with_its_parameters(void **state)
 
 /* --- what a definition is made of --- */
 
-static bool is_path_of(const scene *s, const char *name, place *at)
+static bool is_path_of(const scene *s, const char *name, param_place *at)
 {
-    return strchr(name, '.') && !strchr(name, ' ') && place_find(s, name, at, NULL) == STATUS_OK;
+    return strchr(name, '.') && !strchr(name, ' ') && param_place_find(s, name, at, NULL) == STATUS_OK;
 }
 
 /* A parameter that a later version adds is at its default in every scene of before. */
@@ -152,7 +152,7 @@ static void defaults_enter_no_definition(void **state)
     assert_int_equal(meaning_of_study(&said, s), STATUS_OK);
     size_t paths = 0, shapes = 0;
     for (size_t i = 0; i < said.count; i++) {
-        place at;
+        param_place at;
         const char *name = said.items[i].name, *value = said.items[i].value;
         shapes += strncmp(name, "shape of ", 9) == 0 && strspn(value, "0123456789") == 0;
         if (!is_path_of(s->base, name, &at))

@@ -305,7 +305,7 @@ static status note_load(void *context, const scene *setting, diagnostic *why)
 static void a_guard_is_asked_first(void **state)
 {
     const fixture *f = *state;
-    const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.img: [near.png, far.png]}]\nreference: "
+    const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.picture: [near.png, far.png]}]\nreference: "
                        "{render.depth: 3}\n";
     char path[400];
     fixture_write(f, "test.study", text);

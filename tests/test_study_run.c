@@ -432,6 +432,12 @@ static void cells_of_one_film_are_compared(void **state)
     assert_int_equal(study_cell_film(s, 1), 1);
     assert_int_equal(study_cell_film(s, 2), 0);
     study_destroy(s);
+    const char *slimes =
+        "study: t\nscene: slime.yaml\ngrid:\n  - {toy.threads: [1, 2]}\n  - {toy.dt_s: [0.001, 0.0005]}\n";
+    assert_int_equal(study_read_text("experiments/scenes/t.study", slimes, strlen(slimes), &s, NULL), STATUS_OK);
+    for (size_t cell = 0; cell < 4; cell++)
+        assert_int_equal(study_cell_film(s, cell), cell % 2);
+    study_destroy(s);
 }
 
 static void pictures_and_maps_are_kept(void **state)

@@ -28,7 +28,7 @@ static void open_stage(stage *st)
     assert_int_equal(plan_build(st->s, &st->p, NULL), STATUS_OK);
     assert_int_equal(film_create(64, 48, 1, FILM_RGB, &st->img, NULL), STATUS_OK);
     assert_non_null(st->set = tracer_pool_create(ISA_SSE2));
-    st->target = (tracer_target){.scene = st->p, .img = st->img};
+    st->target = (tracer_target){.frame_plan = st->p, .img = st->img};
     schedule_start(&st->pieces, &st->s->render);
 }
 

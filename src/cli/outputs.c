@@ -157,7 +157,7 @@ static status check_layers(const outputs *o, const named_file *files, size_t cou
 {
     const named_file prefix = {"--layers", o->layers};
     const char *word = integrator_with_layers();
-    if (!integrator_of(&s->render)->layers) {
+    if (!integrator_traits_of(&s->render)->layers) {
         char remedy[64];
         snprintf(remedy, sizeof remedy, "set render.integrator to %s", word ? word : "one that gives layers");
         return wrong(&prefix, why, remedy, "this render.integrator gives no layers");
@@ -180,7 +180,7 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why)
 {
     const named_file files[] = {
         {"-o", o->img}, {"--rays", o->rays}, {"--time", o->time}, {"--noise", o->noise}, {"--timeline", o->timeline}};
-    if (o->noise && (!integrator_of(&s->render)->by_chance || s->render.paths < 2))
+    if (o->noise && (!integrator_traits_of(&s->render)->by_chance || s->render.paths < 2))
         return wrong(&files[3], why, "set render.integrator to path and render.paths to 16 or more",
                      "nothing is drawn by chance");
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)

@@ -106,8 +106,8 @@ static status print_list(const scene *s)
 {
     static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
     for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
-        for (size_t i = 0; i < place_group_size(s, groups[g]); i++) {
-            printf("%s %s", param_group_name(groups[g]), place_group_name(s, groups[g], i));
+        for (size_t i = 0; i < param_place_group_size(s, groups[g]); i++) {
+            printf("%s %s", param_group_name(groups[g]), param_place_group_name(s, groups[g], i));
             if (groups[g] == PARAM_SOLID) {
                 const solid *owner = &s->solids[i];
                 printf(" %s %s", shape_name(owner->shape.kind),

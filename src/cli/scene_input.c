@@ -134,8 +134,8 @@ status scene_input_lint(const scene *s, isa level, const lint_filter *varies, di
 
 void scene_input_note_tree(const scene *s)
 {
-    const bool path = integrator_of(&s->render)->by_chance, drawn = integrator_of(&s->render)->drawn,
-               layers = integrator_of(&s->render)->layers;
+    const bool path = integrator_traits_of(&s->render)->by_chance, drawn = integrator_traits_of(&s->render)->drawn,
+               layers = integrator_traits_of(&s->render)->layers;
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     scene one_lambda = *s; /* borrows what s owns */
     one_lambda.render.spectrum = SPECTRUM_RGB;

@@ -133,12 +133,12 @@ const char *cuvette_motion_name(const cuvette_motion *motion, size_t index)
 status motion_find(const cuvette_motion *m, const char *name, size_t *index, int *solid_or_none, diagnostic *why)
 {
     const scene *s = m->of->model;
-    place at;
-    TRY(place_find_object(s, name, &at, why));
-    const bool is_solid = at.group == PARAM_SOLID && shape_of(&s->solids[at.index].shape)->triangles;
+    param_place at;
+    TRY(param_place_find_object(s, name, &at, why));
+    const bool is_solid = at.object_group == PARAM_SOLID && shape_of(&s->solids[at.index].shape)->triangles;
     const char *mesh_name = is_solid ? s->solids[at.index].mesh : name;
     *solid_or_none = is_solid ? (int)at.index : -1;
-    for (size_t i = 0; (is_solid || at.group == PARAM_MESH) && i < scene_motion_count(m->bodies); i++)
+    for (size_t i = 0; (is_solid || at.object_group == PARAM_MESH) && i < scene_motion_count(m->bodies); i++)
         if (strcmp(s->meshes[scene_motion_mesh(m->bodies, i)].name, mesh_name) == 0) {
             *index = i;
             return STATUS_OK;

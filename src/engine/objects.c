@@ -91,10 +91,10 @@ static param_group group_of(cuvette_object kind)
 
 size_t cuvette_scene_count(const cuvette_scene *s, cuvette_object kind)
 {
-    return s && group_of(kind) != PARAM_GROUP_COUNT ? place_group_size(s->model, group_of(kind)) : 0;
+    return s && group_of(kind) != PARAM_GROUP_COUNT ? param_place_group_size(s->model, group_of(kind)) : 0;
 }
 
 const char *cuvette_scene_name(const cuvette_scene *s, cuvette_object kind, size_t index)
 {
-    return index < cuvette_scene_count(s, kind) ? place_group_name(s->model, group_of(kind), index) : NULL;
+    return index < cuvette_scene_count(s, kind) ? param_place_group_name(s->model, group_of(kind), index) : NULL;
 }

@@ -12,8 +12,8 @@
 
 static bool is_slime(const scene *s, const char *path)
 {
-    place at;
-    return place_find(s, path, &at, NULL) == STATUS_OK && at.group == PARAM_MESH &&
+    param_place at;
+    return param_place_find(s, path, &at, NULL) == STATUS_OK && at.object_group == PARAM_MESH &&
            s->meshes[at.index].source == MESH_SLIME;
 }
 
@@ -44,11 +44,11 @@ static bool is_switch(const param *row)
 cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t value, cuvette_diagnostic *why)
 {
     ENGINE_CALL(s, path);
-    place at;
+    param_place at;
     char text[NUMBER_TEXT_MAX];
     snprintf(text, sizeof text, "%lld", (long long)value);
     const bool as_word =
-        (value == 0 || value == 1) && place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row);
+        (value == 0 || value == 1) && param_place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row);
     return cuvette_scene_set(s, path, as_word ? at.row->choices[value] : text, why);
 }
 
@@ -121,8 +121,8 @@ cuvette_status cuvette_scene_get_int(const cuvette_scene *s, const char *path, i
     ENGINE_NEED(value);
     ENGINE_TRY(get(s, path, &text, why));
     cuvette_status code = CUVETTE_OK;
-    place at;
-    if (place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row))
+    param_place at;
+    if (param_place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row))
         *value = strcmp(text, "on") == 0;
     else if (number_parse_int(text, &number))
         *value = number;

@@ -34,7 +34,7 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
     isa level = ISA_SSE2;
     scene without_sky = *s; /* no query uses it */
     without_sky.background.img = NULL;
-    if (integrator_of(&s->render)->drawn)
+    if (integrator_traits_of(&s->render)->drawn)
         trace_trees(&without_sky.render); /* rays need the hierarchies, which rasterisation does not build */
     status code = engine_isa(instructions, &level, why);
     THEN(code, scene_check(s, why));
@@ -112,7 +112,7 @@ cuvette_status cuvette_query_medium(const cuvette_query *query, const double *po
     if (!engine_is_finite(point))
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point is not finite"),
                              &inner, why);
-    const scene_geometry *a = query->ready->solids;
+    const scene_geometry *a = query->ready->geometry;
     *at =
         a->regions[scene_geometry_priority_index(a, scene_geometry_inside(a, vec3_make(point[0], point[1], point[2])))]
             .solid;

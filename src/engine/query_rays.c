@@ -43,7 +43,7 @@ status engine_check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnos
         what = "has no direction", remedy = "give a finite direction that is not 0,0,0";
     else if (!(ray->reach >= 0.0))
         what = "has a negative reach", remedy = "give a distance, or 0 for no limit";
-    else if (p && (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !is_face(p->solids, ray->start.word[1]))))
+    else if (p && (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !is_face(p->geometry, ray->start.word[1]))))
         what = "has an invalid start", remedy = "copy it from a hit of this query, or zero it";
     if (!what)
         return STATUS_OK;
@@ -67,7 +67,7 @@ static void put_ray(const cuvette_query *q, bench *b, int column, const cuvette_
     b->ox[column] = origin.x, b->oy[column] = origin.y, b->oz[column] = origin.z;
     b->dx[column] = d.x, b->dy[column] = d.y, b->dz[column] = d.z;
     b->start[column] = ray->start.word[0] ? (int64_t)ray->start.word[1] : FACE_NONE;
-    b->inside[column] = ray->start.word[0] ? ray->start.word[2] : scene_geometry_inside(q->ready->solids, origin);
+    b->inside[column] = ray->start.word[0] ? ray->start.word[2] : scene_geometry_inside(q->ready->geometry, origin);
 }
 
 static ray_batch view_of(const bench *b, int count)
@@ -83,7 +83,7 @@ static cuvette_hit no_hit(const cuvette_query *q, int priority_index)
     h.distance = (double)INFINITY;
     h.solid = h.after = CUVETTE_OUTSIDE;
     h.triangle = -1;
-    h.before = q->ready->solids->regions[priority_index].solid;
+    h.before = q->ready->geometry->regions[priority_index].solid;
     h.n_before = q->ready->ior[priority_index];
     return h;
 }
@@ -94,13 +94,13 @@ static cuvette_hit hit_of(const cuvette_query *q, const bench *b, int column, in
     const hit_batch *hits = &b->hits;
     const surface_batch *s = &b->points;
     cuvette_hit h = no_hit(q, (int)hits->before[column]);
-    const region *bounded = &p->solids->regions[p->solids->primitives[hit_primitive].priority_index];
+    const region *bounded = &p->geometry->regions[p->geometry->primitives[hit_primitive].priority_index];
     h.distance = hits->t[column];
     h.point[0] = s->px[k], h.point[1] = s->py[k], h.point[2] = s->pz[k];
     h.normal[0] = s->nx[k], h.normal[1] = s->ny[k], h.normal[2] = s->nz[k];
     h.error = s->error[k];
-    h.solid = p->solids->regions[hits->surface[column]].solid;
-    h.after = p->solids->regions[hits->after[column]].solid;
+    h.solid = p->geometry->regions[hits->surface[column]].solid;
+    h.after = p->geometry->regions[hits->after[column]].solid;
     h.n_after = p->ior[hits->after[column]];
     if (is_mesh_face(s->face[k])) {
         h.triangle = mesh_face_triangle(s->face[k]);
@@ -125,7 +125,7 @@ static void report_hits(const cuvette_query *q, bench *b, int hit_primitive, int
         b->gstart[k] = b->start[i], b->ginside[k] = b->hits.inside_before[i], b->t[k] = b->hits.t[i];
     }
     const ray_batch rays = {count, b->gox, b->goy, b->goz, b->gdx, b->gdy, b->gdz, b->gstart, b->ginside};
-    const scene_geometry *a = q->ready->solids;
+    const scene_geometry *a = q->ready->geometry;
     if (!a->primitives[hit_primitive].rule) {
         for (int k = 0; k < count; k++)
             b->mesh_hits[k] = b->meshes.hit[b->list[k]];
@@ -144,7 +144,7 @@ static bool within(double distance, double reach)
 
 static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *rays, int count, cuvette_hit *hits)
 {
-    const scene_geometry *a = q->ready->solids;
+    const scene_geometry *a = q->ready->geometry;
     for (int i = 0; i < count; i++)
         put_ray(q, b, i, &rays[i], 1.0);
     const ray_batch view = view_of(b, count);
@@ -194,9 +194,9 @@ static void occluded_batch(const cuvette_query *q, bench *b, int count, bool end
 {
     const ray_batch view = view_of(b, count);
     if (ends)
-        q->kernels->shadow(q->ready->solids, &view, 1, &b->scratch, b->transmitted);
+        q->kernels->shadow(q->ready->geometry, &view, 1, &b->scratch, b->transmitted);
     else
-        q->kernels->nearest(q->ready->solids, &view, &b->scratch, &b->hits);
+        q->kernels->nearest(q->ready->geometry, &view, &b->scratch, &b->hits);
     for (int i = 0; i < count; i++)
         blocked[b->caller_index[i]] = ends ? b->transmitted[i] == 0.0 : b->hits.hit_primitive[i] >= 0;
 }

@@ -72,7 +72,7 @@ static int children_of(bvh_branch *b, bool root, bvh_branch **out)
 }
 
 /* Subtrees that are counted or written by one member each, and where they go. */
-typedef struct place {
+typedef struct param_place {
     bvh_branch *b;
     size_t node, block;
 } place;

@@ -25,10 +25,14 @@ static inline double steps_per_unit(const ray_batch *rays, int i)
     return 1.0 / sqrt(rays->dx[i] * rays->dx[i] + rays->dy[i] * rays->dy[i] + rays->dz[i] * rays->dz[i]);
 }
 
+/* --- contact_kernel.c --- */
+
 /* Decides which boundaries of s->near[k] are in contact with column k's crossing; sets and ranks on both sides follow.
  */
 void KERNEL(merge_contacts)(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
                             instance_hit *mesh_hits);
+
+/* --- mesh_changes_kernel.c --- */
 
 /* The next crossings of meshes, where they come before those that c has, for the first n columns; then the meshes' bits
  * in c's sets and in s->near, when those of the others are there. */

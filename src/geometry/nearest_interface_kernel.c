@@ -409,7 +409,7 @@ static bool any_undecided(int n, const ray_scratch *s)
 static void first_sight(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s)
 {
     const int n = rays->count;
-    const int64_t everywhere = mask_of(a->regions[0].absorbs);
+    const int64_t everywhere = mask_of(a->regions[0].attenuates);
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
         s->blocked[i] = 0, s->undecided[i] = everywhere;

@@ -64,10 +64,10 @@ static void add_body(scene_geometry *a, int priority_index, const region_source 
                   .opaque = source->opaque,
                   .shadow_transmittance = source->opaque ? 0.0 : source->shadow_transmittance,
                   .face_shadow_transmittance = source->opaque ? NULL : source->face_shadow_transmittance,
-                  .absorbs = source->absorbs && !source->opaque,
+                  .attenuates = source->attenuates && !source->opaque,
                   .reflects = source->reflects && !source->opaque,
                   .solid = source->solid};
-    a->absorbs |= b->absorbs;
+    a->attenuates |= b->attenuates;
     for (int k = 0; k < n; k++)
         add_primitive(a, priority_index, &parts[k]);
 }
@@ -147,7 +147,7 @@ void scene_geometry_destroy(scene_geometry *a)
 
 void scene_geometry_surroundings_absorb(scene_geometry *a)
 {
-    a->regions[0].absorbs = a->absorbs = true;
+    a->regions[0].attenuates = a->attenuates = true;
 }
 
 uint64_t scene_geometry_inside(const scene_geometry *a, vec3 point)

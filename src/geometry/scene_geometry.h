@@ -55,7 +55,7 @@ typedef struct region {
     const double
         *face_shadow_transmittance; /* the same by slot of a mesh whose faces differ, clearness being the least;
                                    * borrowed, or NULL */
-    bool absorbs;                   /* its medium takes light away with length */
+    bool attenuates;                /* its medium takes light away with length */
     bool reflects; /* by the angle: shadow rays note where they cross its surface (see ray_crossings) */
     int solid;     /* index of the solid it came from */
 } region;
@@ -70,7 +70,7 @@ typedef struct scene_geometry {
     uint64_t further;            /* rows that hold further intervals of a primitive before them */
     uint64_t opaque_regions;     /* bit r - 1: the body of rank r is opaque */
     bool distinct;               /* no two bodies are of one medium, nor is any of the surrounding one */
-    bool absorbs;                /* one of the bodies does, or the surrounding medium */
+    bool attenuates;             /* one of the bodies does, or the surrounding medium */
     struct instance_set *meshes; /* all of them; NULL when there is none */
     vec3 *normals;               /* of all primitives with sides */
     int normal_count;
@@ -79,7 +79,7 @@ typedef struct scene_geometry {
 /* Can a body take light away from a shadow ray by itself? With solid_shadows every body does. */
 static inline bool region_casts_shadow(const region *b, bool solid_shadows)
 {
-    return b->opaque || solid_shadows || b->shadow_transmittance < 1.0 || b->absorbs || b->reflects;
+    return b->opaque || solid_shadows || b->shadow_transmittance < 1.0 || b->attenuates || b->reflects;
 }
 
 /* What scene_geometry_build wants to know of a solid. */
@@ -91,7 +91,7 @@ typedef struct region_source {
     bool opaque;
     double shadow_transmittance;
     const double *face_shadow_transmittance; /* by slot; borrowed, or NULL */
-    bool absorbs, reflects;
+    bool attenuates, reflects;
     int solid;
 } region_source;
 

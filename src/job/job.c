@@ -11,7 +11,7 @@
 struct job {
     isa level;
     job_settings settings;
-    renderer *tracer;
+    renderer *renderer;
     topology *machine;          /* NULL until needed: reading it takes longer than many frames */
     hardware_counter *hardware; /* NULL unless measured */
     shelf meshes;               /* empty unless keeps_meshes */
@@ -32,7 +32,7 @@ status job_create(const job_settings *settings, job **out, diagnostic *why)
         j->level = *settings->level;
     else
         code = isa_choose(&j->level, why);
-    THEN(code, renderer_create(j->level, NULL, &j->tracer, why));
+    THEN(code, renderer_create(j->level, NULL, &j->renderer, why));
     if (code == STATUS_OK)
         *out = j;
     else
@@ -45,7 +45,7 @@ void job_destroy(job *j)
     if (!j)
         return;
     shelf_clear(&j->meshes);
-    renderer_destroy(j->tracer);
+    renderer_destroy(j->renderer);
     topology_destroy(j->machine);
     if (j->hardware)
         hardware_counter_destroy(j->hardware);
@@ -159,8 +159,8 @@ static status prepare(job *j, const scene *s, const render_options *requested, d
     if (code != STATUS_OK)
         return code;
     if (machine)
-        renderer_set_machine(j->tracer, machine);
-    return renderer_prepare(j->tracer, s, why);
+        renderer_set_machine(j->renderer, machine);
+    return renderer_prepare(j->renderer, s, why);
 }
 
 /* Renders one frame, with or without the maps. */
@@ -178,7 +178,7 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
     w->begun_s = clock_wall_s();
     w->timed_out = false;
     *out = NULL;
-    const status code = renderer_render(w->of->tracer, s, &options, out, why);
+    const status code = renderer_render(w->of->renderer, s, &options, out, why);
     if (code != STATUS_INTERRUPTED)
         return code;
     if (!w->timed_out)

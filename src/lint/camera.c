@@ -11,11 +11,12 @@ static int medium_about(const plan *made)
 {
     const vec3 eye = made->view.eye;
     const double far = CAMERA_CLOSE * fmax(1.0, fmax(fabs(eye.x), fmax(fabs(eye.y), fabs(eye.z))));
-    const int priority_index = scene_geometry_priority_index(made->solids, scene_geometry_inside(made->solids, eye));
+    const int priority_index =
+        scene_geometry_priority_index(made->geometry, scene_geometry_inside(made->geometry, eye));
     for (int i = 0; i < 6; i++) {
         const double by = i % 2 ? far : -far;
         const vec3 at = vec3_add(eye, vec3_make(i / 2 == 0 ? by : 0.0, i / 2 == 1 ? by : 0.0, i / 2 == 2 ? by : 0.0));
-        if (scene_geometry_priority_index(made->solids, scene_geometry_inside(made->solids, at)) != priority_index)
+        if (scene_geometry_priority_index(made->geometry, scene_geometry_inside(made->geometry, at)) != priority_index)
             return -1;
     }
     return priority_index;
@@ -27,7 +28,7 @@ void lint_camera(const lint_room *room)
     if (priority_index <= 0)
         return;
     const solid *around = lint_solid(room, priority_index);
-    const bool opaque = room->made->solids->regions[priority_index].opaque;
+    const bool opaque = room->made->geometry->regions[priority_index].opaque;
     if (opaque && shape_of(&around->shape)->unbounded)
         note_give(room->taker, "camera", "position", "move the camera to the other side of the plane",
                   "the camera is under the surface of %s, which is opaque", around->name);

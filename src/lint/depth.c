@@ -32,7 +32,7 @@ static status trace_image(depth_probe *p, int deeper, diagnostic *why)
     atomic_uint_fast64_t begun = 0;
     const atomic_bool stop = false;
     TRY(film_create(whole.x1, whole.y1, 1, FILM_RGB, &p->image[deeper], why));
-    const tracer_target target = {.scene = p->made, .img = p->image[deeper], .pixel_rays = p->pixel_rays};
+    const tracer_target target = {.frame_plan = p->made, .img = p->image[deeper], .pixel_rays = p->pixel_rays};
     for (size_t i = 0; i < pixels; i++)
         p->pixel_rays[i] = 0.0;
     if (!tracer_begin(p->rays, &target))
@@ -90,7 +90,7 @@ static status climb(depth_probe *p, int depth, double most, bool *affordable, di
 /* The deepest image: *settled says that deeper ones would be the same, or nearly. */
 static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, diagnostic *why)
 {
-    const double most = p->made->solids->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
+    const double most = p->made->geometry->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
     bool affordable;
     *last = 0;
     TRY(climb(p, depth, most, &affordable, why));

@@ -59,7 +59,7 @@ static scene *small_copy(const scene *s)
 
 static bool follows_rays(const render_settings *r)
 {
-    return integrator_of(r)->tree;
+    return integrator_traits_of(r)->tree;
 }
 
 static status lint_traced(const scene *s, isa level, const note_taker *taker, diagnostic *why)

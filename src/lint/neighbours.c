@@ -53,7 +53,7 @@ static double deep_enough(const pair *p)
 /* Are both at the point, and so far about it? */
 static bool overlap_at(const pair *p, vec3 point)
 {
-    const scene_geometry *a = p->room->made->solids;
+    const scene_geometry *a = p->room->made->geometry;
     const double far = deep_enough(p);
     for (int i = 0; i < 6; i++) {
         vec3 at = point;
@@ -120,7 +120,7 @@ static double spans_gap(const pair *p, const line_spans *a, const line_spans *b,
 /* Looks along all lines of an axis; true where they overlap. */
 static bool look_along(const pair *p, int axis)
 {
-    const scene_geometry *a = p->room->made->solids;
+    const scene_geometry *a = p->room->made->geometry;
     for (int i = 0; i < p->lattice; i++)
         for (int j = 0; j < p->lattice; j++) {
             const line l = lattice_line(p, axis, i, j);
@@ -141,7 +141,7 @@ static bool look_along(const pair *p, int axis)
 /* Is the gap narrow on the line and on eight around it, a patch as wide as is wanted, and nothing else in it? */
 static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step_v)
 {
-    const scene_geometry *a = p->room->made->solids;
+    const scene_geometry *a = p->room->made->geometry;
     for (int di = -1; di <= 1; di++)
         for (int dj = -1; dj <= 1; dj++) {
             const int at_i = i + di * step_u, at_j = j + dj * step_v;
@@ -214,8 +214,8 @@ static void note_gap(const pair *p, double gap)
 /* Two half-spaces share a region unless they face away from each other. */
 static bool planes_overlap(const pair *p)
 {
-    const primitive *a = &p->room->made->solids->primitives[p->a->of->outside],
-                    *b = &p->room->made->solids->primitives[p->b->of->outside];
+    const primitive *a = &p->room->made->geometry->primitives[p->a->of->outside],
+                    *b = &p->room->made->geometry->primitives[p->b->of->outside];
     const vec3 up_a = vec3_make(a->rotation.row[0].y, a->rotation.row[1].y, a->rotation.row[2].y);
     const vec3 up_b = vec3_make(b->rotation.row[0].y, b->rotation.row[1].y, b->rotation.row[2].y);
     const double apart = vec3_dot(vec3_sub(b->origin, a->origin), up_a);
@@ -306,7 +306,7 @@ static void look_at_all(const lint_room *room, const neighbour *all, int count, 
 
 status lint_neighbours(const lint_room *room, diagnostic *why)
 {
-    const scene_geometry *a = room->made->solids;
+    const scene_geometry *a = room->made->geometry;
     neighbour *all = calloc((size_t)a->region_count + 1, sizeof *all);
     float *gap = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *gap);
     double *middle = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *middle);

@@ -24,5 +24,5 @@ status lint_depth(const lint_room *room, diagnostic *why);
 /* The solid of a rank's body. */
 static inline const solid *lint_solid(const lint_room *room, int priority_index)
 {
-    return &room->of->solids[room->made->solids->regions[priority_index].solid];
+    return &room->of->solids[room->made->geometry->regions[priority_index].solid];
 }

@@ -1,4 +1,5 @@
-/* The parameter table as text for people: one line a parameter, or the reference of the manual page as roff. */
+/* The parameter table as text, one line a parameter; as JSON, which the page and `cuvette params --json` read; and as
+ * roff for the manual page. The lines are collected in param_lines.c. */
 #pragma once
 
 #include "scene/model/params.h"

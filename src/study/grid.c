@@ -1,6 +1,6 @@
 #include "study/grid.h"
 #include "base/hash.h"
-#include "scene/model/params.h"
+#include "scene/model/params_path.h"
 #include "study/meaning.h"
 #include <stdlib.h>
 #include <string.h>
@@ -62,12 +62,10 @@ size_t study_cell_film(const study *s, size_t cell)
     return film;
 }
 
-static bool is_performance_only(const char *path)
+static bool is_performance_only(const scene *s, const char *path)
 {
-    static const char group[] = "render.";
-    const param *row =
-        strncmp(path, group, sizeof group - 1) == 0 ? param_find(PARAM_RENDER, path + sizeof group - 1) : NULL;
-    return row && row->performance_only;
+    param_place at;
+    return param_place_find(s, path, &at, NULL) == STATUS_OK && at.row->performance_only;
 }
 
 /* Embree's hits are of single precision: its film is its own. */
@@ -76,19 +74,19 @@ static bool is_foreign(const char *value)
     return strcmp(value, "embree") == 0;
 }
 
-static bool have_one_film(const study_point *a, const study_point *b)
+static bool have_one_film(const scene *s, const study_point *a, const study_point *b)
 {
     for (size_t i = 0; i < a->count; i++)
         if (strcmp(a->values[i], b->values[i]) != 0 &&
-            (!is_performance_only(a->paths[i]) || is_foreign(a->values[i]) || is_foreign(b->values[i])))
+            (!is_performance_only(s, a->paths[i]) || is_foreign(a->values[i]) || is_foreign(b->values[i])))
             return false;
     return true;
 }
 
-void axis_find_films(study_axis *axis)
+void axis_find_films(study_axis *axis, const scene *s)
 {
     for (size_t i = 0; i < axis->count; i++)
-        for (axis->points[i].film = 0; !have_one_film(&axis->points[i], &axis->points[axis->points[i].film]);)
+        for (axis->points[i].film = 0; !have_one_film(s, &axis->points[i], &axis->points[axis->points[i].film]);)
             axis->points[i].film++;
 }
 

@@ -17,8 +17,8 @@ status grid_each_cell(const study *s, grid_visit *look, void *context, diagnosti
 /* scene_check for every cell; a wrong one is located in the study file at the point of its last axis. */
 status grid_check_cells(const study *s, diagnostic *why);
 
-/* Finds the film of each point (study_point.film). */
-void axis_find_films(study_axis *axis);
+/* Finds the film of each point (study_point.film); s has the objects that the points' paths name. */
+void axis_find_films(study_axis *axis, const scene *s);
 
 /* The fingerprint of what a row means (study/meaning.h). Loads the scene's files, whose
  * contents count too. */

@@ -42,8 +42,8 @@ static status add_param(void *context, const char *path, const param *row, const
 /* Every object is named in its place: one whose parameters all are at their defaults is there, too. */
 static status add_objects(meaning *m, const scene *of, param_group group)
 {
-    for (size_t i = 0; i < place_group_size(of, group); i++)
-        TRY(add(m, text_format("%s %zu", param_group_name(group), i), strdup(place_group_name(of, group, i))));
+    for (size_t i = 0; i < param_place_group_size(of, group); i++)
+        TRY(add(m, text_format("%s %zu", param_group_name(group), i), strdup(param_place_group_name(of, group, i))));
     return STATUS_OK;
 }
 

@@ -258,7 +258,7 @@ static status read_axes(study *s, scene *on, const document *d, const node *grid
         s->axis_count++;
         status code = read_axis(&s->axes[i], on, d, grid->items[i], why);
         if (code == STATUS_OK) {
-            axis_find_films(&s->axes[i]);
+            axis_find_films(&s->axes[i], on);
             code = check_once(s, i, d, grid->items[i], why);
         }
         if (code != STATUS_OK)

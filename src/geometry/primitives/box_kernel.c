@@ -14,7 +14,7 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
     return (ray_span){near, far, mask_less(near, far), mask_same(at & ~(int64_t)(FACES_MAX - 1), 0)};
 }
 
-SPANS_OF(p->turned, span)
+DEFINE_SPANS(p->turned, span)
 
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
@@ -41,7 +41,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(p->turned, point)
+DEFINE_POINTS(p->turned, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

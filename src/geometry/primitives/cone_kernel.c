@@ -46,7 +46,7 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
     return span_within(side, caps, on_side | on_bottom | on_top);
 }
 
-SPANS_OF(p->turned, span)
+DEFINE_SPANS(p->turned, span)
 
 /* The face by the same comparisons as in the first pass. The side is reached across it; at the apex its normal is the
  * axis. */
@@ -72,7 +72,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(p->turned, point)
+DEFINE_POINTS(p->turned, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

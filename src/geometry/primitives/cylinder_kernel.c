@@ -29,7 +29,7 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
     return span_within(side, caps, on_side | on_bottom | on_top);
 }
 
-SPANS_OF(is_general(p), span)
+DEFINE_SPANS(is_general(p), span)
 
 /* The same comparisons of the same roots as in the first pass: the face is the one that bounded the interval there. */
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
@@ -53,7 +53,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(is_general(p), point)
+DEFINE_POINTS(is_general(p), point)
 
 static bool contains(const primitive *p, vec3 q)
 {

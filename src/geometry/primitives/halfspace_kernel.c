@@ -11,7 +11,7 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
     return (ray_span){blend(down, t, -HUGE_VAL), blend(down, HUGE_VAL, t), -1, own};
 }
 
-SPANS_OF(p->turned, span)
+DEFINE_SPANS(p->turned, span)
 
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
@@ -20,7 +20,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(p->turned, point)
+DEFINE_POINTS(p->turned, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

@@ -171,7 +171,7 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool 
 
 /* Define rows and points by a body that is compiled for both answers of is_general, an expression in p: whether rays
  * must be turned into the primitive's frame, or it is scaled. */
-#define ROWS_OF(is_general, region)                                                                 \
+#define DEFINE_ROWS(is_general, region)                                                             \
     static void rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                               \
         if (is_general)                                                                             \
@@ -180,13 +180,13 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool 
             region(p, false, bit, rays, s);                                                         \
     }
 /* Of a convex primitive. */
-#define SPANS_OF(is_general, span)                                                                             \
+#define DEFINE_SPANS(is_general, span)                                                                         \
     ALWAYS_INLINE void spans(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                                          \
         spans_in(p, span, general, bit, rays, s);                                                              \
     }                                                                                                          \
-    ROWS_OF(is_general, spans)
-#define POINTS_OF(is_general, point)                                                                   \
+    DEFINE_ROWS(is_general, spans)
+#define DEFINE_POINTS(is_general, point)                                                               \
     static void points(const primitive *__restrict p, const ray_batch *rays, const double *t, int bit, \
                        surface_batch *met)                                                             \
     {                                                                                                  \

@@ -51,7 +51,7 @@ ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_bat
     }
 }
 
-ROWS_OF(p->turned, loop)
+DEFINE_ROWS(p->turned, loop)
 
 /* The face that bounds the interval, by the same roots: the last of those that are entered, or the first of those that
  * are left. A loop over faces within one over rays, which is not vectorised. */

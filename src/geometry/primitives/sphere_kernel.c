@@ -17,7 +17,7 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
 }
 
 /* It is turned for its textures alone. */
-SPANS_OF(false, span)
+DEFINE_SPANS(false, span)
 
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
@@ -30,7 +30,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(false, point)
+DEFINE_POINTS(false, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

@@ -187,7 +187,7 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
     return l;
 }
 
-POINTS_OF(p->turned, point)
+DEFINE_POINTS(p->turned, point)
 
 static bool contains(const primitive *p, vec3 q)
 {

@@ -1,10 +1,10 @@
 /* Camera rays: their number per pixel, sample positions and directions. */
 #include "render/shade/shading.h"
 
-camera_need camera_samples(const render_settings *r)
+camera_sampling camera_samples(const render_settings *r)
 {
     const int64_t together = r->spectrum == SPECTRUM_SPECTRAL ? r->wavelengths : 1;
-    return (camera_need){.rays = r->samples * together, .points = r->samples, .together = together};
+    return (camera_sampling){.rays = r->samples * together, .points = r->samples, .together = together};
 }
 
 /* Cells along one side of the largest square grid with at most `points` cells. */
@@ -18,12 +18,12 @@ static int64_t cells_across(int64_t points)
 
 void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const render_settings *r = &p->render;
     ray_queue *q = &t->queues.waiting[0];
     double u[ROW], v[ROW];
     const camera_pixel pixel = camera_pixel_of(&p->view, r);
-    const camera_need need = t->rule->camera(r);
+    const camera_sampling need = t->rule->sampling(r);
     const int64_t each = need.rays, cells = cells_across(need.points);
     const int at = q->count;
     for (int k = 0; k < count; k++) {

@@ -14,9 +14,9 @@ static size_t values_of(const film *f)
     return (size_t)f->width * (size_t)f->height * 3;
 }
 
-status film_create(int width, int height, int layers, film_space space, film **out, diagnostic *why)
+status film_create(int width, int height, int shares, film_space space, film **out, diagnostic *why)
 {
-    const size_t bytes = (size_t)width * (size_t)height * 3 * sizeof(int64_t) * (size_t)layers;
+    const size_t bytes = (size_t)width * (size_t)height * 3 * sizeof(int64_t) * (size_t)shares;
     film *f = calloc(1, sizeof *f);
     if (f)
         f->memory = malloc(bytes + ALIGNMENT); /* aligned_alloc would leave gaps that are too small for the next film */
@@ -29,7 +29,7 @@ status film_create(int width, int height, int layers, film_space space, film **o
     memset(f->sum, 0, bytes); /* allocates the pages before the clock starts */
     f->width = width;
     f->height = height;
-    f->layers = layers;
+    f->shares = shares;
     f->space = space;
     *out = f;
     return STATUS_OK;
@@ -43,41 +43,41 @@ void film_destroy(film *f)
     free(f);
 }
 
-bool film_add_layers(film *f, double *variance)
+bool film_merge_shares(film *f, double *variance)
 {
-    const size_t count = values_of(f), layers = (size_t)f->layers;
+    const size_t count = values_of(f), shares = (size_t)f->shares;
     int64_t signs = 0;
-    if (layers == 1)
+    if (shares == 1)
         return true;
     for (size_t i = 0; i < count; i++) {
         double total = 0.0, squares = 0.0;
         int64_t sum = 0;
-        for (size_t k = 0; k < layers; k++) {
+        for (size_t k = 0; k < shares; k++) {
             sum = (int64_t)((uint64_t)sum + (uint64_t)f->sum[k * count + i]);
-            signs |= sum; /* a negative sum means overflow: no layer's sum is negative */
+            signs |= sum; /* a negative sum means overflow: no share's sum is negative */
             total += (double)f->sum[k * count + i] / FILM_ONE;
         }
-        for (size_t k = 0; k < layers; k++) {
-            const double from_mean = (double)f->sum[k * count + i] / FILM_ONE - total / (double)layers;
+        for (size_t k = 0; k < shares; k++) {
+            const double from_mean = (double)f->sum[k * count + i] / FILM_ONE - total / (double)shares;
             squares += from_mean * from_mean;
         }
         if (variance) /* of a sum of n values, each with variance squares / (n - 1) */
-            variance[i] = squares * (double)layers / (double)(layers - 1);
+            variance[i] = squares * (double)shares / (double)(shares - 1);
         f->sum[i] = sum;
     }
-    f->layers = 1;
+    f->shares = 1;
     return signs >= 0;
 }
 
 /* The pixel's colour, linear sRGB. */
 static void pixel_rgb(const film *f, size_t pixel, double rgb[3])
 {
-    const size_t layers = (size_t)f->layers, layer = values_of(f);
+    const size_t shares = (size_t)f->shares, stride = values_of(f);
     double value[3];
     for (size_t c = 0; c < 3; c++) {
         uint64_t sum = 0;
-        for (size_t k = 0; k < layers; k++)
-            sum += (uint64_t)f->sum[k * layer + pixel * 3 + c];
+        for (size_t k = 0; k < shares; k++)
+            sum += (uint64_t)f->sum[k * stride + pixel * 3 + c];
         value[c] = (double)(int64_t)sum / FILM_ONE;
     }
     if (f->space == FILM_XYZ)

@@ -1,9 +1,10 @@
 /* The film: sums of radiance in 64-bit fixed point, so that the order of summation does not matter. One unit is 2^-44
  * (5.7e-14); a channel holds up to 524288, and one contribution is from 0 to 262144. A value out of range, or not a
  * number, raises the overflow flag, which makes the render an error. Linear light; row 0 is the top. The channels are
- * linear sRGB, or CIE XYZ in a spectral film, whose sums are never negative. A film of random paths is exposed in
- * layers, each with an equal share of the paths: the differences between layers give the standard error of the image.
- * Ownership: film_create allocates, film_destroy releases. Different threads may write different pixels. */
+ * linear sRGB, or CIE XYZ in a spectral film, whose sums are never negative. A film of random paths consists of equal
+ * shares of the paths, one film after another: their differences give the standard error. expose_at
+ * (render/shade/shading.c) writes the film. Ownership: film_create allocates, film_destroy releases. Different threads
+ * may write different pixels. */
 #pragma once
 
 #include "base/status.h"
@@ -15,28 +16,28 @@
 #define FILM_ONE 17592186044416.0 /* 2^44 */
 
 typedef enum film_space { FILM_RGB, FILM_XYZ } film_space;
-enum { FILM_LAYERS_MAX = 8 };
+enum { FILM_SHARES_MAX = 8 };
 
 typedef struct film {
     int width, height;
     film_space space;
-    int layers;   /* 1, or the number of films of this size stored one after another: see film_add_layers */
+    int shares;   /* 1, or the number of films of this size stored one after another: see film_merge_shares */
     int64_t *sum; /* [(y*width + x)*3 + channel], a pointer into memory */
     void *memory;
 } film;
 
-status film_create(int width, int height, int layers, film_space space, film **out, diagnostic *why);
+status film_create(int width, int height, int shares, film_space space, film **out, diagnostic *why);
 
-/* Adds all layers into the first, after which the film can be read; writes the square of the standard error of each
- * value to variance unless that is NULL. Has no effect with one layer. variance: [(y*width + x)*3 + channel], in the
+/* Adds all shares into the first, after which the film can be read; writes the square of the standard error of each
+ * value to variance unless that is NULL. Has no effect with one share. variance: [(y*width + x)*3 + channel], in the
  * film's own space. Returns false when a sum leaves the film's range. */
-bool film_add_layers(film *f, double *variance);
+bool film_merge_shares(film *f, double *variance);
 void film_destroy(film *f);
 
 /* Radiance of one channel, linear sRGB; in a spectral film negative where a colour is outside the sRGB gamut. */
 double film_value(const film *f, int x, int y, int channel);
 
-/* Reads linear RGB of the rectangle x0 <= x < x1, y0 <= y < y1 as floats, the sum of all layers; stride: floats from
+/* Reads linear RGB of the rectangle x0 <= x < x1, y0 <= y < y1 as floats, the sum of all shares; stride: floats from
  * one row to the next. Other threads may write the film elsewhere at the same time. */
 void film_read(const film *f, int x0, int y0, int x1, int y1, float *rgb, size_t stride);
 

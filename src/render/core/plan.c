@@ -34,7 +34,7 @@ static int64_t medium_of(const scene *s, const index_law *laws, int solid_index)
 static status tree_of(const scene *s, size_t i, plan *p, const mesh *m, const hierarchy **out, diagnostic *why)
 {
     const hierarchy_kind kind = (hierarchy_kind)s->render.accel;
-    if (integrator_of(&s->render)->drawn)
+    if (integrator_traits_of(&s->render)->drawn)
         return STATUS_OK; /* rasterisation needs none */
     if (s->render.keep)
         return hierarchy_of_mesh(m, kind, scene_build_threads(&s->render), out, why);
@@ -112,16 +112,16 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
                                          .opaque = solid_is_opaque(s, one),
                                          .shadow_transmittance = shadow_transmittance,
                                          .face_shadow_transmittance = p->shadow_transmittance[i],
-                                         .absorbs = material_dims(&one->surface),
+                                         .attenuates = material_attenuates(&one->surface),
                                          .reflects = p->basic && !scene_has_constant_shares(&s->render),
                                          .solid = i};
         if (code == STATUS_OK && shape_of(&one->shape)->triangles)
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
     }
-    THEN(code, scene_geometry_build(sources, count, 0, &p->solids, why));
+    THEN(code, scene_geometry_build(sources, count, 0, &p->geometry, why));
     if (code == STATUS_OK && surroundings_absorb(&s->background))
-        scene_geometry_surroundings_absorb(p->solids);
+        scene_geometry_surroundings_absorb(p->geometry);
     free(shapes);
     free(sources);
     return code;
@@ -165,7 +165,7 @@ static const material *material_of(const scene *s, plan *p, int solid_index)
 /* Fills the tables by priority index: materials, refractive indices, absorption, shading materials. */
 static status fill_priority_indices(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
-    const size_t priority_indices = (size_t)p->solids->region_count + 1;
+    const size_t priority_indices = (size_t)p->geometry->region_count + 1;
     p->materials = calloc(priority_indices, sizeof *p->materials);
     p->ior = calloc(priority_indices, sizeof *p->ior);
     p->laws = calloc(priority_indices, sizeof *p->laws);
@@ -175,7 +175,7 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
     if (!p->mirrors || !p->materials || !p->ior || !p->laws || !p->absorption || !p->shading_materials)
         return out_of_memory(why);
     for (size_t r = 0; r < priority_indices; r++) {
-        const int solid_index = p->solids->regions[r].solid;
+        const int solid_index = p->geometry->regions[r].solid;
         p->laws[r] = laws[solid_index < 0 ? (int)s->solid_count : solid_index];
         p->ior[r] = index_law_at(&p->laws[r], s->render.lambda_nm);
         if (solid_index < 0)
@@ -209,18 +209,18 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     }
     p->view = camera_frame_of(s);
     p->render = s->render;
-    if (integrator_of(&s->render)->drawn)
+    if (integrator_traits_of(&s->render)->drawn)
         p->render.shadows = SHADOWS_OFF;
     else
-        p->eye_inside = scene_geometry_inside(p->solids, p->view.eye);
-    p->camera_priority_index = scene_geometry_priority_index(p->solids, p->eye_inside);
+        p->eye_inside = scene_geometry_inside(p->geometry, p->view.eye);
+    p->camera_priority_index = scene_geometry_priority_index(p->geometry, p->eye_inside);
     p->sky = &s->background;
     if (s->render.beyond == DEPTH_LIMIT_MEAN)
         p->sky_mean = sky_mean(p->sky);
     p->lights = s->lights;
     p->light_count = (int)s->light_count;
     p->solid_shadows = s->render.shadows == SHADOWS_OPAQUE;
-    for (size_t i = 0; i < s->light_count && integrator_of(&s->render)->by_chance; i++)
+    for (size_t i = 0; i < s->light_count && integrator_traits_of(&s->render)->by_chance; i++)
         p->solid_shadows |= s->lights[i].radius > 0.0;
     *out = p;
     return STATUS_OK;
@@ -230,10 +230,10 @@ void plan_destroy(plan *p)
 {
     if (!p)
         return;
-    for (int r = 0; p->shading_materials && r <= p->solids->region_count; r++)
+    for (int r = 0; p->shading_materials && r <= p->geometry->region_count; r++)
         free(p->shading_materials[r].mat);
     free(p->shading_materials);
-    scene_geometry_destroy(p->solids);
+    scene_geometry_destroy(p->geometry);
     for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
         hierarchy_destroy(p->own_trees[i]);
     free(p->own_trees);

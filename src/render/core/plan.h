@@ -26,7 +26,7 @@ typedef struct region_materials {
 } region_materials;
 
 typedef struct plan {
-    scene_geometry *solids;
+    scene_geometry *geometry;
     const material **materials;          /* by priority index; [0] is NULL */
     region_materials *shading_materials; /* by priority index; [0] is empty */
     hierarchy **own_trees; /* by solid; hierarchies that the plan owns because the meshes do not keep them */

@@ -35,7 +35,7 @@ typedef struct frame {
     renderer *owner;
     const scene *s;
     const render_options *options;
-    const plan *scene;
+    const plan *frame_plan;
     const film *img;
     const integrator *rule;
     void *state;               /* the integrator's state for the frame */
@@ -78,7 +78,7 @@ void renderer_set_machine(renderer *r, const topology *machine)
 
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why)
 {
-    return s->render.worker_pool ? worker_pool_reserve(r->threads, (int)s->render.threads, why) : STATUS_OK;
+    return s->render.pool ? worker_pool_reserve(r->threads, (int)s->render.threads, why) : STATUS_OK;
 }
 
 static pin_policy policy_of(const scene *s)
@@ -212,10 +212,10 @@ static bool join_events(const worker_account *accounts, int count, render_result
 static void count_tests(const plan *p, ray_counters *c)
 {
     const uint64_t nearest = c->camera + c->reflect + c->refract;
-    for (int r = 1; r <= p->solids->region_count; r++) {
-        const region *b = &p->solids->regions[r];
+    for (int r = 1; r <= p->geometry->region_count; r++) {
+        const region *b = &p->geometry->regions[r];
         c->tests[b->solid] =
-            nearest + (region_casts_shadow(b, p->solid_shadows) || p->solids->regions[0].absorbs ? c->shadow : 0);
+            nearest + (region_casts_shadow(b, p->solid_shadows) || p->geometry->regions[0].attenuates ? c->shadow : 0);
     }
 }
 
@@ -227,14 +227,14 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
     for (int i = 0; i < count; i++) {
         worker_account *d = &f->accounts[i];
         d->report.waiting_s = result->wall_s - d->report.busy_s;
-        d->report.visibility_s = f->scene->solids->meshes ? d->report.visibility_s : NAN;
+        d->report.visibility_s = f->frame_plan->geometry->meshes ? d->report.visibility_s : NAN;
         result->workers[i] = d->report;
         out_of_memory |= d->out_of_memory;
         misplaced |= d->misplaced;
     }
     const bool overflow = tracer_pool_collect(f->owner->tracers, &result->counters) || !in_range;
     if (f->rule->traced)
-        count_tests(f->scene, &result->counters);
+        count_tests(f->frame_plan, &result->counters);
     if (f->options && f->options->timeline)
         out_of_memory |= !join_events(f->accounts, count, result);
     if (out_of_memory)
@@ -258,7 +258,7 @@ static double *make_map(size_t pixels)
     return map;
 }
 
-static int layers_of(const scene *s)
+static int shares_of(const scene *s)
 {
     const integrator *rule = integrator_for(&s->render);
     return rule->shares ? rule->shares(&s->render) : 1;
@@ -266,11 +266,11 @@ static int layers_of(const scene *s)
 
 uint64_t renderer_result_bytes(const scene *s, const render_options *options)
 {
-    const uint64_t layers = (uint64_t)layers_of(s), pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
+    const uint64_t shares = (uint64_t)shares_of(s), pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
     const uint64_t maps = options ? (uint64_t)options->pixel_rays + (uint64_t)options->pixel_time : 0;
-    const uint64_t named = options && options->layers && integrator_of(&s->render)->layers ? layers_bytes() : 0;
+    const uint64_t named = options && options->layers && integrator_traits_of(&s->render)->layers ? layers_bytes() : 0;
     return pixels *
-           (named + 3 * sizeof(int64_t) * layers + (layers > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
+           (named + 3 * sizeof(int64_t) * shares + (shares > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
 }
 
 static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)
@@ -280,7 +280,7 @@ static status make_result(const scene *s, const render_options *options, render_
     if (!result)
         return out_of_memory(why);
     const film_space space = s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
-    status code = film_create((int)s->render.width, (int)s->render.height, layers_of(s), space, &result->img, why);
+    status code = film_create((int)s->render.width, (int)s->render.height, shares_of(s), space, &result->img, why);
     if (code == STATUS_OK) {
         result->worker_count = (int)s->render.threads;
         result->workers = calloc((size_t)result->worker_count, sizeof *result->workers);
@@ -289,9 +289,9 @@ static status make_result(const scene *s, const render_options *options, render_
             missing |= !(result->pixel_rays = make_map(pixels));
         if (options && options->pixel_time)
             missing |= !(result->pixel_ns = make_map(pixels));
-        if (options && options->layers && integrator_of(&s->render)->layers)
+        if (options && options->layers && integrator_traits_of(&s->render)->layers)
             missing |= !(result->layers = layers_create((int)s->render.width, (int)s->render.height));
-        if (layers_of(s) > 1)
+        if (shares_of(s) > 1)
             missing |= !(result->variance = make_map(3 * pixels));
         if (missing)
             code = diagnose(why, STATUS_FAILURE, "render a smaller image", "out of memory");
@@ -325,7 +325,7 @@ static status run_steps(frame *f, int count, diagnostic *why)
     status code = STATUS_OK;
     for (const integrator_step *step = f->rule->steps; step && step->together && code == STATUS_OK; step++) {
         f->step = step->together;
-        code = worker_pool_run(f->owner->threads, count, f->s->render.worker_pool, run_step, NULL, 0.0, f, why);
+        code = worker_pool_run(f->owner->threads, count, f->s->render.pool, run_step, NULL, 0.0, f, why);
         if (code == STATUS_OK && step->alone)
             code = step->alone(f->state, why);
     }
@@ -346,7 +346,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->owner = r;
         f->s = s;
         f->options = options;
-        f->scene = p;
+        f->frame_plan = p;
         f->img = result->img;
         f->rule = integrator_for(&s->render);
         f->state = state;
@@ -355,13 +355,12 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         const double cpu_s = clock_process_cpu_s();
         f->began_s = clock_wall_s();
         code = run_steps(f, count, why);
-        THEN(code, worker_pool_run(r->threads, count, s->render.worker_pool, work,
-                                   options && options->progress ? watch : NULL,
+        THEN(code, worker_pool_run(r->threads, count, s->render.pool, work, options && options->progress ? watch : NULL,
                                    options && options->progress_s > 0 ? options->progress_s : 0.1, f, why));
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
         if (code == STATUS_OK) {
-            const bool in_range = film_add_layers(result->img, result->variance);
+            const bool in_range = film_merge_shares(result->img, result->variance);
             code = collect(f, in_range, result, why);
             if (code == STATUS_OK && f->rule->finish)
                 code = f->rule->finish(state, &result->meshes, why);

@@ -66,7 +66,7 @@ static void drop_all(tracer *t)
 
 static bool take_integrator(tracer *t)
 {
-    const integrator *rule = integrator_for(&t->target.scene->render);
+    const integrator *rule = integrator_for(&t->target.frame_plan->render);
     if (rule != t->rule)
         forget_integrator(t);
     t->rule = rule;
@@ -75,7 +75,7 @@ static bool take_integrator(tracer *t)
 
 bool tracer_begin(tracer *t, const tracer_target *target)
 {
-    const plan *p = target->scene;
+    const plan *p = target->frame_plan;
     const render_settings *r = &p->render;
     t->target = *target;
     t->queues.depth_limit = (int)r->depth;
@@ -88,7 +88,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
             return false;
     }
     if (!make_queues(t, t->queues.depth_limit + 1) || !mesh_begin(t) || !radiance_begin(t) || !take_integrator(t) ||
-        !absorption_begin(t, p->solids->absorbs && t->rule->traced))
+        !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
         return false;
     t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic;
     drop_all(t);
@@ -117,7 +117,7 @@ bool tracer_overflowed(const tracer *t)
  * one's, or two in one place) are in the last list but one, misses in the last. */
 static void sort_by_primitive(tracer *t, int count)
 {
-    const scene_geometry *a = t->target.scene->solids;
+    const scene_geometry *a = t->target.frame_plan->geometry;
     const int foreign = a->primitive_count, none = foreign + 1;
     memset(t->batch.listed, 0, ((size_t)none + 1) * sizeof *t->batch.listed);
     for (int i = 0; i < count;) {
@@ -137,7 +137,7 @@ static void sort_by_primitive(tracer *t, int count)
 /* Shades the few rays on foreign surfaces, in groups of one primitive and one region. */
 static void shade_foreign(tracer *t, int depth, int first)
 {
-    const int foreign = t->target.scene->solids->primitive_count;
+    const int foreign = t->target.frame_plan->geometry->primitive_count;
     int *list = t->batch.list[foreign], left = t->batch.listed[foreign], same[BATCH];
     while (left > 0) {
         const int64_t hit_primitive = t->batch.hits.hit_primitive[list[0]],
@@ -163,18 +163,18 @@ static bool is_counted(const tracer *t, int depth)
 
 static int64_t visibility_begins(const tracer *t)
 {
-    return t->target.scene->solids->meshes ? clock_wall_ns() : 0;
+    return t->target.frame_plan->geometry->meshes ? clock_wall_ns() : 0;
 }
 
 static void visibility_ends(tracer *t, int64_t began_ns)
 {
-    if (t->target.scene->solids->meshes)
+    if (t->target.frame_plan->geometry->meshes)
         t->account.visibility_ns += clock_wall_ns() - began_ns;
 }
 
 static void trace_batch(tracer *t, int depth)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     ray_queue *q = &t->queues.waiting[depth];
     int first;
     const ray_batch rays = queue_take(q, &first);
@@ -192,30 +192,30 @@ static void trace_batch(tracer *t, int depth)
         absorption_dim(t, q, first, rays.count);
     }
     sort_by_primitive(t, rays.count);
-    const int primitives = p->solids->primitive_count, none = primitives + 1;
+    const int primitives = p->geometry->primitive_count, none = primitives + 1;
     if (t->batch.listed[none] > 0)
         t->rule->background(t, q, first, t->batch.list[none], t->batch.listed[none]);
     for (int hit_primitive = 0; hit_primitive < primitives; hit_primitive++)
         if (t->batch.listed[hit_primitive] > 0)
-            shading_group(t, depth, first, hit_primitive, p->solids->primitives[hit_primitive].priority_index,
+            shading_group(t, depth, first, hit_primitive, p->geometry->primitives[hit_primitive].priority_index,
                           t->batch.list[hit_primitive], t->batch.listed[hit_primitive]);
     shade_foreign(t, depth, first);
 }
 
 static void trace_shadows(tracer *t)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     ray_queue *q = &t->queues.shadows;
     int first;
     const ray_batch rays = queue_take(q, &first);
     COUNT(t->account.counters.shadow += (uint64_t)rays.count);
-    if (p->solids->absorbs)
+    if (p->geometry->attenuates)
         absorption_announce(t, q->sample_key + first, rays.count);
     radiance_begin_shadows(t, &rays, q->sample_key + first);
     const int64_t began_ns = visibility_begins(t);
-    t->geometry->shadow(p->solids, &rays, p->solid_shadows, &t->batch.scratch, t->batch.transmitted);
+    t->geometry->shadow(p->geometry, &rays, p->solid_shadows, &t->batch.scratch, t->batch.transmitted);
     visibility_ends(t, began_ns);
-    if (p->solids->absorbs)
+    if (p->geometry->attenuates)
         absorption_dim(t, q, first, rays.count);
     radiance_end_shadows(t);
     for (int i = 0; i < rays.count; i++) {
@@ -277,7 +277,7 @@ static int rays_at_once(int64_t each)
 
 int tracer_camera_rays(tracer *t, int x, int y)
 {
-    const int count = (int)t->rule->camera(&t->target.scene->render).rays;
+    const int count = (int)t->rule->sampling(&t->target.frame_plan->render).rays;
     camera_rays_enqueue(t, y, x, 0, count);
     return count;
 }
@@ -293,7 +293,7 @@ static void begin_piece(tracer *t, const span *piece)
                  share = (double)(clock_wall_ns() - began) / pixels;
     for (int y = piece->y0; y < piece->y1; y++)
         for (int x = piece->x0; x < piece->x1; x++)
-            t->target.pixel_ns[(int64_t)y * t->target.scene->render.width + x] += share;
+            t->target.pixel_ns[(int64_t)y * t->target.frame_plan->render.width + x] += share;
 }
 
 /* The size of the blocks of pixels whose rays fill a batch: square blocks for meshes, because nearby rays take the same
@@ -303,9 +303,9 @@ typedef struct pixel_block {
 } pixel_block;
 static pixel_block block_of(const plan *p, const span *piece, int64_t each)
 {
-    if (p->solids->meshes && each == 1)
+    if (p->geometry->meshes && each == 1)
         return (pixel_block){16, BATCH / 16};
-    if (p->solids->meshes && each == 4)
+    if (p->geometry->meshes && each == 4)
         return (pixel_block){8, BATCH / 32};
     return (pixel_block){piece->x1 - piece->x0, 1};
 }
@@ -328,8 +328,8 @@ void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, cons
 {
     if (t->rule->piece)
         begin_piece(t, piece);
-    const int64_t each = t->rule->camera(&t->target.scene->render).rays;
-    const pixel_block block = block_of(t->target.scene, piece, each);
+    const int64_t each = t->rule->sampling(&t->target.frame_plan->render).rays;
+    const pixel_block block = block_of(t->target.frame_plan, piece, each);
     for (int top = piece->y0; top < piece->y1; top += block.height) {
         const int bottom = top + block.height < piece->y1 ? top + block.height : piece->y1;
         for (int left = piece->x0; left < piece->x1; left += block.width) {

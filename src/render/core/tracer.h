@@ -16,7 +16,7 @@ typedef struct tracer tracer;
 /* The outputs of a frame. pixel_rays and pixel_ns may be NULL; state is the integrator's state for the frame; layers
  * receives named layers, NULL if they are not requested. */
 typedef struct tracer_target {
-    const plan *scene;
+    const plan *frame_plan;
     film *img;
     double *pixel_rays, *pixel_ns;
     void *state;

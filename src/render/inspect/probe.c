@@ -19,11 +19,11 @@ status probe_create(const scene *s, isa level, probe **out, diagnostic *why)
         render_settings *r = &p->setting->render;
         p->spectral = r->spectrum == SPECTRUM_SPECTRAL;
         r->spectrum = SPECTRUM_RGB; /* a tree has one wavelength: render.lambda_nm */
-        if (integrator_of(r)->by_chance || integrator_of(r)->drawn || integrator_of(r)->layers)
+        if (integrator_traits_of(r)->by_chance || integrator_traits_of(r)->drawn || integrator_traits_of(r)->layers)
             trace_trees(r); /* trace all branches, not a random one or none */
         code = scene_check(p->setting, why);
     }
-    THEN(code, plan_build(p->setting, &p->scene, why));
+    THEN(code, plan_build(p->setting, &p->frame_plan, why));
     THEN(code, film_create(1, 1, 1, FILM_RGB, &p->img, why));
     if (code != STATUS_OK) {
         probe_destroy(p);
@@ -43,24 +43,24 @@ static vec3 tint_of(const probe *p, const material *m)
         return vec3_make(0.0, 0.0, 0.0);
     if (p->spectral) {
         const upsampled_spectrum color = upsample_reflectance((const double[3]){share.x, share.y, share.z});
-        share.x = share.y = share.z = upsampled_reflectance(&color, p->scene->render.lambda_nm);
+        share.x = share.y = share.z = upsampled_reflectance(&color, p->frame_plan->render.lambda_nm);
     }
     return vec3_make(material_tint(m, share.x), material_tint(m, share.y), material_tint(m, share.z));
 }
 
 void probe_one_wavelength(probe *p)
 {
-    const render_settings *r = &p->scene->render;
+    const render_settings *r = &p->frame_plan->render;
     if (p->spectral) {
         const double a = surrounding_absorption_at(&p->setting->background, r->lambda_nm) * r->unit_m;
-        p->scene->absorption[0] = vec3_make(a, a, a);
+        p->frame_plan->absorption[0] = vec3_make(a, a, a);
     }
-    for (int priority_index = 1; priority_index <= p->scene->solids->region_count; priority_index++) {
-        const material *m = p->scene->materials[priority_index];
+    for (int priority_index = 1; priority_index <= p->frame_plan->geometry->region_count; priority_index++) {
+        const material *m = p->frame_plan->materials[priority_index];
         if (m->absorb_spectrum.count == 0 && !p->spectral)
             continue;
         const double a = material_absorption_at(m, r->lambda_nm) * r->unit_m;
-        p->scene->absorption[priority_index] = vec3_add(vec3_make(a, a, a), tint_of(p, m));
+        p->frame_plan->absorption[priority_index] = vec3_add(vec3_make(a, a, a), tint_of(p, m));
     }
 }
 
@@ -68,7 +68,7 @@ void probe_destroy(probe *p)
 {
     if (!p)
         return;
-    plan_destroy(p->scene);
+    plan_destroy(p->frame_plan);
     tracer_destroy(p->rays);
     film_destroy(p->img);
     scene_destroy(p->setting);
@@ -83,12 +83,13 @@ void ray_tree_release(ray_tree *tree)
 
 static status begin(probe *p, ray_tree *tree, diagnostic *why)
 {
-    const tracer_target target = {.scene = p->scene, .img = p->img};
+    const tracer_target target = {.frame_plan = p->frame_plan, .img = p->img};
     memset(p->img->sum, 0, 3 * sizeof *p->img->sum);
     tree->count = 0;
-    tree->depth_limit = (int)p->scene->render.depth;
-    tree->lambda_nm = p->scene->render.lambda_nm;
-    p->scene->camera_priority_index = scene_geometry_priority_index(p->scene->solids, p->scene->eye_inside);
+    tree->depth_limit = (int)p->frame_plan->render.depth;
+    tree->lambda_nm = p->frame_plan->render.lambda_nm;
+    p->frame_plan->camera_priority_index =
+        scene_geometry_priority_index(p->frame_plan->geometry, p->frame_plan->eye_inside);
     return tracer_begin(p->rays, &target) ? STATUS_OK : out_of_memory(why);
 }
 
@@ -104,7 +105,7 @@ static status finish(probe *p, ray_tree *tree, status code, diagnostic *why)
 
 status probe_pixel(probe *p, int x, int y, ray_tree *tree, diagnostic *why)
 {
-    const render_settings *r = &p->scene->render;
+    const render_settings *r = &p->frame_plan->render;
     if (x < 0 || y < 0 || x >= r->width || y >= r->height)
         return diagnose(why, STATUS_BAD_INPUT, "count pixels from 0,0 at the top left",
                         "pixel %d,%d is outside the image of %lld x %lld", x, y, (long long)r->width,
@@ -133,7 +134,7 @@ static status begin_free(probe *p, vec3 origin, vec3 direction, ray_tree *tree, 
     TRY(probe_check_ray(origin, direction, why));
     TRY(begin(p, tree, why));
     *root = probe_free_ray(p, origin, direction);
-    p->scene->camera_priority_index = root->medium_priority_index; /* the camera is at the ray's origin */
+    p->frame_plan->camera_priority_index = root->medium_priority_index; /* the camera is at the ray's origin */
     return STATUS_OK;
 }
 
@@ -168,7 +169,7 @@ const char *probe_medium_name(const probe *p, int at)
 int probe_medium_at(const probe *p, vec3 point)
 {
     const scene *s = p->setting;
-    const scene_geometry *a = p->scene->solids;
+    const scene_geometry *a = p->frame_plan->geometry;
     int best = RAY_OUTSIDE;
     if (a->meshes) /* only the scene geometry can test points against meshes */
         return a->regions[scene_geometry_priority_index(a, scene_geometry_inside(a, point))].solid;
@@ -183,7 +184,7 @@ int probe_medium_at(const probe *p, vec3 point)
 
 vec3 probe_camera_direction(const probe *p, double x, double y)
 {
-    return camera_direction(&p->scene->view, &p->scene->render, x, y);
+    return camera_direction(&p->frame_plan->view, &p->frame_plan->render, x, y);
 }
 
 const char *probe_face_name(const probe *p, const ray_hit *hit)

@@ -31,8 +31,8 @@ ray_record probe_free_ray(const probe *p, vec3 origin, vec3 direction)
     /* A vector that is a unit vector up to rounding is kept to the bit, so that a ray of a tree can be traced again. */
     const bool is_unit = fabs(vec3_dot(direction, direction) - 1.0) <= 0x1p-50;
     r.direction = is_unit ? direction : direction_tidy(vec3_scale(scaled, 1.0 / sqrt(length2)));
-    r.inside = scene_geometry_inside(p->scene->solids, origin);
-    r.medium_priority_index = scene_geometry_priority_index(p->scene->solids, r.inside);
+    r.inside = scene_geometry_inside(p->frame_plan->geometry, origin);
+    r.medium_priority_index = scene_geometry_priority_index(p->frame_plan->geometry, r.inside);
     return r;
 }
 
@@ -49,10 +49,10 @@ static void take(const ray_queue *q, int i, ray_record *out)
 void probe_take(const probe *p, int depth, int i, ray_record *out)
 {
     take(&p->rays->queues.waiting[depth], i, out);
-    if (!p->scene->render.polarisation)
+    if (!p->frame_plan->render.polarisation)
         memset(out->stokes, 0, sizeof out->stokes);
     out->depth = depth;
-    out->medium_priority_index = scene_geometry_priority_index(p->scene->solids, out->inside);
+    out->medium_priority_index = scene_geometry_priority_index(p->frame_plan->geometry, out->inside);
 }
 
 static void put(ray_queue *q, const ray_record *r)
@@ -94,8 +94,8 @@ static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind k
                                  .direction = r->direction,
                                  .throughput = {r->weight[0], r->weight[1], r->weight[2]},
                                  .stokes = {1.0, r->stokes[0], r->stokes[1], r->stokes[2]},
-                                 .medium = p->scene->solids->regions[r->medium_priority_index].solid,
-                                 .n = p->scene->ior[r->medium_priority_index],
+                                 .medium = p->frame_plan->geometry->regions[r->medium_priority_index].solid,
+                                 .n = p->frame_plan->ior[r->medium_priority_index],
                                  .light = RAY_NONE,
                                  .let_through = 1.0};
     return STATUS_OK;
@@ -114,7 +114,7 @@ static void hang(ray_tree *tree, int parent, size_t child)
  * matter. */
 static void read_gain(const probe *p, ray_hit *h)
 {
-    const render_settings *r = &p->scene->render;
+    const render_settings *r = &p->frame_plan->render;
     const material *m = &p->rays->surface.mat->surface;
     if (h->opaque || h->tir)
         return;
@@ -128,7 +128,7 @@ static void read_gain(const probe *p, ray_hit *h)
 static bool read_hit(const probe *p, ray_node *node)
 {
     const tracer *t = p->rays;
-    const scene_geometry *a = p->scene->solids;
+    const scene_geometry *a = p->frame_plan->geometry;
     if (t->batch.hits.hit_primitive[0] < 0)
         return false;
     const group *g = &t->surface.gathered;
@@ -159,22 +159,22 @@ static bool read_hit(const probe *p, ray_node *node)
     h->face = is_mesh_face(s->face[0])
                   ? (int)mesh_face_triangle(s->face[0])
                   : (int)(s->face[0] % FACES_MAX) + (hit_primitive == bounded->hollow ? HOLLOW_FACES : 0);
-    const double coating = opaque ? 0.0 : material_coating(&t->surface.mat->surface, &p->scene->render);
+    const double coating = opaque ? 0.0 : material_coating(&t->surface.mat->surface, &p->frame_plan->render);
     h->R_s += (1.0 - h->R_s) * coating, h->R_p += (1.0 - h->R_p) * coating, h->R += (1.0 - h->R) * coating;
     if (opaque) {
         h->R_s = h->R_p = h->R = t->surface.mat->surface.reflectivity;
         h->cos_t = 0.0;
         h->tir = false;
     }
-    if (!opaque && p->scene->render.transmission == TRANSMISSION_SIMPLE) {
+    if (!opaque && p->frame_plan->render.transmission == TRANSMISSION_SIMPLE) {
         h->R_s = h->R_p = h->R = t->surface.mat->surface.reflectivity;
         h->cos_t = h->cos_i;
         h->tir = false;
     }
     read_gain(p, h);
-    h->path_length_m = h->t * p->scene->render.unit_m;
+    h->path_length_m = h->t * p->frame_plan->render.unit_m;
     for (int c = 0; c < 3; c++)
-        h->transmittance[c] = a->absorbs ? t->media->transmittance[c][0] : 1.0;
+        h->transmittance[c] = a->attenuates ? t->media->transmittance[c][0] : 1.0;
     node->end = RAY_END_HIT;
     return true;
 }
@@ -210,7 +210,7 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
                       .inside = reflected ? g->inside_before[0] : g->inside_after[0],
                       .depth = depth + 1,
                       .medium_priority_index = (int)(reflected ? t->batch.hits.before[0] : t->batch.hits.after[0])};
-    if (p->scene->render.polarisation) {
+    if (p->frame_plan->render.polarisation) {
         const polar_group *v = &t->surface.polar;
         r->stokes[0] = reflected ? v->rq[0] : v->tq[0];
         r->stokes[1] = reflected ? v->ru[0] : v->tu[0];
@@ -220,7 +220,7 @@ static void add_branch(const probe *p, int depth, bool reflected, int *queued, b
     out->end[i] = RAY_END_CUT_DEPTH;
     if (depth == t->queues.depth_limit)
         return;
-    if (is_below_least_weight(r->weight, p->scene->render.min_weight)) {
+    if (is_below_least_weight(r->weight, p->frame_plan->render.min_weight)) {
         out->end[i] = RAY_END_CUT_WEIGHT;
         return;
     }
@@ -235,7 +235,7 @@ static void read_branches(const probe *p, int depth, branches *out)
     const bool opaque = surface_is_opaque(t, priority_index);
     int queued = 0;
     out->count = 0;
-    if (!follows_trees(&p->scene->render) || (opaque && t->surface.mat->surface.reflectivity == 0.0))
+    if (!follows_trees(&p->frame_plan->render) || (opaque && t->surface.mat->surface.reflectivity == 0.0))
         return;
     add_branch(p, depth, true, &queued, out);
     add_branch(p, depth, false, &queued, out);
@@ -280,7 +280,7 @@ static status build_shadows(probe *p, ray_tree *tree, int parent, diagnostic *wh
         run_one(p, -1, node->brought);
         node->end = t->batch.transmitted[0] > 0.0 ? RAY_END_LIT : RAY_END_BLOCKED;
         node->let_through = t->batch.transmitted[0];
-        node->light = light_of(p->scene, r, lamp);
+        node->light = light_of(p->frame_plan, r, lamp);
         node->light_distance = vec3_length(r->direction);
         node->direction = vec3_scale(r->direction, 1.0 / node->light_distance);
         lamp = node->light + 1;

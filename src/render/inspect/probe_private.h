@@ -6,7 +6,7 @@
 
 struct probe {
     scene *setting; /* its own copy */
-    plan *scene;
+    plan *frame_plan;
     tracer *rays;
     film *img;     /* one pixel */
     bool spectral; /* the scene's film is spectral */

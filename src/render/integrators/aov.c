@@ -16,10 +16,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-static camera_need one_ray(const render_settings *r)
+static camera_sampling one_ray(const render_settings *r)
 {
     (void)r;
-    return (camera_need){.rays = 1, .points = 1, .together = 1};
+    return (camera_sampling){.rays = 1, .points = 1, .together = 1};
 }
 
 /* --- state of a frame: the length scale of depth and position views --- */
@@ -30,9 +30,9 @@ static status prepare(const plan *p, void **frame, diagnostic *why)
     int count = 0;
     if (!scale)
         return out_of_memory(why);
-    for (int i = 0; i < p->solids->primitive_count; i++) {
-        const primitive *one = &p->solids->primitives[i];
-        if (p->solids->further >> i & 1 || shape_of(&p->solids->shapes[one->priority_index])->unbounded)
+    for (int i = 0; i < p->geometry->primitive_count; i++) {
+        const primitive *one = &p->geometry->primitives[i];
+        if (p->geometry->further >> i & 1 || shape_of(&p->geometry->shapes[one->priority_index])->unbounded)
             continue;
         sum += vec3_length(vec3_sub(one->origin, p->view.eye));
         count++;
@@ -93,7 +93,7 @@ static vec3 value_of(const tracer *t, layer_rule layer, int priority_index, int 
     case LAYER_NORMAL: return vec3_make(s->nx[k], s->ny[k], s->nz[k]);
     case LAYER_ALBEDO: return vec3_make(g->cr[k], g->cg[k], g->cb[k]);
     case LAYER_DEPTH: return vec3_make(g->t[k], 0.0, 0.0);
-    case LAYER_SOLID: return vec3_make(t->target.scene->solids->regions[priority_index].solid + 1.0, 0.0, 0.0);
+    case LAYER_SOLID: return vec3_make(t->target.frame_plan->geometry->regions[priority_index].solid + 1.0, 0.0, 0.0);
     case LAYER_MATERIAL: return vec3_make(t->surface.mat->number, 0.0, 0.0);
     case LAYER_POSITION: return vec3_make(s->px[k], s->py[k], s->pz[k]);
     case LAYER_COUNT: break;
@@ -104,7 +104,7 @@ static vec3 value_of(const tracer *t, layer_rule layer, int priority_index, int 
 static void shade(tracer *t, int depth, int priority_index)
 {
     const group *g = &t->surface.gathered;
-    const layer_rule show = (layer_rule)t->target.scene->render.layer;
+    const layer_rule show = (layer_rule)t->target.frame_plan->render.layer;
     const double *scale = t->target.state;
     (void)depth;
     for (int layer = 0; layer < LAYER_COUNT; layer++) {
@@ -129,7 +129,7 @@ static void leave_empty(tracer *t, const ray_queue *q, int first, const int *lis
 }
 
 const integrator integrator_of_aov = {.traced = true,
-                                      .camera = one_ray,
+                                      .sampling = one_ray,
                                       .prepare = prepare,
                                       .release = free,
                                       .intersect = intersect_nearest,

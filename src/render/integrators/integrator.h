@@ -5,7 +5,8 @@
  *
  * A new integrator is a row of INTEGRATORS (scene/model/integrators.h) and a file here that defines its table of
  * functions, most of which may be NULL. Each is called once per frame, piece, batch or group, never per ray. They
- * access the tracer's internals through render/shade/shading.h.
+ * access the tracer's internals through render/shade/shading.h, which also declares the functions that several tables
+ * share: intersect_nearest and background_sky (render/shade/shading.c), camera_samples (render/camera/camera_rays.c).
  *
  * Order of calls in a frame: prepare; each step, by all workers and then by one; on each worker that gets a piece
  * begin, then for its pieces piece, and for its batches intersect, background, place and shade; finish; release. The
@@ -21,13 +22,13 @@
 #include "render/core/schedule.h"
 #include "render/core/tracer.h"
 
-/* The camera rays of one pixel. */
-typedef struct camera_need {
+/* The numbers of camera rays of one pixel. camera_rays_enqueue (render/camera/camera_rays.c) makes the rays. */
+typedef struct camera_sampling {
     int64_t rays;
     int64_t points;   /* upper limit of sample points in the pixel: the largest square grid within it is used */
     int64_t together; /* number of consecutive rays through one point; the next ones use the next point, cyclically */
     int64_t marks;    /* further bits of their sample keys besides pixel and sample (render/core/sample_key.h) */
-} camera_need;
+} camera_sampling;
 
 /* A step of a pre-pass. A step starts when the previous one has ended. */
 typedef struct integrator_step {
@@ -40,7 +41,7 @@ typedef struct integrator {
     bool by_sample; /* it needs the sample number of each ray within its pixel */
 
     /* --- a frame --- */
-    camera_need (*camera)(const render_settings *r);
+    camera_sampling (*sampling)(const render_settings *r);
     /* Number of equal shares of a pixel's rays that are exposed separately, so that their differences give the noise;
      * NULL: 1. */
     int (*shares)(const render_settings *r);

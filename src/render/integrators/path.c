@@ -29,7 +29,7 @@ static double radiance_along(const plan *p, int lamp, vec3 direction)
 
 static vec3 light_color(const tracer *t, int lamp, int64_t sample_key)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const light *l = &p->lights[lamp];
     if (!p->spectral)
         return vec3_scale(l->color, l->intensity);
@@ -76,7 +76,7 @@ static int lamp_of(int64_t hit_primitive)
 
 static void intersect_lights(tracer *t, const ray_queue *q, int first, int i)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const int at = first + i;
     double nearest = t->batch.hits.t[i];
     int nearest_lamp = -1;
@@ -105,7 +105,7 @@ static void intersect(tracer *t, ray_queue *q, int first, int depth, const ray_b
 
 static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int priority_index)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const int64_t sample_key = q->sample_key[at];
     const double radiance = radiance_along(p, lamp, vec3_make(q->dx[at], q->dy[at], q->dz[at])) *
                             (p->basic ? radiance_share(p, sample_key, priority_index) : 1.0);
@@ -139,7 +139,7 @@ static vec3 direction_about(vec3 axis, double cosine, double sine, double turn)
 /* Enqueues a shadow ray from record k of the group to a random point of a light's sphere. */
 static void sample_light(tracer *t, int k, const material *m, bool opaque, int lamp, int depth)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const group *g = &t->surface.gathered;
     const light *l = &p->lights[lamp];
     const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
@@ -215,7 +215,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
         c->share = vec3_make(mirror / odds, mirror / odds, mirror / odds);
         return true;
     }
-    const random_words drawn = draw(t->target.scene->render.seed, g->sample_key[k], depth, DRAW_DIRECTION);
+    const random_words drawn = draw(t->target.frame_plan->render.seed, g->sample_key[k], depth, DRAW_DIRECTION);
     const double sine2 = random_unit(drawn.word[0]);
     const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
     c->direction = direction_about(n, sqrt(1.0 - sine2), sqrt(sine2), random_unit(drawn.word[1]));
@@ -226,7 +226,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
 /* Russian roulette: ends a faint path at random; the survivors take over its weight. */
 static bool survives(const tracer *t, int k, int depth, vec3 *share)
 {
-    const render_settings *r = &t->target.scene->render;
+    const render_settings *r = &t->target.frame_plan->render;
     const group *g = &t->surface.gathered;
     if (!r->roulette || depth < ROULETTE_DEPTH)
         return true;
@@ -267,7 +267,7 @@ static void go_on(tracer *t, int k, int depth, const continuation *c)
 static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth)
 {
     const random_words drawn =
-        draw(t->target.scene->render.seed, t->surface.gathered.sample_key[k], depth, DRAW_BRANCH);
+        draw(t->target.frame_plan->render.seed, t->surface.gathered.sample_key[k], depth, DRAW_BRANCH);
     const double chance = random_unit(drawn.word[0]);
     continuation c = {.refracted = false};
     if (!(opaque ? draw_matte(t, m, k, depth, chance, &c) : draw_clear(t, k, chance, &c)))
@@ -280,7 +280,7 @@ static void continue_one(tracer *t, const material *m, bool opaque, int k, int d
 
 static void shade(tracer *t, int depth, int priority_index)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const material *m = &t->surface.mat->surface;
     const bool opaque = surface_is_opaque(t, priority_index), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
     local_light(t, priority_index, (light_terms){.highlights = true}); /* of point lights; spheres follow */
@@ -297,16 +297,16 @@ static void shade(tracer *t, int depth, int priority_index)
 
 /* Uses fewer sample points if there are fewer paths than samples: with only the first rows of the grid the image would
  * shift. */
-static camera_need paths_of(const render_settings *r)
+static camera_sampling paths_of(const render_settings *r)
 {
     const int64_t points = r->paths < r->samples ? r->paths : r->samples;
-    return (camera_need){.rays = r->paths, .points = points, .together = 1, .marks = SAMPLE_KEY_SPECULAR_BOUNCE};
+    return (camera_sampling){.rays = r->paths, .points = points, .together = 1, .marks = SAMPLE_KEY_SPECULAR_BOUNCE};
 }
 
 /* The largest possible number of shares. Each covers all sample points of the pixel. */
 static int shares(const render_settings *r)
 {
-    int count = r->paths % r->samples == 0 ? FILM_LAYERS_MAX : 1;
+    int count = r->paths % r->samples == 0 ? FILM_SHARES_MAX : 1;
     while (r->paths / r->samples % count != 0)
         count--;
     return count;
@@ -314,7 +314,7 @@ static int shares(const render_settings *r)
 
 const integrator integrator_of_path = {.traced = true,
                                        .by_sample = true,
-                                       .camera = paths_of,
+                                       .sampling = paths_of,
                                        .shares = shares,
                                        .intersect = intersect,
                                        .background = expose_background,

@@ -5,11 +5,11 @@
 static void shade(tracer *t, int depth, int priority_index)
 {
     (void)depth;
-    local_light(t, priority_index, light_terms_of(&t->target.scene->render));
+    local_light(t, priority_index, light_terms_of(&t->target.frame_plan->render));
 }
 
 const integrator integrator_of_raycast = {.traced = true,
-                                          .camera = camera_samples,
+                                          .sampling = camera_samples,
                                           .intersect = intersect_nearest,
                                           .background = background_sky,
                                           .shade = shade};

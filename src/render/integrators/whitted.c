@@ -21,14 +21,14 @@ static void branch(tracer *t, int depth, bool opaque)
 
 static void shade(tracer *t, int depth, int priority_index)
 {
-    const render_settings *r = &t->target.scene->render;
+    const render_settings *r = &t->target.frame_plan->render;
     local_light(t, priority_index, light_terms_of(r));
     if (r->lighting == LIGHTING_WHITTED)
         branch(t, depth, surface_is_opaque(t, priority_index));
 }
 
 const integrator integrator_of_whitted = {.traced = true,
-                                          .camera = camera_samples,
+                                          .sampling = camera_samples,
                                           .intersect = intersect_nearest,
                                           .background = background_sky,
                                           .shade = shade};

@@ -44,7 +44,7 @@ static size_t point_of(const zbuffer *z, int64_t sample_key, int *x, int *y)
 {
     /* 32-bit divisions are faster. */
     const uint32_t pixel = (uint32_t)sample_key_pixel(sample_key), sample = (uint32_t)sample_key_sample(sample_key);
-    const uint32_t points = (uint32_t)z->points, width = (uint32_t)z->scene->render.width;
+    const uint32_t points = (uint32_t)z->points, width = (uint32_t)z->frame_plan->render.width;
     const uint32_t row = pixel / width, line = points == 1 ? 0 : sample / points;
     *x = (int)((pixel - row * width) * points + sample - line * points);
     *y = (int)(row * points + line);
@@ -93,7 +93,7 @@ static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *
 static raster_hit hit_depth(const zbuffer *z, const screen_triangle *s, int x, int y, vec3 d)
 {
     const double near = lesser(greater(s->a * (x + 0.5) + (s->b * (y + 0.5) + s->c), s->least), s->most);
-    return (raster_hit){.t = 1.0 / (near * vec3_dot(z->scene->view.forward, d))};
+    return (raster_hit){.t = 1.0 / (near * vec3_dot(z->frame_plan->view.forward, d))};
 }
 
 static void note_nothing(tracer *t, int i)
@@ -106,15 +106,15 @@ static void note_nothing(tracer *t, int i)
 static raster_hit hit_part(const zbuffer *z, const screen_triangle *s, vec3 d)
 {
     const rasterised_part *p = &z->parts[s->part];
-    return p->plane ? hit_plane(&z->scene->solids->primitives[p->primitive], &z->scene->view, d)
-                    : hit_triangle(p, s, &z->scene->view, d);
+    return p->plane ? hit_plane(&z->frame_plan->geometry->primitives[p->primitive], &z->frame_plan->view, d)
+                    : hit_triangle(p, s, &z->frame_plan->view, d);
 }
 
 static void note_hit(tracer *t, int i, const screen_triangle *s, raster_hit m)
 {
     const zbuffer *z = t->target.state;
     const rasterised_part *p = &z->parts[s->part];
-    const primitive *surface = &z->scene->solids->primitives[p->primitive];
+    const primitive *surface = &z->frame_plan->geometry->primitives[p->primitive];
     hit_batch *h = &t->batch.hits;
     h->t[i] = m.t;
     h->hit_primitive[i] = p->primitive;
@@ -130,7 +130,7 @@ static void note_hit(tracer *t, int i, const screen_triangle *s, raster_hit m)
 static void undeflected_views(tracer *t, int count)
 {
     const zbuffer *z = t->target.state;
-    const camera_frame *view = &z->scene->view;
+    const camera_frame *view = &z->frame_plan->view;
     raster_work *w = t->own;
     const double across = 1.0 / z->units_x, down = 1.0 / z->units_y;
     double u[ROW], v[ROW];
@@ -152,7 +152,7 @@ static void first_views(tracer *t, const ray_batch *rays)
 /* Attenuates a ray by the one medium on the straight segment to a layer. */
 static void dim(const plan *p, ray_queue *q, int at, int priority_index, double length)
 {
-    if (priority_index == 0 || !p->solids->regions[priority_index].absorbs)
+    if (priority_index == 0 || !p->geometry->regions[priority_index].attenuates)
         return;
     const vec3 a = p->absorption[priority_index];
     q->wr[at] *= absorption_left(a.x * length), q->wg[at] *= absorption_left(a.y * length),
@@ -181,7 +181,7 @@ static inline raster_hit hit_layer(const tracer *t, int i, const rasterised_laye
 static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
     const zbuffer *z = t->target.state;
-    const plan *p = z->scene;
+    const plan *p = z->frame_plan;
     const rasterised_layer *l = layer_at(z, place);
     raster_work *w = t->own;
     const vec3 view = vec3_make(w->vx[i], w->vy[i], w->vz[i]);
@@ -257,7 +257,7 @@ static void bend(tracer *t, const int *list)
     const raster_work *w = t->own;
     const zbuffer *z = t->target.state;
     group *g = &t->surface.gathered;
-    if (!z->layered || z->scene->render.transmission == TRANSMISSION_SIMPLE)
+    if (!z->layered || z->frame_plan->render.transmission == TRANSMISSION_SIMPLE)
         return;
     for (int k = 0; k < g->count; k++) {
         const double eta = z->eye_index / g->n_from[k], cosine = g->points.cos_i[k];
@@ -338,7 +338,7 @@ static void place(tracer *t, const int *list)
 {
     raster_work *w = t->own;
     bend(t, list);
-    if (t->target.scene->render.texturing != TEXTURING_AFFINE || !t->surface.mat->img)
+    if (t->target.frame_plan->render.texturing != TEXTURING_AFFINE || !t->surface.mat->img)
         return;
     straighten(t, list);
     t->surface.texture_at = w->at;
@@ -364,7 +364,7 @@ static void branch(tracer *t, int depth)
 
 static void shade(tracer *t, int depth, int priority_index)
 {
-    const render_settings *r = &t->target.scene->render;
+    const render_settings *r = &t->target.frame_plan->render;
     local_light(t, priority_index, light_terms_of(r));
     if (r->lighting == LIGHTING_WHITTED && !surface_is_opaque(t, priority_index))
         branch(t, depth);
@@ -405,7 +405,7 @@ static void release(void *frame)
 static const integrator_step steps[] = {{project, sort}, {NULL, NULL}};
 
 const integrator integrator_of_zbuffer = {.by_sample = true,
-                                          .camera = camera_samples,
+                                          .sampling = camera_samples,
                                           .prepare = prepare,
                                           .steps = steps,
                                           .finish = finish,

@@ -23,11 +23,11 @@ double absorption_left(double optical_depth)
 /* Adds the optical depths of the segments to transmittance. */
 static void add_depths(tracer *t)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const int64_t *sample_keys = t->media->sample_keys;
     for (int k = 0; k < t->batch.scratch.segments->count; k++) {
         const medium_segment *s = &t->batch.scratch.segments->segment[k];
-        if (!p->solids->regions[s->priority_index].absorbs)
+        if (!p->geometry->regions[s->priority_index].attenuates)
             continue;
         const vec3 a = coefficients(p, s->priority_index, sample_keys[s->ray]);
         t->media->transmittance[0][s->ray] += a.x * s->length;
@@ -85,8 +85,8 @@ static void absorption_shares(tracer *t, int count)
  * starts. */
 void absorption_spare_sky(tracer *t)
 {
-    const plan *p = t->target.scene;
-    for (int k = 0; p->solids->regions[0].absorbs && k < t->batch.scratch.segments->count; k++) {
+    const plan *p = t->target.frame_plan;
+    for (int k = 0; p->geometry->regions[0].attenuates && k < t->batch.scratch.segments->count; k++) {
         medium_segment *s = &t->batch.scratch.segments->segment[k];
         if (s->priority_index == 0 && t->batch.hits.hit_primitive[s->ray] == -1)
             s->length = 0.0;

@@ -7,7 +7,7 @@
 
 bool mesh_begin(tracer *t)
 {
-    if (t->target.scene->solids->meshes && !t->meshes && !(t->meshes = malloc(sizeof *t->meshes)))
+    if (t->target.frame_plan->geometry->meshes && !t->meshes && !(t->meshes = malloc(sizeof *t->meshes)))
         return false;
     t->batch.scratch.meshes = t->meshes ? &t->meshes->scratch : NULL;
     return true;
@@ -28,14 +28,14 @@ static void copy_point(surface_batch *s, mesh_points *m, int to, int from)
 
 void mesh_surface(tracer *t, int priority_index, const int *list)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const shading_rule shading = p->shading_materials[priority_index].shading;
     group *g = &t->surface.gathered;
     mesh_work *w = t->meshes;
     for (int k = 0; k < g->count; k++)
         w->hits[k] = w->scratch.hit[list[k]];
     const ray_batch rays = {g->count, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
-    instance_set_surface(p->solids->meshes, &rays, w->hits, shading == SHADING_SMOOTH, &g->points, &w->points);
+    instance_set_surface(p->geometry->meshes, &rays, w->hits, shading == SHADING_SMOOTH, &g->points, &w->points);
     for (int k = g->count; k < g->padded; k++)
         copy_point(&g->points, &w->points, k, g->count - 1);
 }
@@ -84,7 +84,7 @@ void mesh_bound_branches(tracer *t)
 
 bool mesh_has_corner_light(const tracer *t, int priority_index)
 {
-    return t->surface.on_mesh && t->target.scene->shading_materials[priority_index].shading == SHADING_GOURAUD;
+    return t->surface.on_mesh && t->target.frame_plan->shading_materials[priority_index].shading == SHADING_GOURAUD;
 }
 
 /* The group as if each ray hit one corner of its triangle. */
@@ -117,8 +117,9 @@ void mesh_corner_light(tracer *t, const material *m, const light *lamp, int prio
     mesh_work *w = t->meshes;
     lit_group *l = &t->surface.lit;
     const group *g = &t->surface.gathered;
-    const instance_set *f = t->target.scene->solids->meshes;
-    const instanced_mesh *part = &f->parts[f->by_primitive[t->target.scene->solids->regions[priority_index].outside]];
+    const instance_set *f = t->target.frame_plan->geometry->meshes;
+    const instanced_mesh *part =
+        &f->parts[f->by_primitive[t->target.frame_plan->geometry->regions[priority_index].outside]];
     t->shade->direct(m, lamp, g, l); /* for the vectors to the light */
     for (int k = 0; k < g->count; k++)
         l->r[k] = l->g[k] = l->b[k] = 0.0;
@@ -144,7 +145,7 @@ void mesh_corner_light(tracer *t, const material *m, const light *lamp, int prio
 
 static int slot_of(const tracer *t, int i)
 {
-    const instance_set *f = t->target.scene->solids->meshes;
+    const instance_set *f = t->target.frame_plan->geometry->meshes;
     const int64_t face = t->meshes->scratch.hit[i].face;
     if (face == FACE_NONE)
         return 0;

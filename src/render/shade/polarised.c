@@ -34,7 +34,7 @@ void polarised_branches(tracer *t, const material *m, bool opaque)
     const group *g = &t->surface.gathered;
     branch_group *b = &t->surface.branches;
     polar_group *p = &t->surface.polar;
-    const double coating = material_coating(m, &t->target.scene->render);
+    const double coating = material_coating(m, &t->target.frame_plan->render);
     for (int k = 0; k < g->count; k++) {
         const stokes row = {1.0, p->q[k], p->u[k], p->v[k]};
         const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);

@@ -29,7 +29,7 @@ struct radiance_work {
 
 bool radiance_begin(tracer *t)
 {
-    const bool basic = t->target.scene->basic;
+    const bool basic = t->target.frame_plan->basic;
     if (basic && !t->basic && !(t->basic = malloc(sizeof *t->basic)))
         return false;
     t->batch.scratch.crossings = basic ? &t->basic->crossings : NULL;
@@ -54,7 +54,7 @@ double radiance_share(const plan *p, int64_t sample_key, int priority_index)
 
 void radiance_weigh(tracer *t)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     if (!p->basic)
         return;
     group *g = &t->surface.gathered;
@@ -70,7 +70,7 @@ void radiance_weigh(tracer *t)
 
 void radiance_weigh_back(tracer *t)
 {
-    if (!t->target.scene->basic)
+    if (!t->target.frame_plan->basic)
         return;
     group *g = &t->surface.gathered;
     const radiance_work *w = t->basic;
@@ -112,12 +112,12 @@ static double transmittance(const plan *p, int64_t sample_key, const ray_crossin
 /* Computes the transmittances of the listed crossings of one primitive. */
 static void cross_surface(tracer *t, int hit_primitive, straight_rays *s)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     radiance_work *w = t->basic;
-    const primitive *surface = &p->solids->primitives[hit_primitive];
+    const primitive *surface = &p->geometry->primitives[hit_primitive];
     const ray_batch rays = {s->count, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->start, s->inside};
     if (!surface->rule)
-        instance_set_surface(p->solids->meshes, &rays, s->mesh,
+        instance_set_surface(p->geometry->meshes, &rays, s->mesh,
                              p->shading_materials[surface->priority_index].shading == SHADING_SMOOTH, &w->points,
                              &w->on_mesh);
     else
@@ -137,8 +137,8 @@ static void take_crossings(void *context)
     radiance_work *w = t->basic;
     straight_rays s;
     s.count = 0;
-    for (int hit_primitive = 0; w->crossings.count > 0 && hit_primitive < t->target.scene->solids->primitive_count;
-         hit_primitive++) {
+    for (int hit_primitive = 0;
+         w->crossings.count > 0 && hit_primitive < t->target.frame_plan->geometry->primitive_count; hit_primitive++) {
         for (int k = 0; k < w->crossings.count; k++) {
             if (w->crossings.crossings[k].primitive != hit_primitive)
                 continue;
@@ -157,7 +157,7 @@ static void take_crossings(void *context)
 void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *sample_keys)
 {
     radiance_work *w = t->basic;
-    if (!t->target.scene->basic)
+    if (!t->target.frame_plan->basic)
         return;
     w->rays = *rays;
     w->sample_keys = sample_keys;
@@ -170,7 +170,7 @@ void radiance_begin_shadows(tracer *t, const ray_batch *rays, const int64_t *sam
 void radiance_end_shadows(tracer *t)
 {
     const radiance_work *w = t->basic;
-    if (!t->target.scene->basic)
+    if (!t->target.frame_plan->basic)
         return;
     take_crossings(t);
     for (int i = 0; i < w->rays.count; i++)

@@ -31,14 +31,14 @@ static inline void expose_at(tracer *t, int64_t place, double r, double g, doubl
     t->account.overflow |= red | green | blue;
 }
 
-/* Exposes the layer and pixel of a sample key; in a spectral film with the observer's weights at its wavelength. Never
+/* Exposes the share and pixel of a sample key; in a spectral film with the observer's weights at its wavelength. Never
  * inlined, so that the rgb film's code path keeps its registers. */
 static __attribute__((noinline)) void expose_by_sample_key(tracer *t, int64_t sample_key, double r, double g, double b)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const film *f = t->target.img;
-    const int64_t layer = f->layers == 1 ? 0 : sample_key_sample(sample_key) / p->render.samples % f->layers;
-    const int64_t place = sample_key_pixel(sample_key) + layer * f->width * f->height;
+    const int64_t share = f->shares == 1 ? 0 : sample_key_sample(sample_key) / p->render.samples % f->shares;
+    const int64_t place = sample_key_pixel(sample_key) + share * f->width * f->height;
     if (p->spectral) {
         const double *eye = spectra_row(p->spectral, sample_key)->eye;
         r *= eye[0], g *= eye[1], b *= eye[2];
@@ -62,7 +62,7 @@ void shading_expose(tracer *t, int64_t sample_key, double r, double g, double b)
 static __attribute__((noinline)) void expose_sky_by_sample_key(tracer *t, int64_t sample_key, vec3 direction, double wr,
                                                                double wg, double wb)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     vec3 l;
     if (p->spectral)
         l.x = l.y = l.z = spectra_sky(spectra_row(p->spectral, sample_key), p->sky, direction);
@@ -75,7 +75,7 @@ static __attribute__((noinline)) void expose_sky_by_sample_key(tracer *t, int64_
 
 static inline void expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
-    const background *sky = t->target.scene->sky;
+    const background *sky = t->target.frame_plan->sky;
     if (t->by_sample_key) {
         expose_sky_by_sample_key(t, sample_key, direction, wr, wg, wb);
         return;
@@ -92,7 +92,7 @@ void shading_expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr
 /* Adds the fallback radiance of a branch that the depth limit cuts off. */
 static inline void expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     if (p->render.beyond != DEPTH_LIMIT_MEAN) {
         expose_sky(t, sample_key, direction, wr, wg, wb);
         return;
@@ -107,7 +107,7 @@ static inline void expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 dir
 
 void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
-    if (t->target.scene->render.beyond != DEPTH_LIMIT_BLACK)
+    if (t->target.frame_plan->render.beyond != DEPTH_LIMIT_BLACK)
         expose_at_depth_limit(t, sample_key, direction, wr, wg, wb);
 }
 
@@ -115,7 +115,7 @@ void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction
 static void expose_own_light(tracer *t, const material *m, bool ambient)
 {
     const group *g = &t->surface.gathered;
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const double k_a = ambient ? m->ambient : 0.0, k_e = m->emission;
     if (k_a == 0.0 && k_e == 0.0)
         return;
@@ -155,7 +155,7 @@ static void enqueue_shadow_rays(tracer *t)
 /* The light of one lamp on the gathered group, with its spectrum in a spectral film. */
 static void direct_light(tracer *t, const material *m, int lamp, int priority_index)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     light l = p->lights[lamp];
     if (p->spectral)
         l.color = vec3_make(1.0, 1.0, 1.0), l.intensity = 1.0;
@@ -174,7 +174,7 @@ static void direct_light(tracer *t, const material *m, int lamp, int priority_in
 /* Adds the weighted emission and direct light of the surface. */
 static void send_out(tracer *t, int priority_index, light_terms terms)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const material *m = &t->surface.mat->surface;
     material dull;
     if (!terms.highlights) {
@@ -211,7 +211,7 @@ void cut_branches(tracer *t)
 {
     const group *g = &t->surface.gathered;
     const branch_group *b = &t->surface.branches;
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     if (CUVETTE_COUNTERS) {
         cut_sum sum;
         t->shade->cut(g, b, &sum);
@@ -269,7 +269,7 @@ int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, c
     const double least = t->least_weight;
     const int first = q->count;
     t->shade->append(&t->surface.gathered, dx, dy, dz, weight, inside, q);
-    if (t->target.scene->render.polarisation)
+    if (t->target.frame_plan->render.polarisation)
         return keep_polarised(t, q, first, dx == t->surface.branches.rx, weight, least);
     for (int i = t->surface.gathered.count - 1; i >= 0; i--)
         if (weight[i] == 0.0 || (least > 0.0 && is_below_least_weight(t, q, first + i, least)))
@@ -279,7 +279,7 @@ int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, c
 
 void shading_branches(tracer *t, bool opaque)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const material *m = &t->surface.mat->surface;
     if (!opaque && p->render.transmission == TRANSMISSION_SIMPLE)
         t->shade->straight_branches(m, &t->surface.gathered, &t->surface.branches);
@@ -298,7 +298,7 @@ void shading_branches(tracer *t, bool opaque)
 void intersect_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     (void)q, (void)first, (void)depth;
-    t->geometry->nearest(t->target.scene->solids, rays, &t->batch.scratch, &t->batch.hits);
+    t->geometry->nearest(t->target.frame_plan->geometry, rays, &t->batch.scratch, &t->batch.hits);
 }
 
 void background_sky(tracer *t, const ray_queue *q, int first, const int *list, int count)
@@ -312,10 +312,10 @@ void background_sky(tracer *t, const ray_queue *q, int first, const int *list, i
 /* A checker's cells are in the frame of the solid whose surface it is, even where another solid's face exposes it. */
 static void color(tracer *t, int priority_index, const primitive *surface)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     const primitive *frame = surface->priority_index == priority_index
                                  ? surface
-                                 : &p->solids->primitives[p->solids->regions[priority_index].outside];
+                                 : &p->geometry->primitives[p->geometry->regions[priority_index].outside];
     if (!p->spectral) {
         t->shade->color(&t->surface.mat->surface, frame, &t->surface.gathered);
         if (t->surface.mat->img)
@@ -333,8 +333,8 @@ static void color(tracer *t, int priority_index, const primitive *surface)
 static void shade_one_material(tracer *t, int depth, int first, int hit_primitive, int priority_index, const int *list,
                                int count)
 {
-    const plan *p = t->target.scene;
-    const primitive *surface = &p->solids->primitives[hit_primitive];
+    const plan *p = t->target.frame_plan;
+    const primitive *surface = &p->geometry->primitives[hit_primitive];
     group *g = &t->surface.gathered;
     group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, g);
     if (p->spectral)
@@ -350,7 +350,7 @@ static void shade_one_material(tracer *t, int depth, int first, int hit_primitiv
     t->surface.texture_at = NULL;
     if (t->rule->place)
         t->rule->place(t, list);
-    const int owner = p->solids->regions[priority_index].solid;
+    const int owner = p->geometry->regions[priority_index].solid;
     COUNT(t->account.counters.hits[owner] += (uint64_t)count);
     if (depth == 0)
         COUNT(t->account.counters.first_hits[owner] += (uint64_t)count);
@@ -360,7 +360,7 @@ static void shade_one_material(tracer *t, int depth, int first, int hit_primitiv
 
 void shading_group(tracer *t, int depth, int first, int hit_primitive, int priority_index, const int *list, int count)
 {
-    const region_materials *shading_materials = &t->target.scene->shading_materials[priority_index];
+    const region_materials *shading_materials = &t->target.frame_plan->shading_materials[priority_index];
     t->surface.mat = shading_materials->mat;
     if (shading_materials->count == 1) {
         shade_one_material(t, depth, first, hit_primitive, priority_index, list, count);

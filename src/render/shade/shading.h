@@ -17,12 +17,13 @@ void intersect_nearest(tracer *t, ray_queue *q, int first, int depth, const ray_
 void background_sky(tracer *t, const ray_queue *q, int first, const int *list, int count);
 
 /* Camera rays for a pixel's samples, each at all of a spectral film's wavelengths. */
-camera_need camera_samples(const render_settings *r);
+camera_sampling camera_samples(const render_settings *r);
 
 /* True if the surface of the region with that priority index transmits no light with the tracer's current material. */
 static inline bool surface_is_opaque(const tracer *t, int priority_index)
 {
-    return t->target.scene->solids->regions[priority_index].opaque || t->surface.mat->surface.transparency == 0.0;
+    return t->target.frame_plan->geometry->regions[priority_index].opaque ||
+           t->surface.mat->surface.transparency == 0.0;
 }
 
 /* The terms of a surface's emission and direct light. */

@@ -79,7 +79,7 @@ static region_spectrum region_at(const upsampled_scene *l, size_t priority_index
 /* Number of wavelengths that share one offset. */
 static int64_t wavelengths_together(const render_settings *render)
 {
-    return integrator_of(render)->by_chance ? render->paths : render->wavelengths;
+    return integrator_traits_of(render)->by_chance ? render->paths : render->wavelengths;
 }
 
 /* Number `i` of `count` wavelengths. */

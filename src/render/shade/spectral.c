@@ -6,7 +6,7 @@
 void spectral_indices(tracer *t, const int *list)
 {
     group *g = &t->surface.gathered;
-    const spectra *s = t->target.scene->spectral;
+    const spectra *s = t->target.frame_plan->spectral;
     for (int k = 0; k < g->count; k++) {
         g->n_from[k] = spectra_region(s, g->sample_key[k], t->batch.hits.before[list[k]])->index;
         g->n_to[k] = spectra_region(s, g->sample_key[k], t->batch.hits.after[list[k]])->index;
@@ -20,7 +20,7 @@ void spectral_colors(tracer *t, int priority_index)
 {
     group *g = &t->surface.gathered;
     for (int k = 0; k < g->count; k++) {
-        const region_spectrum *here = spectra_region(t->target.scene->spectral, g->sample_key[k], priority_index);
+        const region_spectrum *here = spectra_region(t->target.frame_plan->spectral, g->sample_key[k], priority_index);
         g->cr[k] = g->cg[k] = g->cb[k] = g->cr[k] > 0.5 ? here->color : here->checker_color;
     }
 }
@@ -32,7 +32,7 @@ void spectral_light(tracer *t, int lamp)
     lit_group *l = &t->surface.lit;
     const double least = 0.5 / FILM_ONE;
     for (int k = 0; k < g->count; k++) {
-        const double radiance = spectra_light(t->target.scene->spectral, g->sample_key[k], lamp);
+        const double radiance = spectra_light(t->target.frame_plan->spectral, g->sample_key[k], lamp);
         l->r[k] *= radiance, l->g[k] *= radiance, l->b[k] *= radiance;
         l->contributes[k] = -(int64_t) !(l->r[k] < least);
     }

@@ -12,7 +12,7 @@ static double pixel_width(const plan *p, vec3 point)
 
 void texture_colors(tracer *t, const primitive *surface)
 {
-    const plan *p = t->target.scene;
+    const plan *p = t->target.frame_plan;
     group *g = &t->surface.gathered;
     const double size = t->surface.mat->surface.texture_size;
     for (int k = 0; k < g->count; k++) {

@@ -43,7 +43,7 @@ static int points_across(int64_t samples)
 
 static void make_grid(zbuffer *z)
 {
-    const plan *p = z->scene;
+    const plan *p = z->frame_plan;
     z->points = points_across(p->render.samples);
     z->side = SQUARE_POINTS / z->points < SQUARE_PIXELS ? SQUARE_POINTS / z->points : SQUARE_PIXELS;
     z->width = (int)p->render.width * z->points;
@@ -61,7 +61,7 @@ status zbuffer_create(const plan *p, zbuffer **out, diagnostic *why)
     zbuffer *z = calloc(1, sizeof *z);
     if (!z)
         return no_room(why);
-    z->scene = p;
+    z->frame_plan = p;
     make_grid(z);
     if (z->width > 2 * REACH || z->height > 2 * REACH) {
         zbuffer_destroy(z);

@@ -11,7 +11,7 @@ static clip_corner in_camera(const camera_frame *view, vec3 v, double h)
 /* A triangle from the camera's foot point on the plane to the ends of two of its axes. */
 static void plane_corners(const zbuffer *z, const primitive *p, uint32_t triangle, clip_corner out[3])
 {
-    const camera_frame *view = &z->scene->view;
+    const camera_frame *view = &z->frame_plan->view;
     const mat3 r = p->rotation;
     const vec3 across = vec3_make(r.row[0].x, r.row[1].x, r.row[2].x),
                up = vec3_make(r.row[0].y, r.row[1].y, r.row[2].y);
@@ -26,9 +26,9 @@ void zbuffer_corners(const zbuffer *z, const rasterised_part *p, uint32_t copy, 
                      clip_corner out[POLYGON_MAX])
 {
     if (p->plane) {
-        plane_corners(z, &z->scene->solids->primitives[p->primitive], triangle, out);
+        plane_corners(z, &z->frame_plan->geometry->primitives[p->primitive], triangle, out);
     } else {
-        const camera_frame *view = &z->scene->view;
+        const camera_frame *view = &z->frame_plan->view;
         const mesh_triangle tri = p->at.triangles->triangles[triangle];
         const vec3 o = vec3_sub(instance_set_origin(&p->at, copy), view->eye);
         for (int k = 0; k < 3; k++)

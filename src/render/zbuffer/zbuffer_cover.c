@@ -75,11 +75,11 @@ static bool eye_in(const scene_geometry *a, const region *b, vec3 eye)
 
 void zbuffer_find_layers(zbuffer *z)
 {
-    const scene_geometry *a = z->scene->solids;
+    const scene_geometry *a = z->frame_plan->geometry;
     bool clear = false;
     for (int r = 1; r <= a->region_count; r++)
         clear |= !a->regions[r].opaque;
-    if (!clear || z->scene->render.lighting != LIGHTING_WHITTED)
+    if (!clear || z->frame_plan->render.lighting != LIGHTING_WHITTED)
         return;
     for (int r = 1; r <= a->region_count; r++) {
         if (!is_layered(a, r))
@@ -87,10 +87,10 @@ void zbuffer_find_layers(zbuffer *z)
         const uint64_t bit = (uint64_t)1 << (r - 1);
         z->layered |= bit;
         /* A camera in an opaque solid sees it from inside, whether it is a layer or not. */
-        if (!a->regions[r].opaque && eye_in(a, &a->regions[r], z->scene->view.eye))
+        if (!a->regions[r].opaque && eye_in(a, &a->regions[r], z->frame_plan->view.eye))
             z->eye_inside |= bit;
         const bool is_open = a->meshes && a->meshes->skins >> a->regions[r].outside & 1;
         z->open_surfaces |= is_open ? bit : 0;
     }
-    z->eye_index = z->scene->ior[z->eye_inside ? 64 - __builtin_clzll(z->eye_inside) : 0];
+    z->eye_index = z->frame_plan->ior[z->eye_inside ? 64 - __builtin_clzll(z->eye_inside) : 0];
 }

@@ -56,7 +56,7 @@ static void sort_fragments(rasterised_fragment *f, int count)
 
 static bool is_opaque(const zbuffer *z, const rasterised_fragment *f)
 {
-    return z->scene->solids->regions[z->parts[f->part].at.priority_index].opaque;
+    return z->frame_plan->geometry->regions[z->parts[f->part].at.priority_index].opaque;
 }
 
 /* True if the fragment is in front of the opaque surface that is drawn without layers. Of two opaque ones the nearer is
@@ -127,7 +127,7 @@ static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint
 static inline rasterised_layer layer_of(const zbuffer *z, const rasterised_fragment *f, int count, uint64_t inside,
                                         int before, int after)
 {
-    const int priority_index = scene_geometry_surface(z->scene->solids, before, after);
+    const int priority_index = scene_geometry_surface(z->frame_plan->geometry, before, after);
     const rasterised_fragment *c = f;
     for (int k = 1; k < count && z->parts[c->part].at.priority_index != priority_index; k++)
         c = z->parts[f[k].part].at.priority_index == priority_index ? &f[k] : c;
@@ -137,7 +137,7 @@ static inline rasterised_layer layer_of(const zbuffer *z, const rasterised_fragm
                               .after = (uint8_t)after,
                               .surface = (uint8_t)priority_index,
                               .leaving = ((inside & bit_of(z, c)) != 0) != p->hollow,
-                              .ends = z->scene->solids->regions[priority_index].opaque};
+                              .ends = z->frame_plan->geometry->regions[priority_index].opaque};
 }
 
 static bool absorb_alike(const plan *p, int before, int after)
@@ -150,8 +150,8 @@ static bool absorb_alike(const plan *p, int before, int after)
  * or no interface; the last one ends the view. */
 static void list_layers(const zbuffer *z, const rasterised_fragment *f, int count, uint32_t base, layer_list *l)
 {
-    const scene_geometry *a = z->scene->solids;
-    const int most = (int)z->scene->render.depth + 1;
+    const scene_geometry *a = z->frame_plan->geometry;
+    const int most = (int)z->frame_plan->render.depth + 1;
     uint64_t inside = z->eye_inside;
     int before = highest(inside);
     int interfaces = 0;
@@ -164,7 +164,7 @@ static void list_layers(const zbuffer *z, const rasterised_fragment *f, int coun
             interfaces++;
             if (l->layer[l->count - 1].ends)
                 return;
-        } else if (l->count < LAYERS_MAX - most && !absorb_alike(z->scene, before, after)) {
+        } else if (l->count < LAYERS_MAX - most && !absorb_alike(z->frame_plan, before, after)) {
             l->layer[l->count] = layer_of(z, f + k, together, inside, before, after);
             l->layer[l->count++].passed = true;
         }

@@ -69,7 +69,7 @@ typedef struct chunk {
 } chunk;
 
 struct zbuffer {
-    const plan *scene;
+    const plan *frame_plan;
     int points;              /* along a pixel's edge: 1 to 8 */
     int side;                /* of a square, in pixels */
     int width, height;       /* of the grid */

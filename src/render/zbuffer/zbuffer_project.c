@@ -80,7 +80,7 @@ static bool is_curved(const zbuffer *z, const rasterised_part *p, uint32_t trian
 {
     const mesh *m = p->at.triangles;
     if (p->plane || !m->normals ||
-        (!p->own && z->scene->shading_materials[p->at.priority_index].shading == SHADING_FLAT))
+        (!p->own && z->frame_plan->shading_materials[p->at.priority_index].shading == SHADING_FLAT))
         return false;
     const mesh_triangle tri = m->triangles[triangle];
     const vec3 n = m->normals[tri.corner[0]];

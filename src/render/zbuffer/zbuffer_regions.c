@@ -20,7 +20,7 @@ static instanced_mesh part_of(const primitive *p, const mesh *triangles, vec3 sc
 /* The triangles of a primitive: its own, or those of another solid that differs only in scale. */
 static status cut(const zbuffer *z, const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
-    const scene_geometry *a = z->scene->solids;
+    const scene_geometry *a = z->frame_plan->geometry;
     const shape_rule *rule = shape_of(shape);
     for (int k = 0; rule->one_tessellation && k < z->part_count; k++) {
         if (shape_of(&a->shapes[a->primitives[z->parts[k].primitive].priority_index]) == rule) {
@@ -40,13 +40,13 @@ static double nearest_depth(const primitive *p, vec3 eye)
 
 static status add(zbuffer *z, const region *b, int index, diagnostic *why)
 {
-    const scene_geometry *a = z->scene->solids;
+    const scene_geometry *a = z->frame_plan->geometry;
     const primitive *p = &a->primitives[index];
     rasterised_part *part = &z->parts[z->part_count];
     const solid_shape *shape = &a->shapes[p->priority_index];
     const shape_rule *rule = shape_of(shape);
     *part = (rasterised_part){
-        .primitive = index, .hollow = index == b->hollow, .nearest = nearest_depth(p, z->scene->view.eye)};
+        .primitive = index, .hollow = index == b->hollow, .nearest = nearest_depth(p, z->frame_plan->view.eye)};
     if (rule->triangles) {
         part->at = a->meshes->parts[a->meshes->by_primitive[index]];
         z->part_count++;
@@ -63,7 +63,7 @@ static status add(zbuffer *z, const region *b, int index, diagnostic *why)
 /* Adds the regions whose priority index's bit is set. */
 static status add_regions(zbuffer *z, uint64_t priority_indices, diagnostic *why)
 {
-    const scene_geometry *a = z->scene->solids;
+    const scene_geometry *a = z->frame_plan->geometry;
     status code = STATUS_OK;
     for (int priority_index = a->region_count; priority_index >= 1 && code == STATUS_OK; priority_index--) {
         const region *b = &a->regions[priority_index];

@@ -106,8 +106,9 @@ static status load_sky(scene *s, diagnostic *why)
         sky->img = NULL;
     }
     free(path);
-    return code == STATUS_OK ? code
-                             : asset_error(s, "background.img", sky->image_line, sky->image_column, &bad, code, why);
+    return code == STATUS_OK
+               ? code
+               : asset_error(s, "background.picture", sky->image_line, sky->image_column, &bad, code, why);
 }
 
 static status load_texture(const scene *s, texture_entry *t, diagnostic *why)

@@ -71,8 +71,8 @@ status read_entries(const scene_reader *r, const char *name, param_group group, 
             continue;
         char path[2 * SCENE_NAME_MAX + 2];
         snprintf(path, sizeof path, "%s.%s", name, key);
-        place unused;
-        TRY(read_located(r, map->keys[i], place_find(r->scene, path, &unused, r->why)));
+        param_place unused;
+        TRY(read_located(r, map->keys[i], param_place_find(r->scene, path, &unused, r->why)));
         TRY(read_value(r, path, row, map->items[i]));
     }
     return STATUS_OK;

@@ -59,9 +59,9 @@ static void begin_line(scene_writer *w, const char *key)
 }
 
 /* The heading of an object, and of a solid what is no row of the table. */
-static void begin_object(scene_writer *w, const place *at)
+static void begin_object(scene_writer *w, const param_place *at)
 {
-    const char *name = place_group_name(w->s, at->group, at->index);
+    const char *name = param_place_group_name(w->s, at->object_group, at->index);
     end_object(w);
     put_section(w);
     fputs("  ", w->out);
@@ -69,7 +69,7 @@ static void begin_object(scene_writer *w, const place *at)
     fputc(':', w->out);
     strcpy(w->object, name);
     w->empty = true;
-    if (at->group != PARAM_SOLID)
+    if (at->object_group != PARAM_SOLID)
         return;
     const solid *owner = &w->s->solids[at->index];
     begin_line(w, "shape");
@@ -112,11 +112,12 @@ static status visit(void *context, const char *path, const param *row, const cha
     scene_writer *w = context;
     if (row->group != w->group && !(w->group == PARAM_SOLID && row->group == PARAM_MATERIAL))
         return STATUS_OK;
-    place at;
-    TRY(place_find(w->s, path, &at, w->why));
-    if (at.group != w->group)
+    param_place at;
+    TRY(param_place_find(w->s, path, &at, w->why));
+    if (at.object_group != w->group)
         return STATUS_OK;
-    if (is_section_of_objects(at.group) && strcmp(w->object, place_group_name(w->s, at.group, at.index)) != 0)
+    if (is_section_of_objects(at.object_group) &&
+        strcmp(w->object, param_place_group_name(w->s, at.object_group, at.index)) != 0)
         begin_object(w, &at);
     bool wanted = false;
     status code = write_is_wanted(w->s, &at, value, w->all, &wanted, w->why);

@@ -26,27 +26,28 @@ static bool is_other_source(const mesh_entry *m, const param *row)
 }
 
 /* The index of a material whose medium is another's has no effect, and its file would set that medium aside. */
-static bool is_without_effect(const scene *s, const place *at)
+static bool is_without_effect(const scene *s, const param_place *at)
 {
-    if (at->group == PARAM_MESH)
+    if (at->object_group == PARAM_MESH)
         return is_other_source(&s->meshes[at->index], at->row);
     if (is_background_row(at->row, offsetof(background, ior)))
         return s->background.medium != MEDIUM_IOR;
     if (!is_material_row(at->row, offsetof(material, ior)))
         return false;
-    const material *m = at->group == PARAM_SOLID ? &s->solids[at->index].surface : &s->materials[at->index].value;
+    const material *m =
+        at->object_group == PARAM_SOLID ? &s->solids[at->index].surface : &s->materials[at->index].value;
     return m->medium != MEDIUM_IOR;
 }
 
 /* The text that a reader would have for a row without its line: the material's of a solid that has one, or the default.
  */
-static char *implied_text(const scene *s, const place *at)
+static char *implied_text(const scene *s, const param_place *at)
 {
     const int index =
-        at->group == PARAM_SOLID && at->row->group == PARAM_MATERIAL ? s->solids[at->index].material_index : -1;
+        at->object_group == PARAM_SOLID && at->row->group == PARAM_MATERIAL ? s->solids[at->index].material_index : -1;
     if (index < 0)
         return param_default_text(at->row);
-    const place there = {.row = at->row, .group = PARAM_MATERIAL, .index = (size_t)index, .element = -1};
+    const param_place there = {.row = at->row, .object_group = PARAM_MATERIAL, .index = (size_t)index, .element = -1};
     const material *m = &s->materials[index].value;
     return is_without_effect(s, &there) ? param_default_text(at->row)
                                         : param_value_text(at->row, -1, (const char *)m + at->row->offset);
@@ -58,7 +59,8 @@ static bool is_needed(const param *row)
     return row->group == PARAM_CAMERA && row->offset == offsetof(camera, yaw_deg);
 }
 
-status write_is_wanted(const scene *s, const place *at, const char *value, bool all, bool *wanted, diagnostic *why)
+status write_is_wanted(const scene *s, const param_place *at, const char *value, bool all, bool *wanted,
+                       diagnostic *why)
 {
     *wanted = false;
     if (is_without_effect(s, at))

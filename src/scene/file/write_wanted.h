@@ -5,4 +5,5 @@
 
 /* Would a reader have another value without the line? all: or the same one, unless the line would set aside what is in
  * use. value is the row's, as text. */
-status write_is_wanted(const scene *s, const place *at, const char *value, bool all, bool *wanted, diagnostic *why);
+status write_is_wanted(const scene *s, const param_place *at, const char *value, bool all, bool *wanted,
+                       diagnostic *why);

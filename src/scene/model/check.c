@@ -1,3 +1,5 @@
+/* What no single range can say: parameters that need each other, names that must exist, combinations that cannot be.
+ * The range of one value is checked where it is set (params_value.c). */
 #include "scene/model/check.h"
 #include "geometry/shapes/shape.h"
 #include "base/counters.h"
@@ -49,8 +51,8 @@ static size_t count_name(const scene *s, const char *name)
 {
     size_t count = 0;
     for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
-        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++)
-            count += strcmp(place_group_name(s, (param_group)g, i), name) == 0;
+        for (size_t i = 0; i < param_place_group_size(s, (param_group)g); i++)
+            count += strcmp(param_place_group_name(s, (param_group)g, i), name) == 0;
     return count;
 }
 
@@ -78,14 +80,14 @@ static status check_render(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "keep width times height within 268435456",
                         "a picture of %lld x %lld pixels is too large", (long long)s->render.width,
                         (long long)s->render.height);
-    if (s->render.polarisation && integrator_of(&s->render)->by_chance)
+    if (s->render.polarisation && integrator_traits_of(&s->render)->by_chance)
         return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
                         "the path integrator does not follow polarisation");
-    if (integrator_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
+    if (integrator_traits_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "the depth buffer draws red, green and blue: it knows no %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
-    if (integrator_of(&s->render)->layers && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
+    if (integrator_traits_of(&s->render)->layers && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "layers are of no light: they know no %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
@@ -100,7 +102,7 @@ static status check_render(const scene *s, diagnostic *why)
 
 static status check_light(const scene *s, const light *lamp, diagnostic *why)
 {
-    if (integrator_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0)
+    if (integrator_traits_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0)
         return diagnose(why, STATUS_BAD_INPUT,
                         "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
                         "%.80s: a sphere's light falls off with distance, and no reach says from where", lamp->name);
@@ -123,7 +125,7 @@ static status check_camera(const scene *s, diagnostic *why)
 static status check_background(const scene *s, diagnostic *why)
 {
     if (s->background.kind == BACKGROUND_IMAGE && !s->background.image_path[0])
-        return diagnose(why, STATUS_BAD_INPUT, "set background.img to a PNG, JPEG, PFM or 24-bit BMP file",
+        return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG, PFM or 24-bit BMP file",
                         "the background is a picture, but which one is not said");
     return STATUS_OK;
 }
@@ -263,8 +265,8 @@ static status check_names(const scene *s, diagnostic *why)
 {
     status code = STATUS_OK;
     for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
-        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
-            code = check_own_name(s, place_group_name(s, (param_group)g, i), why);
+        for (size_t i = 0; i < param_place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
+            code = check_own_name(s, param_place_group_name(s, (param_group)g, i), why);
     return code;
 }
 
@@ -289,7 +291,7 @@ status scene_check(const scene *s, diagnostic *why)
     status code = check_limits(s, why);
     THEN(code, check_names(s, why));
     for (int g = 0; g < PARAM_GROUP_COUNT; g++)
-        for (size_t i = 0; i < place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
+        for (size_t i = 0; i < param_place_group_size(s, (param_group)g) && code == STATUS_OK; i++)
             code = check_object(s, (param_group)g, i, why);
     return code;
 }

@@ -41,7 +41,7 @@ static bool cuts_another(const scene *s, const solid *cutter)
 static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
-    if (integrator_of(&s->render)->drawn && s->render.lighting != LIGHTING_WHITTED) {
+    if (integrator_traits_of(&s->render)->drawn && s->render.lighting != LIGHTING_WHITTED) {
         if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0)
             note_give(
                 taker, "render", "lighting", "set render.lighting to whitted",
@@ -147,7 +147,7 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_taker *t
 
 static void hint_at_lights(const scene *s, const note_taker *taker)
 {
-    const bool path = integrator_of(&s->render)->by_chance;
+    const bool path = integrator_traits_of(&s->render)->by_chance;
     bool clear = false;
     for (size_t i = 0; i < s->solid_count; i++)
         clear |= s->solids[i].visible && s->solids[i].surface.transparency > 0.0;
@@ -184,7 +184,7 @@ void scene_hints(const scene *s, const note_taker *taker)
     }
     if (visible == 0)
         note_give(taker, "solids", NULL, "add solids:", "no visible solids: the picture shows the background alone");
-    const bool emitters_light = shining > 0 && integrator_of(&s->render)->by_chance;
+    const bool emitters_light = shining > 0 && integrator_traits_of(&s->render)->by_chance;
     if (lit > 0 && s->light_count == 0 && !emitters_light)
         note_give(taker, "lights", NULL,
                   "add lights:", "no lights: opaque surfaces are dark but for their ambient and emitted light");

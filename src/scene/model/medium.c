@@ -172,7 +172,7 @@ double material_tint(const material *m, double share)
     return (share > DBL_MIN ? -ln_2 * elementary_log2_inline(share) : black) / m->tint_distance;
 }
 
-bool material_dims(const material *m)
+bool material_attenuates(const material *m)
 {
     return material_absorbs(m) || material_tints(m);
 }

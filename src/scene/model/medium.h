@@ -61,7 +61,7 @@ bool material_tints(const material *m);
 /* That coefficient in 1 / scene unit, of a channel or wavelength at which the colour is share, 0..1. */
 double material_tint(const material *m, double share);
 /* Does light inside a clear solid of it become less? */
-bool material_dims(const material *m);
+bool material_attenuates(const material *m);
 /* By channel in 1 / scene unit, absorption and tint; of an opaque material nothing is asked. */
 vec3 material_extinction(const material *m, double unit_m);
 /* Share of the light that would pass which a clear surface's coating sends back: 0 where shares are constants, which

@@ -60,20 +60,20 @@ void *object_values(const scene *s, param_group group, size_t index)
     return (char *)object_at(s, group, index) + lists[group].value;
 }
 
-size_t place_group_size(const scene *s, param_group group)
+size_t param_place_group_size(const scene *s, param_group group)
 {
     return group_has_names(group) ? *count_of(s, group) : 1;
 }
 
-const char *place_group_name(const scene *s, param_group group, size_t index)
+const char *param_place_group_name(const scene *s, param_group group, size_t index)
 {
     return group_has_names(group) ? *(char **)object_at(s, group, index) : param_group_name(group);
 }
 
 int object_find(const scene *s, param_group group, const char *name)
 {
-    for (size_t i = 0; i < place_group_size(s, group); i++)
-        if (strcmp(place_group_name(s, group, i), name) == 0)
+    for (size_t i = 0; i < param_place_group_size(s, group); i++)
+        if (strcmp(param_place_group_name(s, group, i), name) == 0)
             return (int)i;
     return -1;
 }
@@ -197,8 +197,8 @@ char *object_remedy(const scene *s, param_group group, const char *wrong, char *
     enum { ROOM = 256 };
     const char *words[ROOM];
     size_t count = 0;
-    for (; count < place_group_size(s, group) && count < ROOM; count++)
-        words[count] = place_group_name(s, group, count);
+    for (; count < param_place_group_size(s, group) && count < ROOM; count++)
+        words[count] = param_place_group_name(s, group, count);
     const char *nearest = suggest_word(wrong, words, count);
     if (nearest)
         snprintf(text, size, "did you mean '%s'?", nearest);

@@ -12,10 +12,10 @@
 #include <string.h>
 
 /* The struct that holds a place's row. */
-static void *place_base(const scene *s, const place *at)
+static void *place_base(const scene *s, const param_place *at)
 {
-    const bool of_surface = at->group == PARAM_SOLID && at->row->group == PARAM_MATERIAL;
-    return of_surface ? (void *)&s->solids[at->index].surface : object_values(s, at->group, at->index);
+    const bool of_surface = at->object_group == PARAM_SOLID && at->row->group == PARAM_MATERIAL;
+    return of_surface ? (void *)&s->solids[at->index].surface : object_values(s, at->object_group, at->index);
 }
 
 static bool is_camera_row(const param *row, size_t offset)
@@ -50,13 +50,13 @@ static camera camera_with_both(camera c)
 }
 
 /* A plain index takes the place of a medium that was named before. */
-static void forget_medium(scene *s, const place *at)
+static void forget_medium(scene *s, const param_place *at)
 {
     if (at->row->group == PARAM_BACKGROUND && at->row->offset == offsetof(background, ior))
         s->background.medium = MEDIUM_IOR;
     if (at->row->group != PARAM_MATERIAL || at->row->offset != offsetof(material, ior))
         return;
-    if (at->group == PARAM_SOLID) {
+    if (at->object_group == PARAM_SOLID) {
         s->solids[at->index].surface.medium = MEDIUM_IOR;
         return;
     }
@@ -67,10 +67,10 @@ static void forget_medium(scene *s, const place *at)
 }
 
 /* What was loaded under the old value; a file that is named is also used. */
-static void forget_loaded(scene *s, const place *at, param_value value)
+static void forget_loaded(scene *s, const param_place *at, param_value value)
 {
     const bool names_file = at->row->type == PARAM_PATH, some = names_file && value.path[0];
-    if (at->group == PARAM_MESH) {
+    if (at->object_group == PARAM_MESH) {
         mesh_entry *m = &s->meshes[at->index];
         mesh_entry_unload(m);
         if (at->row->offset == offsetof(mesh_entry, script_path)) {
@@ -79,7 +79,7 @@ static void forget_loaded(scene *s, const place *at, param_value value)
         }
         m->source = some ? MESH_FILE : m->source;
         m->path_line = names_file ? 0 : m->path_line;
-    } else if (at->group == PARAM_TEXTURE) {
+    } else if (at->object_group == PARAM_TEXTURE) {
         texture_entry *t = &s->textures[at->index];
         texture_entry_unload(t);
         t->path_line = names_file ? 0 : t->path_line;
@@ -91,7 +91,7 @@ static void forget_loaded(scene *s, const place *at, param_value value)
     }
 }
 
-static void store(scene *s, const place *at, param_value value)
+static void store(scene *s, const param_place *at, param_value value)
 {
     forget_medium(s, at);
     const param *row = at->row;
@@ -104,15 +104,15 @@ static void store(scene *s, const place *at, param_value value)
     }
     forget_loaded(s, at, value);
     param_value_store(row, at->element, (char *)place_base(s, at) + row->offset, value);
-    for (size_t i = 0; at->group == PARAM_MATERIAL && i < s->solid_count; i++)
+    for (size_t i = 0; at->object_group == PARAM_MATERIAL && i < s->solid_count; i++)
         if (s->solids[i].material_index == (int)at->index)
             param_value_store(row, at->element, (char *)&s->solids[i].surface + row->offset, value);
 }
 
 status scene_set(scene *s, const char *path, const char *value, diagnostic *why)
 {
-    place at;
-    TRY(place_find(s, path, &at, why));
+    param_place at;
+    TRY(param_place_find(s, path, &at, why));
     param_value parsed;
     TRY(param_value_parse(at.row, at.element, path, value, &parsed, why));
     store(s, &at, parsed);
@@ -134,25 +134,25 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
 }
 
 /* at's value in s, whose camera has both directions. */
-static char *place_text(const scene *s, const place *at)
+static char *place_text(const scene *s, const param_place *at)
 {
     camera both = camera_with_both(s->camera);
-    const char *base = at->group == PARAM_CAMERA ? (const char *)&both : place_base(s, at);
+    const char *base = at->object_group == PARAM_CAMERA ? (const char *)&both : place_base(s, at);
     return param_value_text(at->row, at->element, base + at->row->offset);
 }
 
 status scene_get(const scene *s, const char *path, char **value, diagnostic *why)
 {
     *value = NULL;
-    place at;
-    TRY(place_find(s, path, &at, why));
+    param_place at;
+    TRY(param_place_find(s, path, &at, why));
     *value = place_text(s, &at);
     return *value ? STATUS_OK : out_of_memory(why);
 }
 
-static status visit_one(const scene *s, const place *at, param_visit *visit, void *context)
+static status visit_one(const scene *s, const param_place *at, param_visit *visit, void *context)
 {
-    char *path = text_format("%s.%s", place_group_name(s, at->group, at->index), at->row->name);
+    char *path = text_format("%s.%s", param_place_group_name(s, at->object_group, at->index), at->row->name);
     char *value = place_text(s, at);
     status code = path && value ? visit(context, path, at->row, value) : STATUS_FAILURE;
     free(path);
@@ -162,7 +162,7 @@ static status visit_one(const scene *s, const place *at, param_visit *visit, voi
 
 /* Setting the camera's direction, the sky's picture or a mesh's file that is not in use would put it in use; of a
  * slime's parameters only a slime has any. */
-static bool is_in_use(const scene *s, const place *at)
+static bool is_in_use(const scene *s, const param_place *at)
 {
     const param *row = at->row;
     if (row->group == PARAM_MESH && row->makers != 0)
@@ -175,13 +175,13 @@ static bool is_in_use(const scene *s, const place *at)
 }
 
 /* The rows of one object that stand in one group of the table. */
-static status visit_rows(const scene *s, place at, param_group rows, param_visit *visit, void *context)
+static status visit_rows(const scene *s, param_place at, param_group rows, param_visit *visit, void *context)
 {
     status code = STATUS_OK;
     for (size_t i = 0; i < param_count() && code == STATUS_OK; i++) {
         at.row = param_at(i);
         if (at.row->group == rows && is_in_use(s, &at) &&
-            (at.group != PARAM_SOLID || solid_has(&s->solids[at.index], at.row)))
+            (at.object_group != PARAM_SOLID || solid_has(&s->solids[at.index], at.row)))
             code = visit_one(s, &at, visit, context);
     }
     return code;
@@ -191,10 +191,10 @@ status scene_each_param(const scene *s, param_visit *visit, void *context)
 {
     status code = STATUS_OK;
     for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
-        place at = {.row = NULL, .group = (param_group)g, .index = 0, .element = -1};
-        for (; at.index < place_group_size(s, at.group) && code == STATUS_OK; at.index++) {
-            code = visit_rows(s, at, at.group, visit, context);
-            if (code == STATUS_OK && at.group == PARAM_SOLID)
+        param_place at = {.row = NULL, .object_group = (param_group)g, .index = 0, .element = -1};
+        for (; at.index < param_place_group_size(s, at.object_group) && code == STATUS_OK; at.index++) {
+            code = visit_rows(s, at, at.object_group, visit, context);
+            if (code == STATUS_OK && at.object_group == PARAM_SOLID)
                 code = visit_rows(s, at, PARAM_MATERIAL, visit, context);
         }
     }

@@ -64,7 +64,7 @@ char *param_range_text(const param *row, char *text, size_t size);
  * scene_get, the other way of saying it is derived, so that setting one angle of an aimed camera leaves the
  * other as it was.
  *
- * Setting background.img to a file makes background.kind picture; a kind that is set later wins.
+ * Setting background.picture to a file makes background.kind picture; a kind that is set later wins.
  *
  * Setting a mesh's file makes its source file; a source (generate) that is set later wins.
  *

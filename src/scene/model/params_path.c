@@ -52,21 +52,21 @@ static const char **group_words(const scene *s, size_t *count)
 {
     size_t room = 0, used = 0;
     for (int g = 0; g < PARAM_GROUP_COUNT; g++)
-        room += place_group_size(s, (param_group)g);
+        room += param_place_group_size(s, (param_group)g);
     const char **words = malloc(room * sizeof *words);
     for (int g = 0; words && g < PARAM_GROUP_COUNT; g++)
-        for (size_t i = 0; i < place_group_size(s, (param_group)g); i++)
-            words[used++] = place_group_name(s, (param_group)g, i);
+        for (size_t i = 0; i < param_place_group_size(s, (param_group)g); i++)
+            words[used++] = param_place_group_name(s, (param_group)g, i);
     *count = used;
     return words;
 }
 
-static bool find_group(const scene *s, const char *word, place *out)
+static bool find_group(const scene *s, const char *word, param_place *out)
 {
     for (int g = 0; g < PARAM_GROUP_COUNT; g++) {
         const int at = object_find(s, (param_group)g, word);
         if (at >= 0) {
-            out->group = (param_group)g;
+            out->object_group = (param_group)g;
             out->index = (size_t)at;
             return true;
         }
@@ -75,11 +75,11 @@ static bool find_group(const scene *s, const char *word, place *out)
 }
 
 /* Appends the names of the rows of one group that the place's object has; returns the new count. */
-static size_t row_words(const scene *s, const place *at, param_group rows, const char **words, size_t count)
+static size_t row_words(const scene *s, const param_place *at, param_group rows, const char **words, size_t count)
 {
     for (size_t i = 0; i < param_count() && count < WORDS_MAX; i++) {
         const param *row = param_at(i);
-        if (row->group == rows && (at->group != PARAM_SOLID || solid_has(&s->solids[at->index], row)))
+        if (row->group == rows && (at->object_group != PARAM_SOLID || solid_has(&s->solids[at->index], row)))
             words[count++] = row->name;
     }
     return count;
@@ -89,12 +89,12 @@ static size_t row_words(const scene *s, const place *at, param_group rows, const
 static const param *nearest_setting(const scene *s, const char *word)
 {
     for (int g = 0; g <= PARAM_BACKGROUND; g++) {
-        const place at = {.row = NULL, .group = (param_group)g, .index = 0, .element = -1};
+        const param_place at = {.row = NULL, .object_group = (param_group)g, .index = 0, .element = -1};
         const char *words[WORDS_MAX];
-        size_t count = row_words(s, &at, at.group, words, 0);
+        size_t count = row_words(s, &at, at.object_group, words, 0);
         const char *nearest = suggest_word(word, words, count);
         if (nearest)
-            return param_find(at.group, nearest);
+            return param_find(at.object_group, nearest);
     }
     return NULL;
 }
@@ -119,7 +119,7 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
     return diagnose(why, STATUS_BAD_INPUT, remedy, "nothing in the scene is named '%.80s'", path->group);
 }
 
-static status wrong_shape(const scene *s, const place *at, const path_words *path, diagnostic *why)
+static status wrong_shape(const scene *s, const param_place *at, const path_words *path, diagnostic *why)
 {
     const char *shape = shape_name(s->solids[at->index].shape.kind), *words[WORDS_MAX];
     size_t count = row_words(s, at, PARAM_SOLID, words, 0);
@@ -131,20 +131,20 @@ static status wrong_shape(const scene *s, const place *at, const path_words *pat
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s is a %s, which has no %s", path->group, shape, path->name);
 }
 
-static status unknown_name(const scene *s, const place *at, const path_words *path, diagnostic *why)
+static status unknown_name(const scene *s, const param_place *at, const path_words *path, diagnostic *why)
 {
     if (path->name && at->row)
         return wrong_shape(s, at, path, why);
     const char *words[WORDS_MAX];
-    size_t count = row_words(s, at, at->group, words, 0);
-    count = at->group == PARAM_SOLID ? row_words(s, at, PARAM_MATERIAL, words, count) : count;
+    size_t count = row_words(s, at, at->object_group, words, 0);
+    count = at->object_group == PARAM_SOLID ? row_words(s, at, PARAM_MATERIAL, words, count) : count;
     char remedy[400], prefix[140];
     if (!path->name || !*path->name) {
         suggest_list("add a dot and one of: ", words, count, remedy, sizeof remedy);
         return diagnose(why, STATUS_BAD_INPUT, remedy, "'%s' alone is no parameter", path->group);
     }
     const char *nearest = suggest_word(path->name, words, count);
-    if (at->group == PARAM_SOLID && (strcmp(path->name, "material") == 0 || strcmp(path->name, "shape") == 0)) {
+    if (at->object_group == PARAM_SOLID && (strcmp(path->name, "material") == 0 || strcmp(path->name, "shape") == 0)) {
         snprintf(remedy, sizeof remedy,
                  "shape and material are set in the scene file or by cuvette scene; for glass set %s.transparency=1 "
                  "and %s.ior=1.5",
@@ -158,7 +158,7 @@ static status unknown_name(const scene *s, const place *at, const path_words *pa
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s has no parameter '%.80s'", path->group, path->name);
 }
 
-static status find_element(const path_words *path, place *out, diagnostic *why)
+static status find_element(const path_words *path, param_place *out, diagnostic *why)
 {
     out->element = -1;
     if (!path->element)
@@ -176,7 +176,7 @@ static status find_element(const path_words *path, place *out, diagnostic *why)
     return STATUS_OK;
 }
 
-status place_find(const scene *s, const char *path, place *out, diagnostic *why)
+status param_place_find(const scene *s, const char *path, param_place *out, diagnostic *why)
 {
     path_words words;
     if (!split_path(path, &words))
@@ -184,15 +184,15 @@ status place_find(const scene *s, const char *path, place *out, diagnostic *why)
                         "the path '%.60s...' is too long", path);
     if (!find_group(s, words.group, out))
         return unknown_group(s, &words, why);
-    out->row = words.name ? param_find(out->group, words.name) : NULL;
-    if (!out->row || (out->group == PARAM_SOLID && !solid_has(&s->solids[out->index], out->row)))
+    out->row = words.name ? param_find(out->object_group, words.name) : NULL;
+    if (!out->row || (out->object_group == PARAM_SOLID && !solid_has(&s->solids[out->index], out->row)))
         return unknown_name(s, out, &words, why);
     return find_element(&words, out, why);
 }
 
-status place_find_object(const scene *s, const char *name, place *out, diagnostic *why)
+status param_place_find_object(const scene *s, const char *name, param_place *out, diagnostic *why)
 {
-    *out = (place){.element = -1};
+    *out = (param_place){.element = -1};
     if (find_group(s, name, out))
         return STATUS_OK;
     size_t count;

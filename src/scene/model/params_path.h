@@ -6,28 +6,28 @@
 #include "scene/model/params.h"
 #include "scene/model/solids.h"
 
-typedef struct place {
+typedef struct param_place {
     const param *row;
-    param_group group; /* of the path's first word: PARAM_SOLID for vessel.ior, whose row is a material's */
-    size_t index;      /* which light, material or solid */
-    int element;       /* 0..2, or -1 for the whole value */
-} place;
+    param_group object_group; /* of the path's first word: PARAM_SOLID for vessel.ior, whose row is a material's */
+    size_t index;             /* which light, material or solid */
+    int element;              /* 0..2, or -1 for the whole value */
+} param_place;
 
 /* STATUS_BAD_INPUT, with the nearest right path as remedy, when path leads nowhere. */
-status place_find(const scene *s, const char *path, place *out, diagnostic *why);
+status param_place_find(const scene *s, const char *path, param_place *out, diagnostic *why);
 
 /* The same for a path's first word alone: an object's name, camera, background or render. Row and element say nothing.
  */
-status place_find_object(const scene *s, const char *name, place *out, diagnostic *why);
+status param_place_find_object(const scene *s, const char *name, param_place *out, diagnostic *why);
 
 /* Does the solid have that row (its shape has that length)? */
 bool solid_has(const solid *owner, const param *row);
 
 /* The name of a light, material or solid; "camera" and so on for the other groups. */
-const char *place_group_name(const scene *s, param_group group, size_t index);
+const char *param_place_group_name(const scene *s, param_group group, size_t index);
 
 /* How many objects a group has: 1, or the scene's lights, materials or solids. */
-size_t place_group_size(const scene *s, param_group group);
+size_t param_place_group_size(const scene *s, param_group group);
 
 /* "sphere" */
 const char *shape_name(shape_kind kind);

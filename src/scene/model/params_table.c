@@ -1,4 +1,5 @@
-/* The table itself: a new parameter is one new row here, and a field in scene.h. */
+/* The table itself: a new parameter is one new row here, and a field in the struct of its group (render_settings.h,
+ * material.h, light.h, solids.h, mesh_entry.h, view_settings.h). */
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
 #include "scene/model/mesh_entry.h"
@@ -133,7 +134,7 @@ static const param table[] = {
          "wavelength at which the rgb film takes refractive indices; the default is the d line"),
     POSITIVE(PARAM_RENDER, render_settings, unit_m, "m", 1e6, "1", "length of one scene unit, for absorption"),
     PERFORMANCE_INTEGER(threads, "", 1, 1024, "1", "workers"),
-    PERFORMANCE_CHOICE(worker_pool, off_on, "on", "workers wait between frames; off starts fresh ones for each"),
+    PERFORMANCE_CHOICE(pool, off_on, "on", "workers wait between frames; off starts fresh ones for each"),
     PERFORMANCE_CHOICE(
         schedule, schedule_words, "dynamic",
         "how the picture is shared: fixed blocks of columns or rows, fixed tiles, or tiles as workers ask"),
@@ -261,6 +262,7 @@ static const param table[] = {
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which intensity holds, less with the square of the distance; 0 for the same everywhere"),
 
+    /* A solid has these too, by its own name (liquid.ior): see param_find. */
     COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1",
           "linear colour of ambient, diffuse and emitted light; inside a clear solid what is left of light after "
           "tint_distance"),

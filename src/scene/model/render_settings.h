@@ -43,7 +43,7 @@ typedef struct render_settings {
     double lambda_nm;      /* at which indices are taken where there is no spectrum */
     double unit_m;         /* length of one scene unit in metres */
     int64_t threads;       /* 1..1024 */
-    int64_t worker_pool;   /* 1: threads started beforehand; 0: fresh ones for every frame */
+    int64_t pool;          /* 1: threads started beforehand; 0: fresh ones for every frame */
     int64_t schedule;      /* schedule_rule */
     int64_t tile;          /* tile edge, pixels */
     int64_t pin;           /* pin_rule */
@@ -55,7 +55,7 @@ typedef struct render_settings {
     int64_t texturing; /* texturing_rule, of the rasteriser */
 } render_settings;
 
-static inline const integrator_traits *integrator_of(const render_settings *r)
+static inline const integrator_traits *integrator_traits_of(const render_settings *r)
 {
     return &integrator_table[r->integrator];
 }
@@ -63,7 +63,7 @@ static inline const integrator_traits *integrator_of(const render_settings *r)
 /* Both branches of each ray are followed. */
 static inline bool follows_trees(const render_settings *r)
 {
-    return integrator_of(r)->tree && r->lighting == LIGHTING_WHITTED;
+    return integrator_traits_of(r)->tree && r->lighting == LIGHTING_WHITTED;
 }
 
 /* All branches of each ray, for what looks into a scene; or a preview of triangles. */
@@ -90,5 +90,5 @@ static inline bool scene_has_constant_shares(const render_settings *r)
  * nothing is, nor in what is drawn with a depth buffer. */
 static inline bool scene_has_basic_radiance(const render_settings *r)
 {
-    return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT && !integrator_of(r)->drawn;
+    return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT && !integrator_traits_of(r)->drawn;
 }

@@ -31,15 +31,15 @@ typedef struct edit {
 static status change(void *context, scene *s, diagnostic *why)
 {
     edit *e = context;
-    place at;
+    param_place at;
     scene_parts parts;
     if (e->or_camera && scene_parts_named(s, e->name, &parts))
         return e->act(e, s, why);
-    if (e->name && place_find_object(s, e->name, &at, why) != STATUS_OK) {
+    if (e->name && param_place_find_object(s, e->name, &at, why) != STATUS_OK) {
         e->refused = 404;
         return STATUS_BAD_INPUT;
     }
-    const bool is_one = !e->name || at.group >= PARAM_MESH || (e->or_camera && at.group == PARAM_CAMERA);
+    const bool is_one = !e->name || at.object_group >= PARAM_MESH || (e->or_camera && at.object_group == PARAM_CAMERA);
     return is_one ? e->act(e, s, why)
                   : diagnose(why, STATUS_BAD_INPUT, "name a solid, a light, a material, a mesh or a texture",
                              "that cannot be done with the %.60s", e->name);

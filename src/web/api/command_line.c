@@ -34,9 +34,9 @@ static bool same_objects(const scene *a, const scene *b)
     static const param_group groups[] = {PARAM_SOLID, PARAM_LIGHT, PARAM_MATERIAL, PARAM_MESH, PARAM_TEXTURE};
     bool same = true;
     for (size_t g = 0; g < sizeof groups / sizeof *groups && same; g++) {
-        same = place_group_size(a, groups[g]) == place_group_size(b, groups[g]);
-        for (size_t i = 0; i < place_group_size(a, groups[g]) && same; i++)
-            same = strcmp(place_group_name(a, groups[g], i), place_group_name(b, groups[g], i)) == 0;
+        same = param_place_group_size(a, groups[g]) == param_place_group_size(b, groups[g]);
+        for (size_t i = 0; i < param_place_group_size(a, groups[g]) && same; i++)
+            same = strcmp(param_place_group_name(a, groups[g], i), param_place_group_name(b, groups[g], i)) == 0;
     }
     for (size_t i = 0; i < a->solid_count && same; i++)
         same = a->solids[i].shape.kind == b->solids[i].shape.kind &&

@@ -36,9 +36,9 @@ static json_t *objects_json(const scene *s)
         bad |= json_array_append_new(list, o);
     }
     for (size_t group = 0; group < sizeof rest / sizeof *rest; group++)
-        for (size_t i = 0; i < place_group_size(s, rest[group]); i++)
+        for (size_t i = 0; i < param_place_group_size(s, rest[group]); i++)
             bad |= json_array_append_new(
-                list, object_json(place_group_name(s, rest[group], i), param_group_name(rest[group])));
+                list, object_json(param_place_group_name(s, rest[group], i), param_group_name(rest[group])));
     return json_whole(list, !bad);
 }
 

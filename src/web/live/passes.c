@@ -21,7 +21,7 @@ double passes_work(const render_settings *r, int shrink, bool single)
 {
     const render_settings pass = passes_settings(r, shrink, single);
     const double rays =
-        integrator_of(r)->by_chance ? fmax((double)pass.paths, (double)pass.samples) : (double)pass.samples;
+        integrator_traits_of(r)->by_chance ? fmax((double)pass.paths, (double)pass.samples) : (double)pass.samples;
     const double wavelengths = r->spectrum == SPECTRUM_SPECTRAL ? (double)r->wavelengths : 1.0;
     return (double)pass.width * (double)pass.height * rays * wavelengths;
 }
@@ -37,7 +37,7 @@ pass_plan passes_plan(const render_settings *r, double rate, double first_s)
 {
     pass_plan plan = {.count = 0};
     const double speed = rate > 0.0 ? rate : rate_unknown;
-    const bool many = r->samples > 1 || integrator_of(r)->by_chance;
+    const bool many = r->samples > 1 || integrator_traits_of(r)->by_chance;
     if (passes_work(r, 1, false) / speed > first_s) {
         int shrink = 1;
         while (shrink < SHRINK_MAX && passes_work(r, shrink, true) / speed > first_s)

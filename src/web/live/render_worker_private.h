@@ -14,7 +14,7 @@ struct render_worker {
     struct live *toy;
     render_worker_listener listener;
     pthread_t thread;
-    job *tracer;
+    job *with;
 
     pthread_mutex_t lock; /* of what follows */
     pthread_cond_t wake, news;

@@ -41,7 +41,7 @@ static status load_snapshot(render_worker *p, diagnostic *why)
 {
     const load_watch watch = {go_on_loading, p};
     p->begun_s = clock_wall_s();
-    return job_load(p->tracer, p->snapshot, &watch, why);
+    return job_load(p->with, p->snapshot, &watch, why);
 }
 
 static bool has_slime(const render_worker *p)

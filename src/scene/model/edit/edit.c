@@ -65,14 +65,14 @@ static status remove_texture(scene *s, size_t index, diagnostic *why)
 
 status scene_remove(scene *s, const char *name, diagnostic *why)
 {
-    place at;
-    TRY(place_find_object(s, name, &at, why));
-    switch (at.group) {
+    param_place at;
+    TRY(param_place_find_object(s, name, &at, why));
+    switch (at.object_group) {
     case PARAM_MESH: return remove_mesh(s, at.index, why);
     case PARAM_TEXTURE: return remove_texture(s, at.index, why);
     case PARAM_MATERIAL: return remove_material(s, at.index, why);
     case PARAM_LIGHT:
-    case PARAM_SOLID: object_remove(s, at.group, at.index); return STATUS_OK;
+    case PARAM_SOLID: object_remove(s, at.object_group, at.index); return STATUS_OK;
     case PARAM_RENDER: return param_set_defaults(PARAM_RENDER, &s->render, why);
     case PARAM_CAMERA: s->camera.aimed = 1; return param_set_defaults(PARAM_CAMERA, &s->camera, why);
     case PARAM_BACKGROUND:
@@ -86,26 +86,26 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
 }
 
 /* Solids and materials refer to meshes and textures by name. */
-static void follow_name(scene *s, const place *at, const char *from, const char *to)
+static void follow_name(scene *s, const param_place *at, const char *from, const char *to)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
         solid *owner = &s->solids[i];
-        if (at->group == PARAM_MESH && strcmp(owner->mesh, from) == 0)
+        if (at->object_group == PARAM_MESH && strcmp(owner->mesh, from) == 0)
             strcpy(owner->mesh, to);
-        if (at->group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0)
+        if (at->object_group == PARAM_TEXTURE && strcmp(owner->surface.texture, from) == 0)
             strcpy(owner->surface.texture, to);
     }
-    for (size_t i = 0; at->group == PARAM_TEXTURE && i < s->material_count; i++)
+    for (size_t i = 0; at->object_group == PARAM_TEXTURE && i < s->material_count; i++)
         if (strcmp(s->materials[i].value.texture, from) == 0)
             strcpy(s->materials[i].value.texture, to);
 }
 
 status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why)
 {
-    place at;
-    TRY(place_find_object(s, name, &at, why));
+    param_place at;
+    TRY(param_place_find_object(s, name, &at, why));
     char *copy = NULL;
-    if (!group_has_names(at.group))
+    if (!group_has_names(at.object_group))
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid",
                         "the %s has no name of its own", name);
     if (strcmp(name, new_name) == 0)
@@ -115,7 +115,7 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     if (!(copy = strdup(new_name)))
         return out_of_memory(why);
     follow_name(s, &at, name, copy);
-    char **field = object_at(s, at.group, at.index);
+    char **field = object_at(s, at.object_group, at.index);
     free(*field);
     *field = copy;
     return STATUS_OK;

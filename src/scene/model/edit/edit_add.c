@@ -9,7 +9,7 @@
 /* shape is that of a solid. */
 static status add(scene *s, param_group group, shape_kind shape, const char *name, size_t *index, diagnostic *why)
 {
-    const size_t at = place_group_size(s, group);
+    const size_t at = param_place_group_size(s, group);
     TRY(check_name(name, why));
     TRY(check_name_is_free(s, name, why));
     if (!object_append(s, group, name))

@@ -55,18 +55,18 @@ static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
 
 status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
 {
-    place at;
+    param_place at;
     scene_parts parts;
     if (scene_parts_named(s, name, &parts))
         return scene_move_parts(s, parts, delta, why);
     TRY(edit_find(s, name, &at, why));
-    if (at.group == PARAM_CAMERA)
+    if (at.object_group == PARAM_CAMERA)
         return move_camera(s, delta, why);
-    if (at.group == PARAM_LIGHT)
+    if (at.object_group == PARAM_LIGHT)
         return move_light(s, at.index, delta, why);
-    if (at.group == PARAM_SOLID)
+    if (at.object_group == PARAM_SOLID)
         return edit_set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
-    return has_no(name, at.group, "place", "move a solid, a light or the camera", why);
+    return has_no(name, at.object_group, "place", "move a solid, a light or the camera", why);
 }
 
 /* -180 < degrees <= 180 */
@@ -166,7 +166,7 @@ static status turn_light(scene *s, const light *l, vec3 degrees, diagnostic *why
 
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
 {
-    place at;
+    param_place at;
     scene_parts parts;
     const bool is_many = scene_parts_named(s, name, &parts);
     if (!is_many)
@@ -176,13 +176,13 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
                         "%.80s cannot be turned so far", name);
     if (is_many)
         return scene_turn_parts(s, parts, degrees, why);
-    if (at.group == PARAM_CAMERA)
+    if (at.object_group == PARAM_CAMERA)
         return turn_camera(s, degrees, why);
-    if (at.group == PARAM_LIGHT && s->lights[at.index].kind != LIGHT_POINT)
+    if (at.object_group == PARAM_LIGHT && s->lights[at.index].kind != LIGHT_POINT)
         return turn_light(s, &s->lights[at.index], degrees, why);
-    if (at.group == PARAM_SOLID)
+    if (at.object_group == PARAM_SOLID)
         return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
-    return has_no(name, at.group, "direction", "turn a solid, a cone of light or the camera", why);
+    return has_no(name, at.object_group, "direction", "turn a solid, a cone of light or the camera", why);
 }
 
 status scene_look_at(scene *s, vec3 target, diagnostic *why)

@@ -14,11 +14,11 @@
 
 status scene_give_material(scene *s, const char *solid_name, const char *material_name, diagnostic *why)
 {
-    place at;
-    TRY(place_find_object(s, solid_name, &at, why));
-    if (at.group != PARAM_SOLID)
+    param_place at;
+    TRY(param_place_find_object(s, solid_name, &at, why));
+    if (at.object_group != PARAM_SOLID)
         return diagnose(why, STATUS_BAD_INPUT, "name a solid", "%.80s is a %s, which has no material", solid_name,
-                        param_group_name(at.group));
+                        param_group_name(at.object_group));
     solid *owner = &s->solids[at.index];
     if (!material_name || !material_name[0]) {
         owner->material_index = -1;

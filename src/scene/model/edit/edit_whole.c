@@ -36,9 +36,9 @@ static bool add_word(const char *word, size_t length, scene_parts *parts)
 
 bool scene_parts_named(const scene *s, const char *name, scene_parts *out)
 {
-    place unused;
+    param_place unused;
     *out = (scene_parts){.solids = false};
-    if (place_find_object(s, name, &unused, NULL) == STATUS_OK)
+    if (param_place_find_object(s, name, &unused, NULL) == STATUS_OK)
         return false;
     for (const char *word = name;; word++) {
         const size_t length = strcspn(word, "+");
@@ -50,9 +50,9 @@ bool scene_parts_named(const scene *s, const char *name, scene_parts *out)
     }
 }
 
-status edit_find(const scene *s, const char *name, place *at, diagnostic *why)
+status edit_find(const scene *s, const char *name, param_place *at, diagnostic *why)
 {
-    const status code = place_find_object(s, name, at, why);
+    const status code = param_place_find_object(s, name, at, why);
     if (code == STATUS_BAD_INPUT && why && strncmp(why->remedy, "did you mean", 12) != 0)
         snprintf(why->remedy, sizeof why->remedy,
                  "give the name of a solid or light, or of camera, solids, lights, all, or a sum as all+camera");
@@ -173,16 +173,16 @@ static bool is_length(const param *row)
 
 static bool is_scaled(const whole_edit *e, const char *name, const param *row)
 {
-    place at;
-    if (!is_length(row) || place_find_object(e->s, name, &at, NULL) != STATUS_OK)
+    param_place at;
+    if (!is_length(row) || param_place_find_object(e->s, name, &at, NULL) != STATUS_OK)
         return false;
     if (e->only) { /* its material stays what it is, as its absorption by render.unit_m does */
         return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
                strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
     }
-    return at.group == PARAM_SOLID || at.group == PARAM_MATERIAL ? e->parts.solids
-           : at.group == PARAM_LIGHT                             ? e->parts.lights
-                                                                 : at.group == PARAM_CAMERA && e->parts.camera;
+    return at.object_group == PARAM_SOLID || at.object_group == PARAM_MATERIAL ? e->parts.solids
+           : at.object_group == PARAM_LIGHT                                    ? e->parts.lights
+                                            : at.object_group == PARAM_CAMERA && e->parts.camera;
 }
 
 /* Visits the clone, since a material that is set is set for its solids. */
@@ -247,14 +247,14 @@ status scene_turn_parts(scene *s, scene_parts parts, vec3 degrees, diagnostic *w
 status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
 {
     whole_edit e = {.s = s, .factor = factor, .why = why, .act = scale_parts};
-    place at;
+    param_place at;
     if (!(factor > 0.0 && factor <= 1e9))
         return diagnose(why, STATUS_BAD_INPUT, "give a factor above 0, at most 1e9", "%.80s cannot be scaled by %g",
                         name, factor);
     if (scene_parts_named(s, name, &e.parts))
         return apply(&e);
     TRY(edit_find(s, name, &at, why));
-    if (at.group != PARAM_SOLID && at.group != PARAM_LIGHT)
+    if (at.object_group != PARAM_SOLID && at.object_group != PARAM_LIGHT)
         return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or all, solids, lights",
                         "%.80s has no size of its own", name);
     e.only = name;

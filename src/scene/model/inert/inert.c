@@ -56,7 +56,7 @@ bool inert_by_name(const inert_row *rows, const inert_case *c)
 
 static bool ask_group(const inert_case *c)
 {
-    switch (c->at.group) {
+    switch (c->at.object_group) {
     case PARAM_RENDER: return inert_render(c);
     case PARAM_BACKGROUND: return inert_background(c);
     case PARAM_MESH: return inert_mesh(c);
@@ -76,9 +76,9 @@ bool inert_ask(const scene *s, const char *path, const inert_witness *witness, i
     inert_case c = {.s = s, .witness = witness ? witness : &nobody, .out = out};
     c.frame = c.witness->frame && c.witness->frame->camera > 0 ? c.witness->frame : NULL;
     *out = (inert_answer){.rule = ""};
-    if (place_find(s, path, &c.at, NULL) != STATUS_OK || c.at.row->performance_only)
+    if (param_place_find(s, path, &c.at, NULL) != STATUS_OK || c.at.row->performance_only)
         return false;
-    c.name = place_group_name(s, c.at.group, c.at.index);
+    c.name = param_place_group_name(s, c.at.object_group, c.at.index);
     if (!inert_layers(&c) && !ask_group(&c) && !inert_unmet(&c, path))
         return false;
     snprintf(out->note.place, sizeof out->note.place, "%s", path);

@@ -11,7 +11,7 @@ bool is_black(vec3 color)
 
 bool is_path(const scene *s)
 {
-    return integrator_of(&s->render)->by_chance;
+    return integrator_traits_of(&s->render)->by_chance;
 }
 
 bool follows_rays(const scene *s)
@@ -21,20 +21,21 @@ bool follows_rays(const scene *s)
 
 bool draws_through(const scene *s)
 {
-    return integrator_of(&s->render)->drawn && s->render.lighting == LIGHTING_WHITTED && first_visible(s, is_clear);
+    return integrator_traits_of(&s->render)->drawn && s->render.lighting == LIGHTING_WHITTED &&
+           first_visible(s, is_clear);
 }
 
 /* Shadow rays pass clear solids where shadows are attenuated. */
 bool nothing_passes(const scene *s)
 {
-    const bool lit_through = !integrator_of(&s->render)->drawn && !integrator_of(&s->render)->layers &&
+    const bool lit_through = !integrator_traits_of(&s->render)->drawn && !integrator_traits_of(&s->render)->layers &&
                              s->render.shadows == SHADOWS_ATTENUATED && shining_lights(s) > 0;
     return !follows_rays(s) && !draws_through(s) && !lit_through;
 }
 
 bool say_no_tree(const inert_case *c)
 {
-    const bool whitted = integrator_of(&c->s->render)->tree;
+    const bool whitted = integrator_traits_of(&c->s->render)->tree;
     return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : "set render.integrator=whitted",
                      "no ray goes on from a surface under this render.%s", whitted ? "lighting" : "integrator");
 }
@@ -140,13 +141,13 @@ bool shows_specular(const scene *s, const material *m)
 
 bool is_lit_by_lamps(const scene *s, const material *m)
 {
-    return !integrator_of(&s->render)->layers &&
+    return !integrator_traits_of(&s->render)->layers &&
            (shows_specular(s, m) || (shining_lights(s) > 0 && m->diffuse > 0.0 && has_color(m)));
 }
 
 bool shows_color(const scene *s, const material *m)
 {
-    if (integrator_of(&s->render)->layers)
+    if (integrator_traits_of(&s->render)->layers)
         return s->render.layer == LAYER_ALBEDO;
     material white = *m;
     white.color = vec3_make(1.0, 1.0, 1.0);
@@ -172,7 +173,7 @@ inert_remedy lamp_remedy(const scene *s)
 
 inert_remedy color_remedy(const scene *s, const material *m, const char *name)
 {
-    if (integrator_of(&s->render)->layers)
+    if (integrator_traits_of(&s->render)->layers)
         return inert_set("render.layer=albedo");
     material coated = *m;
     coated.diffuse = 0.7;

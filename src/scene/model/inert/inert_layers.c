@@ -16,7 +16,7 @@ static bool is_of_light(const inert_case *c)
     static const char *const of_sky[] = {"kind", "color", "horizon", "picture", "ambient", "absorb_per_m", NULL};
     static const char *const of_surface[] = {"ambient",      "diffuse",         "specular",      "shininess",
                                              "absorb_per_m", "absorb_spectrum", "tint_distance", NULL};
-    switch (c->at.group) {
+    switch (c->at.object_group) {
     case PARAM_LIGHT: return true;
     case PARAM_RENDER: return is_among(c, of_render);
     case PARAM_BACKGROUND: return is_among(c, of_sky);
@@ -33,9 +33,9 @@ static bool is_of_light(const inert_case *c)
 bool inert_layers(const inert_case *c)
 {
     const char *word = integrator_with_layers();
-    const bool given = integrator_of(scene_settings(c->s))->layers;
+    const bool given = integrator_traits_of(scene_settings(c->s))->layers;
     if (!given)
-        return c->at.group == PARAM_RENDER && strcmp(c->at.row->name, "layer") == 0 && word &&
+        return c->at.object_group == PARAM_RENDER && strcmp(c->at.row->name, "layer") == 0 && word &&
                inert_say(c, "layers-only", inert_set("render.integrator=%s", word).text,
                          "this render.integrator gives no layers");
     return is_of_light(c) && inert_say(c, "no-light", "set render.integrator=whitted",
@@ -70,7 +70,7 @@ bool inert_unmet(const inert_case *c, const char *path)
         {"inner_radius", {NULL}},
         {"floor", {NULL}},
     };
-    if (!integrator_of(scene_settings(c->s))->layers || !c->witness->same)
+    if (!integrator_traits_of(scene_settings(c->s))->layers || !c->witness->same)
         return false;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         if (strcmp(rows[i].name, c->at.row->name) != 0)

@@ -96,8 +96,9 @@ static bool surrounding_index(const inert_case *c)
 
 static bool surrounding_absorption(const inert_case *c)
 {
-    return integrator_of(&c->s->render)->drawn && inert_say(c, "drawn-surroundings", "set render.integrator=whitted",
-                                                            "the depth buffer leaves out what the surroundings absorb");
+    return integrator_traits_of(&c->s->render)->drawn &&
+           inert_say(c, "drawn-surroundings", "set render.integrator=whitted",
+                     "the depth buffer leaves out what the surroundings absorb");
 }
 
 bool inert_background(const inert_case *c)

@@ -45,7 +45,7 @@ static bool not_bent(const inert_case *c)
         return false;
     if (goes_straight(c))
         return true;
-    const bool makes_equal = c->at.group == PARAM_MATERIAL && clear_users(c) > 1;
+    const bool makes_equal = c->at.object_group == PARAM_MATERIAL && clear_users(c) > 1;
     return !follows_rays(s) && !draws_through(s) && !s->render.radiance && !material_matches_surroundings(s, c->m) &&
            !makes_equal && say_not_bent(c);
 }
@@ -70,15 +70,16 @@ static bool absorption_rule(const inert_case *c)
 
 static bool no_color(const inert_case *c)
 {
-    const char *text = integrator_of(&c->s->render)->layers ? "the layer that the image shows has no colours"
-                                                            : "no ambient or diffuse light shows this surface's colour";
+    const char *text = integrator_traits_of(&c->s->render)->layers
+                           ? "the layer that the image shows has no colours"
+                           : "no ambient or diffuse light shows this surface's colour";
     return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text, "%s", text);
 }
 
 /* A clear solid has a tint, too. */
 static bool color_rule(const inert_case *c)
 {
-    const bool tints = !material_is_opaque(c->m) && !integrator_of(&c->s->render)->layers;
+    const bool tints = !material_is_opaque(c->m) && !integrator_traits_of(&c->s->render)->layers;
     return !tints ? no_color(c) : !shows_color(c->s, c->m) && unpassed(c);
 }
 
@@ -141,7 +142,7 @@ static bool mirrors_black(const inert_case *c)
 
 static bool say_unseen(const inert_case *c)
 {
-    if (integrator_of(&c->s->render)->layers)
+    if (integrator_traits_of(&c->s->render)->layers)
         return inert_say(c, "unseen", "set render.integrator=whitted", "no camera ray of this image meets %s first",
                          c->owner->name);
     int64_t highest = c->owner->priority;
@@ -162,7 +163,7 @@ static bool reflectivity_rule(const inert_case *c)
     const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
     if (coats)
         return (!material_matches_surroundings(s, c->m) && unpassed(c)) || mirrors_black(c);
-    if (integrator_of(&s->render)->drawn && !material_is_opaque(c->m))
+    if (integrator_traits_of(&s->render)->drawn && !material_is_opaque(c->m))
         return false;
     if (!follows_rays(s))
         return say_no_tree(c);

@@ -9,7 +9,7 @@
 
 typedef struct inert_case {
     const scene *s;
-    place at;
+    param_place at;
     const char *name;             /* of the path's object: "render", "lamp", "glass" */
     const ray_counters *frame;    /* or NULL */
     const inert_witness *witness; /* never NULL */

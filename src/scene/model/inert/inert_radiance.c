@@ -44,7 +44,7 @@ static bool glows_in_dense(const scene *s, const solid *one)
 bool inert_radiance(const inert_case *c)
 {
     const scene *s = c->s;
-    if (integrator_of(&s->render)->drawn)
+    if (integrator_traits_of(&s->render)->drawn)
         return inert_say(c, "zbuffer-radiance", "set render.integrator=whitted",
                          "the depth buffer follows no light through a surface");
     if (goes_straight(c))

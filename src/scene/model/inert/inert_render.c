@@ -78,14 +78,14 @@ static bool lighting(const inert_case *c)
         return inert_say(c, "not-path", WHITTED, "the path integrator has one lighting model");
     scene shiny = *s; /* borrows what s owns */
     shiny.render.lighting = LIGHTING_PHONG;
-    bool highlight = integrator_of(&s->render)->drawn && first_visible(s, is_clear);
+    bool highlight = integrator_traits_of(&s->render)->drawn && first_visible(s, is_clear);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *one = &s->solids[i];
         highlight |= one->visible && (shows_specular(&shiny, &one->surface) || may_have_face_materials(s, one));
     }
     if (highlight)
         return false;
-    if (!integrator_of(&s->render)->tree)
+    if (!integrator_traits_of(&s->render)->tree)
         return inert_say(c, "no-highlight", WHITTED,
                          "no lamp makes a highlight, and no ray goes on under this render.integrator");
     return (nothing_goes_on(s) || (s->render.depth == 0 && is_dark_at_depth_limit(s))) &&
@@ -146,7 +146,7 @@ static bool nothing_lit(const inert_case *c)
 static bool shadows(const inert_case *c)
 {
     const scene *s = c->s;
-    if (integrator_of(&s->render)->drawn)
+    if (integrator_traits_of(&s->render)->drawn)
         return inert_say(c, "no-shadows", WHITTED, "the depth buffer draws no shadows");
     return nothing_lit(c) ||
            (only_spheres_shine(s) &&
@@ -215,7 +215,7 @@ static bool shows_texture(const scene *s, const solid *one)
 
 static bool texturing(const inert_case *c)
 {
-    if (!integrator_of(&c->s->render)->drawn)
+    if (!integrator_traits_of(&c->s->render)->drawn)
         return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer",
                          "rays always meet a texture in perspective");
     const solid *first = first_visible(c->s, NULL);

@@ -49,7 +49,7 @@ static bool is_plain(const scene *s, const material *m)
 static bool rotation_rule(const inert_case *c)
 {
     /* The depth buffer draws a sphere of triangles, which turn with it. */
-    if (!shape_of(&c->owner->shape)->isotropic || !is_plain(c->s, c->m) || integrator_of(&c->s->render)->drawn)
+    if (!shape_of(&c->owner->shape)->isotropic || !is_plain(c->s, c->m) || integrator_traits_of(&c->s->render)->drawn)
         return false;
     const inert_remedy color = color_remedy(c->s, c->m, c->name);
     const inert_remedy remedy = shows_color(c->s, c->m)
@@ -73,7 +73,7 @@ static bool mesh_shading(const inert_case *c)
     if (textured || is_lit_by_lamps(s, c->m) || may_have_face_materials(s, c->owner) ||
         (follows_rays(s) && sends_rays_on(s, c->owner)))
         return false;
-    if (integrator_of(&s->render)->layers)
+    if (integrator_traits_of(&s->render)->layers)
         return s->render.layer != LAYER_NORMAL &&
                inert_say(c, "no-normals", "set render.layer=normal", "the layer that the image shows has no normals");
     const inert_remedy remedy = shining_lights(s) > 0 ? inert_set("%s.diffuse=0.7", c->name) : lamp_remedy(s);

@@ -103,21 +103,21 @@ static status copy_light(scene *s, size_t of, const char *name, diagnostic *why)
 
 status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
 {
-    place at;
+    param_place at;
     object_name base;
-    TRY(place_find_object(s, of, &at, why));
+    TRY(param_place_find_object(s, of, &at, why));
     status code = STATUS_OK;
     size_t length = strlen(strcpy(base, of));
     while (length > 1 && base[length - 1] >= '0' && base[length - 1] <= '9')
         base[--length] = 0;
     if ((code = new_name(s, base, name, why)) != STATUS_OK)
         return code;
-    switch (at.group) {
+    switch (at.object_group) {
     case PARAM_SOLID: return copy_solid(s, at.index, name, why);
     case PARAM_LIGHT: return copy_light(s, at.index, name, why);
     case PARAM_MATERIAL:
     case PARAM_MESH:
-    case PARAM_TEXTURE: return copy_object(s, at.group, at.index, name, why);
+    case PARAM_TEXTURE: return copy_object(s, at.object_group, at.index, name, why);
     case PARAM_RENDER:
     case PARAM_CAMERA:
     case PARAM_BACKGROUND:
