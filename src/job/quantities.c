@@ -150,7 +150,7 @@ static size_t solids_of(const job_account *a)
  Q(drawn, "", COUNT, SAME, ROW, "meshes.drawn", NULL, \
    "triangles rasterised into the depth buffer, including those of analytic solids; 0 without a depth buffer", \
    r->meshes.drawn) \
- Q(raster_bytes, "B", COUNT, SAME, ROW, "meshes.drawn_bytes", NULL, \
+ Q(drawn_bytes, "B", COUNT, SAME, ROW, "meshes.drawn_bytes", NULL, \
    "memory of the depth buffer and of the rasterised triangles", r->meshes.raster_bytes) \
  Q(workers, "", COUNT, SAME, ROW, "workers", "threads", "worker threads of the frame", r->worker_count) \
  Q(workers_with_tiles, "", COUNT, LAST, ROW, "workers_with_tiles", NULL, \

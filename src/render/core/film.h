@@ -1,10 +1,10 @@
 /* The film: sums of radiance in 64-bit fixed point, so that the order of summation does not matter. One unit is 2^-44
  * (5.7e-14); a channel holds up to 524288, and one contribution is from 0 to 262144. A value out of range, or not a
  * number, raises the overflow flag, which makes the render an error. Linear light; row 0 is the top. The channels are
- * linear sRGB, or CIE XYZ in a spectral film, whose sums are never negative. A film of random paths is exposed in equal
- * shares of the paths, stored one film after another: their differences give the standard error of the image. Written
- * by expose_at (render/shade/shading.c). Ownership: film_create allocates, film_destroy releases. Different threads may
- * write different pixels. */
+ * linear sRGB, or CIE XYZ in a spectral film, whose sums are never negative. A film of random paths consists of equal
+ * shares of the paths, one film after another: their differences give the standard error. expose_at
+ * (render/shade/shading.c) writes the film. Ownership: film_create allocates, film_destroy releases. Different threads
+ * may write different pixels. */
 #pragma once
 
 #include "base/status.h"

@@ -22,7 +22,7 @@
 #include "render/core/schedule.h"
 #include "render/core/tracer.h"
 
-/* The number of camera rays of one pixel. render/camera/camera_rays.c makes the rays. */
+/* The numbers of camera rays of one pixel. camera_rays_enqueue (render/camera/camera_rays.c) makes the rays. */
 typedef struct camera_sampling {
     int64_t rays;
     int64_t points;   /* upper limit of sample points in the pixel: the largest square grid within it is used */

@@ -31,14 +31,14 @@ static inline void expose_at(tracer *t, int64_t place, double r, double g, doubl
     t->account.overflow |= red | green | blue;
 }
 
-/* Exposes the layer and pixel of a sample key; in a spectral film with the observer's weights at its wavelength. Never
+/* Exposes the share and pixel of a sample key; in a spectral film with the observer's weights at its wavelength. Never
  * inlined, so that the rgb film's code path keeps its registers. */
 static __attribute__((noinline)) void expose_by_sample_key(tracer *t, int64_t sample_key, double r, double g, double b)
 {
     const plan *p = t->target.frame_plan;
     const film *f = t->target.img;
-    const int64_t layer = f->shares == 1 ? 0 : sample_key_sample(sample_key) / p->render.samples % f->shares;
-    const int64_t place = sample_key_pixel(sample_key) + layer * f->width * f->height;
+    const int64_t share = f->shares == 1 ? 0 : sample_key_sample(sample_key) / p->render.samples % f->shares;
+    const int64_t place = sample_key_pixel(sample_key) + share * f->width * f->height;
     if (p->spectral) {
         const double *eye = spectra_row(p->spectral, sample_key)->eye;
         r *= eye[0], g *= eye[1], b *= eye[2];
