@@ -12,8 +12,9 @@ typedef struct lab lab;
 
 typedef struct lab_settings {
     const char *folder; /* nothing outside it is read or written */
-    const char *
-        scene; /* scene file to open, relative to the working directory and below folder; NULL: a room with a floor, a light and a camera */
+    /* Scene file to open, relative to the working directory and below folder; NULL: a room with a floor, a light and a
+     * camera. */
+    const char *scene;
     const char *results; /* folder for the rows of studies: folder itself or below it; it need not exist */
     int port;            /* 0: any free port */
     isa level;

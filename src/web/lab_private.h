@@ -24,8 +24,9 @@ struct lab {
     http_server *server;
     http_route *routes;
     struct api_bound *bound; /* contexts of the routes */
-    pthread_mutex_t
-        state_lock; /* held while the state is read and sent, so that the last event holds the newest state; acquired before all other locks */
+    /* Held while the state is read and sent, so that the last event holds the newest state; acquired before all other
+     * locks. */
+    pthread_mutex_t state_lock;
     pthread_mutex_t publish_lock;
     bool open; /* events may be published */
 };
