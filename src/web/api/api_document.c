@@ -21,10 +21,10 @@ status api_state(call *c)
 status api_scene(call *c)
 {
     uint64_t generation;
-    scene *now = scene_document_take(c->l->scene_document, &generation),
+    scene *current = scene_document_take(c->l->scene_document, &generation),
           *opened = scene_document_take_opened(c->l->scene_document);
-    api_reply_json(c, now && opened ? scene_json(now, opened, generation) : NULL);
-    scene_destroy(now);
+    api_reply_json(c, current && opened ? scene_json(current, opened, generation) : NULL);
+    scene_destroy(current);
     scene_destroy(opened);
     return STATUS_OK;
 }
@@ -161,10 +161,10 @@ status api_redo(call *c)
 
 static bool take_pair(call *c, const char *key, double pair[2])
 {
-    const json_t *given = json_object_get(c->body, key);
-    for (size_t i = 0; given && i < 2; i++) {
-        const json_t *item = json_array_get(given, i);
-        if (json_array_size(given) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
+    const json_t *angles = json_object_get(c->body, key);
+    for (size_t i = 0; angles && i < 2; i++) {
+        const json_t *item = json_array_get(angles, i);
+        if (json_array_size(angles) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
             api_refuse(c, 400, "a camera angle is not a number", "give [YAW, PITCH] in degrees");
             return false;
         }
@@ -192,11 +192,12 @@ status api_camera(call *c)
 status api_scene_file(call *c)
 {
     char *text = NULL;
-    scene *now = scene_document_take(c->l->scene_document, NULL);
-    if (now)
-        lab_clear_default_threads(c->l, now);
-    const status code = now ? scene_write_text(now, scene_path(now), false, &text, &c->why) : out_of_memory(&c->why);
-    scene_destroy(now);
+    scene *current = scene_document_take(c->l->scene_document, NULL);
+    if (current)
+        lab_clear_default_threads(c->l, current);
+    const status code =
+        current ? scene_write_text(current, scene_path(current), false, &text, &c->why) : out_of_memory(&c->why);
+    scene_destroy(current);
     return code == STATUS_OK ? api_send(c, "application/yaml; charset=utf-8", text, strlen(text)) : code;
 }
 
@@ -204,14 +205,14 @@ status api_command(call *c)
 {
     char *text = NULL, *file = api_document_file(c);
     bool complete = false;
-    scene *now = scene_document_take(c->l->scene_document, NULL);
-    const status code = now && file ? command_line(c->l->files, *file ? file : NULL, now, c->l->settings.threads, &text,
-                                                   &complete, &c->why)
-                                    : out_of_memory(&c->why);
+    scene *current = scene_document_take(c->l->scene_document, NULL);
+    const status code = current && file ? command_line(c->l->files, *file ? file : NULL, current,
+                                                       c->l->settings.threads, &text, &complete, &c->why)
+                                        : out_of_memory(&c->why);
     if (code == STATUS_OK)
         api_reply_json(c, json_pack("{s:o,s:b}", "command", json_of_text(text), "complete", (int)complete));
     free(text);
     free(file);
-    scene_destroy(now);
+    scene_destroy(current);
     return code;
 }

@@ -201,17 +201,17 @@ static status draw(call *c, const study *s)
 {
     lab *l = c->l;
     char *output = NULL;
-    bool whole;
+    bool complete;
     if (studies_runs(l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and drawing would disturb it",
                           "draw after it has ended, or stop it");
     if (!studies_begin_drawing(l->studies))
         return api_refuse(c, 409, "figures are already being drawn", "wait until they are finished");
-    const status code = figures_draw(l, s, &output, &whole, &c->why);
+    const status code = figures_draw(l, s, &output, &complete, &c->why);
     studies_end_drawing(l->studies);
     if (code == STATUS_OK)
         api_reply_json(c, json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(output),
-                                    "complete", whole));
+                                    "complete", complete));
     free(output);
     return code;
 }

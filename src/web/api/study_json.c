@@ -109,8 +109,8 @@ static json_t *row_json(const csv *columns, const row_ref *of)
     int bad = 0;
     for (size_t i = 0; columns && i < columns->column_count; i++) {
         const char *name = columns->header[i];
-        const int at = of && of->table != columns ? csv_column(of->table, name) : (int)i;
-        bad |= json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, at) : name));
+        const int column = of && of->table != columns ? csv_column(of->table, name) : (int)i;
+        bad |= json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, column) : name));
     }
     return json_whole(row, !bad);
 }

@@ -224,13 +224,13 @@ static json_t *camera_json(const scene *s)
 
 bool render_worker_json(render_worker *p, json_t *state)
 {
-    scene *now = scene_document_take(p->scene_document, NULL);
+    scene *current = scene_document_take(p->scene_document, NULL);
     pthread_mutex_lock(&p->lock);
     json_t *json = json_pack(
         "{s:o, s:o, s:o, s:o}", "trouble", p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null(),
         "waiting", p->waiting ? json_of_text(p->waiting) : json_null(), "picture",
-        p->newest ? shared_image_json(p->newest) : json_null(), "camera", now ? camera_json(now) : NULL);
+        p->newest ? shared_image_json(p->newest) : json_null(), "camera", current ? camera_json(current) : NULL);
     pthread_mutex_unlock(&p->lock);
-    scene_destroy(now);
+    scene_destroy(current);
     return json_object_update_new(state, json) == 0;
 }

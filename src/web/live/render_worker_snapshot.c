@@ -23,10 +23,10 @@ bool render_worker_must_end(void *of)
 {
     render_worker *p = of;
     pthread_mutex_lock(&p->lock);
-    const bool now = p->stop || p->waiting;
+    const bool stopping = p->stop || p->waiting;
     pthread_mutex_unlock(&p->lock);
     const bool let_through = p->interrupted >= INTERRUPTED_MAX && clock_wall_s() - p->started_s < let_through_s;
-    return now || (render_worker_is_stale(p) && !let_through) || (live_is_due(p->live_slime) && p->pass > 0);
+    return stopping || (render_worker_is_stale(p) && !let_through) || (live_is_due(p->live_slime) && p->pass > 0);
 }
 
 /* Simulating a slime up to its time_s may take long: it is interrupted by a newer document or a command to the live

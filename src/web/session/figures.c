@@ -79,9 +79,9 @@ static bool script_needs_study(const lab *l, const char *figure, const char *of,
             if (strncmp(line, key, sizeof key - 1) != 0)
                 continue;
             *has_needs = true;
-            for (const char *at = line + sizeof key - 1; *at == ' ' && !needs; at += strcspn(at, " \n")) {
-                at += strspn(at, " ");
-                needs = names_study_table(at, strcspn(at, " \n"), of);
+            for (const char *word = line + sizeof key - 1; *word == ' ' && !needs; word += strcspn(word, " \n")) {
+                word += strspn(word, " ");
+                needs = names_study_table(word, strcspn(word, " \n"), of);
             }
         }
     }

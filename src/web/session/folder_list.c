@@ -152,18 +152,18 @@ static void visit_folder(listing *l, const char *name)
     DIR *d = path ? opendir(path) : NULL;
     l->out_of_memory |= !path;
     free(path);
-    names here = {.name = NULL};
+    names found = {.name = NULL};
     for (const struct dirent *e; d && !l->out_of_memory && l->entries < ENTRIES_MAX && (e = readdir(d)); l->entries++)
         if (e->d_name[0] != '.' && is_text(e->d_name))
-            add_name(l, &here, join(name, e->d_name));
+            add_name(l, &found, join(name, e->d_name));
     if (d)
         closedir(d);
-    sort(&here);
-    for (size_t i = 0; i < here.count && l->files < FOLDER_FILES_MAX; i++) {
-        visit_entry(l, here.name[i]);
-        here.name[i] = NULL;
+    sort(&found);
+    for (size_t i = 0; i < found.count && l->files < FOLDER_FILES_MAX; i++) {
+        visit_entry(l, found.name[i]);
+        found.name[i] = NULL;
     }
-    forget(&here);
+    forget(&found);
 }
 
 static json_t *tell(const listing *l)

@@ -15,8 +15,8 @@ struct studies {
     lab *l;
     pthread_mutex_t life; /* held while a thread is started or joined; acquired before lock */
     pthread_t thread;
-    bool begun; /* a thread must be joined */
-    study *s;   /* used by the thread while it runs */
+    bool started; /* a thread must be joined */
+    study *s;     /* used by the thread while it runs */
     atomic_bool stop, ending, drawing;
 
     pthread_mutex_t lock; /* guards the fields below */
@@ -42,10 +42,10 @@ status studies_create(lab *l, studies **out, diagnostic *why)
 /* The life lock is held. */
 static void join(studies *st)
 {
-    if (!st->begun)
+    if (!st->started)
         return;
     pthread_join(st->thread, NULL);
-    st->begun = false;
+    st->started = false;
     study_destroy(st->s);
     st->s = NULL;
 }
@@ -171,8 +171,8 @@ static status begin(studies *st, study *s, diagnostic *why)
     join(st);
     st->s = s;
     atomic_store(&st->stop, false);
-    st->begun = pthread_create(&st->thread, NULL, run, st) == 0;
-    if (st->begun)
+    st->started = pthread_create(&st->thread, NULL, run, st) == 0;
+    if (st->started)
         return STATUS_OK;
     st->s = NULL;
     pthread_mutex_lock(&st->lock);

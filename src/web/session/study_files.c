@@ -16,9 +16,10 @@ static char *name_of(const lab *l, const char *file)
     document *d = NULL;
     if (folder_path(l->files, file, true, &path, NULL) == STATUS_OK &&
         document_read_below(path, folder_real(l->files), &d, NULL) == STATUS_OK) {
-        const node *root = document_root(d), *given = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
-        if (given && given->kind == NODE_SCALAR && given->text[0])
-            name = strdup(given->text);
+        const node *root = document_root(d),
+                   *name_node = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
+        if (name_node && name_node->kind == NODE_SCALAR && name_node->text[0])
+            name = strdup(name_node->text);
     }
     document_destroy(d);
     free(path);
