@@ -32,7 +32,7 @@ status api_scene(call *c)
 /* --- set and reset --- */
 
 /* Writes one number or word; false for other JSON values. */
-static bool put_item(FILE *out, const json_t *value)
+static bool write_item(FILE *out, const json_t *value)
 {
     char text[NUMBER_TEXT_MAX];
     const char *word = json_is_boolean(value) ? (json_is_true(value) ? "on" : "off") : json_string_value(value);
@@ -49,9 +49,9 @@ static char *value_text(const json_t *value)
     text_writer writer;
     if (text_writer_open(&writer, NULL) != STATUS_OK)
         return NULL;
-    bool good = json_is_array(value) || put_item(writer.stream, value);
+    bool good = json_is_array(value) || write_item(writer.stream, value);
     for (size_t i = 0; i < json_array_size(value) && good; i++)
-        good = (i == 0 || fputc(',', writer.stream) >= 0) && put_item(writer.stream, json_array_get(value, i));
+        good = (i == 0 || fputc(',', writer.stream) >= 0) && write_item(writer.stream, json_array_get(value, i));
     text_writer_end(&writer, good ? STATUS_OK : STATUS_BAD_INPUT, &joined, NULL, NULL);
     return joined;
 }
@@ -140,7 +140,7 @@ status api_reset(call *c)
     return api_changed(c, code, generation);
 }
 
-static status go_back(call *c, bool redo)
+static status undo_or_redo(call *c, bool redo)
 {
     uint64_t generation = 0;
     c->refused = 409;
@@ -149,12 +149,12 @@ static status go_back(call *c, bool redo)
 
 status api_undo(call *c)
 {
-    return go_back(c, false);
+    return undo_or_redo(c, false);
 }
 
 status api_redo(call *c)
 {
-    return go_back(c, true);
+    return undo_or_redo(c, true);
 }
 
 /* --- the camera --- */

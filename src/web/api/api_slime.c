@@ -68,7 +68,7 @@ static bool take_hand(call *c, bool needed, int *hand)
     return is_one;
 }
 
-static bool take_place(call *c, double *x, double *y)
+static bool take_point(call *c, double *x, double *y)
 {
     const double limit = 1e6;
     if (!api_take_number(c, "x", true, x) || !api_take_number(c, "y", true, y))
@@ -82,7 +82,7 @@ static bool take_place(call *c, double *x, double *y)
 status api_grab(call *c)
 {
     double x, y, reach = 0.0;
-    if (!take_place(c, &x, &y) || !api_take_number(c, "reach", false, &reach))
+    if (!take_point(c, &x, &y) || !api_take_number(c, "reach", false, &reach))
         return STATUS_BAD_INPUT;
     if (reach < 0.0)
         return api_refuse(c, 400, "'reach' is below 0", "give scene units; 0 or omitted: 0.3 of the slime's radius");
@@ -122,7 +122,7 @@ status api_move_hand(call *c)
 {
     double x, y, depth = 0.0;
     int hand;
-    if (!take_hand(c, true, &hand) || !take_place(c, &x, &y) || !api_take_number(c, "depth", false, &depth))
+    if (!take_hand(c, true, &hand) || !take_point(c, &x, &y) || !api_take_number(c, "depth", false, &depth))
         return STATUS_BAD_INPUT;
     live *live_slime = render_worker_live(c->l->render_worker);
     vec3 where;

@@ -125,7 +125,7 @@ status api_study(call *c)
 
 /* --- run and stop --- */
 
-static status tell_run(call *c, status code)
+static status reply_run(call *c, status code)
 {
     return code == STATUS_OK ? api_reply_json(c, studies_json(c->l->studies)) : code;
 }
@@ -134,12 +134,12 @@ status api_study_run(call *c)
 {
     study *s;
     TRY(take_study(c, &s));
-    return tell_run(c, studies_start(c->l->studies, s, &c->why));
+    return reply_run(c, studies_start(c->l->studies, s, &c->why));
 }
 
 status api_study_stop(call *c)
 {
-    return tell_run(c, studies_stop(c->l->studies, http_path_value(c->request, "name"), &c->why));
+    return reply_run(c, studies_stop(c->l->studies, http_path_value(c->request, "name"), &c->why));
 }
 
 /* --- results --- */

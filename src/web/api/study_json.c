@@ -13,7 +13,7 @@ typedef struct unit_search {
     const char *path, *unit;
 } unit_search;
 
-static status look_for_unit(void *context, const char *path, const param *row, const char *value)
+static status find_unit(void *context, const char *path, const param *row, const char *value)
 {
     (void)value;
     unit_search *search = context;
@@ -28,7 +28,7 @@ static status look_for_unit(void *context, const char *path, const param *row, c
 static const char *unit_of(const study *s, const char *path)
 {
     unit_search search = {path, ""};
-    scene_each_param(s->base, look_for_unit, &search);
+    scene_each_param(s->base, find_unit, &search);
     return search.unit;
 }
 

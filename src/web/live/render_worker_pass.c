@@ -92,7 +92,7 @@ void render_worker_render_pass(render_worker *p)
     bool good = false;
     p->started_s = clock_wall_s();
     pthread_rwlock_rdlock(&p->snapshot_lock);
-    const status code = job_render(p->with, &view, &options, &account, &why);
+    const status code = job_render(p->renderer, &view, &options, &account, &why);
     const render_result *result = account.result;
     if (code == STATUS_OK)
         good = describe(p, &account, pass, moving, &shown);

@@ -131,7 +131,7 @@ static bool is_name(const char *name)
 
 /* If the folder is the working directory, a name is a path already; but a leading "-" would look like an option to
  * other programs. */
-static char *join(const folder *f, const char *name)
+static char *join_path(const folder *f, const char *name)
 {
     if (strcmp(f->given, ".") == 0 && name[0] != '-')
         return strdup(name);
@@ -173,7 +173,7 @@ status folder_path(const folder *f, const char *name, bool must_exist, char **pa
     if (!is_name(name))
         return diagnose(why, STATUS_BAD_INPUT, "give a path relative to the folder, without '.' and '..'",
                         "'%.300s' is not a valid file name", name);
-    char *full_path = join(f, name);
+    char *full_path = join_path(f, name);
     if (!full_path)
         return out_of_memory(why);
     errno = 0;

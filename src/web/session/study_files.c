@@ -54,7 +54,7 @@ typedef struct name_search {
     char *file;
 } name_search;
 
-static bool is_wanted(void *context, const char *name, const char *file)
+static bool match_name(void *context, const char *name, const char *file)
 {
     name_search *w = context;
     if (strcmp(name, w->name) != 0)
@@ -66,7 +66,7 @@ static bool is_wanted(void *context, const char *name, const char *file)
 status study_find(const lab *l, const char *name, char **file, diagnostic *why)
 {
     name_search w = {.name = name};
-    const status code = study_each(l, is_wanted, &w, why);
+    const status code = study_each(l, match_name, &w, why);
     *file = w.file;
     return code;
 }
