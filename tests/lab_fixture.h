@@ -1,5 +1,5 @@
-/* A laboratory in a folder of its own, for tests of web/lab.h, and a client of it. Ownership: room_open gives,
- * room_close stops the laboratory and removes the folder; texts and JSON that come back are the caller's. */
+/* A laboratory in a temporary folder for tests of web/lab.h, with a client. Ownership: room_open creates, room_close
+ * stops the laboratory and removes the folder; returned strings and JSON belong to the caller. */
 #pragma once
 
 #include "base/file.h"
@@ -14,7 +14,7 @@ typedef struct lab_room {
     const http_server *server;
 } lab_room;
 
-/* A ball on a chequered floor: quick to trace, and looks otherwise when anything changes. */
+/* A ball on a chequered floor: quick to trace, and every change affects the image. */
 #define BALL_SCENE                                                                                               \
     "title: Ball\nrender: {width: 64, height: 48, depth: 3}\ncamera: {position: [0, 2, -6], target: [0, 1, "     \
     "0]}\nbackground: {color: [0.5, 0.7, 0.9]}\n"                                                                \
@@ -79,12 +79,12 @@ static inline void room_close(lab_room *room)
     nftw(room->folder, room_unlink, 16, FTW_DEPTH | FTW_PHYS);
 }
 
-/* Asks, wants that code, and gives the body as JSON (NULL where it is none). */
+/* Sends a request, checks the code, and returns the body as JSON (NULL if it is not JSON). */
 static inline json_t *room_ask(const lab_room *room, const char *method, const char *target, const char *body, int code)
 {
     char *reply = client_ask(room->server, method, target, body ? "Content-Type: application/json\r\n" : "", body);
     if (reply_code(reply) != code)
-        fail_msg("%s %s %s: %d is wanted, and this came: %.800s", method, target, body ? body : "", code, reply);
+        fail_msg("%s %s %s: expected %d, got: %.800s", method, target, body ? body : "", code, reply);
     json_t *json = json_loads(reply_body(reply), JSON_DECODE_ANY, NULL);
     free(reply);
     return json;
@@ -95,7 +95,7 @@ static inline json_t *room_get(const lab_room *room, const char *target)
     return room_ask(room, "GET", target, NULL, 200);
 }
 
-/* The generation that a change made. */
+/* The generation of a change. */
 static inline json_int_t room_post(const lab_room *room, const char *target, const char *body)
 {
     json_t *made = room_ask(room, "POST", target, body, 200);
@@ -104,7 +104,7 @@ static inline json_int_t room_post(const lab_room *room, const char *target, con
     return generation;
 }
 
-/* A request that must be refused; the error's text, with its remedy behind a semicolon. */
+/* A request that must be refused; returns "error; remedy". */
 static inline char *room_refused(const lab_room *room, const char *method, const char *target, const char *body,
                                  int code)
 {
@@ -119,7 +119,7 @@ static inline char *room_refused(const lab_room *room, const char *method, const
     return text;
 }
 
-/* Waits for the final picture of what is on the desk, and gives its film's hash. */
+/* Waits for the final image of the scene document and returns the hash of its film. */
 static inline char *room_film(const lab_room *room)
 {
     free(client_ask(room->server, "GET", "/api/picture.png?wait=1", "", NULL));

@@ -1,5 +1,5 @@
-/* A laboratory with a tiny study, for tests of web/session/studies.h and what came of studies. Include http_fixture.h's
- * needs (cmocka) first. */
+/* A laboratory with a tiny study, for tests of web/session/studies.h and of results. Include cmocka.h and the
+ * headers it requires first. */
 #pragma once
 
 #include "lab_fixture.h"
@@ -63,7 +63,7 @@ static inline void wait_for_rows(const lab_room *room, json_int_t count)
         ;
 }
 
-/* The state's part when it has ended. */
+/* The state's study after its end. */
 static inline json_t *wait_for_end(const lab_room *room)
 {
     for (;;) {

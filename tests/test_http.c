@@ -1,5 +1,5 @@
-/* The lab's server: who may pass, what each refusal says, bounds on bodies, rates and slow clients. Its clients are
- * plain sockets. */
+/* Tests of the HTTP server: access checks, the error of each, limits of bodies and rates, slow clients. The clients
+ * are plain sockets. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -81,13 +81,13 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* Asks, checks the code and frees. */
+/* Sends a request and checks the code of the reply. */
 static void expect(const http_server *s, int code, const char *method, const char *target, const char *heads,
                    const char *body)
 {
     char *reply = client_ask(s, method, target, heads, body);
     if (reply_code(reply) != code)
-        fail_msg("%s %s answered %.200s and not %d", method, target, reply, code);
+        fail_msg("%s %s replied %.200s, expected %d", method, target, reply, code);
     free(reply);
 }
 
@@ -95,12 +95,12 @@ static void expect_as(const http_server *s, int code, const char *method, const 
 {
     char *reply = client_ask_as(http_port(s), method, target, heads, NULL);
     if (reply_code(reply) != code)
-        fail_msg("%s with %s answered %.200s and not %d", target, heads, reply, code);
+        fail_msg("%s with %s replied %.200s, expected %d", target, heads, reply, code);
     free(reply);
     free(heads);
 }
 
-static void only_the_token_lets_in(void **state)
+static void only_the_token_grants_access(void **state)
 {
     const http_server *s = *state;
     const int port = http_port(s);
@@ -189,7 +189,7 @@ static void foreign_hosts_and_origins_are_refused(void **state)
               text_format("Host: 127.0.0.1:%d\r\nOrigin: http://127.0.0.1:%d\r\n%s", port, port, token));
 }
 
-static void paths_do_not_climb(void **state)
+static void paths_do_not_lead_upwards(void **state)
 {
     static const char *const bad[] = {"/../etc/passwd",
                                       "/%2e%2e/etc/passwd",
@@ -227,7 +227,7 @@ static void paths_do_not_climb(void **state)
         "GET /hello%cx HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\nAuthorization: Bearer %s\r\n\r\n", 0,
         http_port(*state), http_token(*state));
     char *reply = client_raw(http_port(*state), nul, (size_t)size);
-    /* libmicrohttpd ends the line there: so does all else. */
+    /* libmicrohttpd ends the request line there, and so do our checks. */
     assert_true(reply_code(reply) == 400 || strstr(reply_body(reply), "\"path\":\"/hello\""));
     free(reply);
 }
@@ -245,7 +245,7 @@ static void routes_get_their_values(void **state)
     expect(*state, 500, "GET", "/nothing", "", NULL);
 }
 
-static void wrong_methods_are_told_the_right_ones(void **state)
+static void wrong_methods_get_the_allowed_ones(void **state)
 {
     char *reply = client_ask(*state, "PATCH", "/number", "Content-Type: application/json\r\n", "1");
     assert_int_equal(reply_code(reply), 405);
@@ -262,7 +262,7 @@ static void wrong_methods_are_told_the_right_ones(void **state)
     expect(*state, 405, "OPTIONS", "/hello", "", NULL);
 }
 
-static void every_reply_is_guarded(void **state)
+static void every_reply_has_security_headers(void **state)
 {
     static const struct {
         const char *method, *target, *heads;
@@ -289,7 +289,7 @@ static void every_reply_is_guarded(void **state)
         char *reply = client_ask(*state, asked[i].method, asked[i].target, asked[i].heads, NULL);
         for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
             assert_true(reply_has(reply, lines[k]));
-        if (reply_code(reply) >= 400) { /* and says what is wrong, and what to do */
+        if (reply_code(reply) >= 400) { /* with an error and a remedy */
             json_t *error = json_loads(reply_body(reply), 0, NULL);
             assert_non_null(json_string_value(json_object_get(error, "error")));
             assert_non_null(json_string_value(json_object_get(error, "remedy")));
@@ -322,7 +322,7 @@ static void the_page_is_embedded(void **state)
     free(style);
 }
 
-static void what_changes_something_is_json(void **state)
+static void changes_are_json(void **state)
 {
     expect(*state, 415, "PUT", "/number", "", "1");
     expect(*state, 415, "PUT", "/number", "Content-Type: text/plain\r\n", "1");
@@ -338,7 +338,7 @@ static void what_changes_something_is_json(void **state)
     free(reply);
 }
 
-/* In pieces of 1000 bytes and one of the rest. */
+/* In chunks of 1000 bytes and one of the rest. */
 static char *ask_in_chunks(const http_server *s, size_t size)
 {
     const size_t room = size + 16 * (size / 1000 + 2);
@@ -380,7 +380,7 @@ static void bodies_are_bounded(void **state)
     reply = ask_in_chunks(*state, BODY_MAX + 1);
     assert_int_equal(reply_code(reply), 413);
     free(reply);
-    free(ask_in_chunks(*state, 20 * BODY_MAX)); /* cut off, and the server lives */
+    free(ask_in_chunks(*state, 20 * BODY_MAX)); /* the connection is closed, the server keeps running */
     reply =
         client_ask(*state, "POST", "/echo", "Content-Type: application/json\r\nContent-Length: 99999999999\r\n", NULL);
     assert_int_equal(reply_code(reply), 413);
@@ -411,12 +411,12 @@ static void a_thousand_requests_in_a_row(void **state)
         expect(s, 200, "GET", "/hello", "", NULL);
 }
 
-static void floods_are_slowed(void **state)
+static void floods_are_limited(void **state)
 {
     (void)state;
     http_server *s = start((http_settings){.requests_per_s = 1});
     int many = 0;
-    for (int i = 0; i < 500 && !many; i++) { /* who has no token holds nobody up */
+    for (int i = 0; i < 500 && !many; i++) { /* clients without the token do not slow down the others */
         char *heads = text_format("Host: 127.0.0.1:%d\r\n", http_port(s)),
              *reply = client_ask_as(http_port(s), "GET", "/hello", heads, NULL);
         many += reply_code(reply) == 429;
@@ -447,7 +447,7 @@ static void slow_clients_are_cut_off(void **state)
     const int dribble = client_connect(http_port(s));
     client_send(dribble, "GET /", 5);
     int sent = 0;
-    while (client_send(dribble, "a", 1) && sent++ < 600) /* moves all the time, and would fill its 32 KiB in an hour */
+    while (client_send(dribble, "a", 1) && sent++ < 600) /* active all the time, but would fill its 32 KiB in an hour */
         usleep(100000);
     assert_true(sent < 600);
     close(dribble);
@@ -461,7 +461,7 @@ static void slow_clients_are_cut_off(void **state)
     http_stop(s);
 }
 
-static void a_port_is_had_once(void **state)
+static void a_port_is_used_once(void **state)
 {
     const http_server *s = *state;
     http_server *second;
@@ -479,7 +479,7 @@ static void a_port_is_had_once(void **state)
     const int port = http_port(other);
     expect(other, 200, "GET", "/hello", "", NULL);
     http_stop(other);
-    other = start((http_settings){.port = port}); /* at once again */
+    other = start((http_settings){.port = port}); /* immediately again */
     assert_int_equal(http_port(other), port);
     http_stop(other);
 }
@@ -487,20 +487,20 @@ static void a_port_is_had_once(void **state)
 int main(void)
 {
     const struct CMUnitTest cases[] = {
-        cmocka_unit_test(only_the_token_lets_in),
+        cmocka_unit_test(only_the_token_grants_access),
         cmocka_unit_test(the_first_address_gives_a_cookie),
         cmocka_unit_test(foreign_hosts_and_origins_are_refused),
-        cmocka_unit_test(paths_do_not_climb),
+        cmocka_unit_test(paths_do_not_lead_upwards),
         cmocka_unit_test(routes_get_their_values),
-        cmocka_unit_test(wrong_methods_are_told_the_right_ones),
-        cmocka_unit_test(every_reply_is_guarded),
+        cmocka_unit_test(wrong_methods_get_the_allowed_ones),
+        cmocka_unit_test(every_reply_has_security_headers),
         cmocka_unit_test(the_page_is_embedded),
-        cmocka_unit_test(what_changes_something_is_json),
+        cmocka_unit_test(changes_are_json),
         cmocka_unit_test(bodies_are_bounded),
         cmocka_unit_test(a_thousand_requests_in_a_row),
-        cmocka_unit_test(floods_are_slowed),
+        cmocka_unit_test(floods_are_limited),
         cmocka_unit_test(slow_clients_are_cut_off),
-        cmocka_unit_test(a_port_is_had_once),
+        cmocka_unit_test(a_port_is_used_once),
     };
     return cmocka_run_group_tests_name("http", cases, set_up, tear_down);
 }

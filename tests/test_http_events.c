@@ -1,5 +1,5 @@
-/* Streams of events: how many, who gets what, clients that are slow or leave, a server that stops while they listen.
- * And requests of random bytes. */
+/* Tests of event streams: their number, delivery, slow or leaving clients, a server that stops meanwhile; and of
+ * requests with random bytes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@ static http_server *start(http_settings s)
     return server;
 }
 
-/* Asks for the stream and reads the reply's head. */
+/* Opens the stream and reads the header of the reply. */
 static int listen_to(const http_server *s, int *code)
 {
     const int fd = client_connect(http_port(s));
@@ -39,11 +39,11 @@ static int listen_to(const http_server *s, int *code)
     return fd;
 }
 
-/* Reads up to the end of that text, and not beyond; false when the stream ends before. */
+/* Reads exactly to the end of that text; false if the stream ends before. */
 static bool read_until(int fd, const char *end)
 {
     enum { BLOCK = 65536, KEEP = 256 };
-    static char block[KEEP + BLOCK]; /* the last bytes of what was read before, and what is there now */
+    static char block[KEEP + BLOCK]; /* the last bytes read before, and the new ones */
     const size_t length = strlen(end);
     size_t kept = 0;
     assert_true(length <= KEEP);
@@ -90,7 +90,7 @@ static void all_listeners_get_events(void **state)
         assert_true(read_until(fd[i], "event: tick\ndata: {\"n\":7,\"text\":\"a\\nb\"}\n\n"));
     for (int i = 30; i < 40; i++)
         close(fd[i]);
-    wait_for_clients(s, 30); /* that they left is noticed, though nobody publishes */
+    wait_for_clients(s, 30); /* the server notices that they left without an event */
     int code, late = listen_to(s, &code);
     assert_int_equal(code, 200);
     publish(s, "tock", json_integer(8));
@@ -118,7 +118,8 @@ static void slow_listeners_get_the_last_state(void **state)
     char *filling = malloc(SIZE + 1), end[64];
     memset(filling, 'x', SIZE);
     filling[SIZE] = 0;
-    /* 16 MB: more than sockets hold. The fast one reads each before the next is sent; the slow one nothing. */
+    /* 16 MB, more than the sockets' buffers. The fast client reads each event before the next is sent; the slow one
+     * reads nothing. */
     for (int i = 0; i < EVENTS; i++) {
         publish(s, "state", json_pack("[i, s, i]", i, filling, i));
         snprintf(end, sizeof end, "x\",%d]\n\n", i);
@@ -127,7 +128,7 @@ static void slow_listeners_get_the_last_state(void **state)
     publish(s, "other", json_pack("[i]", EVENTS));
     shutdown(fast, SHUT_RDWR);
     wait_for_clients(s, 1);
-    /* One that reads at last gets what was on its way, then the last state and the other event. */
+    /* When the slow client finally reads, it gets the event being sent, then the last state and the other event. */
     snprintf(end, sizeof end, "data: [%d]\n\n", EVENTS);
     char *text = NULL;
     size_t size = 0, room = 0;
@@ -176,7 +177,7 @@ static void many_names_do_not_fill_memory(void **state)
 static void a_stop_leaves_nothing_behind(void **state)
 {
     (void)state;
-    http_stop(start((http_settings){0})); /* what libraries open once */
+    http_stop(start((http_settings){0})); /* libraries open some files only once */
     const int files = count_entries("/proc/self/fd"), threads = count_entries("/proc/self/task");
     http_server *s = start((http_settings){0});
     const char *const get = "GET /a/b HTTP/1.1\r\nHost: ",
@@ -200,7 +201,7 @@ static void a_stop_leaves_nothing_behind(void **state)
         close(fd[i]);
 }
 
-/* A good request with some bytes changed, cut, repeated or put in. */
+/* A valid request with some bytes changed, cut, repeated or inserted. */
 static size_t mutate(uint64_t *seed, char *to, const char *good, size_t size)
 {
     static const char *const pieces[] = {"\r\n",
@@ -245,8 +246,8 @@ static size_t mutate(uint64_t *seed, char *to, const char *good, size_t size)
     return size;
 }
 
-/* CUVETTE_HTTP_FUZZ: how many requests. Half of the connections close at once, the others say that nothing more comes
- * and read what there is. */
+/* CUVETTE_HTTP_FUZZ: the number of requests. Half of the connections close at once, the others shut down writing and
+ * read the reply. */
 static void random_requests_do_no_harm(void **state)
 {
     (void)state;

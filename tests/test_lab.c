@@ -1,5 +1,5 @@
-/* The laboratory's API from outside: the desk, the camera, the picture, and who is refused. Files, traces, comparisons,
- * slimes and studies have tests of their own. */
+/* Tests of the laboratory's API: the scene document, the camera, the image, and refused clients. Files, traces,
+ * comparisons, slimes and studies have their own tests. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -74,7 +74,7 @@ static void parameters_are_set_as_by_the_option(void **state)
     assert_param("render.depth", "value", 3);
 }
 
-/* How many notes came with what was set; the first's place and words, when it is asked for them. */
+/* Sets values and returns the number of notes in the reply; checks place and words of the first if they are given. */
 static size_t notes_on(const char *body, const char *place, const char *words)
 {
     json_t *answer = room_ask(&room, "POST", "/api/set", body, 200);
@@ -90,7 +90,7 @@ static size_t notes_on(const char *body, const char *place, const char *words)
     return n;
 }
 
-static void what_does_nothing_is_told_when_it_is_set(void **state)
+static void ineffective_values_are_noted(void **state)
 {
     (void)state;
     assert_int_equal(notes_on("{\"set\": {\"render.paths\": 7}}", "render.paths", "path integrator"), 1);
@@ -134,7 +134,7 @@ static void wrong_values_are_refused_with_a_remedy(void **state)
     assert_refused("GET", "/api/nothing", NULL, 404, "");
     assert_refused("GET", "/api/set", NULL, 405, "");
     json_t *after = room_get(&room, "/api/scene");
-    assert_true(json_equal(before, after)); /* not even the generation */
+    assert_true(json_equal(before, after)); /* not even the generation has changed */
     json_decref(before);
     json_decref(after);
 }
@@ -145,9 +145,8 @@ static vec3 vector_of(const json_t *list)
                      json_number_value(json_array_get(list, 2)));
 }
 
-/* As much as a body may hold is looked at once: were it copied for each number, nobody would live to hear the answer.
- */
-static void the_longest_list_is_soon_refused(void **state)
+/* The whole body is scanned once: copying it for each number would take hours. */
+static void the_longest_list_is_refused_quickly(void **state)
 {
     (void)state;
     enum { NUMBERS = 500000 };
@@ -195,10 +194,10 @@ static void the_camera_orbits_turns_and_steps(void **state)
     eye now = view_now();
     assert_same_place(now.target, first.target);
     assert_near(vec3_length(vec3_sub(now.at, now.target)), vec3_length(vec3_sub(first.at, first.target)));
-    /* Seen from above the way to the target has turned by 30 degrees from +z to +x. */
+    /* Seen from above, the direction to the target has turned by 30 degrees from +z to +x. */
     assert_near(atan2(now.forward.x, now.forward.z) * 180.0 / M_PI, 30.0);
     assert_near(now.forward.y, first.forward.y);
-    room_post(&room, "/api/camera", "{\"orbit\": [0, 300]}"); /* no further than nearly above */
+    room_post(&room, "/api/camera", "{\"orbit\": [0, 300]}"); /* clamped to nearly straight down */
     now = view_now();
     assert_near(asin(-now.forward.y) * 180.0 / M_PI, 89.5);
     room_post(&room, "/api/undo", "{}");
@@ -214,7 +213,7 @@ static void the_camera_orbits_turns_and_steps(void **state)
     assert_same_place(now.at,
                       vec3_add(first.at, vec3_add(vec3_scale(first.right, 0.5), vec3_scale(first.forward, 2.0))));
     assert_same_place(now.forward, first.forward);
-    /* Not aimed any more. */
+    /* The camera has no target any more. */
     room_post(&room, "/api/set", "{\"set\": {\"camera.yaw_deg\": 20, \"camera.pitch_deg\": -10}}");
     room_post(&room, "/api/camera", "{\"turn\": [5, 3]}");
     now = view_now();
@@ -222,8 +221,7 @@ static void the_camera_orbits_turns_and_steps(void **state)
     assert_near(asin(now.forward.y) * 180.0 / M_PI, -7.0);
 }
 
-/* The film that `cuvette render` would make of what GET /api/command says, options taken apart by hand: blanks and
- * quotes are all there is. */
+/* Renders the film of the command from GET /api/command, split by hand: it contains only blanks and quotes. */
 static char *film_of_command(void)
 {
     json_t *json = room_get(&room, "/api/command");
@@ -269,7 +267,7 @@ static void the_command_renders_the_same_film(void **state)
     free(made);
 }
 
-/* Which says where its pictures lie from where it lies itself. */
+/* The paths of its textures are relative to its own folder. */
 static void a_command_of_a_file_in_another_folder(void **state)
 {
     (void)state;
@@ -311,7 +309,7 @@ static void the_scene_is_a_file_too(void **state)
     char *value;
     assert_int_equal(scene_get(s, "ball.ior", &value, NULL), STATUS_OK);
     assert_string_equal(value, "1.8");
-    assert_int_equal(s->render.threads, 1); /* the two that it has here are the laboratory's */
+    assert_int_equal(s->render.threads, 1); /* the 2 here is the laboratory's default */
     free(value);
     scene_destroy(s);
     free(path);
@@ -324,7 +322,7 @@ static const char *note_of(const json_t *json, const char *key)
     return json_string_value(json_object_get(json_array_get(json_object_get(json, "notes"), 0), key));
 }
 
-static void what_looks_wrong_is_noted(void **state)
+static void the_linters_notes_are_listed(void **state)
 {
     (void)state;
     room_post(&room, "/api/set", "{\"set\": {\"render.depth\": 12}}");
@@ -340,7 +338,7 @@ static void what_looks_wrong_is_noted(void **state)
     json_decref(json);
 }
 
-static void pictures_say_what_they_show(void **state)
+static void images_have_their_generation(void **state)
 {
     (void)state;
     const json_int_t generation = room_post(&room, "/api/set", "{\"set\": {\"ball.radius\": 0.8}}");
@@ -359,7 +357,7 @@ static void pictures_say_what_they_show(void **state)
     free(line);
 }
 
-static void nobody_else_is_served(void **state)
+static void other_clients_are_refused(void **state)
 {
     (void)state;
     static const char *const targets[] = {"/",           "/api/state", "/api/scene",   "/api/picture.png",
@@ -395,7 +393,7 @@ static void nobody_else_is_served(void **state)
     free(host);
 }
 
-static void no_scene_is_a_room_to_begin_with(void **state)
+static void no_scene_opens_an_empty_room(void **state)
 {
     (void)state;
     lab_room empty;
@@ -446,18 +444,18 @@ int main(void)
 #define IN_A_ROOM(test) cmocka_unit_test_setup_teardown(test, open_room, close_room)
     const struct CMUnitTest cases[] = {
         IN_A_ROOM(parameters_are_set_as_by_the_option),
-        IN_A_ROOM(what_does_nothing_is_told_when_it_is_set),
+        IN_A_ROOM(ineffective_values_are_noted),
         IN_A_ROOM(wrong_values_are_refused_with_a_remedy),
         IN_A_ROOM(the_camera_orbits_turns_and_steps),
         IN_A_ROOM(the_command_renders_the_same_film),
         IN_A_ROOM(the_scene_is_a_file_too),
-        IN_A_ROOM(what_looks_wrong_is_noted),
-        IN_A_ROOM(pictures_say_what_they_show),
-        IN_A_ROOM(nobody_else_is_served),
-        IN_A_ROOM(no_scene_is_a_room_to_begin_with),
+        IN_A_ROOM(the_linters_notes_are_listed),
+        IN_A_ROOM(images_have_their_generation),
+        IN_A_ROOM(other_clients_are_refused),
+        IN_A_ROOM(no_scene_opens_an_empty_room),
         IN_A_ROOM(bad_starts_are_refused),
         IN_A_ROOM(a_command_of_a_file_in_another_folder),
-        IN_A_ROOM(the_longest_list_is_soon_refused),
+        IN_A_ROOM(the_longest_list_is_refused_quickly),
     };
     return cmocka_run_group_tests_name("lab", cases, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* How coarse a film's frames become: settled soon, as fine as there is time for, and no to and fro. */
+/* Tests of the adaptive resolution: it settles quickly, at the finest step that the time allows, without
+ * oscillation. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +10,7 @@
 
 static const double wanted_s = 0.03;
 
-/* A frame of all pixels takes so long. */
+/* full_s: the time of a frame at full resolution. */
 static int settle(adaptive_resolution *p, double full_s, int frames)
 {
     for (int i = 0; i < frames; i++)
@@ -18,7 +19,7 @@ static int settle(adaptive_resolution *p, double full_s, int frames)
     return adaptive_resolution_divisor(p);
 }
 
-static void it_settles_where_there_is_time(void **state)
+static void it_settles_at_the_available_time(void **state)
 {
     (void)state;
     static const double full_s[] = {0.001, 0.02, 0.05, 0.1, 0.3, 1.0, 3.0};
@@ -33,7 +34,7 @@ static void it_settles_where_there_is_time(void **state)
         }
 }
 
-static void it_has_bounds(void **state)
+static void it_has_limits(void **state)
 {
     (void)state;
     adaptive_resolution p = {.step = 3};
@@ -43,7 +44,7 @@ static void it_has_bounds(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(it_settles_where_there_is_time),
-                                       cmocka_unit_test(it_has_bounds)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(it_settles_at_the_available_time),
+                                       cmocka_unit_test(it_has_limits)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,8 +12,7 @@
 #include "web/lab_private.h"
 #include "scene/model/scene.h"
 
-/* The page's camera where it is rolled: its moves follow the image, and a place of the image is the tracer's ray
- * there. */
+/* Tests of a rolled camera on the page: its moves follow the image, and an image point maps to the tracer's ray. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -59,8 +58,8 @@ static void a_step_goes_along_the_image(void **state)
     }
 }
 
-/* The middle right edge of a camera that leans to its right by 90 degrees is below. */
-static void a_place_of_the_image_is_the_rays(void **state)
+/* The right edge of a camera that is rolled by 90 degrees to its right points down. */
+static void an_image_point_maps_to_its_ray(void **state)
 {
     (void)state;
     scene *s = looking_along_z(90.0);
@@ -75,7 +74,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(moves_follow_the_image),
         cmocka_unit_test(a_step_goes_along_the_image),
-        cmocka_unit_test(a_place_of_the_image_is_the_rays),
+        cmocka_unit_test(an_image_point_maps_to_its_ray),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

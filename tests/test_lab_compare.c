@@ -1,5 +1,5 @@
-/* A pinned picture beside the newest: numbers and map as image/compare.h has them of the same scenes, what differs
- * between them, what is refused. */
+/* Tests of the comparison with the reference image: numbers and map equal those of image/compare.h, the list of
+ * changed parameters, and refused requests. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -44,7 +44,7 @@ static double number(const json_t *of, const char *key)
 {
     const json_t *value = json_object_get(of, key);
     if (!json_is_number(value))
-        fail_msg("%s is no number", key);
+        fail_msg("%s is not a number", key);
     return json_number_value(value);
 }
 
@@ -64,11 +64,11 @@ static void refused(const lab_room *room, const char *method, const char *target
 {
     char *json = room_refused(room, method, target, strcmp(method, "GET") == 0 ? NULL : "{}", code);
     if (!strstr(json, words))
-        fail_msg("%s: '%s' does not say '%s'", target, json, words);
+        fail_msg("%s: '%s' does not contain '%s'", target, json, words);
     free(json);
 }
 
-/* The body of a reply with a picture. */
+/* The image in the body of a reply. */
 static unsigned char *bytes_of(const lab_room *room, const char *target, size_t *size)
 {
     char *reply = client_ask(room->server, "GET", target, "", NULL);
@@ -99,7 +99,7 @@ static image *decoded(const lab_room *room, const char *target)
     return shared_image;
 }
 
-static void without_a_pin_there_is_nothing_to_compare(void **state)
+static void comparing_requires_a_reference_image(void **state)
 {
     free(room_film(*state));
     refused(*state, "GET", "/api/compare", 409, "no reference image is pinned");
@@ -112,7 +112,7 @@ static void without_a_pin_there_is_nothing_to_compare(void **state)
     json_decref(room_ask(*state, "DELETE", "/api/pin", "{}", 200));
 }
 
-static void equal_pictures_have_no_difference(void **state)
+static void equal_images_have_no_difference(void **state)
 {
     pin(*state);
     json_t *json = room_get(*state, "/api/compare?wait=1"), *c = json_object_get(json, "comparison");
@@ -154,7 +154,7 @@ static void check_map(const lab_room *room, const image *a, const image *b)
     image_destroy(map);
 }
 
-static void numbers_and_map_are_those_of_the_pictures(void **state)
+static void numbers_and_map_are_those_of_the_images(void **state)
 {
     pin(*state);
     change(*state, "\"ball.ior\": 1.7");
@@ -184,7 +184,7 @@ static void numbers_and_map_are_those_of_the_pictures(void **state)
 
 typedef enum shown { SHOWN_OTHER, SHOWN_COARSE, SHOWN_FINAL } shown;
 
-/* What the newest picture is of that generation. */
+/* Waits for an image of that generation and returns its state. */
 static shown shown_of(const lab_room *room, json_int_t generation)
 {
     json_t *json = room_get(room, "/api/state"), *newest = json_object_get(json, "picture");
@@ -194,7 +194,7 @@ static shown shown_of(const lab_room *room, json_int_t generation)
     return !its ? SHOWN_OTHER : final ? SHOWN_FINAL : SHOWN_COARSE;
 }
 
-static void a_picture_that_is_not_finished_is_not_compared(void **state)
+static void an_unfinished_image_is_not_compared(void **state)
 {
     pin(*state);
     const json_int_t heavy = room_post(
@@ -210,7 +210,7 @@ static void a_picture_that_is_not_finished_is_not_compared(void **state)
     json_decref(json);
 }
 
-static void the_pinned_picture_stays(void **state)
+static void the_reference_image_stays(void **state)
 {
     pin(*state);
     change(*state, "\"render.width\": 32");
@@ -229,19 +229,19 @@ static void the_pinned_picture_stays(void **state)
     image_destroy(plain);
 }
 
-static void wanted_change(const json_t *list, size_t at, const char *path, const char *a, const char *b)
+static void expect_change(const json_t *list, size_t at, const char *path, const char *a, const char *b)
 {
     json_t *expected = json_pack("{s:s, s:o, s:o}", "path", path, "a", json_loads(a, JSON_DECODE_ANY, NULL), "b",
                                  json_loads(b, JSON_DECODE_ANY, NULL));
-    char *text = json_dumps(json_array_get(list, at), 0), *wanted_text = json_dumps(expected, 0);
+    char *text = json_dumps(json_array_get(list, at), 0), *expected_text = json_dumps(expected, 0);
     if (!json_equal(json_array_get(list, at), expected))
-        fail_msg("%s is there, and wanted is %s", text ? text : "nothing", wanted_text);
+        fail_msg("found %s, expected %s", text ? text : "nothing", expected_text);
     free(text);
-    free(wanted_text);
+    free(expected_text);
     json_decref(expected);
 }
 
-static void it_says_which_parameters_changed(void **state)
+static void changed_parameters_are_listed(void **state)
 {
     pin(*state);
     change(*state,
@@ -250,26 +250,26 @@ static void it_says_which_parameters_changed(void **state)
     change(*state, "\"ball.radius\": 1");
     json_t *json = room_get(*state, "/api/compare?wait=1"), *list = json_object_get(json, "changed");
     assert_int_equal(json_array_size(list), 4);
-    wanted_change(list, 0, "render.threads", "2", "1");
-    wanted_change(list, 1, "background.kind", "\"uniform\"", "\"gradient\"");
-    wanted_change(list, 2, "lamp.position", "[4.0, 7.0, -5.0]", "[1.0, 2.0, 3.0]");
-    wanted_change(list, 3, "ball.ior", "1.5", "1.7");
+    expect_change(list, 0, "render.threads", "2", "1");
+    expect_change(list, 1, "background.kind", "\"uniform\"", "\"gradient\"");
+    expect_change(list, 2, "lamp.position", "[4.0, 7.0, -5.0]", "[1.0, 2.0, 3.0]");
+    expect_change(list, 3, "ball.ior", "1.5", "1.7");
     json_decref(json);
 }
 
-/* A solid that has its material's colour changes with it, which goes without saying; one that got another does not. */
-static void a_material_is_named_once(void **state)
+/* A solid that inherits its material's colour is not listed; a solid with a new material is. */
+static void a_material_is_listed_once(void **state)
 {
     pin(*state);
     change(*state, "\"tiles.color\": [0.1, 0.2, 0.3]");
     json_t *json = room_get(*state, "/api/compare?wait=1");
     assert_int_equal(json_array_size(json_object_get(json, "changed")), 1);
-    wanted_change(json_object_get(json, "changed"), 0, "tiles.color", "[0.8, 0.8, 0.8]", "[0.1, 0.2, 0.3]");
+    expect_change(json_object_get(json, "changed"), 0, "tiles.color", "[0.8, 0.8, 0.8]", "[0.1, 0.2, 0.3]");
     json_decref(json);
     change(*state, "\"ground.color\": [0.5, 0.5, 0.5]");
     json = room_get(*state, "/api/compare?wait=1");
     assert_int_equal(json_array_size(json_object_get(json, "changed")), 2);
-    wanted_change(json_object_get(json, "changed"), 1, "ground.color", "[0.8, 0.8, 0.8]", "[0.5, 0.5, 0.5]");
+    expect_change(json_object_get(json, "changed"), 1, "ground.color", "[0.8, 0.8, 0.8]", "[0.5, 0.5, 0.5]");
     json_decref(json);
 }
 
@@ -278,11 +278,11 @@ static const json_t *entry(const json_t *list, const char *path)
     const json_t *one;
     size_t i;
     json_array_foreach(list, i, one) if (strcmp(json_string_value(json_object_get(one, "path")), path) == 0) return one;
-    fail_msg("%s is not among what changed", path);
+    fail_msg("%s is not in the list of changes", path);
     return NULL;
 }
 
-static void objects_that_come_and_go_have_parameters_on_one_side(void **state)
+static void added_and_removed_objects_have_one_side(void **state)
 {
     pin(*state);
     json_decref(room_ask(*state, "DELETE", "/api/objects/ball", "{}", 200));
@@ -295,7 +295,7 @@ static void objects_that_come_and_go_have_parameters_on_one_side(void **state)
     json_decref(json);
 }
 
-static void pictures_of_two_sizes_have_no_comparison(void **state)
+static void images_of_two_sizes_have_no_comparison(void **state)
 {
     pin(*state);
     change(*state, "\"render.width\": 32");
@@ -307,7 +307,7 @@ static void pictures_of_two_sizes_have_no_comparison(void **state)
     json_decref(json);
 }
 
-static void what_is_let_go_of_is_gone(void **state)
+static void a_cleared_reference_is_gone(void **state)
 {
     pin(*state);
     json_t *json = room_get(*state, "/api/state");
@@ -374,8 +374,8 @@ static void *ask_often(void *context)
     return NULL;
 }
 
-/* Pictures go and come under those who look at them. */
-static void pins_may_change_while_others_compare(void **state)
+/* Reference images are replaced while other threads compare. */
+static void references_may_change_during_comparisons(void **state)
 {
     asker askers[6];
     for (size_t i = 0; i < 6; i++) {
@@ -399,18 +399,18 @@ static void pins_may_change_while_others_compare(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(without_a_pin_there_is_nothing_to_compare, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(equal_pictures_have_no_difference, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(numbers_and_map_are_those_of_the_pictures, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(a_picture_that_is_not_finished_is_not_compared, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(the_pinned_picture_stays, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(it_says_which_parameters_changed, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(a_material_is_named_once, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(objects_that_come_and_go_have_parameters_on_one_side, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(pictures_of_two_sizes_have_no_comparison, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(what_is_let_go_of_is_gone, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(comparing_requires_a_reference_image, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(equal_images_have_no_difference, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(numbers_and_map_are_those_of_the_images, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(an_unfinished_image_is_not_compared, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(the_reference_image_stays, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(changed_parameters_are_listed, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(a_material_is_listed_once, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(added_and_removed_objects_have_one_side, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(images_of_two_sizes_have_no_comparison, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(a_cleared_reference_is_gone, open_ball, close_room),
         cmocka_unit_test_setup_teardown(many_at_once_get_the_same, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(pins_may_change_while_others_compare, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(references_may_change_during_comparisons, open_ball, close_room),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

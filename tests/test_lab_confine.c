@@ -1,6 +1,6 @@
-/* Nothing outside of the laboratory's folder is read while a scene is loaded: not what a model's own files name, nor
- * what a link leads to that is put there between the check of the scene and its loading; and not more triangles than
- * the laboratory's. */
+/* Tests that loading a scene reads nothing outside the laboratory's folder: neither files that a model refers to,
+ * nor a link that replaces a file between the check of the scene and its loading; and that the limit of triangles
+ * holds. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,7 +14,7 @@
 #include "web/lab_private.h"
 #include "scene/model/scene.h"
 
-/* The laboratory's folder is above/lab. Every file is in both, but for links and scenes. */
+/* The laboratory's folder is above/lab. Except for links and scenes, every file exists in both. */
 typedef struct room {
     char *above, *inside;
     lab_room lab;
@@ -66,7 +66,7 @@ static void take_away(const room *r, const char *name)
     free(path);
 }
 
-/* In the folder, in place of what was there. */
+/* Replaces a file of the folder by a link. */
 static void put_link(const room *r, const char *name, const char *target)
 {
     take_away(r, name);
@@ -139,7 +139,7 @@ static void open_scene(const room *r, const char *yaml)
     room_post(&r->lab, "/api/open", "{\"file\": \"scene.yaml\"}");
 }
 
-/* What the state says of the scene that is on the desk: "" where it was rendered. */
+/* The error of the current scene in the state: "" if it was rendered. */
 static char *trouble(const room *r)
 {
     char *reply = client_ask(r->lab.server, "GET", "/api/picture.png?wait=1", "", NULL);
@@ -164,7 +164,7 @@ static void is_loaded(const room *r, const char *what)
     free(message);
 }
 
-/* word: what it must name. */
+/* word: a part of the expected error. */
 static void is_refused(const room *r, const char *what, const char *word)
 {
     char *message = trouble(r);
@@ -174,7 +174,7 @@ static void is_refused(const room *r, const char *what, const char *word)
     free(message);
 }
 
-/* --- what models name --- */
+/* --- files that models refer to --- */
 
 static void open_obj(const room *r, const char *library)
 {
@@ -207,7 +207,7 @@ static void test_libraries_of_materials(void **state)
     free(absolute);
 }
 
-/* From the working folder, assimp takes the name of a library as it is. */
+/* In the working directory, assimp uses the name of a library unchanged. */
 static void test_absolute_libraries_of_models_in_the_working_folder(void **state)
 {
     const room *r = *state;
@@ -254,7 +254,7 @@ static void test_images_of_materials(void **state)
     free(absolute);
 }
 
-static void test_what_gltf_names(void **state)
+static void test_files_of_gltf(void **state)
 {
     const room *r = *state;
     put(r, "lab/m.gltf", GLTF("../b.bin", "p.png"));
@@ -266,13 +266,13 @@ static void test_what_gltf_names(void **state)
     is_refused(r, "a linked buffer", "out.bin");
     put(r, "lab/m3.gltf", GLTF("b.bin", "../p.png"));
     open_scene(r, BODY("m3.gltf"));
-    is_refused(r, "a picture above", "../p.png");
+    is_refused(r, "a texture above", "../p.png");
     put(r, "lab/m4.gltf", GLTF("b.bin", "p.png"));
     open_scene(r, BODY("m4.gltf"));
     is_loaded(r, "all of it within");
 }
 
-/* A model that is to be added is loaded before it is on the desk. */
+/* A model is loaded before it is added to the document. */
 static void test_models_that_are_added(void **state)
 {
     const room *r = *state;
@@ -286,10 +286,10 @@ static void test_models_that_are_added(void **state)
     is_loaded(r, "a model that is added");
 }
 
-/* --- what is put in a file's place after the check --- */
+/* --- files replaced after the check --- */
 
-/* A model's own file is looked at before it is handed to assimp. */
-static void is_said_of_the_file_itself(const room *r)
+/* The model's own file is checked before it is passed to assimp. */
+static void is_refused_for_the_file_itself(const room *r)
 {
     char *message = trouble(r);
     assert_null(strstr(message, "needs"));
@@ -316,7 +316,7 @@ static void test_files_that_become_links(void **state)
         put_link(r, cases[i].file, target);
         render_worker_suspend(r->lab.lab->render_worker, NULL);
         is_refused(r, cases[i].scene, cases[i].file);
-        is_said_of_the_file_itself(r);
+        is_refused_for_the_file_itself(r);
         free(target);
         take_away(r, cases[i].file);
         put_files(r);
@@ -326,13 +326,13 @@ static void test_files_that_become_links(void **state)
     }
 }
 
-/* Scenes that come from no file are held to the folder, too. */
+/* Scenes without a file are confined too. */
 static void test_a_new_scene(void **state)
 {
     const room *r = *state;
     char *change =
         text_format("{\"set\": {\"background.kind\": \"picture\", \"background.picture\": \"%s/p.png\"}}", r->inside);
-    for (int opened = 0; opened < 2; opened++) { /* the first one, another one */
+    for (int opened = 0; opened < 2; opened++) { /* the first scene, then an opened one */
         if (opened)
             room_post(&r->lab, "/api/open", "{\"new\": true}");
         take_away(r, "p.png");
@@ -358,7 +358,7 @@ static status let_all_load(void *context, const scene *setting, diagnostic *why)
     return STATUS_OK;
 }
 
-/* As if each were exchanged for a link just after it was looked at. */
+/* As if each file were replaced by a link just after the check. */
 static void test_scenes_and_studies_that_become_links(void **state)
 {
     const room *r = *state;
@@ -393,7 +393,7 @@ static void test_scenes_and_studies_that_become_links(void **state)
     free(scene_path);
 }
 
-/* --- what lies below a folder --- */
+/* --- paths below a folder --- */
 
 static bool opens(const room *r, const char *name, const char *root)
 {
@@ -418,7 +418,7 @@ static void test_below(void **state)
     assert_true(opens(r, "a.mtl", NULL) && opens(r, "a.mtl", "") && opens(r, "a.mtl", r->above));
     assert_false(opens(r, "a.mtl", r->inside));
     assert_false(opens(r, "lab/../a.mtl", r->inside));
-    assert_false(opens(r, "lab/a.mtl", beginning));     /* which is no folder of its own */
+    assert_false(opens(r, "lab/a.mtl", beginning));     /* the name only begins like the folder's */
     assert_false(opens(r, "lab/to-itself", r->inside)); /* the folder itself is not below it */
     assert_false(opens(r, "lab/nothing", r->inside));
     free(beginning);
@@ -426,7 +426,7 @@ static void test_below(void **state)
 
 /* --- triangles --- */
 
-/* The second of two meshes that are too large together is not kept. */
+/* The second of two meshes that exceed the limit together is dropped. */
 static void test_triangles_together(void **state)
 {
     const room *r = *state;
@@ -442,7 +442,7 @@ static void test_triangles_together(void **state)
         diagnostic why = {.what = ""};
         assert_int_equal(scene_read_text(name, two, sizeof two - 1, &s, NULL), STATUS_OK);
         assert_int_equal(scene_limit(s, NULL, cases[i].limit, NULL), STATUS_OK);
-        scene *copy = scene_clone(s); /* is held to the same */
+        scene *copy = scene_clone(s); /* has the same limit */
         assert_int_equal(scene_load(copy, &why), cases[i].word ? STATUS_BAD_INPUT : STATUS_OK);
         size_t kept = 0;
         for (size_t k = 0; k < copy->mesh_count; k++)
@@ -455,7 +455,7 @@ static void test_triangles_together(void **state)
     free(name);
 }
 
-/* The importer itself stops at a file that is too large alone. */
+/* The importer stops at a single file that exceeds the limit. */
 static void test_triangles_of_one_file(void **state)
 {
     const room *r = *state;
@@ -473,7 +473,7 @@ static void test_triangles_of_one_file(void **state)
     free(name);
 }
 
-/* The desk counts a file as a few; what it holds is known when it is loaded. */
+/* The document's check counts a file as a few triangles; the real number is known after loading. */
 static void test_triangles_of_the_laboratory(void **state)
 {
     const room *r = *state;
@@ -499,7 +499,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_libraries_of_materials, enter, leave),
         cmocka_unit_test_setup_teardown(test_absolute_libraries_of_models_in_the_working_folder, enter, leave),
         cmocka_unit_test_setup_teardown(test_images_of_materials, enter, leave),
-        cmocka_unit_test_setup_teardown(test_what_gltf_names, enter, leave),
+        cmocka_unit_test_setup_teardown(test_files_of_gltf, enter, leave),
         cmocka_unit_test_setup_teardown(test_models_that_are_added, enter, leave),
         cmocka_unit_test_setup_teardown(test_files_that_become_links, enter, leave),
         cmocka_unit_test_setup_teardown(test_a_new_scene, enter, leave),

@@ -1,4 +1,4 @@
-/* The scene that all pages work at: changes, undo, gestures, resets, bounds. */
+/* Tests of the scene document: changes, undo, gestures, resets, limits. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -63,7 +63,7 @@ static json_t *state_json(scene_document *d)
     return state;
 }
 
-static void assert_told(scene_document *d, const char *key, const char *text)
+static void assert_state(scene_document *d, const char *key, const char *text)
 {
     json_t *state = state_json(d);
     const json_t *value = json_object_get(state, key);
@@ -80,15 +80,15 @@ static void each_change_is_a_generation_and_can_be_undone(void **state)
     scene_document *d = open_document(BALL_SCENE);
     changes_seen = 0;
     assert_int_equal(scene_document_generation(d), 1);
-    assert_told(d, "undo", NULL);
+    assert_state(d, "undo", NULL);
     assert_int_equal(apply(d, "ball.ior=1.6"), 2);
     assert_int_equal(apply(d, "ball.ior=1.7"), 3);
-    assert_told(d, "undo", "ball.ior=1.7");
+    assert_state(d, "undo", "ball.ior=1.7");
     uint64_t generation;
     assert_int_equal(scene_document_undo(d, false, &generation, NULL), STATUS_OK);
     assert_int_equal(generation, 4);
     assert_value(d, "ball.ior", "1.6");
-    assert_told(d, "redo", "ball.ior=1.7");
+    assert_state(d, "redo", "ball.ior=1.7");
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
     assert_value(d, "ball.ior", "1.5");
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_BAD_INPUT);
@@ -97,13 +97,13 @@ static void each_change_is_a_generation_and_can_be_undone(void **state)
     assert_int_equal(scene_document_undo(d, true, NULL, NULL), STATUS_BAD_INPUT);
     assert_value(d, "ball.ior", "1.7");
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
-    apply(d, "ball.radius=0.5"); /* what was undone is gone now */
-    assert_told(d, "redo", NULL);
+    apply(d, "ball.radius=0.5"); /* a new change clears the redo stack */
+    assert_state(d, "redo", NULL);
     assert_int_equal(changes_seen, 8);
     scene_document_destroy(d);
 }
 
-static void what_is_refused_changes_nothing(void **state)
+static void a_refused_change_changes_nothing(void **state)
 {
     (void)state;
     static const char *const bad[] = {"ball.ior=-1", "ball.nothing=1", "camera.position=0,1,0", "render.width=0",
@@ -120,7 +120,7 @@ static void what_is_refused_changes_nothing(void **state)
     assert_int_equal(scene_document_generation(d), 2);
     assert_int_equal(changes_seen, 0);
     assert_value(d, "render.width", "64");
-    assert_told(d, "undo", "render.height=4096");
+    assert_state(d, "undo", "render.height=4096");
     scene_document_destroy(d);
 }
 
@@ -166,13 +166,13 @@ static void a_gesture_is_one_step(void **state)
     assert_value(d, "ball.ior", "1.29");
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
     assert_value(d, "ball.ior", "1.5");
-    apply_as(d, "ball.ior=1.2", "drag 2"); /* an undo lies between: a step of its own */
+    apply_as(d, "ball.ior=1.2", "drag 2"); /* after an undo it is a step of its own */
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
     assert_value(d, "ball.ior", "1.5");
     scene_document_destroy(d);
 }
 
-static void undo_remembers_so_many_and_no_more(void **state)
+static void undo_has_a_limit(void **state)
 {
     (void)state;
     scene_document *d = open_document(BALL_SCENE);
@@ -188,7 +188,7 @@ static void undo_remembers_so_many_and_no_more(void **state)
     scene_document_destroy(d);
 }
 
-static void resets_go_back_to_what_was_opened(void **state)
+static void resets_restore_the_opened_scene(void **state)
 {
     (void)state;
     static const char *const paths[] = {"ball.ior", "lamp.position"}, *const wrong[] = {"ball.nothing"};
@@ -212,12 +212,12 @@ static void resets_go_back_to_what_was_opened(void **state)
     apply(d, "cube.size=2,2,2");
     assert_int_equal(scene_document_reset(d, NULL, 0, NULL, NULL), STATUS_OK);
     assert_value(d, "cube.size", "1,1,1");
-    assert_told(d, "file", "other.yaml");
+    assert_state(d, "file", "other.yaml");
     for (int i = 0; i < 3; i++)
         assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
-    assert_told(d, "file", "ball.yaml"); /* opening can be undone */
+    assert_state(d, "file", "ball.yaml"); /* opening can be undone */
     assert_int_equal(scene_document_reset(d, NULL, 0, NULL, NULL),
-                     STATUS_OK); /* and resets know then what was opened before */
+                     STATUS_OK); /* resets then use the scene opened before */
     assert_value(d, "ball.radius", "1");
     scene_document_destroy(d);
 }
@@ -230,7 +230,7 @@ static bool is_saved(scene_document *d)
     return saved;
 }
 
-static void it_knows_what_is_saved(void **state)
+static void it_tracks_what_is_saved(void **state)
 {
     (void)state;
     scene_document *d = open_document(BALL_SCENE);
@@ -238,20 +238,20 @@ static void it_knows_what_is_saved(void **state)
     const uint64_t generation = apply(d, "ball.ior=1.6");
     assert_false(is_saved(d));
     scene_document_undo(d, false, NULL, NULL);
-    assert_true(is_saved(d)); /* it is again what the file holds */
+    assert_true(is_saved(d)); /* it equals the file again */
     scene_document_reset(d, NULL, 0, NULL, NULL);
     assert_true(is_saved(d));
     apply(d, "ball.ior=1.6");
     assert_false(is_saved(d));
-    scene_document_saved(d, "new.yaml", generation); /* of a scene that has gone */
+    scene_document_saved(d, "new.yaml", generation); /* of an earlier scene */
     assert_false(is_saved(d));
     scene_document_saved(d, "new.yaml", scene_document_generation(d));
     assert_true(is_saved(d));
-    assert_told(d, "file", "new.yaml");
+    assert_state(d, "file", "new.yaml");
     scene_document_destroy(d);
 }
 
-static void what_was_loaded_is_shared(void **state)
+static void loaded_data_is_shared(void **state)
 {
     (void)state;
     scene_document *d = open_document(
@@ -306,13 +306,13 @@ int main(void)
 {
     const struct CMUnitTest cases[] = {
         cmocka_unit_test(each_change_is_a_generation_and_can_be_undone),
-        cmocka_unit_test(what_is_refused_changes_nothing),
+        cmocka_unit_test(a_refused_change_changes_nothing),
         cmocka_unit_test(work_and_memory_are_bounded),
         cmocka_unit_test(a_gesture_is_one_step),
-        cmocka_unit_test(undo_remembers_so_many_and_no_more),
-        cmocka_unit_test(resets_go_back_to_what_was_opened),
-        cmocka_unit_test(it_knows_what_is_saved),
-        cmocka_unit_test(what_was_loaded_is_shared),
+        cmocka_unit_test(undo_has_a_limit),
+        cmocka_unit_test(resets_restore_the_opened_scene),
+        cmocka_unit_test(it_tracks_what_is_saved),
+        cmocka_unit_test(loaded_data_is_shared),
         cmocka_unit_test(threads_lose_no_change),
     };
     return cmocka_run_group_tests_name("lab_desk", cases, NULL, NULL);

@@ -1,5 +1,5 @@
-/* Files and objects of a running laboratory: nothing outside of its folder is read or written, what is saved and opened
- * again makes the same film, and objects come, change and go whole or not at all. */
+/* Tests of files and objects in a running laboratory: nothing outside its folder is read or written, a saved and
+ * reopened scene makes the same film, and objects are added, changed and removed completely or not at all. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@ static const char small[] =
     "[0.8, 0.2, 0.1]}}\n";
 static const char tetrahedron[] = "v 0 0 0\nv 20 0 0\nv 0 20 0\nv 0 0 20\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
-/* The laboratory's folder is in another one, where there are files, too, which it must not reach. */
+/* The laboratory's folder is inside another folder with files that it must not access. */
 typedef struct room {
     char *above, *inside;
     lab_room lab;
@@ -108,7 +108,7 @@ static int leave(void **state)
     return 0;
 }
 
-/* The reply's JSON, which code must be that of, and which says what is wrong where it is an error. */
+/* The JSON of a reply, whose code must be `code`; an error must have a message. */
 static json_t *ask(const room *r, int code, const char *method, const char *target, const char *body)
 {
     json_t *reply = room_ask(&r->lab, method, target, body, code);
@@ -131,7 +131,7 @@ static json_int_t generation(const room *r)
     return number;
 }
 
-/* A text of the state, "" for null; static memory. */
+/* A string of the state, "" for null; static memory. */
 static const char *state_text(const room *r, const char *key, char text[256])
 {
     json_t *state = ask(r, 200, "GET", "/api/state", NULL);
@@ -141,7 +141,7 @@ static const char *state_text(const room *r, const char *key, char text[256])
     return text;
 }
 
-/* Hash of the final film of what is on the desk. */
+/* The hash of the final film of the scene document. */
 static void film(const room *r, char hash[64])
 {
     char *text = room_film(&r->lab);
@@ -195,7 +195,7 @@ static void test_files(void **state)
     assert_string_equal(json_string_value(json_array_get(json_object_get(files, "models"), 0)), "deep/Two sides.obj");
     assert_string_equal(json_string_value(json_object_get(files, "prefix")), "../");
     json_decref(files);
-    /* With its prefix a name is a path as the scene gives it. */
+    /* `prefix` + name is a path relative to the scene's file. */
     tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
     char hash[64];
     film(r, hash);
@@ -277,7 +277,7 @@ static void test_save(void **state)
     film(r, before);
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
-    /* Whose paths are now from another folder. */
+    /* Its paths are relative to another folder now. */
     tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": true}");
     assert_string_equal(state_text(r, "file", text), "wrong.yaml");
     tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
@@ -286,7 +286,7 @@ static void test_save(void **state)
     char *path = text_format("%s/wrong.yaml", r->inside), *saved = NULL;
     size_t size;
     assert_int_equal(file_read(path, 1 << 20, &saved, &size, NULL), STATUS_OK);
-    assert_null(strstr(saved, "threads")); /* which the laboratory gave it */
+    assert_null(strstr(saved, "threads")); /* threads is the laboratory's default */
     assert_non_null(strstr(saved, "deep/Two sides.obj"));
     free(saved);
     free(path);
@@ -330,11 +330,11 @@ static void test_paths_of_parameters(void **state)
     film(r, hash);
 }
 
-static void test_each_solid_comes_and_shows(void **state)
+static void test_each_solid_is_added_and_visible(void **state)
 {
     const room *r = *state;
     static const char *const shapes[] = {"torus", "cone", "prism", "plane", "cylinder", "cup", "box", "sphere", "mesh"};
-    enum { ALONE = 3 }; /* so many of them go again: nine at one place would hide one another */
+    enum { ALONE = 3 }; /* that many are removed again: nine at one point would hide each other */
     char before[64], after[64], word[64];
     film(r, before);
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
@@ -355,7 +355,7 @@ static void test_each_solid_comes_and_shows(void **state)
     json_t *second = ask(r, 200, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"box\"}");
     assert_string_equal(json_string_value(json_object_get(second, "name")), "box2");
     json_decref(second);
-    /* Of a sixth of the way that the camera looks, on the ground, and not within each other. */
+    /* On the ground, a sixth of the viewing distance in size, and not inside each other. */
     assert_float_equal(value(r, "box.size", 0), 1.0, 1e-9);
     assert_float_equal(value(r, "box.position", 1), 0.5, 1e-9);
     assert_float_equal(value(r, "cup.position", 1), 0.0, 1e-9);
@@ -363,7 +363,7 @@ static void test_each_solid_comes_and_shows(void **state)
                       value(r, "box.position", 2) - value(r, "box2.position", 2)) > 1.0);
 }
 
-static void test_others_come(void **state)
+static void test_other_objects_are_added(void **state)
 {
     const room *r = *state;
     char hash[64], next[64];
@@ -377,13 +377,13 @@ static void test_others_come(void **state)
     assert_string_equal(json_string_value(json_object_get(model, "name")), "Two-sides");
     json_decref(model);
     assert_true(has_object(r, "Two-sides-mesh"));
-    assert_float_equal(value(r, "Two-sides.scale", 0), 0.05, 1e-9); /* its edges are 20, and it is to be 1 */
+    assert_float_equal(value(r, "Two-sides.scale", 0), 0.05, 1e-9); /* the model's edges are 20 long, scaled to 1 */
     film(r, hash);
     assert_string_not_equal(hash, next);
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"slime\"}");
     film(r, next);
     assert_string_not_equal(hash, next);
-    /* Whose motion takes its time to load. */
+    /* A slime, whose simulation takes time to load. */
     tell(r, 200, "POST", "/api/set", "{\"set\": {\"slime-mesh.time_s\": 0.3}}");
     film(r, hash);
     assert_string_not_equal(hash, next);
@@ -416,7 +416,7 @@ static void test_change(void **state)
     assert_float_equal(value(r, "ball.position", 0), 2.0, 1e-12);
     assert_string_equal(state_text(r, "undo", text), "move ball");
     tell(r, 200, "POST", "/api/undo", "{}");
-    assert_float_equal(value(r, "ball.position", 0), 0.0, 1e-12); /* one gesture, one step */
+    assert_float_equal(value(r, "ball.position", 0), 0.0, 1e-12); /* one gesture is one undo step */
     tell(r, 200, "POST", "/api/objects/ball/turn", "{\"by\": [0, 90, 0]}");
     assert_float_equal(value(r, "ball.rotation", 1), 90.0, 1e-9);
     tell(r, 200, "POST", "/api/objects/beam/turn", "{\"by\": [0, 0, 30]}");
@@ -434,7 +434,7 @@ static void test_change(void **state)
     assert_string_equal(word_of(r, "globe", "material", word), "stone");
     tell(r, 200, "POST", "/api/objects/globe/material", "{\"material\": null}");
     assert_string_equal(word_of(r, "globe", "material", word), "");
-    assert_float_equal(value(r, "globe.diffuse", 0), 0.7, 1e-12); /* it looks as the stone did */
+    assert_float_equal(value(r, "globe.diffuse", 0), 0.7, 1e-12); /* it keeps the stone's values */
     static const char *const copied[][2] = {
         {"globe", "globe2"}, {"lamp", "lamp2"}, {"stone", "stone2"}, {"lamp2", "lamp3"}, {"ground", "ground2"}};
     for (size_t i = 0; i < sizeof copied / sizeof *copied; i++) {
@@ -447,7 +447,7 @@ static void test_change(void **state)
     assert_true(fabs(value(r, "globe2.position", 0) - value(r, "globe.position", 0)) >= 2.0);
 }
 
-/* The reference scene's rod, which is long and thin, in its vessel. */
+/* The rod of the reference scene, long and thin, in its vessel. */
 static const char rod_scene[] =
     "render: {width: 40, height: 30}\ncamera: {position: [0, 2.75, -6], target: [0, 1.5, 0], fov_deg: 45}\n"
     "lights: {lamp: {position: [4, 7, -5]}}\n"
@@ -466,7 +466,7 @@ static double apart(const room *r, const char *a, const char *b, size_t axis)
     return fabs(value(r, of_a, axis) - value(r, of_b, axis));
 }
 
-/* Are all of its corners in the picture of rod_scene? */
+/* Whether all corners of its box are inside the image of rod_scene. */
 static bool is_seen(const room *r, const char *rod)
 {
     char path[32];
@@ -496,7 +496,7 @@ static void test_copies_of_a_rod(void **state)
             assert_true(apart(r, rods[i], rods[k], 0) > 0.25 || apart(r, rods[i], rods[k], 2) > 0.25 ||
                         apart(r, rods[i], rods[k], 1) > 3.0);
     }
-    assert_true(apart(r, "rod", "rod2", 0) < 0.3); /* it stands in the liquid, too */
+    assert_true(apart(r, "rod", "rod2", 0) < 0.3); /* the copy is in the liquid too */
 }
 
 static void test_copies_of_meshes(void **state)
@@ -599,8 +599,8 @@ static void test_change_refuses(void **state)
     assert_int_equal(generation(r), before);
 }
 
-/* Names stay free, and no more than a scene holds. */
-static void test_until_it_is_full(void **state)
+/* Names stay unique, and the limit of objects holds. */
+static void test_full_scene(void **state)
 {
     const room *r = *state;
     char name[64];
@@ -657,7 +657,7 @@ static void test_many_at_once(void **state)
     }
     for (int i = 0; i < VISITORS; i++)
         pthread_join(all[i].thread, NULL);
-    assert_int_equal(generation(r), before + VISITORS * 5 * 4); /* none was lost */
+    assert_int_equal(generation(r), before + VISITORS * 5 * 4); /* no change was lost */
     assert_true(has_object(r, "picture20") && !has_object(r, "mine0"));
     char hash[64];
     film(r, hash);
@@ -672,14 +672,14 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_save, enter, leave),
         cmocka_unit_test_setup_teardown(test_links_are_not_written_through, enter, leave),
         cmocka_unit_test_setup_teardown(test_paths_of_parameters, enter, leave),
-        cmocka_unit_test_setup_teardown(test_each_solid_comes_and_shows, enter, leave),
-        cmocka_unit_test_setup_teardown(test_others_come, enter, leave),
+        cmocka_unit_test_setup_teardown(test_each_solid_is_added_and_visible, enter, leave),
+        cmocka_unit_test_setup_teardown(test_other_objects_are_added, enter, leave),
         cmocka_unit_test_setup_teardown(test_change, enter, leave),
         cmocka_unit_test_setup_teardown(test_whole_scene, enter, leave),
         cmocka_unit_test_setup_teardown(test_copies_of_a_rod, enter, leave),
         cmocka_unit_test_setup_teardown(test_copies_of_meshes, enter, leave),
         cmocka_unit_test_setup_teardown(test_change_refuses, enter, leave),
-        cmocka_unit_test_setup_teardown(test_until_it_is_full, enter, leave),
+        cmocka_unit_test_setup_teardown(test_full_scene, enter, leave),
         cmocka_unit_test_setup_teardown(test_many_at_once, enter, leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,4 @@
-/* The folder of the laboratory: which names lead to files in it, what leads out, what a scene may name, and what is
- * listed. */
+/* Tests of the laboratory's folder: names inside and outside, files that a scene may use, and the list of files. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +20,7 @@
 typedef struct room {
     char *above, *inside;
     folder *f;
-} room; /* inside is the folder; beside it lies secret.yaml */
+} room; /* inside is the folder; secret.yaml is next to it */
 
 static void put(const char *at, const char *name, const char *text)
 {
@@ -55,7 +54,7 @@ static int enter(void **state)
     r->inside = text_format("%s/lab", r->above);
     make_folder(r->above, "lab");
     put(r->above, "secret.yaml", "solids: {}\n");
-    make_folder(r->above, "labour"); /* the folder's name is only the beginning of its own */
+    make_folder(r->above, "labour"); /* a sibling whose name begins with the folder's name */
     put(r->above, "labour/secret.yaml", "solids: {}\n");
     make_folder(r->inside, "sub");
     put(r->inside, "a scene.yaml", "solids: {}\n");
@@ -102,7 +101,7 @@ static bool leads(const room *r, const char *name, bool must_exist)
     return code == STATUS_OK;
 }
 
-static void test_names_in_it(void **state)
+static void test_names_inside(void **state)
 {
     const room *r = *state;
     assert_true(leads(r, "a scene.yaml", true));
@@ -119,7 +118,7 @@ static void test_names_in_it(void **state)
     assert_false(leads(r, "a scene.yaml/new.yaml", false));
 }
 
-static void test_names_that_lead_out(void **state)
+static void test_names_outside(void **state)
 {
     const room *r = *state;
     char *absolute = text_format("%s/a scene.yaml", r->inside), *longest = malloc(100001);
@@ -149,8 +148,8 @@ static void test_names_that_lead_out(void **state)
                                longest};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         if (leads(r, bad[i], true) || leads(r, bad[i], false))
-            fail_msg("'%.80s' was let in", bad[i]);
-    /* Through a link and back is within, whatever the way. */
+            fail_msg("'%.80s' was accepted", bad[i]);
+    /* A path through a link and back is inside. */
     assert_true(leads(r, "up/lab/a scene.yaml", true));
     free(absolute);
     free(longest);
@@ -218,7 +217,7 @@ static void test_the_working_folder(void **state)
     folder_close(f);
 }
 
-static void test_folders_that_are_none(void **state)
+static void test_invalid_folders(void **state)
 {
     const room *r = *state;
     char *file = text_format("%s/a scene.yaml", r->inside);
@@ -234,7 +233,7 @@ static void test_folders_that_are_none(void **state)
     free(file);
 }
 
-/* A scene in sub/ that names path there. */
+/* A scene in sub/ that uses that path. */
 static status check_naming(const room *r, const char *row, const char *path)
 {
     scene *s = NULL;
@@ -251,7 +250,7 @@ static status check_naming(const room *r, const char *row, const char *path)
     return code;
 }
 
-static void test_what_scenes_name(void **state)
+static void test_files_of_scenes(void **state)
 {
     const room *r = *state;
     static const char *const rows[] = {"background.picture", "body.file", "body.script", "cloth.file"};
@@ -307,7 +306,7 @@ static void test_list(void **state)
     json_decref(all);
 }
 
-/* Those above go first. */
+/* Files of upper folders are listed first. */
 static void test_list_is_bounded(void **state)
 {
     const room *r = *state;
@@ -330,12 +329,12 @@ static void test_list_is_bounded(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_names_in_it, enter, leave),
-        cmocka_unit_test_setup_teardown(test_names_that_lead_out, enter, leave),
+        cmocka_unit_test_setup_teardown(test_names_inside, enter, leave),
+        cmocka_unit_test_setup_teardown(test_names_outside, enter, leave),
         cmocka_unit_test_setup_teardown(test_names_of_paths, enter, leave),
         cmocka_unit_test_setup_teardown(test_the_working_folder, enter, leave),
-        cmocka_unit_test_setup_teardown(test_folders_that_are_none, enter, leave),
-        cmocka_unit_test_setup_teardown(test_what_scenes_name, enter, leave),
+        cmocka_unit_test_setup_teardown(test_invalid_folders, enter, leave),
+        cmocka_unit_test_setup_teardown(test_files_of_scenes, enter, leave),
         cmocka_unit_test_setup_teardown(test_list, enter, leave),
         cmocka_unit_test_setup_teardown(test_list_is_bounded, enter, leave),
     };

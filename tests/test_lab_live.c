@@ -1,5 +1,5 @@
-/* The live slime without a server: this thread is the painter, another one has the hands. How bodies move is the
- * business of tests/test_softbody.c. */
+/* Tests of the live slime without a server: this thread acts as the render worker, another one moves the hands.
+ * tests/test_softbody.c tests the simulation itself. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -18,7 +18,7 @@
 #include "web/live/live.h"
 #include "scene/model/scene.h"
 
-/* It lies on a floor at once and comes to rest soon. */
+/* It starts on the floor and comes to rest soon. */
 static const char toys[] =
     "render: {width: 32, height: 24}\n"
     "camera: {position: [0, 0, -6], target: [0, 0, 0]}\n"
@@ -97,7 +97,7 @@ static bool is_troubled(live *l)
     return yes;
 }
 
-/* Moves on, in good order; what is waited for comes in less than a minute of its time. */
+/* Advances and checks the order of states; what is waited for must happen within a simulated minute. */
 static void go_on(live *l)
 {
     advance(l);
@@ -114,7 +114,7 @@ static void come_to_rest(live *l)
     assert_true(flag(l, "resting"));
 }
 
-/* --- another thread's hand --- */
+/* --- the hand of another thread --- */
 
 typedef struct puller {
     live *l;
@@ -134,7 +134,7 @@ static void *grab_there(void *of)
     return NULL;
 }
 
-/* While this thread paints. */
+/* Advances while the other thread waits. */
 static puller grab(live *l, double x, double y)
 {
     puller h = {.l = l, .origin = vec3_make(x, y, -6), .direction = vec3_make(0, 0, 2)};
@@ -186,11 +186,11 @@ static void it_is_off_until_it_is_played(void **state)
     scene_destroy(s);
 }
 
-static void time_goes_on_and_stands_still(void **state)
+static void time_runs_and_pauses(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
-    scene *s = scene_with(toys, "toy.ground=off"); /* it falls for ever */
+    scene *s = scene_with(toys, "toy.ground=off"); /* it falls forever */
     attach(l, s);
     live_send(l, LIVE_PLAY);
     while (number(l, "time_s") < 0.05)
@@ -214,20 +214,20 @@ static void time_goes_on_and_stands_still(void **state)
     scene_destroy(s);
 }
 
-static void a_pull_draws_it_out_and_it_comes_back(void **state)
+static void a_pull_stretches_it_and_it_recovers(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
     attach(l, s);
     live_send(l, LIVE_PLAY);
-    while (number(l, "time_s") < 0.5) /* until the floor has it */
+    while (number(l, "time_s") < 0.5) /* until it is on the floor */
         go_on(l);
     const bounds3 rest = s->meshes[TOY].data->bounds;
     puller missed = grab(l, 3.5, 0);
     assert_int_equal(missed.code, STATUS_OK);
     assert_int_equal(missed.hand, LIVE_MISSED);
-    puller h = grab(l, 0.2, 0), still = grab(l, 1.5, 0); /* which keeps it from rolling away */
+    puller h = grab(l, 0.2, 0), still = grab(l, 1.5, 0); /* a second hand keeps it from rolling away */
     assert_int_equal(h.code, STATUS_OK);
     assert_true(h.hand > 0);
     assert_true(fabs(h.where.x - 0.2) < 1e-9 && h.where.z < 0.0 && h.where.z > -1.0);
@@ -241,7 +241,7 @@ static void a_pull_draws_it_out_and_it_comes_back(void **state)
         go_on(l);
     assert_false(flag(l, "resting"));
     assert_int_equal(live_release(l, h.hand, &why), STATUS_OK);
-    assert_int_equal(live_move(l, h.hand, vec3_make(0, 0, 0), &why), STATUS_BAD_INPUT); /* it has let go */
+    assert_int_equal(live_move(l, h.hand, vec3_make(0, 0, 0), &why), STATUS_BAD_INPUT); /* the hand is released */
     while (skin_low(s).x < rest.low.x - 0.2)
         go_on(l);
     assert_true(number(l, "held") > 0.0);
@@ -253,7 +253,7 @@ static void a_pull_draws_it_out_and_it_comes_back(void **state)
     scene_destroy(s);
 }
 
-static void a_hand_wakes_what_rests(void **state)
+static void a_hand_wakes_a_resting_body(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
@@ -275,8 +275,8 @@ static void a_hand_wakes_what_rests(void **state)
     scene_destroy(s);
 }
 
-/* A painter that is slow lets it move in long steps, after each of which it may just be turning. */
-static void rest_is_seen_at_more_than_one_look(void **state)
+/* A slow render worker advances in long steps; at the end of each the body may be at a turning point. */
+static void rest_needs_several_samples(void **state)
 {
     (void)state;
     const struct timespec slow = {.tv_nsec = 200000000};
@@ -300,7 +300,7 @@ static void rest_is_seen_at_more_than_one_look(void **state)
     scene_destroy(s);
 }
 
-/* As the painter does it when the desk has changed. */
+/* As the render worker does after a change of the document. */
 static scene *replace(live *l, scene *old, const char *assignments)
 {
     scene *next = scene_with(toys, assignments);
@@ -330,7 +330,7 @@ static void other_colours_leave_its_shape(void **state)
     s = replace(l, s, "jelly.absorb_per_m=3,0,1 camera.fov_deg=50 lamp.intensity=2 toy.time_s=0.2 body.position=2,0,0");
     assert_memory_equal(before, s->meshes[TOY].data->vertices, size);
     assert_true(number(l, "time_s") == then_s && s->meshes[TOY].time_s == then_s);
-    assert_null(s->meshes[0].data); /* left to be loaded */
+    assert_null(s->meshes[0].data); /* left for the loader */
     advance(l);
     assert_true(number(l, "held") > 0);
     assert_int_equal(live_move(l, h.hand, vec3_make(-1.5, 0.3, 0), &why), STATUS_OK);
@@ -345,7 +345,7 @@ static void other_colours_leave_its_shape(void **state)
     scene_destroy(s);
 }
 
-static void another_body_begins_anew(void **state)
+static void a_changed_body_restarts(void **state)
 {
     (void)state;
     static const char *const others[] = {"toy.stiffness=30", "toy.level=1", "toy.gravity=0,1,0"};
@@ -367,7 +367,7 @@ static void another_body_begins_anew(void **state)
         assert_true(number(l, "time_s") > 0.0);
     }
     s = replace(l, s, "pin.level=0 body.mesh=pin");
-    assert_true(live_is_on(l)); /* it moves, unseen */
+    assert_true(live_is_on(l)); /* it moves, although it is not rendered */
     live_detach(l);
     scene_destroy(s);
     s = scene_with("solids: {ball: {shape: sphere}}\n", "");
@@ -381,7 +381,7 @@ static void another_body_begins_anew(void **state)
     scene_destroy(s);
 }
 
-static void a_body_that_blows_up_says_so_until_it_is_started_again(void **state)
+static void a_diverged_body_reports_it_until_restarted(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
@@ -418,7 +418,7 @@ static void put_script(const char *path, const char *text)
     fclose(file);
 }
 
-static void a_script_plays_until_hands_are_in_its_way(void **state)
+static void a_script_plays_until_hands_interfere(void **state)
 {
     (void)state;
     char path[] = "/tmp/cuvette_live_XXXXXX";
@@ -434,7 +434,7 @@ static void a_script_plays_until_hands_are_in_its_way(void **state)
     live_send(l, LIVE_PLAY);
     while (number(l, "time_s") < 0.55) {
         go_on(l);
-        assert_true(live_is_moving(l)); /* before it is over nothing is at rest */
+        assert_true(live_is_moving(l)); /* never at rest before the script's end */
     }
     assert_true(skin_low(s).x < -1.5);
     live_detach(l);
@@ -458,7 +458,7 @@ static void a_script_plays_until_hands_are_in_its_way(void **state)
     unlink(path);
 }
 
-static void a_slime_that_cannot_begin_says_why(void **state)
+static void a_slime_that_cannot_start_reports_why(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
@@ -481,7 +481,7 @@ static void a_slime_that_cannot_begin_says_why(void **state)
     scene_destroy(s);
 }
 
-static void who_waits_is_told_when_nobody_paints_any_more(void **state)
+static void waits_end_when_the_worker_ends(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
@@ -495,14 +495,14 @@ static void who_waits_is_told_when_nobody_paints_any_more(void **state)
     live_stop(l);
     pthread_join(thread, NULL);
     assert_int_equal(h.code, STATUS_INTERRUPTED);
-    advance(l); /* nothing is left of what was asked */
+    advance(l); /* no request is left */
     assert_true(number(l, "held") == 0.0);
     live_detach(l);
     live_destroy(l);
     scene_destroy(s);
 }
 
-/* Orders from many sides while it goes from stage to stage. */
+/* Commands from many threads while the snapshot is replaced again and again. */
 static void *give_orders(void *of)
 {
     puller *h = of;
@@ -520,7 +520,7 @@ static void *give_orders(void *of)
     return NULL;
 }
 
-static void many_may_order(void **state)
+static void many_threads_may_send_commands(void **state)
 {
     (void)state;
     enum { THREADS = 4 };
@@ -550,8 +550,8 @@ static void many_may_order(void **state)
     scene_destroy(s);
 }
 
-/* A slime may be on the desk, and be ordered to play, while the painter is about to show what was there before. */
-static void an_order_for_a_slime_to_come_is_kept(void **state)
+/* The document may have a slime, and a command to play it, while the worker is about to show the previous scene. */
+static void a_command_for_a_future_slime_is_kept(void **state)
 {
     (void)state;
     static const char bare[] = "camera: {position: [0, 0, -6], target: [0, 0, 0]}\n";
@@ -567,7 +567,7 @@ static void an_order_for_a_slime_to_come_is_kept(void **state)
     assert_true(number(l, "time_s") > 0.0);
     live_detach(l);
     scene_destroy(next);
-    attach(l, s); /* and when it is gone for good, nothing is ordered any more */
+    attach(l, s); /* without a slime no command is pending */
     assert_false(live_is_on(l));
     live_detach(l);
     live_destroy(l);
@@ -578,18 +578,18 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_off_until_it_is_played),
-        cmocka_unit_test(time_goes_on_and_stands_still),
-        cmocka_unit_test(a_pull_draws_it_out_and_it_comes_back),
-        cmocka_unit_test(a_hand_wakes_what_rests),
-        cmocka_unit_test(rest_is_seen_at_more_than_one_look),
+        cmocka_unit_test(time_runs_and_pauses),
+        cmocka_unit_test(a_pull_stretches_it_and_it_recovers),
+        cmocka_unit_test(a_hand_wakes_a_resting_body),
+        cmocka_unit_test(rest_needs_several_samples),
         cmocka_unit_test(other_colours_leave_its_shape),
-        cmocka_unit_test(another_body_begins_anew),
-        cmocka_unit_test(a_body_that_blows_up_says_so_until_it_is_started_again),
-        cmocka_unit_test(a_script_plays_until_hands_are_in_its_way),
-        cmocka_unit_test(a_slime_that_cannot_begin_says_why),
-        cmocka_unit_test(who_waits_is_told_when_nobody_paints_any_more),
-        cmocka_unit_test(many_may_order),
-        cmocka_unit_test(an_order_for_a_slime_to_come_is_kept),
+        cmocka_unit_test(a_changed_body_restarts),
+        cmocka_unit_test(a_diverged_body_reports_it_until_restarted),
+        cmocka_unit_test(a_script_plays_until_hands_interfere),
+        cmocka_unit_test(a_slime_that_cannot_start_reports_why),
+        cmocka_unit_test(waits_end_when_the_worker_ends),
+        cmocka_unit_test(many_threads_may_send_commands),
+        cmocka_unit_test(a_command_for_a_future_slime_is_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Many pages, many changes, clients that hang or send rubbish, random requests: nothing breaks, memory stays bounded,
- * the last change wins. */
+/* Load tests of the laboratory: many pages, many changes, hanging or faulty clients, random requests: nothing
+ * breaks, memory stays bounded, the last change wins. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -29,7 +29,7 @@ static int close_room(void **state)
     return 0;
 }
 
-/* Resident memory of this process. */
+/* The resident memory of this process. */
 static long resident_kib(void)
 {
     long pages = 0;
@@ -40,12 +40,11 @@ static long resident_kib(void)
     return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-/* A page: listens to events and asks for each picture that it hears of, until it has seen the final one of the wanted
- * generation. */
+/* A page: listens to events and fetches each announced image until it has the final one of the expected generation. */
 typedef struct tab {
     pthread_t thread;
     json_int_t expected, seen, serial,
-        json; /* told: generation of the latest state; wanted: atomic, 0 while it is not known */
+        json; /* json: generation of the latest state; expected: atomic, 0 while unknown */
     bool disorder;
 } tab;
 
@@ -104,7 +103,7 @@ static void ten_pages_and_a_thousand_changes(void **state)
                  i / 100);
         room_post(&room, "/api/set", change);
     }
-    /* The generation is told beforehand; one more change makes sure that they hear of it. */
+    /* The generation is already known; one more change makes sure that all pages receive it. */
     for (int i = 0; i < PAGES; i++)
         __atomic_store_n(&tabs[i].expected, CHANGES + 2, __ATOMIC_RELAXED);
     assert_int_equal(room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.5}}"), CHANGES + 2);
@@ -117,7 +116,7 @@ static void ten_pages_and_a_thousand_changes(void **state)
     lab_room fresh;
     room_open(&fresh, BALL_SCENE);
     char *one = room_film(&fresh);
-    assert_string_equal(many, one); /* 1.5 is what the file says */
+    assert_string_equal(many, one); /* 1.5 is the value of the file */
     room_close(&fresh);
     free(many);
     free(one);
@@ -133,8 +132,8 @@ static void *push_and_pull(void *unused)
     return unused;
 }
 
-/* Whoever changes it: what is told last is what is there. */
-static void states_are_told_in_order(void **state)
+/* The last state that is sent is the current one, whichever thread made the change. */
+static void states_are_sent_in_order(void **state)
 {
     (void)state;
     pthread_t others[PAGES];
@@ -152,7 +151,7 @@ static void states_are_told_in_order(void **state)
     assert_false(listener.disorder);
 }
 
-static void who_hangs_or_raves_hinders_nobody(void **state)
+static void faulty_clients_do_not_affect_others(void **state)
 {
     (void)state;
     enum { HANGING = 40 };
@@ -176,8 +175,7 @@ static void who_hangs_or_raves_hinders_nobody(void **state)
     free(half);
 }
 
-/* Requests of the API, good and nearly good: %r stands for a random real, %w for a random word, %n for a small number.
- */
+/* Valid and nearly valid requests of the API: %r is a random real number, %w a random word, %n a small number. */
 static const char *const targets[][3] = {
     {"GET", "/api/state", NULL},
     {"GET", "/api/scene", NULL},
@@ -227,7 +225,7 @@ static const char *const targets[][3] = {
 };
 enum { TARGETS = sizeof targets / sizeof *targets };
 
-/* Words that mean something, words that climb, and words that are nothing. */
+/* Valid words, words with "..", and invalid words. */
 static const char *const words[] = {
     "ball",
     "ground",
@@ -278,7 +276,7 @@ static void fill(uint64_t *seed, const char *form, char *text, size_t size)
     *at = 0;
 }
 
-/* Now and then a byte is another one. */
+/* Sometimes changes one byte. */
 static void garble(uint64_t *seed, char *text)
 {
     const size_t size = strlen(text);
@@ -298,7 +296,7 @@ static char *ask_randomly(uint64_t *seed, const char **method)
     return client_ask(room.server, target[0], path, "Content-Type: application/json\r\n", target[2] ? body : NULL);
 }
 
-/* CUVETTE_LAB_FUZZ: how many requests. */
+/* CUVETTE_LAB_FUZZ: the number of requests. */
 static void random_requests_do_no_harm(void **state)
 {
     (void)state;
@@ -316,7 +314,7 @@ static void random_requests_do_no_harm(void **state)
         free(reply);
         if (i == count / 4)
             early_kib = resident_kib();
-        if (i % 500 == 499) /* so that it never drifts away from what most requests are about */
+        if (i % 500 == 499) /* keeps the scene close to what most requests refer to */
             free(client_ask(room.server, "POST", "/api/reset", "Content-Type: application/json\r\n", "{}"));
     }
     assert_true(by_hundred[2] > count / 8);
@@ -337,8 +335,8 @@ int main(void)
 #define IN_A_ROOM(test) cmocka_unit_test_setup_teardown(test, open_room, close_room)
     const struct CMUnitTest cases[] = {
         IN_A_ROOM(ten_pages_and_a_thousand_changes),
-        IN_A_ROOM(states_are_told_in_order),
-        IN_A_ROOM(who_hangs_or_raves_hinders_nobody),
+        IN_A_ROOM(states_are_sent_in_order),
+        IN_A_ROOM(faulty_clients_do_not_affect_others),
         IN_A_ROOM(random_requests_do_no_harm),
     };
     return cmocka_run_group_tests_name("lab_load", cases, NULL, NULL);

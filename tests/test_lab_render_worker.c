@@ -1,4 +1,5 @@
-/* The painter: what is final is the film of the scene, newer changes win, trouble is told, waiting ends. */
+/* Tests of the render worker: the final image is the film of the scene, newer changes win, errors are reported,
+ * waiting ends. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -19,12 +20,12 @@ typedef struct studio {
     scene_document *d;
     render_worker *p;
     pthread_mutex_t lock;
-    uint64_t serial, generation; /* of the last picture */
+    uint64_t serial, generation; /* of the last image */
     int images, passes_after_final, json;
     bool final;
 } studio;
 
-/* Pictures come in order: serials grow, generations and passes do not go back. */
+/* Images arrive in order: serials increase, generations and passes never decrease. */
 static void take_image(void *of, const shared_image *shown)
 {
     studio *s = of;
@@ -111,7 +112,7 @@ static uint64_t film_of(scene *s)
     return hash;
 }
 
-static void the_final_picture_is_the_film(void **state)
+static void the_final_image_is_the_film(void **state)
 {
     (void)state;
     studio s;
@@ -148,7 +149,7 @@ static void the_last_of_many_changes_wins(void **state)
     close_studio(&s);
 }
 
-static void trouble_is_told_and_goes(void **state)
+static void errors_are_reported_and_cleared(void **state)
 {
     (void)state;
     studio s;
@@ -167,13 +168,13 @@ static void trouble_is_told_and_goes(void **state)
     assert_int_equal(scene_document_undo(s.d, false, NULL, NULL), STATUS_OK);
     final_film(&s);
     apply(&s, "lamp.color=1000,1000,1000");
-    apply(&s, "lamp.intensity=10000"); /* brighter than a film holds: found while rendering */
+    apply(&s, "lamp.intensity=10000"); /* brighter than a film can store: detected while rendering */
     apply(&s, "ball.transparency=0");
     assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
     close_studio(&s);
 }
 
-static void nothing_is_rendered_while_it_waits(void **state)
+static void nothing_is_rendered_while_suspended(void **state)
 {
     (void)state;
     studio s;
@@ -210,7 +211,7 @@ static void an_end_ends_all_waiting(void **state)
     open_studio(&s, rod_scene("render.integrator=path render.paths=1024 render.width=1600 render.height=1200"));
     pthread_t waiting;
     assert_int_equal(pthread_create(&waiting, NULL, wait_for_final, &s), 0);
-    render_worker_end(s.p); /* in the midst of a frame of minutes */
+    render_worker_end(s.p); /* during a frame that takes minutes */
     void *code;
     pthread_join(waiting, &code);
     assert_int_equal((intptr_t)code, STATUS_INTERRUPTED);
@@ -227,7 +228,7 @@ static void assert_whole(const pass_plan *plan)
         assert_true(plan->shrink[i] < plan->shrink[i - 1] || (plan->single[i - 1] && !plan->single[i]));
 }
 
-static void passes_fit_the_time_that_there_is(void **state)
+static void passes_fit_the_available_time(void **state)
 {
     (void)state;
     const render_settings fast = {.width = 800, .height = 600, .samples = 1};
@@ -252,8 +253,8 @@ static void passes_fit_the_time_that_there_is(void **state)
     assert_int_equal(pass.samples, 1);
 }
 
-/* Long enough that loading it is asked whether to go on. */
-static void what_takes_long_to_load_is_shown(void **state)
+/* The load is long enough to check for interruptions. */
+static void slow_loads_are_shown(void **state)
 {
     (void)state;
     studio s;
@@ -277,7 +278,7 @@ static void what_takes_long_to_load_is_shown(void **state)
     "solids:\n"                                                                                   \
     "  body: {shape: mesh, mesh: toy}\n"
 
-/* Does the program come to rest? Looked at again and again, since others may keep it from resting for a while. */
+/* Whether the program becomes idle; retried, because other processes may delay it. */
 static bool comes_to_rest(void)
 {
     enum { LOOKS = 100 };
@@ -291,7 +292,7 @@ static bool comes_to_rest(void)
     return false;
 }
 
-static void what_cannot_be_painted_keeps_nobody_busy(void **state)
+static void an_unrenderable_scene_leaves_the_worker_idle(void **state)
 {
     (void)state;
     studio s;
@@ -302,13 +303,13 @@ static void what_cannot_be_painted_keeps_nobody_busy(void **state)
     diagnostic why = {0};
     assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
     assert_true(comes_to_rest());
-    live_send(render_worker_live(s.p), LIVE_PAUSE); /* an order is heard even so */
+    live_send(render_worker_live(s.p), LIVE_PAUSE); /* a command is run even then */
     assert_true(comes_to_rest());
     close_studio(&s);
 }
 
-/* Each change ends a load of hours; no number of them lets one through to its end. */
-static void what_takes_hours_keeps_no_newer_change_back(void **state)
+/* Each change interrupts a load of hours; none is let through to its end. */
+static void long_loads_do_not_delay_newer_changes(void **state)
 {
     (void)state;
     enum { CHANGES = 60 };
@@ -351,8 +352,8 @@ static void *look_on_and_on(void *of)
     return NULL;
 }
 
-/* Who looks without a gap keeps no change back, and sees no scene of which nothing was loaded. */
-static void lookers_see_what_is_loaded(void **state)
+/* A thread that reads without a gap delays no change and never sees an unloaded scene. */
+static void readers_see_a_loaded_scene(void **state)
 {
     (void)state;
     enum { LOOKERS = 6, CHANGES = 300 };
@@ -388,8 +389,8 @@ static void lookers_see_what_is_loaded(void **state)
     close_studio(&s);
 }
 
-/* Even where it is ordered to end before it has moved at all: while something else is loaded. */
-static void what_was_live_is_loaded_again(void **state)
+/* Also if the slime is switched off before it has moved, while something else is loaded. */
+static void a_formerly_live_slime_is_loaded(void **state)
 {
     (void)state;
     enum { TURNS = 20 };
@@ -420,18 +421,18 @@ static void what_was_live_is_loaded_again(void **state)
 int main(void)
 {
     const struct CMUnitTest cases[] = {
-        cmocka_unit_test(the_final_picture_is_the_film),
+        cmocka_unit_test(the_final_image_is_the_film),
         cmocka_unit_test(coarse_passes_come_first_and_change_no_film),
         cmocka_unit_test(the_last_of_many_changes_wins),
-        cmocka_unit_test(trouble_is_told_and_goes),
-        cmocka_unit_test(nothing_is_rendered_while_it_waits),
+        cmocka_unit_test(errors_are_reported_and_cleared),
+        cmocka_unit_test(nothing_is_rendered_while_suspended),
         cmocka_unit_test(an_end_ends_all_waiting),
-        cmocka_unit_test(what_takes_long_to_load_is_shown),
-        cmocka_unit_test(what_cannot_be_painted_keeps_nobody_busy),
-        cmocka_unit_test(what_takes_hours_keeps_no_newer_change_back),
-        cmocka_unit_test(lookers_see_what_is_loaded),
-        cmocka_unit_test(what_was_live_is_loaded_again),
-        cmocka_unit_test(passes_fit_the_time_that_there_is),
+        cmocka_unit_test(slow_loads_are_shown),
+        cmocka_unit_test(an_unrenderable_scene_leaves_the_worker_idle),
+        cmocka_unit_test(long_loads_do_not_delay_newer_changes),
+        cmocka_unit_test(readers_see_a_loaded_scene),
+        cmocka_unit_test(a_formerly_live_slime_is_loaded),
+        cmocka_unit_test(passes_fit_the_available_time),
     };
-    return cmocka_run_group_tests_name("lab_painter", cases, NULL, NULL);
+    return cmocka_run_group_tests_name("lab_render_worker", cases, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* The gate: no more are in it than there are places, all come through, and a closed one keeps nobody waiting. */
+/* Tests of the semaphore: never more threads inside than places, all get in, and closing it ends all waits. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -38,7 +38,7 @@ static void *visit(void *of)
     return NULL;
 }
 
-static void no_more_than_there_are_places(void **state)
+static void no_more_threads_than_places(void **state)
 {
     (void)state;
     pthread_t visitors[VISITORS];
@@ -59,7 +59,7 @@ static void a_closed_semaphore_ends_every_wait(void **state)
     pthread_t visitors[VISITORS];
     hall h = {.g = semaphore_create(1)};
     diagnostic why = {.what = ""};
-    assert_int_equal(semaphore_acquire(h.g, &why), STATUS_OK); /* and stays */
+    assert_int_equal(semaphore_acquire(h.g, &why), STATUS_OK); /* and keeps its place */
     for (int i = 0; i < VISITORS; i++)
         assert_int_equal(pthread_create(&visitors[i], NULL, visit, &h), 0);
     semaphore_close(h.g);
@@ -74,7 +74,7 @@ static void a_closed_semaphore_ends_every_wait(void **state)
 int main(void)
 {
     const struct CMUnitTest cases[] = {
-        cmocka_unit_test(no_more_than_there_are_places),
+        cmocka_unit_test(no_more_threads_than_places),
         cmocka_unit_test(a_closed_semaphore_ends_every_wait),
     };
     return cmocka_run_group_tests_name("lab_gate", cases, NULL, NULL);

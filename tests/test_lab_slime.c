@@ -1,5 +1,5 @@
-/* The slime through the laboratory's API: it plays, is grabbed in the picture, drawn and let go. What moves and how is
- * tests/test_lab_live.c. */
+/* Tests of the live slime through the API: it plays, is grabbed in the image, dragged and released.
+ * tests/test_lab_live.c tests the motion. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +9,7 @@
 
 #include "lab_fixture.h"
 
-/* Seen from the front, in the middle of the picture; its way to its moment takes many steps. */
+/* Seen from the front, in the centre of the image; the simulation up to its time_s takes many steps. */
 #define TOY_SCENE                                                                                                 \
     "render: {width: 64, height: 48, depth: 2}\ncamera: {position: [0, 0, -6], target: [0, 0, 0]}\nbackground: "  \
     "{color: [0.5, 0.7, 0.9]}\n"                                                                                  \
@@ -72,7 +72,7 @@ static int grab(const lab_room *room, double x, double y, double where[3])
     return hand;
 }
 
-static void its_moment_is_shown_where_it_is_off(void **state)
+static void off_shows_the_scenes_time(void **state)
 {
     (void)state;
     lab_room room;
@@ -89,7 +89,7 @@ static void its_moment_is_shown_where_it_is_off(void **state)
     while (is(&room, "on"))
         ;
     char *after = room_film(&room);
-    for (int i = 0; i < 1000 && strcmp(after, before) != 0; i++) { /* the order may still be on its way */
+    for (int i = 0; i < 1000 && strcmp(after, before) != 0; i++) { /* the command may still be pending */
         free(after);
         after = room_film(&room);
     }
@@ -100,24 +100,24 @@ static void its_moment_is_shown_where_it_is_off(void **state)
     room_close(&room);
 }
 
-static void a_hand_draws_it_through_the_picture(void **state)
+static void a_hand_drags_it_through_the_image(void **state)
 {
     (void)state;
     lab_room room;
     room_open(&room, TOY_SCENE);
-    free(room_film(&room)); /* the state has a slime once it was looked at */
+    free(room_film(&room)); /* the state has a slime after the scene was loaded */
     order(&room, "{\"do\": \"play\"}");
     wait_for_time(&room, 0.1);
     refused(&room, "/api/slime/grab", "{\"x\": 1, \"y\": 1}", 404);
     double where[3];
     const int hand = grab(&room, 32, 24, where);
     assert_true(hand > 0 && json(&room, "held") > 0);
-    assert_true(fabs(where[0]) < 1e-6 && where[2] < -0.8 && where[2] > -1.2); /* its front */
+    assert_true(fabs(where[0]) < 1e-6 && where[2] < -0.8 && where[2] > -1.2); /* the grab point is on its front */
     const double then_s = json(&room, "time_s");
     char *way = text_format("{\"hand\": %d, \"x\": 10, \"y\": 24, \"depth\": -0.5}", hand);
     json_decref(room_ask(&room, "POST", "/api/slime/move", way, 200));
     wait_for_time(&room, then_s + 0.4);
-    /* Now it is there. */
+    /* The slime is on now. */
     json_t *there = room_ask(&room, "POST", "/api/slime/grab", "{\"x\": 10, \"y\": 24, \"reach\": 0.01}", 200);
     json_decref(there);
     char *let_go = text_format("{\"hand\": %d}", hand);
@@ -134,12 +134,12 @@ static void a_hand_draws_it_through_the_picture(void **state)
     room_close(&room);
 }
 
-static void what_cannot_be_asked_is_refused(void **state)
+static void invalid_requests_are_refused(void **state)
 {
     (void)state;
     lab_room room;
     room_open(&room, TOY_SCENE);
-    free(room_film(&room)); /* it is known from its first image on */
+    free(room_film(&room)); /* the slime is known after the first image */
     static const char *const bodies[] = {"[]", "{}", "{\"do\": \"jump\"}", "{\"do\": 3}",
                                          "{\"do\": \"play\", \"preview\": \"fast\"}"};
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++)
@@ -164,7 +164,7 @@ static void what_cannot_be_asked_is_refused(void **state)
     room_close(&room);
 }
 
-static void pages_are_told_while_it_moves(void **state)
+static void pages_get_events_while_it_moves(void **state)
 {
     (void)state;
     enum { ROOM = 1 << 20 };
@@ -188,13 +188,13 @@ static void pages_are_told_while_it_moves(void **state)
     room_close(&room);
 }
 
-/* Who grabs when it ends is answered, or cut off, and nobody waits for ever. */
+/* A grab during the shutdown gets a reply or is cut off; no thread waits forever. */
 static void the_laboratory_ends_with_a_hand_in_the_slime(void **state)
 {
     (void)state;
     lab_room room;
     room_open(&room, TOY_SCENE);
-    free(room_film(&room)); /* the state has a slime once it was looked at */
+    free(room_film(&room)); /* the state has a slime after the scene was loaded */
     order(&room, "{\"do\": \"play\"}");
     double where[3];
     assert_true(grab(&room, 32, 24, where) > 0);
@@ -204,10 +204,10 @@ static void the_laboratory_ends_with_a_hand_in_the_slime(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(its_moment_is_shown_where_it_is_off),
-        cmocka_unit_test(a_hand_draws_it_through_the_picture),
-        cmocka_unit_test(what_cannot_be_asked_is_refused),
-        cmocka_unit_test(pages_are_told_while_it_moves),
+        cmocka_unit_test(off_shows_the_scenes_time),
+        cmocka_unit_test(a_hand_drags_it_through_the_image),
+        cmocka_unit_test(invalid_requests_are_refused),
+        cmocka_unit_test(pages_get_events_while_it_moves),
         cmocka_unit_test(the_laboratory_ends_with_a_hand_in_the_slime),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,4 @@
-/* Studies in the laboratory, through its API: what there is, one that runs, is stopped and goes on, and what is
- * refused. */
+/* Tests of studies through the API: the list, a run that is stopped and continued, and refused requests. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +9,7 @@
 #include "study/csv.h"
 #include <errno.h>
 
-/* --- what there is --- */
+/* --- the list --- */
 
 static void studies_are_listed(void **state)
 {
@@ -63,9 +62,9 @@ static void studies_are_listed(void **state)
     free(room_refused(room, "POST", "/api/studies/broken/run", "{}", 400));
 }
 
-/* --- run, stop, go on --- */
+/* --- run, stop, continue --- */
 
-/* Frames that carry cell and repetition twice would have been measured twice. */
+/* A cell and repetition that occurs twice would have been measured twice. */
 static void count_cells(const lab_room *room, int counted[TINY_CELLS])
 {
     char *path = room_path(room, "results/tiny/rows.csv");
@@ -100,7 +99,7 @@ static int open_events(const lab_room *room)
     return fd;
 }
 
-/* The next event `study` that is so. */
+/* The next event `study` that satisfies the condition. */
 static json_t *wait_for_event(int fd, bool (*is_so)(const json_t *))
 {
     char line[65536];
@@ -141,7 +140,7 @@ static bool has_ended(const json_t *json)
     return json_is_false(json_object_get(json, "running"));
 }
 
-static void a_study_is_stopped_and_goes_on(void **state)
+static void a_study_is_stopped_and_continued(void **state)
 {
     const lab_room *room = *state;
     room_write(room, "tiny.study", ENDLESS);
@@ -191,7 +190,7 @@ static void a_study_is_stopped_and_goes_on(void **state)
     json_decref(list);
     room_post(room, "/api/set", "{\"set\": {\"ball.ior\": 1.3}}");
     char *img = client_ask(room->server, "GET", "/api/picture.png?wait=1", "", NULL);
-    assert_int_equal(reply_code(img), 200); /* pictures are made again */
+    assert_int_equal(reply_code(img), 200); /* rendering is resumed */
     free(img);
     free(rows);
     free(rows_now);
@@ -207,7 +206,7 @@ static void one_runs_at_a_time(void **state)
     assert_non_null(strstr(said, "tiny"));
     free(said);
     free(room_refused(room, "POST", "/api/studies/tiny/run", "{}", 409));
-    free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 409)); /* it would disturb the other one */
+    free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 409)); /* drawing would disturb the other study */
     free(room_refused(room, "POST", "/api/studies/other/stop", "{}", 409));
     json_t *json = room_get(room, "/api/studies/tiny");
     assert_true(json_is_true(json_object_get(json, "running")));
@@ -233,8 +232,8 @@ static void the_laboratory_may_end_meanwhile(void **state)
     assert_true(counted[0] + counted[1] > 0 || counted[2] + counted[3] > 0 || counted[4] + counted[5] > 0);
 }
 
-/* What fails in the middle is told: another process has the rows. */
-static void trouble_is_told(void **state)
+/* An error during the run is reported: another process holds the rows. */
+static void errors_are_reported(void **state)
 {
     const lab_room *room = *state;
     room_write(room, "tiny.study", TINY("1"));
@@ -246,7 +245,7 @@ static void trouble_is_told(void **state)
     json_decref(json);
 }
 
-/* --- what is refused --- */
+/* --- refused requests --- */
 
 static void nothing_outside_is_read(void **state)
 {
@@ -307,10 +306,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(studies_are_listed, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_study_is_stopped_and_goes_on, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_study_is_stopped_and_continued, set_up, tear_down),
         cmocka_unit_test_setup_teardown(one_runs_at_a_time, set_up, tear_down),
         cmocka_unit_test_setup_teardown(the_laboratory_may_end_meanwhile, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(trouble_is_told, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(errors_are_reported, set_up, tear_down),
         cmocka_unit_test_setup_teardown(nothing_outside_is_read, set_up, tear_down),
         cmocka_unit_test_setup_teardown(the_machine_is_described, set_up, tear_down),
     };

@@ -1,4 +1,4 @@
-/* What came of a study, through the laboratory's API: tables, two runs beside each other, figures. */
+/* Tests of study results through the API: tables, two runs compared, figures. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +10,7 @@
 #include "study/summary.h"
 #include <pthread.h>
 
-/* --- what was measured --- */
+/* --- tables --- */
 
 static void tables_are_as_the_files(void **state)
 {
@@ -59,7 +59,7 @@ static void tables_are_as_the_files(void **state)
     free(room_refused(room, "GET", "/api/studies/tiny/rows?from=two", NULL, 400));
 }
 
-/* The same rows with twice the times, and another film in one cell. */
+/* The same rows with doubled times, and another film in one cell. */
 static void write_other_run(const lab_room *room)
 {
     char *path = room_path(room, "results/tiny/rows.csv"), *other = room_path(room, "old/runs/tiny/rows.csv");
@@ -176,7 +176,7 @@ static void *draw(void *of)
     return client_ask(room->server, "POST", "/api/studies/tiny/draw", "Content-Type: application/json\r\n", "{}");
 }
 
-/* A script that does not end is ended with the laboratory. */
+/* A script that never ends is killed with the laboratory. */
 static void drawing_ends_with_the_laboratory(void **state)
 {
     lab_room *room = *state;

@@ -1,5 +1,5 @@
-/* Why a pixel is as it is, asked of the laboratory: what `cuvette trace` writes of the same scene, to the byte; what is
- * refused. */
+/* Tests of traces through the API: identical to the output of `cuvette trace` of the same scene, byte for byte, and
+ * refused requests. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -126,7 +126,7 @@ static void it_follows_the_scene(void **state)
     free(again);
 }
 
-static void it_is_the_pixel_that_is_shown(void **state)
+static void it_is_the_displayed_pixel(void **state)
 {
     free(room_film(*state));
     json_t *trace = room_get(*state, "/api/trace?x=41&y=37");
@@ -144,11 +144,11 @@ static void refused(const lab_room *room, const char *target, const char *words)
 {
     char *json = room_refused(room, "GET", target, NULL, 400);
     if (!strstr(json, words))
-        fail_msg("%s: '%s' does not say '%s'", target, json, words);
+        fail_msg("%s: '%s' does not contain '%s'", target, json, words);
     free(json);
 }
 
-static void what_is_no_pixel_is_refused(void **state)
+static void invalid_pixels_are_refused(void **state)
 {
     refused(*state, "/api/trace?x=80&y=0", "pixel 80,0 is outside the image of 80 x 60");
     refused(*state, "/api/trace?x=0&y=60", "outside");
@@ -163,7 +163,7 @@ static void what_is_no_pixel_is_refused(void **state)
     refused(*state, "/api/trace?x=1&y=99999999999999999999", "y is not an integer");
 }
 
-static void a_tree_that_is_too_large_is_refused(void **state)
+static void large_trees_are_refused(void **state)
 {
     (void)state;
     lab_room room;
@@ -207,8 +207,8 @@ static void many_at_once_get_the_same(void **state)
         free(askers[i].text);
 }
 
-/* "scene" is the name under which the scene was opened or saved last. */
-static void the_scene_is_named_as_its_file(void **state)
+/* "scene" is the name under which the scene was last opened or saved. */
+static void the_scene_has_its_files_name(void **state)
 {
     json_decref(room_ask(*state, "POST", "/api/save", "{\"file\": \"saved.yaml\"}", 200));
     json_t *trace = room_get(*state, "/api/trace?x=1&y=1");
@@ -224,9 +224,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_trace_is_what_the_command_writes), cmocka_unit_test(it_follows_the_scene),
-        cmocka_unit_test(it_is_the_pixel_that_is_shown),      cmocka_unit_test(what_is_no_pixel_is_refused),
-        cmocka_unit_test(many_at_once_get_the_same),          cmocka_unit_test(a_tree_that_is_too_large_is_refused),
-        cmocka_unit_test(the_scene_is_named_as_its_file),
+        cmocka_unit_test(it_is_the_displayed_pixel),          cmocka_unit_test(invalid_pixels_are_refused),
+        cmocka_unit_test(many_at_once_get_the_same),          cmocka_unit_test(large_trees_are_refused),
+        cmocka_unit_test(the_scene_has_its_files_name),
     };
     return cmocka_run_group_tests(tests, open_rod, close_room);
 }

@@ -1,7 +1,6 @@
 #!/bin/bash
-# src/web/embed.sh FILE...: a C file, on the standard output, that holds these files and page.h's table of them. The
-# assembler's .incbin reads the
-# bytes; gcc and clang take the same line.
+# src/web/embed.sh FILE...: prints a C file that embeds these files and defines page.h's table of them. The assembler's
+# .incbin reads the bytes; gcc and clang accept the same directive.
 set -euo pipefail
 declare -A types=([html]='text/html; charset=utf-8' [css]='text/css; charset=utf-8'
     [js]='text/javascript; charset=utf-8' [svg]='image/svg+xml')
@@ -12,7 +11,7 @@ for file in "$@"; do
     name=${file##*/} size=$(stat -c %s "$file")
     type=${types[${name##*.}]-}
     [[ $type && $name =~ ^[a-z0-9_.-]+$ ]] || {
-        echo "embed.sh: $file is no html, css, js or svg with a plain name" \
+        echo "embed.sh: $file is not an html, css, js or svg file with a plain name" \
             >&2
         exit 1
     }

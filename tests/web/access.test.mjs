@@ -1,4 +1,4 @@
-// Every panel, light and dark, on screens from small to large: no fault that axe finds, nothing that sticks out of the
+// Accessibility of every panel, light and dark, on small to large screens: axe finds no fault, nothing exceeds the
 // window.
 
 async function everyPanel(t, how) {

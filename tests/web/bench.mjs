@@ -1,8 +1,6 @@
-// tests/web/bench.mjs --program CUVETTE --modules FOLDER [--changes N]: how soon the page shows what was asked for, in
-// milliseconds: the start of the
-// program to the first picture drawn, and a change of an index to its first and to its final picture drawn, by medians
-// and worst of N. No test: times
-// depend on the machine.
+// tests/web/bench.mjs --program CUVETTE --modules FOLDER [--changes N]: the latency of the page in milliseconds: from
+// the start of the program to the first drawn image, and from a change of an index to its first and its final drawn
+// image, as median and worst of N. Not a test: times depend on the machine.
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
@@ -15,9 +13,9 @@ const { values: options } = parseArgs({
 const { chromium } = createRequire(resolve(options.modules, 'package.json'))('playwright-core');
 
 const median = (times) => [...times].sort((a, b) => a - b)[times.length >> 1];
-const told = (times) => `${median(times).toFixed(0)} (worst ${Math.max(...times).toFixed(0)})`;
+const summary = (times) => `${median(times).toFixed(0)} (worst ${Math.max(...times).toFixed(0)})`;
 
-/** Changes the index, and waits until the page has drawn the first and the final picture of that generation or a newer
+/** Changes the index and waits until the page has drawn the first and the final image of that generation or a newer
  * one. */
 const change = (screen, ior) =>
   screen.page.evaluate(async (value) => {
@@ -49,7 +47,7 @@ async function measure(screen, what, settings) {
     first.push(times.first);
     final.push(times.final);
   }
-  console.log(`${what}: first picture ${told(first)} ms, final picture ${told(final)} ms`);
+  console.log(`${what}: first image ${summary(first)} ms, final image ${summary(final)} ms`);
 }
 
 const browser = await chromium.launch({
@@ -68,7 +66,7 @@ try {
     await page.close();
     await lab.end();
   }
-  console.log(`start of the program to the first picture: ${told(starts)} ms`);
+  console.log(`start of the program to the first image: ${summary(starts)} ms`);
   const lab = await Lab.start(options.program, 'scenes/rod.yaml');
   const screen = await Screen.open(browser, lab);
   await measure(screen, 'rod, 800x600, depth 4', {});

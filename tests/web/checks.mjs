@@ -1,4 +1,5 @@
-// What a case finds: checks that passed, and a line for each that did not. A check that fails does not end its case.
+// The checks of a case: counts those that passed and keeps a line for each that failed. A failed check does not end its
+// case.
 
 export class Checks {
   constructor() {
@@ -12,13 +13,13 @@ export class Checks {
     return Boolean(ok);
   }
 
-  equal(found, wanted, what) {
-    const [a, b] = [JSON.stringify(found), JSON.stringify(wanted)];
+  equal(found, expected, what) {
+    const [a, b] = [JSON.stringify(found), JSON.stringify(expected)];
     return this.check(a === b, `${what}: ${a}, not ${b}`);
   }
 
-  near(found, wanted, within, what) {
-    return this.check(Math.abs(found - wanted) <= within, `${what}: ${found}, not ${wanted} within ${within}`);
+  near(found, expected, within, what) {
+    return this.check(Math.abs(found - expected) <= within, `${what}: ${found}, not ${expected} within ${within}`);
   }
 
   more(found, bound, what) {
@@ -29,7 +30,7 @@ export class Checks {
     return this.check(pattern.test(text), `${what}: ${JSON.stringify(text)} does not match ${pattern}`);
   }
 
-  /** wrong: what is wrong, an array; passes when it is empty. */
+  /** wrong: a list of faults; passes if it is empty. */
   none(wrong, what) {
     return this.check(
       wrong.length === 0,

@@ -1,9 +1,9 @@
-// A picture is pinned, the scene changed, and the wipe shows the one to its left and the other to its right, pixel by
+// The reference image is pinned, the scene changed, and the wipe shows A to the left and B to the right, pixel by
 // pixel.
 import { readPng } from './png.mjs';
 import { difference } from './screen.mjs';
 
-/** Pixels to each side of the edge that its line and handle may cover. */
+/** The pixels to each side of the edge that its line and handle may cover. */
 const EDGE = 24;
 
 async function pinAndChange(t) {
@@ -34,7 +34,7 @@ export const cases = {
       await screen.quiet();
       const seen = await screen.seen();
       const edge = (seen.width * percent) / 100;
-      // The letters A and B stand in the upper corners.
+      // The letters A and B are in the upper corners.
       const left = (x, y) => x < edge - EDGE && y > 40;
       const right = (x, y) => x >= edge + EDGE && y > 40;
       if (percent > 0)
@@ -44,7 +44,7 @@ export const cases = {
     }
   },
 
-  'the handle in the picture': async (t) => {
+  'the handle in the image': async (t) => {
     const { screen, a, b } = await pinAndChange(t);
     const handle = screen.page.getByRole('slider', { name: 'Share of the reference image' });
     const box = await handle.boundingBox();
@@ -69,7 +69,7 @@ export const cases = {
     );
   },
 
-  'the difference, and back': async (t) => {
+  'the difference map': async (t) => {
     const { lab, screen, b } = await pinAndChange(t);
     const map = readPng((await lab.ask('GET', '/api/compare.png')).bytes);
     await screen.page.getByRole('radio', { name: 'Difference' }).locator('xpath=ancestor::label').click();
@@ -82,7 +82,7 @@ export const cases = {
       0.001,
       "share of pixels that are not the map's",
     );
-    await t.axe(screen, 'the map of differences');
+    await t.axe(screen, 'the difference map');
     await screen.button('Close: Difference from A').click();
     await screen.page.mouse.move(1, 1);
     await screen.quiet();
@@ -97,7 +97,7 @@ export const cases = {
     const { lab, screen } = await pinAndChange(t);
     const { a, b, changed, comparison } = await lab.get('/api/compare?wait=1');
     const panel = screen.page.getByRole('tabpanel', { name: 'Compare' });
-    // The numbers of A beside itself may stand there until those of the new picture come.
+    // The numbers of A and A may be displayed until those of the new image arrive.
     await panel.getByText(b.film_hash).waitFor();
     const text = await panel.innerText();
     for (const value of [a.film_hash, b.film_hash, 'plastic.color', 'tiles.color'])

@@ -1,4 +1,4 @@
-// Undo and redo, saving, opening and copying: what is on the desk is what the program makes of the file.
+// Undo, redo, saving, opening and copying: the page's scene makes the same film as the program makes of the file.
 import { readFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { readPng } from './png.mjs';
@@ -7,7 +7,7 @@ import { difference } from './screen.mjs';
 const filmOf = async (lab, ...words) => JSON.parse(await lab.run('render', ...words, '--json')).film_hash;
 const shownFilm = (screen) => screen.page.evaluate(() => window.lab.picture.film_hash);
 
-/** What is asked and changes the scene, and the final picture that follows. */
+/** Does something that changes the scene and waits for the final image. */
 async function change(screen, act) {
   const { generation } = await screen.lab.get('/api/state');
   await act();
@@ -33,7 +33,7 @@ export const cases = {
     await change(screen, () => screen.button('Undo').click());
     t.equal(await lab.value('rod.reflectivity'), 0, 'the newer change is undone first');
     t.equal(await lab.value('liquid.ior'), 1.6, 'the older one is not');
-    // Keys work on the page, not in a field where text has an undo of its own.
+    // The shortcuts work on the page, not in a text field, which has its own undo.
     await screen.stage.focus();
     await change(screen, () => screen.page.keyboard.press('Control+z'));
     t.equal(await shownFilm(screen), first, 'both undone, the film is the first one');
@@ -105,7 +105,7 @@ export const cases = {
     );
     await screen.load();
     t.equal(await shownFilm(screen), film, 'loaded again, the page shows the same film');
-    for (const [file, wanted] of [
+    for (const [file, expected] of [
       ['rod', await filmOf(lab, 'scenes/rod.yaml')],
       ['denser', film],
     ]) {
@@ -114,11 +114,11 @@ export const cases = {
       const choice = screen.page.getByRole('dialog', { name: 'Open a scene' });
       await choice.getByRole('searchbox').fill(`scenes/${file}.yaml`);
       await change(screen, () => choice.getByRole('listitem').getByRole('button').click());
-      t.equal(await shownFilm(screen), wanted, `${file}.yaml, opened in the page: the film`);
+      t.equal(await shownFilm(screen), expected, `${file}.yaml, opened in the page: the film`);
     }
   },
 
-  'a file that is there is not overwritten unasked': async (t) => {
+  'an existing file is not overwritten without a question': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     screen.expect(/409/);
@@ -170,7 +170,7 @@ export const cases = {
     t.match(text, /ior: 1\.45/, 'and what was still being written');
   },
 
-  'a file written by hand is replaced when that is wanted, and asked about once': async (t) => {
+  'a file written by hand is replaced after one question': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const text = () => readFile(join(lab.folder, 'scenes/rod.yaml'), 'utf8');
@@ -188,7 +188,7 @@ export const cases = {
     await answer(question, 'Cancel');
     await save();
     await answer(question, 'Save as …');
-    await answer(naming, 'Save'); // the very name again
+    await answer(naming, 'Save'); // the same name again
     await answer(question, 'Cancel');
     await screen.quiet();
     t.equal(await text(), byHand, 'the file, until it may be replaced');
@@ -241,7 +241,7 @@ export const cases = {
     t.equal(await medium.inputValue(), 'ior', 'an index that is set takes the place of the medium');
   },
 
-  'the page opened again, whichever panel it was on': async (t) => {
+  'the page reopens on every panel': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const names = await screen.page.getByRole('tablist', { name: 'Panels' }).getByRole('tab').allInnerTexts();
@@ -253,7 +253,7 @@ export const cases = {
     }
   },
 
-  'what is at hand is found first': async (t) => {
+  'main parameters are found first': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Parameters');
@@ -264,7 +264,7 @@ export const cases = {
     t.equal(paths.slice(0, 2), ['vessel.ior', 'liquid.ior'], 'the first of those found');
   },
 
-  'what the camera refuses does not stay in its field': async (t) => {
+  'a rejected camera value does not stay in its field': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     screen.expect(/400/);
@@ -282,7 +282,7 @@ export const cases = {
     }
   },
 
-  'a picture of the sky, and none again': async (t) => {
+  'a sky image, and none again': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const before = await shownFilm(screen);
@@ -301,7 +301,7 @@ export const cases = {
     t.equal(await shownFilm(screen), before, 'the film without it');
   },
 
-  'a value that is refused leaves the slider as it was': async (t) => {
+  'a rejected value does not change the slider': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     screen.expect(/400/);
@@ -315,7 +315,7 @@ export const cases = {
     t.equal(await field.inputValue(), '800', 'the number');
   },
 
-  'pictures and commands for other programs': async (t) => {
+  'images and commands for other programs': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.context.grantPermissions(['clipboard-read', 'clipboard-write'], { origin: lab.origin });

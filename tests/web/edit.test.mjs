@@ -1,4 +1,4 @@
-// Objects are added, chosen in the picture, dragged, turned, dressed, copied and removed.
+// Objects are added, selected in the image, dragged, turned, given a material, copied and removed.
 import { camera } from './optics.mjs';
 
 const eye = [0, 6, -5];
@@ -12,7 +12,7 @@ async function change(screen, act) {
   return screen.lab.get('/api/state');
 }
 
-/** Middle of what is blue. */
+/** The centre of the blue pixels. */
 function blue({ width, height, data }) {
   let [n, sx, sy] = [0, 0, 0];
   for (let y = 0; y < height; y++)
@@ -26,7 +26,7 @@ function blue({ width, height, data }) {
 const names = async (lab) => (await lab.get('/api/scene')).objects.map((object) => object.name);
 
 export const cases = {
-  'a ball is dragged in the picture': async (t) => {
+  'a ball is dragged in the image': async (t) => {
     const lab = await t.lab('tests/shadow.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
@@ -43,7 +43,7 @@ export const cases = {
     });
     const after = await lab.value('ball.position');
     const there = view.project(after);
-    // What the pointer took hold of is the point of the ball that is nearest to the eye.
+    // The pointer grabbed the point of the ball that is nearest to the camera.
     const away = before.map((v, i) => v - eye[i]);
     const held = after.map((v, i) => v - (0.3 * away[i]) / Math.hypot(...away));
     t.near(view.project(held).x, middle.x + 90, 1, 'what is held stays under the pointer, x');
@@ -69,7 +69,7 @@ export const cases = {
     t.equal(await lab.value('ball.rotation'), [0, 0, 15], 'a turn about z, degrees');
   },
 
-  'the whole scene moves, turns and grows': async (t) => {
+  'the whole scene is moved, turned and scaled': async (t) => {
     const lab = await t.lab('tests/shadow.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
@@ -107,7 +107,7 @@ export const cases = {
     await t.picture(screen, 'whole-scene');
   },
 
-  'a camera that is rolled': async (t) => {
+  'a rolled camera': async (t) => {
     const lab = await t.lab('tests/shadow.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
@@ -116,7 +116,7 @@ export const cases = {
     await roll.fill('90');
     await change(screen, () => roll.press('Enter'));
     const level = view.project(await lab.value('ball.position'));
-    // Roll 90 turns the picture to the left: what was to the right of the middle is above it.
+    // Roll 90 turns the image to the left: what was right of the centre is above it.
     const there = { x: 320 + (level.y - 240), y: 240 - (level.x - 320) };
     const seen = blue(await screen.pixels());
     t.near(seen.x, there.x, 1.5, 'the ball is seen where it is turned to, x');
@@ -133,7 +133,7 @@ export const cases = {
     t.near(moved.y - seen.y, 0, 8, 'what is dragged to the right goes to the right, y');
   },
 
-  'added, copied, renamed, dressed, removed': async (t) => {
+  'added, copied, renamed, given a material, removed': async (t) => {
     const lab = await t.lab('tests/shadow.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Objects');

@@ -1,15 +1,16 @@
-// What is drawn is never older than what was drawn before or than what was asked for, and the last is the final picture
-// of the last value.
+// The displayed image is never older than an earlier one or than a known change, and the last is the final image of the
+// last value.
 import { difference } from './screen.mjs';
 
-/** From now on, every pass that is drawn, once, and what was wanted when it was. The event also tells more of what is
- * drawn already. */
+/** Records every pass that is displayed, once, with the newest known generation at that time. The event repeats for
+ * an image that is already displayed. */
 const record = (screen) =>
   screen.page.evaluate(() => {
     window.drawn = [];
     let { serial: last } = window.lab.picture;
     window.lab.on('picture', ({ serial, generation, pass, final }) => {
-      if (serial !== last) window.drawn.push({ serial, generation, pass, final, wanted: window.lab.newestGeneration });
+      if (serial !== last)
+        window.drawn.push({ serial, generation, pass, final, expected: window.lab.newestGeneration });
       last = serial;
     });
   });
@@ -22,8 +23,8 @@ function checkOrder(t, drawn, what) {
     `${what}: a frame older than the one before`,
   );
   t.none(
-    drawn.filter((frame) => frame.generation < frame.wanted).map((frame) => JSON.stringify(frame)),
-    `${what}: a frame older than what was asked for`,
+    drawn.filter((frame) => frame.generation < frame.expected).map((frame) => JSON.stringify(frame)),
+    `${what}: a frame older than the known generation`,
   );
   t.check(drawn.at(-1)?.final, `${what}: the last frame is the final one: ${JSON.stringify(drawn.at(-1))}`);
 }
@@ -75,7 +76,7 @@ export const cases = {
     await checkLast(t, screen, 'scenes/rod.yaml', 'requests');
   },
 
-  'the server goes and comes back': async (t) => {
+  'the server stops and restarts': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     screen.expect(/net::ERR_|401|Failed to load resource|EventSource/);

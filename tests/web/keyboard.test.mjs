@@ -1,8 +1,8 @@
-// All by keys alone: from the top of the page to the picture, the tools, the parameters and the panels.
+// The page by keyboard alone: from its top to the image, the tools, the parameters and the panels.
 
 const LONGEST_WAY = 120;
 
-/** Presses Tab until what has the focus is such an element. */
+/** Presses Tab until an element that matches has the focus. */
 async function tabTo(t, screen, selector) {
   for (let i = 0; i < LONGEST_WAY; i++) {
     await screen.page.keyboard.press('Tab');
@@ -11,7 +11,7 @@ async function tabTo(t, screen, selector) {
   return t.check(false, `Tab does not reach ${selector}`);
 }
 
-/** What has the focus can be told from what has not. */
+/** Checks that the focus is visible. */
 async function checkFocusShows(t, screen, what) {
   const shown = await screen.page.evaluate(() => {
     const visible = (node) => {
@@ -25,7 +25,7 @@ async function checkFocusShows(t, screen, what) {
 }
 
 export const cases = {
-  'the way through the page': async (t) => {
+  'tabbing through the page': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const names = [];
@@ -52,11 +52,11 @@ export const cases = {
     t.none(nameless, 'elements without a name');
   },
 
-  'the picture': async (t) => {
+  'the image': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await tabTo(t, screen, '#picture');
-    await checkFocusShows(t, screen, 'the picture');
+    await checkFocusShows(t, screen, 'the image');
     const eye = async () => (await lab.get('/api/state')).camera.eye;
     for (const key of ['ArrowLeft', 'ArrowUp', 'w', 'd', 'PageUp']) {
       const { generation, camera } = await lab.get('/api/state');
@@ -117,11 +117,11 @@ export const cases = {
     await screen.page.keyboard.type('1.4');
     await screen.page.keyboard.press('Enter');
     await screen.until(() => window.lab.param('liquid.ior').value === 1.4);
-    t.equal(await lab.value('liquid.ior'), 1.4, 'what is typed into the field beside it');
+    t.equal(await lab.value('liquid.ior'), 1.4, 'the value typed into the number field');
     await tabTo(t, screen, '.param[data-path="liquid.ior"] button');
     await screen.page.keyboard.press('Enter');
     await screen.until(() => window.lab.param('liquid.ior').value === 1.33);
-    t.equal(await lab.value('liquid.ior'), 1.33, 'the button beside it resets it');
+    t.equal(await lab.value('liquid.ior'), 1.33, 'the reset button resets it');
   },
 
   'the panels': async (t) => {
@@ -143,7 +143,7 @@ export const cases = {
     );
   },
 
-  'the keys are listed': async (t) => {
+  'the shortcuts are listed': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.page.keyboard.press('?');

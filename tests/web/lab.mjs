@@ -1,5 +1,5 @@
-// A laboratory of its own for a test: a temporary folder, `cuvette lab` on it, requests as curl would send them, and
-// the program's other commands.
+// A laboratory for one test: a temporary folder, `cuvette lab` on it, requests as from curl, and the program's other
+// commands.
 import { spawn, execFile } from 'node:child_process';
 import { rmSync } from 'node:fs';
 import { cp, mkdtemp, mkdir, rm } from 'node:fs/promises';
@@ -12,7 +12,8 @@ const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, '..', '..');
 const START_LIMIT_MS = 30000;
 
-/** The first match of a pattern in what a program prints; an error with all that it printed where it ends before. */
+/** The first match of a pattern in the output of a program; an error with the whole output if the program ends
+ * before. */
 function said(child, pattern) {
   return new Promise((resolve, reject) => {
     let text = '';
@@ -35,7 +36,7 @@ function said(child, pattern) {
   });
 }
 
-/** What runs and lies there now: it goes with this program, also where that is ended. */
+/** Running programs and temporary folders, removed when this program ends, however it ends. */
 const running = new Set();
 process.on('exit', () => {
   for (const { child, folder } of running) {
@@ -50,9 +51,8 @@ for (const [signal, code] of [
   process.on(signal, () => process.exit(code));
 
 export class Lab {
-  /** scene: a file of the folder, in which are experiments/scenes as scenes, experiments/hands as hands,
-   * tests/web/scenes as tests and the studies
-   *  of tests/web/studies. */
+  /** scene: a file of the folder, which contains experiments/scenes as scenes, experiments/hands as hands,
+   * tests/web/scenes as tests, and the studies of tests/web/studies. */
   static async start(program, scene) {
     const lab = new Lab();
     lab.program = program;
@@ -70,7 +70,7 @@ export class Lab {
     return lab;
   }
 
-  /** Starts the program; at a port of its choice or, after stop(), at the one that it had. */
+  /** Starts the program; at a free port or, after stop(), at the same port as before. */
   async serve(scene, more = []) {
     const port = this.port ? ['--port', String(this.port)] : [];
     this.child = spawn(
@@ -121,7 +121,7 @@ export class Lab {
     return this.json('POST', path, body);
   }
 
-  /** A parameter's value, as the scene on the desk has it. */
+  /** The current value of a parameter. */
   async value(path) {
     const scene = await this.get('/api/scene');
     const row = scene.params.find((param) => param.path === path || param.name === path);
@@ -129,7 +129,7 @@ export class Lab {
     return row.value;
   }
 
-  /** What another command of the program prints, run in the folder. */
+  /** The output of another command of the program, run in the folder. */
   async run(...words) {
     const { stdout } = await promisify(execFile)(this.program, words, { cwd: this.folder, maxBuffer: 1 << 28 });
     return stdout;

@@ -1,14 +1,14 @@
-// Closed forms that pictures are held against: nothing here is taken from the program.
+// Closed-form references for rendered images, independent of the program.
 
-/** A camera that looks level along z: where the ray of slope u = x / z leaves its picture, in pixels from the left. */
+/** For a camera that looks horizontally along z: the image column of the ray with slope u = x / z, in pixels from the
+ * left. */
 export function columnOfSlope(u, { width, height, fovDeg }) {
   const halfHeight = Math.tan((fovDeg * Math.PI) / 360);
   return ((u / ((halfHeight * width) / height) + 1) / 2) * width;
 }
 
-/** From the eye at (0, -distance) along (u, 1) into a disc of that radius and index about the origin: x where the ray,
- * bent once by Snell's law,
- *  reaches the plane z = depth. NaN where it misses the disc. */
+/** A ray from the eye at (0, -distance) along (u, 1) into a disc of that radius and index about the origin: x where
+ * the ray, refracted once by Snell's law, reaches the plane z = depth. NaN if it misses the disc. */
 export function reachInDisc(u, { distance, radius, index, depth }) {
   const length = Math.hypot(u, 1);
   const [dx, dz] = [u / length, 1 / length];
@@ -26,7 +26,7 @@ export function reachInDisc(u, { distance, radius, index, depth }) {
   return px + ((depth - pz) / rz) * rx;
 }
 
-/** The slope at which x = edge is seen; the ray's reach grows with its slope over the range that is searched. */
+/** The slope at which x = edge is seen; x increases with the slope in the searched range. */
 export function slopeOfEdge(edge, disc) {
   const rim = disc.radius / Math.sqrt(disc.distance * disc.distance - disc.radius * disc.radius);
   let [low, high] = [-0.7 * rim, 0.7 * rim];
@@ -43,8 +43,8 @@ const dot = (a, b) => a.reduce((sum, v, i) => sum + v * b[i], 0);
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const unit = (a) => a.map((v) => v / Math.sqrt(dot(a, a)));
 
-/** Of a camera that stands upright: (x, y) of the picture, in pixels from its upper left corner, to the ray's
- * direction; and back. */
+/** For an upright camera: from (x, y) in the image, in pixels from its upper left corner, to the ray's direction, and
+ * back. */
 export function camera({ position, target, fovDeg, width, height }) {
   const forward = unit(minus(target, position));
   const right = unit(cross([0, 1, 0], forward));
@@ -74,7 +74,7 @@ const meetsBall = (from, direction, { centre, radius }, until) => {
   return along > 0 && along < until && dot(away, away) - along * along < radius * radius;
 };
 
-/** Is the floor (y = 0) seen at (x, y), and does the ball stand between it and the lamp there? */
+/** Whether the floor (y = 0) is seen at (x, y) and the ball occludes the lamp there. */
 export function inShadow(x, y, { eye, view, ball, lamp }) {
   const d = view.direction(x, y);
   if (d[1] >= 0) return false;

@@ -1,4 +1,4 @@
-// Every panel at work, light and dark: axe finds no fault in what stands there then either.
+// Every panel in use, light and dark: axe finds no fault.
 
 const size = { width: 1440, height: 900 };
 

@@ -1,4 +1,4 @@
-// A pixel is clicked, and the table of its rays is the tree that `cuvette trace` prints of the same scene and pixel.
+// The table of a clicked pixel's rays equals the tree that `cuvette trace` prints for the same scene and pixel.
 import { writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 
@@ -13,10 +13,10 @@ const ends = {
 const degrees = (cosine) => (Math.acos(Math.min(1, cosine)) * 180) / Math.PI;
 const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? [c[0]] : c);
 
-/** The rays of a tree from the root on, each before its branches. */
+/** The rays of a tree from the root, each before its children. */
 const flat = (node) => [node, ...node.children.flatMap(flat)];
 
-/** The numbers that a row shall show, by the head of their column. */
+/** The numbers that a row must show, by column head. */
 function wanted({ depth, medium, n, throughput, brought, hit }) {
   const row = {
     Depth: [depth],
@@ -36,7 +36,7 @@ function wanted({ depth, medium, n, throughput, brought, hit }) {
 
 const numbers = (text) => (text.replaceAll('\u2212', '-').match(/-?\d+(\.\d+)?(e-?\d+)?/g) ?? []).map(Number);
 
-/** The rows that are shown, as {head: text}. */
+/** The visible rows, as {head: text}. */
 const rowsOf = (screen) =>
   screen.page.getByRole('treegrid', { name: 'Rays of the pixel' }).evaluate((table) => {
     const heads = [...table.tHead.rows[0].cells].map((cell) => cell.innerText.trim());
@@ -50,7 +50,7 @@ function compareRow(t, row, node, what) {
   const want = wanted(node);
   t.match(row.Media, new RegExp(`^(in )?${want.medium}\\b`), `${what}: medium`);
   t.equal(row.End, ends[node.end], `${what}: end`);
-  if (node.hit) t.check(row.Hits.startsWith(node.hit.solid), `${what}: meets ${row.Hits}, not ${node.hit.solid}`);
+  if (node.hit) t.check(row.Hits.startsWith(node.hit.solid), `${what}: hits ${row.Hits}, not ${node.hit.solid}`);
   for (const [head, values] of Object.entries(want)) {
     if (head === 'medium' || values === null) continue;
     const shown = numbers(row[head]);
@@ -61,8 +61,10 @@ function compareRow(t, row, node, what) {
 }
 
 async function compareTree(t, screen, lab, x, y, what) {
-  await writeFile(join(lab.folder, 'scenes', 'asked.yaml'), (await lab.ask('GET', '/api/scene.yaml')).bytes);
-  const { root, radiance } = JSON.parse(await lab.run('trace', 'scenes/asked.yaml', '--pixel', `${x},${y}`, '--json'));
+  await writeFile(join(lab.folder, 'scenes', 'inspected.yaml'), (await lab.ask('GET', '/api/scene.yaml')).bytes);
+  const { root, radiance } = JSON.parse(
+    await lab.run('trace', 'scenes/inspected.yaml', '--pixel', `${x},${y}`, '--json'),
+  );
   const tree = flat(root);
   await screen.until(
     ([count]) =>
@@ -105,7 +107,7 @@ export const cases = {
     }
   },
 
-  'a scene that was changed': async (t) => {
+  'a changed scene': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
@@ -119,7 +121,7 @@ export const cases = {
     t.check(JSON.stringify(first) !== JSON.stringify(await rowsOf(screen)), 'the table is another one');
   },
 
-  'the place is given by keys': async (t) => {
+  'the pixel is chosen by keys': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Pixel');

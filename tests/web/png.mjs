@@ -1,5 +1,5 @@
-// Reads the PNGs that the program writes (8 bits a channel, RGB or RGBA, not interlaced) without the browser's decoder,
-// which is under test here.
+// Decodes PNGs of the program (8 bits per channel, RGB or RGBA, not interlaced) without the browser's decoder, which is
+// under test.
 import { inflateSync } from 'node:zlib';
 
 function paeth(left, above, corner) {
@@ -10,7 +10,7 @@ function paeth(left, above, corner) {
 
 const predictions = [() => 0, (left) => left, (left, above) => above, (left, above) => (left + above) >> 1, paeth];
 
-/** {width, height, data}: RGBA, a byte each, rows from above as in ImageData. */
+/** {width, height, data}: RGBA, one byte per channel, rows from the top as in ImageData. */
 export function readPng(bytes) {
   const file = Buffer.from(bytes);
   if (file.readUInt32BE(0) !== 0x89504e47) throw new Error('this is no PNG');

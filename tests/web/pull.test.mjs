@@ -1,10 +1,9 @@
-// A ball of slime is let fall, taken hold of at its top, lifted until it is drawn out, and let go: it comes back. What
-// is green in the picture is
-// the body.
+// A ball of slime falls, is grabbed at its top, lifted until it is stretched, and released: it recovers its shape. The
+// green pixels of the image are the body.
 
 const LIFT = 60;
 const IN = 12;
-/** How much higher it is to be while it is held; it hangs there, so that this lasts. */
+/** The required stretch while it is held; it hangs still, so the value is stable. */
 const DRAWN_OUT = 1.2;
 
 function silhouette({ width, height, data }) {
@@ -59,8 +58,8 @@ async function checkBack(t, lab, screen, rest) {
   await held(screen, false);
   await atRest(screen);
   const now = silhouette(await screen.pixels());
-  // It may have rolled nearer or farther and lie on another side, which weighs on its shape; half of what lifting it
-  // did would be too much.
+  // It may have rolled nearer or farther and onto another side, which affects its shape; the tolerance is below half of
+  // the effect of lifting.
   t.near(now.wide / now.high, rest.wide / rest.high, 0.1, 'let go, how wide it is by how high');
   t.near(
     now.count / (now.wide * now.high),
@@ -93,7 +92,7 @@ export const cases = {
   'lifted by keys': async (t) => {
     const { lab, screen, rest } = await fallen(t);
     await screen.stage.focus();
-    // The cross begins in the middle of the picture; a key moves it by a fiftieth of the picture's width.
+    // The cross starts in the centre of the image; a key moves it by a fiftieth of the image width.
     const { width, height } = await screen.page.evaluate(() => ({
       width: window.lab.view.width,
       height: window.lab.view.height,

@@ -1,11 +1,11 @@
-// The index of the liquid, turned at the page's slider, moves the bar's edges in the picture as Snell's law alone says.
+// Changing the liquid's index with the page's slider moves the bar's edges in the image as predicted by Snell's law.
 import { columnOfSlope, slopeOfEdge } from './optics.mjs';
 
 const picture = { width: 801, height: 301, fovDeg: 6 };
 const bar = [-0.15, 0.25];
 const disc = { distance: 9, radius: 1, depth: 0.5 };
 
-/** Columns between which the row at eye level turns from the sky's blue to the bar's red and back. */
+/** The columns where the row at eye level changes from the sky's blue to the bar's red and back. */
 function edges(shown) {
   const row = (shown.height - 1) / 2;
   const red = (x) => shown.data[(row * shown.width + x) * 4] > shown.data[(row * shown.width + x) * 4 + 2];
@@ -37,7 +37,7 @@ export const cases = {
     for (const index of [1.1, 1.25, 1.45, 1.5]) {
       await screen.setNumber('liquid.ior', index);
       const now = await compare(t, screen, 'typed');
-      t.equal(now.index, index, 'what was typed is on the desk');
+      t.equal(now.index, index, 'the scene has the typed value');
       for (const before of seen)
         t.more(
           Math.abs(now.found[1] - before.found[1]),
@@ -59,7 +59,7 @@ export const cases = {
     const keyed = await compare(t, screen, 'keys');
     t.more(keyed.index, first.index, 'keys raise the index');
     t.more(keyed.found[1] - first.found[1], 2, 'and the right edge moves, pixels');
-    // From where the handle stands now, back by half the way to the left end.
+    // From the current position of the handle, half of the distance to the left end.
     const box = await slider.boundingBox();
     const share = await slider.evaluate((input) => (input.value - input.min) / (input.max - input.min));
     const x = (part) => box.x + 8 + (box.width - 16) * part;

@@ -1,8 +1,7 @@
 // tests/web/run.mjs --program CUVETTE --modules FOLDER [--screenshots FOLDER] [NAME...]: runs tests/web/NAME.test.mjs,
-// or all, in Chromium, one line a
-// file and a line a failed check, and ends with "N passed, M failed". A file exports cases: {what: async (t) => ..}; t
-// has the checks of checks.mjs,
-// t.lab(scene), t.open(lab, options) and t.axe(screen, what); what these start ends with the case.
+// or all, in Chromium; prints one line per file and per failed check, and ends with "N passed, M failed". A file
+// exports cases: {name: async (t) => ..}; t has the checks of checks.mjs, t.lab(scene), t.open(lab, options) and
+// t.axe(screen, what); whatever these start ends with the case.
 import { execFileSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
 import { mkdir, readFile } from 'node:fs/promises';
@@ -21,7 +20,7 @@ const { values: options, positionals: names } = parseArgs({
   allowPositionals: true,
 });
 
-// What is installed lies in the build folder, where import does not look.
+// The modules are installed in the build folder, where import does not search.
 const installed = createRequire(join(options.modules, 'package.json'));
 const { chromium } = installed('playwright-core');
 const axePath = installed.resolve('axe-core/axe.min.js');
@@ -44,9 +43,9 @@ class Case extends Checks {
     return screen;
   }
 
-  /** Accessibility as far as a program can tell: a check a state of the page. */
+  /** Checks accessibility as far as a program can: one check per state of the page. */
   async axe(screen, what) {
-    // Not by a script element: the page's policy forbids those, and rightly.
+    // Not as a script element: the page's Content-Security-Policy forbids those.
     await screen.page.evaluate(await axeSource());
     const { violations } = await screen.page.evaluate(() => window.axe.run(document, { resultTypes: ['violations'] }));
     this.none(
@@ -61,7 +60,7 @@ class Case extends Checks {
     );
   }
 
-  /** With --screenshots, a picture of the whole page. */
+  /** With --screenshots, saves an image of the whole page. */
   async picture(screen, name) {
     if (!options.screenshots) return;
     await mkdir(options.screenshots, { recursive: true });
@@ -101,7 +100,7 @@ async function runCase(browser, body) {
   return t;
 }
 
-/** The line of a test file where an error came up. */
+/** The line of a test file where an error occurred. */
 function at(error) {
   const line = `${error.stack}`.match(/[\w.-]+\.test\.mjs:\d+/);
   return line ? ` (${line[0]})` : '';

@@ -1,4 +1,4 @@
-// A page in the browser, watched: what it prints, what it asks for and from where. Waiting is for conditions alone.
+// A page in the browser: records its messages and its requests. It waits for conditions only, never for fixed times.
 import { readPng } from './png.mjs';
 
 const LIMIT_MS = 30000;
@@ -45,7 +45,7 @@ export class Screen {
       });
   }
 
-  /** Errors that a case provokes; what matches is no trouble. */
+  /** Permits errors that a case provokes. */
   expect(pattern) {
     this.expected.push(pattern);
   }
@@ -63,8 +63,8 @@ export class Screen {
     await this.context.close();
   }
 
-  /** Until what is drawn is the final picture of the newest generation that page and server know of, or of at least
-   * this one. */
+  /** Waits until the displayed image is the final one of the newest generation known to page and server, or of at
+   * least this one. */
   async settled(generation = 0) {
     const least = Math.max(generation, (await this.lab.get('/api/state')).generation);
     await this.page.waitForFunction((g) => {
@@ -73,22 +73,22 @@ export class Screen {
     }, least);
   }
 
-  /** Until nothing is asked of the server, but for the stream of events, and what came is drawn. */
+  /** Waits until no request is pending except the event stream, and the latest image is drawn. */
   async quiet() {
     do {
-      // what waited in the page for an answer is asked when that has come
+      // a reply may trigger requests that waited for it
       if (this.asking.size) await new Promise((resolve) => this.idle.push(resolve));
       await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
     } while (this.asking.size);
   }
 
-  /** Until an answer of the page is true; it may use window.lab. */
+  /** Waits until a condition in the page is true; it may use window.lab. */
   until(condition, argument) {
     return this.page.waitForFunction(condition, argument);
   }
 
-  /** What the canvas shows of the picture, as {width, height, data}: at actual size, so that each of its pixels is one
-   * of the canvas. */
+  /** The canvas pixels of the image as {width, height, data}: at actual size, so that one image pixel is one canvas
+   * pixel. */
   async pixels() {
     const { width, height, scale, text } = await this.page.evaluate(async () => {
       const { view } = window.lab;
@@ -103,11 +103,11 @@ export class Screen {
       for (let i = 0; i < shown.length; i += 32768) text += String.fromCharCode(...shown.subarray(i, i + 32768));
       return { width, height, scale, text: btoa(text) };
     });
-    if (Math.abs(scale - 1) > 1e-6) throw new Error(`the picture is shown at ${scale} of its size; actualSize() first`);
+    if (Math.abs(scale - 1) > 1e-6) throw new Error(`the image is shown at ${scale} of its size; actualSize() first`);
     return { width, height, data: new Uint8ClampedArray(Buffer.from(text, 'base64')) };
   }
 
-  /** What people see of the picture, with all that lies over it. */
+  /** The image as displayed, with everything drawn over it. */
   async seen() {
     const { width, height } = await this.page.evaluate(() => ({
       width: window.lab.view.width,
@@ -117,19 +117,19 @@ export class Screen {
     return readPng(await this.page.screenshot({ clip: { ...corner, width, height } }));
   }
 
-  /** Picture pixels as they are, by the key for it. */
+  /** Shows actual pixels, by the key for it. */
   async actualSize() {
     await this.stage.focus();
     await this.page.keyboard.press('1');
     await this.until(() => Math.abs(window.lab.view.scale - 1) < 1e-6);
   }
 
-  /** The same picture from the server. */
+  /** The same image from the server. */
   async served(path = '/api/picture.png?wait=1') {
     return readPng((await this.lab.ask('GET', path)).bytes);
   }
 
-  /** Where a place of the picture, in its pixels, lies in the window. */
+  /** The window position of an image point in image pixels. */
   place(x, y) {
     return this.page.evaluate(
       ([px, py]) => {
@@ -147,7 +147,7 @@ export class Screen {
     await this.page.mouse.click(at.x, at.y);
   }
 
-  /** Presses at one place of the picture, goes to another in steps, and lets go. */
+  /** Presses at one image point, moves to another in steps, and releases. */
   async drag(from, to, steps = 12) {
     const [a, b] = [await this.place(from.x, from.y), await this.place(to.x, to.y)];
     await this.page.mouse.move(a.x, a.y);
@@ -160,8 +160,8 @@ export class Screen {
     return this.page.locator('#picture');
   }
 
-  /** Of the bar over the picture: what the pointer does. The radio buttons are small; people click what stands around
-   * them. */
+  /** Chooses a pointer tool in the toolbar over the image. The radio buttons are small, so the click is on their
+   * label. */
   async chooseTool(name) {
     const radio = this.page.getByRole('radiogroup', { name: 'Pointer tool' }).getByRole('radio', { name, exact: true });
     await radio.locator('xpath=ancestor::label').click();
@@ -173,13 +173,13 @@ export class Screen {
     await this.page.getByRole('tabpanel', { name }).waitFor();
   }
 
-  /** A parameter's slider, at hand in the panel of parameters. */
+  /** A parameter's slider in the panel Parameters. */
   async paramSlider(path) {
     await this.showPanel('Parameters');
     return this.page.getByRole('slider', { name: path.replaceAll(/[._]/g, ' '), exact: true }).first();
   }
 
-  /** Types a value into a parameter's number field and waits until it is on the desk and drawn. */
+  /** Types a value into a parameter's number field and waits until the scene has it and is drawn. */
   async setNumber(path, value) {
     await this.showPanel('Parameters');
     const field = this.page
@@ -200,8 +200,8 @@ export class Screen {
   }
 }
 
-/** Share of pixels that differ by more than a level in any channel; Infinity for other sizes. keep(x, y): which count.
- * */
+/** The share of pixels that differ by more than one level in any channel; Infinity for different sizes. keep(x, y):
+ * which pixels count. */
 export function difference(a, b, keep = () => true) {
   if (a.width !== b.width || a.height !== b.height) return Infinity;
   let [all, other] = [0, 0];

@@ -1,4 +1,4 @@
-// The lamp is dragged in the picture, and the ball's shadow lies where the lamp's rays end.
+// The lamp is dragged in the image, and the ball's shadow is where the closed form predicts it.
 import { camera, inShadow } from './optics.mjs';
 
 const eye = [0, 6, -5];
@@ -6,7 +6,7 @@ const size = { width: 640, height: 480 };
 const view = camera({ position: eye, target: [0, 0, 0], fovDeg: 45, ...size });
 const ball = { centre: [0, 1, 0], radius: 0.3 };
 
-/** Middle and count of the pixels of which it is true. */
+/** Centre and number of the pixels that satisfy a condition. */
 function region(inside) {
   let [n, sx, sy] = [0, 0, 0];
   for (let y = 0; y < size.height; y++)
@@ -21,12 +21,12 @@ async function compare(t, screen, what) {
   const at = (x, y, c) => shown.data[(y * size.width + x) * 4 + c];
   const dark = (x, y) => at(x, y, 0) < 100 && at(x, y, 2) < 100;
   const shade = (x, y) => inShadow(x + 0.5, y + 0.5, { eye, view, ball, lamp });
-  const [found, wanted] = [region(dark), region(shade)];
-  t.more(wanted.n, 300, `${what}: the shadow is in the picture`);
-  t.near(found.x, wanted.x, 1, `${what}, lamp at ${lamp}: the shadow's middle, x`);
-  t.near(found.y, wanted.y, 1, `${what}, lamp at ${lamp}: the shadow's middle, y`);
+  const [found, expected] = [region(dark), region(shade)];
+  t.more(expected.n, 300, `${what}: the shadow is in the image`);
+  t.near(found.x, expected.x, 1, `${what}, lamp at ${lamp}: the shadow's middle, x`);
+  t.near(found.y, expected.y, 1, `${what}, lamp at ${lamp}: the shadow's middle, y`);
   const wrong = region((x, y) => dark(x, y) !== shade(x, y)).n;
-  t.check(wrong <= wanted.n / 50, `${what}: ${wrong} of ${wanted.n} pixels are not as the closed form says`);
+  t.check(wrong <= expected.n / 50, `${what}: ${wrong} of ${expected.n} pixels are not as the closed form says`);
   return { lamp, ...found };
 }
 

@@ -1,5 +1,5 @@
-// The slime in the page: it plays, hands draw it through the picture by pointer and by keys, and its colours are turned
-// while it moves.
+// The slime on the page: it plays, is dragged through the image by pointer and by keys, and its colours change while it
+// moves.
 
 const slime = async (lab) => (await lab.get('/api/state')).slime;
 
@@ -14,8 +14,8 @@ async function play(t, options) {
   return { lab, screen };
 }
 
-/** Until it is told and true. */
-const told = (screen, condition) => screen.until(condition);
+/** Waits until a condition on the received state is true. */
+const until = (screen, condition) => screen.until(condition);
 
 export const cases = {
   'a pointer draws it': async (t) => {
@@ -24,14 +24,14 @@ export const cases = {
     const [a, b] = [await screen.place(400, 330), await screen.place(330, 250)];
     await screen.page.mouse.move(a.x, a.y);
     await screen.page.mouse.down();
-    await told(screen, () => window.lab.slime.held > 0);
+    await until(screen, () => window.lab.slime.held > 0);
     await screen.page.mouse.move(b.x, b.y, { steps: 8 });
     await screen.page.mouse.wheel(0, -60);
-    await told(screen, () => window.lab.slime.speed > 1);
+    await until(screen, () => window.lab.slime.speed > 1);
     t.more(await screen.page.locator('.layer-grab circle').count(), 1, 'marks of the hand');
     await t.picture(screen, 'slime-drawn');
     await screen.page.mouse.up();
-    await told(screen, () => window.lab.slime.held === 0);
+    await until(screen, () => window.lab.slime.held === 0);
     t.equal(await screen.page.locator('.layer-grab circle').count(), 0, 'marks when it let go');
     t.equal((await slime(lab)).trouble, null, 'it holds together');
   },
@@ -42,26 +42,26 @@ export const cases = {
     await screen.stage.focus();
     await screen.page.keyboard.press('ArrowDown');
     await screen.page.keyboard.press('Enter');
-    await told(screen, () => window.lab.slime.held > 0);
+    await until(screen, () => window.lab.slime.held > 0);
     for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', 'PageDown']) await screen.page.keyboard.press(key);
     await screen.page.keyboard.press('Enter');
-    await told(screen, () => window.lab.slime.held === 0);
+    await until(screen, () => window.lab.slime.held === 0);
     await screen.page.keyboard.press('Enter');
-    await told(screen, () => window.lab.slime.held > 0);
+    await until(screen, () => window.lab.slime.held > 0);
     await screen.chooseTool('Orbit');
-    await told(screen, () => window.lab.slime.held === 0);
+    await until(screen, () => window.lab.slime.held === 0);
     t.check(true, 'another tool lets go');
   },
 
-  'colours are turned while it moves, and another body begins anew': async (t) => {
+  'colours change while it moves, and a change of its body restarts it': async (t) => {
     const { lab, screen } = await play(t);
     const { time_s: then } = await slime(lab);
     await screen.page.getByLabel('Absorption, red', { exact: true }).press('End');
-    await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 100);
+    await until(screen, () => window.lab.param('body.absorb_per_m').value[0] === 100);
     await screen.until((time_s) => window.lab.slime.time_s > time_s, then);
     t.more((await slime(lab)).time_s, then, 'its time goes on');
     await screen.page.getByLabel('Tint', { exact: true }).fill('#ff8000');
-    await told(screen, () => window.lab.param('body.absorb_per_m').value[0] === 0);
+    await until(screen, () => window.lab.param('body.absorb_per_m').value[0] === 0);
     const [red, green, blue] = await lab.value('body.absorb_per_m');
     t.equal(red, 0, 'an orange tint absorbs no red');
     t.near(Math.exp(-green), ((128 / 255 + 0.055) / 1.055) ** 2.4, 0.001, 'the share of green behind 1 m');
@@ -74,9 +74,9 @@ export const cases = {
     );
     t.equal((await slime(lab)).trouble, null, 'no trouble');
     await screen.button('Pause').click();
-    await told(screen, () => !window.lab.slime.playing);
+    await until(screen, () => !window.lab.slime.playing);
     await screen.button('Off').click();
-    await told(screen, () => !window.lab.slime.on);
+    await until(screen, () => !window.lab.slime.on);
     await screen.settled();
   },
 
@@ -84,7 +84,7 @@ export const cases = {
     for (const dark of [false, true]) {
       const { screen } = await play(t, { dark });
       await screen.button('Pause').click();
-      await told(screen, () => !window.lab.slime.playing);
+      await until(screen, () => !window.lab.slime.playing);
       await t.axe(screen, dark ? 'slime, dark' : 'slime, light');
       await t.picture(screen, `slime-${dark ? 'dark' : 'light'}`);
     }

@@ -1,5 +1,5 @@
-// A study is started in the page, watched, stopped half way and continued to its end; what the page shows of it is what
-// the program prints.
+// A study is started on the page, watched, stopped half way and continued to its end; the page shows what the program
+// prints.
 import { readFile } from 'node:fs/promises';
 import { join } from 'node:path';
 
@@ -20,7 +20,7 @@ async function chosen(t) {
 
 const rowsOf = async (lab) =>
   (await readFile(join(lab.folder, 'results/quick/rows.csv'), 'utf8')).trim().split('\n').slice(1);
-/** Without warm-ups: whoever goes on warms up again. */
+/** Without warm-up rows: a continued run warms up again. */
 const measured = (rows) => rows.filter((row) => row.split(',')[4] === '0');
 
 export const cases = {
@@ -51,7 +51,7 @@ export const cases = {
     t.equal(all.slice(0, some.length), some, 'the rows from before are kept as they were');
     const told = await lab.get('/api/studies/quick');
     t.equal([told.cells_done, told.marked], [CELLS, 0], 'cells done, rows of another film');
-    // A line for each depth or index, four markers a line; and one in the legend.
+    // One line per depth or index with four markers each, and one in the legend.
     t.equal(await plot.locator('.plot-series .plot-marker').count(), CELLS + 4, 'markers in its figure');
     await t.axe(screen, 'a study with rows');
 
@@ -75,13 +75,13 @@ export const cases = {
     t.check(await screen.page.evaluate(() => window.lab.picture.final), 'afterwards the picture is rendered again');
   },
 
-  'a change while it is measured is drawn afterwards': async (t) => {
+  'a change during a measurement is rendered afterwards': async (t) => {
     const { lab, screen, study } = await chosen(t);
     screen.context.setDefaultTimeout(60000);
     await study.getByRole('button', { name: 'Start', exact: true }).click();
     await running(screen, true);
     const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.6 } });
-    t.more(generation, (await lab.get('/api/state')).picture.generation, 'the picture waits');
+    t.more(generation, (await lab.get('/api/state')).picture.generation, 'rendering is suspended');
     await study.getByRole('button', { name: 'Stop', exact: true }).click();
     await running(screen, false);
     await screen.showPanel('Parameters');

@@ -1,6 +1,6 @@
-// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER: pictures of every view of the laboratory, light
-// and dark, for the README.
-// Not a test; run from the project's root, whose scenes, studies and reference run are shown.
+// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER: screenshots of every view of the laboratory,
+// light and dark, for the README. Not a test; run it from the project's root, whose scenes, studies and reference run
+// it shows.
 import { mkdir } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';

@@ -38,52 +38,52 @@ json_t *api_note(const char *place, const char *text, const char *remedy)
 /* --- bodies --- */
 
 /* Reads value if the JSON has the expected type. */
-typedef bool reader(const json_t *given, void *value);
+typedef bool reader(const json_t *json, void *value);
 
 static bool take(call *c, const char *key, bool needed, const char *form, reader *read, void *value)
 {
-    const json_t *given = json_object_get(c->body, key);
-    const bool missing = !given || json_is_null(given);
-    if (missing ? !needed : read(given, value))
+    const json_t *json = json_object_get(c->body, key);
+    const bool missing = !json || json_is_null(json);
+    if (missing ? !needed : read(json, value))
         return true;
     diagnose(&c->why, STATUS_BAD_INPUT, form, "'%s' must be %s", key, form);
     return false;
 }
 
-static bool read_number(const json_t *given, void *value)
+static bool read_number(const json_t *json, void *value)
 {
-    if (!json_is_number(given) || !isfinite(json_number_value(given)))
+    if (!json_is_number(json) || !isfinite(json_number_value(json)))
         return false;
-    *(double *)value = json_number_value(given);
+    *(double *)value = json_number_value(json);
     return true;
 }
 
-static bool read_vector(const json_t *given, void *value)
+static bool read_vector(const json_t *json, void *value)
 {
-    bool good = json_array_size(given) == 3;
+    bool good = json_array_size(json) == 3;
     for (size_t i = 0; i < 3 && good; i++)
-        good = read_number(json_array_get(given, i), (double *)value + i);
+        good = read_number(json_array_get(json, i), (double *)value + i);
     return good;
 }
 
-static bool read_text(const json_t *given, void *value)
+static bool read_text(const json_t *json, void *value)
 {
-    if (!json_is_string(given) || strlen(json_string_value(given)) != json_string_length(given))
+    if (!json_is_string(json) || strlen(json_string_value(json)) != json_string_length(json))
         return false;
-    *(const char **)value = json_string_value(given);
+    *(const char **)value = json_string_value(json);
     return true;
 }
 
-static bool read_short(const json_t *given, void *value)
+static bool read_short(const json_t *json, void *value)
 {
     enum { GESTURE_MAX = 64 };
-    return json_string_length(given) <= GESTURE_MAX && read_text(given, value);
+    return json_string_length(json) <= GESTURE_MAX && read_text(json, value);
 }
 
-static bool read_flag(const json_t *given, void *value)
+static bool read_flag(const json_t *json, void *value)
 {
-    *(bool *)value = json_is_true(given);
-    return json_is_boolean(given);
+    *(bool *)value = json_is_true(json);
+    return json_is_boolean(json);
 }
 
 bool api_take_number(call *c, const char *key, bool needed, double *value)
@@ -123,9 +123,9 @@ bool api_query_flag(const call *c, const char *key)
 
 bool api_take_bits(const call *c, int *bits)
 {
-    const char *given = http_query_value(c->request, "bits");
-    *bits = given ? atoi(given) : 8;
-    return !given || strcmp(given, "8") == 0 || strcmp(given, "16") == 0;
+    const char *bits_text = http_query_value(c->request, "bits");
+    *bits = bits_text ? atoi(bits_text) : 8;
+    return !bits_text || strcmp(bits_text, "8") == 0 || strcmp(bits_text, "16") == 0;
 }
 
 status api_wait_for_final(call *c, const shared_image **out)

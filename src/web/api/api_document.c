@@ -21,10 +21,10 @@ status api_state(call *c)
 status api_scene(call *c)
 {
     uint64_t generation;
-    scene *now = scene_document_take(c->l->scene_document, &generation),
+    scene *current = scene_document_take(c->l->scene_document, &generation),
           *opened = scene_document_take_opened(c->l->scene_document);
-    api_reply_json(c, now && opened ? scene_json(now, opened, generation) : NULL);
-    scene_destroy(now);
+    api_reply_json(c, current && opened ? scene_json(current, opened, generation) : NULL);
+    scene_destroy(current);
     scene_destroy(opened);
     return STATUS_OK;
 }
@@ -32,7 +32,7 @@ status api_scene(call *c)
 /* --- set and reset --- */
 
 /* Writes one number or word; false for other JSON values. */
-static bool put_item(FILE *out, const json_t *value)
+static bool write_item(FILE *out, const json_t *value)
 {
     char text[NUMBER_TEXT_MAX];
     const char *word = json_is_boolean(value) ? (json_is_true(value) ? "on" : "off") : json_string_value(value);
@@ -49,9 +49,9 @@ static char *value_text(const json_t *value)
     text_writer writer;
     if (text_writer_open(&writer, NULL) != STATUS_OK)
         return NULL;
-    bool good = json_is_array(value) || put_item(writer.stream, value);
+    bool good = json_is_array(value) || write_item(writer.stream, value);
     for (size_t i = 0; i < json_array_size(value) && good; i++)
-        good = (i == 0 || fputc(',', writer.stream) >= 0) && put_item(writer.stream, json_array_get(value, i));
+        good = (i == 0 || fputc(',', writer.stream) >= 0) && write_item(writer.stream, json_array_get(value, i));
     text_writer_end(&writer, good ? STATUS_OK : STATUS_BAD_INPUT, &joined, NULL, NULL);
     return joined;
 }
@@ -140,7 +140,7 @@ status api_reset(call *c)
     return api_changed(c, code, generation);
 }
 
-static status go_back(call *c, bool redo)
+static status undo_or_redo(call *c, bool redo)
 {
     uint64_t generation = 0;
     c->refused = 409;
@@ -149,22 +149,22 @@ static status go_back(call *c, bool redo)
 
 status api_undo(call *c)
 {
-    return go_back(c, false);
+    return undo_or_redo(c, false);
 }
 
 status api_redo(call *c)
 {
-    return go_back(c, true);
+    return undo_or_redo(c, true);
 }
 
 /* --- the camera --- */
 
 static bool take_pair(call *c, const char *key, double pair[2])
 {
-    const json_t *given = json_object_get(c->body, key);
-    for (size_t i = 0; given && i < 2; i++) {
-        const json_t *item = json_array_get(given, i);
-        if (json_array_size(given) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
+    const json_t *angles = json_object_get(c->body, key);
+    for (size_t i = 0; angles && i < 2; i++) {
+        const json_t *item = json_array_get(angles, i);
+        if (json_array_size(angles) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
             api_refuse(c, 400, "a camera angle is not a number", "give [YAW, PITCH] in degrees");
             return false;
         }
@@ -192,11 +192,12 @@ status api_camera(call *c)
 status api_scene_file(call *c)
 {
     char *text = NULL;
-    scene *now = scene_document_take(c->l->scene_document, NULL);
-    if (now)
-        lab_clear_default_threads(c->l, now);
-    const status code = now ? scene_write_text(now, scene_path(now), false, &text, &c->why) : out_of_memory(&c->why);
-    scene_destroy(now);
+    scene *current = scene_document_take(c->l->scene_document, NULL);
+    if (current)
+        lab_clear_default_threads(c->l, current);
+    const status code =
+        current ? scene_write_text(current, scene_path(current), false, &text, &c->why) : out_of_memory(&c->why);
+    scene_destroy(current);
     return code == STATUS_OK ? api_send(c, "application/yaml; charset=utf-8", text, strlen(text)) : code;
 }
 
@@ -204,14 +205,14 @@ status api_command(call *c)
 {
     char *text = NULL, *file = api_document_file(c);
     bool complete = false;
-    scene *now = scene_document_take(c->l->scene_document, NULL);
-    const status code = now && file ? command_line(c->l->files, *file ? file : NULL, now, c->l->settings.threads, &text,
-                                                   &complete, &c->why)
-                                    : out_of_memory(&c->why);
+    scene *current = scene_document_take(c->l->scene_document, NULL);
+    const status code = current && file ? command_line(c->l->files, *file ? file : NULL, current,
+                                                       c->l->settings.threads, &text, &complete, &c->why)
+                                        : out_of_memory(&c->why);
     if (code == STATUS_OK)
         api_reply_json(c, json_pack("{s:o,s:b}", "command", json_of_text(text), "complete", (int)complete));
     free(text);
     free(file);
-    scene_destroy(now);
+    scene_destroy(current);
     return code;
 }

@@ -23,8 +23,8 @@ typedef struct edit {
     status (*displace)(scene *s, const char *name, vec3 by, diagnostic *why);
     vec3 by;
     double factor;
-    object_name made; /* name of the new object; "" for none */
-    int refused;      /* HTTP code instead of 400: 404, 409; 0: none */
+    object_name new_name; /* name of the new object; "" for none */
+    int refused;          /* HTTP code instead of 400: 404, 409; 0: none */
     status (*act)(struct edit *e, scene *s, diagnostic *why);
 } edit;
 
@@ -53,8 +53,8 @@ static status apply(call *c, edit *e, const char *verb, const char *name, const 
     snprintf(words, sizeof words, "%s %.80s", verb, name);
     const status code = scene_document_apply(c->l->scene_document, words, gesture, change, e, &generation, &c->why);
     c->refused = e->refused;
-    if (code == STATUS_OK && e->made[0])
-        return api_reply_json(c, json_pack("{s:I, s:s}", "generation", (json_int_t)generation, "name", e->made));
+    if (code == STATUS_OK && e->new_name[0])
+        return api_reply_json(c, json_pack("{s:I, s:s}", "generation", (json_int_t)generation, "name", e->new_name));
     return api_changed(c, code, generation);
 }
 
@@ -156,7 +156,7 @@ status api_material(call *c)
 
 static status copy_it(edit *e, scene *s, diagnostic *why)
 {
-    return new_copy(s, e->name, e->made, why);
+    return new_copy(s, e->name, e->new_name, why);
 }
 
 status api_copy(call *c)
@@ -171,8 +171,8 @@ static status add_file(edit *e, scene *s, diagnostic *why)
 {
     char *path;
     status code = folder_path_from(e->files, e->file, s->path, &path, why);
-    THEN(code, strcmp(e->word, "model") == 0 ? new_model(s, e->loaded, path, e->requested_name, e->made, why)
-                                             : new_texture(s, path, e->requested_name, e->made, why));
+    THEN(code, strcmp(e->word, "model") == 0 ? new_model(s, e->loaded, path, e->requested_name, e->new_name, why)
+                                             : new_texture(s, path, e->requested_name, e->new_name, why));
     free(path);
     return code;
 }
@@ -181,7 +181,8 @@ static status add_object(edit *e, scene *s, diagnostic *why)
 {
     static const struct {
         const char *word;
-        status (*add)(scene *s, const char *requested_name, object_name made, diagnostic *why); /* NULL: from a file */
+        status (*add)(scene *s, const char *requested_name, object_name new_name,
+                      diagnostic *why); /* NULL: from a file */
     } kinds[] = {
         {"light", new_light}, {"material", new_material}, {"slime", new_slime}, {"texture", NULL}, {"model", NULL}};
     if (e->requested_name && check_name_is_free(s, e->requested_name, why) != STATUS_OK) {
@@ -189,10 +190,10 @@ static status add_object(edit *e, scene *s, diagnostic *why)
         return STATUS_BAD_INPUT;
     }
     if (strcmp(e->word, "solid") == 0)
-        return new_solid(s, e->shape, e->requested_name, e->made, why);
+        return new_solid(s, e->shape, e->requested_name, e->new_name, why);
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (strcmp(e->word, kinds[i].word) == 0)
-            return kinds[i].add ? kinds[i].add(s, e->requested_name, e->made, why) : add_file(e, s, why);
+            return kinds[i].add ? kinds[i].add(s, e->requested_name, e->new_name, why) : add_file(e, s, why);
     return diagnose(why, STATUS_BAD_INPUT, "use solid, light, material, model, slime or texture",
                     "unknown kind '%.60s'", e->word);
 }

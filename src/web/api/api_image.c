@@ -16,11 +16,11 @@ static void add_number(http_reply *r, const char *name, uint64_t value)
 /* Keeps only characters that cannot end the quoted string of the header. */
 static void name_download(http_reply *r, const char *name)
 {
-    char text[160], *at = text;
-    at += snprintf(text, sizeof text, "attachment; filename=\"");
-    for (const char *c = name; *c && at < text + sizeof text - 8; c++)
-        *at++ = isalnum((unsigned char)*c) || strchr("._-", *c) ? *c : '_';
-    snprintf(at, 2, "\"");
+    char text[160], *end = text;
+    end += snprintf(text, sizeof text, "attachment; filename=\"");
+    for (const char *c = name; *c && end < text + sizeof text - 8; c++)
+        *end++ = isalnum((unsigned char)*c) || strchr("._-", *c) ? *c : '_';
+    snprintf(end, 2, "\"");
     http_reply_header(r, "Content-Disposition", text);
 }
 

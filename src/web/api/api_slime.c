@@ -26,9 +26,9 @@ static bool take_word(call *c, const char *key, const char *const *words, const 
 
 static bool has_slime(lab *l)
 {
-    scene *now = scene_document_take(l->scene_document, NULL);
-    const bool has = now && scene_moves(now);
-    scene_destroy(now);
+    scene *current = scene_document_take(l->scene_document, NULL);
+    const bool has = current && scene_moves(current);
+    scene_destroy(current);
     return has;
 }
 
@@ -68,12 +68,12 @@ static bool take_hand(call *c, bool needed, int *hand)
     return is_one;
 }
 
-static bool take_place(call *c, double *x, double *y)
+static bool take_point(call *c, double *x, double *y)
 {
-    const double far = 1e6;
+    const double limit = 1e6;
     if (!api_take_number(c, "x", true, x) || !api_take_number(c, "y", true, y))
         return false;
-    const bool good = fabs(*x) <= far && fabs(*y) <= far;
+    const bool good = fabs(*x) <= limit && fabs(*y) <= limit;
     if (!good)
         api_refuse(c, 400, "the point is too far outside the image", "give x and y in pixels of the full image");
     return good;
@@ -82,17 +82,17 @@ static bool take_place(call *c, double *x, double *y)
 status api_grab(call *c)
 {
     double x, y, reach = 0.0;
-    if (!take_place(c, &x, &y) || !api_take_number(c, "reach", false, &reach))
+    if (!take_point(c, &x, &y) || !api_take_number(c, "reach", false, &reach))
         return STATUS_BAD_INPUT;
     if (reach < 0.0)
         return api_refuse(c, 400, "'reach' is below 0", "give scene units; 0 or omitted: 0.3 of the slime's radius");
     vec3 origin, direction, where;
     int hand = LIVE_MISSED;
-    scene *now = scene_document_take(c->l->scene_document, NULL);
-    if (!now)
+    scene *current = scene_document_take(c->l->scene_document, NULL);
+    if (!current)
         return out_of_memory(&c->why);
-    lab_camera_ray(now, x, y, &origin, &direction);
-    scene_destroy(now);
+    lab_camera_ray(current, x, y, &origin, &direction);
+    scene_destroy(current);
     c->refused = 409; /* a conflict with the current state is not a bad request */
     const status code =
         live_grab(render_worker_live(c->l->render_worker), origin, direction, reach, &hand, &where, &c->why);
@@ -122,15 +122,15 @@ status api_move_hand(call *c)
 {
     double x, y, depth = 0.0;
     int hand;
-    if (!take_hand(c, true, &hand) || !take_place(c, &x, &y) || !api_take_number(c, "depth", false, &depth))
+    if (!take_hand(c, true, &hand) || !take_point(c, &x, &y) || !api_take_number(c, "depth", false, &depth))
         return STATUS_BAD_INPUT;
     live *live_slime = render_worker_live(c->l->render_worker);
     vec3 where;
     c->refused = 409;
-    scene *now = scene_document_take(c->l->scene_document, NULL);
-    status code = now ? live_where(live_slime, hand, &where, &c->why) : out_of_memory(&c->why);
-    THEN(code, live_move(live_slime, hand, hand_offset(now, x, y, depth, where), &c->why));
-    scene_destroy(now);
+    scene *current = scene_document_take(c->l->scene_document, NULL);
+    status code = current ? live_where(live_slime, hand, &where, &c->why) : out_of_memory(&c->why);
+    THEN(code, live_move(live_slime, hand, hand_offset(current, x, y, depth, where), &c->why));
+    scene_destroy(current);
     api_reply_json(c, json_object());
     return code;
 }

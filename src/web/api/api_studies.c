@@ -125,7 +125,7 @@ status api_study(call *c)
 
 /* --- run and stop --- */
 
-static status tell_run(call *c, status code)
+static status reply_run(call *c, status code)
 {
     return code == STATUS_OK ? api_reply_json(c, studies_json(c->l->studies)) : code;
 }
@@ -134,12 +134,12 @@ status api_study_run(call *c)
 {
     study *s;
     TRY(take_study(c, &s));
-    return tell_run(c, studies_start(c->l->studies, s, &c->why));
+    return reply_run(c, studies_start(c->l->studies, s, &c->why));
 }
 
 status api_study_stop(call *c)
 {
-    return tell_run(c, studies_stop(c->l->studies, http_path_value(c->request, "name"), &c->why));
+    return reply_run(c, studies_stop(c->l->studies, http_path_value(c->request, "name"), &c->why));
 }
 
 /* --- results --- */
@@ -201,17 +201,17 @@ static status draw(call *c, const study *s)
 {
     lab *l = c->l;
     char *output = NULL;
-    bool whole;
+    bool complete;
     if (studies_runs(l->studies, NULL))
         return api_refuse(c, 409, "a study is measuring, and drawing would disturb it",
                           "draw after it has ended, or stop it");
     if (!studies_begin_drawing(l->studies))
         return api_refuse(c, 409, "figures are already being drawn", "wait until they are finished");
-    const status code = figures_draw(l, s, &output, &whole, &c->why);
+    const status code = figures_draw(l, s, &output, &complete, &c->why);
     studies_end_drawing(l->studies);
     if (code == STATUS_OK)
         api_reply_json(c, json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(output),
-                                    "complete", whole));
+                                    "complete", complete));
     free(output);
     return code;
 }

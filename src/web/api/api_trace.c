@@ -47,7 +47,7 @@ static status build_and_write(void *context, scene *s, diagnostic *why)
     return code;
 }
 
-static bool take_place(call *c, const char *key, int *place)
+static bool take_coordinate(call *c, const char *key, int *place)
 {
     const char *text = http_query_value(c->request, key);
     int64_t value;
@@ -63,7 +63,7 @@ static bool take_place(call *c, const char *key, int *place)
 static status reply_trace(call *c, trace_writer *write, const char *type)
 {
     trace_question q = {.lab = c->l, .write = write};
-    if (!take_place(c, "x", &q.x) || !take_place(c, "y", &q.y))
+    if (!take_coordinate(c, "x", &q.x) || !take_coordinate(c, "y", &q.y))
         return STATUS_BAD_INPUT;
     char *file = api_document_file(c);
     q.scene_name = file;
@@ -98,7 +98,7 @@ static void take_note(void *list, const scene_note *note)
     json_array_append_new(list, api_note(note->place, note->text, note->remedy));
 }
 
-static status look_for_notes(void *context, scene *s, diagnostic *why)
+static status collect_notes(void *context, scene *s, diagnostic *why)
 {
     call *c = context;
     return lint_scene(s, c->l->settings.level, &(note_taker){take_note, json_object_get(c->json, "notes")}, why);
@@ -107,5 +107,5 @@ static status look_for_notes(void *context, scene *s, diagnostic *why)
 status api_notes(call *c)
 {
     api_reply_json(c, json_pack("{s:[]}", "notes"));
-    return render_worker_with_scene(c->l->render_worker, look_for_notes, c, &c->why);
+    return render_worker_with_scene(c->l->render_worker, collect_notes, c, &c->why);
 }

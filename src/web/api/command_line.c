@@ -54,16 +54,16 @@ typedef struct writing {
 static status add_option(void *of, const char *path, const param *row, const char *value)
 {
     writing *w = of;
-    char *now = NULL;
-    status code = scene_get(w->so_far, path, &now, NULL);
-    if (code != STATUS_OK || strcmp(now, value) != 0 || (w->camera && row->group == PARAM_CAMERA)) {
+    char *current = NULL;
+    status code = scene_get(w->so_far, path, &current, NULL);
+    if (code != STATUS_OK || strcmp(current, value) != 0 || (w->camera && row->group == PARAM_CAMERA)) {
         code = scene_set(w->so_far, path, value, NULL);
         char *both = text_format("%s=%s", path, value);
         fputs(" --set ", w->out);
         write_word(w->out, both ? both : "");
         free(both);
     }
-    free(now);
+    free(current);
     return code;
 }
 
@@ -82,28 +82,29 @@ static scene *rebase_paths(const scene *s, const char *path)
 {
     if (strcmp(s->path, path) == 0)
         return scene_clone(s);
-    scene *seen = NULL;
+    scene *rebased = NULL;
     char *text = NULL;
-    diagnostic unsaid;
-    if (scene_write_text(s, path, false, &text, &unsaid) == STATUS_OK &&
-        scene_read_text(path, text, strlen(text), &seen, &unsaid) != STATUS_OK)
-        seen = NULL;
+    diagnostic ignored;
+    if (scene_write_text(s, path, false, &text, &ignored) == STATUS_OK &&
+        scene_read_text(path, text, strlen(text), &rebased, &ignored) != STATUS_OK)
+        rebased = NULL;
     free(text);
-    return seen;
+    return rebased;
 }
 
 static bool write_line(FILE *out, scene *from, const char *path, const scene *s)
 {
     fputs("cuvette render ", out);
     write_word(out, path);
-    scene *seen = rebase_paths(s, path);
+    scene *rebased = rebase_paths(s, path);
     writing w = {.out = out, .so_far = from};
-    if (seen)
-        w.camera = from->camera.aimed != seen->camera.aimed;
-    const bool whole = seen && same_objects(from, seen) && scene_each_param(seen, add_option, &w) == STATUS_OK;
-    scene_destroy(seen);
+    if (rebased)
+        w.camera = from->camera.aimed != rebased->camera.aimed;
+    const bool complete =
+        rebased && same_objects(from, rebased) && scene_each_param(rebased, add_option, &w) == STATUS_OK;
+    scene_destroy(rebased);
     fputs(" -o image.png", out);
-    return whole;
+    return complete;
 }
 
 status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,

@@ -13,7 +13,7 @@ typedef struct unit_search {
     const char *path, *unit;
 } unit_search;
 
-static status look_for_unit(void *context, const char *path, const param *row, const char *value)
+static status find_unit(void *context, const char *path, const param *row, const char *value)
 {
     (void)value;
     unit_search *search = context;
@@ -28,7 +28,7 @@ static status look_for_unit(void *context, const char *path, const param *row, c
 static const char *unit_of(const study *s, const char *path)
 {
     unit_search search = {path, ""};
-    scene_each_param(s->base, look_for_unit, &search);
+    scene_each_param(s->base, find_unit, &search);
     return search.unit;
 }
 
@@ -109,8 +109,8 @@ static json_t *row_json(const csv *columns, const row_ref *of)
     int bad = 0;
     for (size_t i = 0; columns && i < columns->column_count; i++) {
         const char *name = columns->header[i];
-        const int at = of && of->table != columns ? csv_column(of->table, name) : (int)i;
-        bad |= json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, at) : name));
+        const int column = of && of->table != columns ? csv_column(of->table, name) : (int)i;
+        bad |= json_array_append_new(row, json_of_text(of ? csv_field(of->table, of->row, column) : name));
     }
     return json_whole(row, !bad);
 }

@@ -20,9 +20,9 @@ static status listen_at(int port, int backlog, int *out, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "", "cannot create a socket: %s", strerror(errno));
     const int on = 1; /* allows a port that was just released */
     setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    const struct sockaddr_in here = {
+    const struct sockaddr_in address = {
         .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    if (bind(fd, (const struct sockaddr *)&here, sizeof here) == 0 && listen(fd, backlog) == 0)
+    if (bind(fd, (const struct sockaddr *)&address, sizeof address) == 0 && listen(fd, backlog) == 0)
         return STATUS_OK;
     diagnose(why, STATUS_BAD_INPUT, "choose another port, or 0 for any free port",
              "cannot listen on port %d of 127.0.0.1: %s", port, strerror(errno));
@@ -65,13 +65,13 @@ static status listen_and_serve(http_server *s, diagnostic *why)
 {
     int fd;
     TRY(listen_at(s->settings.port, s->settings.connections, &fd, why));
-    struct sockaddr_in here = {0};
-    socklen_t size = sizeof here;
-    if (getsockname(fd, (struct sockaddr *)&here, &size) != 0) {
+    struct sockaddr_in address = {0};
+    socklen_t size = sizeof address;
+    if (getsockname(fd, (struct sockaddr *)&address, &size) != 0) {
         close(fd);
         return diagnose(why, STATUS_FAILURE, "", "cannot get the port of the socket: %s", strerror(errno));
     }
-    s->port = ntohs(here.sin_port);
+    s->port = ntohs(address.sin_port);
     snprintf(s->address, sizeof s->address, "http://127.0.0.1:%d/?token=%s", s->port, s->token);
     snprintf(s->cookie, sizeof s->cookie, "cuvette_%d", s->port);
 

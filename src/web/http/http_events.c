@@ -28,10 +28,10 @@ struct http_event_client {
     payload *queue[HTTP_EVENTS_WAITING]; /* oldest first */
     payload *sending;                    /* used by its thread alone */
     size_t sent;
-    bool greeted;
+    bool header_sent;
 };
 
-static void let_go(payload *p)
+static void payload_release(payload *p)
 {
     if (--p->users == 0)
         free(p);
@@ -47,14 +47,14 @@ static ssize_t comment(http_event_client *c, char *to, size_t room)
     return sizeof text - 1;
 }
 
-static ssize_t send_on(http_event_client *c, char *to, size_t room)
+static ssize_t send_rest(http_event_client *c, char *to, size_t room)
 {
     const size_t left = c->sending->size - c->sent, size = left < room ? left : room;
     memcpy(to, c->sending->text + c->sent, size);
     c->sent += size;
     if (c->sent == c->sending->size) {
         pthread_mutex_lock(&c->server->event_lock);
-        let_go(c->sending);
+        payload_release(c->sending);
         pthread_mutex_unlock(&c->server->event_lock);
         c->sending = NULL;
     }
@@ -63,7 +63,7 @@ static ssize_t send_on(http_event_client *c, char *to, size_t room)
 }
 
 /* Pops the oldest payload; false when the streams end. */
-static bool take(http_event_client *c)
+static bool pop_payload(http_event_client *c)
 {
     pthread_mutex_lock(&c->server->event_lock);
     const bool ends = c->server->events_end;
@@ -77,22 +77,22 @@ static bool take(http_event_client *c)
 }
 
 /* libmicrohttpd's content callback; it may block, because the bytes returned before are already sent. */
-static ssize_t more(void *context, uint64_t position, char *to, size_t room)
+static ssize_t read_stream(void *context, uint64_t position, char *to, size_t room)
 {
     (void)position;
     http_event_client *c = context;
-    if (!c->greeted) { /* sends the header, so that the page knows that the stream is open */
-        c->greeted = true;
+    if (!c->header_sent) { /* sends the header, so that the page knows that the stream is open */
+        c->header_sent = true;
         return comment(c, to, room);
     }
     if (c->sending)
-        return send_on(c, to, room);
+        return send_rest(c, to, room);
     http_watch_deadline(c->server, c->connection, 0);
     for (;;) {
-        if (!take(c))
+        if (!pop_payload(c))
             return MHD_CONTENT_READER_END_OF_STREAM;
         if (c->sending)
-            return send_on(c, to, room);
+            return send_rest(c, to, room);
         struct pollfd wait[2] = {{.fd = c->wake, .events = POLLIN}, {.fd = c->socket, .events = POLLRDHUP}};
         const int ready = poll(wait, 2, HTTP_HEARTBEAT_MS);
         if (ready == 0)
@@ -105,7 +105,7 @@ static ssize_t more(void *context, uint64_t position, char *to, size_t room)
     }
 }
 
-static void leave(void *context)
+static void client_free(void *context)
 {
     http_event_client *c = context;
     http_server *s = c->server;
@@ -115,9 +115,9 @@ static void leave(void *context)
         s->event_client_count--;
     }
     for (int i = 0; i < c->waiting; i++)
-        let_go(c->queue[i]);
+        payload_release(c->queue[i]);
     if (c->sending)
-        let_go(c->sending);
+        payload_release(c->sending);
     pthread_mutex_unlock(&s->event_lock);
     if (c->wake >= 0)
         close(c->wake);
@@ -125,7 +125,7 @@ static void leave(void *context)
 }
 
 /* False if all slots are taken. */
-static bool join(http_server *s, http_event_client *c)
+static bool add_client(http_server *s, http_event_client *c)
 {
     pthread_mutex_lock(&s->event_lock);
     for (int i = 0; i < s->settings.event_clients && !s->events_end && c->place < 0; i++)
@@ -152,17 +152,17 @@ void http_events(void *context, const http_request *q, http_reply *r)
                              .place = -1,
                              .wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
     struct MHD_Response *response = NULL;
-    if (c->wake < 0 || !join(s, c))
+    if (c->wake < 0 || !add_client(s, c))
         http_reply_error(r, 503, "too many event streams are open", "close another page of this laboratory");
     else
-        response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, more, c, leave);
+        response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, read_stream, c, client_free);
     if (response)
         http_reply_set(r, 200, "text/event-stream", response);
     else
-        leave(c);
+        client_free(c);
 }
 
-static bool is_name(const char *name)
+static bool is_event_name(const char *name)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
     const size_t length = strlen(name);
@@ -195,7 +195,7 @@ static void enqueue(http_event_client *c, payload *p)
     if (drop == c->waiting)
         drop = c->waiting == HTTP_EVENTS_WAITING ? 0 : -1;
     if (drop >= 0) {
-        let_go(c->queue[drop]);
+        payload_release(c->queue[drop]);
         memmove(c->queue + drop, c->queue + drop + 1, (size_t)(--c->waiting - drop) * sizeof *c->queue);
     }
     c->queue[c->waiting++] = p;
@@ -211,7 +211,7 @@ static void wake(const http_event_client *c)
 
 status http_publish(http_server *s, const char *event, const json_t *value, diagnostic *why)
 {
-    if (!is_name(event))
+    if (!is_event_name(event))
         return diagnose(why, STATUS_BAD_INPUT, "use 1 to 63 letters, digits, '-', '_' or '.'",
                         "\"%s\" is not a valid event name", event);
     payload *p = payload_of(event, value);
@@ -223,7 +223,7 @@ status http_publish(http_server *s, const char *event, const json_t *value, diag
             enqueue(s->event_client[i], p);
             wake(s->event_client[i]);
         }
-    let_go(p);
+    payload_release(p);
     pthread_mutex_unlock(&s->event_lock);
     return STATUS_OK;
 }

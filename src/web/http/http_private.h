@@ -20,10 +20,10 @@ typedef struct http_bucket {
 } http_bucket;
 
 /* A connection's slot in the watchdog. */
-typedef struct http_place {
+typedef struct http_slot {
     int socket;        /* -1: the slot is free */
     double deadline_s; /* 0: none */
-} http_place;
+} http_slot;
 
 typedef struct http_event_client http_event_client;
 
@@ -40,7 +40,7 @@ struct http_server {
     pthread_cond_t watch_wake;
     pthread_t watch;
     bool watching, watch_ends;
-    http_place *places; /* settings.connections slots */
+    http_slot *slots; /* settings.connections slots */
 
     pthread_mutex_t event_lock;
     bool events_end;

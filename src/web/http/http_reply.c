@@ -108,11 +108,11 @@ enum MHD_Result http_reply_send(http_reply *r)
         http_reply_error(r, 500, "the handler set no reply", "");
     if (!r->response)
         return MHD_NO;
-    bool whole = true;
+    bool complete = true;
     for (size_t i = 0; i < sizeof on_every_reply / sizeof *on_every_reply; i++)
-        whole &= MHD_add_response_header(r->response, on_every_reply[i][0], on_every_reply[i][1]) == MHD_YES;
+        complete &= MHD_add_response_header(r->response, on_every_reply[i][0], on_every_reply[i][1]) == MHD_YES;
     for (int i = 0; i < r->header_count; i++)
-        whole &= MHD_add_response_header(r->response, r->header_name[i], r->header_value[i]) == MHD_YES;
+        complete &= MHD_add_response_header(r->response, r->header_name[i], r->header_value[i]) == MHD_YES;
     /* Send nothing rather than a reply without the security headers. */
-    return whole ? MHD_queue_response(r->connection, (unsigned)r->code, r->response) : MHD_NO;
+    return complete ? MHD_queue_response(r->connection, (unsigned)r->code, r->response) : MHD_NO;
 }

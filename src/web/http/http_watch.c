@@ -16,7 +16,7 @@ static void *watch(void *context)
     while (!s->watch_ends) {
         const double now_s = clock_wall_s();
         for (int i = 0; i < s->settings.connections; i++) {
-            http_place *p = &s->places[i];
+            http_slot *p = &s->slots[i];
             if (p->socket >= 0 && p->deadline_s > 0 && now_s > p->deadline_s) {
                 shutdown(p->socket, SHUT_RDWR); /* its own thread notices and closes it */
                 p->deadline_s = 0;
@@ -31,11 +31,11 @@ static void *watch(void *context)
 
 status http_watch_start(http_server *s, diagnostic *why)
 {
-    s->places = calloc((size_t)s->settings.connections, sizeof *s->places);
-    if (!s->places)
+    s->slots = calloc((size_t)s->settings.connections, sizeof *s->slots);
+    if (!s->slots)
         return diagnose(why, STATUS_FAILURE, "", "out of memory for %d connections", s->settings.connections);
     for (int i = 0; i < s->settings.connections; i++)
-        s->places[i].socket = -1;
+        s->slots[i].socket = -1;
     s->watching = pthread_create(&s->watch, NULL, watch, s) == 0;
     return s->watching ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "cannot start the server's threads");
 }
@@ -49,7 +49,7 @@ void http_watch_stop(http_server *s)
         pthread_mutex_unlock(&s->watch_lock);
         pthread_join(s->watch, NULL);
     }
-    free(s->places);
+    free(s->slots);
 }
 
 void http_watch_notify(void *context, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what)
@@ -59,13 +59,13 @@ void http_watch_notify(void *context, struct MHD_Connection *c, void **place, en
     if (what == MHD_CONNECTION_NOTIFY_STARTED) {
         const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
         for (int i = 0; i < s->settings.connections && info && !*place; i++)
-            if (s->places[i].socket < 0) {
-                s->places[i] =
-                    (http_place){.socket = info->connect_fd, .deadline_s = clock_wall_s() + s->settings.timeout_s};
-                *place = &s->places[i];
+            if (s->slots[i].socket < 0) {
+                s->slots[i] =
+                    (http_slot){.socket = info->connect_fd, .deadline_s = clock_wall_s() + s->settings.timeout_s};
+                *place = &s->slots[i];
             }
     } else if (*place) {
-        ((http_place *)*place)->socket = -1;
+        ((http_slot *)*place)->socket = -1;
         *place = NULL;
     }
     pthread_mutex_unlock(&s->watch_lock);
@@ -74,7 +74,7 @@ void http_watch_notify(void *context, struct MHD_Connection *c, void **place, en
 void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s)
 {
     const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
-    http_place *place = info ? info->socket_context : NULL;
+    http_slot *place = info ? info->socket_context : NULL;
     pthread_mutex_lock(&s->watch_lock);
     if (place)
         place->deadline_s = in_s > 0 ? clock_wall_s() + in_s : 0;

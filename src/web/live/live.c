@@ -78,11 +78,11 @@ void live_stop(live *l)
 
 static void withdraw(live *l, const grab_request *q)
 {
-    grab_request **at = &l->first;
-    while (*at && *at != q)
-        at = &(*at)->next;
-    if (*at)
-        *at = q->next;
+    grab_request **link = &l->first;
+    while (*link && *link != q)
+        link = &(*link)->next;
+    if (*link)
+        *link = q->next;
 }
 
 /* The lock is held, except while waiting. */
@@ -157,8 +157,8 @@ status live_where(live *l, int hand, vec3 *where, diagnostic *why)
 
 status live_move(live *l, int hand, vec3 by, diagnostic *why)
 {
-    const double far = 1e6;
-    if (!(vec3_length(by) <= far))
+    const double limit = 1e6;
+    if (!(vec3_length(by) <= limit))
         return diagnose(why, STATUS_BAD_INPUT, "stay within 1e6 scene units", "the hand moves too far");
     live_hand *h = NULL;
     pthread_mutex_lock(&l->lock);

@@ -60,7 +60,7 @@ static status step_to(live *l, double time_s, diagnostic *why)
 }
 
 /* If a script's hand misses a solid that the user dragged away, the scripts are dropped without an error. */
-static status step_on(live *l, double time_s, diagnostic *why)
+static status step_script_tolerant(live *l, double time_s, diagnostic *why)
 {
     const status code = step_to(l, time_s, why);
     if (code != STATUS_BAD_INPUT || !scene_motion_drop_scripts(l->motion))
@@ -78,7 +78,7 @@ static status advance_until(live *l, double until_s, double most_s, diagnostic *
         const double left_s = until_s - l->time_s, now_s = slice_s(l, most_s, left_s);
         const double to_s = now_s < left_s ? l->time_s + now_s : until_s;
         move_hands(l, now_s / left_s);
-        code = step_on(l, to_s, why);
+        code = step_script_tolerant(l, to_s, why);
         if (code != STATUS_OK)
             return code;
         l->time_s = to_s;

@@ -155,7 +155,7 @@ static void release(render_worker *p)
     live_destroy(p->live_slime);
     scene_destroy(p->snapshot);
     shared_image_release(p->newest);
-    job_destroy(p->with);
+    job_destroy(p->renderer);
     pthread_rwlock_destroy(&p->snapshot_lock);
     pthread_cond_destroy(&p->wake);
     pthread_cond_destroy(&p->changed);
@@ -177,7 +177,7 @@ status render_worker_create(scene_document *d, isa level, const render_worker_li
     p->traced.step = p->raster.step = 3; /* start coarse until the frame time is known */
     p->live_slime = live_create(wake, p);
     const job_settings settings = {.level = &level, .stop = render_worker_must_end, .context = p};
-    status code = p->live_slime ? job_create(&settings, &p->with, why) : out_of_memory(why);
+    status code = p->live_slime ? job_create(&settings, &p->renderer, why) : out_of_memory(why);
     if (code == STATUS_OK && pthread_create(&p->thread, NULL, render_worker_thread, p) != 0)
         code = diagnose(why, STATUS_FAILURE, "close other programs", "a thread cannot be started");
     if (code == STATUS_OK)
@@ -224,13 +224,13 @@ static json_t *camera_json(const scene *s)
 
 bool render_worker_json(render_worker *p, json_t *state)
 {
-    scene *now = scene_document_take(p->scene_document, NULL);
+    scene *current = scene_document_take(p->scene_document, NULL);
     pthread_mutex_lock(&p->lock);
     json_t *json = json_pack(
         "{s:o, s:o, s:o, s:o}", "trouble", p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null(),
         "waiting", p->waiting ? json_of_text(p->waiting) : json_null(), "picture",
-        p->newest ? shared_image_json(p->newest) : json_null(), "camera", now ? camera_json(now) : NULL);
+        p->newest ? shared_image_json(p->newest) : json_null(), "camera", current ? camera_json(current) : NULL);
     pthread_mutex_unlock(&p->lock);
-    scene_destroy(now);
+    scene_destroy(current);
     return json_object_update_new(state, json) == 0;
 }

@@ -13,20 +13,20 @@ static void publish(render_worker *p, shared_image *shown)
     pthread_mutex_lock(&p->lock);
     shown->serial = ++p->serial;
     pthread_mutex_unlock(&p->lock);
-    const shared_image *made = shared_image_create(shown);
-    if (!made) {
+    const shared_image *published = shared_image_create(shown);
+    if (!published) {
         shared_image_drop(shown);
         return;
     }
-    shared_image_retain(made); /* for the listener */
+    shared_image_retain(published); /* for the listener */
     pthread_mutex_lock(&p->lock);
     const shared_image *before = p->newest;
-    p->newest = made;
+    p->newest = published;
     pthread_cond_broadcast(&p->changed);
     pthread_mutex_unlock(&p->lock);
     shared_image_release(before);
-    p->listener.published(p->listener.context, made);
-    shared_image_release(made);
+    p->listener.published(p->listener.context, published);
+    shared_image_release(published);
 }
 
 static bool is_raster(render_worker *p, bool moving)
@@ -47,9 +47,9 @@ static scene pass_scene(const render_worker *p, int pass, const adaptive_resolut
     return view;
 }
 
-static bool describe(render_worker *p, const job_account *made, int pass, bool moving, shared_image *out)
+static bool describe(render_worker *p, const job_account *account, int pass, bool moving, shared_image *out)
 {
-    const film *shown = made->result->img;
+    const film *shown = account->result->img;
     image *linear = NULL;
     if (film_image(shown, &linear, NULL) != STATUS_OK)
         return false;
@@ -62,8 +62,8 @@ static bool describe(render_worker *p, const job_account *made, int pass, bool m
                           .height = shown->height,
                           .full_width = (int)p->snapshot->render.width,
                           .full_height = (int)p->snapshot->render.height,
-                          .numbers = report_page(made),
-                          .film_hash = final ? job_account_hash(made) : 0,
+                          .numbers = report_page(account),
+                          .film_hash = final ? job_account_hash(account) : 0,
                           .linear = linear,
                           .of = final ? scene_clone(p->snapshot) : NULL};
     if (out->numbers && (out->of || !final))
@@ -72,10 +72,10 @@ static bool describe(render_worker *p, const job_account *made, int pass, bool m
     return false;
 }
 
-static void take_rate(render_worker *p, int pass, const render_result *made)
+static void take_rate(render_worker *p, int pass, const render_result *result)
 {
-    if (made->wall_s > 0.0)
-        p->rate = passes_work(&p->snapshot->render, p->plan.shrink[pass], p->plan.single[pass]) / made->wall_s;
+    if (result->wall_s > 0.0)
+        p->rate = passes_work(&p->snapshot->render, p->plan.shrink[pass], p->plan.single[pass]) / result->wall_s;
 }
 
 void render_worker_render_pass(render_worker *p)
@@ -92,16 +92,16 @@ void render_worker_render_pass(render_worker *p)
     bool good = false;
     p->started_s = clock_wall_s();
     pthread_rwlock_rdlock(&p->snapshot_lock);
-    const status code = job_render(p->with, &view, &options, &account, &why);
-    const render_result *made = account.result;
+    const status code = job_render(p->renderer, &view, &options, &account, &why);
+    const render_result *result = account.result;
     if (code == STATUS_OK)
         good = describe(p, &account, pass, moving, &shown);
     pthread_rwlock_unlock(&p->snapshot_lock);
     if (code == STATUS_OK) {
         if (tempo)
-            adaptive_resolution_update(tempo, made->wall_s, live_frame_s);
+            adaptive_resolution_update(tempo, result->wall_s, live_frame_s);
         else
-            take_rate(p, pass, made);
+            take_rate(p, pass, result);
         p->pass = moving ? p->plan.count : pass + 1;
         p->interrupted = 0;
     } else if (code == STATUS_INTERRUPTED) {

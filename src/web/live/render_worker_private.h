@@ -14,7 +14,7 @@ struct render_worker {
     struct live *live_slime;
     render_worker_listener listener;
     pthread_t thread;
-    job *with;
+    job *renderer;
 
     pthread_mutex_t lock; /* guards the fields below */
     pthread_cond_t wake, changed;

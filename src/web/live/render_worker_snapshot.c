@@ -23,15 +23,15 @@ bool render_worker_must_end(void *of)
 {
     render_worker *p = of;
     pthread_mutex_lock(&p->lock);
-    const bool now = p->stop || p->waiting;
+    const bool stopping = p->stop || p->waiting;
     pthread_mutex_unlock(&p->lock);
     const bool let_through = p->interrupted >= INTERRUPTED_MAX && clock_wall_s() - p->started_s < let_through_s;
-    return now || (render_worker_is_stale(p) && !let_through) || (live_is_due(p->live_slime) && p->pass > 0);
+    return stopping || (render_worker_is_stale(p) && !let_through) || (live_is_due(p->live_slime) && p->pass > 0);
 }
 
 /* Simulating a slime up to its time_s may take long: it is interrupted by a newer document or a command to the live
  * slime. */
-static bool go_on_loading(void *of, double share_done)
+static bool continue_loading(void *of, double share_done)
 {
     (void)share_done;
     return !live_is_due(((render_worker *)of)->live_slime);
@@ -39,9 +39,9 @@ static bool go_on_loading(void *of, double share_done)
 
 static status load_snapshot(render_worker *p, diagnostic *why)
 {
-    const load_watch watch = {go_on_loading, p};
+    const load_watch watch = {continue_loading, p};
     p->started_s = clock_wall_s();
-    return job_load(p->with, p->snapshot, &watch, why);
+    return job_load(p->renderer, p->snapshot, &watch, why);
 }
 
 static bool has_slime(const render_worker *p)
@@ -97,12 +97,12 @@ void render_worker_renew_snapshot(render_worker *p)
         code == STATUS_OK ? passes_plan(&p->snapshot->render, p->rate, RENDER_WORKER_FIRST_S) : (pass_plan){.count = 0};
 }
 
-static bool is_bare(const scene *snapshot)
+static bool lacks_mesh(const scene *snapshot)
 {
-    bool bare = false;
+    bool lacks = false;
     for (size_t i = 0; i < snapshot->mesh_count; i++)
-        bare |= !snapshot->meshes[i].data;
-    return bare;
+        lacks |= !snapshot->meshes[i].data;
+    return lacks;
 }
 
 /* Runs the slime's commands and its motion; a snapshot that moved is rendered again. A slime that is left without a
@@ -113,8 +113,8 @@ void render_worker_move_snapshot(render_worker *p)
     bool state_changed = false;
     pthread_rwlock_wrlock(&p->snapshot_lock);
     status code = live_advance(p->live_slime, move_s, &state_changed, &why);
-    const bool moved = live_take_moved(p->live_slime),
-               interrupted = (p->was_on && !live_is_on(p->live_slime)) || (p->snapshot_ready && is_bare(p->snapshot));
+    const bool moved = live_take_moved(p->live_slime), interrupted = (p->was_on && !live_is_on(p->live_slime)) ||
+                                                                     (p->snapshot_ready && lacks_mesh(p->snapshot));
     p->was_on = live_is_on(p->live_slime);
     if (code == STATUS_OK && interrupted)
         code = load_snapshot(p, &why);

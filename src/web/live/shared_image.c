@@ -6,17 +6,17 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-typedef struct shared_picture {
+typedef struct counted_image {
     shared_image shown; /* first, so that a shared_image pointer can be cast to its owner */
     atomic_int owners;
     pthread_mutex_t lock;
     unsigned char *png;
     size_t png_size;
-} shared_picture;
+} counted_image;
 
-static shared_picture *whole(const shared_image *p)
+static counted_image *counted(const shared_image *p)
 {
-    return (shared_picture *)(uintptr_t)p;
+    return (counted_image *)(uintptr_t)p;
 }
 
 void shared_image_drop(const shared_image *p)
@@ -28,31 +28,31 @@ void shared_image_drop(const shared_image *p)
 
 const shared_image *shared_image_create(const shared_image *shown)
 {
-    shared_picture *p = malloc(sizeof *p);
+    counted_image *p = malloc(sizeof *p);
     if (!p)
         return NULL;
-    *p = (shared_picture){.shown = *shown, .owners = 1, .lock = PTHREAD_MUTEX_INITIALIZER};
+    *p = (counted_image){.shown = *shown, .owners = 1, .lock = PTHREAD_MUTEX_INITIALIZER};
     return &p->shown;
 }
 
 void shared_image_retain(const shared_image *p)
 {
-    atomic_fetch_add(&whole(p)->owners, 1);
+    atomic_fetch_add(&counted(p)->owners, 1);
 }
 
 void shared_image_release(const shared_image *p)
 {
-    if (!p || atomic_fetch_sub(&whole(p)->owners, 1) > 1)
+    if (!p || atomic_fetch_sub(&counted(p)->owners, 1) > 1)
         return;
     shared_image_drop(p);
-    pthread_mutex_destroy(&whole(p)->lock);
-    free(whole(p)->png);
-    free(whole(p));
+    pthread_mutex_destroy(&counted(p)->lock);
+    free(counted(p)->png);
+    free(counted(p));
 }
 
 status shared_image_png(const shared_image *p, const unsigned char **bytes, size_t *size, diagnostic *why)
 {
-    shared_picture *w = whole(p);
+    counted_image *w = counted(p);
     status code = STATUS_OK;
     pthread_mutex_lock(&w->lock);
     if (!w->png)

@@ -79,9 +79,9 @@ static bool script_needs_study(const lab *l, const char *figure, const char *of,
             if (strncmp(line, key, sizeof key - 1) != 0)
                 continue;
             *has_needs = true;
-            for (const char *at = line + sizeof key - 1; *at == ' ' && !needs; at += strcspn(at, " \n")) {
-                at += strspn(at, " ");
-                needs = names_study_table(at, strcspn(at, " \n"), of);
+            for (const char *word = line + sizeof key - 1; *word == ' ' && !needs; word += strcspn(word, " \n")) {
+                word += strspn(word, " ");
+                needs = names_study_table(word, strcspn(word, " \n"), of);
             }
         }
     }
@@ -129,7 +129,7 @@ json_t *figures_of(const lab *l, const char *of)
     return names;
 }
 
-static bool is_drawn_from(const lab *l, const char *figure, const char *of)
+static bool needs_study(const lab *l, const char *figure, const char *of)
 {
     bool has_needs;
     return script_needs_study(l, figure, of, &has_needs);
@@ -141,7 +141,7 @@ json_t *figures_drawable(const lab *l, const char *of)
     if (inner_path(l, "plots", "draw", ".sh", &script, NULL) != STATUS_OK)
         return json_array();
     *strrchr(script, '/') = 0;
-    json_t *names = list_figures(script, ".gp", is_drawn_from, l, of);
+    json_t *names = list_figures(script, ".gp", needs_study, l, of);
     free(script);
     return names;
 }

@@ -16,6 +16,6 @@ json_t *figures_of(const lab *l, const char *name);
 json_t *figures_drawable(const lab *l, const char *name);
 
 /* Writes the tables of the study (results/tables/) and draws its figures; limited to less than a minute, the time
- * that a page waits for a reply. *output: the script's output, one line per figure, or NULL. *whole: no figure
+ * that a page waits for a reply. *output: the script's output, one line per figure, or NULL. *complete: no figure
  * failed; figures of an incomplete study often cannot be drawn. */
-status figures_draw(const lab *l, const study *s, char **output, bool *whole, diagnostic *why);
+status figures_draw(const lab *l, const study *s, char **output, bool *complete, diagnostic *why);

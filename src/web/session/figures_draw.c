@@ -80,7 +80,7 @@ static status write_tables(const study *s, const char *results, diagnostic *why)
 
 /* --- the script --- */
 
-static status run_script(const lab *l, const char *script, const json_t *figures, char **output, bool *whole,
+static status run_script(const lab *l, const char *script, const json_t *figures, char **output, bool *complete,
                          diagnostic *why)
 {
     enum { BEFORE = 6 };
@@ -96,15 +96,15 @@ static status run_script(const lab *l, const char *script, const json_t *figures
     status code = child_run((char *const *)(uintptr_t)arguments, draw_limit_s, studies_ending(l->studies), output,
                             &exit_code, why);
     free(arguments);
-    *whole = exit_code == 0;
+    *complete = exit_code == 0;
     return code;
 }
 
-status figures_draw(const lab *l, const study *s, char **output, bool *whole, diagnostic *why)
+status figures_draw(const lab *l, const study *s, char **output, bool *complete, diagnostic *why)
 {
     char *script = NULL;
     *output = NULL;
-    *whole = false;
+    *complete = false;
     json_t *figures = figures_drawable(l, s->name);
     status code = figures ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && json_array_size(figures) == 0)
@@ -115,7 +115,7 @@ status figures_draw(const lab *l, const study *s, char **output, bool *whole, di
     THEN(code, study_check_results(l, l->settings.results, "figures", why));
     THEN(code, study_check_results(l, l->settings.results, s->name, why));
     THEN(code, write_tables(s, l->settings.results, why));
-    THEN(code, run_script(l, script, figures, output, whole, why));
+    THEN(code, run_script(l, script, figures, output, complete, why));
     free(script);
     json_decref(figures);
     return code;

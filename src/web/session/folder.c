@@ -131,7 +131,7 @@ static bool is_name(const char *name)
 
 /* If the folder is the working directory, a name is a path already; but a leading "-" would look like an option to
  * other programs. */
-static char *join(const folder *f, const char *name)
+static char *join_path(const folder *f, const char *name)
 {
     if (strcmp(f->given, ".") == 0 && name[0] != '-')
         return strdup(name);
@@ -173,18 +173,18 @@ status folder_path(const folder *f, const char *name, bool must_exist, char **pa
     if (!is_name(name))
         return diagnose(why, STATUS_BAD_INPUT, "give a path relative to the folder, without '.' and '..'",
                         "'%.300s' is not a valid file name", name);
-    char *whole = join(f, name);
-    if (!whole)
+    char *full_path = join_path(f, name);
+    if (!full_path)
         return out_of_memory(why);
     errno = 0;
-    char *real = resolve(whole);
+    char *real = resolve(full_path);
     status code = real && below(f, real) ? STATUS_OK : errno == ENOMEM ? out_of_memory(why) : outside(name, why);
     THEN(code, check_file(real, name, must_exist, why));
     free(real);
     if (code == STATUS_OK)
-        *path = whole;
+        *path = full_path;
     else
-        free(whole);
+        free(full_path);
     return code;
 }
 
@@ -202,12 +202,12 @@ static status check_named(const folder *f, const scene *s, const char *what, con
 {
     if (!path || !path[0])
         return STATUS_OK;
-    char *whole = scene_file_path(s, path);
-    if (!whole)
+    char *full_path = scene_file_path(s, path);
+    if (!full_path)
         return out_of_memory(why);
     errno = 0;
-    char *name = folder_name(f, whole);
-    free(whole);
+    char *name = folder_name(f, full_path);
+    free(full_path);
     if (!name && errno == ENOMEM)
         return out_of_memory(why);
     const bool is_in = name != NULL;

@@ -50,7 +50,7 @@ static void add_name(listing *l, names *list, char *name)
     list->name[list->count++] = name;
 }
 
-static void forget(names *list)
+static void names_clear(names *list)
 {
     for (size_t i = 0; i < list->count; i++)
         free(list->name[i]);
@@ -126,7 +126,7 @@ static bool is_text(const char *name)
 }
 
 /* Joins a folder's name, "" for the chosen folder, and a name in it. */
-static char *join(const char *folder_of_it, const char *name)
+static char *join_path(const char *folder_of_it, const char *name)
 {
     return text_format("%s%s%s", folder_of_it, *folder_of_it ? "/" : "", name);
 }
@@ -135,7 +135,7 @@ static char *join(const char *folder_of_it, const char *name)
 static void visit_entry(listing *l, char *name)
 {
     struct stat about;
-    char *path = join(folder_root(l->of), name);
+    char *path = join_path(folder_root(l->of), name);
     const bool is_folder = path && lstat(path, &about) == 0 && S_ISDIR(about.st_mode);
     l->out_of_memory |= !path;
     free(path);
@@ -148,25 +148,25 @@ static void visit_entry(listing *l, char *name)
 /* Reads all names of a folder before it visits any, so that the limit does not depend on the order of readdir. */
 static void visit_folder(listing *l, const char *name)
 {
-    char *path = join(folder_root(l->of), name);
+    char *path = join_path(folder_root(l->of), name);
     DIR *d = path ? opendir(path) : NULL;
     l->out_of_memory |= !path;
     free(path);
-    names here = {.name = NULL};
+    names found = {.name = NULL};
     for (const struct dirent *e; d && !l->out_of_memory && l->entries < ENTRIES_MAX && (e = readdir(d)); l->entries++)
         if (e->d_name[0] != '.' && is_text(e->d_name))
-            add_name(l, &here, join(name, e->d_name));
+            add_name(l, &found, join_path(name, e->d_name));
     if (d)
         closedir(d);
-    sort(&here);
-    for (size_t i = 0; i < here.count && l->files < FOLDER_FILES_MAX; i++) {
-        visit_entry(l, here.name[i]);
-        here.name[i] = NULL;
+    sort(&found);
+    for (size_t i = 0; i < found.count && l->files < FOLDER_FILES_MAX; i++) {
+        visit_entry(l, found.name[i]);
+        found.name[i] = NULL;
     }
-    forget(&here);
+    names_clear(&found);
 }
 
-static json_t *tell(const listing *l)
+static json_t *listing_json(const listing *l)
 {
     json_t *all = json_object();
     json_object_set_new(all, "folder", json_string_nocheck(folder_title(l->of)));
@@ -189,11 +189,11 @@ json_t *folder_json(const folder *f)
         l.next = (names){.name = NULL};
         for (size_t i = 0; i < level.count && l.files < FOLDER_FILES_MAX; i++)
             visit_folder(&l, level.name[i]);
-        forget(&level);
+        names_clear(&level);
     }
-    json_t *all = l.out_of_memory ? NULL : tell(&l);
-    forget(&l.next);
+    json_t *all = l.out_of_memory ? NULL : listing_json(&l);
+    names_clear(&l.next);
     for (int use = 0; use < USE_COUNT; use++)
-        forget(&l.found[use]);
+        names_clear(&l.found[use]);
     return all;
 }

@@ -68,7 +68,7 @@ static void version_clear(version *v)
     *v = (version){0};
 }
 
-static void pile_clear(version_stack *p)
+static void stack_clear(version_stack *p)
 {
     while (p->count)
         version_clear(&p->item[--p->count]);
@@ -85,7 +85,7 @@ static void unload(scene *s)
     s->background.img = NULL;
 }
 
-static void pile_put(version_stack *p, version v)
+static void stack_push(version_stack *p, version v)
 {
     unload(v.s);
     if (p->count == DOCUMENT_UNDO_MAX) {
@@ -130,8 +130,8 @@ void scene_document_destroy(scene_document *d)
 {
     if (!d)
         return;
-    pile_clear(&d->undo);
-    pile_clear(&d->redo);
+    stack_clear(&d->undo);
+    stack_clear(&d->redo);
     version_clear(&d->now);
     pthread_mutex_destroy(&d->lock);
     free(d);
@@ -162,9 +162,9 @@ static status push_version(scene_document *d, scene *next, const char *file, ori
         version_clear(&before);
     } else {
         before.what = words;
-        pile_put(&d->undo, before);
+        stack_push(&d->undo, before);
     }
-    pile_clear(&d->redo);
+    stack_clear(&d->redo);
     d->generation++;
     return STATUS_OK;
 }
@@ -225,14 +225,14 @@ status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, d
     before.what = next.what; /* the change between the two versions */
     next.what = NULL;
     scene_borrow_meshes(next.s, before.s);
-    pile_put(to, before);
+    stack_push(to, before);
     d->now = next;
     d->gesture[0] = 0;
     d->generation++;
     return finish(d, STATUS_OK, generation);
 }
 
-static status set_back(scene *s, const scene *opened, const char *path, diagnostic *why)
+static status reset_path(scene *s, const scene *opened, const char *path, diagnostic *why)
 {
     char *value = NULL;
     status code = scene_get(opened, path, &value, why);
@@ -249,7 +249,7 @@ status scene_document_reset(scene_document *d, const char *const *paths, size_t 
     scene *next = scene_clone(count ? d->now.s : from->s);
     status code = next ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; i < count && code == STATUS_OK; i++)
-        code = set_back(next, from->s, paths[i], why);
+        code = reset_path(next, from->s, paths[i], why);
     THEN(code, scene_document_check(next, d->files, why));
     if (code == STATUS_OK) {
         scene_borrow_meshes(next, d->now.s);
@@ -327,7 +327,7 @@ void scene_document_saved(scene_document *d, const char *file, uint64_t generati
         d->changed(d->context);
 }
 
-static json_t *top_of(const version_stack *p)
+static json_t *top_json(const version_stack *p)
 {
     return p->count ? json_of_text(p->item[p->count - 1].what) : json_null();
 }
@@ -338,7 +338,7 @@ bool scene_document_json(scene_document *d, json_t *state)
     json_t *json =
         json_pack("{s:I, s:o, s:o, s:b, s:o, s:o}", "generation", (json_int_t)d->generation, "file",
                   d->now.file ? json_of_text(d->now.file) : json_null(), "title", json_of_text(d->now.s->title),
-                  "saved", d->now.number == d->saved_number, "undo", top_of(&d->undo), "redo", top_of(&d->redo));
+                  "saved", d->now.number == d->saved_number, "undo", top_json(&d->undo), "redo", top_json(&d->redo));
     pthread_mutex_unlock(&d->lock);
     return json_object_update_new(state, json) == 0;
 }

@@ -15,8 +15,8 @@ struct studies {
     lab *l;
     pthread_mutex_t life; /* held while a thread is started or joined; acquired before lock */
     pthread_t thread;
-    bool begun; /* a thread must be joined */
-    study *s;   /* used by the thread while it runs */
+    bool started; /* a thread must be joined */
+    study *s;     /* used by the thread while it runs */
     atomic_bool stop, ending, drawing;
 
     pthread_mutex_t lock; /* guards the fields below */
@@ -40,12 +40,12 @@ status studies_create(lab *l, studies **out, diagnostic *why)
 }
 
 /* The life lock is held. */
-static void join(studies *st)
+static void join_thread(studies *st)
 {
-    if (!st->begun)
+    if (!st->started)
         return;
     pthread_join(st->thread, NULL);
-    st->begun = false;
+    st->started = false;
     study_destroy(st->s);
     st->s = NULL;
 }
@@ -55,7 +55,7 @@ void studies_end(studies *st)
     pthread_mutex_lock(&st->life);
     atomic_store(&st->ending, true);
     atomic_store(&st->stop, true);
-    join(st);
+    join_thread(st);
     pthread_mutex_unlock(&st->life);
 }
 
@@ -140,7 +140,7 @@ static void *run(void *context)
 }
 
 /* The life lock is held. Replaces the last study; STATUS_INTERRUPTED while it still runs. */
-static status take_place(studies *st, study *s, diagnostic *why)
+static status claim_run(studies *st, study *s, diagnostic *why)
 {
     char *name = strdup(s->name);
     if (!name)
@@ -167,12 +167,12 @@ static status begin(studies *st, study *s, diagnostic *why)
 {
     if (atomic_load(&st->ending))
         return diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is being closed");
-    TRY(take_place(st, s, why));
-    join(st);
+    TRY(claim_run(st, s, why));
+    join_thread(st);
     st->s = s;
     atomic_store(&st->stop, false);
-    st->begun = pthread_create(&st->thread, NULL, run, st) == 0;
-    if (st->begun)
+    st->started = pthread_create(&st->thread, NULL, run, st) == 0;
+    if (st->started)
         return STATUS_OK;
     st->s = NULL;
     pthread_mutex_lock(&st->lock);

@@ -49,15 +49,15 @@ static void release(sorted_rows *rows)
 static cell_times take_cell(sorted_rows *rows, size_t cell)
 {
     size_t count = 0;
-    const char *seen = NULL;
+    const char *film = NULL;
     for (; rows->at < rows->files->row_count && rows->files->rows[rows->at].cell == cell; rows->at++) {
         const row_ref *ref = &rows->files->rows[rows->at];
-        seen = seen ? seen : row_field(ref, "film_expected");
+        film = film ? film : row_field(ref, "film_expected");
         const double wall_s = row_field_real(ref, "wall_s");
         if (!ref->warmup && strcmp(row_field(ref, "marked"), "0") == 0 && !isnan(wall_s))
             rows->values[count++] = wall_s;
     }
-    return (cell_times){summarize(rows->values, count), seen};
+    return (cell_times){summarize(rows->values, count), film};
 }
 
 static json_t *times_json(const cell_times *t)
@@ -99,8 +99,8 @@ status study_json_compare(const study *s, const char *results, const char *other
     THEN(code, sort_rows(s, other, &b, why));
     json_t *cells = code == STATUS_OK ? json_array() : NULL;
     for (size_t cell = 0; cells && cell < study_cell_count(s) && cell < STUDY_JSON_CELLS_MAX; cell++) {
-        const cell_times mine = take_cell(&a, cell), theirs = take_cell(&b, cell);
-        json_array_append_new(cells, cell_json(s, cell, &mine, &theirs));
+        const cell_times times_a = take_cell(&a, cell), times_b = take_cell(&b, cell);
+        json_array_append_new(cells, cell_json(s, cell, &times_a, &times_b));
     }
     if (cells && !(*out = json_pack("{s:o, s:o, s:I}", "columns", paths_json(s), "cells", cells, "count",
                                     (json_int_t)study_cell_count(s))))

@@ -16,9 +16,10 @@ static char *name_of(const lab *l, const char *file)
     document *d = NULL;
     if (folder_path(l->files, file, true, &path, NULL) == STATUS_OK &&
         document_read_below(path, folder_real(l->files), &d, NULL) == STATUS_OK) {
-        const node *root = document_root(d), *given = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
-        if (given && given->kind == NODE_SCALAR && given->text[0])
-            name = strdup(given->text);
+        const node *root = document_root(d),
+                   *name_node = root && root->kind == NODE_MAP ? node_get(root, "study") : NULL;
+        if (name_node && name_node->kind == NODE_SCALAR && name_node->text[0])
+            name = strdup(name_node->text);
     }
     document_destroy(d);
     free(path);
@@ -53,7 +54,7 @@ typedef struct name_search {
     char *file;
 } name_search;
 
-static bool is_wanted(void *context, const char *name, const char *file)
+static bool match_name(void *context, const char *name, const char *file)
 {
     name_search *w = context;
     if (strcmp(name, w->name) != 0)
@@ -65,7 +66,7 @@ static bool is_wanted(void *context, const char *name, const char *file)
 status study_find(const lab *l, const char *name, char **file, diagnostic *why)
 {
     name_search w = {.name = name};
-    const status code = study_each(l, is_wanted, &w, why);
+    const status code = study_each(l, match_name, &w, why);
     *file = w.file;
     return code;
 }
