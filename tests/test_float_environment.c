@@ -13,8 +13,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A host of the library in every floating-point environment: the same films, numbers, hits and motions, to the
- * bit, and the host's environment as it was. */
+/* Tests of the library in every floating-point environment of a host: films, numbers, hits and motions are
+ * bit-identical, and the host's environment is preserved. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -24,7 +24,7 @@ enum { X86_DAZ = 0x0040, X86_FTZ = 0x8000, X87_PRECISION = 0x0300 };
 
 typedef struct surroundings {
     int rounding;      /* FE_UPWARD ... */
-    unsigned flushing; /* bits of MXCSR; other processors do without */
+    unsigned flushing; /* bits of MXCSR; x86 only */
     bool narrow;       /* x87 registers with 24-bit significands */
     int traps;         /* for feenableexcept */
 } surroundings;
@@ -32,7 +32,8 @@ typedef struct surroundings {
 static const int roundings[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
 static const unsigned flushings[] = {0, X86_FTZ, X86_DAZ, X86_FTZ | X86_DAZ};
 
-/* Every rounding with every flushing; then narrow registers and traps, alone and in all else that is unusual. */
+/* Every rounding mode with every flushing mode; then narrow registers and traps, alone and combined with everything
+ * else. */
 enum { PLAIN = COUNT(roundings) * COUNT(flushings), SURROUNDINGS = PLAIN + 4 };
 
 static surroundings surroundings_at(size_t i)
@@ -59,11 +60,11 @@ static void set_surroundings(const surroundings *wanted)
 #endif
     fesetround(wanted->rounding);
     if (!wanted->traps)
-        feraiseexcept(FE_OVERFLOW); /* the host has something to lose */
+        feraiseexcept(FE_OVERFLOW); /* set state that must survive the call */
     feenableexcept(wanted->traps);
 }
 
-/* What a host can notice of its environment. */
+/* The parts of the environment that a host can observe. */
 typedef struct noticed {
     int rounding, raised, traps;
     unsigned mxcsr, control;
@@ -91,7 +92,7 @@ static void expect_unchanged(const noticed *before)
                  after.control);
 }
 
-/* --- what a host asks for; no arithmetic on numbers here: it would be the host's own --- */
+/* --- the host's calls; no floating-point arithmetic here, which would be the host's own --- */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -138,7 +139,7 @@ static cuvette_scene *scene_of(const char *file, const char *assignments)
     return s;
 }
 
-/* The film, and what is made of it: floats, bytes. */
+/* The film, and its conversions: floats, bytes. */
 static uint64_t film_of(const cuvette_scene *s)
 {
     enum { WIDTH = 48, HEIGHT = 36 };
@@ -229,7 +230,7 @@ static void mix_note(void *context, const char *text)
     *hash = mix_text(*hash, text);
 }
 
-/* Decimal numbers that no double is, in and out; turns, which need sines. */
+/* Decimal numbers without an exact double, in and out; rotations, which need sines. */
 static uint64_t ask_numbers(void)
 {
     static const char text[] =
@@ -242,7 +243,7 @@ static uint64_t ask_numbers(void)
         "         mote: {shape: sphere, radius: 0.01, position: [3e-310, 2, 0]}}\n";
     static char written[65536];
     static const double third[] = {1.0 / 3.0, 2.0 / 3.0, 0.1}, degrees[] = {10.7, -33.3, 71.1};
-    static const double subnormal[] = {1e-310, 0, 5e-324}; /* what flushing makes 0 */
+    static const double subnormal[] = {1e-310, 0, 5e-324}; /* values that flushing would set to 0 */
     static const float pixels[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f, 1.0f, 0.15f, 0.25f};
     static const float corners[] = {-0.3f, 0.1f, 0.2f, 0.9f, 0.3f, -0.1f, 0.1f, 1.1f, 0.7f};
     static const uint32_t triangle[] = {0, 1, 2};
@@ -285,7 +286,7 @@ static uint64_t ask_numbers(void)
     return hash;
 }
 
-/* Rays of the camera, and those that go on behind what they meet. */
+/* Camera rays, and rays that continue behind their hits. */
 static uint64_t ask_rays(void)
 {
     enum { SIDE = 12, RAYS = SIDE * SIDE };
@@ -348,7 +349,7 @@ static uint64_t ask_motion(void)
     return hash;
 }
 
-/* --- one answer in every environment --- */
+/* --- one result in every environment --- */
 
 static void expect_one_answer(question *ask)
 {
@@ -385,7 +386,7 @@ ONE_ANSWER(numbers_in_and_out, ask_numbers)
 ONE_ANSWER(rays_of_the_hosts_own, ask_rays)
 ONE_ANSWER(motions_and_hands, ask_motion)
 
-/* The hash that tests/test_determinism.c pins, and `cuvette render` prints. */
+/* The reference hash of tests/test_determinism.c, which `cuvette render` prints. */
 static void the_golden_film(void **state)
 {
     (void)state;
@@ -409,7 +410,7 @@ static void the_golden_film(void **state)
     cuvette_scene_destroy(s);
 }
 
-/* --- the host's functions, and ways out --- */
+/* --- the host's callbacks, and all return paths --- */
 
 typedef struct listener {
     noticed expected;
@@ -482,7 +483,7 @@ static void the_hosts_functions_run_in_its_environment(void **state)
         const cuvette_status code = render_with(engine, s, &l);
         fine(cuvette_scene_each_parameter(s, hear_parameter, &l, &why), &why);
         fine(cuvette_scene_hints(s, hear_note, &l, &why), &why);
-        expect_unchanged(&l.expected); /* what the host changed stays */
+        expect_unchanged(&l.expected); /* changes by the host persist */
         assert_int_equal(code, CUVETTE_OK);
         assert_int_equal(l.wrong, 0);
         assert_true(l.calls > 50);
@@ -491,7 +492,7 @@ static void the_hosts_functions_run_in_its_environment(void **state)
     cuvette_engine_destroy(engine);
 }
 
-static void it_comes_back_whichever_way_a_call_ends(void **state)
+static void it_is_restored_however_a_call_ends(void **state)
 {
     (void)state;
     const surroundings now = {FE_TOWARDZERO, X86_DAZ, true, 0};
@@ -523,7 +524,7 @@ static void it_comes_back_whichever_way_a_call_ends(void **state)
     cuvette_engine_destroy(engine);
 }
 
-/* --- threads, whoever starts them --- */
+/* --- threads of the library --- */
 
 typedef struct roll {
     pthread_barrier_t all_there;
@@ -534,7 +535,7 @@ static void sign_in_team(void *context, size_t index, int member)
 {
     roll *r = context;
     (void)index;
-    pthread_barrier_wait(&r->all_there); /* no member does two */
+    pthread_barrier_wait(&r->all_there); /* no member runs two tasks */
     r->seen[member] = notice();
 }
 
@@ -544,7 +545,7 @@ static void sign_in_pool(void *context, int worker)
     r->seen[worker] = notice();
 }
 
-static void threads_begin_in_the_default(void **state)
+static void threads_start_in_the_default(void **state)
 {
     (void)state;
     enum { THREADS = 4 };
@@ -587,8 +588,8 @@ int main(void)
         cmocka_unit_test(motions_and_hands),
         cmocka_unit_test(the_golden_film),
         cmocka_unit_test(the_hosts_functions_run_in_its_environment),
-        cmocka_unit_test(it_comes_back_whichever_way_a_call_ends),
-        cmocka_unit_test(threads_begin_in_the_default),
+        cmocka_unit_test(it_is_restored_however_a_call_ends),
+        cmocka_unit_test(threads_start_in_the_default),
     };
     return cmocka_run_group_tests_name("float_environment", tests, NULL, NULL);
 }
