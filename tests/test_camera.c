@@ -1,3 +1,6 @@
+/* Tests of camera roll against closed forms: Rodrigues' formula for the frame, and the image rotated by quarter turns.
+ * The image of roll 90 has at column x, row y the pixel of the unrolled image at column side - 1 - y, row x: it is
+ * rotated counterclockwise. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,10 +14,6 @@
 #include "render_fixture.h"
 #include "scene/model/camera.h"
 #include "scene/model/scene.h"
-
-/* Tests of camera roll against closed forms: Rodrigues' formula for the frame, and the image rotated by quarter turns.
- * The image of roll 90 has at column x, row y the pixel of the unrolled image at column side - 1 - y, row x: it is
- * rotated counterclockwise. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { SIDE = 64 };

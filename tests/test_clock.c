@@ -1,3 +1,4 @@
+/* Tests of the clocks: monotonic, per thread and per process. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

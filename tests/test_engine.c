@@ -1,3 +1,5 @@
+/* Tests of the engine's interface, cuvette.h. Its films are compared with the renderer's, with reference film hashes,
+ * and with closed forms; tests/engine.sh tests its installation and linking. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -11,9 +13,6 @@
 #include "probe_fixture.h"
 #include <stdatomic.h>
 #include <unistd.h>
-
-/* Tests of the engine's interface, cuvette.h. Its films are compared with the renderer's, with reference film hashes,
- * and with closed forms; tests/engine.sh tests its installation and linking. */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {

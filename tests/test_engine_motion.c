@@ -1,3 +1,5 @@
+/* Tests of motions through cuvette.h: the film is that of the scene at the motion's time, hands act like those of a
+ * script, picks agree with the rays of a query. tests/test_softbody.c tests the simulation itself. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -12,9 +14,6 @@
 
 #include "cuvette.h"
 #include "engine/engine_private.h"
-
-/* Tests of motions through cuvette.h: the film is that of the scene at the motion's time, hands act like those of a
- * script, picks agree with the rays of a query. tests/test_softbody.c tests the simulation itself. */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {

@@ -1,3 +1,4 @@
+/* Tests of pencils and fans against geometrical optics. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,8 +8,6 @@
 
 #include "render/inspect/fan.h"
 #include "render_fixture.h"
-
-/* Tests of pencils and fans against geometrical optics. */
 
 static fan follow(const scene *s, const fan_rule *rule)
 {

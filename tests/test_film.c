@@ -1,3 +1,4 @@
+/* Tests of the film and of ray queues: fixed-point sums, the hash, images, batches. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

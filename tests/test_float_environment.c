@@ -1,3 +1,5 @@
+/* Tests of the library in every floating-point environment of a host: films, numbers, hits and motions are
+ * bit-identical, and the host's environment is preserved. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,9 +14,6 @@
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
-
-/* Tests of the library in every floating-point environment of a host: films, numbers, hits and motions are
- * bit-identical, and the host's environment is preserved. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 

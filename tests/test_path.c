@@ -1,3 +1,5 @@
+/* Tests of random paths against Whitted's trees where both compute the same light, and elsewhere against closed
+ * forms. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,9 +9,6 @@
 
 #include "path_fixture.h"
 #include "scene/model/scene.h"
-
-/* Tests of random paths against Whitted's trees where both compute the same light, and elsewhere against closed
- * forms. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 

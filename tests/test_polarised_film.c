@@ -1,3 +1,5 @@
+/* Tests of films whose rays carry Stokes vectors: Brewster, Malus, the pile of plates, chains of total reflections,
+ * energy. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,9 +11,6 @@
 #include "render/inspect/probe.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
-
-/* Tests of films whose rays carry Stokes vectors: Brewster, Malus, the pile of plates, chains of total reflections,
- * energy. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

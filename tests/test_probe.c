@@ -1,3 +1,4 @@
+/* Tests of the probe: a tree's radiance is the film's, to the bit, and the values of its hits obey the laws. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +10,6 @@
 #include "geometry/scene_geometry.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
-
-/* Tests of the probe: a tree's radiance is the film's, to the bit, and the values of its hits obey the laws. */
 
 static probe *probe_of(const scene *s)
 {

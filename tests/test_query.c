@@ -1,3 +1,5 @@
+/* Tests of ray queries: against closed forms of a sphere, against the trees of the probe, and single rays against
+ * batches. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -10,9 +12,6 @@
 #include "cuvette.h"
 #include "probe_fixture.h"
 #include "random_stream.h"
-
-/* Tests of ray queries: against closed forms of a sphere, against the trees of the probe, and single rays against
- * batches. */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {

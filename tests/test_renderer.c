@@ -1,3 +1,4 @@
+/* Tests of the renderer besides its images: errors by value, interruption, no state shared between two renderers. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -8,8 +9,6 @@
 
 #include "render_fixture.h"
 #include "scene/model/scene.h"
-
-/* Tests of the renderer besides its images: errors by value, interruption, no state shared between two renderers. */
 
 static status try_to_render(const scene *s, diagnostic *why)
 {

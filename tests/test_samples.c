@@ -1,3 +1,5 @@
+/* Tests of pixel samples: the middles of k x k cells. One pixel covers, at z = 1, the square from -1 to 1, with a white
+ * wall that ends at an edge: the wall's share is that of the cells whose middle it covers. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,9 +10,6 @@
 #include "render/core/sample_key.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
-
-/* Tests of pixel samples: the middles of k x k cells. One pixel covers, at z = 1, the square from -1 to 1, with a white
- * wall that ends at an edge: the wall's share is that of the cells whose middle it covers. */
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 

@@ -1,3 +1,4 @@
+/* Tests of the schedule: every pixel goes to exactly one worker. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* Tests of sections against plane geometry: circles, rectangles, walls. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,8 +8,6 @@
 
 #include "render/inspect/section.h"
 #include "render_fixture.h"
-
-/* Tests of sections against plane geometry: circles, rectangles, walls. */
 
 #define PI 3.14159265358979323846
 

@@ -1,3 +1,4 @@
+/* Tests of the sky: gradient, equirectangular image, and the mean over all directions. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

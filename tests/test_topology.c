@@ -1,3 +1,4 @@
+/* Tests of thread placement on synthetic topologies and on this machine. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* Tests of the tracer pool: reuse, counters per frame, lending between threads. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>

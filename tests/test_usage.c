@@ -1,3 +1,4 @@
+/* Tests of resource usage, hardware counters and disturbances, on recorded files and on this machine. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* Tests of the worker pool: every worker runs once, persistent and new threads, the watcher. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>

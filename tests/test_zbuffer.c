@@ -1,3 +1,5 @@
+/* Tests of the depth buffer against the ray caster, which finds surfaces independently, and against closed forms:
+ * affine and perspective-correct interpolation on a tilted square, and the coverage count of each point. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,9 +13,6 @@
 #include "random_stream.h"
 #include "zbuffer_fixture.h"
 #include "scene/model/scene.h"
-
-/* Tests of the depth buffer against the ray caster, which finds surfaces independently, and against closed forms:
- * affine and perspective-correct interpolation on a tilted square, and the coverage count of each point. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 

@@ -1,3 +1,5 @@
+/* Tests of the depth buffer's layers of clear solids: against Fresnel's and Beer's formulas along one view, against
+ * Whitted's rays where nothing is refracted, and the white furnace. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,9 +10,6 @@
 #include "image/compare.h"
 #include "zbuffer_fixture.h"
 #include "scene/model/scene.h"
-
-/* Tests of the depth buffer's layers of clear solids: against Fresnel's and Beer's formulas along one view, against
- * Whitted's rays where nothing is refracted, and the white furnace. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))

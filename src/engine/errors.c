@@ -1,3 +1,4 @@
+/* Errors of the public interface: statuses, diagnostics, NULL arguments, sizes of structs. */
 #include "engine/engine_private.h"
 
 #include <stdio.h>
