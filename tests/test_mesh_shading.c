@@ -1,3 +1,5 @@
+/* Tests of mesh shading at points that can be computed by hand: Phong's model with flat, interpolated and corner
+ * values; textures; and the limits of shading normals. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,9 +12,6 @@
 #include "mesh_stage.h"
 #include "random_stream.h"
 #include "scene/model/scene.h"
-
-/* What meshes look like at points where it can be worked out: Phong's sum with flat, interpolated and corner values;
- * textures; and what shading normals must not do. */
 
 #define DARK \
     "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 2, shadows: off}\n"
@@ -123,7 +122,7 @@ static void light_behind_the_plane_leaves_the_ambient(void **state)
     }
 }
 
-/* An open sheet laid twice in one place has no shadow of itself, and no light comes through it. */
+/* An open sheet that is present twice in one place does not shadow itself, and transmits no light. */
 static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
 {
     (void)state;
@@ -158,9 +157,9 @@ static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
     }
 }
 
-/* On a coarse smooth ball, inside and outside, mirrored rays stay on their side of the triangle and refracted ones
+/* On a coarse smooth ball, inside and outside, reflected rays stay on their side of the triangle and refracted ones
  * leave it. */
-static void bent_normals_keep_rays_on_their_sides(void **state)
+static void shading_normals_keep_rays_on_their_sides(void **state)
 {
     (void)state;
     static const char text[] =
@@ -187,12 +186,12 @@ static void bent_normals_keep_rays_on_their_sides(void **state)
         worst = fmax(worst, fabs(tree->radiance[1] + tree_cut(tree, 1) - 1.0));
     }
     assert_true(reflected > 4000 && refracted > 4000);
-    assert_true(worst < 1e-8); /* and nothing is lost */
+    assert_true(worst < 1e-8); /* and no light is lost */
     stage_close(&g);
 }
 
-/* The white furnace (test_furnace.c) with meshes in one another. */
-static void meshes_in_a_furnace_lose_nothing(void **state)
+/* The white furnace (test_furnace.c) with nested meshes. */
+static void meshes_in_a_furnace_conserve_energy(void **state)
 {
     (void)state;
     static const char text[] =
@@ -223,7 +222,7 @@ static void meshes_in_a_furnace_lose_nothing(void **state)
     }
 }
 
-/* exp(-a d) over the way through a box and through the middle of a fine sphere, straight on. */
+/* exp(-a d) over the path through a box and through the middle of a fine sphere, without refraction. */
 static void absorption_over_lengths_in_meshes(void **state)
 {
     (void)state;
@@ -256,7 +255,7 @@ static void expect_texel(const ray_tree *tree, double u, double v)
                 fabs(tree->radiance[1] - (line + 0.5) / 2.0) < 1e-6);
 }
 
-/* A picture in front of a viewer at -z who looks along +z begins at his left, whatever it is on. */
+/* An image in front of a viewer at -z who looks along +z begins at the viewer's left, on every shape. */
 static void textures_at_known_points(void **state)
 {
     (void)state;
@@ -330,7 +329,7 @@ static void spectral_films_refuse_textures_and_faces(void **state)
     assert_string_equal(refusal_of(text, "", why), "");
 }
 
-/* Two triangles, two materials: the file's looks, and the scene's own material where it has the slot's name. */
+/* Two triangles, two materials: the file's materials, and the scene's own material with the slot's name. */
 static void faces_are_shaded_by_their_materials(void **state)
 {
     (void)state;
@@ -374,9 +373,9 @@ static void faces_are_shaded_by_their_materials(void **state)
     rmdir(folder);
 }
 
-/* A file's Ke: as bright as it says in its brightest channel, in the surface's colour, or in its own where the surface
- * is black; else the solid's. */
-static void faces_shine_as_their_materials_say(void **state)
+/* A file's Ke sets the emission: its brightest channel is the strength, with the surface's colour, or with its own if
+ * the surface is black; else the solid's. */
+static void faces_emit_by_their_materials(void **state)
 {
     (void)state;
     char folder[] = "/tmp/cuvette-shine-XXXXXX", path[64], library[64], text[1024];
@@ -419,14 +418,14 @@ int main(void)
         cmocka_unit_test(phongs_sum_at_known_points),
         cmocka_unit_test(light_behind_the_plane_leaves_the_ambient),
         cmocka_unit_test(doubled_sheets_have_no_acne_and_no_leaks),
-        cmocka_unit_test(bent_normals_keep_rays_on_their_sides),
-        cmocka_unit_test(meshes_in_a_furnace_lose_nothing),
+        cmocka_unit_test(shading_normals_keep_rays_on_their_sides),
+        cmocka_unit_test(meshes_in_a_furnace_conserve_energy),
         cmocka_unit_test(absorption_over_lengths_in_meshes),
         cmocka_unit_test(textures_at_known_points),
         cmocka_unit_test(an_open_dielectric_names_its_hole),
         cmocka_unit_test(spectral_films_refuse_textures_and_faces),
         cmocka_unit_test(faces_are_shaded_by_their_materials),
-        cmocka_unit_test(faces_shine_as_their_materials_say),
+        cmocka_unit_test(faces_emit_by_their_materials),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
