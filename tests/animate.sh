@@ -1,7 +1,7 @@
 #!/bin/bash
-# Films: the same frames for any number of threads, and after being stopped; ledger, rows, names of frames, YUV4MPEG2.
-# tests/animate.sh [PROGRAM];
-# needs the compiler (CC) for tests/json_get.c. One line a check ("ok ...", "not ok ...").
+# Checks of `cuvette animate`: equal frames for any number of threads and after an interruption; progress index, rows,
+# frame names, YUV4MPEG2. tests/animate.sh [PROGRAM]; needs the compiler (CC) for tests/json_get.c. One line per check
+# ("ok ...", "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -29,7 +29,7 @@ check() { # WHAT COMMAND...: passes when the command succeeds
     "$@" >check.log 2>&1
     verdict $? "$what"
 }
-animate() { # ARGUMENT...: the film of the scene; its results in out, err, code
+animate() { # ARGUMENT...: renders the animation; its results are in out, err and code
     "$program" animate slime.yaml "$@" >out 2>err
     code=$?
 }
@@ -68,32 +68,32 @@ check "tests/json_get.c compiles" bash -c \
 
 # --- frames
 animate -o one/%05d.png --duration 0.6
-check "a film succeeds" done_well
-check "it has duration times rate frames, from 0" is "$(cd one && echo *)" \
+check "an animation succeeds" done_well
+check "it has duration times rate frames, numbered from 0" is "$(cd one && echo *)" \
     "%05d.png.json $(printf '%05d.png ' {0..14} | sed 's/ $//')"
 check "the summary is one line" is "$(wc -l <out)" 1
-check "all were rendered" summary '15 rendered.* 0 kept'
-check "the body moves: no frame is as the next" is "$(sha256sum one/*.png | cut -c1-64 | sort -u | wc -l)" 15
+check "all frames are rendered" summary '15 rendered.* 0 kept'
+check "the slime moves: all frames differ" is "$(sha256sum one/*.png | cut -c1-64 | sort -u | wc -l)" 15
 for threads in 2 7; do
     animate -o "threads-$threads/%05d.png" --duration 0.6 --set render.threads=$threads --set toy.threads=$threads
-    check "$threads threads make the same frames" same_frames one "threads-$threads"
+    check "$threads threads give the same frames" same_frames one "threads-$threads"
 done
 "$program" render slime.yaml --set toy.time_s=0.32 -o still.png >/dev/null
-check "a frame is the picture of its moment" cmp still.png one/00008.png
+check "a frame equals a render at its time" cmp still.png one/00008.png
 
-# --- going on
+# --- resuming
 animate -o part/%05d.png --duration 0.24
 animate -o part/%05d.png --duration 0.6
-check "a film may be made longer" summary '9 rendered.* 6 kept'
-check "its frames are those of the long one" same_frames one part
+check "an animation can be extended" summary '9 rendered.* 6 kept'
+check "its frames equal those of the long one" same_frames one part
 rm part/00003.png part/00011.png
 animate -o part/%05d.png --duration 0.6
-check "frames that are missing are rendered" summary '2 rendered.* 13 kept'
-check "and are as they were" same_frames one part
+check "missing frames are rendered" summary '2 rendered.* 13 kept'
+check "and equal the removed ones" same_frames one part
 animate -o part/%05d.png --duration 0.6 --set render.threads=3 --set render.accel=octant
-check "how it is computed does not make another film" summary '0 rendered.* 15 kept'
+check "parameters of performance do not change the animation" summary '0 rendered.* 15 kept'
 
-interrupted() { # SIGNAL FRAME: a long film, stopped when that frame is there
+interrupted() { # SIGNAL FRAME: renders a long animation and sends the signal once that frame exists
     "$program" animate slime.yaml -o long/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows long.csv >out \
         2>err &
     local child=$!
@@ -103,70 +103,71 @@ interrupted() { # SIGNAL FRAME: a long film, stopped when that frame is there
     code=$?
 }
 animate -o calm/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows calm.csv
-check "a film that nobody stops" is "$(frames calm)" 200
+check "an uninterrupted animation" is "$(frames calm)" 200
 interrupted INT 0010
 check "SIGINT ends it with status 130 and one line" eval '((code == 130)) && [[ $(wc -l <err) == 1 && ! -s out ]]'
-check "which counts frames from 1" grep -q "interrupted at frame $(($(frames long) + 1)) of 200" err
-check "some frames are there" eval '(($(frames long) >= 11 && $(frames long) < 200))'
-check "and nothing half made" is "$(find long -type f ! -name '[0-9]*.png' -printf '%f ')" "%04d.png.json "
+check "the line counts frames from 1" grep -q "interrupted at frame $(($(frames long) + 1)) of 200" err
+check "some frames exist" eval '(($(frames long) >= 11 && $(frames long) < 200))'
+check "and no partial file" is "$(find long -type f ! -name '[0-9]*.png' -printf '%f ')" "%04d.png.json "
 interrupted TERM 0060
 check "SIGTERM does too" is $code 130
 animate -o long/%04d.png --fps 50 --duration 4 --set render.samples=9 --rows long.csv
-check "it goes on to the end" done_well
-check "frames are those of the film that nobody stopped" same_frames calm long
+check "it resumes and ends" done_well
+check "the frames equal those of the uninterrupted animation" same_frames calm long
 columns='definition|frame|time_s|film_hash|rays_total|triangles|steps|kinetic|elastic|compression|gravity|volume'
 columns+='|center_[xyz]|low|high|speed_max|held'
-of_the_film() { # FILE: its columns that do not depend on the machine
+of_the_film() { # FILE: prints the columns that do not depend on the machine
     awk -F, -v wanted="^($columns)\$" 'NR == 1 {for (i = 1; i <= NF; i++) take[i] = $i ~ wanted}
         {for (i = 1; i <= NF; i++) if (take[i]) printf "%s,", $i; print ""}' "$1"
 }
-check "so are the rows, each frame once" diff <(of_the_film calm.csv) <(of_the_film long.csv)
-check "which say something" is "$(of_the_film calm.csv | sed -n 2p | cut -d, -f2,3)" 0,0
+check "so do the rows, one per frame" diff <(of_the_film calm.csv) <(of_the_film long.csv)
+check "the rows have frame and time" is "$(of_the_film calm.csv | sed -n 2p | cut -d, -f2,3)" 0,0
 
-# --- the ledger
-refused "frames of another scene are not mixed in" 'toy.level was 2 and is 3; .*--restart' -o part/%05d.png --set \
+# --- the progress index
+refused "frames of another scene are refused" 'toy.level was 2 and is now 3; .*--restart' -o part/%05d.png --set \
     toy.level=3
-refused "nor such of another rate" 'fps was 25/1 and is 30/1' -o part/%05d.png --fps 30
-refused "nor such of another script" 'a file of the scene' -o part/%05d.png --script tug.yaml
-refused "nor such of another beginning" 'start was 0 and is 1' -o part/%05d.png --start 1
-check "all that changed nothing" same_frames one part
+refused "frames of another rate" 'fps was 25/1 and is now 30/1' -o part/%05d.png --fps 30
+refused "frames of another script" 'a file that the scene reads' -o part/%05d.png --script tug.yaml
+refused "frames of another start" 'start was 0 and is now 1' -o part/%05d.png --start 1
+check "the refused commands changed nothing" same_frames one part
 sed -i 's/"version": "[^"]*"/"version": "0.0.0"/' part/*.json
-refused "nor such of another version" 'version 0.0.0' -o part/%05d.png
+refused "frames of another version" 'version 0.0.0' -o part/%05d.png
 rm part/*.json
-refused "frames without a ledger are not mixed in" 'part: .*without a ledger' -o part/%05d.png
-refused "nor removed by --restart" 'part: .*without a ledger.*yourself' -o part/%05d.png --restart
-check "they are there still" same_frames one part
+refused "frames without an index are refused" 'part: .*without a progress index' -o part/%05d.png
+refused "and not removed by --restart" 'part: .*without a progress index.*yourself' -o part/%05d.png --restart
+check "the frames still exist" same_frames one part
 rm part/*.png
 animate -o part/%05d.png --duration 0.6
 touch part/123456.png
 for restart in '' --restart; do
-    refused "a frame that the film has not is not taken for its own $restart" 'part/123456.png: .*has 15' -o \
+    refused "a frame beyond the animation is refused $restart" 'part/123456.png: .*has only 15' -o \
         part/%05d.png --duration 0.6 $restart
 done
 rm part/123456.png
 touch part/other.png part/1.png part/000012.png part/00012.png.bak
 animate -o part/%05d.png --duration 0.24 --set toy.level=1 --restart
-check "--restart begins anew" summary '6 rendered.* 0 kept'
-check "and removes the film's frames alone" is "$(cd part && echo *)" \
+check "--restart starts again" summary '6 rendered.* 0 kept'
+check "and removes only the frames of the animation" is "$(cd part && echo *)" \
     "%05d.png.json 00000.png 00001.png 000012.png 00002.png 00003.png 00004.png 00005.png 00012.png.bak 1.png other.png"
 animate -o part/side-%d.png --duration 0.1
-check "two films may share a folder" eval 'done_well && cmp part/side-2.png one/00002.png'
+check "two animations can share a folder" eval 'done_well && cmp part/side-2.png one/00002.png'
 animate -o over/a%d.png --duration 0.12
 animate -o over/a1%d.png --duration 0.12 --set toy.level=1
-check "even such whose names are alike" done_well
-refused "while none has a frame of the other's name" 'over/a1[012].png: .*has 3' -o over/a%d.png --duration 0.6
+check "even with similar names" done_well
+refused "but not with equal names of frames" 'over/a1[012].png: .*has only 3' -o over/a%d.png --duration 0.6
 rm over/a1?.png
-refused "or is to have one" 'over/a1%d.png.json: another film' -o over/a%d.png --duration 0.6
+refused "nor with equal names of future frames" 'over/a1%d.png.json: another animation' -o over/a%d.png --duration 0.6
 rm over/a2.png
 mkdir over/a2.png
 for restart in '' --restart; do
-    refused "a folder is no frame $restart" 'over/a2.png: is a folder' -o over/a%d.png --duration 0.12 $restart
+    refused "a folder with the name of a frame $restart" 'over/a2.png: is a folder' -o over/a%d.png --duration 0.12 \
+        $restart
 done
 animate -o embree/%d.png --duration 0.04 --set render.accel=octant
-refused "frames by Embree are another film" 'render.accel was not embree and is embree' -o embree/%d.png --set \
-    render.accel=embree
+refused "frames by Embree are another animation" 'render.accel was not embree and is now embree' \
+    -o embree/%d.png --set render.accel=embree
 
-# --- what the scene reads
+# --- files that the scene reads
 animate -o read/%05d.png --duration 0.2
 sed 's/^solids:/textures:\n  skin: {file: read\/00003.png}\nsolids:/; s/mesh: toy,/mesh: toy, texture: skin,/' \
     slime.yaml >textured.yaml
@@ -176,16 +177,17 @@ sed 's/read.00003/links\/skin/' textured.yaml >linked.yaml
 for from in textured linked; do
     "$program" animate $from.yaml -o read/%05d.png --duration 0.2 --restart >out 2>err
     code=$?
-    check "frames in place of a picture that the scene reads, $from" eval \
+    check "frames in place of an image that the scene reads, $from" eval \
         '((code == 2)) && [[ -e read/00003.png ]] && grep -q "is read from" err'
 done
 "$program" render textured.yaml -o read/00003.png >out 2>err
 code=$?
-check "nor is a still put there" eval '((code == 2)) && cmp read/00003.png one/00003.png && grep -q "is read from" err'
+check "render does not replace it either" \
+    eval '((code == 2)) && cmp read/00003.png one/00003.png && grep -q "is read from" err'
 cp slime.yaml '%d.png.json'
 "$program" animate %d.png.json -o ./%d.png --duration 0 >out 2>err
 code=$?
-check "nor the ledger in place of the scene" eval \
+check "nor the index in place of the scene" eval \
     '((code == 2)) && cmp slime.yaml %d.png.json && grep -q "is read from" err'
 rm '%d.png.json'
 
@@ -194,11 +196,11 @@ check "a percent sign in a name, and at least one frame" eval \
     'done_well && [[ -s part/50%-000.pfm && ! -e part/50%-001.pfm ]]'
 
 # --- rows
-refused "rows of another film are not mixed in" 'another film' -o three/%d.png --duration 0.1 --rows calm.csv
+refused "rows of another animation are refused" 'another animation' -o three/%d.png --duration 0.1 --rows calm.csv
 echo a,b >foreign.csv
-refused "nor such of another kind, and nothing is removed for them" 'other columns' -o one/%05d.png --duration 0.1 \
+refused "rows with other columns are refused, and nothing is removed" 'other columns' -o one/%05d.png --duration 0.1 \
     --rows foreign.csv --restart
-check "the frames are there still" is "$(frames one)" 15
+check "the frames still exist" is "$(frames one)" 15
 described() {
     awk '/^## / {on = $0 == "## Rows of a film"} on && /^\| `/' "$root/results/README.md" |
         sed -n 's/^| \(`[^|]*\) |.*/\1/p' | tr -d '` ' | tr ',' '\n'
@@ -210,51 +212,52 @@ check "frames without a row are rendered again" eval 'summary "15 rendered.* 0 k
 rm one/00003.png
 cp late.csv before.csv
 animate -o one/%05d.png --duration 0.6 --rows late.csv
-check "a frame whose picture is gone keeps its one row" eval 'summary "1 rendered.* 14 kept" && cmp before.csv late.csv'
+check "a frame whose image was removed keeps its one row" \
+    eval 'summary "1 rendered.* 14 kept" && cmp before.csv late.csv'
 for film in one/%05d.png\ --restart film.y4m; do
-    refused "a film that begins anew makes no second rows: $film" 'late.csv: has rows already' -o $film --duration 0.6 \
-        --rows late.csv
+    refused "an animation that starts again writes no second rows: $film" 'late.csv: has rows already' \
+        -o $film --duration 0.6 --rows late.csv
 done
-check "and has removed nothing" is "$(frames one)" 15
+check "and removes nothing" is "$(frames one)" 15
 rm one/00014.png
 sed '$ s/,0.56[0-9]*,[0-9a-f]*,/,0.56,0123456789abcdef,/' late.csv >wrong.csv
-refused "a row of another picture" 'wrong.csv: frame 14 ' -o one/%05d.png --duration 0.6 --rows wrong.csv
+refused "a row with another film hash" 'wrong.csv: frame 14 ' -o one/%05d.png --duration 0.6 --rows wrong.csv
 animate -o one/%05d.png --duration 0.6
 exec 9>>late.csv
 flock 9
-refused "rows that another process writes" 'another process.*another file by --rows' -o one/%05d.png --duration 0.6 \
+refused "rows that another process writes" 'another process.*another file with --rows' -o one/%05d.png --duration 0.6 \
     --rows late.csv
 exec 9>&-
 
 # --- scripts
 animate -o tug/%05d.png --script tug.yaml --rows tug.csv
-check "a film with a script is 2 s longer than that" is "$(frames tug)" 60
+check "an animation is 2 s longer than its script" is "$(frames tug)" 60
 animate -o tug-2/%05d.png --set toy.script=tug.yaml --duration 1
-check "--script is script= of the slime" eval 'done_well && cmp tug/00012.png tug-2/00012.png'
-check "the hand changes the picture" eval '! cmp tug/00008.png one/00008.png && cmp tug/00002.png one/00002.png'
+check "--script sets script= of the slime" eval 'done_well && cmp tug/00012.png tug-2/00012.png'
+check "the hand changes the image" eval '! cmp tug/00008.png one/00008.png && cmp tug/00002.png one/00002.png'
 held() { awk -F, -v frame="$1" \
     'NR == 1 {for (i = 1; i <= NF; i++) if ($i == "held") at = i} $2 == frame {print ($at > 0)}' tug.csv; }
-check "rows say what is held" is "$(held 2)$(held 5)$(held 12)" 010
+check "rows have the number of held vertices" is "$(held 2)$(held 5)$(held 12)" 010
 mkdir elsewhere && cp slime.yaml elsewhere/
 "$program" animate elsewhere/slime.yaml --script tug.yaml -o elsewhere/%05d.png --duration 0.4 >out 2>err
-check "--script is from the working folder" cmp elsewhere/00009.png tug/00009.png
-refused "a script that is not there" '--script nowhere.yaml: .*No such file' -o three/%d.png --script nowhere.yaml
+check "--script is relative to the working folder" cmp elsewhere/00009.png tug/00009.png
+refused "a missing script" '--script nowhere.yaml: .*No such file' -o three/%d.png --script nowhere.yaml
 refused "a script in a pipe" 'regular file' -o three/%d.png --script <(cat tug.yaml)
-refused "one that the scene names" 'nowhere.yaml' -o three/%d.png --set toy.script=nowhere.yaml
+refused "a missing script of the scene" 'nowhere.yaml' -o three/%d.png --set toy.script=nowhere.yaml
 sed 's/grab: \[0, 1, -6\]/grab: [0, 9, -6]/' tug.yaml >miss.yaml
 refused "a grab that misses" 'miss.yaml:4' -o miss/%05d.png --script miss.yaml
-check "leaves the frames before it" eval \
+check "keeps the frames before it" eval \
     '(($(frames miss) >= 2 && $(frames miss) <= 4)) && cmp miss/00001.png one/00001.png'
 
-# --- a body that blows up
-refused "a body that blows up" 'toy|slime' -o blown/%05d.png --set toy.stiffness=1e9 --duration 4
-check "leaves the frames before it" eval '(($(frames blown) >= 1 && $(frames blown) < 100))'
+# --- an unstable slime
+refused "an unstable slime" 'toy|slime' -o blown/%05d.png --set toy.stiffness=1e9 --duration 4
+check "keeps the frames before it" eval '(($(frames blown) >= 1 && $(frames blown) < 100))'
 "$program" compare blown/00000.png one/00000.png --json >out 2>err
-check "whole" is "$(./json_get out largest 2>&1)" 0.0
+check "which are complete" is "$(./json_get out largest 2>&1)" 0.0
 
-# --- long ways
-# stopped SECONDS ARGUMENT...: the program, sent SIGINT after that time, and killed when it has not heard it in 10 s
-# more; its code
+# --- long simulations
+# stopped SECONDS ARGUMENT...: runs the program, sends SIGINT after that time, and kills it if it has not ended 10 s
+# later; its status is in code
 stopped() {
     "$program" "${@:2}" >out 2>err &
     local child=$! left=100
@@ -267,25 +270,26 @@ stopped() {
 }
 heard() { ((code == 130)) && [[ $(wc -l <err) == 1 && ! -s out ]] && grep -q -- "$1" err; } # PATTERN
 animate -o short/%d.png --duration 0.04 --set toy.time_s=86400 --set toy.dt_s=1e-5
-check "the slime's own time does not count" done_well
-refused "more steps to the film's end than there may be" 'toy: 2 s in steps of 1e-09 s' -o steps/%d.png --set \
+check "time_s of the slime is ignored" done_well
+refused "too many steps to the end of the animation" 'toy: 2 s in steps of 1e-09 s' -o steps/%d.png --set \
     toy.dt_s=1e-9 --duration 2
-refused "from a late start too" 'toy: 2000 s in steps' -o steps/%d.png --set toy.dt_s=1e-6 --start 1999.96 --duration \
-    0.04
-refused "nor to the script's" 'toy: 2.4 s in steps' -o steps/%d.png --set toy.dt_s=1e-9 --script tug.yaml
-refused "a step of next to nothing" 'toy.dt_s' -o steps/%d.png --set toy.dt_s=1e-300
+refused "too many steps to a late start" 'toy: 2000 s in steps' -o steps/%d.png --set toy.dt_s=1e-6 \
+    --start 1999.96 --duration 0.04
+refused "too many steps to the end of the script" 'toy: 2.4 s in steps' -o steps/%d.png \
+    --set toy.dt_s=1e-9 --script tug.yaml
+refused "a tiny time step" 'toy.dt_s' -o steps/%d.png --set toy.dt_s=1e-300
 stopped 0.5 animate slime.yaml -o steps/%d.png --set toy.time_s=0 --set toy.dt_s=1e-9 --duration 0.1
-check "short steps do not keep it from stopping" heard 'interrupted at frame 2 of 3'
+check "SIGINT during short steps" heard 'interrupted at frame 2 of 3'
 stopped 0.5 animate slime.yaml -o late/%d.png --start 80000 --duration 0.1
-check "nor does the way to a late start" heard 'interrupted at frame 1 of 3'
+check "SIGINT during the simulation up to a late start" heard 'interrupted at frame 1 of 3'
 for command in render\ --json trace\ --pixel=3,3 realism\ --json scene\ --check; do
     sed 's/generate: slime,/generate: slime, time_s: 86400,/' slime.yaml >day.yaml
     stopped 0.5 ${command%% *} day.yaml ${command#* }
-    check "nor a slime's day: $command" heard 'toy: interrupted at'
+    check "SIGINT during the simulation of a day: $command" heard 'toy: interrupted at'
 done
 printf '%s\n' 'study: day' 'scene: day.yaml' 'grid: [{camera.fov_deg: [40]}]' 'repetitions: 1' >day.study
 stopped 0.5 study run day.study --results day-results
-check "nor one in a study" heard 'interrupted; its 0 new rows'
+check "SIGINT during the simulation in a study" heard 'interrupted; its 0 new rows'
 
 # --- YUV4MPEG2
 animate -o - --duration 0.2 --fps 30000/1001
@@ -298,10 +302,10 @@ cp out stdout.y4m
 animate -o film.y4m --duration 0.2 --fps 30000/1001
 check "a file has the same bytes" eval 'done_well && cmp film.y4m stdout.y4m'
 animate -o blown.y4m --set toy.stiffness=1e9 --duration 4
-check "a film in one file appears whole or not at all" eval \
+check "a film file is written atomically" eval \
     '((code == 2)) && [[ ! -e blown.y4m && -z $(ls -A | grep part$ | grep cuvette) ]]'
 "$program" animate slime.yaml -o - --duration 9 2>err | head -c 6000 >/dev/null
-check "a reader who leaves ends it without words" eval '[[ ${PIPESTATUS[0]} != 0 || ! -s err ]] && [[ ! -s err ]]'
+check "a closed pipe ends it without a message" eval '[[ ${PIPESTATUS[0]} != 0 || ! -s err ]] && [[ ! -s err ]]'
 
 # --- the account
 animate -o one/%05d.png --duration 0.6 --json
@@ -310,7 +314,7 @@ check "with frames, kept and rate" is "$(./json_get out frames kept rendered 'fp
 check "0.56 s in steps of 1 ms" is "$(./json_get out steps simulated_s wall_s_mean | tr '\n' ' ')" "560 0.56 null "
 check "and the definition of the rows" is "$(./json_get out definition)" "$(sed -n 2p late.csv | cut -d, -f1)"
 
-# --- wrong command lines
+# --- invalid command lines
 touch elsewhere/00000.jpg
 for pattern in x.png a%%.png %s.png %n%d.png %x.png '%5d.png' '%-5d.png' '%+d.png' '%lld.png' '%*d.png' '%1$d.png' \
     '%0d.png' '%099d.png' \
@@ -321,26 +325,26 @@ refused "a number in the folder's name" 'folder' -o '%d/a.png'
 for pattern in %d.gif %d '' %d.y4; do
     refused "no format: -o '$pattern'" 'ending' -o "$pattern"
 done
-refused "rows where nothing may be made" 'without a ledger' -o elsewhere/%05d.jpg --rows new.csv
-check "a film that is refused leaves no rows" eval '[[ ! -e new.csv ]]'
-refused "nothing asked for" 'add -o'
+refused "rows of a refused animation" 'without a progress index' -o elsewhere/%05d.jpg --rows new.csv
+check "leave no file" eval '[[ ! -e new.csv ]]'
+refused "no output" 'add -o'
 for rate in 0 -1 1.5 25/0 /1 25/ x 1000001 30/1/2; do
     refused "--fps $rate" '--fps' -o %d.png --fps="$rate"
 done
 refused "a negative duration" '--duration -1' -o %d.png --duration=-1
-refused "a duration that is no number" '--duration nan' -o %d.png --duration nan
+refused "a duration that is not a number" '--duration nan' -o %d.png --duration nan
 refused "too many frames" 'too long' -o %d.png --duration 86400 --fps 1000
 refused "too late" 'too long' -o %d.png --duration 10 --start 86399
 refused "--restart of a film in one file" '--restart' -o x.y4m --restart
 refused "film and account to standard output" '--json' -o - --json
-refused "rows that are no .csv" '.csv' -o %d.png --rows rows.txt
+refused "rows that are not .csv" '.csv' -o %d.png --rows rows.txt
 refused "rows into the scene" 'slime.yaml' -o %d.png --rows slime.yaml
-refused "a film in place of a folder that is not there" 'folder' -o nowhere/x.y4m
+refused "a film in a missing folder" 'folder' -o nowhere/x.y4m
 "$program" animate "$root/experiments/scenes/rod.yaml" -o %d.png >out 2>err
 code=$?
 check "a scene without a slime" eval \
     '((code == 2)) && [[ $(wc -l <err) == 1 ]] && grep -q "rod.yaml: nothing moves.*generate: slime" err'
-check "wrong command lines leave nothing" is "$(find . -maxdepth 1 -name '*.png' ! -name still.png | wc -l)" 0
+check "invalid command lines write nothing" is "$(find . -maxdepth 1 -name '*.png' ! -name still.png | wc -l)" 0
 
 echo "$passed passed, $failed failed"
 ((failed == 0))

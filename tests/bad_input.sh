@@ -1,9 +1,7 @@
 #!/bin/bash
-# Wrong command lines, variables, scenes, studies, sky pictures and comparisons: tests/bad_input.sh [PROGRAM]. Each must
-# end with exit 2,
-# nothing on standard output, and exactly one line on standard error that says where, what, and (for a person's slip)
-# the
-# remedy. One line a check, then "N passed, N failed".
+# Invalid command lines, environment variables, scenes, studies, environment images and comparisons:
+# tests/bad_input.sh [PROGRAM]. Each must end with exit 2, nothing on standard output, and exactly one line on standard
+# error with the place, the error and (for a user's mistake) the remedy. One line per check, then "N passed, N failed".
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -39,62 +37,63 @@ render() { # WHAT PATTERN ARGUMENT...
 }
 
 # --- command lines
-refused "no command" "name a command"
+refused "no command" "no command is given"
 printf 'meshes: {toy: {generate: slime, dt_s: 1e-300}}\n' >tiny.yaml
 refused "a step of motion of next to nothing" "tiny.yaml:1:.*dt_s" render tiny.yaml --json
 refused "misspelt command" "did you mean 'render'" rendr
 refused "unknown command" "give one of: render" frobnicate
-refused "unknown option of the program" "no option '--bogus'" --bogus
+refused "unknown option of the program" "unknown option '--bogus'" --bogus
 refused "no scene" "no scene" render
-refused "nothing asked for" "add -o FILE" render "$scene"
-refused "two scenes" "one too many" render "$scene" "$scene" --json
+refused "no output" "no output is given; add -o FILE" render "$scene"
+refused "two scenes" "unexpected argument" render "$scene" "$scene" --json
 refused "misspelt option" "did you mean '--output'" render "$scene" --outptu x.png
-refused "unknown short option" "no option '-z'" render "$scene" -z
-refused "ambiguous option" "stands for several" render "$scene" --ti x.png
-refused "option without its value" "needs a value" render "$scene" -o
+refused "unknown short option" "unknown option '-z'" render "$scene" -z
+refused "ambiguous option" "'--ti' is ambiguous" render "$scene" --ti x.png
+refused "option without its value" "requires a value" render "$scene" -o
 refused "value for an option that takes none" "takes no value" render "$scene" --json=yes
-refused "scene is not there" "nowhere.yaml" render nowhere.yaml --json
+refused "missing scene" "nowhere.yaml" render nowhere.yaml --json
 refused "scene is a folder" "folder" render . --json
-refused "picture to standard output" "-o -" render "$scene" -o -
+refused "image to standard output" "-o -" render "$scene" -o -
 refused "unknown ending" "x.gif" render "$scene" -o x.gif
 refused "no ending" "x: " render "$scene" -o x
-refused "empty name of a picture" "-o" render "$scene" -o ""
-refused "folder is not there" "folder is not there" render "$scene" -o nowhere/x.png
+refused "empty name of an image" "-o" render "$scene" -o ""
+refused "missing folder" "folder does not exist" render "$scene" -o nowhere/x.png
 mkdir folder.png
-refused "picture is a folder" "is a folder" render "$scene" -o folder.png
+refused "image is a folder" "is a folder" render "$scene" -o folder.png
 refused "JPEG with 16 bits" "only PNG" render "$scene" -o x.jpg --bits 16
 refused "12 bits" "8 or 16" render "$scene" -o x.png --bits 12
-refused "bits are no number" "integer" render "$scene" -o x.png --bits many
-refused "map as JPEG" "no format for a map" render "$scene" --rays x.jpg
+refused "bits are not a number" "integer" render "$scene" -o x.png --bits many
+refused "map as JPEG" "unsupported format of a map" render "$scene" --rays x.jpg
 refused "timeline without .json" "json" render "$scene" --timeline x.png
-refused "two results into one file" "one file" render "$scene" -o x.png --rays ./../"${work##*/}"/x.png
+refused "two outputs into one file" "two outputs have the same file" \
+    render "$scene" -o x.png --rays ./../"${work##*/}"/x.png
 refused "repeat 0" "integer from 1" render "$scene" --json --repeat 0
-refused "repeat is no integer" "integer from 1" render "$scene" --json --repeat 2.5
+refused "repeat is not an integer" "integer from 1" render "$scene" --json --repeat 2.5
 refused "repeat too large for 64 bits" "integer from 1" render "$scene" --json --repeat 99999999999999999999
 cp "$scene" same.yaml
 ln -s same.yaml same.png
-refused "picture over the scene" "the scene is read from it" render same.yaml -o same.png
+refused "image over the scene" "the scene is read from this file" render same.yaml -o same.png
 CUVETTE_ISA=mmx render "unknown instruction set" "CUVETTE_ISA"
 CUVETTE_ISA=mmx refused "unknown instruction set, machine" "CUVETTE_ISA" machine
 printf '%s\n' 'study: isa' "scene: $scene" 'grid: [{render.depth: [0]}]' 'repetitions: 1' >isa.study
 CUVETTE_ISA=mmx refused "unknown instruction set, study" "CUVETTE_ISA" study run isa.study --results isa-results
-refused "machine with an argument" "too many" machine now
+refused "machine with an argument" "unexpected argument 'now'" machine now
 refused "media of an unknown name" "did you mean 'pmma'" media pmna
-refused "media of two names" "one too many" media water air
+refused "media of two names" "unexpected argument 'air'" media water air
 refused "media at no wavelength" "nanometres" media --at 5,5
 refused "media at wavelength 0" "nanometres" media water --at 0
 refused "media at infinity" "nanometres" media water --at 1e999
 refused "media outside the range" "was not measured at 500 nm; .* 589\.3\.\.1050 nm" media glycerol --at 500
-refused "media outside the one wavelength" "its one wavelength is 589.3 nm" media olive-oil --at 589
-refused "params of two scenes" "too many" params "$scene" "$scene"
+refused "media outside the one wavelength" "give its only wavelength, 589.3 nm" media olive-oil --at 589
+refused "params of two scenes" "only one scene" params "$scene" "$scene"
 echo 'render: [' >text.yaml
-refused "params of what is no scene" "text.yaml:[0-9]" params text.yaml
+refused "params of a file that is not a scene" "text.yaml:[0-9]" params text.yaml
 refused "params of a misspelt path" "did you mean 'render.depth'" params render.dpth
-refused "params of a word that stands nowhere" "no parameter fits 'zzz'" params "$scene" zzz
-refused "params of two words" "one too many" params "$scene" liquid vessel
-refused "params --man of a scene" "leave out" params --man "$scene"
+refused "params of a word without a match" "no parameter matches 'zzz'" params "$scene" zzz
+refused "params of two words" "unexpected argument 'vessel'" params "$scene" liquid vessel
+refused "params --man of a scene" "takes no other argument" params --man "$scene"
 refused "help for a misspelt command" "did you mean 'study'" help studdy
-refused "study without a command" "name a command" study
+refused "study without a command" "no command is given" study
 refused "misspelt study command" "did you mean 'merge'" study merg
 refused "study run without a file" "no study" study run
 refused "study file is not there" "nowhere.study" study run nowhere.study
@@ -103,7 +102,7 @@ refused "shard out of range" "0 <= I < N" study run --shard 2/2 x.study
 refused "shard without N" "0 <= I < N" study run --shard 1 x.study
 refused "shard of words" "0 <= I < N" study run --shard a/b x.study
 refused "shard of a huge number" "0 <= I < N" study run --shard 0/99999999999999999999999 x.study
-refused "summary of two studies" "more than one" study summary a.study b.study
+refused "summary of two studies" "more than one study" study summary a.study b.study
 refused "empty results folder" "empty" study status --results "" x.study
 
 # --- parameters
@@ -129,9 +128,9 @@ render "--set of a parameter that the shape lacks" "ground" --set ground.radius=
 render "--set of control characters" "--set" --set $'render.depth=\e[31m4'
 render "--set that makes no shape" "vessel" --set vessel.inner_radius=2
 render "a camera at its own target" "camera" --set camera.target=0,2.75,-6
-render "a sky without a picture" "picture" --set background.kind=picture
+render "an environment without an image" "picture" --set background.kind=picture
 
-# --- sky pictures
+# --- environment images
 printf '%s\n' 'background: {kind: picture, picture: sky.png}' 'render: {width: 8, height: 6}' >sky.yaml
 sky() { # WHAT: the file sky.png is bad
     refused "sky: $1" "sky\." render sky.yaml --json
@@ -193,9 +192,9 @@ sky "a GIF"
 rm sky.png
 cp good.jpg sky.jpg
 printf '%s\n' 'background: {kind: picture, picture: sky.jpg}' 'render: {width: 8, height: 6}' >sky.yaml
-refused "picture over the sky" "the scene is read from it" render sky.yaml -o sky.jpg
+refused "image over the environment image" "the scene is read from this file" render sky.yaml -o sky.jpg
 
-# --- scripts of slimes; their reader's own messages are in tests/bad-scripts
+# --- scripts of slimes; tests/bad-scripts covers the messages of their reader
 mkdir slimes
 printf '%s\n' 'render: {width: 8, height: 6}' 'meshes:' \
     '  toy: {generate: slime, level: 1, time_s: 0.02, script: tug.yaml}' 'solids:' \
@@ -207,18 +206,19 @@ refused "a wrong script" "^cuvette: slimes/tug.yaml:3:7: left: .*grab first" ren
 refused "a wrong script, checked" "^cuvette: slimes/tug.yaml:3:7: " scene slimes/toy.yaml --check
 printf '%s\n' 'hands:' '  left:' '    - {time_s: 0.01, grab: [9, 9, 9], towards: [0, 1, 0], reach: 1}' >slimes/tug.yaml
 refused "a hand that misses" "^cuvette: slimes/tug.yaml:3:7: .*nothing" render slimes/toy.yaml --json
-refused "trace over the script" "the scene is read from it" trace slimes/toy.yaml --pixel 1,1 --text -o slimes/tug.yaml
-refused "scene over the script" "a script of the scene is read from it" scene slimes/toy.yaml -o slimes/tug.yaml
+refused "trace over the script" "the scene is read from this file" \
+    trace slimes/toy.yaml --pixel 1,1 --text -o slimes/tug.yaml
+refused "scene over the script" "a script of the scene is read from this file" scene slimes/toy.yaml -o slimes/tug.yaml
 refused "a slime that blows up" "^cuvette: slimes/toy.yaml:3:19: toy: " render slimes/toy.yaml --json --set \
     toy.script= --set toy.stiffness=1e9
 refused "too fine a slime" "toy: .*level" render slimes/toy.yaml --json --set toy.level=8
 refused "a scene as a script" "unknown key 'render'" render slimes/toy.yaml --json --set toy.script=toy.yaml
 
-# --- pictures to compare
-refused "compare of nothing" "no pictures are named" compare
-refused "compare of one picture" "nothing to compare" compare good.png
-refused "compare of three pictures" "one too many" compare good.png good.jpg good.pfm
-refused "compare of a picture that is not there" "nowhere.png" compare good.png nowhere.png
+# --- images to compare
+refused "compare of nothing" "no images are given" compare
+refused "compare of one image" "only one image" compare good.png
+refused "compare of three images" "unexpected argument 'good.pfm'" compare good.png good.jpg good.pfm
+refused "compare of a missing image" "nowhere.png" compare good.png nowhere.png
 refused "compare of a folder" "folder.png" compare folder.png good.png
 refused "compare of a scene" "not a picture" compare "$scene" good.png
 "$program" render "$scene" -o other.png --set render.width=20 --set render.height=40 >/dev/null
@@ -231,26 +231,26 @@ refused "compare of a truncated PNG" "half.png" compare good.png half.png
 } >nan.pfm
 refused "compare of a PFM with NaN" "nan.pfm" compare nan.pfm nan.pfm
 refused "misspelt option of compare" "did you mean '--diff'" compare good.png good.jpg --dif-f x.png
-refused "--diff without a file" "needs a value" compare good.png good.jpg --diff
+refused "--diff without a file" "requires a value" compare good.png good.jpg --diff
 refused "--diff with an unknown ending" "x.gif.*\.png" compare good.png good.jpg --diff x.gif
-refused "--diff without a name" "ending" compare good.png good.jpg --diff ""
+refused "--diff without a name" "unknown image format" compare good.png good.jpg --diff ""
 refused "--diff to standard output" "--diff -: " compare good.png good.jpg --diff -
-refused "--diff into a folder that is not there" "folder is not there" compare good.png good.jpg --diff nowhere/x.png
+refused "--diff into a missing folder" "folder does not exist" compare good.png good.jpg --diff nowhere/x.png
 refused "--diff onto a folder" "is a folder" compare good.png good.jpg --diff folder.png
-refused "--diff over a picture" "is read from it" compare good.png good.jpg --diff ./good.jpg
-refused "--diff is checked before the pictures" "x.gif" compare nowhere.png nowhere.png --diff x.gif
+refused "--diff over an image" "is read from this file" compare good.png good.jpg --diff ./good.jpg
+refused "--diff is checked before the images" "x.gif" compare nowhere.png nowhere.png --diff x.gif
 
-# --- one ray, and many
+# --- trace and fan
 printf '%s\n' 'render: {shadows: off}' 'solids:' \
     '  outer: {shape: box, transparency: 1, ior: 1.2, size: [4, 4, 4], priority: 0}' \
     '  inner: {shape: box, transparency: 1, ior: 1.3, size: [1, 2, 3], rotation: [10, 20, 30], priority: 1}' >glass.yaml
-refused "trace of nothing" "no scene is named" trace
+refused "trace of nothing" "no scene is given" trace
 refused "trace without a ray" "give --pixel" trace "$scene"
 refused "trace of a pixel and a ray" "exclude each other" trace "$scene" --pixel 1,1 --ray 0,0,0,1,0,0
-refused "trace of two scenes" "one too many" trace "$scene" "$scene" --pixel 1,1
+refused "trace of two scenes" "unexpected argument" trace "$scene" "$scene" --pixel 1,1
 refused "trace of a pixel outside" "--pixel: .*800 x 600" trace "$scene" --pixel 800,0
 refused "trace of a negative pixel" "--pixel: .*outside" trace "$scene" --pixel=-1,0
-refused "trace of half a pixel" "no such pixel.*integers" trace "$scene" --pixel 1.5,2
+refused "trace of half a pixel" "invalid pixel.*integers" trace "$scene" --pixel 1.5,2
 refused "trace of one number" "fewer than 2" trace "$scene" --pixel 7
 refused "trace of a pixel of words" "'x' is not a number" trace "$scene" --pixel 1,x
 refused "trace of a ray with five numbers" "fewer than 6" trace "$scene" --ray 0,0,0,1,0
@@ -264,17 +264,17 @@ refused "trace at a wrong wavelength" "--lambda nan: " trace "$scene" --pixel 1,
 refused "trace with a wrong --set" "--set" trace "$scene" --pixel 1,1 --set render.dpth=3
 refused "trace in two formats" "more than one format" trace "$scene" --pixel 1,1 --json --svg
 refused "trace into an unknown ending" "x.gif: .*\.svg" trace "$scene" --pixel 1,1 -o x.gif
-refused "trace into a folder that is not there" "folder is not there" trace "$scene" --pixel 1,1 -o nowhere/x.svg
+refused "trace into a missing folder" "folder does not exist" trace "$scene" --pixel 1,1 -o nowhere/x.svg
 refused "trace onto a folder" "is a folder" trace "$scene" --pixel 1,1 --json -o folder.png
-refused "trace over the scene" "the scene is read from it" trace same.yaml --pixel 1,1 --text -o same.yaml
+refused "trace over the scene" "the scene is read from this file" trace same.yaml --pixel 1,1 --text -o same.yaml
 # Two million rays: seconds, and a minute with sanitizers.
 [[ ${CONFIG:-release} != release ]] ||
     refused "a tree too large" "--ray: .*more than .* rays.*render.depth" trace glass.yaml --ray 0.1,0.2,0.3,1,0.7,0.4 \
         --depth 64
 refused "misspelt option of trace" "did you mean '--pixel'" trace "$scene" --pixle 1,1
-refused "fan of nothing" "no scene is named" fan
-refused "fan without an axis" "no axis" fan "$scene" -o x.svg
-refused "fan without a file" "nothing is asked for" fan "$scene" --from 0,0,0 --to 1,0,0
+refused "fan of nothing" "no scene is given" fan
+refused "fan without an axis" "axis of the fan is not given" fan "$scene" -o x.svg
+refused "fan without a file" "no output is given" fan "$scene" --from 0,0,0 --to 1,0,0
 fan() { # WHAT PATTERN ARGUMENT...
     refused "$1" "$2" fan "$scene" --from -3,1,0 -o x.svg "${@:3}"
 }
@@ -291,7 +291,7 @@ fan "fan into an unknown ending" "x.png: .*\.csv" --to 3,1,0 -o x.png
 fan "fan to standard output" "-o -: " --to 3,1,0 -o -
 fan "fan of a wrong depth" "--depth deep: " --to 3,1,0 --depth deep
 
-# --- scenes and studies; the modules' own tests go deeper
+# --- scenes and studies; the tests of the modules cover more
 bad_scene() { # WHAT PATTERN TEXT
     printf '%b' "$3" >bad.yaml
     refused "scene: $1" "^cuvette: bad\.yaml.*$2" render bad.yaml --json

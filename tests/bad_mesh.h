@@ -1,4 +1,4 @@
-/* Hostile mesh files for test_bad_meshes.c: small ones as text, the others as makers. */
+/* Hostile mesh files for test_bad_meshes.c: small ones as text, the others as generators. */
 #pragma once
 
 typedef struct bad_mesh {
@@ -195,22 +195,22 @@ static const bad_mesh bad_meshes[] = {
     {"text.glb", "this is not a mesh at all\n"},
     {"json.glb", GLTF(NODES, MESHES, ACCESSORS, VIEWS, BUFFERS)},
     {"magic_only.glb", "glTF"},
-    /* nothing that is read */
+    /* unsupported files */
     {"scene.yaml", "solids: {}\n"},
     {"no_ending", "v 0 0 0\n"},
     {"blender.blend", "BLENDER-v279"},
     {"collada.dae", "<COLLADA/>"},
 };
 
-/* What assimp reads all the same, and what is left is a sound mesh: it leaves out references to normals and texture
- * coordinates that are not there, and makes a texture coordinate that is no number 0. */
+/* Files that assimp accepts and repairs into a sound mesh: it drops references to missing normals and texture
+ * coordinates, and replaces a NaN texture coordinate by 0. */
 static const bad_mesh tolerated_meshes[] = {
     {"uv_past_the_end.obj", THREE "vt 0 0\nf 1/1 2/9 3/1\n"},
     {"normal_past_the_end.obj", THREE "vn 0 0 1\nf 1//1 2//1 3//9\n"},
     {"nan_uv.obj", THREE "vt nan 0\nf 1/1 2/1 3/1\n"},
 };
 
-/* Other files that some of them name. */
+/* Other files to which some of them refer. */
 static const bad_mesh companions[] = {
     {"texture_missing.mtl", "newmtl a\nmap_Kd nowhere.png\n"}, {"texture_folder.mtl", "newmtl a\nmap_Kd folder\n"},
     {"texture_fifo.mtl", "newmtl a\nmap_Kd fifo\n"},           {"color_nan.mtl", "newmtl a\nKd nan 0 0\n"},

@@ -1,10 +1,9 @@
-/* bench_mesh - rays a second through the mesh hierarchies, for the rays of experiments/peers/mesh_rays.h: a camera of
- * 800 x 600 and, from each point it sees, a ray to a point light.
- *   bench_mesh [-m sparse|dense|sphere|all] [-n N,...] [-a none|sphere|octant|bvh|embree] [-k 1|128,...] [-r REPEATS]
- *   [-t BUILD_THREADS]
- * k: rays one at a time, or in batches of 128, tiles of 16 x 8 pixels. Milliseconds are of CPU time a frame, medians.
- * Prints a row for each set and k; sum is over the triangles hit and the bits of t, so that equal sums are equal hits.
- */
+/* bench_mesh - rays per second through the mesh hierarchies, for the rays of experiments/peers/mesh_rays.h: a camera of
+ * 800 x 600 and, from each visible point, a ray to a point light.
+ *  bench_mesh [-m sparse|dense|sphere|all] [-n N,...] [-a none|sphere|octant|bvh|embree] [-k 1|128,...] [-r REPEATS]
+ *  [-t BUILD_THREADS]
+ * k: single rays, or batches of 128, tiles of 16 x 8 pixels. Times are CPU milliseconds per frame, medians. Prints a
+ * row for each set and k; sum is over the triangles hit and the bits of t, so that equal sums mean equal hits. */
 #include "../experiments/peers/mesh_rays.h"
 #include "base/isa.h"
 #include "geometry/mesh_generators.h"
@@ -26,7 +25,7 @@ typedef struct tally {
     double total_t;
 } tally;
 
-/* CPU time: what others do on the machine does not count. */
+/* CPU time: other processes on the machine do not count. */
 static double now_s(void)
 {
     struct timespec t;

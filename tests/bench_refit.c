@@ -1,9 +1,9 @@
-/* bench_refit - the time of a hierarchy's refit beside that of its build by one thread, for icospheres of levels 2 to 7
- * whose vertices move before each. Wall time in milliseconds, medians.
- *   bench_refit [-l FIRST,LAST] [-r REPEATS]
- * Prints a row for each level. A repeat moves and refits the mesh FRAMES times, then builds a hierarchy anew beside it,
- * so that drift of the machine falls on all alike. The first refit after a build finds the caches full of that: it
- * stands apart, as cold_ms. cost_ratio is the refitted hierarchy's cost over that of the one built for the same
+/* bench_refit - the time of a hierarchy's refit compared with that of its build by one thread, for icospheres of levels
+ * 2 to 7 whose vertices move before each. Wall time in milliseconds, medians.
+ *  bench_refit [-l FIRST,LAST] [-r REPEATS]
+ * Prints a row for each level. A repeat moves and refits the mesh FRAMES times, then rebuilds a hierarchy, so that
+ * drift of the machine affects all equally. The first refit after a build finds the caches full of the build's data and
+ * is reported separately, as cold_ms. cost_ratio is the refitted hierarchy's cost over that of one built for the same
  * positions, after a twist by one radian and a squash to 0.7. */
 #include "geometry/mesh_generators.h"
 #include "geometry/hierarchy.h"

@@ -1,7 +1,7 @@
-/* How different two colours look: CIELAB under D65 as the engine integrates it, and CIEDE2000 (Sharma, Wu and Dalal,
- * "The CIEDE2000 Color-Difference Formula: Implementation Notes, Supplementary Test Data, and Mathematical
- * Observations", Color Research and Application 30(1), 2005; kL = kC = kH = 1). For tests alone: libm is free to differ
- * in the last place. Pure; cannot fail. */
+/* The perceptual difference of two colours: CIELAB under D65 as the engine integrates it, and CIEDE2000 (Sharma, Wu and
+ * Dalal, "The CIEDE2000 Color-Difference Formula: Implementation Notes, Supplementary Test Data, and Mathematical
+ * Observations", Color Research and Application 30(1), 2005; kL = kC = kH = 1). Only for tests: libm may differ in the
+ * last place. Pure; cannot fail. */
 #pragma once
 
 #include "optics/observer.h"

@@ -1,6 +1,6 @@
-/* libFuzzer entry: any bytes are what the importer answered. A mesh that is accepted must be sound: finite, and every
- * index in range.
- *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz_mesh_stream.c; ./fuzz_mesh_stream CORPUS */
+/* The libFuzzer entry for the importer's answers: any bytes are an answer. A mesh that is accepted must be sound:
+ * finite, and every index in range.
+ *  clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz_mesh_stream.c; ./fuzz_mesh_stream CORPUS */
 #include "scene/assets/mesh_stream.h"
 
 #include <math.h>

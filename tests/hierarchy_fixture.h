@@ -1,4 +1,4 @@
-/* Meshes and hierarchies for tests of the builders. A fixture owns both; fixture_free releases it. */
+/* Meshes and hierarchies for tests of the builders. A fixture owns both; fixture_free frees it. */
 #pragma once
 
 #include "geometry/hierarchy_private.h"
@@ -11,7 +11,7 @@ typedef struct fixture {
     hierarchy h;
 } fixture;
 
-/* A mesh of so many triangles with corners of their own, triangle i in vertices 3 i to 3 i + 2, all zero so far. */
+/* A mesh of that many triangles with separate corners, triangle i with vertices 3 i to 3 i + 2, all zero at first. */
 static inline fixture fixture_make(size_t triangles, bool single)
 {
     fixture f;

@@ -1,5 +1,5 @@
-/* Meshes and rays that make trouble for hierarchies, from fixed streams of random numbers. Ownership: a mesh is the
- * caller's, who releases it. */
+/* Meshes and rays that are difficult for hierarchies, from fixed random streams. Ownership: the caller releases a
+ * mesh. */
 #pragma once
 
 #include "base/single.h"
@@ -7,7 +7,7 @@
 #include "geometry/hierarchy.h"
 #include "random_stream.h"
 
-/* A mesh of these corners, three a triangle. */
+/* A mesh of these corners, three per triangle. */
 static inline mesh *mesh_of_corners(const vec3 *corners, size_t triangles)
 {
     mesh *m = NULL;
@@ -24,15 +24,16 @@ static inline mesh *mesh_of_corners(const vec3 *corners, size_t triangles)
     return m;
 }
 
-/* Puts a coordinate where trouble is: on a coarse grid (so that corners, planes and edges coincide), in single
- * precision, or anywhere. */
+/* A difficult coordinate: on a coarse grid (so that corners, planes and edges coincide), in single precision, or
+ * anywhere. */
 static inline double random_coordinate(uint64_t *seed, int style, double reach)
 {
     const double v = random_real(seed, -reach, reach);
     return style == 0 ? floor(4.0 * v / reach) * 0.25 * reach : style == 1 ? single_round(v) : v;
 }
 
-/* Triangles of all sorts: small and large, slivers, of no area, twice the same, in planes across an axis. */
+/* Triangles of all kinds: small and large, slivers, without area, duplicates, and in planes perpendicular to an
+ * axis. */
 static inline mesh *random_mesh(uint64_t *seed, int triangles)
 {
     static const double reaches[] = {1.0, 1e-3, 1e3, 1e6};
@@ -51,15 +52,15 @@ static inline mesh *random_mesh(uint64_t *seed, int triangles)
             c[j] = vec3_add(middle, away);
         }
         switch (random_below(seed, 10)) {
-        case 0: c[2] = c[random_below(seed, 2)]; break;                              /* two corners in one place */
-        case 1: c[2] = vec3_add(c[0], vec3_scale(vec3_sub(c[1], c[0]), 0.5)); break; /* three in one line, nearly */
+        case 0: c[2] = c[random_below(seed, 2)]; break;                              /* two corners at one position */
+        case 1: c[2] = vec3_add(c[0], vec3_scale(vec3_sub(c[1], c[0]), 0.5)); break; /* nearly collinear */
         case 2: c[2] = vec3_add(c[1], vec3_scale(random_direction(seed), 1e-9 * reach)); break; /* a sliver */
-        case 3: c[0].x = c[1].x = c[2].x = middle.x; break;                                     /* across the x axis */
+        case 3: c[0].x = c[1].x = c[2].x = middle.x; break; /* perpendicular to the x axis */
         case 4: c[0].z = c[1].z = c[2].z = middle.z; break;
         case 5:
             if (i > 0)
                 for (int j = 0; j < 3; j++)
-                    c[j] = corners[3 * random_below(seed, i) + j]; /* corners of others; often one as it is */
+                    c[j] = corners[3 * random_below(seed, i) + j]; /* corners of others; often a duplicate */
             break;
         case 6:
             if (i > 0)

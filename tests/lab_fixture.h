@@ -108,14 +108,14 @@ static inline json_int_t room_post(const lab_room *room, const char *target, con
 static inline char *room_refused(const lab_room *room, const char *method, const char *target, const char *body,
                                  int code)
 {
-    json_t *told = room_ask(room, method, target, body, code);
-    const char *error = json_string_value(json_object_get(told, "error")),
-               *remedy = json_string_value(json_object_get(told, "remedy"));
+    json_t *json = room_ask(room, method, target, body, code);
+    const char *error = json_string_value(json_object_get(json, "error")),
+               *remedy = json_string_value(json_object_get(json, "remedy"));
     assert_non_null(error);
     assert_non_null(remedy);
     assert_true(error[0] != 0);
     char *text = text_format("%s; %s", error, remedy);
-    json_decref(told);
+    json_decref(json);
     return text;
 }
 

@@ -50,10 +50,10 @@ static inline json_int_t number_at(const json_t *from, const char *key)
 
 static inline json_int_t rows_so_far(const lab_room *room)
 {
-    json_t *told = room_get(room, "/api/studies/tiny/rows?from=1000000");
-    const json_int_t count = number_at(told, "count");
-    assert_int_equal(json_array_size(json_object_get(told, "rows")), 0);
-    json_decref(told);
+    json_t *json = room_get(room, "/api/studies/tiny/rows?from=1000000");
+    const json_int_t count = number_at(json, "count");
+    assert_int_equal(json_array_size(json_object_get(json, "rows")), 0);
+    json_decref(json);
     return count;
 }
 

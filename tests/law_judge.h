@@ -1,5 +1,5 @@
-/* Whether a pair of scenes keeps its law: what is compared, and within what. Ownership: a judge is made by judge_open
- * and released by judge_close. */
+/* The check whether a pair of scenes obeys its law: what is compared, and the tolerances. Ownership: a judge is created
+ * by judge_open and freed by judge_close. */
 #pragma once
 
 #include "law_pairs.h"
@@ -8,9 +8,9 @@
 
 typedef enum verdict { HELD, SKIPPED, BROKEN } verdict;
 
-/* rays: how many LAW_MOTION and LAW_REVERSAL compared; rays_left_out: those that take another sequence of interfaces
- * when they are displaced, and paths that cannot be reversed. difference: the largest one found. added_hits: of the
- * solid that the law added, by the second scene's counters. */
+/* rays: the number compared for LAW_MOTION and LAW_REVERSAL; rays_left_out: rays with another sequence of interfaces
+ * when displaced, and paths that cannot be reversed. difference: the largest one found. added_hits: hits of the solid
+ * that the law added, by the second scene's counters. */
 typedef struct judge {
     renderer *renderer;
     long rays, rays_left_out;
@@ -52,7 +52,7 @@ static inline void scale_vector(vec3 *v, double f)
     *v = vec3_scale(*v, f);
 }
 
-/* All lengths, whatever ranges a scene file is held to. */
+/* Scales all lengths, ignoring the ranges of a scene file. */
 static inline void scale_lengths(scene *s, double f)
 {
     s->render.unit_m /= f;
@@ -76,7 +76,7 @@ static inline void scale_lengths(scene *s, double f)
     }
 }
 
-/* Does a piece of the line meet a solid, by quadruple precision? Of a mesh, the ball around it. */
+/* Does a segment of the line intersect a solid, in quadruple precision? For a mesh, its bounding ball. */
 static inline bool meets(const law_solid *s, vec3 origin, vec3 direction, double length)
 {
     const reference_line line = {quad3_from(origin), quad3_from(direction)};
@@ -104,7 +104,7 @@ static inline const law_solid *solid_numbered(const law_scene *w, int number)
     return NULL;
 }
 
-/* Does any ray of the first scene's image, traced after Whitted, cross the solids of these numbers, all on one ray? */
+/* Does any ray of the first scene's image, traced by the Whitted integrator, cross all these solids? */
 static inline bool some_ray_meets(const law_scene *w, const law_solid *const *solids, int count, int most_rays)
 {
     stage g = {.setting = law_load(w)};
@@ -127,7 +127,7 @@ static inline bool some_ray_meets(const law_scene *w, const law_solid *const *so
     return met;
 }
 
-/* Was the part of the scene that the law alters on a ray's path? */
+/* Did a ray reach the part of the scene that the law changes? */
 static inline bool law_was_tried(const law_pair *p)
 {
     const law_solid *solids[2] = {solid_numbered(&p->b, LAW_ADDED), solid_numbered(&p->b, LAW_ADDED + 1)};
@@ -157,8 +157,7 @@ static inline uint64_t hits_of_added(const scene *s, const render_result *r)
     return 0;
 }
 
-/* By how much the scene's pixels change when it is seen from some roundings of the eye's place beside, along each axis.
- */
+/* The change of the scene's pixels when the eye moves by a few roundings along each axis. */
 static inline void add_swing(judge *j, const scene *s, const film *plain, double swing[LAW_WIDTH * LAW_HEIGHT * 3])
 {
     static const vec3 beside[] = {{2e-15, 0.0, 0.0}, {0.0, 2e-15, 0.0}, {0.0, 0.0, 2e-15}};
@@ -176,8 +175,8 @@ static inline void add_swing(judge *j, const scene *s, const film *plain, double
     }
 }
 
-/* Films within 1e-12; a pixel that is not must differ as much for eyes beside: a ray that meets a surface under 89.9
- * degrees carries a rounding on a thousand times as large. */
+/* Films equal within 1e-12. A pixel beyond that must vary as much when the eye moves by a rounding: a ray that hits a
+ * surface at 89.9 degrees amplifies a rounding error a thousandfold. */
 static inline bool alike_but_for_rounding(judge *j, const scene *s, const film *a, const film *b)
 {
     double swing[LAW_WIDTH * LAW_HEIGHT * 3] = {0.0};
@@ -193,7 +192,7 @@ static inline bool alike_but_for_rounding(judge *j, const scene *s, const film *
     return alike;
 }
 
-/* exact: the same bits. */
+/* exact: bit-identical. */
 static inline verdict same_films(judge *j, const law_pair *p, bool exact)
 {
     scene *s = law_load(&p->a), *t = law_load(&p->b);
@@ -226,7 +225,7 @@ static inline bool same_path(const ray_tree *a, const ray_tree *b)
     return true;
 }
 
-/* A ray of the first scene, the same displaced by 1e-12 of the scene, and the moved one in the moved scene. */
+/* A ray of the first scene, the same ray displaced by 1e-12 of the scene, and the moved ray in the moved scene. */
 static inline verdict same_radiance(judge *j, const law_pair *p)
 {
     enum { RAYS = 12 };
@@ -283,7 +282,7 @@ static inline verdict reversible(judge *j, const law_pair *p)
     return result;
 }
 
-/* A film that a solid changes after all has been met by a ray. */
+/* Skips the pair if the films differ because a ray did hit the added solid. */
 static inline verdict unmet_changes_nothing(judge *j, const law_pair *p)
 {
     const law_solid *added = solid_numbered(&p->b, LAW_ADDED);
@@ -299,7 +298,7 @@ static inline verdict law_judge(judge *j, const law_pair *p)
     case LAW_SCALE: return same_films(j, p, true);
     case LAW_MOTION: return same_radiance(j, p);
     case LAW_REVERSAL: return reversible(j, p);
-    /* absorption over a segment in two parts is a product of two exponentials, which is rounded once more */
+    /* absorption over a segment in two parts is a product of two exponentials, with one more rounding */
     case LAW_SAME: return same_films(j, p, vec3_dot(p->a.outside_absorb_per_m, p->a.outside_absorb_per_m) == 0.0);
     case LAW_CUT:
     case LAW_FILL: return same_films(j, p, false);
@@ -327,8 +326,8 @@ static inline void remove_solid(law_scene *w, int number)
     w->solid_count = kept;
 }
 
-/* The same fault with as few solids as can be, none of the law's own taken away, and without lights where it needs
- * none. */
+/* Reduces a fault to as few solids as possible, without removing the law's own, and without lights if they are not
+ * needed. */
 static inline law_pair law_shrink(judge *j, law_pair p)
 {
     for (bool smaller = true; smaller;) {

@@ -1,18 +1,18 @@
-/* The laws, each as a change of a scene that must not be seen: a pair of scenes whose images are to be compared.
- * Ownership: values. */
+/* The laws: changes of a scene that must not be visible, each as a pair of scenes whose images are compared. Ownership:
+ * values. */
 #pragma once
 
 #include "law_scene.h"
 
 typedef enum law {
-    LAW_UNMET,    /* 1: a solid that no ray meets */
-    LAW_ORDER,    /* 2: the order of declarations, and priorities of solids that stand apart */
+    LAW_UNMET,    /* 1: a solid that no ray hits */
+    LAW_ORDER,    /* 2: the order of declarations, and priorities of separate solids */
     LAW_SCALE,    /* 3: all lengths times a power of two */
     LAW_MOTION,   /* 3: translation, rotation, mirror */
     LAW_CUT,      /* 4: one solid, or two that touch */
-    LAW_SAME,     /* 5: a solid of the surroundings' medium */
-    LAW_REVERSAL, /* 6: a path there and back */
-    LAW_FILL,     /* 7: an empty gap, or one filled with the surroundings' medium */
+    LAW_SAME,     /* 5: a solid of the surrounding medium */
+    LAW_REVERSAL, /* 6: a path and its reverse */
+    LAW_FILL,     /* 7: an empty gap, or one filled with the surrounding medium */
     LAW_COUNT
 } law;
 
@@ -23,7 +23,7 @@ static const char *const law_names[] = {
     "6 a path reversed",           "7 a gap filled",
 };
 
-/* Each point p becomes turn p + shift; mirrored: its x is negated first. */
+/* Each point p becomes turn p + shift; if mirrored, its x is negated first. */
 typedef struct motion {
     bool mirrored;
     vec3 turn_deg, shift;
@@ -32,9 +32,9 @@ typedef struct motion {
 typedef struct law_pair {
     law which;
     law_scene a, b;
-    int exponent;  /* of LAW_SCALE */
-    motion moved;  /* of LAW_MOTION */
-    uint64_t seed; /* of the rays that are looked along */
+    int exponent;  /* for LAW_SCALE */
+    motion moved;  /* for LAW_MOTION */
+    uint64_t seed; /* of the traced rays */
 } law_pair;
 
 static inline void insert_solid(law_scene *w, int at, law_solid s)
@@ -53,7 +53,7 @@ static inline int lowest_priority(const law_scene *w)
     return lowest;
 }
 
-/* Far away, or small among the others, or within one of them. */
+/* Far away, or small among the others, or inside one of them. */
 static inline void add_unmet(law_scene *w, uint64_t *seed)
 {
     law_solid s = {.number = LAW_ADDED, .shape = random_shape(seed)};
@@ -67,7 +67,7 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
     const double power = far ? random_real(seed, 1.0, 5.9) : random_real(seed, -6.0, -3.0);
     const double distance = pow(10.0, power), largest = fmax(s.shape.scale.x, s.shape.scale.y),
                  wanted = far ? fmin(0.002 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance,
-                 size = fmin(wanted, 1e6 / largest); /* a mesh's scale ends there */
+                 size = fmin(wanted, 1e6 / largest); /* the limit of a mesh's scale */
     s.shape.position = far ? vec3_scale(random_direction(seed), distance) : random_point(seed, 1.5);
     s.shape.radius *= size, s.shape.inner_radius *= size, s.shape.height *= size, s.shape.floor *= size;
     s.shape.tube_radius *= size, s.shape.top_radius *= size;
@@ -77,14 +77,14 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
     insert_solid(w, random_below(seed, w->solid_count + 1), s);
 }
 
-/* Does a come before b where they overlap, in ascending rank? */
+/* Does a come before b where they overlap, in ascending priority index? */
 static inline bool ranks_below(const law_scene *w, int a, int b)
 {
     return w->solid[a].priority != w->solid[b].priority ? w->solid[a].priority < w->solid[b].priority : a > b;
 }
 
-/* Order is kept between solids that may touch: of all pairs, or of those of equal priority alone. In `order` any order
- * that allows it. */
+/* Keeps the order of solids that may touch: of all pairs, or only of pairs with equal priority. `order` is a random
+ * order under this constraint. */
 static inline void shuffle(const law_scene *w, bool all_pairs, uint64_t *seed, int *order)
 {
     bool taken[LAW_SOLIDS_MAX] = {false};
@@ -110,7 +110,8 @@ static inline void permute(law_scene *w, uint64_t *seed)
     const bool new_priorities = random_below(seed, 2);
     int order[LAW_SOLIDS_MAX], place[LAW_SOLIDS_MAX];
     shuffle(&old, new_priorities, seed, order);
-    for (int k = 0; k < w->solid_count; k++) /* ascending rank: of equal priorities the last declared comes first */
+    for (int k = 0; k < w->solid_count;
+         k++) /* ascending priority index: of equal priorities the last declared comes first */
         w->solid[w->solid_count - 1 - k] = old.solid[order[k]];
     int priority = -10;
     for (int k = 0; k < w->solid_count && new_priorities; k++)
@@ -124,7 +125,7 @@ static inline void permute(law_scene *w, uint64_t *seed)
     memcpy(w->material_order, place, sizeof place);
     if (!new_priorities)
         return;
-    const law_scene ranked = *w; /* priorities differ: declarations may follow in any order */
+    const law_scene ranked = *w; /* priorities differ, so declarations may be in any order */
     for (int i = 0; i < w->solid_count; i++)
         w->solid[i] = ranked.solid[place[w->solid_count - 1 - i]];
 }
@@ -139,7 +140,7 @@ static inline vec3 move_point(const motion *m, vec3 v)
     return vec3_add(move_direction(m, v), m->shift);
 }
 
-/* The angles of a rotation R_z R_y R_x, about z, y and x; inexact where y is near 90 degrees. */
+/* The angles of a rotation R_z R_y R_x, about z, y and x; inexact if y is near 90 degrees. */
 static inline vec3 angles_of(mat3 r)
 {
     const double steep = hypot(r.row[2].y, r.row[2].z);
@@ -155,11 +156,11 @@ static inline mat3 product(mat3 a, mat3 b)
     return c;
 }
 
-/* false where the angles of a solid that is moved are not known well enough. */
+/* false if the angles of a moved solid are not known accurately enough. */
 static inline bool move_solid(const motion *m, solid_shape *s)
 {
     s->position = move_point(m, s->position);
-    if (m->mirrored) /* M R_z R_y R_x M, in a frame that is mirrored too, which no shape notices */
+    if (m->mirrored) /* M R_z R_y R_x M, in a mirrored frame, which changes no shape */
         s->rotation_deg = vec3_make(s->rotation_deg.x, -s->rotation_deg.y, -s->rotation_deg.z);
     if (vec3_dot(m->turn_deg, m->turn_deg) == 0.0)
         return true;
@@ -168,15 +169,15 @@ static inline bool move_solid(const motion *m, solid_shape *s)
     return hypot(both.row[2].y, both.row[2].z) > 0.05;
 }
 
-/* right and up of a camera without roll, which looks along forward: level, and across both. */
+/* right and up of a camera without roll that looks along forward: right is level, up is perpendicular to both. */
 static inline void level_frame(vec3 forward, vec3 *right, vec3 *up)
 {
     *right = vec3_normalize(vec3_cross(vec3_make(0.0, 1.0, 0.0), forward));
     *up = vec3_cross(forward, *right);
 }
 
-/* The frame of the camera moves with the scene; its roll is what then turns the level frame to it. Of a mirrored scene
- * the image is mirrored too: the moved right is the camera's left. */
+/* The frame of the camera moves with the scene; its roll is the rotation from the level frame to it. In a mirrored
+ * scene the image is mirrored too: the moved right is the camera's left. */
 static inline void move_camera(law_scene *w, const motion *m)
 {
     const double roll = w->roll_deg * DEGREE;
@@ -228,7 +229,7 @@ static inline law_solid clear_box(const law_scene *w, int number, uint64_t *seed
     return s;
 }
 
-/* A clear box or cylinder of a, there from the beginning or put in the last one's place, in two pieces. */
+/* Cuts a transparent box or cylinder of a, existing or put in the last solid's place, into two parts. */
 static inline void cut(law_pair *p, uint64_t *seed)
 {
     law_scene *w = &p->b;
@@ -236,8 +237,8 @@ static inline void cut(law_pair *p, uint64_t *seed)
     law_solid *s = &p->a.solid[at];
     if (s->opaque || s->checker > 0.0 || (s->shape.kind != SHAPE_BOX && s->shape.kind != SHAPE_CYLINDER))
         *s = clear_box(w, s->number, seed);
-    s->number = LAW_ADDED + 1; /* so that no shrinking takes it away */
-    s->reflectivity = 0.0;     /* where coated pieces meet, their coating is seen */
+    s->number = LAW_ADDED + 1; /* so that shrinking keeps it */
+    s->reflectivity = 0.0;     /* where coated parts touch, their coating is visible */
     w->solid[at] = *s;
     insert_solid(w, at + 1, *s);
     law_solid *first = &w->solid[at], *second = &w->solid[at + 1];
@@ -260,7 +261,7 @@ static inline void cut(law_pair *p, uint64_t *seed)
     second->shape.position = in_frame_of(&s->shape, offset[1].x, offset[1].y, offset[1].z);
 }
 
-/* Distance to the nearest solid, or less; negative within one. */
+/* A lower bound of the distance to the nearest solid; negative inside one. */
 static inline double room_around(const law_scene *w, vec3 at)
 {
     double least = HUGE_VAL;
@@ -277,8 +278,8 @@ static inline double room_around(const law_scene *w, vec3 at)
 }
 
 /* Surroundings absorb on paths to surfaces and lights, not to the sky, which is infinitely far
- * (background.absorb_per_m); a solid of the same medium does. Where the surroundings absorb, the sky is therefore
- * black. */
+ * (background.absorb_per_m); a solid of the same medium absorbs on all. If the surroundings absorb, the sky is
+ * therefore black. */
 static inline double sky_of(const law_scene *w)
 {
     return vec3_dot(w->outside_absorb_per_m, w->outside_absorb_per_m) > 0.0 ? 0.0 : w->sky;
@@ -296,7 +297,7 @@ static inline law_solid of_the_surroundings(const law_scene *w, uint64_t *seed)
     return s;
 }
 
-/* false where there is no room for it. */
+/* false if there is no room for it. */
 static inline bool add_same(law_scene *w, uint64_t *seed)
 {
     law_solid s = of_the_surroundings(w, seed);
@@ -329,7 +330,8 @@ static inline bool add_same(law_scene *w, uint64_t *seed)
     return true;
 }
 
-/* A flat top, a box above it at a gap, and in b what fills the gap: flush with both, or reaching into both. */
+/* A solid with a flat top, a box above it at a gap, and in b a solid that fills the gap: flush with both, or
+ * overlapping both. */
 static inline void fill(law_pair *p, uint64_t *seed)
 {
     law_scene *w = &p->a;
@@ -371,7 +373,7 @@ static const char *const all_settings[] = {
     "depth: 6, integrator: path, paths: 3, radiance: basic",
 };
 
-/* Of surfaces that reflect by Fresnel's equations alone: a crossing between equal media is no interface then. */
+/* For surfaces that reflect only by Fresnel's equations: a crossing between equal media is no interface then. */
 static const char *const fresnel_settings[] = {
     "depth: 5",
     "depth: 5, beyond: black, polarisation: on",
@@ -381,8 +383,8 @@ static const char *const fresnel_settings[] = {
     "depth: 4, beyond: black, polarisation: on, radiance: basic",
 };
 
-/* A large block: gaps of 1e-12 near it are not resolved, or only from some places, and 2^20 times as large it is beyond
- * MESH_FAR. */
+/* Is there a large block? Gaps of 1e-12 near it are not resolved, or only from some positions, and 2^20 times as large
+ * it exceeds MESH_FAR. */
 static inline bool has_block(const law_scene *w)
 {
     for (int i = 0; i < w->solid_count; i++)
@@ -391,7 +393,7 @@ static inline bool has_block(const law_scene *w)
     return false;
 }
 
-/* false where the law cannot be tried on such a scene. */
+/* false if the law cannot be applied to such a scene. */
 static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair *p)
 {
     const bool any = which == LAW_UNMET || which == LAW_ORDER || which == LAW_SCALE;
@@ -408,7 +410,8 @@ static inline bool law_pair_make(law which, uint64_t seed, int number, law_pair 
     while (without_blocks && has_block(&p->a));
     for (int i = 0; i < p->a.solid_count && which == LAW_REVERSAL; i++)
         p->a.solid[i].transparency = 1.0;
-    p->a.flat = which == LAW_REVERSAL; /* interpolated normals belong to no surface: such a path cannot be reversed */
+    p->a.flat =
+        which == LAW_REVERSAL; /* interpolated normals do not belong to a surface: such a path cannot be reversed */
     p->b = p->a;
     p->seed = random_bits(&seed);
     switch (which) {

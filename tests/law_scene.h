@@ -1,5 +1,5 @@
-/* Random scenes for the laws (test_laws.c): solids of all shapes that overlap, touch, lie within one another or stand
- * apart by next to nothing, as values that can be changed, and as scene files. Ownership: values. */
+/* Random scenes for the laws (test_laws.c): solids of all shapes that overlap, touch, are nested, or are separated by
+ * tiny gaps, as values that can be changed, and as scene files. Ownership: values. */
 #pragma once
 
 #include "random_scene.h"
@@ -13,13 +13,13 @@ enum {
 };
 
 typedef struct law_solid {
-    int number;        /* its name, whatever its place */
-    solid_shape shape; /* a mesh's frame and scale; its triangles are read from its name */
+    int number;        /* its name, whatever its index */
+    solid_shape shape; /* a mesh's frame and scale; its triangles are given by its name */
     const char *mesh;  /* "cube", "ball", "ring", "hills"; NULL for all other shapes */
     int64_t priority;
     bool opaque;
     double ior, transparency, reflectivity, specular, checker;
-    vec3 absorb_per_m, tint; /* of a clear solid, light's color after tint_distance inside */
+    vec3 absorb_per_m, tint; /* for a transparent solid, light's color after tint_distance inside */
     double tint_distance;
 } law_solid;
 
@@ -39,7 +39,7 @@ typedef struct law_scene {
     int light_count, solid_count;
     law_light light[LAW_LIGHTS_MAX];
     law_solid solid[LAW_SOLIDS_MAX];
-    int material_order[LAW_SOLIDS_MAX]; /* in which the materials of solid[0], solid[1] .. are declared */
+    int material_order[LAW_SOLIDS_MAX]; /* the order in which the materials of solid[0], solid[1] .. are declared */
 } law_scene;
 
 static const struct {
@@ -49,10 +49,10 @@ static const struct {
     {"cube", "{generate: box, size: [1, 1, 1]}", 0.87},
     {"ball", "{generate: icosphere, level: 1}", 1.0},
     {"ring", "{generate: torus, around: 8, tube: 6}", 1.4},
-    {"hills", "{generate: terrain, around: 3, tube: 3, size: [1, 0.3, 1]}", 0.8}, /* open: a surface, not a body */
+    {"hills", "{generate: terrain, around: 3, tube: 3, size: [1, 0.3, 1]}", 0.8}, /* open: a surface without a volume */
 };
 
-/* 1e-12 .. 1, as many of each power of ten; a part of them 0. */
+/* 1e-12 .. 1, log-uniform; sometimes 0. */
 static inline double random_gap(uint64_t *seed)
 {
     const double exponent = random_real(seed, -12.0, 0.0);
@@ -77,7 +77,7 @@ static inline double mesh_size(const law_solid *s)
     return 0.0;
 }
 
-/* A few copies that touch, if they are cubes, or stand a gap apart. */
+/* A few copies: cubes touch, others are separated by a gap. */
 static inline void copy_mesh(law_solid *s, uint64_t *seed)
 {
     const double gap = random_gap(seed), step = is_mesh_named(s, "cube") ? 1.0 : mesh_size(s) + 1e-12;
@@ -95,7 +95,7 @@ static inline void place_mesh(law_solid *s, uint64_t *seed)
     s->shape.scale.y = random_below(seed, 2) ? s->shape.scale.x : random_real(seed, 0.2, 1.2);
     s->shape.scale.z = s->shape.scale.x;
     const int size = random_below(seed, 8);
-    if (is_mesh_named(s, "cube") && size < 2) { /* a thin plate, or a large block below all */
+    if (is_mesh_named(s, "cube") && size < 2) { /* a thin plate, or a large block below everything */
         const double power = size ? random_real(seed, -12.0, 0.0) : random_real(seed, 0.0, 4.0);
         s->shape.scale.y = pow(10.0, power);
         if (size == 0) {
@@ -107,7 +107,7 @@ static inline void place_mesh(law_solid *s, uint64_t *seed)
         copy_mesh(s, seed);
 }
 
-/* Half the height of a solid along its own y, and where its middle is; 0 for those that have no flat top. */
+/* Half the height of a solid along its own y, and its centre; 0 for solids without a flat top. */
 static inline double flat_half(const law_solid *s, double *middle)
 {
     *middle = s->shape.kind == SHAPE_CYLINDER || s->shape.kind == SHAPE_CUP || s->shape.kind == SHAPE_CONE ||
@@ -119,7 +119,7 @@ static inline double flat_half(const law_solid *s, double *middle)
     return s->shape.kind == SHAPE_BOX ? 0.5 * s->shape.size.y : *middle;
 }
 
-/* On top of another with a flat top: at a gap, or as a film. */
+/* Places the solid on another one with a flat top: at a gap, or as a film. */
 static inline void stack_on(law_solid *s, const law_solid *base, uint64_t *seed)
 {
     double middle, gap = random_gap(seed);
@@ -153,7 +153,7 @@ static inline double smallest(vec3 v)
     return fmin(v.x, fmin(v.y, v.z));
 }
 
-/* Around another, or within it: a wall of that thickness all round, which may be none at all. */
+/* Places the solid around another, or inside it, with a wall of uniform thickness, which may be zero. */
 static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
 {
     s->shape = base->shape;
@@ -163,7 +163,7 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
                                                        shape->kind == SHAPE_BOX ? smallest(shape->size) : 1.0);
     double step = random_below(seed, 2) && wall < 0.05 * least ? -wall : wall;
     if (shape->kind == SHAPE_CONE && fabs(step) < 1e-9)
-        step = 0.0; /* its slant is moved by another length: wide, or none, or the sides cross */
+        step = 0.0; /* its slant moves by another length: the wall is wide or zero, or the sides intersect */
     if (shape->kind == SHAPE_TORUS)
         shape->tube_radius = fmin(shape->tube_radius + step, 0.99 * shape->radius);
     else
@@ -181,13 +181,13 @@ static inline void nest_in(law_solid *s, const law_solid *base, uint64_t *seed)
     if (is_mesh_named(s, "cube")) {
         shape->scale = vec3_add(shape->scale, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));
         shape->spacing = vec3_add(shape->spacing, vec3_make(2.0 * step, 2.0 * step, 2.0 * step));
-    } else if (is_mesh_named(s, "ball") && step > 1e-9) { /* scaled, its wall is not even: wide, or none */
+    } else if (is_mesh_named(s, "ball") && step > 1e-9) { /* scaled, its wall is not uniform: wide or zero */
         shape->scale = vec3_scale(shape->scale, 1.0 + step);
         shape->spacing = vec3_scale(shape->spacing, 1.0 + step);
     }
 }
 
-/* Of clear solids; shares that are constants must add up to 1 at most. */
+/* For transparent solids; constant shares must add up to at most 1. */
 static inline void random_coat(law_solid *s, const law_scene *w, uint64_t *seed)
 {
     const bool constant = strstr(w->settings, "constant") != NULL;
@@ -226,7 +226,8 @@ static inline law_solid random_solid(const law_scene *w, int number, uint64_t *s
     const int relation = random_below(seed, 8);
     if (base && relation < 3 && flat_half(base, &middle) > 0.0)
         stack_on(&s, base, seed);
-    else if (base && relation < 5 && !is_mesh_named(base, "hills")) /* two open surfaces at one place: either is seen */
+    else if (base && relation < 5 &&
+             !is_mesh_named(base, "hills")) /* of two coincident open surfaces either may be visible */
         nest_in(&s, base, seed);
     else if (random_below(seed, 8) == 0)
         place_mesh(&s, seed);
@@ -250,8 +251,7 @@ static inline law_scene random_law_scene(uint64_t *seed, const char *settings)
     w.light_count = random_below(seed, LAW_LIGHTS_MAX + 1);
     for (int i = 0; i < w.light_count; i++)
         w.light[i] = (law_light){random_point(seed, 5.0), 2.0 * i};
-    uint64_t own =
-        *seed ^ 0x726f6c6cu; /* "roll": of a stream of its own, so that it changes nothing else of the scene */
+    uint64_t own = *seed ^ 0x726f6c6cu; /* "roll": a separate stream, so that it changes nothing else in the scene */
     w.roll_deg = random_below(&own, 3) == 0 ? random_real(&own, -180.0, 180.0) : 0.0;
     const int count = 1 + random_below(seed, 9);
     for (int i = 0; i < count; i++)
@@ -345,7 +345,7 @@ static inline scene_text law_text(const law_scene *w)
     return t;
 }
 
-/* A sphere around a solid; without an end around a plane. */
+/* A sphere around a solid; infinite around a plane. */
 typedef struct ball {
     vec3 middle;
     double radius;
@@ -377,7 +377,7 @@ static inline ball ball_around(const law_solid *s)
     return (ball){shape->position, HUGE_VAL};
 }
 
-/* May two solids overlap or touch? Never a wrong no. */
+/* May two solids overlap or touch? False is always right. */
 static inline bool may_touch(const law_solid *a, const law_solid *b)
 {
     const ball p = ball_around(a), q = ball_around(b);

@@ -1,4 +1,4 @@
-/* For tests of mesh files: a folder of their own, files in it, and the bytes of binary formats. */
+/* Helpers for tests of mesh files: a temporary folder, files in it, and the bytes of binary formats. */
 #pragma once
 
 #include "base/text.h"
@@ -34,7 +34,7 @@ static int remove_folder(void **state)
     return 0;
 }
 
-/* The path of a file of that name in the folder; free it. */
+/* The path of a file with that name in the folder; free it. */
 static char *in_folder(const char *name)
 {
     char *path = text_format("%s/%s", folder, name);
@@ -57,7 +57,7 @@ static void put_text(const char *name, const char *text)
     put(name, text, strlen(text));
 }
 
-/* Bytes that grow. */
+/* A growing byte array. */
 typedef struct bytes {
     unsigned char *at;
     size_t size, room;
@@ -82,7 +82,7 @@ static inline void add_text(bytes *b, const char *text)
 
 static inline void add_u32(bytes *b, uint32_t value)
 {
-    add(b, &value, sizeof value); /* the formats are little-endian, and so is every machine that we run on */
+    add(b, &value, sizeof value); /* the formats are little-endian, and so are all supported machines */
 }
 
 static inline void add_float(bytes *b, float value)
@@ -90,7 +90,7 @@ static inline void add_float(bytes *b, float value)
     add(b, &value, sizeof value);
 }
 
-/* A tetrahedron, fronts outwards, at coordinates that are floats but no short decimals. */
+/* A tetrahedron with its fronts facing outwards; the coordinates are floats but not short decimals. */
 static const float corners[4][3] = {{0.1f, -0.2f, 0.3f}, {1.1f, -0.2f, 0.3f}, {0.1f, 0.9f, 0.3f}, {0.1f, -0.2f, 1.7f}};
 static const uint8_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
 
@@ -125,7 +125,7 @@ static inline bytes binary_ply(void)
     return b;
 }
 
-/* Pads to a multiple of four, as glTF 2.0, 4.4.3 asks. */
+/* Pads to a multiple of four, as glTF 2.0, 4.4.3 requires. */
 static inline bytes glb_of(const char *json, const void *binary, size_t size)
 {
     bytes b = {0};

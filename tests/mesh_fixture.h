@@ -1,4 +1,4 @@
-/* Small meshes for tests, made from lists; and a cube to take apart. */
+/* Small meshes for tests, made from lists, and a cube that tests take apart. */
 #pragma once
 
 #include "geometry/mesh.h"
@@ -17,8 +17,8 @@ static inline mesh *mesh_of(const vec3 *vertices, size_t vertex_count, const mes
     return m;
 }
 
-/* Cube number c = 0, 1 ... of edges 2 half about center, fronts outwards: vertices 8 c + (x > 0) + 2 (y > 0) + 4 (z >
- * 0), triangles from 12 c on. */
+/* Cube number c = 0, 1 ... with edges of 2 half about center, fronts facing outwards: vertices 8 c + (x > 0) + 2 (y >
+ * 0) + 4 (z > 0), triangles from 12 c on. */
 static inline void put_cube(mesh *m, size_t c, vec3 center, double half)
 {
     static const uint32_t corners[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},

@@ -1,6 +1,6 @@
-/* Rooms of overlapping solids some of which are meshes, at random, and what is where in them by definition: of a mesh
- * by the winding number of its triangles around the point, of the others by their shapes. Ownership: mesh_room_fill
- * gives, mesh_room_empty releases. */
+/* Random rooms of overlapping solids, some of them meshes, and the solids that contain a point by definition: for a
+ * mesh by the winding number of its triangles around the point, for others by their shapes. Ownership: mesh_room_fill
+ * creates, mesh_room_empty frees. */
 #pragma once
 
 #include "geometry/mesh_generators.h"
@@ -10,14 +10,14 @@
 
 typedef struct mesh_room {
     room r;
-    mesh *region[SOLIDS_MAX]; /* NULL: the solid is none */
+    mesh *mesh_solid[SOLIDS_MAX]; /* NULL: the solid is not a mesh */
     hierarchy *tree[SOLIDS_MAX];
     vec3 (*triangle[SOLIDS_MAX])[3]; /* in the world, of all copies */
     size_t count[SOLIDS_MAX];
 } mesh_room;
 
-/* Turns around a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom and Strackee, "The solid angle
- * of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8). */
+/* The winding number around a point: the sum of the triangles' solid angles over 4 pi (Van Oosterom and Strackee, "The
+ * solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8). */
 static inline double winding(const vec3 (*triangle)[3], size_t count, vec3 at)
 {
     double sum = 0.0;
@@ -32,8 +32,8 @@ static inline double winding(const vec3 (*triangle)[3], size_t count, vec3 at)
 
 static inline bool solid_contains(const mesh_room *m, int i, vec3 at)
 {
-    return m->region[i] ? winding((const vec3(*)[3])m->triangle[i], m->count[i], at) > 0.5
-                        : solid_shape_contains(&m->r.shape[i], at);
+    return m->mesh_solid[i] ? winding((const vec3(*)[3])m->triangle[i], m->count[i], at) > 0.5
+                            : solid_shape_contains(&m->r.shape[i], at);
 }
 
 static inline int winner_in_room(const mesh_room *m, vec3 at)
@@ -47,8 +47,8 @@ static inline int winner_in_room(const mesh_room *m, vec3 at)
 
 enum { ROOM_CROSSINGS_MAX = 512 };
 
-/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997, in quadruple precision; a
- * hair wider than the triangle, so that none is missed. */
+/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997, in quadruple precision;
+ * slightly wider than the triangle, so that none is missed. */
 static inline int triangle_event(const vec3 v[3], const reference_line *line, quad *t)
 {
     const quad3 a = quad3_from(v[0]), e1 = quad3_sub(quad3_from(v[1]), a), e2 = quad3_sub(quad3_from(v[2]), a),
@@ -69,9 +69,9 @@ static inline int crossings_in_room(const mesh_room *m, const reference_line *li
 {
     int n = 0;
     for (int i = 0; i < m->r.count; i++) {
-        if (!m->region[i])
+        if (!m->mesh_solid[i])
             n += reference_events(&m->r.shape[i], line, 0, t + n);
-        for (size_t k = 0; m->region[i] && k < m->count[i]; k++)
+        for (size_t k = 0; m->mesh_solid[i] && k < m->count[i]; k++)
             n += triangle_event((const vec3 *)m->triangle[i][k], line, &t[n]);
         assert_true(n < ROOM_CROSSINGS_MAX - REFERENCE_CROSSINGS_MAX);
     }
@@ -103,11 +103,11 @@ static inline int changes_in_room(const mesh_room *m, const reference_line *line
     return count;
 }
 
-/* Triangles of all copies, placed as solid.h says. */
+/* The triangles of all copies, placed as defined in solid.h. */
 static inline void place_triangles(mesh_room *m, int i)
 {
     const solid_shape *s = &m->r.shape[i];
-    const mesh *b = m->region[i];
+    const mesh *b = m->mesh_solid[i];
     const mat3 turn = rotation_from_deg(s->rotation_deg);
     const size_t nx = (size_t)s->copies.x, ny = (size_t)s->copies.y, nz = (size_t)s->copies.z;
     m->count[i] = 0;
@@ -155,7 +155,7 @@ static inline void mesh_room_arrange(mesh_room *m)
     assert_int_equal(scene_geometry_build(sources, m->r.count, 0, &m->r.solids, NULL), STATUS_OK);
 }
 
-/* About two solids in three are meshes; on the grid boxes whose faces, and whose copies, coincide wherever they can. */
+/* About two thirds of the solids are meshes; on the grid they are boxes whose faces and copies often coincide. */
 static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
 {
     memset(m, 0, sizeof *m);
@@ -165,9 +165,9 @@ static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
         solid_shape *s = &m->r.shape[i];
         if (random_below(seed, 3) == 0)
             continue;
-        m->region[i] = random_body(seed, on_a_grid, s->size);
+        m->mesh_solid[i] = random_body(seed, on_a_grid, s->size);
         s->kind = SHAPE_MESH;
-        s->mesh = m->region[i];
+        s->mesh = m->mesh_solid[i];
         s->scale =
             on_a_grid || random_below(seed, 2)
                 ? vec3_make(1.0, 1.0, 1.0)
@@ -176,9 +176,9 @@ static inline void mesh_room_fill(mesh_room *m, uint64_t *seed, bool on_a_grid)
         s->spacing = on_a_grid ? s->size : vec3_make(2.1 * s->scale.x, 1.0, 2.1 * s->scale.z);
         if (!on_a_grid)
             s->spacing = vec3_add(s->spacing, vec3_scale(s->size, 1.0));
-        assert_int_equal(
-            hierarchy_build(m->region[i], (hierarchy_kind)random_below(seed, HIERARCHY_EMBREE), 1, &m->tree[i], NULL),
-            STATUS_OK);
+        assert_int_equal(hierarchy_build(m->mesh_solid[i], (hierarchy_kind)random_below(seed, HIERARCHY_EMBREE), 1,
+                                         &m->tree[i], NULL),
+                         STATUS_OK);
         place_triangles(m, i);
     }
     mesh_room_arrange(m);
@@ -189,7 +189,7 @@ static inline void mesh_room_empty(mesh_room *m)
     scene_geometry_destroy(m->r.solids);
     for (int i = 0; i < m->r.count; i++) {
         hierarchy_destroy(m->tree[i]);
-        mesh_release(m->region[i]);
+        mesh_release(m->mesh_solid[i]);
         free(m->triangle[i]);
     }
 }

@@ -1,11 +1,11 @@
-/* Scenes with meshes for tests: read, loaded and looked at; pictures made in memory as their textures. Ownership as in
+/* Scenes with meshes for tests: reading, loading and probing, with textures from images made in memory. Ownership as in
  * probe_fixture.h. */
 #pragma once
 
 #include "probe_fixture.h"
 #include "scene/model/scene.h"
 
-/* A texture of the scene from texels of 0..1, line by line from the lowest one on, red green blue. */
+/* A texture of the scene from texels of 0..1, row by row from the lowest row, red green blue. */
 static inline void give_texture(scene *s, const char *name, const double *texels, int width, int height)
 {
     for (size_t i = 0; i < s->texture_count; i++) {
@@ -30,7 +30,7 @@ static inline scene *scene_with_meshes(const char *text, const char *assignments
 {
     scene *s = scene_from(text);
     set_all(s, assignments);
-    /* each texel is its own colour: red across, green up */
+    /* each texel has its own colour: red increases across, green upwards */
     static const double texels[4 * 2 * 3] = {0.125, 0.25, 1, 0.375, 0.25, 1, 0.625, 0.25, 1, 0.875, 0.25, 1,
                                              0.125, 0.75, 1, 0.375, 0.75, 1, 0.625, 0.75, 1, 0.875, 0.75, 1};
     give_texture(s, "map", texels, 4, 2);

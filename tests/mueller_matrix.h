@@ -1,11 +1,12 @@
-/* Forwards: whole Mueller matrices, which a tracer that works backwards from the eye does without. */
+/* Whole Mueller matrices in the direction of the light, as a reference; a tracer that works backwards from the eye does
+ * not need them. */
 #pragma once
 
 #include "optics/mueller.h"
 
 typedef struct mueller {
     double m[4][4];
-} mueller; /* row: light that leaves; column: light that arrives */
+} mueller; /* row: outgoing light; column: incoming light */
 
 static inline mueller mueller_from(sp_response r)
 {
@@ -16,8 +17,8 @@ static inline mueller mueller_from(sp_response r)
     return m;
 }
 
-/* Of light that arrives at cos_i in n_from, from its s/p frame into that of the light that leaves. m[0][0] is the share
- * of unpolarised light. */
+/* For light incident at cos_i in n_from, from its s/p frame to that of the outgoing light. m[0][0] is the share of
+ * unpolarised light. */
 static inline mueller mueller_reflect(double cos_i, double n_from, double n_to)
 {
     return mueller_from(sp_reflect(fresnel_dielectric(cos_i, n_from, n_to), cos_i));
@@ -28,14 +29,14 @@ static inline mueller mueller_refract(double cos_i, double n_from, double n_to)
     return mueller_from(sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
 }
 
-/* Into a frame turned by a. */
+/* Rotation of the frame by a. */
 static inline mueller mueller_rotation(double cos_2a, double sin_2a)
 {
     mueller m = {{{1.0, 0.0, 0.0, 0.0}, {0.0, cos_2a, sin_2a, 0.0}, {0.0, -sin_2a, cos_2a, 0.0}, {0.0, 0.0, 0.0, 1.0}}};
     return m;
 }
 
-/* a b: light meets b first. */
+/* a b: light passes b first. */
 static inline mueller mueller_multiply(mueller a, mueller b)
 {
     mueller product;

@@ -1,5 +1,5 @@
-/* Quadruple precision (113 bits) for tests to compare with: enough arithmetic for roots, rotations and Fresnel's
- * angles, written here because libquadmath is gcc's alone, and long double is a double under valgrind. Pure. */
+/* Quadruple precision (113 bits) as a reference for tests: the arithmetic for roots, rotations and Fresnel angles,
+ * written here because libquadmath exists only for gcc, and long double is a double under valgrind. Pure. */
 #pragma once
 
 #include "base/vec3.h"
@@ -23,12 +23,12 @@ static inline quad quad_max(quad a, quad b)
     return a > b ? a : b;
 }
 
-/* Newton's steps from the root in doubles: 53, 106, 113 bits. */
+/* Newton steps from the root in double precision: 53, 106, 113 bits. */
 static inline quad quad_sqrt(quad a)
 {
     if (a <= 0)
         return 0;
-    quad scale = 1; /* into the range of doubles */
+    quad scale = 1; /* scale into the range of doubles */
     for (; a > (quad)0x1p900; a *= (quad)0x1p-1000)
         scale *= (quad)0x1p500;
     for (; a < (quad)0x1p-900; a *= (quad)0x1p1000)
@@ -44,7 +44,7 @@ static inline quad quad_pi(void)
     return (quad)3.141592653589793 + (quad)1.2246467991473532e-16 - (quad)2.9947698097183397e-33; /* exact doubles */
 }
 
-/* Taylor series after the whole quarter turns are taken out. */
+/* Taylor series after removing whole quarter turns. */
 static inline void quad_sincos_deg(quad degrees, quad *sine, quad *cosine)
 {
     int quarter = (int)floor((double)degrees / 90.0 + 0.5);
@@ -102,7 +102,7 @@ typedef struct quad_rotation {
     quad3 row[3];
 } quad_rotation;
 
-/* About x, then y, then z; right-hand rule. */
+/* Rotation about x, then y, then z, right-handed. */
 static inline quad_rotation quad_rotation_make(vec3 degrees)
 {
     const double angles[3] = {degrees.x, degrees.y, degrees.z};
@@ -123,7 +123,7 @@ static inline quad_rotation quad_rotation_make(vec3 degrees)
     return r;
 }
 
-/* The last few rotations are kept, because their sines cost much more than a turn. */
+/* Caches the last few rotations, because their sines cost much more than applying them. */
 static inline const quad_rotation *quad_rotation_of(vec3 degrees)
 {
     enum { KEPT = 16 };
@@ -139,7 +139,7 @@ static inline const quad_rotation *quad_rotation_of(vec3 degrees)
     return next;
 }
 
-/* v turned; backwards: the inverse. */
+/* v rotated; backwards: by the inverse. */
 static inline quad3 quad3_turn(quad3 v, vec3 degrees, int backwards)
 {
     const quad3 *r = quad_rotation_of(degrees)->row;

@@ -1,5 +1,5 @@
-/* Random scenes as text, from room_fixture.h's shapes: overlapping solids of all kinds, turned, their priorities
- * shuffled and some of them equal, indices shared. Ownership: values. */
+/* Random scenes as text, from the shapes of room_fixture.h: overlapping, rotated solids of all kinds with shuffled and
+ * partly equal priorities, and shared indices. Ownership: values. */
 #pragma once
 
 #include "room_fixture.h"
@@ -33,14 +33,14 @@ static inline void add_shape(scene_text *t, const solid_shape *s)
     }
 }
 
-/* Media that are shared are 0, the surrounding one, -1 and -2: see room_fill. */
+/* Shared media are 0, the surrounding one, -1 and -2: see room_fill. */
 static inline double random_ior(uint64_t *seed, int64_t medium, double outside)
 {
     return medium == 0 ? outside : medium == -1 ? 1.33 : medium == -2 ? 1.5 : random_real(seed, 1.0, 2.5);
 }
 
-/* Solids s0, s1, ...: every one clear, or as the room says; an opaque one reflects and shines by ambient light,
- * together at most 1. */
+/* Solids s0, s1, ...: all transparent, or as in the room; an opaque solid has a reflectivity and ambient light that add
+ * up to at most 1. */
 static inline void add_room(scene_text *t, uint64_t *seed, const room *m, double outside, bool all_clear,
                             bool absorbing)
 {

@@ -1,5 +1,5 @@
-/* Random numbers for tests: SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), a fixed stream for each seed, so that a
- * failure comes back. Ownership: the seed is the caller's. */
+/* Random numbers for tests: SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), a fixed stream per seed, so that a failure
+ * is reproducible. Ownership: the caller owns the seed. */
 #pragma once
 
 #include "base/vec3.h"

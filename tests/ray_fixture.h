@@ -1,5 +1,5 @@
-/* One ray through the kernels of geometry/rays.h, and the arrangement of a few shapes, for tests. Ownership: what
- * arrange_shapes gives is released with scene_geometry_destroy. */
+/* One ray through the kernels of geometry/rays.h, and the scene geometry of a few shapes, for tests. Ownership: free
+ * the result of scene_geometry_of with scene_geometry_destroy. */
 #pragma once
 
 #include "base/isa.h"
@@ -14,7 +14,7 @@ typedef struct one_ray {
 
 typedef struct one_hit {
     double t;
-    int hit_primitive, before, after, surface; /* crossed -1: a miss */
+    int hit_primitive, before, after, surface; /* hit_primitive -1: a miss */
     uint64_t inside_before, inside_after;
     vec3 point, normal;
     double cos_i, error;
@@ -77,7 +77,7 @@ static inline double light_through(const scene_geometry *a, one_ray r, int solid
     return transmitted[0];
 }
 
-/* Shapes of different clear media, the first with the highest priority; release with scene_geometry_destroy. */
+/* Shapes of different transparent media, the first with the highest priority; free with scene_geometry_destroy. */
 static inline scene_geometry *scene_geometry_of(const solid_shape *shapes, int count)
 {
     region_source sources[8];

@@ -1,5 +1,5 @@
-/* Bodies that are deformed, and what hierarchies of them are compared by. Ownership: meshes and hierarchies are the
- * caller's. After cmocka.h. */
+/* Deformed meshes, and the comparisons of hierarchies over them. Ownership: the caller owns meshes and hierarchies.
+ * Include after cmocka.h. */
 #pragma once
 
 #include "base/isa.h"
@@ -52,7 +52,8 @@ static inline void move(mesh *m, const vec3 *to)
     assert_int_equal(mesh_move(m, to, NULL, NULL), STATUS_OK);
 }
 
-/* Ways to deform a body; each is a function of the place alone, or of a place's number where that says nothing. */
+/* Deformations of a mesh; each is a function of the position alone, or of the vertex number if the position is not
+ * enough. */
 typedef vec3 deformation(vec3 p, size_t vertex, uint64_t *seed);
 
 static inline vec3 squash(vec3 p, size_t vertex, uint64_t *seed)
@@ -74,7 +75,7 @@ static inline vec3 scatter(vec3 p, size_t vertex, uint64_t *seed)
     return vec3_add(p, random_point(seed, 5.0));
 }
 
-/* Most triangles lose their area: whole parts fall into one place, others onto a line or into a plane. */
+/* Most triangles lose their area: whole parts collapse into a point, others onto a line or into a plane. */
 static inline vec3 collapse(vec3 p, size_t vertex, uint64_t *seed)
 {
     (void)vertex, (void)seed;
@@ -121,16 +122,16 @@ static inline void same_hit(const mesh_hit *a, const mesh_hit *b)
     assert_int_equal(a->facing, b->facing);
 }
 
-/* All hits of a ray, or all triangles shown to it, in a form that does not depend on their order. */
-typedef struct gathered {
+/* All hits of a ray, or all triangles reported to it, in an order-independent form. */
+typedef struct collected {
     uint64_t sum;
     long count;
     uint32_t triangle[SHOWN_MAX];
-} gathered;
+} collected;
 
 static inline void gather(void *context, const mesh_hit *hit)
 {
-    gathered *g = context;
+    collected *g = context;
     uint64_t bits;
     memcpy(&bits, &hit->t, sizeof bits);
     g->sum += (bits ^ (uint64_t)hit->triangle << 32) * 0x9e3779b97f4a7c15u;
@@ -140,17 +141,17 @@ static inline void gather(void *context, const mesh_hit *hit)
 
 static inline double gather_box(void *context, uint32_t triangle, double t_max)
 {
-    gathered *g = context;
+    collected *g = context;
     assert_true(g->count < SHOWN_MAX);
     g->triangle[g->count++] = triangle;
     return t_max;
 }
 
-/* Every triangle that is hit is shown, and none twice. */
+/* Every triangle that is hit is reported, and none twice. */
 static inline void shows_what_is_hit(const hierarchy_kernels *kernel, const hierarchy *h, const mesh_ray *r,
-                                     const gathered *hits)
+                                     const collected *hits)
 {
-    static gathered shown;
+    static collected shown;
     uint8_t *times = calloc(h->of->triangle_count, 1);
     assert_non_null(times);
     shown.count = 0;
@@ -162,10 +163,10 @@ static inline void shows_what_is_hit(const hierarchy_kernels *kernel, const hier
     free(times);
 }
 
-/* Sends random rays through all three; returns how many hit. */
+/* Sends random rays through all three hierarchies; returns the number of hits. */
 static inline long compare(const mesh *m, const hierarchy *refitted, int batches, uint64_t *seed)
 {
-    static gathered all[2];
+    static collected all[2];
     hierarchy *const none = built(m, HIERARCHY_NONE), *const fresh = built(m, HIERARCHY_BVH);
     long met = 0;
     for (int batch = 0; batch < batches; batch++) {

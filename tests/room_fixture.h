@@ -1,5 +1,5 @@
-/* Rooms of a few overlapping solids, at random, and what is where in them by definition and in quadruple precision.
- * Ownership: room_fill and room_build give m->solids; release it with scene_geometry_destroy. */
+/* Random rooms of a few overlapping solids, and the solids at each point by definition, in quadruple precision.
+ * Ownership: room_fill and room_build create m->solids; free it with scene_geometry_destroy. */
 #pragma once
 
 #include "random_stream.h"
@@ -35,7 +35,7 @@ static inline void room_build(room *m)
     assert_int_equal(scene_geometry_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
 }
 
-/* The definition: the highest priority wins, of equals the one that comes first. */
+/* The definition: the highest priority wins; of equal ones the first. */
 static inline int winner(const room *m, vec3 at)
 {
     int best = -1;
@@ -45,7 +45,7 @@ static inline int winner(const room *m, vec3 at)
     return best;
 }
 
-/* Which of two solids, either of which may be none, has the higher rank. */
+/* Which of two solids, either of which may be none, has the higher priority index. */
 static inline int higher_of(const room *m, int a, int b)
 {
     if (a < 0 || b < 0)
@@ -58,7 +58,7 @@ static inline int is_opaque(const room *m, int i)
     return i >= 0 && m->opaque[i];
 }
 
-/* An opaque solid's surface is its own; between two of them it is the one behind that is seen. */
+/* An opaque solid owns its surface; between two opaque solids the one after the crossing is visible. */
 static inline int owner_of_surface(const room *m, int before, int after)
 {
     return is_opaque(m, after) ? after : is_opaque(m, before) ? before : higher_of(m, before, after);
@@ -94,9 +94,8 @@ static inline int crossings_of(const room *m, const reference_line *line, quad *
     return n;
 }
 
-/* Changes of the winning solid along the line; those between equal media are left out. Crossings at one and the same
- * distance are one. A returned -1: crossings that are so close together, and yet apart, that doubles may see them
- * otherwise. */
+/* Changes of the winning solid along the line, without those between equal media. Crossings at the same distance are
+ * one. Returns -1 if distinct crossings are so close that double precision may order them differently. */
 static inline int changes_of(const room *m, const reference_line *line, change *out)
 {
     const quad same = (quad)1e-13, apart = (quad)1e-6;
@@ -120,7 +119,7 @@ static inline int changes_of(const room *m, const reference_line *line, change *
     return count;
 }
 
-/* Of the analytic ones. */
+/* For the analytic solids. */
 static inline shape_kind random_kind(uint64_t *seed)
 {
     const int kind = random_below(seed, SHAPE_COUNT - 1);
@@ -144,7 +143,7 @@ static inline solid_shape random_shape(uint64_t *seed)
     return s;
 }
 
-/* Shuffled priorities with ties, a few clear media shared, some of them the surrounding one. */
+/* Shuffled priorities with ties, a few transparent media shared, some of them the surrounding one. */
 static inline void room_fill(room *m, uint64_t *seed)
 {
     m->count = 1 + random_below(seed, SOLIDS_MAX);
@@ -158,7 +157,7 @@ static inline void room_fill(room *m, uint64_t *seed)
     room_build(m);
 }
 
-/* Places, sizes and quarter turns on a grid: faces, caps and walls coincide wherever they can. */
+/* Positions, sizes and quarter turns on a grid: faces, caps and walls often coincide. */
 static inline void room_fill_on_a_grid(room *m, uint64_t *seed)
 {
     room_fill(m, seed);

@@ -1,6 +1,6 @@
-/* Solids in quadruple precision for tests to compare with, by the definitions at the head of geometry/solid.h and
- * nothing else: every crossing of a line with every surface of a shape, containment, and distance to the surface.
- * What lies between two crossings is found by asking its midpoint. Pure; ownership: values. */
+/* Solids in quadruple precision as a reference for tests, from the definitions at the head of geometry/solid.h alone:
+ * every crossing of a line with every surface of a shape, containment, and distance to the surface. Between two
+ * crossings the midpoint decides. Pure; ownership: values. */
 #pragma once
 
 #include "geometry/solid.h"
@@ -66,8 +66,7 @@ static inline quad reference_polynomial(const quad *c, int degree, quad t)
     return sum;
 }
 
-/* Roots of c[0] + c[1] t + ... between low and high, ascending: between its extremes, by bisection and Newton's steps.
- */
+/* Roots of c[0] + c[1] t + ... between low and high, ascending: between the extrema, by bisection and Newton steps. */
 static inline int reference_roots(const quad *c, int degree, quad low, quad high, quad *roots)
 {
     quad slope[4], ends[5];
@@ -104,7 +103,7 @@ static inline int reference_roots(const quad *c, int degree, quad low, quad high
     return found;
 }
 
-/* (|p|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + z^2), t counted from the point nearest to the centre. */
+/* (|p|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + z^2), with t measured from the point nearest to the centre. */
 static inline int reference_torus(const reference_line *l, quad R, quad r, quad *t)
 {
     const quad a = quad3_dot(l->d, l->d), middle = -quad3_dot(l->o, l->d) / a;
@@ -120,7 +119,7 @@ static inline int reference_torus(const reference_line *l, quad R, quad r, quad 
     return n;
 }
 
-/* Every t, before and behind, where the line meets one of the shape's surfaces or their continuations; unordered. */
+/* Every t, positive or negative, where the line crosses one of the shape's surfaces or their extensions; unordered. */
 static inline int reference_crossings(const solid_shape *s, const reference_line *line, quad *t)
 {
     const reference_line l = reference_local(s, line);
@@ -171,7 +170,7 @@ static inline int reference_crossings(const solid_shape *s, const reference_line
     return 0;
 }
 
-/* Signed distance to x^2 + m^2 z^2 = radius^2, negative inside; to first order in it for an ellipse. */
+/* Signed distance to x^2 + m^2 z^2 = radius^2, negative inside; to first order for an ellipse. */
 static inline quad reference_from_side(quad3 p, quad m, quad radius)
 {
     quad level = quad_sqrt(p.x * p.x + m * m * p.z * p.z);
@@ -180,7 +179,7 @@ static inline quad reference_from_side(quad3 p, quad m, quad radius)
     return (level - radius) * level / quad_sqrt(p.x * p.x + m * m * m * m * p.z * p.z);
 }
 
-/* Of two distances to the parts of a corner: outside both, their hypotenuse; else the larger. */
+/* Combines the distances to the two surfaces of a corner: outside both, their hypotenuse; otherwise the larger. */
 static inline quad reference_corner(quad a, quad b)
 {
     return a > 0 && b > 0 ? quad_sqrt(a * a + b * b) : quad_max(a, b);

@@ -1,4 +1,4 @@
-/* Hostile mesh files: each is refused with one line, in bounded time and memory, and leaves nothing behind. */
+/* Tests of hostile mesh files: each is refused with one line, in bounded time and memory, and leaves nothing behind. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -92,7 +92,7 @@ static void what_is_tolerated_is_a_sound_mesh(void **state)
     }
 }
 
-/* Cut anywhere, a binary file is shorter than it says. */
+/* Truncated anywhere, a binary file is shorter than its header states. */
 static void truncated_binary_files_are_refused(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void noise_is_refused_under_every_name(void **state)
     static const char *const names[] = {"noise.obj", "noise.ply", "noise.stl", "noise.gltf", "noise.glb"};
     uint64_t random = 1;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        for (int sort = 0; sort < 3; sort++) { /* any bytes; zeros; a PNG's beginning and any bytes */
+        for (int sort = 0; sort < 3; sort++) { /* any bytes; zeros; the start of a PNG followed by any bytes */
             unsigned char noise[4000];
             for (size_t k = 0; k < sizeof noise; k++) {
                 random = random * 6364136223846793005u + 1442695040888963407u;
@@ -277,7 +277,7 @@ static void memory_and_time_have_limits(void **state)
     small = limits;
     small.wall_s = 0.05;
     refuse_within("large.obj", &small, "longer than the limit of 0.05 s");
-    /* One polygon of so many corners: cutting its ears takes time with the square of them. */
+    /* One polygon with that many corners: ear clipping takes time proportional to the square. */
     b = (bytes){0};
     for (int i = 0; i < 32000; i++) {
         char line[64];
@@ -317,7 +317,7 @@ static void what_is_no_file_is_refused(void **state)
     free(endless);
 }
 
-/* Reads a good file with a shell script for an importer. */
+/* Reads a good file with a shell script in place of the importer. */
 static void with_importer(const char *script, const char *pattern, status expected)
 {
     char *path = in_folder("importer"), *mesh_path = in_folder("three.obj"), *old = strdup(getenv("CUVETTE_IMPORT"));
@@ -348,7 +348,8 @@ static void an_importer_that_goes_wrong_is_survived(void **state)
     with_importer("#!/bin/sh\nkill -XCPU $$\n", "processor time", STATUS_BAD_INPUT);
     with_importer("#!/bin/sh\nkill -INT $$\n", "interrupted", STATUS_INTERRUPTED);
     with_importer("#!/bin/sh\nexec sleep 100\n", "longer than the limit", STATUS_BAD_INPUT);
-    with_importer("#!/bin/sh\nexec sleep 100 >&- 2>&-\n", "", STATUS_BAD_INPUT); /* both pipes closed, and not gone */
+    with_importer("#!/bin/sh\nexec sleep 100 >&- 2>&-\n", "",
+                  STATUS_BAD_INPUT); /* both pipes closed, but still running */
     with_importer("#!/bin/sh\nexec 2>&-\nexec sleep 100\n", "longer than the limit", STATUS_BAD_INPUT);
     with_importer("#!/bin/sh\nexit 0\n", "ends early", STATUS_BAD_INPUT);
     with_importer("#!/bin/sh\nexit 3\n", "exit code 3", STATUS_FAILURE);
@@ -386,11 +387,11 @@ static void nothing_is_left_behind(void **state)
         refuse("three.obj/nothing.obj");
     with_importer("#!/bin/sh\nexec sleep 100\n", "longer than the limit", STATUS_BAD_INPUT);
     assert_int_equal(open_descriptors(), before);
-    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); /* no child, not even a dead one */
+    assert_int_equal(waitpid(-1, NULL, WNOHANG), -1); /* no child, not even a zombie */
     assert_int_equal(errno, ECHILD);
 }
 
-/* The last test: of all that was refused before it. */
+/* The last test: covers everything that was refused before it. */
 static void all_of_it_was_bounded(void **state)
 {
     (void)state;
@@ -402,7 +403,7 @@ static void all_of_it_was_bounded(void **state)
     assert_true(refusals >= 60);
     assert_true(longest_s < limits.wall_s + 5);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-    if (!getenv("RUNNER")) /* valgrind has memory of its own */
+    if (!getenv("RUNNER")) /* valgrind has its own memory */
         assert_true(ours.ru_maxrss < 256 << 10);
 #endif
     assert_true(theirs.ru_maxrss < (long)(limits.memory_bytes >> 10)); /* it is built without sanitizers */

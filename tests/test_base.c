@@ -1,4 +1,4 @@
-/* Status and diagnostics, numbers, words, hashes, files. */
+/* Tests of status and diagnostics, numbers, words, hashes and files. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -71,7 +71,7 @@ static void diagnostics_stay_one_line_of_valid_text(void **state)
     assert_string_equal(why.what, "x????31m \xc3\xa9");
     assert_string_equal(why.remedy, "a?b?");
 
-    char many[600]; /* two-byte letters at odd places: the cut falls into one */
+    char many[600]; /* two-byte letters at odd positions: the cut falls into one */
     memset(many, 'a', sizeof many);
     for (size_t i = 1; i + 2 < sizeof many; i += 2)
         memcpy(many + i, "\xc3\xa9", 2);
@@ -274,7 +274,7 @@ static void text_is_formatted(void **state)
     free(text);
 }
 
-/* What happens when memory is out is the business of tests/memory.sh. */
+/* tests/memory.sh tests out of memory. */
 static void written_text_is_whole(void **state)
 {
     (void)state;
@@ -570,7 +570,7 @@ static void devices_are_written_straight(void **state)
     assert_string_equal(why.file, "/dev/full");
     assert_non_null(strstr(why.what, "No space left"));
     assert_int_equal(file_writer_open(&writer, "/dev/full", NULL), STATUS_OK);
-    for (int i = 0; i < 100000; i++) /* the error comes early and must still be known at the end */
+    for (int i = 0; i < 100000; i++) /* the error comes early and must still be reported at the end */
         putc('x', writer.stream);
     assert_int_equal(file_writer_commit(&writer, NULL), STATUS_FAILURE);
 }
@@ -605,7 +605,7 @@ static void a_full_disk_keeps_the_old_file(void **state)
     free(path);
 }
 
-/* Space that comes back before the commit does not bring back what was lost. */
+/* Space that becomes free before the commit does not restore what was lost. */
 static void an_early_failure_is_remembered(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Black-box checks of the program: tests/test_cli.sh [PROGRAM]. One line a check ("ok ..." or "not ok ...", as tests/run
-# counts them), then "N passed, N failed". CC compiles tests/json_get.c, which reads the program's JSON.
+# Black-box checks of the program: tests/test_cli.sh [PROGRAM]. One line per check ("ok ..." or "not ok ...", as
+# tests/run counts them), then "N passed, N failed". CC compiles tests/json_get.c, which reads the program's JSON.
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -28,7 +28,7 @@ check() { # WHAT COMMAND...: passes when the command succeeds
     "$@" >check.log 2>&1
     verdict $? "$what"
 }
-run() { # ARGUMENT...: the program, small; its results in out, err, code
+run() { # ARGUMENT...: runs the program; its results are in out, err and code
     "$program" "$@" >out 2>err
     code=$?
 }
@@ -36,9 +36,9 @@ small=(--set render.width=80 --set render.height=60)
 is() { [[ $1 == "$2" ]]; }
 matches() { [[ $1 =~ $2 ]]; }
 silent_success() { ((code == 0)) && [[ ! -s err ]]; }
-# At its depth of 4 the rod's scene is rightly noted on, and in no other respect.
+# The only note on the rod scene is that its depth of 4 is too small.
 depth_noted() { ((code == 0)) && [[ $(wc -l <err) == 1 && $(<err) == 'cuvette: note: render.depth: '* ]]; }
-json() { ./json_get out "$@"; } # PATH...: the values there
+json() { ./json_get out "$@"; } # PATH...: prints the values of out at these paths
 lines() { printf '%s\n' "$@"; }
 sum() { awk '{s += $1} END {printf "%.17g", s}'; }
 holds() { awk "BEGIN {exit !($1)}"; } # CONDITION on numbers
@@ -67,7 +67,7 @@ check "long options may be shortened" silent_success
 
 # --- render
 run render "$scene" -o a.png "${small[@]}"
-check "render writes a picture" depth_noted
+check "render writes an image" depth_noted
 check "a .png is a PNG" magic a.png 89504e47
 check "the summary is one line" is "$(wc -l <out)" 1
 hash=$(grep -o 'film [0-9a-f]\{16\}' out | cut -d' ' -f2)
@@ -107,7 +107,7 @@ check "keys of a worker" is "$(json 'threads[0]@keys' | sort | tr '\n' ' ')" \
     "busy_s cpu_s pu rays start_s tiles visibility_s waiting_s wall_s worker "
 check "times and process" holds "$(json wall_s) > 0 && $(json cpu_s) > 0 && $(json peak_rss_bytes) > 0"
 check "switches and others" json voluntary_switches involuntary_switches others_share
-check "without chance there is no noise" is "$(json noise@type)" null
+check "without random samples there is no noise" is "$(json noise@type)" null
 check "hardware counters are there or null" is "$(json hardware@keys | sort | tr '\n' ' ')" \
     "branch_misses cache_misses cycles instructions "
 check "parameters have types" is "$(json 'params["render.depth"]@type' 'params["render.weights"]')" \
@@ -121,14 +121,14 @@ run render "$scene" --json "${small[@]}"
 check "the account has every parameter" is "$(json params@keys | sort | comm -13 - all.txt)" ""
 check "the summary's hash is the account's" is "$(json film_hash)" "$hash"
 run render "$scene" --json "${small[@]}" --set render.threads=7 --set render.schedule=rows
-check "threads and schedule leave the film alone" is "$(json film_hash)" "$hash"
+check "threads and schedule do not change the film" is "$(json film_hash)" "$hash"
 CUVETTE_ISA=sse2 run render "$scene" --json "${small[@]}"
-check "CUVETTE_ISA is used, and leaves the film alone" is "$(json isa film_hash)" "$(lines sse2 "$hash")"
+check "CUVETTE_ISA is used and does not change the film" is "$(json isa film_hash)" "$(lines sse2 "$hash")"
 run render "$scene" --json "${small[@]}" --repeat 5
 check "--repeat gives all times" is "$(json wall_s_all@length cpu_s_all@length)" "$(lines 5 5)"
 check "--repeat gives the medians" is "$(json wall_s cpu_s)" \
     "$(lines "$(json 'wall_s_all[]' | sort -g | sed -n 3p)" "$(json 'cpu_s_all[]' | sort -g | sed -n 3p)")"
-check "--repeat leaves the film alone" is "$(json film_hash rays.camera)" "$(lines "$hash" 4800)"
+check "--repeat does not change the film" is "$(json film_hash rays.camera)" "$(lines "$hash" 4800)"
 run render "$scene" --json "${small[@]}" --set render.depth=2 --set render.depth=0
 check "the last --set wins" is "$(json 'params["render.depth"]' rays.reflect)" "$(lines 0 0)"
 run render "$scene" --json "${small[@]}" --set liquid.visible=no --set render.pool=false
@@ -141,15 +141,16 @@ fi
 
 # --- maps and timeline
 run render "$scene" "${small[@]}" --rays rays.png --time time.png --timeline line.json --set render.threads=2
-check "maps and a timeline without a picture" depth_noted
-check "looking leaves the film alone" grep -q "film $hash" out
-check "the map of rays is a PNG with a key" is "$(($(od -An -tu1 -j22 -N2 rays.png | awk '{print $1*256+$2}') > 60))" 1
+check "maps and a timeline without an image" depth_noted
+check "maps and timeline do not change the film" grep -q "film $hash" out
+check "the map of rays is a PNG with a colour scale" \
+    is "$(($(od -An -tu1 -j22 -N2 rays.png | awk '{print $1*256+$2}') > 60))" 1
 check "the map of time is a PNG" magic time.png 89504e47
 check "the timeline is JSON with events" holds "$(./json_get line.json traceEvents@length) > 3"
 check "one named row a worker" \
     is "$(./json_get line.json 'traceEvents[name=thread_name].args.name')" "$(lines "worker 0" "worker 1")"
 tiles() { ./json_get line.json "traceEvents[ph=X].$1"; }
-check "the tiles cover the picture" is 4800 \
+check "the tiles cover the image" is 4800 \
     "$(paste <(tiles args.x0) <(tiles args.x1) <(tiles args.y0) <(tiles args.y1) |
         awk '{s += ($2 - $1) * ($4 - $3)} END {print s}')"
 check "no tile ends before it begins" is "$( (
@@ -157,16 +158,16 @@ check "no tile ends before it begins" is "$( (
     tiles ts
 ) | grep -c '^-')" 0
 run render "$scene" "${small[@]}" --rays rays.pfm --json
-# The last pixels of a PFM's payload sum to nothing by themselves: compare the sum of one channel with the count.
+# One channel of the PFM sums to the number of rays.
 sum=$(tail -c $((80 * 60 * 12)) rays.pfm | od -An -v -tf4 -w12 | awk '{s += $1} END {printf "%d", s}')
 check "the map of rays sums to the rays" is "$sum" "$(json rays.total)"
 run render "$scene" "${small[@]}" --rays again.pfm --repeat 2 --json
 check "maps go with --repeat" cmp rays.pfm again.pfm
 run render "$scene" "${small[@]}" --layers once --set render.integrator=aov
-check "layers of what camera rays meet, one file each" is "$(ls once-*)" \
+check "layers of the first hits, one file each" is "$(ls once-*)" \
     "$(printf 'once-%s.pfm\n' albedo depth material normal position solid)"
-# Sky, ground, vessel and rod; the liquid, the third solid, is met first nowhere.
-check "the layer of solids has each one's number" is "0 1 2 4 " \
+# Sky, ground, vessel and rod; no camera ray hits the liquid, the third solid, first.
+check "the layer of solids has their numbers" is "0 1 2 4 " \
     "$(tail -c $((80 * 60 * 12)) once-solid.pfm | od -An -v -tf4 -w12 | awk '{print $1}' | sort -nu | tr '\n' ' ')"
 run render "$scene" "${small[@]}" --layers again --repeat 2 --json --set render.integrator=aov
 check "layers go with --repeat" cmp once-position.pfm again-position.pfm
@@ -182,15 +183,15 @@ check "each with path, default and range" is "$(json 'params[].path' 'params[].d
 run params "$scene"
 check "params of a scene has its values" grep -q '^liquid.ior  *1\.33 ' out
 run params "$scene" liquid.ior
-check "params of a scene and a path has that one" is "$(tail -n +2 out | cut -d' ' -f1)" liquid.ior
+check "params of a scene and a path prints that parameter" is "$(tail -n +2 out | cut -d' ' -f1)" liquid.ior
 run params "${scene%/*}/slime.yaml"
-check "params of a scene with a slime has what a slime has" grep -q '^toy.stiffness  *10 ' out
+check "params of a scene with a slime prints slime parameters" grep -q '^toy.stiffness  *10 ' out
 run params "${scene%/*}/models.yaml"
-check "and of other meshes it has not" is "$(grep -c stiffness out)" 0
+check "but not for other meshes" is "$(grep -c stiffness out)" 0
 run params checker
-check "params of a word has those that it names" is "$(tail -n +2 out | cut -d' ' -f1)" MATERIAL.checker
+check "params of a word prints the parameters with that name" is "$(tail -n +2 out | cut -d' ' -f1)" MATERIAL.checker
 run params highlight
-check "or those in whose meaning it stands" is "$(tail -n +2 out | cut -d' ' -f1)" MATERIAL.shininess
+check "or those with the word in their meaning" is "$(tail -n +2 out | cut -d' ' -f1)" MATERIAL.shininess
 run params --man
 check "params --man is roff" grep -q '^\.SS ' out
 sed '/^\.\\" begin parameters/,/^\.\\" end parameters/!d' "$page" | sed '1d;$d' >page.txt
@@ -208,8 +209,8 @@ example() { # SECTION: the first example of that section of the page
 }
 example "SCENE FILES" >page.yaml
 run render page.yaml -o page.png "${small[@]}"
-check "the page's scene renders, and there is nothing to note" silent_success
-check "every solid of it is met" is \
+check "the page's scene renders without a note" silent_success
+check "every solid of it is hit" is \
     "$("$program" render page.yaml --json "${small[@]}" | ./json_get - hits | grep -c ':0[,}]')" 0
 mkdir page
 cp -r "$root/experiments/scenes" page/
@@ -232,7 +233,7 @@ zero='\x00\x00\x00\x00' one='\x00\x00\x80\x3f'
 pfm 2 1 $zero $zero $zero $one $one $one >left.pfm
 pfm 2 1 $zero $zero $zero $one $zero $one >right.pfm
 run compare left.pfm right.pfm
-check "compare succeeds where pictures differ" silent_success
+check "compare succeeds for different images" silent_success
 check "compare prints a table" is "$(cut -c1-12 out | tr -d ' ' | tr '\n' ' ')" \
     "size mse psnr ssim flip largest differing "
 check "one channel of six: mse 1/6, psnr 10 log10 6" is "$(sed -n 's/^\(mse\|psnr\) *//p' out)" \
@@ -245,17 +246,17 @@ check "compare --json" is "$(json schema width height mse 'largest_at[]' differi
 check "keys of compare --json" is "$(json @keys | sort | tr '\n' ' ')" \
     "bits differing_share files flip height largest largest_at mse psnr_db schema ssim width "
 run compare a.png b.png --diff where.png
-check "compare of equal pictures" is "$(sed -n '/^size/d; s/  */ /p' out | tr '\n' ';')" \
+check "compare of equal images" is "$(sed -n '/^size/d; s/  */ /p' out | tr '\n' ';')" \
     "mse 0;psnr identical;ssim 1.000000;flip 0.000000;largest 0;differing 0% of the pixels, at 8 bits;"
 check "--diff writes a PNG" magic where.png 89504e47
-check "of the pictures' size" is "$(od -An -tu1 -j16 -N8 where.png | tr -s ' ')" " 0 0 0 80 0 0 0 60"
+check "of the size of the images" is "$(od -An -tu1 -j16 -N8 where.png | tr -s ' ')" " 0 0 0 80 0 0 0 60"
 run compare a.png b.png --json
-check "equal pictures have no psnr" is "$(json psnr_db@type largest_at@type flip)" "$(lines null null 0.0)"
+check "equal images have no psnr" is "$(json psnr_db@type largest_at@type flip)" "$(lines null null 0.0)"
 run compare a.png a.pfm --json
-check "8 bits are half a step off at most" holds "$(json largest) <= 0.5 / 255 + 1e-6 && $(json largest) > 0.4 / 255"
+check "8 bits differ by at most half a step" holds "$(json largest) <= 0.5 / 255 + 1e-6 && $(json largest) > 0.4 / 255"
 check "which is no difference at 8 bits" is "$(json differing_share)" 0.0
 run compare a.jpg a.png --diff where.jpg
-check "a JPEG goes with a PNG" silent_success
+check "a JPEG can be compared with a PNG" silent_success
 check "--diff writes a JPEG" magic where.jpg ffd8ff
 run compare a.jpg a.png --diff where.pfm
 check "--diff writes a PFM" is "$(head -c 9 where.pfm | tr '\n' ' ')" "PF 80 60 "
@@ -275,14 +276,14 @@ run media --at 500
 check "media --at has one more column" is "$(awk 'NR == 1 || $1 == "bk7" {print $6}' out)" "$(lines n_at 1.52141)"
 check "media --at leaves out what was not measured there" grep -qE '^glycerol .* - +589' out
 run media fused-silica --at 632.8
-check "media of a name has its coefficients" grep -qE \
+check "media of a name prints its coefficients" grep -qE \
     '^coefficients +0\.6961663 0\.0684043 0\.4079426 0\.1162414 0\.8974794 9\.896161$' out
 check "and its formula" grep -qE '^law .*n\^2 = 1 \+ .*L\^2 - C\^2' out
 check "and --at, also relative to vacuum" grep -qE '^n_at +1\.4570[0-9]* at 632\.8 nm, relative to vacuum 1\.4574' out
 run media glycerol
-check "media of a name says what to beware of" grep -qE '^note .*extrapolated' out
+check "media of a name prints its caveats" grep -qE '^note .*extrapolated' out
 run media water --json
-check "media --json of a name has that one" is "$(json schema media@length 'media[0].name' 'media[0].law')" \
+check "media --json of a name has that medium only" is "$(json schema media@length 'media[0].name' 'media[0].law')" \
     "$(lines 1 1 water sellmeier)"
 check "media --json: absolute is n_d of a law relative to vacuum" is "$(json 'media[0].n_d')" \
     "$(json 'media[0].absolute.n_d')"
@@ -311,13 +312,13 @@ check "mesh --json: no volume, but the hole" is "$(json closed volume hole.trian
     "$(lines false null 0 1)"
 run mesh --generate sparse --count 100 -f bin
 check "mesh -f bin: 36 bytes a triangle" is "$(wc -c <out) $(od -An -tf4 -N12 out | wc -w)" "3600 3"
-# what the peers' program embree_bench dumped of these triangles
+# checksums of the dumps of these triangles by the peers' program embree_bench
 for dump in "obj 894476047 13145" "bin 1098474655 3600"; do
     run mesh --generate sparse --count 100 -f "${dump%% *}"
     check "mesh -f ${dump%% *} is the peers' dump" is "$(cksum <out)" "${dump#* }"
 done
 run mesh --generate torus --around 5 --tube 4 -f obj -o torus.obj
-check "mesh -o writes a file and no word" is \
+check "mesh -o writes a file and prints nothing" is \
     "$code $(cat out err | wc -c) $(grep -c ^v torus.obj) $(grep -c ^f torus.obj)" "0 0 30 40"
 run mesh --generate box -f ply
 check "mesh -f ply: header and bytes" is \
@@ -333,19 +334,19 @@ check "an unknown body is refused with the nearest" matches "$code $(<err)" \
     "^2 cuvette: --generate: .*'toru'; did you mean 'torus'"
 run mesh --generate torus --minor 2
 check "wrong radii are refused with the remedy" matches "$code $(<err)" \
-    "^2 cuvette: --generate: a torus of radii 1 and 2; use radii"
+    "^2 cuvette: --generate: invalid torus radii 1 and 2; use radii"
 run mesh --generate lathe --profile 0,0,1
-check "a profile wants pairs" matches "$code $(<err)" \
+check "a profile needs pairs" matches "$code $(<err)" \
     "^2 cuvette: --generate: body: the profile has an odd number of numbers; "
 run mesh --generate box -f obj -o nowhere/box.obj
-check "a folder that is not there is refused" matches "$code $(<err)" "^[12] cuvette: .*nowhere/box.obj"
+check "a missing folder is refused" matches "$code $(<err)" "^[12] cuvette: .*nowhere/box.obj"
 run mesh torus.obj
 check "mesh reads a file" is "$code $(grep -E "^(triangles|closed)" out | tr -s " " | tr "\n" " ")" \
     "0 triangles 40 closed yes "
 run mesh nothing.obj
-check "a mesh file that is not there" matches "$code $(<err)" "^2 cuvette: .*nothing.obj.*cannot open"
+check "a missing mesh file" matches "$code $(<err)" "^2 cuvette: .*nothing.obj.*cannot open"
 run mesh
-check "mesh wants a body" matches "$code $(<err)" "^2 cuvette: mesh: no mesh is named; "
+check "mesh needs a mesh" matches "$code $(<err)" "^2 cuvette: mesh: no mesh is given; "
 for option in $("$program" mesh --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
     check "cuvette.1 explains mesh $option" grep -qF -- "${option/--/\\-\\-}" "$page"
 done
@@ -356,10 +357,10 @@ check "realism succeeds" silent_success
 check "realism passes on the rod scene" is "$(tail -1 out)" "35 of 35 pass"
 run realism "$scene" --set liquid.visible=off --csv
 check "realism --csv has a line a metric" is "$(wc -l <out)" 36
-check "what is not defined is NA, with its reason" grep -q '^absorption.slope,none,NA,NA,NA,.*"there is no liquid"$' out
+check "an undefined metric is NA, with its reason" grep -q '^absorption.slope,none,NA,NA,NA,.*"there is no liquid"$' out
 run realism "$scene" --set render.weights=constant --set clear.reflectivity=0.1 --set clear.transparency=0.9
-check "constant shares fail, and that is no error" silent_success
-check "and are named" grep -q '^FAIL  fresnel.vessel ' out
+check "failed metrics are not an error" silent_success
+check "and the failed metrics are marked" grep -q '^FAIL  fresnel.vessel ' out
 run realism "$scene" --json
 check "realism --json" is "$(json schema defined passed)" "$(lines 1 35 35)"
 run realism "$scene" --curve depth
@@ -370,7 +371,7 @@ run realism "$root/experiments/scenes/solids.yaml"
 check "a scene without a vessel is refused" matches "$code $(<err)" \
     "^2 cuvette: .*solids.yaml: there is no visible cup named 'vessel'; "
 run realism
-check "realism wants a scene" matches "$code $(<err)" "^2 cuvette: realism: no scene is named; "
+check "realism needs a scene" matches "$code $(<err)" "^2 cuvette: realism: no scene is given; "
 for option in $("$program" realism --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
     check "cuvette.1 explains realism $option" grep -qF -- "${option/--/\\-\\-}" "$page"
 done
@@ -383,20 +384,20 @@ check "motion names the slime, its integrator and its step" is "$(head -1 out)" 
 check "motion has a line a value" is "$(grep -c '^  [a-z_.]* ' out)" 20
 run motion "$slime" --set toy.level=1 --set toy.integrator=implicit --csv
 check "motion --csv has a line a value" is "$(wc -l <out)" 20
-check "what there is none of is NA" grep -q '^toy,stable_dt.spring_s,NA,NA,NA,s,"' out
+check "an undefined value is NA" grep -q '^toy,stable_dt.spring_s,NA,NA,NA,s,"' out
 run motion "$slime" --set toy.level=1 --json
 check "motion --json" is "$(json schema 'slimes[].name' 'slimes[].integrator')" "$(lines 1 toy euler)"
 check "motion --json has all values" is "$(json 'slimes[].values[].name' | sort -u | wc -l)" 19
 run motion "$scene"
 check "a scene without a slime is refused" matches "$code $(<err)" \
-    "^2 cuvette: .*rod.yaml: nothing moves in this scene; "
+    "^2 cuvette: .*rod.yaml: nothing moves in this scene: it has no slime; "
 run motion "$slime" --json --csv
-check "motion takes JSON or CSV" matches "$code $(<err)" "^2 cuvette: motion: JSON and CSV do not go together"
+check "motion takes JSON or CSV" matches "$code $(<err)" "^2 cuvette: motion: --json and --csv exclude each other"
 for option in $("$program" motion --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
     check "cuvette.1 explains motion $option" grep -qF -- "${option/--/\\-\\-}" "$page"
 done
 
-# --- one ray, and many
+# --- trace and fan
 pixel() { # FILE X Y: the three floats of a pixel of an 80 x 60 PFM, whose rows go upwards
     tail -c $((80 * 60 * 12)) "$1" | od -An -v -tf4 -w12 -j$((((59 - $3) * 80 + $2) * 12)) -N12
 }
@@ -407,7 +408,7 @@ same_floats() { # a radiance of a.pfm and one printed with 17 digits
 for at in 40,30 37,41 5,3 44,22; do
     run trace "$scene" --pixel $at --json "${small[@]}"
     check "trace --json of pixel $at" silent_success
-    check "its radiance is the picture's" same_floats "$(pixel a.pfm ${at/,/ })" "$(json 'radiance[]')"
+    check "its radiance is that of the image" same_floats "$(pixel a.pfm ${at/,/ })" "$(json 'radiance[]')"
 done
 run trace "$scene" --pixel 40,30 --depth 3 --json "${small[@]}"
 check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth radiance root lambda_nm carries "
@@ -417,7 +418,7 @@ check "keys of a ray, in order" is "$(json root@keys | tr '\n' ' ')" \
 check "keys of a hit, in order" is "$(json root.hit@keys | tr '\n' ' ')" \
     "solid surface t point normal from to cos_i cos_t R_s R_p R tir path_length transmittance error_bound opaque $(
     )T radiance_factor "
-check "what a refraction does to radiance: T, and T (n1 / n2)^2" \
+check "the factors of radiance at a refraction: T, and T (n1 / n2)^2" \
     holds "($(json root.hit.radiance_factor.classic) - (1 - $(json root.hit.R))) ^ 2 < 1e-30 &&
         ($(json root.hit.radiance_factor.basic) * 2.25 - (1 - $(json root.hit.R))) ^ 2 < 1e-30"
 check "and which of them rays carry" is "$(json carries)" classic
@@ -429,12 +430,13 @@ check "its children" is "$(json 'root.children[].kind')" "$(lines reflect refrac
 check "shares: reflectance and the rest" \
     holds "($(json 'root.children[kind=reflect].throughput[0]') - $(json root.hit.R)) ^ 2 < 1e-30"
 check "numbers have 17 significant digits" grep -qE '"cos_i":0\.[0-9]{16,18},' out
-check "a ray beyond the depth is said to be cut" grep -q '"depth":4,.*"hit":null,"children":\[\],"end":"cut_depth"' out
+check "a ray beyond the depth limit is marked as cut" \
+    grep -q '"depth":4,.*"hit":null,"children":\[\],"end":"cut_depth"' out
 check "a shadow ray has its light" grep -q \
     '"kind":"shadow".*"end":"\(lit\|blocked\)".*"light":"lamp","light_distance":' out
 count=$(grep -c '"kind"' out)
 run trace "$scene" --pixel 40,30 --depth 3 "${small[@]}"
-check "trace prints a line a ray, and the radiance" is "$(wc -l <out)" $((count + 1))
+check "trace prints one line per ray, and the radiance" is "$(wc -l <out)" $((count + 1))
 check "kinds and ends in the text" matches "$(<out)" '^camera .*hit.*refract .*R_s .*cut_depth.*radiance '
 run trace "$scene" --ray=0,1.6,-0.5,0,0.6,1 --depth 2 --set rod.visible=off
 check "trace of a ray under water: total internal reflection" matches "$(head -1 out)" \
@@ -449,9 +451,9 @@ check "but traced" is "$code" 0
 run trace "$scene" --pixel 40,30 --set render.integrator=path
 check "random paths are noted" matches "$(<err)" '^cuvette: note: .*random paths'
 run trace "$scene" --pixel 40,30 --set render.integrator=zbuffer
-check "a drawn picture is noted" matches "$(<err)" '^cuvette: note: .*drawn into a depth buffer'
+check "a depth buffer is noted" matches "$(<err)" '^cuvette: note: .*with a depth buffer'
 run render "$scene" -o drawn.png --json "${small[@]}" --set render.integrator=zbuffer
-check "a depth buffer draws the scene: no shadow rays" is "$code $(json rays.shadow)" "0 0"
+check "a depth buffer renders the scene without shadow rays" is "$code $(json rays.shadow)" "0 0"
 run render "$scene" -o drawn.png "${small[@]}" --set render.integrator=zbuffer --set render.spectrum=spectral
 check "but not a spectral one" matches "$code $(<err)" '^2 cuvette: .*depth buffer.*; set render.integrator'
 run trace "$scene" --pixel 40,30 --lambda 1200 --set liquid.medium=water "${small[@]}"
@@ -471,25 +473,25 @@ check "total reflection, media and axes are in it" is \
     "$program" trace "$scene" --pixel 400,300 --depth 9 --json 2>err
     echo $? >code
 ) | true
-check "a tree into a closed pipe exits 1 without words" is "$(cat code err)" 1
+check "a tree into a closed pipe exits with 1 and no message" is "$(cat code err)" 1
 run fan "$scene" --from -3,1,0 --to 3,1,0 -o fan.csv --set render.spectrum=spectral
-check "and so is fan" matches "$(<err)" '^cuvette: note: .*spectral'
+check "fan has the same note" matches "$(<err)" '^cuvette: note: .*spectral'
 pencil=(--from -3,1.5,0 --to 3,1.5,0 --width 1.6 --set rod.visible=off)
 run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
 check "fan draws" silent_success
-check "and says where the focus is" matches "$(<out)" \
-    '^41 rays, 41 followed to their end, 40 crossings of neighbours, mean focus 1\.7[0-9]*,1\.5,0 '
+check "and prints the focus" matches "$(<out)" \
+    '^41 rays, 41 followed to the end, 40 crossings of adjacent rays, mean focus 1\.7[0-9]*,1\.5,0 '
 cp fan.svg first.svg
 run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
 check "the same bytes again" cmp fan.svg first.svg
 run fan "$scene" "${pencil[@]}" --rays 41 --tree -o tree.svg
 check "--tree draws more" holds "$(wc -l <tree.svg) > $(wc -l <fan.svg) + 40"
 run fan "$scene" "${pencil[@]}" --rays 5 -o fan.csv
-check "a row a ray" is "$(cut -d, -f1-4 fan.csv | tr '\n' ' ')" \
+check "one row per ray" is "$(cut -d, -f1-4 fan.csv | tr '\n' ' ')" \
     "ray,offset,interfaces,end 0,-0.8,4,sky 1,-0.4,4,sky 2,0,4,sky 3,0.4,4,sky 4,0.8,4,sky "
-check "the middle ray goes straight on, and is the axis" is "$(sed -n 4p fan.csv | cut -d, -f11,13-)" 0,NA,NA,NA,NA
+check "the central ray is not deviated and is the axis" is "$(sed -n 4p fan.csv | cut -d, -f11,13-)" 0,NA,NA,NA,NA
 run fan "$scene" --from -3,1.5,0 --to 3,1.5,0 --spread 10 --rays 3 -o fan.csv
-check "a fan has angles, and ends on what is opaque" is "$(cut -d, -f2,4 fan.csv | tr '\n' ' ')" \
+check "a fan has angles and ends on opaque solids" is "$(cut -d, -f2,4 fan.csv | tr '\n' ' ')" \
     "offset_deg,end -5,sky 0,rod 5,sky "
 for command in trace fan lab; do
     for option in $("$program" $command --help | grep -o '^ .*--[a-z]*' | grep -o -- '--[a-z]*'); do
@@ -499,14 +501,14 @@ done
 
 # --- machine
 run machine
-check "machine prints what it is" grep -q '^wall clock ' out
+check "machine prints its clocks" grep -q '^wall clock ' out
 run machine --json
 check "machine --json" holds "$(json units) >= 1 && $(json wall_clock.tick_s) > 0"
 check "machine --json lists disturbances" is "$(json disturbances@type)" array
 
 # --- lab
-run_lab() {    # ARGUMENT...: starts one in the background; its address is in `address`
-    : >lab.out # the last one's address is not this one's
+run_lab() {    # ARGUMENT...: starts a laboratory in the background; its address is in `address`
+    : >lab.out # remove the address of the previous laboratory
     "$program" lab --no-browser "$@" >lab.out 2>lab.err &
     lab=$!
     for ((i = 0; i < 600; i++)); do
@@ -515,7 +517,7 @@ run_lab() {    # ARGUMENT...: starts one in the background; its address is in `a
         sleep 0.1
     done
 }
-ask() { # PATH: over bash's own sockets; the whole reply
+ask() { # PATH: prints the whole reply, read through bash's /dev/tcp
     local port=${address#http://127.0.0.1:}
     exec 9<>"/dev/tcp/127.0.0.1/${port%%/*}"
     printf 'GET %s HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nAuthorization: Bearer %s\r\nConnection: close\r\n\r\n' "$1" \
@@ -528,14 +530,14 @@ run_lab here.yaml
 check "lab prints its address, and nothing else" matches "$address $(wc -l <lab.out) $(wc -c <lab.err)" \
     '^http://127\.0\.0\.1:[0-9]+/\?token=[0-9a-f]{32} 1 0$'
 check "lab serves its page" grep -q '<title>' <(ask /)
-check "lab's picture is the film of render" grep -q '"film_hash":"b92bb012fd9c5f71"' <(
+check "lab's image is the film of render" grep -q '"film_hash":"b92bb012fd9c5f71"' <(
     ask '/api/picture.png?wait=1' \
         >/dev/null
     ask /api/state
 )
 kill -INT $lab
 wait $lab
-check "Ctrl-C ends it well" is "$? $(wc -c <lab.err)" "0 0"
+check "Ctrl-C ends it with status 0" is "$? $(wc -c <lab.err)" "0 0"
 mkdir -p browser
 cat >browser/xdg-open <<'EOF'
 #!/bin/bash
@@ -551,7 +553,7 @@ for ((i = 0; i < 600; i++)); do
 done
 read -r _ _ _ _ _ session _ </proc/$lab/stat
 check "lab opens its address in a browser" is "$(cut -d' ' -f2 browser/seen)" "$(<lab.out)"
-check "which is in a session of its own, so that Ctrl-C leaves it alone" holds \
+check "the browser has its own session, so that Ctrl-C does not reach it" holds \
     "$(cut -d' ' -f1 browser/seen) != $session"
 kill -INT $lab
 wait $lab
@@ -559,7 +561,7 @@ run_lab --folder . --results . --port 0
 check "lab needs no scene" matches "$address" '^http'
 kill -TERM $lab
 wait $lab
-check "a termination ends it too" is $? 0
+check "SIGTERM ends it too" is $? 0
 refused_lab() { # WHAT ERROR ARGUMENT...
     local what=$1 error=$2
     shift 2
@@ -567,18 +569,18 @@ refused_lab() { # WHAT ERROR ARGUMENT...
     check "lab refuses $what" matches "$code $(wc -l <err) $(wc -c <out) $(<err)" "^2 1 0 cuvette: $error"
 }
 mkdir -p elsewhere
-refused_lab "two scenes" "lab: 'here.yaml' is one argument too many; give one SCENE" here.yaml here.yaml
-refused_lab "a scene that is not there" 'nowhere.yaml: ' nowhere.yaml
+refused_lab "two scenes" "lab: unexpected argument 'here.yaml'; give one SCENE" here.yaml here.yaml
+refused_lab "a missing scene" 'nowhere.yaml: ' nowhere.yaml
 refused_lab "a scene outside of its folder" 'here.yaml: is not in the folder' --folder elsewhere here.yaml
-refused_lab "a folder that is none" "'nowhere' is no folder" --folder nowhere
-refused_lab "a port that is none" '--port 70000' --port 70000
+refused_lab "a missing folder" "'nowhere' is not a folder" --folder nowhere
+refused_lab "an invalid port" '--port 70000' --port 70000
 refused_lab "results elsewhere" '.*results' --folder elsewhere --results results
 
 # --- notes
 echo 'solids: {ball: {shape: sphere, ior: 1.5}}' >odd.yaml
 run render odd.yaml -o odd.png "${small[@]}"
-check "a scene that looks wrong is noted" grep -q '^cuvette: note: ball\.ior: ball ' err
-check "but rendered" is "$code" 0
+check "a likely mistake is noted" grep -q '^cuvette: note: ball\.ior: ball ' err
+check "but the scene is rendered" is "$code" 0
 run render odd.yaml --json "${small[@]}"
 check "--json leaves notes out" silent_success
 
@@ -602,14 +604,14 @@ check "study status before the run" matches "$(<out)" '0 of 3 cells'
 run study run studies/tiny.study --results res
 check "study run" silent_success
 lines=$(wc -l <res/tiny/rows.csv)
-check "one row a repetition" is "$lines" 10
+check "one row per repetition" is "$lines" 10
 run study run studies/tiny.study --results res
 check "a second run finds nothing to do" matches "$(<out)" 'nothing to do'
 check "and writes nothing" is "$(wc -l <res/tiny/rows.csv)" "$lines"
 run study status studies/tiny.study --results res
 check "study status after the run" matches "$(<out)" '3 of 3 cells done, 6 rows and 3 warm-ups in res/tiny, 0 marked'
 run study summary studies/tiny.study --results res
-check "study summary has one line a cell" is "$(wc -l <out)" 4
+check "study summary has one line per cell" is "$(wc -l <out)" 4
 check "study summary is separated by tabs" is "$(head -1 out | cut -f1,2)" "$(printf 'cell\trender.depth')"
 check "study summary: no interval of fewer than six" is "$(awk -F'\t' 'NR == 2 {print $3, $5, $6}' out)" "2 NA NA"
 if command -v script >/dev/null; then
@@ -617,7 +619,7 @@ if command -v script >/dev/null; then
     check "study summary on a terminal is short" grep -q '^cell .*interval.* marked' tty.txt
 fi
 run study run --quiet studies/tiny.study --results parts --shard 0/2
-check "--quiet says nothing" is "$(cat out err)" ""
+check "--quiet prints nothing" is "$(cat out err)" ""
 run study run studies/tiny.study --results parts --shard 1/2
 run study merge studies/tiny.study --results parts
 check "study merge joins the shards" is "$(wc -l <parts/tiny/rows.csv)" "$lines"
@@ -626,21 +628,21 @@ run study run --quiet studies/against.study --results res
 check "a study with a reference compares each cell" is \
     "$(awk -F, 'NR > 1 && $8 == 0' res/against/compare.csv | wc -l)" 1
 run study summary studies/against.study --results res
-check "study summary has error beside time" is "$(awk -F'\t' 'NR == 4 {print $(NF - 7), $(NF - 6)}' out)" "0 NA"
+check "study summary has error and time" is "$(awk -F'\t' 'NR == 4 {print $(NF - 7), $(NF - 6)}' out)" "0 NA"
 sed -i 's/^reference: .*/reference: {render.depht: 2}/' studies/against.study
 run study run studies/against.study --results res
-check "a slip in the reference is located" matches "$(<err)" 'against\.study:10:13: .*depht'
+check "a misspelt parameter in the reference is located" matches "$(<err)" 'against\.study:10:13: .*depht'
 
 # --- broken pipes, full disks, closed descriptors, signals
 "$program" params --json 2>err | head -1 >/dev/null
-check "a reader who leaves is no drama" is "$(<err)" ""
+check "a pipe closed by its reader is not an error" is "$(<err)" ""
 # shellcheck disable=SC2216
 (
     sleep 0.3
     "$program" render "$scene" --json "${small[@]}" 2>err
     echo $? >code
 ) | true
-check "a closed pipe exits 1 without words" is "$(cat code err)" 1
+check "a closed pipe exits with 1 and no message" is "$(cat code err)" 1
 if [[ -w /dev/full ]]; then
     for words in params "params --json" media "media --json" "mesh --generate box" machine --help "render --help" \
         "render $scene --json --set render.width=8"; do
@@ -652,7 +654,7 @@ fi
 "$program" params >&- 2>err
 check "a closed standard output is exit 1" is $? 1
 "$program" render "$scene" -o shut.png "${small[@]}" >&- 2>err
-check "a picture does not go into a closed standard output" magic shut.png 89504e47
+check "an image is not written into a closed standard output" magic shut.png 89504e47
 for signal in INT TERM; do
     rm -f part.png
     "$program" render "$scene" -o part.png --json --set render.width=4000 --set render.height=3000 --set \
@@ -663,11 +665,11 @@ for signal in INT TERM; do
     kill -"$signal" $job
     wait $job
     check "SIG$signal ends a render with 130" is $? 130
-    check "SIG$signal: the picture so far is there" magic part.png 89504e47
-    check "SIG$signal: one line says so" is "$(grep -c interrupted err)" 1
-    check "SIG$signal: the account says that it is a part" is "$(json whole)" false
+    check "SIG$signal: the partial image is written" magic part.png 89504e47
+    check "SIG$signal: one line reports it" is "$(grep -c interrupted err)" 1
+    check "SIG$signal: the account is marked as partial" is "$(json whole)" false
 done
-# A tree of rays without an end, and a mesh that takes long to make: the program hears of it in any part of its work.
+# A huge ray tree, and a mesh that takes long to generate: the program reacts to signals in every phase.
 {
     echo 'meshes: {many: {generate: icosphere, level: 9}}'
     echo 'solids: {ball: {shape: mesh, mesh: many, transparency: 1, ior: 1.5}}'
@@ -698,22 +700,68 @@ done
 kill -INT $job
 wait $job
 check "SIGINT ends a study with 130" is $? 130
-check "SIGINT: one line says so, and how to go on" is "$(grep -c 'interrupted.*run it again' err) $(wc -l <err)" "1 1"
+check "SIGINT: one line reports it, and how to resume" \
+    is "$(grep -c 'interrupted.*run it again' err) $(wc -l <err)" "1 1"
 check "SIGINT: its rows are whole" awk -F, 'NR == 1 {n = NF} NF < n {bad = 1} END {exit bad || NR < 3}' \
     res/long/rows.csv
 if command -v script >/dev/null; then
     script -qec "'$program' rendr" /dev/null >tty.txt 2>&1
     check "errors have colour on a terminal" grep -q $'\033\[' tty.txt
     NO_COLOR=1 script -qec "'$program' rendr" /dev/null >tty.txt 2>&1
-    check "NO_COLOR takes it off" is "$(grep -c $'\033' tty.txt)" 0
+    check "NO_COLOR turns colour off" is "$(grep -c $'\033' tty.txt)" 0
     TERM=dumb script -qec "'$program' rendr" /dev/null >tty.txt 2>&1
-    check "TERM=dumb takes it off" is "$(grep -c $'\033' tty.txt)" 0
+    check "TERM=dumb turns colour off" is "$(grep -c $'\033' tty.txt)" 0
     lasting=(--set render.width=1600 --set render.height=1200 --set render.depth=8)
-    # over half a second, or there is no progress
+    # longer than half a second, or there is no progress line
     [[ ${CONFIG:-release} != release ]] && lasting=(--set render.depth=6)
     script -qec "'$program' render '$scene' --json ${lasting[*]} >/dev/null" /dev/null >tty.txt 2>&1
-    check "progress on a terminal ends in an erased line" matches "$(tail -c 3 tty.txt)" $'^ +\r$'
-    check "progress has a share and the time left" grep -q 'rendering: .*%, .* left' tty.txt
+    check "the progress line is erased at the end" matches "$(tail -c 3 tty.txt)" $'^ +\r$'
+    check "progress has a percentage and the time left" grep -q 'rendering: .*%, .* left' tty.txt
+fi
+
+# --- tables on a terminal are wrapped to its width; a pipe gets the whole lines
+widest() { awk '{if (length > w) w = length} END {print w + 0}' "$1"; }
+words() { tr -d ';' <"$1" | tr -s ' \t' '\n' | sed '/^-*$/d' | sort; } # FILE: its words in any order
+# on_terminal COLUMNS ARGUMENT...: runs the program on a terminal of that width; its output is in tty.txt
+on_terminal() {
+    local shell
+    printf -v shell '%q ' "$program" "${@:2}"
+    script -qec "stty cols $1 rows 24; $shell" /dev/null </dev/null 2>&1 | tr -d '\r' >tty.txt
+}
+tables=(params "params $scene" "params ${scene%/*}/slime.yaml toy" media "media --at 500" "media glycerol --at 600"
+    "realism $scene" machine)
+if command -v script >/dev/null; then
+    for words in "${tables[@]}"; do
+        # shellcheck disable=SC2086
+        "$program" $words >pipe.txt
+        for columns in 24 40 79 80 100 132 200; do
+            # shellcheck disable=SC2086
+            on_terminal $columns $words
+            check "${words%% *} fits $columns columns: ${words##*/}" \
+                holds "$(wc -l <tty.txt) > 1 && $(widest tty.txt) <= $columns"
+        done
+        [[ $words == machine ]] && continue # its clocks differ from run to run
+        # shellcheck disable=SC2086
+        on_terminal 80 $words
+        check "80 columns have every word: ${words##*/}" cmp <(words pipe.txt) <(words tty.txt)
+        # shellcheck disable=SC2086
+        on_terminal 500 $words
+        check "500 columns need no wrapping: ${words##*/}" cmp pipe.txt tty.txt
+    done
+    on_terminal 80 params
+    check "no line of a table ends in a blank" is "$(grep -c ' $' tty.txt)" 0
+    check "a meaning without room is below its row" is "$(grep -A1 '^render.depth ' tty.txt | tail -1)" \
+        "    integer 0..64; recursion depth: 0 follows camera rays only"
+    on_terminal 80 realism "$scene" --csv
+    check "CSV is not wrapped" holds "$(widest tty.txt) > 80"
+    COLUMNS=60 on_terminal 0 media
+    check "COLUMNS is the width of a terminal that does not report it" holds "$(widest tty.txt) <= 60"
+    COLUMNS=60 on_terminal 200 media
+    check "but not of one that does" holds "$(widest tty.txt) > 100"
+    COLUMNS=wide on_terminal 0 media
+    check "and 80 without both" holds "$(widest tty.txt) > 70 && $(widest tty.txt) <= 80"
+    COLUMNS=40 run media
+    check "COLUMNS does not wrap a pipe" holds "$(widest out) > 100"
 fi
 
 # --- scene
@@ -724,7 +772,7 @@ run scene first.yaml
 check "write, read, write gives the same bytes" cmp out first.yaml
 run scene "$scene" --all -o all.yaml
 check "-o prints nothing" is "$code $(cat out err | wc -c)" "0 0"
-check "--all writes what is left out" grep -q '^  polarisation: off' all.yaml
+check "--all also writes defaults" grep -q '^  polarisation: off' all.yaml
 for file in first.yaml all.yaml; do
     run render "$file" -o b.png "${small[@]}"
     check "$file makes the same film" matches "$(<out)" "film $hash"
@@ -745,13 +793,13 @@ run scene --new --title "Rod in a vessel" --set camera.position=0,2.75,-6 --set 
 check "a scene is built by options alone" silent_success
 check "and is the same scene, byte for byte" cmp built.yaml first.yaml
 run scene built.yaml --list
-check "--list has a line an object" is "$(head -1 out) $(wc -l <out) $(tail -1 out)" \
+check "--list has one line per object" is "$(head -1 out) $(wc -l <out) $(tail -1 out)" \
     "material clear 8 solid rod box plastic"
 run scene built.yaml --check
-check "--check says that it is right" is "$code $(<out)" \
-    "0 built.yaml: right; meshes 0, textures 0, materials 3, lights 1, solids 4"
+check "--check reports a valid scene" is "$code $(<out)" \
+    "0 built.yaml: valid; meshes 0, textures 0, materials 3, lights 1, solids 4"
 run scene built.yaml --move rod=0,0.5,0 -o built.yaml
-check "a scene is changed in its place" matches "$(grep -A3 '  rod:' built.yaml | tail -1)" \
+check "a scene can be changed in place" matches "$(grep -A3 '  rod:' built.yaml | tail -1)" \
     'position: \[0.2, 2.601, 0\]'
 run scene built.yaml --turn all+camera=0,90,0 --scale all+camera=2 --move all+camera=1,0,0 -o whole.yaml
 check "a whole scene is turned, scaled and moved" matches \
@@ -763,17 +811,17 @@ check "a whole scene is turned, scaled and moved" matches \
 run render built.yaml "${small[@]}" -o before.png
 run render whole.yaml "${small[@]}" -o after.png
 run compare before.png after.png
-check "with its camera it gives the same image" matches "$(<out)" 'flip  *0\.0000'
+check "transformed with its camera it gives the same image" matches "$(<out)" 'flip  *0\.0000'
 run render built.yaml "${small[@]}" --set camera.roll_deg=180 -o after.png
 run compare before.png after.png
-check "a roll gives another" matches "$(<out)" 'flip  *0\.[0-9]*[1-9]'
+check "a roll changes the image" matches "$(<out)" 'flip  *0\.[0-9]*[1-9]'
 mkdir -p pictures/scenes
 cp a.png pictures/sky.png
 run scene built.yaml --set background.picture=pictures/sky.png -o pictures/scenes/moved.yaml
 check "paths follow the file" grep -q '  picture: ../sky.png' pictures/scenes/moved.yaml
 run scene pictures/scenes/moved.yaml --check
-check "and lead to the picture" depth_noted
-refused() { # WHAT ERROR ARGUMENT...: one line, 2, nothing written
+check "and find the image" depth_noted
+refused() { # WHAT ERROR ARGUMENT...: exit 2, one line, nothing written
     local what=$1 error=$2
     shift 2
     run scene "$@" -o refused.yaml
@@ -783,34 +831,34 @@ refused() { # WHAT ERROR ARGUMENT...: one line, 2, nothing written
 refused "to delete a material in use" \
     "--delete clear: clear is the material of vessel and 1 more; give those another material first, or remove them" \
     built.yaml --delete clear
-refused "a name that is not there" "--move rood=1,2,3: nothing in the scene is named 'rood'; did you mean 'rod'?" \
+refused "an unknown name" "--move rood=1,2,3: nothing in the scene is named 'rood'; did you mean 'rod'?" \
     built.yaml --move rood=1,2,3
 refused "to scale the camera" \
     "--scale camera=2: camera has no size of its own; scale a solid, a light, or all, solids, lights" built.yaml \
     --scale camera=2
-refused "a factor of nothing" "--scale all=0: all cannot be scaled by 0; give a factor above 0, at most 1e9" \
+refused "a factor of zero" "--scale all=0: all cannot be scaled by 0; give a factor above 0, at most 1e9" \
     built.yaml --scale all=0
-refused "two numbers" "--move rod=1,2: there are fewer than 3 numbers; give NAME=DX,DY,DZ" built.yaml --move rod=1,2
-refused "a shape that is none" "--add solid:x=bax: no shape 'bax'; did you mean 'box'?" built.yaml --add solid:x=bax
-refused "a solid without a shape" "--add solid:x: x has no shape; write solid:NAME=SHAPE, as solid:rod=box" built.yaml \
-    --add solid:x
-refused "a kind that is none" \
-    "--add ball:x: there is no kind of object 'ball'; give one of: solid, light, material, mesh, texture" \
+refused "two numbers" "--move rod=1,2: fewer than 3 numbers; give NAME=DX,DY,DZ" built.yaml --move rod=1,2
+refused "an unknown shape" "--add solid:x=bax: no shape 'bax'; did you mean 'box'?" built.yaml --add solid:x=bax
+refused "a solid without a shape" \
+    "--add solid:x: x has no shape; write solid:NAME=SHAPE, such as solid:rod=box" built.yaml --add solid:x
+refused "an unknown kind" \
+    "--add ball:x: unknown kind of object 'ball'; give one of: solid, light, material, mesh, texture" \
     built.yaml --add ball:x
-refused "what is wrong as a whole" \
+refused "a scene that is invalid as a whole" \
     "built.yaml: vessel: inner_radius 2 is not smaller than radius 1; make inner_radius smaller than radius, or the \
 cup has no wall" \
     built.yaml --set vessel.inner_radius=2
-refused "a file and --new" "scene: a scene file and --new exclude each other; give one of them" built.yaml --new
+refused "a file and --new" "scene: a scene file and --new exclude each other; give only one of them" built.yaml --new
 run scene built.yaml -o rod.png
-check "scene writes no picture" is "$code $(wc -l <err)" "2 1"
+check "scene writes no image" is "$code $(wc -l <err)" "2 1"
 run scene
-check "scene wants a file or --new" is "$code $(<err)" \
-    "2 cuvette: scene: no scene is named; name a scene file, as experiments/scenes/rod.yaml, or begin with --new"
+check "scene needs a file or --new" is "$code $(<err)" \
+    "2 cuvette: scene: no scene is given; give a scene file, such as experiments/scenes/rod.yaml, or --new"
 
 # --- completion
-check "the completion is sound bash" bash -n "$root/src/cli/cuvette.bash"
-complete_line() { # WORD...: what is offered for the last one
+check "the completion is valid bash" bash -n "$root/src/cli/cuvette.bash"
+complete_line() { # WORD...: prints the completions of the last word
     bash -c 'source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); compopt() { :; }; _cuvette
         printf "%s\n" "${COMPREPLY[@]}"' - "$root/src/cli/cuvette.bash" "$@"
 }
@@ -834,7 +882,7 @@ check "completion offers objects of the scene" is \
         complete_line "$program" scene "$scene" --move ro
     )" \
     "$(lines vessel rod=)"
-check "completion offers many objects at once" is "$(complete_line "$program" scene "$scene" --scale al)" "all="
+check "completion offers groups of objects" is "$(complete_line "$program" scene "$scene" --scale al)" "all="
 check "completion offers options of lab" is "$(complete_line cuvette lab --no)" --no-browser
 check "completion offers study verbs" is "$(complete_line cuvette study mer)" merge
 

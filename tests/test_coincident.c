@@ -1,3 +1,5 @@
+/* Tests of coincident faces, exact or up to the rounding of a rotation: one interface or none, and never a film of air
+ * in between. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,9 +11,6 @@
 #include "quad.h"
 #include "random_stream.h"
 #include "ray_fixture.h"
-
-/* Faces that coincide, exactly or to within the roundings of a turn: one interface or none, and never a film of air
- * between. */
 
 enum { PARTS_MAX = 4, STEPS_MAX = 8 };
 
@@ -29,7 +28,7 @@ static vec3 turned(vec3 v, vec3 degrees)
     return vec3_make((double)w.x, (double)w.y, (double)w.z);
 }
 
-/* The parts are described upright; they are turned as one here. */
+/* The parts are described upright and rotated together here. */
 static void assemble(assembly *m, vec3 turn)
 {
     region_source sources[PARTS_MAX];
@@ -46,7 +45,7 @@ static void assemble(assembly *m, vec3 turn)
     assert_int_equal(scene_geometry_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
 }
 
-/* Media in order along the line, as digits: "01230". */
+/* The media in order along the line, as digits: "01230". */
 static void expect_media(const assembly *m, one_ray r, const char *wanted)
 {
     for (int k = 0; wanted[k + 1]; k++) {
@@ -87,7 +86,7 @@ static void through_the_contact(assembly_maker *make, const char *wanted)
     }
 }
 
-/* Two unit blocks on one another, touching at y = 0.3. */
+/* Two unit blocks, one on the other, touching at y = 0.3. */
 static assembly blocks(int64_t lower, int64_t upper, int64_t lower_priority)
 {
     assembly m = {.count = 2, .priority = {lower_priority, 2}, .medium = {lower, upper}};
@@ -126,7 +125,7 @@ static assembly cylinder_on_a_plane_that_wins(void)
     return m;
 }
 
-/* A gap of 1e-9 is no rounding: it is there. */
+/* A gap of 1e-9 is not a rounding error: it must be resolved. */
 static assembly blocks_a_hair_apart(void)
 {
     assembly m = blocks(1, 2, 3);
@@ -172,7 +171,7 @@ static void what_stands_on_a_plane_touches_it(void **state)
     through_the_contact(cylinder_on_a_plane_that_wins, "021");
 }
 
-/* Mirrored at the contact the ray goes back through the upper block alone. */
+/* A ray mirrored at the contact returns through the upper block only. */
 static void mirror_at_the_contact(assembly_maker *make)
 {
     uint64_t seed = 32;
@@ -199,8 +198,8 @@ static void a_mirrored_ray_leaves_the_contact(void **state)
     mirror_at_the_contact(blocks_of_which_the_lower_wins);
 }
 
-/* A liquid that fills its vessel exactly: same radius, same floor, same height; the vessel of the higher priority,
- * then the liquid. */
+/* A liquid that fills its vessel exactly: same radius, same floor, same height; with a higher priority of the vessel,
+ * then of the liquid. */
 static void a_liquid_that_fits_its_vessel_exactly(void **state)
 {
     (void)state;
@@ -218,7 +217,7 @@ static void a_liquid_that_fits_its_vessel_exactly(void **state)
             .kind = SHAPE_CYLINDER, .position = {0.0, -0.9, 0.0}, .radius = 0.9, .height = 1.9, .m = m.shape[0].m};
         assemble(&m, turns[k / 2]);
         for (int i = 0; i < 4000; i++) {
-            /* from the liquid, to a point of the wall that is well under the rim */
+            /* from the liquid, to a point of the wall well below the rim */
             vec3 from =
                 vec3_make(random_real(&seed, -0.5, 0.5), random_real(&seed, -0.6, 0.6), random_real(&seed, -0.5, 0.5));
             const double turn = random_real(&seed, 0.0, 6.2831853);
@@ -247,11 +246,11 @@ static void a_liquid_that_fits_its_vessel_exactly(void **state)
     }
 }
 
-/* The reference scene's way of saying it: the liquid reaches into the wall and loses to it there. */
+/* As in the reference scene: the liquid overlaps the wall, which has the higher priority. */
 static void a_liquid_that_reaches_into_the_wall(void **state)
 {
     (void)state;
-    static const double turning_points[] = {1.0, 1.1, 2.9, 3.0}; /* from x = -2 */
+    static const double turning_points[] = {1.0, 1.1, 2.9, 3.0}; /* along x, from x = -2 */
     static const int64_t media[] = {0, 1, 2, 1, 0};
     assembly m = {.count = 2, .priority = {2, 1}, .medium = {1, 2}};
     m.shape[0] = (solid_shape){.kind = SHAPE_CUP,
@@ -281,7 +280,7 @@ static void a_liquid_that_reaches_into_the_wall(void **state)
     scene_geometry_destroy(m.solids);
 }
 
-/* Solids of the surrounding medium are not there, alone or over one another; in another medium they are bubbles. */
+/* Solids of the surrounding medium are invisible, alone or overlapping; in another medium they are bubbles. */
 static void equal_media_are_no_interface(void **state)
 {
     (void)state;

@@ -1,3 +1,4 @@
+/* Tests of a cone's special cases: its apex, the other half of the double cone, and a cylinder as its limit. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,8 +9,6 @@
 #include "random_stream.h"
 #include "ray_fixture.h"
 #include "solid_reference.h"
-
-/* What a cone has that no other solid has: a point, a double that is not there, and a cylinder as its limit. */
 
 static solid_shape cone_of(double radius, double top_radius, double height)
 {
@@ -70,7 +69,7 @@ static void its_volume_is_that_of_a_frustum(void **state)
     }
 }
 
-/* Through the middle of the axis a level chord is the mean of both diameters; along the axis it is the height. */
+/* Through the middle of the axis a horizontal chord is the mean of both diameters; along the axis it is the height. */
 static void chords_through_the_middle(void **state)
 {
     (void)state;
@@ -87,7 +86,7 @@ static void chords_through_the_middle(void **state)
     scene_geometry_destroy(a);
 }
 
-/* Rays at the point and close by: a hit has a normal and no number is NaN; above the point there is nothing. */
+/* Rays at the apex and near it: a hit has a normal and no number is NaN; above the apex there is nothing. */
 static void the_point_is_met_and_its_double_is_not(void **state)
 {
     (void)state;
@@ -111,7 +110,7 @@ static void the_point_is_met_and_its_double_is_not(void **state)
         const one_hit next = nearest_interface(a, (one_ray){h.point, d, h.face, h.inside_after});
         assert_true(next.hit_primitive < 0 || (isfinite(next.t) && next.t >= 0.0));
     }
-    for (int trial = 0; trial < 20000; trial++) { /* within the double, downwards to above the point */
+    for (int trial = 0; trial < 20000; trial++) { /* within the double, downwards to above the apex */
         const double high = random_real(&seed, 1e-9, 2.0);
         const vec3 at = vec3_add(tip, vec3_make(0.3 * high * cos(trial), high, 0.3 * high * sin(trial)));
         const vec3 side = random_direction(&seed);
@@ -122,8 +121,8 @@ static void the_point_is_met_and_its_double_is_not(void **state)
     scene_geometry_destroy(a);
 }
 
-/* A liquid that widens upwards reaches into the wall of a glass only where it is wide enough, and loses to it there;
- * below that there is air between them. */
+/* A liquid that widens upwards overlaps the wall of a glass, which has the higher priority, only where it is wide
+ * enough; below that there is air between them. */
 static void a_liquid_reaches_into_the_wall(void **state)
 {
     (void)state;

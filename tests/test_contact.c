@@ -1,3 +1,6 @@
+/* Tests of contact: where two boundaries are one crossing, and where a gap between them is resolved. The limit is that
+ * of the manual: 16 DBL_EPSILON times the sum, over both solids, of the distance of the ray's start from the solid, the
+ * path to the crossing, and the solid's extent. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -8,11 +11,7 @@
 
 #include "ray_fixture.h"
 
-/* Contact: where two boundaries are one crossing, and where a gap between them is seen. The limit is that of the
- * manual: 16 DBL_EPSILON times the sum, over both solids, of the ray's start counted from the solid, the path to the
- * crossing, and the solid's extent. */
-
-/* Below y = 0 and above it, a gap apart; and perhaps a solid far away. */
+/* Two boxes below and above y = 0, with a gap; optionally a solid far away. */
 static scene_geometry *halves(double gap, double x, bool upper_wins, bool far_solid)
 {
     const solid_shape shapes[3] = {
@@ -37,7 +36,7 @@ static one_ray downwards_ray(const scene_geometry *a, double x, double angle, do
     return r;
 }
 
-/* Is the surrounding medium behind the upper box? */
+/* Is the surrounding medium next to the upper box? */
 static bool sees_gap(double gap, double x, double angle, bool upper_wins, bool far_solid)
 {
     scene_geometry *a = halves(gap, x, upper_wins, far_solid);
@@ -48,7 +47,7 @@ static bool sees_gap(double gap, double x, double angle, bool upper_wins, bool f
     return outside;
 }
 
-/* The narrowest gap that is seen, by bisection of its logarithm. */
+/* The narrowest gap that is resolved, by bisection of its logarithm. */
 static double narrowest_gap(double x, double angle, bool upper_wins, bool far_solid)
 {
     double contact = 1e-17, gap = 1e-6;
@@ -59,7 +58,7 @@ static double narrowest_gap(double x, double angle, bool upper_wins, bool far_so
     return gap;
 }
 
-/* The sum of magnitudes for a box, from which its error bound is taken. */
+/* The sum of magnitudes that a box's error bound is computed from. */
 static double magnitudes(double x, double middle, double size, double angle)
 {
     const double start = 0.5 - middle, way = 0.5 + 0.5 * fabs(tan(angle));
@@ -75,7 +74,7 @@ static void the_narrowest_gap_is_the_manuals(void **state)
         const double limit = 16.0 * DBL_EPSILON * (magnitudes(x, 0.5, 4.0, angle) + magnitudes(x, -1.0, 4.0, angle));
         for (int upper_wins = 0; upper_wins < 2; upper_wins++) {
             const double narrowest = narrowest_gap(x, angle, upper_wins, false);
-            /* where a box lies is itself rounded, to a few 1e-16 */
+            /* a box's position is itself rounded, to a few 1e-16 */
             if (!(fabs(narrowest / limit - 1.0) <= 0.05))
                 fail_msg("x %g, angle %g: %g, not %g", x, angle, narrowest, limit);
         }
@@ -99,7 +98,7 @@ static void a_solid_far_away_moves_the_limit_by_nothing(void **state)
         assert_true(narrowest_gap(0.0, 0.4, upper_wins, false) == narrowest_gap(0.0, 0.4, upper_wins, true));
 }
 
-/* A film that touches a solid is behind it, not the film's other side, however thin it is. */
+/* A film that touches a solid is entered, however thin it is; its other side is not taken instead. */
 static void a_film_in_contact_is_entered(void **state)
 {
     (void)state;
@@ -127,7 +126,7 @@ static void a_film_in_contact_is_entered(void **state)
     }
 }
 
-/* Two discs of clear glass above one another, all turned: the light of a shadow ray that passes 2 or 4 interfaces. */
+/* Two rotated discs of clear glass, one above the other: the light of a shadow ray that crosses 2 or 4 interfaces. */
 static double light_through_discs(double gap, const vec3 *turn_deg)
 {
     const mat3 turn = rotation_from_deg(*turn_deg);
@@ -150,7 +149,8 @@ static double light_through_discs(double gap, const vec3 *turn_deg)
     return light;
 }
 
-/* In and out of each disc, or from one into the other: 0.5 a time. A shadow ray's direction is no unit vector. */
+/* In and out of each disc, or from one into the other: a factor of 0.5 each. A shadow ray's direction is not a unit
+ * vector. */
 static void shadow_rays_see_the_same_gaps(void **state)
 {
     (void)state;

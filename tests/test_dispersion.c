@@ -1,3 +1,4 @@
+/* Tests of the dispersion laws. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,7 +12,7 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabsl((long double)(a) - (long double)(b)) <= (long double)(tolerance))
 
-/* The formulas again, by libm's powers in long double. */
+/* The formulas again, with libm's powers in long double. */
 static long double expected(const dispersion *law, long double lambda_nm)
 {
     const double *c = law->coefficient;
@@ -74,7 +75,7 @@ static void laws_agree_with_their_formulas(void **state)
     }
 }
 
-/* Numbers that can be done in the head, at 500 nm or 1 um; each would be another under a neighbour's formula. */
+/* Numbers for mental arithmetic, at 500 nm or 1 um; each would differ under another law's formula. */
 static void laws_at_easy_numbers(void **state)
 {
     (void)state;
@@ -151,15 +152,15 @@ static void what_is_no_law_is_refused_with_a_reason(void **state)
         dispersion law;
         const char *what, *remedy;
     } bad[] = {
-        {{(dispersion_kind)8, 1, {1.5}, 0, 0}, "number 8", ""},
-        {{DISPERSION_CONSTANT, 0, {0}, 0, 0}, "0 numbers do not make the dispersion law 'constant'", "one number"},
+        {{(dispersion_kind)8, 1, {1.5}, 0, 0}, "dispersion law 8", ""},
+        {{DISPERSION_CONSTANT, 0, {0}, 0, 0}, "0 numbers do not fit the dispersion law 'constant'", "one number"},
         {{DISPERSION_CONSTANT, -1, {0}, 0, 0}, "-1 numbers", "one number"},
         {{DISPERSION_CONSTANT, 2, {1.5, 1.5}, 0, 0}, "2 numbers", "one number"},
         {{DISPERSION_SELLMEIER, 3, {1.0, 0.01, 1.0}, 0, 0},
-         "3 numbers do not make the dispersion law 'sellmeier'",
+         "3 numbers do not fit the dispersion law 'sellmeier'",
          "um^2"},
         {{DISPERSION_SELLMEIER_LENGTHS, 1, {1.0}, 0, 0},
-         "1 numbers do not make the dispersion law 'sellmeier-lengths'",
+         "1 numbers do not fit the dispersion law 'sellmeier-lengths'",
          "um"},
         {{DISPERSION_POLYNOMIAL, 2, {2.0, 0.1}, 0, 0}, "2 numbers", "its power"},
         {{DISPERSION_CAUCHY_POWERS, 4, {1.5, 0.1, 2.0, 0.1}, 0, 0}, "4 numbers", "its power"},
@@ -169,18 +170,18 @@ static void what_is_no_law_is_refused_with_a_reason(void **state)
         {{DISPERSION_CAUCHY, 33, {1.5}, 0, 0}, "at most 32 numbers, not 33", "um^4"},
         {{DISPERSION_CAUCHY, 2, {1.5, NAN}, 0, 0}, "number 2 of the dispersion law 'cauchy' is not finite", "finite"},
         {{DISPERSION_CONSTANT, 1, {INFINITY}, 0, 0}, "number 1", "finite"},
-        {{DISPERSION_CONSTANT, 1, {1.5}, 700.0, 400.0}, "700..400 nm is no range", "lower"},
-        {{DISPERSION_CONSTANT, 1, {1.5}, 0.0, 400.0}, "0..400 nm is no range", "above 0"},
-        {{DISPERSION_CONSTANT, 1, {1.5}, NAN, 400.0}, "nan..400 nm is no range", "above 0"},
-        {{DISPERSION_CONSTANT, 1, {1.5}, 300.0, INFINITY}, "300..inf nm is no range", "above 0"},
-        {{DISPERSION_POLYNOMIAL, 3, {2.0, 0.1, 0.5}, 0, 0}, "power 0.5", "whole power from -16 to 16"},
-        {{DISPERSION_CAUCHY_POWERS, 3, {1.5, 0.1, -17.0}, 0, 0}, "power -17", "whole power"},
-        {{DISPERSION_CAUCHY_POWERS, 5, {1.5, 0.1, 2.0, 0.1, two}, 0, 0}, "power 2", "whole power"},
+        {{DISPERSION_CONSTANT, 1, {1.5}, 700.0, 400.0}, "700..400 nm is not a range", "lower"},
+        {{DISPERSION_CONSTANT, 1, {1.5}, 0.0, 400.0}, "0..400 nm is not a range", "above 0"},
+        {{DISPERSION_CONSTANT, 1, {1.5}, NAN, 400.0}, "nan..400 nm is not a range", "above 0"},
+        {{DISPERSION_CONSTANT, 1, {1.5}, 300.0, INFINITY}, "300..inf nm is not a range", "above 0"},
+        {{DISPERSION_POLYNOMIAL, 3, {2.0, 0.1, 0.5}, 0, 0}, "power 0.5", "integer power from -16 to 16"},
+        {{DISPERSION_CAUCHY_POWERS, 3, {1.5, 0.1, -17.0}, 0, 0}, "power -17", "integer power"},
+        {{DISPERSION_CAUCHY_POWERS, 5, {1.5, 0.1, 2.0, 0.1, two}, 0, 0}, "power 2", "integer power"},
         {{DISPERSION_TABLE, 4, {500.0, 1.5, 500.0, 1.5}, 0, 0}, "500 nm after 500 nm", "ascending"},
         {{DISPERSION_TABLE, 6, {400.0, 1.5, 600.0, 1.5, 500.0, 1.5}, 0, 0}, "500 nm after 600 nm", "ascending"},
         {{DISPERSION_TABLE, 2, {0.0, 1.5}, 0, 0}, "0 nm after 0 nm", "above 0"},
         {{DISPERSION_TABLE, 6, {100.0, 0.05, 400.0, 1.5, 500.0, 1.5}, 0, 0}, "the index 0.05", "pairs"},
-        /* samples at whole nanometres see nothing of these */
+        /* samples at whole nanometres miss these */
         {{DISPERSION_SELLMEIER, 2, {1e-9, 0.30030400}, 0, 0}, "a resonance at 548 nm", "um^2"},
         {{DISPERSION_SELLMEIER_LENGTHS, 2, {1e-9, 0.5505}, 0, 0}, "a resonance at 550.5 nm", "um"},
         {{DISPERSION_SELLMEIER_LENGTHS, 2, {1e-9, -0.5505}, 0, 0}, "a resonance at 550.5 nm", "um"},
@@ -200,7 +201,7 @@ static void what_is_no_law_is_refused_with_a_reason(void **state)
     }
 }
 
-/* A term without weight, as short laws are padded with in catalogues, and resonances just outside the visible. */
+/* A term with zero weight, as catalogues pad short laws, and resonances just outside the visible. */
 static void laws_at_the_edge_are_accepted(void **state)
 {
     (void)state;

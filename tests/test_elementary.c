@@ -1,3 +1,4 @@
+/* Tests of the error bounds of powers and angles. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,7 +40,7 @@ static void power_keeps_its_bound_over_the_range(void **state)
     (void)state;
     need_long_double();
     uint64_t seed = 1;
-    /* Drawn one after another: the order of a call's arguments is the compiler's. */
+    /* Drawn in separate statements: the evaluation order of a call's arguments is unspecified. */
     for (int i = 0; i < 200000; i++) {
         const double dim = random_real(&seed, 0.0, 1.0), shininess = random_real(&seed, 0.0, 200.0);
         check_power(dim, shininess); /* as highlights use it */

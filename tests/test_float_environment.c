@@ -1,5 +1,5 @@
-/* Tests of the library in every floating-point environment of a host: films, numbers, hits and motions are
- * bit-identical, and the host's environment is preserved. */
+/* Tests of the library in every floating-point environment of a caller: bit-identical films, numbers, hits and motions,
+ * and the caller's environment unchanged. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,13 +17,13 @@
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-/* --- environments of hosts --- */
+/* --- environments of callers --- */
 
 enum { X86_DAZ = 0x0040, X86_FTZ = 0x8000, X87_PRECISION = 0x0300 };
 
 typedef struct surroundings {
     int rounding;      /* FE_UPWARD ... */
-    unsigned flushing; /* bits of MXCSR; x86 only */
+    unsigned flushing; /* bits of MXCSR; other processors do without */
     bool narrow;       /* x87 registers with 24-bit significands */
     int traps;         /* for feenableexcept */
 } surroundings;
@@ -31,8 +31,7 @@ typedef struct surroundings {
 static const int roundings[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
 static const unsigned flushings[] = {0, X86_FTZ, X86_DAZ, X86_FTZ | X86_DAZ};
 
-/* Every rounding mode with every flushing mode; then narrow registers and traps, alone and combined with everything
- * else. */
+/* Every rounding mode with every flushing; then narrow registers and traps, alone and combined. */
 enum { PLAIN = COUNT(roundings) * COUNT(flushings), SURROUNDINGS = PLAIN + 4 };
 
 static surroundings surroundings_at(size_t i)
@@ -59,11 +58,11 @@ static void set_surroundings(const surroundings *wanted)
 #endif
     fesetround(wanted->rounding);
     if (!wanted->traps)
-        feraiseexcept(FE_OVERFLOW); /* set state that must survive the call */
+        feraiseexcept(FE_OVERFLOW); /* the caller has something to lose */
     feenableexcept(wanted->traps);
 }
 
-/* The parts of the environment that a host can observe. */
+/* The state of its environment that a caller can observe. */
 typedef struct noticed {
     int rounding, raised, traps;
     unsigned mxcsr, control;
@@ -91,7 +90,7 @@ static void expect_unchanged(const noticed *before)
                  after.control);
 }
 
-/* --- the host's calls; no floating-point arithmetic here, which would be the host's own --- */
+/* --- the caller's requests; no arithmetic on numbers here: it would be the caller's own --- */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -138,7 +137,7 @@ static cuvette_scene *scene_of(const char *file, const char *assignments)
     return s;
 }
 
-/* The film, and its conversions: floats, bytes. */
+/* The film, and images made from it: floats, bytes. */
 static uint64_t film_of(const cuvette_scene *s)
 {
     enum { WIDTH = 48, HEIGHT = 36 };
@@ -229,7 +228,7 @@ static void mix_note(void *context, const char *text)
     *hash = mix_text(*hash, text);
 }
 
-/* Decimal numbers without an exact double, in and out; rotations, which need sines. */
+/* Decimal numbers that are not doubles, parsed and formatted; rotations, which need sines. */
 static uint64_t ask_numbers(void)
 {
     static const char text[] =
@@ -242,7 +241,7 @@ static uint64_t ask_numbers(void)
         "         mote: {shape: sphere, radius: 0.01, position: [3e-310, 2, 0]}}\n";
     static char written[65536];
     static const double third[] = {1.0 / 3.0, 2.0 / 3.0, 0.1}, degrees[] = {10.7, -33.3, 71.1};
-    static const double subnormal[] = {1e-310, 0, 5e-324}; /* values that flushing would set to 0 */
+    static const double subnormal[] = {1e-310, 0, 5e-324}; /* values that flushing makes 0 */
     static const float pixels[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f, 1.0f, 0.15f, 0.25f};
     static const float corners[] = {-0.3f, 0.1f, 0.2f, 0.9f, 0.3f, -0.1f, 0.1f, 1.1f, 0.7f};
     static const uint32_t triangle[] = {0, 1, 2};
@@ -285,7 +284,7 @@ static uint64_t ask_numbers(void)
     return hash;
 }
 
-/* Camera rays, and rays that continue behind their hits. */
+/* Camera rays, and their continuations after the first hit. */
 static uint64_t ask_rays(void)
 {
     enum { SIDE = 12, RAYS = SIDE * SIDE };
@@ -385,7 +384,7 @@ ONE_ANSWER(numbers_in_and_out, ask_numbers)
 ONE_ANSWER(rays_of_the_hosts_own, ask_rays)
 ONE_ANSWER(motions_and_hands, ask_motion)
 
-/* The reference hash of tests/test_determinism.c, which `cuvette render` prints. */
+/* The hash that tests/test_determinism.c pins and `cuvette render` prints. */
 static void the_golden_film(void **state)
 {
     (void)state;
@@ -409,7 +408,7 @@ static void the_golden_film(void **state)
     cuvette_scene_destroy(s);
 }
 
-/* --- the host's callbacks, and all return paths --- */
+/* --- the caller's functions, and early returns --- */
 
 typedef struct listener {
     noticed expected;
@@ -482,7 +481,7 @@ static void the_hosts_functions_run_in_its_environment(void **state)
         const cuvette_status code = render_with(engine, s, &l);
         fine(cuvette_scene_each_parameter(s, hear_parameter, &l, &why), &why);
         fine(cuvette_scene_hints(s, hear_note, &l, &why), &why);
-        expect_unchanged(&l.expected); /* changes by the host persist */
+        expect_unchanged(&l.expected); /* the caller's changes remain */
         assert_int_equal(code, CUVETTE_OK);
         assert_int_equal(l.wrong, 0);
         assert_true(l.calls > 50);
@@ -491,7 +490,7 @@ static void the_hosts_functions_run_in_its_environment(void **state)
     cuvette_engine_destroy(engine);
 }
 
-static void it_is_restored_however_a_call_ends(void **state)
+static void it_comes_back_whichever_way_a_call_ends(void **state)
 {
     (void)state;
     const surroundings now = {FE_TOWARDZERO, X86_DAZ, true, 0};
@@ -523,7 +522,7 @@ static void it_is_restored_however_a_call_ends(void **state)
     cuvette_engine_destroy(engine);
 }
 
-/* --- threads of the library --- */
+/* --- threads, whoever starts them --- */
 
 typedef struct roll {
     pthread_barrier_t all_there;
@@ -534,7 +533,7 @@ static void sign_in_team(void *context, size_t index, int member)
 {
     roll *r = context;
     (void)index;
-    pthread_barrier_wait(&r->all_there); /* no member runs two tasks */
+    pthread_barrier_wait(&r->all_there); /* no member runs two */
     r->seen[member] = notice();
 }
 
@@ -544,7 +543,7 @@ static void sign_in_pool(void *context, int worker)
     r->seen[worker] = notice();
 }
 
-static void threads_start_in_the_default(void **state)
+static void threads_begin_in_the_default(void **state)
 {
     (void)state;
     enum { THREADS = 4 };
@@ -587,8 +586,8 @@ int main(void)
         cmocka_unit_test(motions_and_hands),
         cmocka_unit_test(the_golden_film),
         cmocka_unit_test(the_hosts_functions_run_in_its_environment),
-        cmocka_unit_test(it_is_restored_however_a_call_ends),
-        cmocka_unit_test(threads_start_in_the_default),
+        cmocka_unit_test(it_comes_back_whichever_way_a_call_ends),
+        cmocka_unit_test(threads_begin_in_the_default),
     };
     return cmocka_run_group_tests_name("float_environment", tests, NULL, NULL);
 }

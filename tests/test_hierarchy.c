@@ -1,3 +1,5 @@
+/* Tests of the hierarchies' queries: the same hits from every kind, batch and instruction set, and watertight
+ * meshes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +19,7 @@ static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_s
                                                             &hierarchy_kernels_avx512};
 static const hierarchy_kind own_kinds[] = {HIERARCHY_NONE, HIERARCHY_SPHERE, HIERARCHY_OCTANT, HIERARCHY_BVH};
 
-/* Work is cut where the program was built to be looked at, not to run. */
+/* Less work in builds for analysis, such as sanitizers. */
 static int effort(int full)
 {
 #ifdef __OPTIMIZE__
@@ -36,7 +38,7 @@ static void same_hit(const mesh_hit *a, const mesh_hit *b)
     assert_int_equal(a->facing, b->facing);
 }
 
-/* All hits of a ray in a form that does not depend on their order. */
+/* All hits of a ray in an order-independent form. */
 typedef struct gathered {
     uint64_t sum;
     long count;
@@ -105,8 +107,8 @@ static void every_hierarchy_gives_the_same_hits(void **state)
         one_scene(&seed, 5000);
 }
 
-/* Rays as a camera, a lamp or the sun sends them: they run one way, from one point or side by side, to corners, edges
- * and anywhere. Random ones are too different to go down together. */
+/* Rays as from a camera, a lamp or the sun: parallel, or from one point, to corners, edges and anywhere. Random rays
+ * are too different to share a traversal. */
 static int rays_alike(const mesh *m, uint64_t *seed, mesh_ray *r)
 {
     const int count = 1 + random_below(seed, BATCH), how = random_below(seed, 3);
@@ -117,7 +119,7 @@ static int rays_alike(const mesh *m, uint64_t *seed, mesh_ray *r)
     const vec3 eye = vec3_sub(middle, vec3_scale(along, random_real(seed, 0.1, 4.0) * reach));
     for (int i = 0; i < count; i++) {
         const vec3 target = random_target(m, seed);
-        r[i] = random_ray(m, seed); /* for its limits, side and triangle to be skipped */
+        r[i] = random_ray(m, seed); /* for its limits, side and skipped triangle */
         r[i].origin = how ? eye : vec3_sub(target, vec3_scale(along, reach));
         r[i].direction = how ? vec3_sub(target, eye) : along;
         if (how == 1 || !(vec3_dot(r[i].direction, r[i].direction) > 0.0))
@@ -182,7 +184,7 @@ static void instruction_sets_give_the_same_hits(void **state)
     }
 }
 
-/* From inside, at corners, at points of edges and anywhere: a ray that got out would be a hole. */
+/* Rays from inside, to corners, to points of edges and anywhere: a ray that escapes has found a hole. */
 static void no_ray_slips_out_of(mesh *m, int rays)
 {
     uint64_t seed = 6;
@@ -218,7 +220,7 @@ static mesh *bumpy_sphere(int level, double bumps, bool single)
     assert_int_equal(mesh_create(round->vertex_count, round->triangle_count, false, false, false, &m, NULL), STATUS_OK);
     for (size_t i = 0; i < m->vertex_count; i++) {
         const vec3 p = round->vertices[i];
-        const double wild = 731.0 * p.x + 317.0 * p.y + 571.0 * p.z; /* the same for corners at one place */
+        const double wild = 731.0 * p.x + 317.0 * p.y + 571.0 * p.z; /* equal for corners at one position */
         const vec3 v = vec3_scale(p, 1.0 + bumps * (2.0 * (wild - floor(wild)) - 1.0));
         m->vertices[i] = single ? vec3_make(single_round(v.x), single_round(v.y), single_round(v.z)) : v;
     }
@@ -237,8 +239,8 @@ static void no_ray_slips_through_a_closed_mesh(void **state)
     no_ray_slips_out_of(bumpy_sphere(4, 0.1, false), effort(3000000));
 }
 
-/* A triangle whose hits are known: in the plane z = 0, its front towards +z; from (0.25, 0.5, 2) downwards it is met at
- * t = 2 with weights 0.25 and 0.5 of the second and third corner. */
+/* A triangle with known hits: in the plane z = 0, its front towards +z; from (0.25, 0.5, 2) downwards it is hit at t =
+ * 2 with weights 0.25 and 0.5 of the second and third corner. */
 static const vec3 known_corners[3] = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
 static const mesh_ray known_ray = {{0.25, 0.5, 2.0}, {0.0, 0.0, -1.0}, 0.0,
                                    (double)INFINITY, TRIANGLE_NONE,    FACING_ANY};
@@ -273,7 +275,8 @@ static void check_known_hit(const hierarchy *h, const hierarchy_kernels *kernel)
     kernel->nearest(h, &r, &hit);
     assert_true(hit.t == 0.5 && hit.u == 0.25 && hit.v == 0.5);
     assert_int_equal(hit.facing, FACING_BACK);
-    r = (mesh_ray){{1.25, 1.5, 2.0}, {-0.5, -0.5, -1.0}, 0.0, (double)INFINITY, TRIANGLE_NONE, FACING_ANY}; /* aslant */
+    r = (mesh_ray){{1.25, 1.5, 2.0}, {-0.5, -0.5, -1.0}, 0.0,
+                   (double)INFINITY, TRIANGLE_NONE,      FACING_ANY}; /* oblique */
     kernel->nearest(h, &r, &hit);
     assert_true(hit.t == 2.0 && hit.u == 0.25 && hit.v == 0.5);
 }
@@ -391,7 +394,7 @@ static void check_nonsense(const hierarchy *h, const hierarchy_kernels *kernel)
     r.direction.z = 0.0;
     assert_false(known_is_hit(h, kernel, r));
     r = known_ray;
-    r.direction.z = -1e-200; /* tiny, but a direction */
+    r.direction.z = -1e-200; /* tiny, but a valid direction */
     assert_true(known_is_hit(h, kernel, r));
 }
 
@@ -456,7 +459,7 @@ static void a_mesh_keeps_its_hierarchies(void **state)
         assert_true(hierarchy_describe(one).bytes > 0);
     }
     assert_int_equal(hierarchy_of_mesh(m, HIERARCHY_KIND_COUNT, 1, &(const hierarchy *){NULL}, NULL), STATUS_BAD_INPUT);
-    mesh_release(m); /* and ends them: the sanitizer would find them */
+    mesh_release(m); /* frees them: the sanitizer would find a leak */
 }
 
 int main(void)

@@ -1,3 +1,4 @@
+/* Tests of the built hierarchies: completeness, enclosing boxes, depth, cost, and the thread team. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,10 +12,10 @@
 #include "hierarchy_fixture.h"
 #include "random_stream.h"
 
-/* What a walk over a tree finds. */
+/* The results of a walk over a tree. */
 typedef struct walk {
     const fixture *f;
-    uint8_t *met; /* how many leaves each triangle is in */
+    uint8_t *met; /* the number of leaves that contain each triangle */
     size_t nodes, leaves, blocks;
     int depth;
     double nodes_met, leaves_met, blocks_met; /* sums of areas */
@@ -47,7 +48,7 @@ static double half_area(const box *b)
     return x * y + y * z + z * x;
 }
 
-/* The bounds of a block's triangles, each of which holds the mesh's numbers to the bit. */
+/* The bounds of a block's triangles, whose coordinates must be bit-identical to the mesh's. */
 static void walk_block(walk *w, size_t block, bool last, uint32_t *before, box *b)
 {
     const mesh *m = &w->f->m;
@@ -108,7 +109,7 @@ static box walk_node(walk *w, uint32_t number, int depth, double area)
         box b = n->child[i] & CHILD_LEAF ? walk_leaf(w, n->child[i], child_area)
                                          : walk_node(w, n->child[i], depth + 1, child_area);
         for (int axis = 0; axis < 3; axis++) {
-            /* encloses, and the next float inwards would not */
+            /* encloses, and the next float inwards does not */
             assert_true(own.low[axis] <= b.low[axis] && nextafterf(n->low[axis][i], INFINITY) > b.low[axis]);
             assert_true(own.high[axis] >= b.high[axis] && nextafterf(n->high[axis][i], -INFINITY) < b.high[axis]);
             widen(&all, axis, b.low[axis]);
@@ -118,7 +119,7 @@ static box walk_node(walk *w, uint32_t number, int depth, double area)
     return all;
 }
 
-/* Walks the whole tree; each triangle must be in one leaf, but for `left_out` of them. */
+/* Walks the whole tree; each triangle must be in one leaf, except for `left_out` of them. */
 static walk walk_tree(const fixture *f, size_t left_out)
 {
     walk w = {.f = f, .met = calloc(f->m.triangle_count + 1, 1)};
@@ -141,7 +142,7 @@ static walk walk_tree(const fixture *f, size_t left_out)
     return w;
 }
 
-/* Triangles of about that size in a cube of that reach. */
+/* Triangles of about that size in a cube of that half edge. */
 static fixture soup(size_t count, double reach, double size, bool single, uint64_t seed)
 {
     fixture f = fixture_make(count, single);
@@ -228,7 +229,7 @@ static void many_copies_among_others_stay_shallow(void **state)
     fixture_free(&f);
 }
 
-/* Triangles at 2^-k, each scale smaller than a bin of the one before: a split takes off a few at a time. */
+/* Triangles at 2^-k, each scale smaller than a bin of the previous one: a split separates a few at a time. */
 static void scales_without_end_keep_the_depth_within_bounds(void **state)
 {
     (void)state;
@@ -294,9 +295,9 @@ static void triangles_that_no_ray_hits_are_left_out_and_slivers_stay(void **stat
     fixture_free(&nothing_left);
 }
 
-/* A plane of 64 x 64 squares of two triangles each. Squares can be shared out among leaves without overlap: a line that
- * meets the plane then meets one leaf, and as many nodes as there are levels; nodes of eight over leaves of two squares
- * need four. */
+/* A plane of 64 x 64 squares of two triangles each. The squares can be distributed among leaves without overlap: a line
+ * that hits the plane then visits one leaf and one node per level; nodes of eight over leaves of two squares need four
+ * levels. */
 static void a_plane_is_shared_out_without_overlap(void **state)
 {
     (void)state;
@@ -318,9 +319,9 @@ static void a_plane_is_shared_out_without_overlap(void **state)
     fixture_free(&f);
 }
 
-/* A thousand small triangles far apart: leaves hold those that are near each other, so that few are met. A random line
- * through the cube meets its faces' boxes in proportion to area; 4 triangles in a cell of 1/250 of the cube have
- * (1/250)^(2/3) of its area at the least, in all 6.3 leaves. */
+/* A thousand small triangles far apart: leaves hold neighbours, so that few leaves are visited. A random line through
+ * the cube hits boxes in proportion to their area; 4 triangles in a cell of 1/250 of the cube have at least
+ * (1/250)^(2/3) of its area, in all 6.3 leaves. */
 static void neighbours_share_leaves(void **state)
 {
     (void)state;

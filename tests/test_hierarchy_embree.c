@@ -1,3 +1,4 @@
+/* Tests of the Embree backend. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +23,7 @@ static double distance_to_sphere(const mesh_ray *r)
     return -b - sqrt(b * b - c);
 }
 
-/* Rays from outside at a unit sphere of 50000 triangles, which lie within 1e-3 of it. */
+/* Rays from outside at a unit sphere of 50000 triangles, which are within 1e-3 of it. */
 static void embree_meets_the_sphere_where_it_is(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* What a hierarchy costs, and whether it is refitted or built anew where its mesh has moved. */
+/* Tests of a hierarchy's cost, and of the choice between refit and rebuild after its mesh moved. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +9,7 @@
 
 #include "refit_fixture.h"
 
-/* Four triangles that reach through the unit cube at x. */
+/* Four triangles that span the unit cube at x. */
 static void cluster(vec3 *corners, double x)
 {
     for (int i = 0; i < 4; i++) {
@@ -28,8 +28,8 @@ static void cost_is_that_of_the_areas(void **state)
     mesh *m = mesh_of_corners(corners, 4), *two = mesh_of_corners(corners, 8), *empty = mesh_of_corners(corners, 0);
     hierarchy *h = built(m, HIERARCHY_BVH), *h2 = built(two, HIERARCHY_BVH), *none = built(m, HIERARCHY_NONE),
               *nothing = built(empty, HIERARCHY_BVH);
-    assert_true(hierarchy_cost(h) == 2.0); /* the root, and one block in a box as large */
-    /* Boxes 1 x 1 x 1, half of their surface 3, twice in one of 100 x 1 x 1, half of its surface 201. */
+    assert_true(hierarchy_cost(h) == 2.0); /* the root, and one block in an equal box */
+    /* Boxes 1 x 1 x 1, half of their surface 3, two of them in one of 100 x 1 x 1, half of its surface 201. */
     assert_true(fabs(hierarchy_cost(h2) - (1.0 + 2.0 * 3.0 / 201.0)) < 1e-15);
     assert_true(hierarchy_cost(none) == 0.0 && hierarchy_cost(nothing) == 0.0);
     assert_true(hierarchy_refit(nothing));
@@ -39,7 +39,7 @@ static void cost_is_that_of_the_areas(void **state)
     assert_true(fabs(hierarchy_cost(h2) - (1.0 + 2.0 * 3.0 / 21.0)) < 1e-15);
     for (int i = 0; i < 24; i++)
         corners[i] = vec3_make(1.0, 2.0, 3.0);
-    move(two, corners); /* into one place, which no ray meets */
+    move(two, corners); /* into one point, which no ray hits */
     assert_true(hierarchy_refit(h2));
     assert_true(hierarchy_cost(h2) == 0.0);
     hierarchy *const all[] = {h, h2, none, nothing};
@@ -50,7 +50,7 @@ static void cost_is_that_of_the_areas(void **state)
     mesh_release(empty);
 }
 
-/* Vertices change places across the whole body. */
+/* Permutes vertices across the whole mesh. */
 static void shuffle(mesh *m, uint64_t *seed)
 {
     vec3 *to = copy_of_vertices(m);
@@ -114,11 +114,11 @@ static void a_mesh_keeps_what_followed_it(void **state)
     uint64_t seed = 5;
     mesh *m = icosphere(3);
     vec3 *rest = copy_of_vertices(m);
-    hierarchy_moves moves = follow(m, 1.0); /* keeps none */
+    hierarchy_moves moves = follow(m, 1.0); /* has no hierarchies */
     assert_true(moves.refitted == 0 && moves.rebuilt == 0 && moves.growth == 0.0);
     const hierarchy *bvh = kept(m, HIERARCHY_BVH);
     const double cost = hierarchy_cost(bvh);
-    moves = follow(m, 1.0); /* has not moved: costs what it did */
+    moves = follow(m, 1.0); /* did not move: same cost */
     assert_true(moves.refitted == 1 && moves.rebuilt == 0 && moves.growth == 1.0);
     assert_ptr_equal(kept(m, HIERARCHY_BVH), bvh);
 
@@ -144,7 +144,7 @@ static void a_mesh_keeps_what_followed_it(void **state)
     moves = follow(m, 1e9);
     assert_true(moves.refitted == 1 && moves.rebuilt == 2);
     assert_true(moves.growth ==
-                hierarchy_cost(kept(m, HIERARCHY_BVH)) / rebuilt); /* over that of the last build, not of the first */
+                hierarchy_cost(kept(m, HIERARCHY_BVH)) / rebuilt); /* relative to the last build, not to the first */
     free(rest);
     mesh_release(m);
 }

@@ -1,5 +1,4 @@
-/* Hierarchies of meshes that move: a refitted one gives to the bit the hits of one built anew and of no hierarchy at
- * all. */
+/* Tests of the refit: a refitted hierarchy gives hits bit-identical to those of a rebuilt one and of no hierarchy. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -27,7 +26,7 @@ static void a_refitted_hierarchy_gives_the_hits_of_a_new_one(void **state)
         vec3 *rest = copy_of_vertices(m);
         hierarchy *h = built(m, HIERARCHY_BVH);
         for (size_t way = 0; way < COUNT(deformations); way++) {
-            deform(m, rest, deformations[way], &seed); /* from one to the next, as bodies move */
+            deform(m, rest, deformations[way], &seed); /* from one deformation to the next, as in an animation */
             const bool fits = m->single || !h->single;
             assert_int_equal(hierarchy_refit(h), fits);
             if (fits)
@@ -50,8 +49,8 @@ static void same_boxes(const bvh_node *a, const bvh_node *b, size_t count)
     }
 }
 
-/* Boxes and blocks of a mesh that came back are those of the build to the bit, on every instruction set; in between
- * they were others. */
+/* After a mesh returns to its original shape, boxes and blocks are bit-identical to those of the build, on every
+ * instruction set; in between they differ. */
 static void there_and_back(mesh *m, deformation *way, uint64_t *seed)
 {
     vec3 *rest = copy_of_vertices(m);
@@ -108,14 +107,14 @@ static void what_cannot_be_refitted_is_refused(void **state)
         hierarchy_destroy(h);
     }
     deform(m, rest, collapse, &seed);
-    hierarchy *h = built(m, HIERARCHY_BVH); /* leaves some out, which come back */
+    hierarchy *h = built(m, HIERARCHY_BVH); /* leaves some out, which get an area again */
     move(m, rest);
     assert_false(hierarchy_refit(h));
     hierarchy_destroy(h);
     deform(m, rest, on_floats, &seed);
     h = built(m, HIERARCHY_BVH);
     assert_true(hierarchy_refit(h));
-    move(m, rest); /* no floats */
+    move(m, rest); /* not floats */
     assert_false(hierarchy_refit(h));
     deform(m, rest, on_floats, &seed);
     assert_true(hierarchy_refit(h));

@@ -469,7 +469,7 @@ static void a_port_is_had_once(void **state)
     http_settings settings = {.port = http_port(s)};
     assert_int_equal(http_start(&settings, &second, &why), STATUS_BAD_INPUT);
     assert_null(second);
-    assert_non_null(strstr(why.what, "cannot be had"));
+    assert_non_null(strstr(why.what, "cannot listen on port"));
     settings.port = 65536;
     assert_int_equal(http_start(&settings, &second, &why), STATUS_BAD_INPUT);
     settings = (http_settings){.connections = 2000};

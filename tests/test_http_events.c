@@ -250,8 +250,8 @@ static size_t mutate(uint64_t *seed, char *to, const char *good, size_t size)
 static void random_requests_do_no_harm(void **state)
 {
     (void)state;
-    const char *wanted = getenv("CUVETTE_HTTP_FUZZ");
-    const long count = wanted ? atol(wanted) : 20000;
+    const char *expected = getenv("CUVETTE_HTTP_FUZZ");
+    const long count = expected ? atol(expected) : 20000;
     http_server *s = start((http_settings){.requests_per_s = 1e9});
     char *good[3];
     const char *const host = "Host: 127.0.0.1:", *const bearer = "\r\nAuthorization: Bearer ";

@@ -1,3 +1,4 @@
+/* Tests of single interfaces as a ray meets them: Fresnel's equations, and the onset of total internal reflection. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -6,8 +7,6 @@
 #include <cmocka.h>
 
 #include "probe_fixture.h"
-
-/* Single interfaces as a ray meets them: what Fresnel's equations give, and where total reflection begins. */
 
 static const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}};
 static const double pairs[][2] = {{1.0, 1.5},  {1.5, 1.0},  {1.0, 1.33}, {1.33, 1.0},
@@ -20,7 +19,7 @@ static stage half_space(double outside, double inside, vec3 rotation_deg, const 
     return stage_of(text.at, more);
 }
 
-/* The first hit of a ray that meets the half-space's surface at the origin under an angle. */
+/* The first hit of a ray on the half-space's surface at the origin, at an angle. */
 static const ray_tree *meet(stage *g, double angle, vec3 rotation_deg)
 {
     const vec3 d = turned(vec3_make(sin(angle), -cos(angle), 0.0), rotation_deg);
@@ -49,7 +48,7 @@ static void reflectances_are_those_of_the_textbook(void **state)
 }
 
 /* At 0, 45 and 80 degrees and at Brewster's angle, to 1e-12: sin^2(i - t) / sin^2(i + t), tan^2(i - t) / tan^2(i + t),
- * which know no index (Hecht, eqs. 4.42 and 4.43). The branches weigh R and 1 - R. */
+ * which do not contain the index (Hecht, eqs. 4.42 and 4.43). The branches have weights R and 1 - R. */
 static void reflectances_follow_the_sine_and_tangent_laws(void **state)
 {
     (void)state;
@@ -101,14 +100,14 @@ static void both_sides_reflect_alike(void **state)
     }
 }
 
-/* A body of glass, and a ray inside it from which the angle of incidence follows. */
+/* A glass solid, and a ray inside it that determines the angle of incidence. */
 typedef struct cell {
     const char *name, *shape;
     double offset;
 } cell; /* offset: of the ray's origin from the centre of a sphere of radius 1 */
 static const cell cells[] = {{"box", "shape: box, size: [1, 1, 1]", 0.0}, {"sphere", "shape: sphere, radius: 1", 0.9}};
 
-/* From the box's middle the angle to its upper face is the direction's; in a sphere sin i = offset sin(direction)
+/* From the box's centre the angle at its upper face is that of the direction; in a sphere sin i = offset sin(direction)
  * by the law of sines. */
 static const ray_tree *meet_inside(stage *g, const cell *c, double angle_i, vec3 rotation_deg)
 {
@@ -119,7 +118,7 @@ static const ray_tree *meet_inside(stage *g, const cell *c, double angle_i, vec3
     return stage_ray(g, turned(origin, rotation_deg), turned(d, rotation_deg));
 }
 
-/* Total reflection begins at sin i = n_t / n_i (Hecht, 4.7), and above it nothing passes. */
+/* Total internal reflection begins at sin i = n_t / n_i (Hecht, 4.7); beyond it nothing is transmitted. */
 static void total_reflection_begins_at_the_critical_angle(const cell *c, const char *more)
 {
     for (size_t k = 1; k < COUNT(pairs); k++) {

@@ -35,9 +35,9 @@ static void change(const lab_room *room, const char *values)
 
 static void pin(const lab_room *room)
 {
-    json_t *told = room_ask(room, "POST", "/api/pin?wait=1", "{}", 200);
-    assert_true(json_is_object(json_object_get(told, "pin")));
-    json_decref(told);
+    json_t *json = room_ask(room, "POST", "/api/pin?wait=1", "{}", 200);
+    assert_true(json_is_object(json_object_get(json, "pin")));
+    json_decref(json);
 }
 
 static double number(const json_t *of, const char *key)
@@ -62,10 +62,10 @@ static image *image_of(const char *assignments)
 
 static void refused(const lab_room *room, const char *method, const char *target, int code, const char *words)
 {
-    char *told = room_refused(room, method, target, strcmp(method, "GET") == 0 ? NULL : "{}", code);
-    if (!strstr(told, words))
-        fail_msg("%s: '%s' does not say '%s'", target, told, words);
-    free(told);
+    char *json = room_refused(room, method, target, strcmp(method, "GET") == 0 ? NULL : "{}", code);
+    if (!strstr(json, words))
+        fail_msg("%s: '%s' does not say '%s'", target, json, words);
+    free(json);
 }
 
 /* The body of a reply with a picture. */
@@ -102,28 +102,28 @@ static image *decoded(const lab_room *room, const char *target)
 static void without_a_pin_there_is_nothing_to_compare(void **state)
 {
     free(room_film(*state));
-    refused(*state, "GET", "/api/compare", 409, "no picture is pinned");
+    refused(*state, "GET", "/api/compare", 409, "no reference image is pinned");
     refused(*state, "GET", "/api/compare?wait=1", 409, "POST /api/pin");
-    refused(*state, "GET", "/api/compare.png", 409, "no picture is pinned");
-    refused(*state, "GET", "/api/pin.png", 404, "no picture is pinned");
-    json_t *told = room_get(*state, "/api/state");
-    assert_true(json_is_null(json_object_get(told, "pin")));
-    json_decref(told);
+    refused(*state, "GET", "/api/compare.png", 409, "no reference image is pinned");
+    refused(*state, "GET", "/api/pin.png", 404, "no reference image is pinned");
+    json_t *json = room_get(*state, "/api/state");
+    assert_true(json_is_null(json_object_get(json, "pin")));
+    json_decref(json);
     json_decref(room_ask(*state, "DELETE", "/api/pin", "{}", 200));
 }
 
 static void equal_pictures_have_no_difference(void **state)
 {
     pin(*state);
-    json_t *told = room_get(*state, "/api/compare?wait=1"), *c = json_object_get(told, "comparison");
+    json_t *json = room_get(*state, "/api/compare?wait=1"), *c = json_object_get(json, "comparison");
     assert_true(json_is_null(json_object_get(c, "psnr_db")));
     assert_true(json_is_null(json_object_get(c, "largest_at")));
     assert_true(number(c, "mse") == 0.0 && number(c, "flip") == 0.0 && number(c, "largest") == 0.0 &&
                 number(c, "differing_share") == 0.0);
     assert_true(number(c, "ssim") == 1.0);
-    assert_int_equal(json_array_size(json_object_get(told, "changed")), 0);
-    assert_true(json_equal(json_object_get(told, "a"), json_object_get(told, "b")));
-    json_decref(told);
+    assert_int_equal(json_array_size(json_object_get(json, "changed")), 0);
+    assert_true(json_equal(json_object_get(json, "a"), json_object_get(json, "b")));
+    json_decref(json);
 }
 
 static void check_numbers(const json_t *c, const image_comparison *found)
@@ -158,28 +158,28 @@ static void numbers_and_map_are_those_of_the_pictures(void **state)
 {
     pin(*state);
     change(*state, "\"ball.ior\": 1.7");
-    json_t *told = room_get(*state, "/api/compare?wait=1");
+    json_t *json = room_get(*state, "/api/compare?wait=1");
     image *a = image_of(""), *b = image_of("ball.ior=1.7");
     image_comparison found;
     assert_int_equal(image_compare(a, b, &found, NULL), STATUS_OK);
     assert_true(found.largest > 0.05);
-    check_numbers(json_object_get(told, "comparison"), &found);
+    check_numbers(json_object_get(json, "comparison"), &found);
     check_map(*state, a, b);
-    assert_string_not_equal(json_string_value(json_object_get(json_object_get(told, "a"), "film_hash")),
-                            json_string_value(json_object_get(json_object_get(told, "b"), "film_hash")));
-    assert_true(number(json_object_get(told, "a"), "rays") > 64 * 48);
-    assert_true(number(json_object_get(told, "b"), "generation") > number(json_object_get(told, "a"), "generation"));
-    json_decref(told);
+    assert_string_not_equal(json_string_value(json_object_get(json_object_get(json, "a"), "film_hash")),
+                            json_string_value(json_object_get(json_object_get(json, "b"), "film_hash")));
+    assert_true(number(json_object_get(json, "a"), "rays") > 64 * 48);
+    assert_true(number(json_object_get(json, "b"), "generation") > number(json_object_get(json, "a"), "generation"));
+    json_decref(json);
     change(*state, "\"ball.ior\": 1.2");
-    told = room_get(*state, "/api/compare?wait=1");
+    json = room_get(*state, "/api/compare?wait=1");
     image *c = image_of("ball.ior=1.2");
     assert_int_equal(image_compare(a, c, &found, NULL), STATUS_OK);
-    check_numbers(json_object_get(told, "comparison"), &found);
+    check_numbers(json_object_get(json, "comparison"), &found);
     check_map(*state, a, c);
     image_destroy(a);
     image_destroy(b);
     image_destroy(c);
-    json_decref(told);
+    json_decref(json);
 }
 
 typedef enum shown { SHOWN_OTHER, SHOWN_COARSE, SHOWN_FINAL } shown;
@@ -187,10 +187,10 @@ typedef enum shown { SHOWN_OTHER, SHOWN_COARSE, SHOWN_FINAL } shown;
 /* What the newest picture is of that generation. */
 static shown shown_of(const lab_room *room, json_int_t generation)
 {
-    json_t *told = room_get(room, "/api/state"), *newest = json_object_get(told, "picture");
+    json_t *json = room_get(room, "/api/state"), *newest = json_object_get(json, "picture");
     const bool its = json_integer_value(json_object_get(newest, "generation")) == generation,
                final = json_is_true(json_object_get(newest, "final"));
-    json_decref(told);
+    json_decref(json);
     return !its ? SHOWN_OTHER : final ? SHOWN_FINAL : SHOWN_COARSE;
 }
 
@@ -205,9 +205,9 @@ static void a_picture_that_is_not_finished_is_not_compared(void **state)
     refused(*state, "POST", "/api/pin", 409, "?wait=1");
     assert_int_equal(shown_of(*state, heavy), SHOWN_COARSE);
     room_post(*state, "/api/undo", "{}");
-    json_t *told = room_get(*state, "/api/compare?wait=1");
-    assert_true(number(json_object_get(told, "b"), "generation") > (double)heavy);
-    json_decref(told);
+    json_t *json = room_get(*state, "/api/compare?wait=1");
+    assert_true(number(json_object_get(json, "b"), "generation") > (double)heavy);
+    json_decref(json);
 }
 
 static void the_pinned_picture_stays(void **state)
@@ -223,7 +223,7 @@ static void the_pinned_picture_stays(void **state)
     assert_true(found.largest <= 0.51 / 65535);
     assert_int_equal(image_compare(a, plain, &found, NULL), STATUS_OK);
     assert_true(found.largest <= 0.51 / 255 && found.largest > 0.51 / 65535);
-    refused(*state, "GET", "/api/pin.png?bits=9", 400, "8 nor 16");
+    refused(*state, "GET", "/api/pin.png?bits=9", 400, "?bits=16");
     image_destroy(a);
     image_destroy(fine);
     image_destroy(plain);
@@ -231,14 +231,14 @@ static void the_pinned_picture_stays(void **state)
 
 static void wanted_change(const json_t *list, size_t at, const char *path, const char *a, const char *b)
 {
-    json_t *wanted = json_pack("{s:s, s:o, s:o}", "path", path, "a", json_loads(a, JSON_DECODE_ANY, NULL), "b",
-                               json_loads(b, JSON_DECODE_ANY, NULL));
-    char *text = json_dumps(json_array_get(list, at), 0), *wanted_text = json_dumps(wanted, 0);
-    if (!json_equal(json_array_get(list, at), wanted))
+    json_t *expected = json_pack("{s:s, s:o, s:o}", "path", path, "a", json_loads(a, JSON_DECODE_ANY, NULL), "b",
+                                 json_loads(b, JSON_DECODE_ANY, NULL));
+    char *text = json_dumps(json_array_get(list, at), 0), *wanted_text = json_dumps(expected, 0);
+    if (!json_equal(json_array_get(list, at), expected))
         fail_msg("%s is there, and wanted is %s", text ? text : "nothing", wanted_text);
     free(text);
     free(wanted_text);
-    json_decref(wanted);
+    json_decref(expected);
 }
 
 static void it_says_which_parameters_changed(void **state)
@@ -248,13 +248,13 @@ static void it_says_which_parameters_changed(void **state)
            "\"ball.ior\": 1.7, \"lamp.position\": [1, 2, 3], \"render.threads\": 1, \"background.kind\": \"gradient\"");
     change(*state, "\"ball.radius\": 0.5");
     change(*state, "\"ball.radius\": 1");
-    json_t *told = room_get(*state, "/api/compare?wait=1"), *list = json_object_get(told, "changed");
+    json_t *json = room_get(*state, "/api/compare?wait=1"), *list = json_object_get(json, "changed");
     assert_int_equal(json_array_size(list), 4);
     wanted_change(list, 0, "render.threads", "2", "1");
     wanted_change(list, 1, "background.kind", "\"uniform\"", "\"gradient\"");
     wanted_change(list, 2, "lamp.position", "[4.0, 7.0, -5.0]", "[1.0, 2.0, 3.0]");
     wanted_change(list, 3, "ball.ior", "1.5", "1.7");
-    json_decref(told);
+    json_decref(json);
 }
 
 /* A solid that has its material's colour changes with it, which goes without saying; one that got another does not. */
@@ -262,15 +262,15 @@ static void a_material_is_named_once(void **state)
 {
     pin(*state);
     change(*state, "\"tiles.color\": [0.1, 0.2, 0.3]");
-    json_t *told = room_get(*state, "/api/compare?wait=1");
-    assert_int_equal(json_array_size(json_object_get(told, "changed")), 1);
-    wanted_change(json_object_get(told, "changed"), 0, "tiles.color", "[0.8, 0.8, 0.8]", "[0.1, 0.2, 0.3]");
-    json_decref(told);
+    json_t *json = room_get(*state, "/api/compare?wait=1");
+    assert_int_equal(json_array_size(json_object_get(json, "changed")), 1);
+    wanted_change(json_object_get(json, "changed"), 0, "tiles.color", "[0.8, 0.8, 0.8]", "[0.1, 0.2, 0.3]");
+    json_decref(json);
     change(*state, "\"ground.color\": [0.5, 0.5, 0.5]");
-    told = room_get(*state, "/api/compare?wait=1");
-    assert_int_equal(json_array_size(json_object_get(told, "changed")), 2);
-    wanted_change(json_object_get(told, "changed"), 1, "ground.color", "[0.8, 0.8, 0.8]", "[0.5, 0.5, 0.5]");
-    json_decref(told);
+    json = room_get(*state, "/api/compare?wait=1");
+    assert_int_equal(json_array_size(json_object_get(json, "changed")), 2);
+    wanted_change(json_object_get(json, "changed"), 1, "ground.color", "[0.8, 0.8, 0.8]", "[0.5, 0.5, 0.5]");
+    json_decref(json);
 }
 
 static const json_t *entry(const json_t *list, const char *path)
@@ -287,39 +287,39 @@ static void objects_that_come_and_go_have_parameters_on_one_side(void **state)
     pin(*state);
     json_decref(room_ask(*state, "DELETE", "/api/objects/ball", "{}", 200));
     json_decref(room_ask(*state, "POST", "/api/objects", "{\"kind\": \"light\", \"name\": \"sun\"}", 200));
-    json_t *told = room_get(*state, "/api/compare?wait=1"), *list = json_object_get(told, "changed");
+    json_t *json = room_get(*state, "/api/compare?wait=1"), *list = json_object_get(json, "changed");
     assert_true(json_is_null(json_object_get(entry(list, "ball.radius"), "b")));
     assert_true(number(entry(list, "ball.radius"), "a") == 1.0);
     assert_true(json_is_null(json_object_get(entry(list, "sun.intensity"), "a")));
     assert_true(json_is_number(json_object_get(entry(list, "sun.intensity"), "b")));
-    json_decref(told);
+    json_decref(json);
 }
 
 static void pictures_of_two_sizes_have_no_comparison(void **state)
 {
     pin(*state);
     change(*state, "\"render.width\": 32");
-    json_t *told = room_get(*state, "/api/compare?wait=1");
-    assert_true(json_is_null(json_object_get(told, "comparison")));
-    assert_true(number(json_object_get(told, "a"), "width") == 64 && number(json_object_get(told, "b"), "width") == 32);
-    assert_int_equal(json_array_size(json_object_get(told, "changed")), 1);
+    json_t *json = room_get(*state, "/api/compare?wait=1");
+    assert_true(json_is_null(json_object_get(json, "comparison")));
+    assert_true(number(json_object_get(json, "a"), "width") == 64 && number(json_object_get(json, "b"), "width") == 32);
+    assert_int_equal(json_array_size(json_object_get(json, "changed")), 1);
     refused(*state, "GET", "/api/compare.png", 409, "");
-    json_decref(told);
+    json_decref(json);
 }
 
 static void what_is_let_go_of_is_gone(void **state)
 {
     pin(*state);
-    json_t *told = room_get(*state, "/api/state");
-    assert_true(number(json_object_get(told, "pin"), "width") == 64);
-    json_decref(told);
-    told = room_ask(*state, "DELETE", "/api/pin", "{}", 200);
-    assert_true(json_is_null(json_object_get(told, "pin")));
-    json_decref(told);
-    refused(*state, "GET", "/api/compare", 409, "no picture is pinned");
-    told = room_get(*state, "/api/state");
-    assert_true(json_is_null(json_object_get(told, "pin")));
-    json_decref(told);
+    json_t *json = room_get(*state, "/api/state");
+    assert_true(number(json_object_get(json, "pin"), "width") == 64);
+    json_decref(json);
+    json = room_ask(*state, "DELETE", "/api/pin", "{}", 200);
+    assert_true(json_is_null(json_object_get(json, "pin")));
+    json_decref(json);
+    refused(*state, "GET", "/api/compare", 409, "no reference image is pinned");
+    json = room_get(*state, "/api/state");
+    assert_true(json_is_null(json_object_get(json, "pin")));
+    json_decref(json);
 }
 
 typedef struct asker {

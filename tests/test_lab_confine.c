@@ -158,19 +158,20 @@ static char *trouble(const room *r)
 
 static void is_loaded(const room *r, const char *what)
 {
-    char *said = trouble(r);
-    if (said[0])
-        fail_msg("%s: %s", what, said);
-    free(said);
+    char *message = trouble(r);
+    if (message[0])
+        fail_msg("%s: %s", what, message);
+    free(message);
 }
 
 /* word: what it must name. */
 static void is_refused(const room *r, const char *what, const char *word)
 {
-    char *said = trouble(r);
-    if (!strstr(said, word) || strchr(said, '\n') || (!strstr(said, BELOW_WHAT) && !strstr(said, "No such file")))
-        fail_msg("%s: '%s'", what, said);
-    free(said);
+    char *message = trouble(r);
+    if (!strstr(message, word) || strchr(message, '\n') ||
+        (!strstr(message, BELOW_WHAT) && !strstr(message, "No such file")))
+        fail_msg("%s: '%s'", what, message);
+    free(message);
 }
 
 /* --- what models name --- */
@@ -276,10 +277,10 @@ static void test_models_that_are_added(void **state)
 {
     const room *r = *state;
     put(r, "lab/m.obj", "mtllib ../a.mtl\n" TRIANGLE);
-    char *said = room_refused(&r->lab, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"m.obj\"}", 400);
-    assert_non_null(strstr(said, "../a.mtl"));
-    assert_non_null(strstr(said, BELOW_WHAT));
-    free(said);
+    char *message = room_refused(&r->lab, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"m.obj\"}", 400);
+    assert_non_null(strstr(message, "../a.mtl"));
+    assert_non_null(strstr(message, BELOW_WHAT));
+    free(message);
     put(r, "lab/m.obj", "mtllib a.mtl\n" TRIANGLE);
     room_post(&r->lab, "/api/objects", "{\"kind\": \"model\", \"file\": \"m.obj\"}");
     is_loaded(r, "a model that is added");
@@ -290,9 +291,9 @@ static void test_models_that_are_added(void **state)
 /* A model's own file is looked at before it is handed to assimp. */
 static void is_said_of_the_file_itself(const room *r)
 {
-    char *said = trouble(r);
-    assert_null(strstr(said, "needs"));
-    free(said);
+    char *message = trouble(r);
+    assert_null(strstr(message, "needs"));
+    free(message);
 }
 
 static void test_files_that_become_links(void **state)
@@ -487,9 +488,9 @@ static void test_triangles_of_the_laboratory(void **state)
     open_scene(r, SCENE("meshes: {many: {file: many.obj}, sparse: {generate: sparse, count: 3999900}}\n"));
     is_loaded(r, "just as many");
     open_scene(r, SCENE("meshes: {many: {file: many.obj}, sparse: {generate: sparse, count: 3999901}}\n"));
-    char *said = trouble(r);
-    assert_non_null(strstr(said, "4000001 triangles"));
-    free(said);
+    char *message = trouble(r);
+    assert_non_null(strstr(message, "4000001 triangles"));
+    free(message);
 }
 
 int main(void)

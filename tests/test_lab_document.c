@@ -46,17 +46,17 @@ static uint64_t apply(scene_document *d, const char *assignment)
     return apply_as(d, assignment, NULL);
 }
 
-static void assert_value(scene_document *d, const char *path, const char *wanted)
+static void assert_value(scene_document *d, const char *path, const char *expected)
 {
     char *value = NULL;
     scene *s = scene_document_take(d, NULL);
     assert_int_equal(scene_get(s, path, &value, NULL), STATUS_OK);
-    assert_string_equal(value, wanted);
+    assert_string_equal(value, expected);
     free(value);
     scene_destroy(s);
 }
 
-static json_t *told(scene_document *d)
+static json_t *state_json(scene_document *d)
 {
     json_t *state = json_object();
     assert_true(scene_document_json(d, state));
@@ -65,7 +65,7 @@ static json_t *told(scene_document *d)
 
 static void assert_told(scene_document *d, const char *key, const char *text)
 {
-    json_t *state = told(d);
+    json_t *state = state_json(d);
     const json_t *value = json_object_get(state, key);
     if (text)
         assert_string_equal(json_string_value(value), text);
@@ -224,7 +224,7 @@ static void resets_go_back_to_what_was_opened(void **state)
 
 static bool is_saved(scene_document *d)
 {
-    json_t *state = told(d);
+    json_t *state = state_json(d);
     const bool saved = json_is_true(json_object_get(state, "saved"));
     json_decref(state);
     return saved;
@@ -260,11 +260,11 @@ static void what_was_loaded_is_shared(void **state)
     scene *s = scene_document_take(d, &generation);
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
     const mesh *loaded = s->meshes[0].data;
-    scene_document_lend(d, s, generation + 1); /* of another generation */
+    scene_document_share_loaded(d, s, generation + 1); /* of another generation */
     scene *other = scene_document_take(d, NULL);
     assert_null(other->meshes[0].data);
     scene_destroy(other);
-    scene_document_lend(d, s, generation);
+    scene_document_share_loaded(d, s, generation);
     apply(d, "ball.ior=1.6");
     other = scene_document_take(d, NULL);
     assert_ptr_equal(other->meshes[0].data, loaded);

@@ -132,7 +132,7 @@ static json_int_t generation(const room *r)
 }
 
 /* A text of the state, "" for null; static memory. */
-static const char *told(const room *r, const char *key, char text[256])
+static const char *state_text(const room *r, const char *key, char text[256])
 {
     json_t *state = ask(r, 200, "GET", "/api/state", NULL);
     const char *value = json_string_value(json_object_get(state, key));
@@ -239,14 +239,14 @@ static void test_open_and_undo(void **state)
     char first[64], hash[64], text[256];
     film(r, first);
     tell(r, 200, "POST", "/api/open", "{\"new\": true}");
-    assert_string_equal(told(r, "file", text), "");
-    assert_string_equal(told(r, "title", text), "A new scene");
+    assert_string_equal(state_text(r, "file", text), "");
+    assert_string_equal(state_text(r, "title", text), "A new scene");
     tell(r, 200, "POST", "/api/set", "{\"set\": {\"render.width\": 40, \"render.height\": 30}}");
     film(r, hash);
     assert_string_not_equal(hash, first);
     tell(r, 200, "POST", "/api/undo", "{}");
     tell(r, 200, "POST", "/api/undo", "{}");
-    assert_string_equal(told(r, "file", text), "deep/ball.yaml");
+    assert_string_equal(state_text(r, "file", text), "deep/ball.yaml");
     film(r, hash);
     assert_string_equal(hash, first);
     tell(r, 200, "POST", "/api/open", "{\"file\": \"deep/ball.yaml\"}");
@@ -279,7 +279,7 @@ static void test_save(void **state)
     tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
     /* Whose paths are now from another folder. */
     tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": true}");
-    assert_string_equal(told(r, "file", text), "wrong.yaml");
+    assert_string_equal(state_text(r, "file", text), "wrong.yaml");
     tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
     tell(r, 200, "POST", "/api/save", "{\"file\": \"deep/Another \\u00fc.yml\"}");
     assert_true(is_there(r, "lab/deep/Another \xc3\xbc.yml"));
@@ -414,7 +414,7 @@ static void test_change(void **state)
     tell(r, 200, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, -0.5], \"gesture\": \"a\"}");
     tell(r, 200, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, -0.5], \"gesture\": \"a\"}");
     assert_float_equal(value(r, "ball.position", 0), 2.0, 1e-12);
-    assert_string_equal(told(r, "undo", text), "move ball");
+    assert_string_equal(state_text(r, "undo", text), "move ball");
     tell(r, 200, "POST", "/api/undo", "{}");
     assert_float_equal(value(r, "ball.position", 0), 0.0, 1e-12); /* one gesture, one step */
     tell(r, 200, "POST", "/api/objects/ball/turn", "{\"by\": [0, 90, 0]}");
@@ -535,7 +535,7 @@ static void test_whole_scene(void **state)
     assert_true(fabs(value(r, "lamp.position", 0) - (lamp + 1.0)) < 1e-12);
     assert_true(fabs(value(r, "ball.position", 0) - (ball + 1.0)) < 1e-12);
     assert_true(fabs(value(r, "camera.position", 0) - (eye)) < 1e-12);
-    assert_string_equal(told(r, "undo", text), "move all");
+    assert_string_equal(state_text(r, "undo", text), "move all");
     tell(r, 200, "POST", "/api/objects/solids%2Bcamera/move", "{\"by\": [-1, 0, 0]}");
     assert_true(fabs(value(r, "lamp.position", 0) - (lamp + 1.0)) < 1e-12);
     assert_true(fabs(value(r, "ball.position", 0) - (ball)) < 1e-12);

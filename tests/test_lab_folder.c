@@ -291,7 +291,7 @@ static void test_list(void **state)
     put(r->inside, "bad\xff.png", "");
     put(r->inside, "notes.txt", "");
     link_to(r->inside, "passwd.png", "/etc/passwd");
-    json_t *all = folder_tell(r->f);
+    json_t *all = folder_json(r->f);
     assert_string_equal(json_string_value(json_object_get(all, "folder")), "lab");
     assert_true(lists(all, "scenes", "a scene.yaml") && lists(all, "scenes", "sub/Kuh-\xc3\xbc.yml") &&
                 lists(all, "scenes", "broken.yaml"));
@@ -317,7 +317,7 @@ static void test_list_is_bounded(void **state)
         snprintf(name, sizeof name, "aa/%d.png", i);
         put(r->inside, name, "");
     }
-    json_t *all = folder_tell(r->f);
+    json_t *all = folder_json(r->f);
     size_t count = 0;
     static const char *const uses[] = {"scenes", "models", "pictures", "scripts", "studies"};
     for (size_t i = 0; i < sizeof uses / sizeof *uses; i++)

@@ -58,15 +58,15 @@ static void attach(live *l, scene *stage)
 static bool advance(live *l)
 {
     diagnostic why = {.what = ""};
-    bool told = false;
-    if (live_advance(l, most_s, &told, &why) != STATUS_OK)
+    bool json = false;
+    if (live_advance(l, most_s, &json, &why) != STATUS_OK)
         fail_msg("%s", why.what);
-    return told;
+    return json;
 }
 
 static json_t *part(live *l, const char *key)
 {
-    json_t *all = live_tell(l), *value = json_incref(json_object_get(all, key));
+    json_t *all = live_json(l), *value = json_incref(json_object_get(all, key));
     json_decref(all);
     return value;
 }
@@ -158,7 +158,7 @@ static void it_is_off_until_it_is_played(void **state)
     (void)state;
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
-    json_t *nothing = live_tell(l);
+    json_t *nothing = live_json(l);
     assert_true(json_is_null(nothing));
     json_decref(nothing);
     attach(l, s);
@@ -167,14 +167,14 @@ static void it_is_off_until_it_is_played(void **state)
     diagnostic why = {.what = ""};
     assert_int_equal(scene_load(s, &why), STATUS_OK);
     const mesh *own = s->meshes[TOY].data;
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     assert_true(live_is_due(l) && live_is_on(l));
     assert_true(advance(l));
     assert_true(live_is_moving(l));
     assert_true(live_take_moved(l));
     assert_ptr_not_equal(s->meshes[TOY].data, own);
     assert_non_null(s->meshes[0].data);
-    live_give(l, LIVE_OFF);
+    live_send(l, LIVE_OFF);
     advance(l);
     assert_ptr_equal(s->meshes[TOY].data, own);
     assert_true(s->meshes[TOY].time_s == 0.05);
@@ -192,20 +192,20 @@ static void time_goes_on_and_stands_still(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "toy.ground=off"); /* it falls for ever */
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     while (number(l, "time_s") < 0.05)
         go_on(l);
     assert_true(s->meshes[TOY].time_s == number(l, "time_s"));
     assert_true(number(l, "speed") > 0.0);
     assert_true(fabs(number(l, "volume") / number(l, "volume_at_rest") - 1.0) < 0.01);
-    live_give(l, LIVE_PAUSE);
+    live_send(l, LIVE_PAUSE);
     assert_true(advance(l));
     const double then_s = number(l, "time_s");
     assert_false(flag(l, "playing"));
     assert_false(advance(l));
     assert_false(live_is_due(l));
     assert_true(number(l, "time_s") == then_s);
-    live_give(l, LIVE_RESTART);
+    live_send(l, LIVE_RESTART);
     advance(l);
     assert_true(flag(l, "playing"));
     assert_true(number(l, "time_s") < then_s);
@@ -220,7 +220,7 @@ static void a_pull_draws_it_out_and_it_comes_back(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     while (number(l, "time_s") < 0.5) /* until the floor has it */
         go_on(l);
     const bounds3 rest = s->meshes[TOY].data->bounds;
@@ -232,10 +232,10 @@ static void a_pull_draws_it_out_and_it_comes_back(void **state)
     assert_true(h.hand > 0);
     assert_true(fabs(h.where.x - 0.2) < 1e-9 && h.where.z < 0.0 && h.where.z > -1.0);
     assert_true(number(l, "held") > 0);
-    vec3 told;
+    vec3 json;
     diagnostic why = {.what = ""};
-    assert_int_equal(live_where(l, h.hand, &told, &why), STATUS_OK);
-    assert_true(told.x == h.where.x && told.y == h.where.y && told.z == h.where.z);
+    assert_int_equal(live_where(l, h.hand, &json, &why), STATUS_OK);
+    assert_true(json.x == h.where.x && json.y == h.where.y && json.z == h.where.z);
     assert_int_equal(live_move(l, h.hand, vec3_make(-1.0, 0, 0), &why), STATUS_OK);
     while (skin_low(s).x > rest.low.x - 0.8)
         go_on(l);
@@ -259,7 +259,7 @@ static void a_hand_wakes_what_rests(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     come_to_rest(l);
     assert_false(live_is_due(l));
     puller h = grab(l, 1, 0), other = grab(l, 1.3, 0.7);
@@ -283,7 +283,7 @@ static void rest_is_seen_at_more_than_one_look(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     come_to_rest(l);
     grab(l, 1, 0);
     diagnostic why = {.what = ""};
@@ -316,7 +316,7 @@ static void other_colours_leave_its_shape(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     advance(l);
     puller h = grab(l, 0.2, 0);
     diagnostic why = {.what = ""};
@@ -336,7 +336,7 @@ static void other_colours_leave_its_shape(void **state)
     assert_int_equal(live_move(l, h.hand, vec3_make(-1.5, 0.3, 0), &why), STATUS_OK);
     while (skin_low(s).x > -2.0)
         go_on(l);
-    live_give(l, LIVE_OFF);
+    live_send(l, LIVE_OFF);
     advance(l);
     assert_true(s->meshes[TOY].time_s == 0.2 && !s->meshes[TOY].data);
     free(before);
@@ -352,7 +352,7 @@ static void another_body_begins_anew(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         while (number(l, "time_s") == 0.0)
             go_on(l);
@@ -373,7 +373,7 @@ static void another_body_begins_anew(void **state)
     s = scene_with("solids: {ball: {shape: sphere}}\n", "");
     attach(l, s);
     assert_false(live_is_on(l));
-    json_t *nothing = live_tell(l);
+    json_t *nothing = live_json(l);
     assert_true(json_is_null(nothing));
     json_decref(nothing);
     live_detach(l);
@@ -387,7 +387,7 @@ static void a_body_that_blows_up_says_so_until_it_is_started_again(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "toy.stiffness=1e7");
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     while (!is_troubled(l))
         advance(l);
     assert_false(flag(l, "playing"));
@@ -395,7 +395,7 @@ static void a_body_that_blows_up_says_so_until_it_is_started_again(void **state)
     assert_false(advance(l));
     puller h = grab(l, 1, 0);
     assert_int_equal(h.code, STATUS_BAD_INPUT);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     advance(l);
     assert_true(number(l, "time_s") < 0.05);
     while (!is_troubled(l))
@@ -431,7 +431,7 @@ static void a_script_plays_until_hands_are_in_its_way(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, assignment);
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     while (number(l, "time_s") < 0.55) {
         go_on(l);
         assert_true(live_is_moving(l)); /* before it is over nothing is at rest */
@@ -464,7 +464,7 @@ static void a_slime_that_cannot_begin_says_why(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "toy.script=/nowhere/to/be/found.yaml");
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     assert_true(advance(l));
     assert_true(is_troubled(l));
     assert_false(live_is_moving(l) || live_is_due(l));
@@ -487,7 +487,7 @@ static void who_waits_is_told_when_nobody_paints_any_more(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     advance(l);
     puller h = {.l = l, .origin = vec3_make(1, 0, -6), .direction = vec3_make(0, 0, 1)};
     pthread_t thread;
@@ -510,9 +510,9 @@ static void *give_orders(void *of)
     for (int i = 0; i < 50; i++) {
         live_grab(h->l, h->origin, h->direction, 0.3, &h->hand, &h->where, &h->why);
         live_move(h->l, h->hand, vec3_make(0.1 * (i % 5), 0, 0), &why);
-        json_decref(live_tell(h->l));
+        json_decref(live_json(h->l));
         if (i % 10 == 9)
-            live_give(h->l, LIVE_RESTART);
+            live_send(h->l, LIVE_RESTART);
         live_release(h->l, h->hand, &why);
     }
     atomic_store(&h->done, true);
@@ -527,7 +527,7 @@ static void many_may_order(void **state)
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
     attach(l, s);
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     puller h[THREADS];
     pthread_t threads[THREADS];
     for (int i = 0; i < THREADS; i++) {
@@ -557,7 +557,7 @@ static void an_order_for_a_slime_to_come_is_kept(void **state)
     static const char bare[] = "camera: {position: [0, 0, -6], target: [0, 0, 0]}\n";
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(bare, ""), *next = scene_with(toys, "");
-    live_give(l, LIVE_PLAY);
+    live_send(l, LIVE_PLAY);
     attach(l, s);
     live_detach(l);
     attach(l, next);

@@ -44,27 +44,27 @@ static long resident_kib(void)
  * generation. */
 typedef struct tab {
     pthread_t thread;
-    json_int_t wanted, seen, serial,
-        told; /* told: generation of the latest state; wanted: atomic, 0 while it is not known */
+    json_int_t expected, seen, serial,
+        json; /* told: generation of the latest state; wanted: atomic, 0 while it is not known */
     bool disorder;
 } tab;
 
 static void take_event(tab *t, const char *line)
 {
-    json_t *told = json_loads(line, 0, NULL);
-    if (json_object_get(told, "passes")) {
-        const json_int_t serial = json_integer_value(json_object_get(told, "serial"));
+    json_t *json = json_loads(line, 0, NULL);
+    if (json_object_get(json, "passes")) {
+        const json_int_t serial = json_integer_value(json_object_get(json, "serial"));
         t->disorder |= serial <= t->serial;
         t->serial = serial;
-        if (json_is_true(json_object_get(told, "final")))
-            t->seen = json_integer_value(json_object_get(told, "generation"));
+        if (json_is_true(json_object_get(json, "final")))
+            t->seen = json_integer_value(json_object_get(json, "generation"));
         free(client_ask(room.server, "GET", "/api/picture.png", "", NULL));
-    } else if (json_object_get(told, "undo")) {
-        const json_int_t generation = json_integer_value(json_object_get(told, "generation"));
-        t->disorder |= generation < t->told;
-        t->told = generation;
+    } else if (json_object_get(json, "undo")) {
+        const json_int_t generation = json_integer_value(json_object_get(json, "generation"));
+        t->disorder |= generation < t->json;
+        t->json = generation;
     }
-    json_decref(told);
+    json_decref(json);
 }
 
 static void *be_a_tab(void *of)
@@ -78,11 +78,11 @@ static void *be_a_tab(void *of)
     FILE *in = fdopen(fd, "r");
     char *line = NULL;
     size_t room_of_line = 0;
-    json_int_t wanted = 0;
-    while ((!wanted || t->seen < wanted) && getline(&line, &room_of_line, in) > 0) {
+    json_int_t expected = 0;
+    while ((!expected || t->seen < expected) && getline(&line, &room_of_line, in) > 0) {
         if (strncmp(line, "data: ", 6) == 0)
             take_event(t, line + 6);
-        wanted = __atomic_load_n(&t->wanted, __ATOMIC_RELAXED);
+        expected = __atomic_load_n(&t->expected, __ATOMIC_RELAXED);
     }
     free(line);
     fclose(in);
@@ -106,7 +106,7 @@ static void ten_pages_and_a_thousand_changes(void **state)
     }
     /* The generation is told beforehand; one more change makes sure that they hear of it. */
     for (int i = 0; i < PAGES; i++)
-        __atomic_store_n(&tabs[i].wanted, CHANGES + 2, __ATOMIC_RELAXED);
+        __atomic_store_n(&tabs[i].expected, CHANGES + 2, __ATOMIC_RELAXED);
     assert_int_equal(room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.5}}"), CHANGES + 2);
     for (int i = 0; i < PAGES; i++) {
         pthread_join(tabs[i].thread, NULL);
@@ -146,7 +146,7 @@ static void states_are_told_in_order(void **state)
         assert_int_equal(pthread_create(&others[i], NULL, push_and_pull, NULL), 0);
     for (int i = 0; i < PAGES; i++)
         pthread_join(others[i], NULL);
-    __atomic_store_n(&listener.wanted, PAGES * CHANGES + 2, __ATOMIC_RELAXED);
+    __atomic_store_n(&listener.expected, PAGES * CHANGES + 2, __ATOMIC_RELAXED);
     assert_int_equal(room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.5}}"), PAGES * CHANGES + 2);
     pthread_join(listener.thread, NULL);
     assert_false(listener.disorder);
@@ -302,8 +302,8 @@ static char *ask_randomly(uint64_t *seed, const char **method)
 static void random_requests_do_no_harm(void **state)
 {
     (void)state;
-    const char *wanted = getenv("CUVETTE_LAB_FUZZ");
-    const long count = wanted ? atol(wanted) : 4000;
+    const char *expected = getenv("CUVETTE_LAB_FUZZ");
+    const long count = expected ? atol(expected) : 4000;
     uint64_t seed = 6;
     long by_hundred[6] = {0}, early_kib = 0;
     for (long i = 0; i < count; i++) {
@@ -324,7 +324,7 @@ static void random_requests_do_no_harm(void **state)
     const long grown_kib = resident_kib() - early_kib;
     if (grown_kib > 256 * 1024)
         fail_msg("%ld KiB more than after a quarter of the requests", grown_kib);
-    if (wanted)
+    if (expected)
         print_message("%ld requests: %ld good, %ld refused, %ld without an answer; memory grew by %ld KiB over the "
                       "last three quarters\n",
                       count, by_hundred[2], by_hundred[4], by_hundred[0], grown_kib);

@@ -20,7 +20,7 @@ typedef struct studio {
     render_worker *p;
     pthread_mutex_t lock;
     uint64_t serial, generation; /* of the last picture */
-    int images, passes_after_final, told;
+    int images, passes_after_final, json;
     bool final;
 } studio;
 
@@ -44,7 +44,7 @@ static void be_told(void *of)
 {
     studio *s = of;
     pthread_mutex_lock(&s->lock);
-    s->told++;
+    s->json++;
     pthread_mutex_unlock(&s->lock);
 }
 
@@ -160,10 +160,10 @@ static void trouble_is_told_and_goes(void **state)
     assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
     assert_null(shown);
     assert_non_null(strstr(why.what, "background.picture"));
-    json_t *told = json_object();
-    assert_true(render_worker_json(s.p, told));
-    assert_true(json_is_object(json_object_get(told, "trouble")));
-    json_decref(told);
+    json_t *json = json_object();
+    assert_true(render_worker_json(s.p, json));
+    assert_true(json_is_object(json_object_get(json, "trouble")));
+    json_decref(json);
     assert_int_equal(scene_document_undo(s.d, false, NULL, NULL), STATUS_OK);
     final_film(&s);
     apply(&s, "lamp.color=1000,1000,1000");
@@ -179,12 +179,12 @@ static void nothing_is_rendered_while_it_waits(void **state)
     studio s;
     open_studio(&s, scene_from(BALL_SCENE));
     final_film(&s);
-    render_worker_suspend(s.p, "a study measures");
+    render_worker_suspend(s.p, "a study is measuring");
     apply(&s, "ball.ior=1.7");
     const shared_image *shown;
     diagnostic why = {0};
     assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_INTERRUPTED);
-    assert_non_null(strstr(why.what, "a study measures"));
+    assert_non_null(strstr(why.what, "a study is measuring"));
     shown = render_worker_take(s.p);
     assert_int_equal(shown->generation, 1);
     shared_image_release(shown);
@@ -302,7 +302,7 @@ static void what_cannot_be_painted_keeps_nobody_busy(void **state)
     diagnostic why = {0};
     assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
     assert_true(comes_to_rest());
-    live_give(render_worker_live(s.p), LIVE_PAUSE); /* an order is heard even so */
+    live_send(render_worker_live(s.p), LIVE_PAUSE); /* an order is heard even so */
     assert_true(comes_to_rest());
     close_studio(&s);
 }
@@ -400,16 +400,16 @@ static void what_was_live_is_loaded_again(void **state)
     const struct timespec a_moment = {.tv_nsec = 2000000};
     studio s;
     open_studio(&s, scene_from(toys));
-    live *toy = render_worker_live(s.p);
+    live *live_slime = render_worker_live(s.p);
     final_film(&s);
     for (int i = 0; i < TURNS; i++) {
         render_worker_suspend(s.p, "a change comes");
         apply(&s, i % 2 ? "ring.major=3" : "ring.major=4");
         apply(&s, i % 2 ? "toy.time_s=0.002" : "toy.time_s=0.003");
-        live_give(toy, LIVE_PLAY);
+        live_send(live_slime, LIVE_PLAY);
         render_worker_suspend(s.p, NULL);
         nanosleep(&a_moment, NULL);
-        live_give(toy, LIVE_OFF);
+        live_send(live_slime, LIVE_OFF);
         final_film(&s);
     }
     render_worker_end(s.p);

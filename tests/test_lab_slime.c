@@ -26,7 +26,7 @@ static json_t *state_of(const lab_room *room)
     return slime;
 }
 
-static double told(const lab_room *room, const char *key)
+static double json(const lab_room *room, const char *key)
 {
     json_t *slime = state_of(room);
     assert_true(json_is_number(json_object_get(slime, key)));
@@ -56,7 +56,7 @@ static void refused(const lab_room *room, const char *target, const char *text, 
 
 static void wait_for_time(const lab_room *room, double time_s)
 {
-    while (told(room, "time_s") < time_s)
+    while (json(room, "time_s") < time_s)
         assert_true(is(room, "playing"));
 }
 
@@ -111,9 +111,9 @@ static void a_hand_draws_it_through_the_picture(void **state)
     refused(&room, "/api/slime/grab", "{\"x\": 1, \"y\": 1}", 404);
     double where[3];
     const int hand = grab(&room, 32, 24, where);
-    assert_true(hand > 0 && told(&room, "held") > 0);
+    assert_true(hand > 0 && json(&room, "held") > 0);
     assert_true(fabs(where[0]) < 1e-6 && where[2] < -0.8 && where[2] > -1.2); /* its front */
-    const double then_s = told(&room, "time_s");
+    const double then_s = json(&room, "time_s");
     char *way = text_format("{\"hand\": %d, \"x\": 10, \"y\": 24, \"depth\": -0.5}", hand);
     json_decref(room_ask(&room, "POST", "/api/slime/move", way, 200));
     wait_for_time(&room, then_s + 0.4);
@@ -125,10 +125,10 @@ static void a_hand_draws_it_through_the_picture(void **state)
     refused(&room, "/api/slime/move", way, 409);
     refused(&room, "/api/slime/release", let_go, 409);
     json_decref(room_ask(&room, "POST", "/api/slime/release", "{}", 200));
-    while (told(&room, "held") > 0)
+    while (json(&room, "held") > 0)
         ;
     room_post(&room, "/api/set", "{\"set\": {\"body.color\": [1, 0, 0]}}");
-    assert_true(told(&room, "time_s") > then_s);
+    assert_true(json(&room, "time_s") > then_s);
     free(way);
     free(let_go);
     room_close(&room);

@@ -20,8 +20,8 @@ static void studies_are_listed(void **state)
     room_write(room, "more/broken.study", "study: broken\nscene: ../scene.yaml\ngrid: [{render.dept: [1, 2]}]\n");
     room_write(room, "twin.study", "study: tiny\nscene: scene.yaml\n");
     room_write(room, "nonsense.study", "[");
-    json_t *told = room_get(room, "/api/studies"), *list = json_object_get(told, "studies");
-    assert_string_equal(json_string_value(json_object_get(told, "results")), "results");
+    json_t *json = room_get(room, "/api/studies"), *list = json_object_get(json, "studies");
+    assert_string_equal(json_string_value(json_object_get(json, "results")), "results");
     assert_int_equal(json_array_size(list), 4);
     int seen = 0;
     for (size_t i = 0; i < 4; i++) {
@@ -41,7 +41,7 @@ static void studies_are_listed(void **state)
             seen |= 2;
         } else if (error) {
             assert_string_equal(name, "tiny");
-            assert_non_null(strstr(what, "this name too"));
+            assert_non_null(strstr(what, "already used by"));
             seen |= 4;
         } else {
             assert_string_equal(name, "tiny");
@@ -55,11 +55,11 @@ static void studies_are_listed(void **state)
         }
     }
     assert_int_equal(seen, 15);
-    json_decref(told);
-    told = room_get(room, "/api/studies/broken");
-    assert_non_null(json_object_get(told, "error"));
-    assert_true(json_is_null(json_object_get(told, "summary")));
-    json_decref(told);
+    json_decref(json);
+    json = room_get(room, "/api/studies/broken");
+    assert_non_null(json_object_get(json, "error"));
+    assert_true(json_is_null(json_object_get(json, "summary")));
+    json_decref(json);
     free(room_refused(room, "POST", "/api/studies/broken/run", "{}", 400));
 }
 
@@ -122,23 +122,23 @@ static json_t *wait_for_event(int fd, bool (*is_so)(const json_t *))
             of_study = strcmp(line, "event: study") == 0;
         if (!of_study || strncmp(line, "data: ", 6) != 0)
             continue;
-        json_t *told = json_loads(line + 6, 0, NULL);
-        assert_non_null(told);
-        assert_string_equal(json_string_value(json_object_get(told, "name")), "tiny");
-        if (is_so(told))
-            return told;
-        json_decref(told);
+        json_t *json = json_loads(line + 6, 0, NULL);
+        assert_non_null(json);
+        assert_string_equal(json_string_value(json_object_get(json, "name")), "tiny");
+        if (is_so(json))
+            return json;
+        json_decref(json);
     }
 }
 
-static bool has_frames(const json_t *told)
+static bool has_frames(const json_t *json)
 {
-    return json_is_true(json_object_get(told, "running")) && number_at(told, "frames_done") > 0;
+    return json_is_true(json_object_get(json, "running")) && number_at(json, "frames_done") > 0;
 }
 
-static bool has_ended(const json_t *told)
+static bool has_ended(const json_t *json)
 {
-    return json_is_false(json_object_get(told, "running"));
+    return json_is_false(json_object_get(json, "running"));
 }
 
 static void a_study_is_stopped_and_goes_on(void **state)
@@ -148,18 +148,18 @@ static void a_study_is_stopped_and_goes_on(void **state)
     free(room_refused(room, "POST", "/api/studies/tiny/stop", "{}", 409));
     const int events = open_events(room);
     json_decref(room_ask(room, "POST", "/api/studies/tiny/run", "{}", 200));
-    json_t *told = wait_for_event(events, has_frames);
-    assert_int_equal(number_at(told, "frames_all"), TINY_CELLS * 100000);
-    assert_true(json_is_number(json_object_get(told, "left_s")));
-    assert_string_equal(json_string_value(json_object_get(told, "stage")), "measuring");
-    json_decref(told);
+    json_t *json = wait_for_event(events, has_frames);
+    assert_int_equal(number_at(json, "frames_all"), TINY_CELLS * 100000);
+    assert_true(json_is_number(json_object_get(json, "left_s")));
+    assert_string_equal(json_string_value(json_object_get(json, "stage")), "measuring");
+    json_decref(json);
     json_t *now = room_get(room, "/api/state");
-    assert_string_equal(json_string_value(json_object_get(now, "waiting")), "a study measures: tiny");
+    assert_string_equal(json_string_value(json_object_get(now, "waiting")), "a study is measuring: tiny");
     json_decref(now);
     json_decref(room_ask(room, "POST", "/api/studies/tiny/stop", "{}", 200));
-    told = wait_for_event(events, has_ended);
-    assert_true(json_is_null(json_object_get(told, "error")));
-    json_decref(told);
+    json = wait_for_event(events, has_ended);
+    assert_true(json_is_null(json_object_get(json, "error")));
+    json_decref(json);
     close(events);
     json_decref(wait_for_end(room));
 
@@ -209,15 +209,15 @@ static void one_runs_at_a_time(void **state)
     free(room_refused(room, "POST", "/api/studies/tiny/run", "{}", 409));
     free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 409)); /* it would disturb the other one */
     free(room_refused(room, "POST", "/api/studies/other/stop", "{}", 409));
-    json_t *told = room_get(room, "/api/studies/tiny");
-    assert_true(json_is_true(json_object_get(told, "running")));
-    json_decref(told);
+    json_t *json = room_get(room, "/api/studies/tiny");
+    assert_true(json_is_true(json_object_get(json, "running")));
+    json_decref(json);
     json_decref(room_ask(room, "POST", "/api/studies/tiny/stop", "{}", 200));
     json_decref(wait_for_end(room));
     json_decref(room_ask(room, "POST", "/api/studies/other/run", "{}", 200));
-    told = wait_for_end(room);
-    assert_string_equal(json_string_value(json_object_get(told, "name")), "other");
-    json_decref(told);
+    json = wait_for_end(room);
+    assert_string_equal(json_string_value(json_object_get(json, "name")), "other");
+    json_decref(json);
 }
 
 static void the_laboratory_may_end_meanwhile(void **state)
@@ -241,9 +241,9 @@ static void trouble_is_told(void **state)
     make_folder(room, "results");
     room_write(room, "results/tiny", "not a folder");
     json_decref(room_ask(room, "POST", "/api/studies/tiny/run", "{}", 200));
-    json_t *told = wait_for_end(room), *error = json_object_get(told, "error");
+    json_t *json = wait_for_end(room), *error = json_object_get(json, "error");
     assert_non_null(json_string_value(json_object_get(error, "error")));
-    json_decref(told);
+    json_decref(json);
 }
 
 /* --- what is refused --- */
@@ -275,11 +275,11 @@ static void nothing_outside_is_read(void **state)
         free(said);
         free(run);
     }
-    json_t *told = room_get(&inner, "/api/studies"), *list = json_object_get(told, "studies");
+    json_t *json = room_get(&inner, "/api/studies"), *list = json_object_get(json, "studies");
     assert_int_equal(json_array_size(list), 3);
     for (size_t i = 0; i < 3; i++)
         assert_non_null(json_object_get(json_array_get(list, i), "error"));
-    json_decref(told);
+    json_decref(json);
     free(room_refused(&inner, "GET", "/api/studies/nobody", NULL, 404));
     free(room_refused(&inner, "POST", "/api/studies/nobody/run", "{}", 404));
     free(room_refused(&inner, "GET", "/api/studies/..%2faway", NULL, 400));
@@ -296,11 +296,11 @@ static void nothing_outside_is_read(void **state)
 static void the_machine_is_described(void **state)
 {
     const lab_room *room = *state;
-    json_t *told = room_get(room, "/api/machine");
-    assert_true(number_at(told, "units") >= 1);
-    assert_non_null(json_string_value(json_object_get(told, "machine")));
-    assert_true(json_is_array(json_object_get(told, "disturbances")));
-    json_decref(told);
+    json_t *json = room_get(room, "/api/machine");
+    assert_true(number_at(json, "units") >= 1);
+    assert_non_null(json_string_value(json_object_get(json, "machine")));
+    assert_true(json_is_array(json_object_get(json, "disturbances")));
+    json_decref(json);
 }
 
 int main(void)

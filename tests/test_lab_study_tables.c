@@ -25,7 +25,7 @@ static void tables_are_as_the_files(void **state)
     assert_int_equal(study_summary(s, room->results, out, NULL), STATUS_OK);
     fclose(out);
     study_destroy(s);
-    json_t *told = room_get(room, "/api/studies/tiny"), *summary = json_object_get(told, "summary"),
+    json_t *json = room_get(room, "/api/studies/tiny"), *summary = json_object_get(json, "summary"),
            *rows = json_object_get(summary, "rows");
     assert_int_equal(json_array_size(rows), TINY_CELLS);
     for (size_t i = 0; i <= json_array_size(rows); i++) {
@@ -38,23 +38,23 @@ static void tables_are_as_the_files(void **state)
         }
     }
     assert_string_equal(joined, text);
-    assert_string_equal(json_string_value(json_array_get(json_object_get(told, "runs"), 0)), "results");
-    json_decref(told);
+    assert_string_equal(json_string_value(json_array_get(json_object_get(json, "runs"), 0)), "results");
+    json_decref(json);
     free(joined);
     free(text);
     free(path);
 
-    told = room_get(room, "/api/studies/tiny/rows");
-    const json_int_t count = number_at(told, "count");
+    json = room_get(room, "/api/studies/tiny/rows");
+    const json_int_t count = number_at(json, "count");
     assert_int_equal(count, TINY_CELLS * 8);
-    json_t *raw = json_object_get(told, "rows");
+    json_t *raw = json_object_get(json, "rows");
     assert_int_equal(json_array_size(raw), count);
     json_t *rest = room_get(room, "/api/studies/tiny/rows?from=40");
     assert_int_equal(json_array_size(json_object_get(rest, "rows")), count - 40);
     assert_true(json_equal(json_array_get(raw, 40), json_array_get(json_object_get(rest, "rows"), 0)));
-    assert_true(json_equal(json_object_get(told, "columns"), json_object_get(rest, "columns")));
+    assert_true(json_equal(json_object_get(json, "columns"), json_object_get(rest, "columns")));
     json_decref(rest);
-    json_decref(told);
+    json_decref(json);
     free(room_refused(room, "GET", "/api/studies/tiny/rows?from=-1", NULL, 400));
     free(room_refused(room, "GET", "/api/studies/tiny/rows?from=two", NULL, 400));
 }
@@ -94,12 +94,12 @@ static void two_runs_are_compared(void **state)
     make_folder(room, "old/runs");
     make_folder(room, "old/runs/tiny");
     write_other_run(room);
-    json_t *told = room_get(room, "/api/studies/tiny");
-    assert_int_equal(json_array_size(json_object_get(told, "runs")), 2);
-    assert_string_equal(json_string_value(json_array_get(json_object_get(told, "runs"), 0)), "old/runs");
-    json_decref(told);
-    told = room_get(room, "/api/studies/tiny/compare?with=old/runs");
-    const json_t *cells = json_object_get(told, "cells");
+    json_t *json = room_get(room, "/api/studies/tiny");
+    assert_int_equal(json_array_size(json_object_get(json, "runs")), 2);
+    assert_string_equal(json_string_value(json_array_get(json_object_get(json, "runs"), 0)), "old/runs");
+    json_decref(json);
+    json = room_get(room, "/api/studies/tiny/compare?with=old/runs");
+    const json_t *cells = json_object_get(json, "cells");
     assert_int_equal(json_array_size(cells), TINY_CELLS);
     for (size_t i = 0; i < TINY_CELLS; i++) {
         const json_t *cell = json_array_get(cells, i), *a = json_object_get(cell, "a"), *b = json_object_get(cell, "b");
@@ -113,7 +113,7 @@ static void two_runs_are_compared(void **state)
         assert_true(json_number_value(json_object_get(a, "high")) >= json_number_value(json_object_get(a, "median")));
         assert_int_equal(json_is_true(json_object_get(cell, "same_film")), i != 2);
     }
-    json_decref(told);
+    json_decref(json);
     static const char *const wrong[] = {
         "", "?with=", "?with=nowhere", "?with=..", "?with=../tmp", "?with=/tmp", "?with=old/../old/runs", "?with=old"};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
@@ -137,25 +137,25 @@ static void figures_are_drawn(void **state)
     room_write(room, "plots/of-it.gp", "# A figure.\n# needs: other/rows.csv tables/tiny.tsv\n");
     room_write(room, "plots/not-of-it.gp", "# needs: tables/tiny-other.tsv tiny-other/images/*.png\n");
     room_write(room, "plots/tiny-not.gp", "# needs: tables/another.tsv\n");
-    json_t *told = room_get(room, "/api/studies/tiny");
-    assert_int_equal(json_array_size(json_object_get(told, "figures")), 0);
-    assert_int_equal(json_array_size(json_object_get(told, "drawable")), 1);
-    assert_string_equal(json_string_value(json_array_get(json_object_get(told, "drawable"), 0)), "of-it");
-    json_decref(told);
+    json_t *json = room_get(room, "/api/studies/tiny");
+    assert_int_equal(json_array_size(json_object_get(json, "figures")), 0);
+    assert_int_equal(json_array_size(json_object_get(json, "drawable")), 1);
+    assert_string_equal(json_string_value(json_array_get(json_object_get(json, "drawable"), 0)), "of-it");
+    json_decref(json);
     run_to_the_end(room);
-    told = room_ask(room, "POST", "/api/studies/tiny/draw", "{}", 200);
-    assert_string_equal(json_string_value(json_object_get(told, "said")), "drawn: of-it\n");
-    assert_true(json_is_true(json_object_get(told, "complete")));
-    json_decref(told);
+    json = room_ask(room, "POST", "/api/studies/tiny/draw", "{}", 200);
+    assert_string_equal(json_string_value(json_object_get(json, "said")), "drawn: of-it\n");
+    assert_true(json_is_true(json_object_get(json, "complete")));
+    json_decref(json);
     room_write(room, "results/figures/tiny-by-name.svg", "<svg/>");
     room_write(room, "results/figures/tiny-not.svg", "<svg/>");
     room_write(room, "results/figures/Tiny.svg", "<svg/>");
-    told = room_get(room, "/api/studies/tiny");
-    const json_t *figures = json_object_get(told, "figures");
+    json = room_get(room, "/api/studies/tiny");
+    const json_t *figures = json_object_get(json, "figures");
     assert_int_equal(json_array_size(figures), 2);
     assert_string_equal(json_string_value(json_array_get(figures, 0)), "of-it");
     assert_string_equal(json_string_value(json_array_get(figures, 1)), "tiny-by-name");
-    json_decref(told);
+    json_decref(json);
     char *reply = client_ask(room->server, "GET", "/api/figures/of-it", "", NULL);
     assert_int_equal(reply_code(reply), 200);
     assert_true(reply_has(reply, "Content-Type: image/svg+xml"));

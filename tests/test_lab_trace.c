@@ -142,10 +142,10 @@ static void it_is_the_pixel_that_is_shown(void **state)
 
 static void refused(const lab_room *room, const char *target, const char *words)
 {
-    char *told = room_refused(room, "GET", target, NULL, 400);
-    if (!strstr(told, words))
-        fail_msg("%s: '%s' does not say '%s'", target, told, words);
-    free(told);
+    char *json = room_refused(room, "GET", target, NULL, 400);
+    if (!strstr(json, words))
+        fail_msg("%s: '%s' does not say '%s'", target, json, words);
+    free(json);
 }
 
 static void what_is_no_pixel_is_refused(void **state)
@@ -157,10 +157,10 @@ static void what_is_no_pixel_is_refused(void **state)
     refused(*state, "/api/trace.txt?x=4000&y=1", "outside");
     refused(*state, "/api/trace?x=1", "y is missing");
     refused(*state, "/api/trace", "x is missing");
-    refused(*state, "/api/trace?x=1.5&y=1", "x is no integer: '1.5'");
-    refused(*state, "/api/trace?x=1&y=", "y is no integer");
-    refused(*state, "/api/trace?x=99999999999&y=1", "x is no integer");
-    refused(*state, "/api/trace?x=1&y=99999999999999999999", "y is no integer");
+    refused(*state, "/api/trace?x=1.5&y=1", "x is not an integer: '1.5'");
+    refused(*state, "/api/trace?x=1&y=", "y is not an integer");
+    refused(*state, "/api/trace?x=99999999999&y=1", "x is not an integer");
+    refused(*state, "/api/trace?x=1&y=99999999999999999999", "y is not an integer");
 }
 
 static void a_tree_that_is_too_large_is_refused(void **state)
@@ -169,7 +169,7 @@ static void a_tree_that_is_too_large_is_refused(void **state)
     lab_room room;
     char *text = panes(17);
     room_open(&room, text);
-    refused(&room, "/api/trace?x=8&y=6", "more than the 100000 that are sent; lower render.depth");
+    refused(&room, "/api/trace?x=8&y=6", "more than the limit of 100000; lower render.depth");
     room_post(&room, "/api/set", "{\"set\": {\"render.depth\": 40}}");
     refused(&room, "/api/trace?x=8&y=6", "more than 2000000 rays");
     room_post(&room, "/api/set", "{\"set\": {\"render.depth\": 8}}");

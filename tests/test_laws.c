@@ -1,3 +1,6 @@
+/* Tests of laws that hold in every scene: random scenes under changes that the image must not show (law_pairs.h).
+ * LAWS_SCENES and LAWS_SEED choose how many scenes and which; `make laws` tries a million. A scene that breaks a law is
+ * printed as a scene file, with as few solids as possible. */
 #include <limits.h>
 #include <math.h>
 #include <setjmp.h>
@@ -8,10 +11,6 @@
 #include <cmocka.h>
 
 #include "law_judge.h"
-
-/* What must hold in every scene: random scenes under changes that the image must not show (law_pairs.h). LAWS_SCENES
- * and LAWS_SEED choose how many scenes and which; `make laws` tries a million. A scene that breaks a law is printed as
- * a scene file, with as few solids as show it. */
 
 typedef struct tally {
     long scenes, skipped, broken, asked, tried;
@@ -46,14 +45,14 @@ static void print_fault(judge *j, const law_pair *p, long seed, long number)
         print_scene("and changed:", &small.b);
 }
 
-/* Scene `number` of a seed, whatever came before it. */
+/* Scene `number` of a seed, independent of the scenes before it. */
 static uint64_t seed_of(long seed, law which, long number)
 {
     uint64_t mixed = (uint64_t)seed * 0x9e3779b97f4a7c15u + (uint64_t)which * 0xd1342543de82ef95u + (uint64_t)number;
     return random_bits(&mixed);
 }
 
-/* How many scenes broke it; the first few are printed. */
+/* The number of scenes that broke it; the first few are printed. */
 static tally try_law(law which, judge *j)
 {
     enum { PRINTED_MAX = 3, ASKED_EVERY = 5 };
@@ -78,8 +77,8 @@ static tally try_law(law which, judge *j)
     return sum;
 }
 
-/* A law over all scenes; at most this share of them skipped. Of the scenes that are asked whether a ray crosses the
- * part that a law alters, at least a quarter do: 500 of 10 000 scenes. */
+/* Tests a law over all scenes; at most this share of them may be skipped. Of the scenes that are tested whether a ray
+ * crosses the part that a law changes, at least a quarter do: 500 of 10 000 scenes. */
 static void law_holds(law which, double skipped_at_most)
 {
     judge j = judge_open();

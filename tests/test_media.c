@@ -1,3 +1,5 @@
+/* Tests of media by priority against brute force: all crossings of all shapes in quadruple precision, and between two
+ * crossings the winner at the midpoint by definition. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,10 +11,7 @@
 #include "optics/interface.h"
 #include "room_fixture.h"
 
-/* Media by priority against brute force: all crossings of all shapes in quadruple precision, and between each two of
- * them the winner at the midpoint by definition. */
-
-/* Follows a line through all its interfaces, each time as a ray that starts on the last one. */
+/* Traces a line through all its interfaces, each time as a ray that starts on the last one. */
 static int walk_agrees(const room *m, vec3 from, vec3 direction)
 {
     const reference_line line = {quad3_from(from), quad3_from(direction)};
@@ -32,7 +31,7 @@ static int walk_agrees(const room *m, vec3 from, vec3 direction)
         assert_int_equal(solid_of(m, h.after), wanted[k].after);
         assert_int_equal(solid_of(m, h.surface), owner_of_surface(m, wanted[k].before, wanted[k].after));
         assert_true(quad3_length(quad3_sub(quad3_from(h.point), reference_at(&line, wanted[k].t))) < (quad)1e-8);
-        /* the sets on both sides are what the points there are in */
+        /* the sets on both sides are those of the points there */
         assert_true(h.inside_before == scene_geometry_inside(m->solids, point_at(&line, wanted[k].t - (quad)1e-7)));
         assert_true(h.inside_after == scene_geometry_inside(m->solids, point_at(&line, wanted[k].t + (quad)1e-7)));
         r = (one_ray){h.point, direction, h.face, h.inside_after};
@@ -72,8 +71,8 @@ static void rooms_full_of_coincident_faces_agree_with_brute_force(void **state)
     assert_true(interfaces > 8000);
 }
 
-/* Along the grid's own planes and edges there is no right answer, but there is an end: media follow one another, and
- * at last nothing. */
+/* Along the grid's own planes and edges no answer is right, but the ray must end: media follow one another, and finally
+ * the ray leaves. */
 static void rays_in_coincident_faces_come_to_an_end(void **state)
 {
     (void)state;
@@ -98,14 +97,14 @@ static void rays_in_coincident_faces_come_to_an_end(void **state)
                 medium = m.solids->regions[h.after].medium;
                 r = (one_ray){h.point, r.d, h.face, h.inside_after};
             }
-            assert_true(has_plane(&m) || medium == 0); /* no set is left behind in what a ray has long passed */
+            assert_true(has_plane(&m) || medium == 0); /* no set keeps a solid that the ray has long passed */
         }
         scene_geometry_destroy(m.solids);
     }
 }
 
-/* Mirrored or refracted at every interface, at random. Half way to the next one the ray is in the medium that its
- * set says, but where a surface is so near that this is a matter of roundings. */
+/* Mirrored or refracted at random at every interface. Half way to the next one the ray is in the medium of its set,
+ * unless a surface is so near that rounding decides. */
 static void walk_at_random(const room *m, one_ray r, uint64_t *seed)
 {
     for (int step = 0; step < 100; step++) {
@@ -145,7 +144,7 @@ static void sets_stay_true_on_long_walks(void **state)
     }
 }
 
-/* The same bits from all instruction sets, whole batches, all outputs. */
+/* All instruction sets give identical bits, for whole batches and all outputs. */
 static void instruction_sets_agree_to_the_bit(void **state)
 {
     (void)state;

@@ -1,3 +1,4 @@
+/* Tests of the catalogue of media against published tables. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +25,7 @@ static double published(const char *name, double lambda_nm)
     return dispersion_index(&the(name)->law, lambda_nm);
 }
 
-/* Computed from the published coefficients apart from this program, to eight and four decimals. */
+/* Computed from the published coefficients independently of this program, to eight and four decimals. */
 static void indices_at_the_lines_and_abbes_numbers(void **state)
 {
     (void)state;
@@ -82,7 +83,7 @@ static void fused_silica_is_malitsons_table(void **state)
 }
 
 /* Schott's catalogue; Handbook of Chemistry and Physics at the sodium line, 20 C (toluene by -5.7e-4 / K to 27 C).
- * Diamond: Kaye and Laby. The tolerances are what the sources differ by. */
+ * Diamond: Kaye and Laby. The tolerances are the differences between the sources. */
 static void indices_of_handbooks(void **state)
 {
     (void)state;
@@ -100,7 +101,7 @@ static void indices_of_handbooks(void **state)
     assert_near(published("olive-oil", LINE_SODIUM_D_NM), 0.5 * (1.4677 + 1.4705), 1e-12);
 }
 
-/* Edlen, Metrologia 2, 71 (1966), eq. 1, for 300 ppm of CO2: 150 ppm more make it 8e-5 of itself larger. */
+/* Edlen, Metrologia 2, 71 (1966), eq. 1, for 300 ppm of CO2: 150 ppm more increase n - 1 by a relative 8e-5. */
 static void air_is_edlens(void **state)
 {
     (void)state;
@@ -136,7 +137,7 @@ static void absolute_indices(void **state)
     assert_near(medium_index(the("bk7"), LINE_HELIUM_D_NM), 1.51680 + 1.5168 * 2.77e-4, 1e-5);
 }
 
-/* Dispersion is normal in the visible, and violet is bent most. */
+/* Dispersion is normal in the visible: violet is refracted most. */
 static void every_law_is_sound_and_normal(void **state)
 {
     (void)state;
@@ -163,14 +164,14 @@ static void names_are_those_of_the_list_in_its_order(void **state)
     assert_int_equal(COUNT(names), media_count());
     for (size_t i = 0; i < COUNT(names); i++) {
         assert_string_equal(media_at(i)->name, names[i]);
-        assert_ptr_equal(media_find(names[i]), media_at(i)); /* so that none is there twice */
+        assert_ptr_equal(media_find(names[i]), media_at(i)); /* so that no name occurs twice */
     }
     assert_null(media_find("BK7"));
     assert_null(media_find("bk"));
     assert_null(media_find(""));
 }
 
-/* The point of the matching liquid: one wavelength, between C and F, at which it and the glass are one. */
+/* The purpose of the matching liquid: at one wavelength, between C and F, its index equals the glass's. */
 static void the_matching_liquid_crosses_bk7(void **state)
 {
     (void)state;

@@ -1,3 +1,4 @@
+/* Tests of mesh_finish: closedness, orientation, normals, bounds, checks; and of shared ownership. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -31,7 +32,7 @@ static void bounds_are_of_vertices_that_triangles_use(void **state)
     assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
     assert_true(m->bounds.low.x == 1.0 && m->bounds.high.x == 4.0 && m->bounds.high.y == 2.1 &&
                 m->bounds.high.z == 3.0);
-    assert_false(m->single); /* 2.1 is no float */
+    assert_false(m->single); /* 2.1 is not a float */
     mesh_release(m);
     m = mesh_of(at, 4, NULL, 0);
     assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
@@ -45,7 +46,7 @@ static void a_missing_triangle_is_a_hole_named_by_an_edge_of_its_neighbour(void 
 {
     (void)state;
     mesh *m = cubes(1);
-    m->triangle_count = 11; /* 1, 7, 5 is missing; of its neighbours the first is 4, 5, 7 */
+    m->triangle_count = 11; /* 1, 7, 5 is missing; its first neighbour is 4, 5, 7 */
     assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
     assert_false(m->closed);
     assert_int_equal(m->hole.triangle, 2);
@@ -102,7 +103,7 @@ static void triangles_with_two_equal_corners_join_nothing(void **state)
     put_cube(m, 0, vec3_make(0, 0, 0), 1.0);
     m->triangles[12] = (mesh_triangle){{0, 0, 1}};
     m->triangles[13] = (mesh_triangle){{5, 2, 5}};
-    turn_triangle(m, 3); /* so that neighbours are looked at too */
+    turn_triangle(m, 3); /* so that orientation runs too */
     assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
     assert_true(m->closed);
     assert_near(mesh_volume(m), 8.0, 1e-14);
@@ -136,7 +137,7 @@ static void an_inside_out_cube_is_turned(void **state)
     mesh_release(m);
 }
 
-/* A cube of edge 2 with a hollow of edge 1, whose fronts look into it. */
+/* A cube of edge 2 with a hollow of edge 1, whose fronts face into it. */
 static mesh *hollow_cube(void)
 {
     mesh *m = cubes(2);
@@ -155,7 +156,7 @@ static void a_hollow_keeps_its_direction(void **state)
     assert_near(mesh_volume(m), 8.0 - 1.0, 1e-14);
     mesh_release(m);
     m = hollow_cube();
-    turn_triangle(m, 12); /* one slip in the hollow, where it is looked at first; one outside */
+    turn_triangle(m, 12); /* one wrong triangle in the hollow, the first that is visited; one outside */
     turn_triangle(m, 5);
     assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
     assert_near(mesh_volume(m), 8.0 - 1.0, 1e-14);
@@ -184,7 +185,7 @@ static void parts_of_no_direction_come_to_look_outwards(void **state)
     mesh_release(m);
 }
 
-/* The projective plane of six vertices: each edge joins two triangles, but there is no inside. */
+/* The projective plane with six vertices: each edge joins two triangles, but there is no inside. */
 static void a_one_sided_surface_is_not_closed(void **state)
 {
     (void)state;
@@ -199,7 +200,7 @@ static void a_one_sided_surface_is_not_closed(void **state)
     mesh_release(m);
 }
 
-/* Two cones over a polygon of many corners: an apex where thousands of edges meet. */
+/* Two cones over a polygon of many corners: an apex shared by thousands of edges. */
 static void many_triangles_around_one_vertex(void **state)
 {
     (void)state;
@@ -230,7 +231,7 @@ static void wrong_numbers_are_refused_by_name(void **state)
     mesh *m = cubes(1);
     m->triangles[7].corner[1] = 8;
     assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "triangle 7 names vertex 8 of 8");
+    assert_string_equal(why.what, "triangle 7 refers to vertex 8 of 8");
     mesh_release(m);
     const double wrong[] = {(double)NAN, (double)INFINITY, -1.001e9};
     for (size_t k = 0; k < 3; k++) {
@@ -243,14 +244,14 @@ static void wrong_numbers_are_refused_by_name(void **state)
     assert_int_equal(mesh_create(3, 1, true, true, true, &m, NULL), STATUS_OK);
     m->normals[1].x = (double)NAN;
     assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "vertex 1 has a normal that is no number");
+    assert_string_equal(why.what, "vertex 1 has a normal that is not finite");
     m->normals[1].x = 0.0;
     m->uvs[2].v = (double)INFINITY;
     assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
     m->uvs[2].v = 0.0;
     m->slots[0] = 1;
     assert_int_equal(mesh_finish(m, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "triangle 0 names material slot 1 of 1");
+    assert_string_equal(why.what, "triangle 0 refers to material slot 1 of 1");
     m->slot_count = 2;
     assert_int_equal(mesh_finish(m, &why), STATUS_OK);
     mesh_release(m);

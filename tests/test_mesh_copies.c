@@ -1,3 +1,4 @@
+/* Tests of copies of meshes: one image however they are made. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +10,6 @@
 #include "measure/clock.h"
 #include "mesh_stage.h"
 #include "scene/model/scene.h"
-
-/* Copies of meshes, and one picture however it is made. */
 
 #define FRAME                                                                          \
     "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6]}\n" \
@@ -39,13 +38,13 @@ static void copies_are_as_many_solids(void **state)
         "[1.5, 1, 2], position: [-1.5, 0, -1]}\n",
         FRAME, look);
     add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n", FRAME);
-    for (int k = 0; k < 12; k++) /* one medium, as the copies are */
+    for (int k = 0; k < 12; k++) /* one medium, as for copies */
         add(&b, "  r%d: {%s, position: [%g, %g, %g]}\n", k, look, -1.5 + 1.5 * (k % 3), 1.0 * (k / 3 % 2),
             -1.0 + 2.0 * (k / 6));
     assert_true(hash_of(a.at, "", isa_best()) == hash_of(b.at, "", isa_best()));
 }
 
-/* Copies that touch are one block, flush to the last bit. */
+/* Copies that touch form one block, bit-identical to a single one. */
 static void copies_that_touch_are_one_block(void **state)
 {
     (void)state;
@@ -69,7 +68,7 @@ static void copies_that_touch_are_one_block(void **state)
     scene_destroy(one);
 }
 
-/* The world's vertices of a copy as a mesh of its own. */
+/* The world vertices of a copy as a separate mesh. */
 static void placed_copies_are_transformed_vertices(void **state)
 {
     (void)state;
@@ -162,7 +161,7 @@ static void one_film_however_it_is_made(void **state)
         assert_true(hash_of(gallery, "", (isa)level) == wanted);
 }
 
-/* Shadow rays through two hundred absorbing beads each: more media than a batch has room for at once. */
+/* Shadow rays through two hundred absorbing beads each: more media than a batch's list can hold. */
 static void light_through_very_many_media_is_the_same_in_any_batch(void **state)
 {
     (void)state;

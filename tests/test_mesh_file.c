@@ -1,4 +1,4 @@
-/* Mesh files that are as they should be: the numbers that come back are the file's own. */
+/* Tests of valid mesh files: the imported numbers are the file's own. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -43,7 +43,7 @@ static vec3 corner(const mesh *m, size_t triangle, int k)
     return m->vertices[m->triangles[triangle].corner[k]];
 }
 
-/* The tetrahedron of mesh_files.h, every corner bit for bit, moved by x. */
+/* The tetrahedron of mesh_files.h, every corner bit-identical, moved by x. */
 static void assert_tetrahedron(const mesh_import *got, double x)
 {
     const mesh *m = got->mesh;
@@ -72,7 +72,7 @@ static void obj_with_two_materials(void **state)
                                             "usemtl red\nf 1/1 2/2 3/3\nusemtl glass\nf 1/1 3/3 4/4\n");
     const mesh *m = got->mesh;
     assert_int_equal(m->triangle_count, 2);
-    assert_int_equal(m->vertex_count, 4); /* shared across the materials; the fifth is of no face */
+    assert_int_equal(m->vertex_count, 4); /* shared across the materials; the fifth belongs to no face */
     assert_vec3(corner(m, 0, 2), 1, 2.5, 0);
     assert_vec3(corner(m, 1, 2), 0, 2.5, -0.125);
     mesh_uv uv = m->uvs[m->triangles[0].corner[2]];
@@ -123,14 +123,14 @@ static void obj_polygons_are_triangulated(void **state)
     assert_int_equal(got->mesh->triangle_count, 2);
     assert_int_equal(got->mesh->vertex_count, 4);
     assert_true(mesh_area(got->mesh) == 4);
-    assert_vec3(got->mesh->normals[0], 0, 0, 1); /* of unit length now */
+    assert_vec3(got->mesh->normals[0], 0, 0, 1); /* normalised now */
     assert_int_equal(got->material_count, 1);
     assert_false(got->materials[0].given);
     assert_null(got->materials[0].name);
     mesh_import_destroy(got);
 }
 
-/* assimp's own joining takes vertices for equal that lie within 1e-5. */
+/* assimp's own joining merges vertices within 1e-5. */
 static void vertices_that_nearly_coincide_stay_apart(void **state)
 {
     (void)state;
@@ -176,7 +176,7 @@ static void stl_text(void **state)
     mesh_import_destroy(got);
 }
 
-/* Facets share their corners again, although each has a normal of its own in the file. */
+/* Facets share their corners again, although each has its own normal in the file. */
 static void stl_binary(void **state)
 {
     (void)state;
@@ -198,7 +198,7 @@ static void glb_keeps_every_bit(void **state)
     mesh_import_destroy(got);
 }
 
-/* Moved in double precision: the sum is that of doubles, and not rounded to a float. */
+/* Translated in double precision: the sum is not rounded to a float. */
 static void nodes_move_their_meshes(void **state)
 {
     (void)state;
@@ -218,8 +218,7 @@ static void nodes_move_their_meshes(void **state)
     mesh_import_destroy(got);
 }
 
-/* A mirror turns fronts into backs, unless corners are listed the other way round with it. A quarter turn, column by
- * column. */
+/* A mirror turns fronts into backs, unless the corners are also listed in reverse. A quarter turn, column by column. */
 static void mirrored_and_turned_nodes_keep_their_fronts(void **state)
 {
     (void)state;
@@ -265,7 +264,7 @@ static void gltf_with_its_buffer_inside(void **state)
     assert_vec3(corner(got->mesh, 0, 2), 0, 1, 0.5);
     assert_false(got->materials[0].given);
     mesh_import_destroy(got);
-    got = one_triangle("{\"mesh\":0,\"scale\":[-1,1,1]}"); /* open: nobody else turns it round */
+    got = one_triangle("{\"mesh\":0,\"scale\":[-1,1,1]}"); /* open: nothing else flips it */
     assert_vec3(corner(got->mesh, 0, 1), 0, 1, 0);
     assert_vec3(corner(got->mesh, 0, 2), -1, 0, 0);
     mesh_import_destroy(got);

@@ -1,3 +1,4 @@
+/* Tests of the mesh generators. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +14,7 @@
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 static const double pi = 3.14159265358979323846;
 
-/* FNV-1a over nine little-endian floats a triangle. */
+/* FNV-1a over nine little-endian floats per triangle. */
 static uint64_t float_hash(const mesh *m, size_t *bytes)
 {
     uint64_t hash = UINT64_C(14695981039346656037);
@@ -27,8 +28,8 @@ static uint64_t float_hash(const mesh *m, size_t *bytes)
     return hash;
 }
 
-/* The hashes are those of what the peers' program embree_bench (gcc -O3 -march=native, with fused multiply-add) dumped
- * by -d bin. */
+/* The expected hashes are those of the triangles that the reference program embree_bench (gcc -O3 -march=native, with
+ * fused multiply-add) dumped with -d bin. */
 static void triangle_sets_are_the_peers_to_the_bit(void **state)
 {
     (void)state;
@@ -82,8 +83,8 @@ static int euler(const mesh *m)
     return (int)positions(m) - (int)m->triangle_count / 2;
 }
 
-/* Normals on the side of the fronts; and a texture that is not mirrored, which in a left-handed frame runs the other
- * way round than the vector product. */
+/* Normals are on the side of the fronts; textures are not mirrored: in a left-handed frame their orientation is
+ * opposite to that of the vector product. */
 static void assert_fronts(const mesh *m)
 {
     for (size_t t = 0; t < m->triangle_count; t++) {
@@ -107,7 +108,7 @@ static void assert_sound(const mesh *m, int characteristic)
     assert_fronts(m);
 }
 
-/* Of an icosahedron in the unit sphere: edge 4 / sqrt(10 + 2 sqrt 5), area 5 sqrt 3 a^2, volume 5 (3 + sqrt 5) a^3 / 12
+/* An icosahedron in the unit sphere: edge 4 / sqrt(10 + 2 sqrt 5), area 5 sqrt 3 a^2, volume 5 (3 + sqrt 5) a^3 / 12
  * (Coxeter). */
 static void the_coarsest_icosphere_is_an_icosahedron(void **state)
 {
@@ -121,7 +122,7 @@ static void the_coarsest_icosphere_is_an_icosahedron(void **state)
     mesh_release(m);
 }
 
-/* An inscribed polyhedron falls short by the square of its edge, which bisection halves. */
+/* The error of an inscribed polyhedron is proportional to the square of its edge, which bisection halves. */
 static void icospheres_converge_to_the_sphere_by_the_square(void **state)
 {
     (void)state;
@@ -169,7 +170,7 @@ static void a_sphere_has_longitude_and_latitude(void **state)
         assert_near(cos((at.v - 0.5) * pi) * sin((at.u - 0.5) * 2.0 * pi), p.x, 1e-7);
         assert_near(cos((at.v - 0.5) * pi) * cos((at.u - 0.5) * 2.0 * pi), -p.z, 1e-7);
     }
-    /* a pole's longitude is that of its triangle's middle, a quarter of a turn from each corner at most */
+    /* a pole's longitude is that of its triangle's centre, at most a quarter turn from each corner */
     size_t poles = 0;
     for (size_t k = 0; k < 3 * m->triangle_count; k++) {
         const uint32_t *corner = m->triangles[k / 3].corner;
@@ -183,7 +184,8 @@ static void a_sphere_has_longitude_and_latitude(void **state)
     mesh_release(m);
 }
 
-/* Prisms about the axis: a body of revolution's volume times n sin(2 pi / n) / (2 pi); Pappus gives a polygon's. */
+/* Prisms about the axis: the volume of the solid of revolution times n sin(2 pi / n) / (2 pi); Pappus gives a
+ * polygon's. */
 static void a_torus_of_flat_faces_has_its_exact_volume(void **state)
 {
     (void)state;
@@ -201,7 +203,7 @@ static void a_torus_of_flat_faces_has_its_exact_volume(void **state)
     }
 }
 
-/* 2 pi^2 R r^2 and 4 pi^2 R r, by the square of the segments' number. */
+/* 2 pi^2 R r^2 and 4 pi^2 R r; the error decreases with the square of the number of segments. */
 static void tori_converge_to_the_torus(void **state)
 {
     (void)state;
@@ -232,7 +234,7 @@ static void turned_cylinders_and_cones_are_prisms_and_pyramids(void **state)
 {
     (void)state;
     const profile_point cylinder[] = {{0, -1}, {2, -1}, {2, 2}, {0, 2}},
-                        cone[] = {{0, 3}, {1.5, 0}, {0, 0}}; /* the one up, the other down */
+                        cone[] = {{0, 3}, {1.5, 0}, {0, 0}}; /* one profile runs up, the other down */
     for (int n = 3; n <= 40; n += n < 8 ? 1 : 11) {
         const double polygon = 0.5 * n * sin(2.0 * pi / n), side = 2.0 * sin(pi / n), inner = cos(pi / n);
         mesh *m = turned(cylinder, COUNT(cylinder), n, 30.0);
@@ -269,13 +271,13 @@ static void creases_keep_their_edges_and_others_are_round(void **state)
 {
     (void)state;
     const profile_point barrel[] = {
-        {0, 0}, {1, 0}, {1.1, 1}, {1, 2}, {0, 2}}; /* turns by 90 less 5.7 degrees, 11.4, and so on */
+        {0, 0}, {1, 0}, {1.1, 1}, {1, 2}, {0, 2}}; /* turns by 90 - 5.7 degrees, 11.4, and so on */
     mesh *m = turned(barrel, COUNT(barrel), 16, 30.0);
     bool round = false, flat = false, slanted = false;
     for (size_t v = 0; v < m->vertex_count; v++) {
         const vec3 p = m->vertices[v], n = m->normals[v];
         if (p.y == 1.0) {
-            assert_true(fabs(n.y) < 1e-15); /* the mean of two that mirror each other */
+            assert_true(fabs(n.y) < 1e-15); /* the mean of two mirrored normals */
             round = true;
         } else if (p.y == 0.0) {
             flat |= n.y == -1.0;
@@ -285,7 +287,7 @@ static void creases_keep_their_edges_and_others_are_round(void **state)
     }
     assert_true(round && flat && slanted);
     mesh_release(m);
-    m = turned((profile_point[]){{1, 0}, {1, 1}}, 2, 8, 30.0); /* a tube of no thickness */
+    m = turned((profile_point[]){{1, 0}, {1, 1}}, 2, 8, 30.0); /* a tube without thickness */
     assert_false(m->closed);
     assert_int_equal(m->hole.sharing, 1);
     assert_fronts(m);
@@ -332,7 +334,7 @@ static void a_box_has_its_volume_and_whole_textures(void **state)
     assert_near(mesh_volume(m), 8.0, 1e-14);
     assert_near(mesh_area(m), 28.0, 1e-14);
     assert_true(m->bounds.high.x == 0.5 && m->bounds.high.y == 1.0 && m->bounds.low.z == -2.0);
-    /* the side in front of a viewer at -z: the picture's lower left corner is at -x, -y */
+    /* the side in front of a viewer at -z: the lower left corner of the texture image is at -x, -y */
     assert_true(m->vertices[0].x == -0.5 && m->vertices[0].y == -1.0 && m->vertices[0].z == -2.0 &&
                 m->uvs[0].u == 0.0 && m->uvs[0].v == 0.0);
     mesh_release(m);

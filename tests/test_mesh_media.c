@@ -1,3 +1,5 @@
+/* Tests of meshes among analytic solids, by priority, against brute force: every crossing of every triangle and shape,
+ * and between two crossings the winner at the midpoint by definition. test_media.c does the same without meshes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,9 +10,6 @@
 
 #include "mesh_room.h"
 #include "optics/interface.h"
-
-/* Meshes among the analytic solids, by priority, against brute force: every crossing of every triangle and shape, and
- * between each two of them the winner at the midpoint by definition. test_media.c does the same without meshes. */
 
 typedef struct walks {
     int interfaces, skipped, seen_meshes, hidden_meshes;
@@ -74,8 +73,8 @@ static void mesh_boxes_with_coincident_faces_agree_with_brute_force(void **state
     assert_true(sum.interfaces > 5000 && sum.seen_meshes > 2000 && sum.skipped < 2500);
 }
 
-/* Along faces and edges there is no right answer, but there is an end: media follow one another. A ray that is started
- * anew each time may meet the two sides of an edge in turn, in one place. */
+/* Along faces and edges no answer is right, but the ray must end: media follow one another. A ray that is restarted
+ * each time may hit the two sides of an edge in turn, at one position. */
 static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
 {
     (void)state;
@@ -112,13 +111,14 @@ static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
     assert_true(rays > 1000 && stuck * 10 < rays);
 }
 
-/* Is a point farther than that from every triangle's plane's box and every shape's surface? A cheap and careful no. */
+/* Is a point farther than that from every triangle's bounding box and every shape's surface? A fast, conservative
+ * test. */
 static bool is_clear_of_surfaces(const mesh_room *m, vec3 at)
 {
     for (int i = 0; i < m->r.count; i++) {
-        if (!m->region[i] && !(quad_abs(reference_distance(&m->r.shape[i], quad3_from(at))) > (quad)1e-12))
+        if (!m->mesh_solid[i] && !(quad_abs(reference_distance(&m->r.shape[i], quad3_from(at))) > (quad)1e-12))
             return false;
-        for (size_t k = 0; m->region[i] && k < m->count[i]; k++) {
+        for (size_t k = 0; m->mesh_solid[i] && k < m->count[i]; k++) {
             const vec3 *v = (const vec3 *)m->triangle[i][k], n = vec3_cross(vec3_sub(v[1], v[0]), vec3_sub(v[2], v[0]));
             if (!(fabs(vec3_dot(n, vec3_sub(at, v[0]))) > 1e-11 * vec3_length(n)))
                 return false;
@@ -127,8 +127,7 @@ static bool is_clear_of_surfaces(const mesh_room *m, vec3 at)
     return true;
 }
 
-/* Mirrored or refracted at every interface, at random: half way to the next the ray is in the medium that its set says.
- */
+/* Mirrored or refracted at random at every interface: half way to the next one the ray is in the medium of its set. */
 static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *asked)
 {
     const scene_geometry *a = m->r.solids;
@@ -167,8 +166,8 @@ static void sets_stay_true_on_long_walks_among_meshes(void **state)
     assert_true(asked > 10000);
 }
 
-/* By the definition: of the light at each change of medium what the higher solid lets through, and nothing through
- * opaque ones. */
+/* By definition: the product of the higher solid's transmittance at each change of medium, and 0 through opaque
+ * solids. */
 static double light_by_definition(const mesh_room *m, const change *changes, int count, quad end, int start,
                                   bool solid_shadows)
 {

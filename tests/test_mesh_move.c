@@ -1,4 +1,5 @@
-/* Meshes whose vertices move: what is found anew is what mesh_finish finds, and what cannot be changes nothing. */
+/* Tests of meshes whose vertices move: the recomputed values are those of mesh_finish, and an invalid move changes
+ * nothing. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +17,7 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { VERTICES = 5 };
 
-/* Two triangles over four vertices, and a fifth that none uses. */
+/* Two triangles over four vertices, and an unused fifth. */
 static mesh *sheet(bool with_normals)
 {
     static const vec3 at[VERTICES] = {{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {2, 3, 1}, {-50, 60, 70}};
@@ -31,7 +32,7 @@ static mesh *sheet(bool with_normals)
     return m;
 }
 
-/* What mesh_finish makes of these vertices and normals. */
+/* The result of mesh_finish for these vertices and normals. */
 static mesh *finished(const mesh *like, const vec3 *vertices, const vec3 *normals)
 {
     mesh *m = NULL;
@@ -99,7 +100,7 @@ static void one_coordinate_that_is_no_float_shows(void **state)
 {
     (void)state;
     mesh *m = sheet(false);
-    vec3 to[VERTICES] = {{1, 1, 1}, {5, -1, 0.5}, {2, 7, -4}, {3, 3, 3}, {0.1, 0, 0}}; /* the last is no corner */
+    vec3 to[VERTICES] = {{1, 1, 1}, {5, -1, 0.5}, {2, 7, -4}, {3, 3, 3}, {0.1, 0, 0}}; /* the last is not a corner */
     moved_as_finished(m, to, NULL);
     assert_true(m->single);
     to[3].y = 3.0 + 0x1p-40;
@@ -131,17 +132,17 @@ static void normals_become_unit_vectors(void **state)
     const vec3 to[VERTICES] = {{0, 0, 0}, {0, 0, 2}, {0, 3, 0}, {0, 3, 2}, {0, 0, 0}};
     const vec3 normals[VERTICES] = {{0, 0, 0}, {3, 0, 4}, {1e-200, 0, 0}, {0, 1e300, 0}, {0, 0, 0}};
     moved_as_finished(m, to, normals);
-    same_place(m->normals[0], vec3_make(-1, 0, 0)); /* none was given: the triangle's, (0, 0, 2) x (0, 3, 0) */
+    same_place(m->normals[0], vec3_make(-1, 0, 0)); /* zero normal: the triangle's, (0, 0, 2) x (0, 3, 0) */
     assert_true(fabs(m->normals[1].x - 0.6) < 1e-15 && fabs(m->normals[1].z - 0.8) < 1e-15);
     same_place(m->normals[2], vec3_make(1, 0, 0));
     same_place(m->normals[3], vec3_make(0, 1, 0));
     vec3 before[VERTICES];
     memcpy(before, m->normals, sizeof before);
-    assert_int_equal(mesh_move(m, to, NULL, NULL), STATUS_OK); /* left as they are */
+    assert_int_equal(mesh_move(m, to, NULL, NULL), STATUS_OK); /* unchanged */
     assert_memory_equal(m->normals, before, sizeof before);
     mesh_release(m);
     m = sheet(false);
-    assert_int_equal(mesh_move(m, to, normals, NULL), STATUS_OK); /* it has none */
+    assert_int_equal(mesh_move(m, to, normals, NULL), STATUS_OK); /* it has no normals */
     assert_null(m->normals);
     mesh_release(m);
 }
@@ -168,7 +169,7 @@ static void what_cannot_be_changes_nothing(void **state)
                 diagnostic why = {0};
                 char text[DIAGNOSTIC_TEXT_MAX], name[20];
                 const status expected =
-                    part < 3 || i < 3 ? STATUS_BAD_INPUT : STATUS_OK; /* normals may be of any length */
+                    part < 3 || i < 3 ? STATUS_BAD_INPUT : STATUS_OK; /* normals may have any length */
                 if (expected == STATUS_OK)
                     continue;
                 assert_int_equal(mesh_move(m, to, turned, &why), expected);

@@ -1,3 +1,4 @@
+/* Tests of scenes with meshes against the same scenes with analytic solids. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,15 +9,13 @@
 #include "mesh_stage.h"
 #include "random_stream.h"
 
-/* Scenes of meshes against the same scenes of analytic solids. */
-
 #define FRAME                                                                          \
     "background: {kind: gradient, color: [0.2, 0.4, 0.9], horizon: [0.9, 0.8, 0.6]}\n" \
     "render: {width: 24, height: 18, depth: 5}\n"                                      \
     "camera: {position: [1.1, 1.3, -4], target: [0.1, 0.4, 0], fov_deg: 42}\n"         \
     "lights: {lamp: {position: [3, 5, -4]}, other: {position: [-4, 3, -1], intensity: 0.5}}\n"
 
-/* A box as one writes it, and as twelve triangles. */
+/* A box as a scene file has it, and as twelve triangles. */
 static scene_text with_boxes(const char *solids, bool as_mesh)
 {
     scene_text t = {.length = 0};
@@ -52,7 +51,7 @@ static void expect_same_tree(const ray_tree *a, const ray_tree *b, double *worst
 static void mesh_boxes_are_boxes(void **state)
 {
     (void)state;
-    /* without cells where an analytic box stands on it: whose cells are seen there is not settled */
+    /* without a checker where an analytic box stands on it: whose checker is visible there is undefined */
     static const char *const ground[] = {
         "  ground: {shape: plane, color: [0.8, 0.5, 0.3], checker: 0.4, checker_color: [0.1, 0.3, 0.2], diffuse: 0.8, "
         "ambient: 0.1}\n",
@@ -61,7 +60,7 @@ static void mesh_boxes_are_boxes(void **state)
         "  glass: {@[1.2, 0.9, 0.7], transparency: 1, ior: 1.5, specular: 0.4, position: [0, 0.5, 0]}\n",
         "  wood: {@[1.2, 0.9, 0.7], color: [0.7, 0.4, 0.2], diffuse: 0.8, specular: 0.3, reflectivity: 0.2, position: "
         "[0, 0.5, 0], rotation: [10, 25, 5]}\n",
-        /* partly in a liquid, with priority either way */
+        /* partly in a liquid, with either priority */
         "  water: {shape: cylinder, radius: 1, height: 0.6, transparency: 1, ior: 1.33, priority: 1}\n"
         "  glass: {@[0.5, 1.6, 0.4], transparency: 1, ior: 1.5, position: [0.1, 0.95, 0], rotation: [0, 0, 20], "
         "priority: 2}\n",
@@ -69,7 +68,7 @@ static void mesh_boxes_are_boxes(void **state)
         "  glass: {@[0.5, 1.6, 0.4], transparency: 1, ior: 1.5, position: [0.1, 0.95, 0], rotation: [0, 0, 20], "
         "priority: 2}\n"
         "  stick: {@[0.1, 1.2, 0.1], diffuse: 0.7, position: [0.3, 0.8, -0.2], rotation: [20, 0, 0], priority: 1}\n",
-        /* standing on the ground exactly, side by side, one in another, and flush with an analytic box */
+        /* standing exactly on the ground, next to each other, nested, and flush with an analytic box */
         "  glass: {@[1, 1, 1], transparency: 1, ior: 1.5, position: [0, 0.5, 0], priority: 1}\n",
         "  glass: {@[1, 1, 1], transparency: 1, ior: 1.5, position: [-0.5, 0.5, 0], priority: 1}\n"
         "  heavy: {@[1, 1, 1], transparency: 1, ior: 1.8, position: [0.5, 0.5, 0], priority: 1}\n",
@@ -96,8 +95,8 @@ static void mesh_boxes_are_boxes(void **state)
     }
 }
 
-/* The ground's own cells are seen through the bottom of a block that stands on it exactly, whichever of the two
- * surfaces comes first. */
+/* The ground's own checker is visible through the bottom of a block that stands exactly on it, whichever surface comes
+ * first. */
 static void through_a_mesh_block_the_ground_is_the_ground(void **state)
 {
     (void)state;
@@ -149,8 +148,8 @@ static void a_mesh_of_the_liquids_own_index_is_not_seen(void **state)
     scene_destroy(with);
 }
 
-/* A glass ball in front of a sky without edges: only the ball's outline is one. Its triangles' corners lie on the
- * sphere, so its radius is off by h^2, and so are interpolated normals; flat ones by h, where h is the length of an
+/* A glass ball in front of a uniform sky, so that only the ball's outline is an edge. Its vertices are on the sphere,
+ * so the error of its radius and of interpolated normals is h^2, that of flat normals h, where h is the length of an
  * edge, halved at each level. */
 static double error_at_level(int level, bool smooth, const film *wanted)
 {
@@ -219,8 +218,8 @@ static double error_of_mesh(const char *generated, const char *look, int segment
     return rms;
 }
 
-/* Rings, cones and frustums of glass, as the sphere above: what their triangles are off by falls with the square of the
- * segments' number, and what it does to the outlines' pixels with less. */
+/* Tori, cones and frustums of glass, as for the sphere above: the error of their triangles decreases with the square of
+ * the number of segments, and that of the pixels at outlines more slowly. */
 static void glass_meshes_converge_to_torus_cone_and_frustum(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Tests of mesh shading at points that can be computed by hand: Phong's model with flat, interpolated and corner
- * values; textures; and the limits of shading normals. */
+/* Tests of mesh shading at points where the result is known: Phong's sum with flat, interpolated and vertex values;
+ * textures; and the limits of shading normals. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +16,7 @@
 #define DARK \
     "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\nrender: {width: 1, height: 1, depth: 2, shadows: off}\n"
 
-/* A tilted square of side 2 in the plane z = 0, corners' normals leaning outwards; seen from z < 0. */
+/* A tilted square of side 2 in the plane z = 0, with corner normals leaning outwards; seen from z < 0. */
 static void give_square(scene *s, vec3 *corner, vec3 *normal)
 {
     static const double at[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
@@ -55,7 +55,7 @@ static stage square_stage(const char *more, const char *assignments)
     return g;
 }
 
-/* k_a + k_d (N.L) + k_s (R.V)^n, in red, of a lamp of 1. */
+/* k_a + k_d (N.L) + k_s (R.V)^n, red channel, with a light of 1. */
 static double phong(vec3 n, vec3 at, vec3 eye, double k_d, double k_s, double shininess)
 {
     const vec3 l = vec3_normalize(vec3_sub(vec3_make(1.5, 2, -3), at)), v = vec3_normalize(vec3_sub(eye, at));
@@ -83,7 +83,7 @@ static void phongs_sum_at_known_points(void **state)
             const double x = -0.95 + 1.9 * (k % 20) / 19.0, y = -0.93 + 1.8 * (k / 20) / 9.0;
             const vec3 at = vec3_make(x, y, 0.0);
             const ray_tree *tree = stage_ray(&g, eye, vec3_sub(at, eye));
-            /* of the triangle 0 2 1 (x > y): weights of 0, 2, 1; else of 0, 2, 3 */
+            /* for the triangle 0 2 1 (x > y): weights of 0, 2, 1; else of 0, 2, 3 */
             const double third = fabs(x - y) / 2.0, second = x > y ? (1.0 + y) / 2.0 : (1.0 + x) / 2.0,
                          first = 1.0 - second - third;
             const int other = x > y ? 1 : 3;
@@ -122,7 +122,7 @@ static void light_behind_the_plane_leaves_the_ambient(void **state)
     }
 }
 
-/* An open sheet that is present twice in one place does not shadow itself, and transmits no light. */
+/* Two coincident open sheets have no self-shadow and leak no light. */
 static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
 {
     (void)state;
@@ -157,9 +157,9 @@ static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
     }
 }
 
-/* On a coarse smooth ball, inside and outside, reflected rays stay on their side of the triangle and refracted ones
+/* On a coarse smooth ball, inside and outside, mirrored rays stay on their side of the triangle and refracted rays
  * leave it. */
-static void shading_normals_keep_rays_on_their_sides(void **state)
+static void bent_normals_keep_rays_on_their_sides(void **state)
 {
     (void)state;
     static const char text[] =
@@ -186,12 +186,12 @@ static void shading_normals_keep_rays_on_their_sides(void **state)
         worst = fmax(worst, fabs(tree->radiance[1] + tree_cut(tree, 1) - 1.0));
     }
     assert_true(reflected > 4000 && refracted > 4000);
-    assert_true(worst < 1e-8); /* and no light is lost */
+    assert_true(worst < 1e-8); /* and no energy is lost */
     stage_close(&g);
 }
 
 /* The white furnace (test_furnace.c) with nested meshes. */
-static void meshes_in_a_furnace_conserve_energy(void **state)
+static void meshes_in_a_furnace_lose_nothing(void **state)
 {
     (void)state;
     static const char text[] =
@@ -222,7 +222,7 @@ static void meshes_in_a_furnace_conserve_energy(void **state)
     }
 }
 
-/* exp(-a d) over the path through a box and through the middle of a fine sphere, without refraction. */
+/* exp(-a d) over the path through a box and through the centre of a fine sphere, straight on. */
 static void absorption_over_lengths_in_meshes(void **state)
 {
     (void)state;
@@ -255,7 +255,7 @@ static void expect_texel(const ray_tree *tree, double u, double v)
                 fabs(tree->radiance[1] - (line + 0.5) / 2.0) < 1e-6);
 }
 
-/* An image in front of a viewer at -z who looks along +z begins at the viewer's left, on every shape. */
+/* A texture in front of a viewer at -z who looks along +z begins at the viewer's left, on every shape. */
 static void textures_at_known_points(void **state)
 {
     (void)state;
@@ -329,7 +329,7 @@ static void spectral_films_refuse_textures_and_faces(void **state)
     assert_string_equal(refusal_of(text, "", why), "");
 }
 
-/* Two triangles, two materials: the file's materials, and the scene's own material with the slot's name. */
+/* Two triangles, two materials: the file's materials, and the scene's own material if it has the slot's name. */
 static void faces_are_shaded_by_their_materials(void **state)
 {
     (void)state;
@@ -373,9 +373,9 @@ static void faces_are_shaded_by_their_materials(void **state)
     rmdir(folder);
 }
 
-/* A file's Ke sets the emission: its brightest channel is the strength, with the surface's colour, or with its own if
- * the surface is black; else the solid's. */
-static void faces_emit_by_their_materials(void **state)
+/* A file's Ke sets the emission: its brightest channel the intensity, in the surface's colour, or in Ke's own colour if
+ * the surface is black; otherwise the solid's emission. */
+static void faces_shine_as_their_materials_say(void **state)
 {
     (void)state;
     char folder[] = "/tmp/cuvette-shine-XXXXXX", path[64], library[64], text[1024];
@@ -418,14 +418,14 @@ int main(void)
         cmocka_unit_test(phongs_sum_at_known_points),
         cmocka_unit_test(light_behind_the_plane_leaves_the_ambient),
         cmocka_unit_test(doubled_sheets_have_no_acne_and_no_leaks),
-        cmocka_unit_test(shading_normals_keep_rays_on_their_sides),
-        cmocka_unit_test(meshes_in_a_furnace_conserve_energy),
+        cmocka_unit_test(bent_normals_keep_rays_on_their_sides),
+        cmocka_unit_test(meshes_in_a_furnace_lose_nothing),
         cmocka_unit_test(absorption_over_lengths_in_meshes),
         cmocka_unit_test(textures_at_known_points),
         cmocka_unit_test(an_open_dielectric_names_its_hole),
         cmocka_unit_test(spectral_films_refuse_textures_and_faces),
         cmocka_unit_test(faces_are_shaded_by_their_materials),
-        cmocka_unit_test(faces_emit_by_their_materials),
+        cmocka_unit_test(faces_shine_as_their_materials_say),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

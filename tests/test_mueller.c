@@ -1,3 +1,4 @@
+/* Tests of polarised light: frames, interfaces, and the analyser's row against forward products of Mueller matrices. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +28,8 @@ static double squared(double a)
     return a * a;
 }
 
-/* i^2 - q^2 - u^2 - v^2, in units of i^2: never negative for light, nor for a row that sees no light as negative. */
+/* i^2 - q^2 - u^2 - v^2, in units of i^2: never negative for light, nor for a row that never gives a negative
+ * intensity. */
 static double unpolarised_excess(stokes s)
 {
     return (s.i * s.i - s.q * s.q - s.u * s.u - s.v * s.v) / (s.i * s.i);
@@ -40,7 +42,7 @@ static stokes random_light(uint64_t *seed)
     return s;
 }
 
-/* A normal that faces d at cos_i, in a plane of incidence whose s stands at angle a (degrees) from canonical x. */
+/* A normal that faces d at cos_i, in a plane of incidence whose s is at angle a (degrees) from canonical x. */
 static vec3 normal_at(vec3 d, double cos_i, double a_deg)
 {
     vec3 x, y;
@@ -100,7 +102,7 @@ static void a_turn_is_the_double_angle(void **state)
     assert_true(none.cos_2a == 1.0 && none.sin_2a == 0.0);
 }
 
-/* Light along +45 degrees is u = 1 in the frame, and q = 1 in the frame that is turned to it. */
+/* Light along +45 degrees is u = 1 in the frame, and q = 1 in the frame rotated to it. */
 static void a_turned_frame_sees_the_same_light(void **state)
 {
     (void)state;
@@ -184,8 +186,8 @@ static void transmittances_agree_with_the_sine_laws(void **state)
             }
 }
 
-/* A pile of plates, light that is never reflected: T_s / T_p = cos^2 (i - t) at each surface, so that after k of them
- * P = (1 - cos^2k (i - t)) / (1 + cos^2k (i - t)). Born and Wolf, 7th ed., 1.5.3; Hecht, 8.6.1. */
+/* A pile of plates, light that is never reflected: T_s / T_p = cos^2 (i - t) at each surface, so that after k of them P
+ * = (1 - cos^2k (i - t)) / (1 + cos^2k (i - t)). Born and Wolf, 7th ed., 1.5.3; Hecht, 8.6.1. */
 static void a_pile_of_plates_polarises_by_its_surfaces(void **state)
 {
     (void)state;
@@ -215,8 +217,8 @@ static void a_pile_of_plates_polarises_by_its_surfaces(void **state)
         }
 }
 
-/* Two glass plates, both at Brewster's angle, their planes of incidence turned by phi: polariser and analyser after
- * Malus and Noerremberg. What comes of unpolarised light is R_s^2 cos^2(phi) / 2. Hecht, 8.2.1 and 8.6.1. */
+/* Two glass plates, both at Brewster's angle, with planes of incidence rotated by phi: polariser and analyser after
+ * Malus and Noerremberg. Unpolarised light is reduced to R_s^2 cos^2(phi) / 2. Hecht, 8.2.1 and 8.6.1. */
 static void two_brewster_reflections_obey_malus(void **state)
 {
     (void)state;
@@ -274,7 +276,7 @@ static void glass_retards_most_at_51_degrees(void **state)
     const double n = 1.0 / 1.51, sine = sqrt(2.0 * n * n / (1.0 + n * n)), theta = asin(sine);
     assert_near(theta * radian_deg, 51.0 + 20.0 / 60.0, 0.5 / 60.0);
     const double most = retardance_deg(mueller_reflect(cos(theta), 1.51, 1.0));
-    assert_near(most, 45.0 + 56.0 / 60.0, 1.0 / 60.0); /* the book cuts 56.5' */
+    assert_near(most, 45.0 + 56.0 / 60.0, 1.0 / 60.0); /* the book truncates 56.5' */
     assert_near(most, 2.0 * atan((1.0 - n * n) / (2.0 * n)) * radian_deg, 1e-12);
     assert_true(retardance_deg(mueller_reflect(cos(theta + 1e-3), 1.51, 1.0)) < most);
     assert_true(retardance_deg(mueller_reflect(cos(theta - 1e-3), 1.51, 1.0)) < most);
@@ -326,13 +328,12 @@ static void one_interface_weighs_unpolarised_light_as_fresnel_does(void **state)
         assert_near(analyser_reflect(row, d, c.n, c.cos_i, c.n_from, c.n_to, reflected).i, row.i * f.R, 1e-15);
         assert_near(analyser_refract(row, d, c.n, c.cos_i, c.n_from, c.n_to, refracted).i, row.i * (1.0 - f.R), 1e-15);
         assert_true(mueller_reflect(c.cos_i, c.n_from, c.n_to).m[0][0] == f.R);
-        stokes behind = analyser_mirror(row, d, c.n, reflected); /* which keeps unpolarised light as it is */
+        stokes behind = analyser_mirror(row, d, c.n, reflected); /* which keeps unpolarised light unchanged */
         assert_stokes_near(behind, row, 0.0);
     }
 }
 
-/* R_s + T_s = 1 = R_p + T_p: what is reflected and what is refracted add up, however the light is polarised, and for
- * any row. */
+/* R_s + T_s = 1 = R_p + T_p: reflected and refracted light add up for every polarisation and every row. */
 static void reflected_and_refracted_add_up(void **state)
 {
     (void)state;
@@ -359,7 +360,7 @@ static mueller chain_mueller(const chain_step *c)
 {
     switch (c->kind) {
     case CHAIN_REFLECT: return mueller_reflect(c->cos_i, c->n_from, c->n_to);
-    case CHAIN_REFRACT: return mueller_refract(-vec3_dot(c->child, c->n), c->n_to, c->n_from); /* out of n_to */
+    case CHAIN_REFRACT: return mueller_refract(-vec3_dot(c->child, c->n), c->n_to, c->n_from); /* leaving n_to */
     case CHAIN_MIRROR: return mueller_from((sp_response){1.0, 0.0, -1.0, 0.0});
     default: return mueller_rotation(1.0, 0.0);
     }
@@ -392,7 +393,7 @@ static void light_and_rows_stay_realisable(void **state)
 
 /* --- backwards and forwards --- */
 
-/* The product of the matrices in the order in which light meets them, with explicit frames. */
+/* The product of the matrices in the order in which light passes them, with explicit frames. */
 static stokes forwards(const chain_step *steps, int count, stokes light)
 {
     vec3 x, y;
@@ -401,7 +402,7 @@ static stokes forwards(const chain_step *steps, int count, stokes light)
     for (int k = count; k-- > 0;) {
         const chain_step *c = &steps[k];
         const vec3 s = vec3_normalize(vec3_cross(c->d, c->n)), p = vec3_cross(c->child, s);
-        const double in = atan2(vec3_dot(s, y), vec3_dot(s, x)); /* from the frame in which the light is known so far */
+        const double in = atan2(vec3_dot(s, y), vec3_dot(s, x)); /* from the frame of the light so far */
         assert_near(vec3_dot(vec3_cross(s, p), c->child), 1.0, 1e-14);
         product = mueller_multiply(mueller_rotation(cos(2.0 * in), sin(2.0 * in)), product);
         product = mueller_multiply(chain_mueller(c), product);
@@ -420,7 +421,7 @@ static stokes chain_row(const chain_step *steps, int count, stokes row)
     return row;
 }
 
-/* The light's last step out of a medium knows its angle only through cos_t: a grazing one loses digits to the square
+/* The light's last step out of a medium knows its angle only through cos_t: a grazing angle loses digits to the square
  * root. */
 static int chain_grazes(const chain_step *steps, int count)
 {
@@ -449,9 +450,9 @@ static void the_row_sees_what_the_forward_product_brings(void **state)
     assert_true(compared > 8000);
 }
 
-/* At each plane the tangential parts of E and H are continuous, of light that arrives along -child, leaves along -d and
- * goes on behind the plane (a complex direction under total reflection). This pins the amplitudes' signs to Maxwell's
- * equations. */
+/* At each plane the tangential parts of E and H are continuous, for light that arrives along -child, leaves along -d
+ * and continues behind the plane (a complex direction under total internal reflection). This ties the signs of the
+ * amplitudes to Maxwell's equations. */
 static void the_tests_fields_obey_maxwell_at_an_interface(void **state)
 {
     (void)state;
@@ -464,7 +465,7 @@ static void the_tests_fields_obey_maxwell_at_an_interface(void **state)
         c.child = direction_reflect(c.d, c.n, c.cos_i);
         const vec3 s = vec3_normalize(vec3_cross(c.d, c.n)), arrives = vec3_scale(c.child, -1.0),
                    leaves = vec3_scale(c.d, -1.0);
-        const vec3 plane = vec3_add(arrives, vec3_scale(c.n, c.cos_i)); /* arrives' part in the plane */
+        const vec3 plane = vec3_add(arrives, vec3_scale(c.n, c.cos_i)); /* the tangential part of `arrives` */
         amplitudes a = amplitudes_at(c.cos_i, c.n_from, c.n_to);
         total += cimag(a.cos_t) > 0.0;
         const field on = field_add(field_from(plane, c.n_from / c.n_to), field_from(c.n, -a.cos_t));
@@ -511,15 +512,15 @@ static void the_row_sees_what_the_field_brings(void **state)
     assert_true(compared > 8000);
 }
 
-/* A mirror faced squarely: the field comes back turned over, so that linear light stays in its plane in space, and
- * circular light changes its hand. */
+/* A mirror at normal incidence: the field is inverted, so that linear light keeps its plane in space, and circular
+ * light changes its handedness. */
 static void a_mirror_keeps_planes_and_changes_hands(void **state)
 {
     (void)state;
     uint64_t seed = 15;
     for (int i = 0; i < 10000; i++) {
         vec3 d = random_direction(&seed), e = random_direction(&seed);
-        if (i % 4 == 0) /* a level gaze: frames of d and -d do not share x there */
+        if (i % 4 == 0) /* a horizontal direction: frames of d and -d do not share x there */
             d = vec3_normalize(vec3_make(d.x, d.y, 0.0));
         vec3 n = vec3_scale(d, -1.0);
         if (vec3_length(vec3_cross(e, d)) < 1e-2)
@@ -528,7 +529,7 @@ static void a_mirror_keeps_planes_and_changes_hands(void **state)
         assert_stokes_near(row, stokes_linear(n, e), 1e-12);
         row = analyser_mirror((stokes){1.0, 0.0, 0.0, 1.0}, d, n, n);
         assert_stokes_near(row, ((stokes){1.0, 0.0, 0.0, -1.0}), 1e-15);
-        row = analyser_reflect(stokes_linear(d, e), d, n, 1.0, 1.0, 1.5, n); /* and so glass, 4% */
+        row = analyser_reflect(stokes_linear(d, e), d, n, 1.0, 1.0, 1.5, n); /* and so does glass, 4% */
         stokes expected = stokes_linear(n, e);
         assert_stokes_near(row, ((stokes){0.04 * expected.i, 0.04 * expected.q, 0.04 * expected.u, 0.0}), 1e-13);
         row = analyser_refract(stokes_linear(d, e), d, n, 1.0, 1.0, 1.5, d);
@@ -537,8 +538,8 @@ static void a_mirror_keeps_planes_and_changes_hands(void **state)
     }
 }
 
-/* Towards normal incidence s and p lose their plane, but nothing jumps: rows differ from the limit by no more than the
- * turn of the canonical frames and the angle's square times Fresnel's difference. */
+/* Towards normal incidence s and p lose their plane, but nothing jumps: rows differ from the limit by at most the
+ * rotation of the canonical frames and the angle's square times Fresnel's difference. */
 static void nothing_jumps_near_normal_incidence(void **state)
 {
     (void)state;
@@ -551,8 +552,8 @@ static void nothing_jumps_near_normal_incidence(void **state)
         const stokes row = random_light(&seed);
         const double n_to = random_real(&seed, 1.0, 2.5), plane_deg = random_real(&seed, 0.0, 360.0);
         const double R = squared((1.0 - n_to) / (1.0 + n_to));
-        /* q, u, v in canonical frames of d = -n and of n, which share x: the field is turned over, y and its hand with
-         * it */
+        /* q, u, v in canonical frames of d = -n and of n, which share x: the field is inverted, with y and the
+         * handedness */
         const stokes back = {R * row.i, R * row.q, -R * row.u, -R * row.v};
         const stokes on = {(1.0 - R) * row.i, (1.0 - R) * row.q, (1.0 - R) * row.u, (1.0 - R) * row.v};
         for (size_t k = 0; k < COUNT(angles); k++) {
@@ -569,7 +570,7 @@ static void nothing_jumps_near_normal_incidence(void **state)
             stokes refracted_row = analyser_refract(row, d, n, cos_i, 1.0, n_to, refracted);
             assert_stokes_near(reflected_row, back, turn);
             assert_stokes_near(refracted_row, on, turn);
-            /* no frame turns these */
+            /* no frame rotates these */
             assert_near(reflected_row.i, back.i, difference);
             assert_near(refracted_row.i, on.i, difference);
             assert_near(reflected_row.v, back.v, difference);

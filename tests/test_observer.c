@@ -1,3 +1,4 @@
+/* Tests of the standard observer, D65 and the sRGB matrices against published values. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +11,7 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* XYZ of observer_d65 times reflectance over low .. high, by the mean of the weights. Simpson's rule on every 5 nm is
+/* XYZ of observer_d65 times reflectance over low .. high, as the mean of the weights. Simpson's rule on every 5 nm is
  * exact for a constant reflectance. */
 static void daylight_xyz(int low_nm, int high_nm, double xyz[3])
 {
@@ -138,7 +139,7 @@ static void white_in_is_white_out(void **state)
         assert_near(rgb[i], 1.0, 1e-12);
 }
 
-/* Of evenly spread wavelengths, as a renderer samples them; the equal-energy spectrum has x = y = 1/3. */
+/* With evenly spread wavelengths, as a renderer samples them; the equal-energy spectrum has x = y = 1/3. */
 static void mean_of_the_weights_is_the_colour_of_a_spectrum(void **state)
 {
     (void)state;
@@ -193,7 +194,7 @@ static void the_two_matrices_undo_each_other(void **state)
 }
 
 /* The locus is at these chromaticities (Wyszecki and Stiles, table I(3.3.1)); none of its colours is in the gamut, and
- * each is short of the primaries that it is far from. */
+ * each has negative components for distant primaries. */
 static void single_wavelengths_lie_on_the_spectral_locus(void **state)
 {
     (void)state;

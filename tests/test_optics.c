@@ -1,3 +1,4 @@
+/* Tests of a single interface: Fresnel's equations, Snell's law, reflection and refraction of directions. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,8 +18,8 @@ static const struct {
 } pairs[] = {{1.0, 1.5},  {1.5, 1.0},  {1.0, 1.33}, {1.33, 1.0},  {1.5, 1.33},  {1.33, 1.5}, {1.0, 2.42},
              {2.42, 1.0}, {1.3, 1.31}, {1.31, 1.3}, {1.0, 100.0}, {100.0, 1.0}, {1.0, 1.0}};
 
-/* Fresnel's sine and tangent laws, Hecht, Optics, 5th ed., eqs. 4.42 and 4.43, with Snell's law for the angle
- * beyond. */
+/* Fresnel's sine and tangent laws, Hecht, Optics, 5th ed., eqs. 4.42 and 4.43, with Snell's law for the angle of
+ * refraction. */
 static void reflectances_by_angle(quad degrees, double n_from, double n_to, quad *R_s, quad *R_p)
 {
     quad sin_i, cos_i;
@@ -48,7 +49,7 @@ static void reflectances_agree_with_the_sine_and_tangent_laws(void **state)
             quad R_s, R_p;
             reflectances_by_angle(degrees, from, to, &R_s, &R_p);
             fresnel f = fresnel_dielectric(cosine_deg(degrees), from, to);
-            /* near the critical angle and at grazing incidence a rounding of the cosine counts for more */
+            /* near the critical angle and at grazing incidence a rounding of the cosine matters more */
             const double tolerance = 4e-15 / (f.cos_t < 0.1 ? f.cos_t : 0.1) / cosine_deg(degrees);
             assert_near(f.R_s, R_s, tolerance);
             assert_near(f.R_p, R_p, tolerance);
@@ -89,7 +90,7 @@ static void normal_incidence(void **state)
     assert_near(fresnel_dielectric(1.0, 1.0, 1.5).R, 0.04, 1e-17);
 }
 
-/* tan theta_B = n_to / n_from: nothing of the light that is polarised in the plane of incidence comes back. */
+/* tan theta_B = n_to / n_from: no light polarised in the plane of incidence is reflected. */
 static void brewsters_angle(void **state)
 {
     (void)state;
@@ -99,7 +100,7 @@ static void brewsters_angle(void **state)
         fresnel f = fresnel_dielectric(cos_i, pairs[k].from, pairs[k].to);
         assert_true(f.R_p >= 0.0);
         assert_true(f.R_p <
-                    (pairs[k].from > 10.0 ? 1e-16 : 2e-31)); /* 100 to 1: eta^2 enlarges the cosine's rounding */
+                    (pairs[k].from > 10.0 ? 1e-16 : 2e-31)); /* 100 to 1: eta^2 magnifies the cosine's rounding */
         quad less = (quad)1 - ratio * ratio, sum = 1 + ratio * ratio;
         assert_near(f.R_s, less / sum * (less / sum), pairs[k].from > 10.0 ? 1e-9 : 1e-15);
     }
@@ -132,8 +133,8 @@ static void shares_stay_in_range_and_equal_media_reflect_nothing(void **state)
     }
 }
 
-/* sin theta_c = n_to / n_from. The verdict is exact but for the roundings of 1 - eta^2 (1 - cos^2): an ulp of the
- * cosine either side may go either way, and the share that passes there is under the square root of a rounding. */
+/* sin theta_c = n_to / n_from. The result is exact except for the roundings of 1 - eta^2 (1 - cos^2): within an ulp of
+ * the cosine either result is possible, and the transmitted share there is below the square root of a rounding. */
 static void total_reflection_begins_at_the_critical_angle(void **state)
 {
     (void)state;
@@ -155,7 +156,7 @@ static void total_reflection_begins_at_the_critical_angle(void **state)
                 assert_true(high.total == 0 && high.R < 1.0);
                 assert_near(high.cos_t * high.cos_t, ulps * step, rounding + 0.5 * step);
             }
-            /* R = 1 - O(cos_t n_from / n_to cos_i), and cos_t is at most the root of what the roundings make */
+            /* R = 1 - O(cos_t n_from / n_to cos_i), and cos_t is at most the square root of the roundings */
             const double dark = 8.0 * sqrt((ulps + 1) * step + rounding) * eta / critical;
             assert_true(low.R >= 1.0 - dark && low.R <= 1.0);
             assert_true(high.R >= 1.0 - dark && high.R <= 1.0);
@@ -165,7 +166,7 @@ static void total_reflection_begins_at_the_critical_angle(void **state)
     }
 }
 
-/* Stokes: the way back through the interface reflects the same share. */
+/* Stokes: the reverse path through the interface reflects the same share. */
 static void both_sides_reflect_alike(void **state)
 {
     (void)state;
@@ -223,7 +224,7 @@ static void directions_obey_snell(void **state)
     }
 }
 
-/* There and back through the interface is the way the ray came. */
+/* The reverse path through the interface returns along the ray. */
 static void refraction_is_reversible(void **state)
 {
     (void)state;
@@ -243,7 +244,7 @@ static void refraction_is_reversible(void **state)
     }
 }
 
-/* A stack of parallel interfaces: what comes out of the last one obeys Snell between the first medium and the last. */
+/* A stack of parallel interfaces: light leaving the last one obeys Snell between the first medium and the last. */
 static void parallel_layers_keep_n_sin_theta(void **state)
 {
     (void)state;
@@ -258,7 +259,7 @@ static void parallel_layers_keep_n_sin_theta(void **state)
             double cos_i = -vec3_dot(d, w.n);
             fresnel f = fresnel_dielectric(cos_i, from, to);
             if (f.total)
-                break; /* only in the last steps of a direction that grazes */
+                break; /* only in the last steps of a grazing direction */
             d = direction_refract(d, w.n, cos_i, f.eta, f.cos_t);
             assert_near(to * quad3_length(quad3_cross(quad3_from(w.n), quad3_from(d))), invariant, 3e-14);
             from = to;
@@ -266,7 +267,7 @@ static void parallel_layers_keep_n_sin_theta(void **state)
     }
 }
 
-/* 64 mirrors: a direction stays a unit vector, and is where quadruple precision takes it. */
+/* 64 mirrors: a direction stays a unit vector, and agrees with quadruple precision. */
 static void reflections_do_not_drift(void **state)
 {
     (void)state;

@@ -1,3 +1,4 @@
+/* Tests of prisms over regular polygons: light through an equilateral one, sizes, and invalid parameters. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +10,6 @@
 #include "optics/interface.h"
 #include "random_stream.h"
 #include "ray_fixture.h"
-
-/* Prisms over regular polygons: light through an equilateral one, sizes, and what is refused. */
 
 static scene_geometry *arrange(const solid_shape *shape)
 {
@@ -25,8 +24,8 @@ static double degrees(double radians)
     return radians * 180.0 / acos(-1.0);
 }
 
-/* The angle by which a ray of that angle of incidence is turned in an equilateral prism of index n; -1 where it is
- * totally reflected. Its corner in front is the refracting edge. */
+/* The deviation of a ray with that angle of incidence in an equilateral prism of index n; -1 under total internal
+ * reflection. Its corner in front is the refracting edge. */
 static double deviation(const scene_geometry *a, double n, double incidence)
 {
     const double turn = acos(-1.0) / 180.0 * (incidence - 30.0); /* the first side faces 60 degrees from -z to +x */
@@ -47,8 +46,8 @@ static double deviation(const scene_geometry *a, double n, double incidence)
     return degrees(acos(vec3_dot(d, direction_refract(within, out.normal, out.cos_i, g.eta, g.cos_t))));
 }
 
-/* Born and Wolf, Principles of Optics, 4.7.2: sin((A + D) / 2) = n sin(A / 2) at the minimum, where the ray goes
- * through symmetrically and its angle of incidence is (A + D) / 2. */
+/* Born and Wolf, Principles of Optics, 4.7.2: sin((A + D) / 2) = n sin(A / 2) at the minimum, where the ray passes
+ * symmetrically and its angle of incidence is (A + D) / 2. */
 static void the_least_deviation_is_that_of_the_formula(void **state)
 {
     (void)state;
@@ -84,7 +83,7 @@ static void its_volume_is_that_of_its_polygon(void **state)
     }
 }
 
-/* Of a hexagon: corner to corner along z, side to side along x. */
+/* For a hexagon: corner to corner along z, side to side along x. */
 static void chords_through_the_middle(void **state)
 {
     (void)state;
@@ -102,7 +101,7 @@ static void chords_through_the_middle(void **state)
     scene_geometry_destroy(a);
 }
 
-/* Four sides, turned by 45 degrees, are a box. */
+/* With four sides, rotated by 45 degrees, it is a box. */
 static void with_four_sides_it_is_a_box(void **state)
 {
     (void)state;

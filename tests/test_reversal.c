@@ -1,3 +1,4 @@
+/* Tests that rays and their reversals have the same points, throughput and absorption, in random scenes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,4 @@
-/* The realism room's other scene_geometries: a prism, a drop, two plates. */
+/* Tests of the other scenes of the realism check: a prism, a drop, two plates. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -71,8 +71,8 @@ static void every_arrangement_passes_whatever_its_media(void **state)
     all_pass("plates", "render.polarisation=on plate1.rotation.y=75 plate2.rotation.y=75");
 }
 
-/* A 60 degree prism of n = 1.5 turns light by 2 asin(0.75) - 60 = 37.18 degrees at least (Hecht, Optics, 5th
- * ed., 5.5.1). */
+/* A 60 degree prism of n = 1.5 deviates light by at least 2 asin(0.75) - 60 = 37.18 degrees (Hecht, Optics, 5th ed.,
+ * 5.5.1). */
 static void a_prism_at_least_deviation_as_in_textbooks(void **state)
 {
     (void)state;
@@ -115,7 +115,7 @@ static void a_stack_polarises(void **state)
     scene_destroy(off);
 }
 
-/* Theory of another scene: a part in a million of the index must show. */
+/* With another scene's theory, a relative difference of 1e-6 of the index must be detected. */
 static void an_index_that_is_off_fails(void **state)
 {
     (void)state;
@@ -136,7 +136,7 @@ static void an_index_that_is_off_fails(void **state)
     }
 }
 
-/* An index that no ray gets through, or that makes no rainbow, is said and not hidden. */
+/* An index that lets no ray through, or makes no rainbow, is reported and not hidden. */
 static void what_is_not_there_is_not_measured(void **state)
 {
     (void)state;
@@ -144,7 +144,7 @@ static void what_is_not_there_is_not_measured(void **state)
     realism_report r = measured(s, s);
     assert_false(realism_is_defined(value_of(&r, "rainbow.d")));
     scene_destroy(s);
-    s = scene_of("prism", "glass.ior=2.5"); /* totally reflected for every ray: sin(A / 2) n > 1 */
+    s = scene_of("prism", "glass.ior=2.5"); /* total internal reflection of every ray: sin(A / 2) n > 1 */
     r = measured(s, s);
     assert_false(realism_is_defined(value_of(&r, "prism.d")));
     assert_true(isnan(value_of(&r, "prism.d")->measured));

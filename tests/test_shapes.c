@@ -1,5 +1,5 @@
-/* Each shape's rule is of one piece: what it says of its sizes, its primitives and its drawings holds for the points
- * that it contains. A new shape is tested here without a line of its own. */
+/* Tests that each shape's rule is consistent: its sizes, primitives and drawings hold for the points that it contains.
+ * A new shape is tested here without a new line. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +20,7 @@ enum { POINTS = 20000, DIRECTIONS = 24 };
 
 static uint64_t seed = 20260101;
 
-/* At its defaults, fitted to a cube of 2, turned, and elliptic where it can be. */
+/* At its defaults, fitted to a cube of 2, rotated, and elliptic if it has m. */
 static solid_shape an_example(shape_kind kind)
 {
     solid one = {.shape.kind = kind};
@@ -200,8 +200,9 @@ static void its_drawings_lie_in_its_box(void **state)
     each_bounded(drawings);
 }
 
-/* A hair behind each triangle its primitive is, and a hair before it is not: fronts look outwards, and no triangle lies
- * off the surface by more than a round edge's segments do. The parts of a cup share its rim and are open there. */
+/* Just behind each triangle a point is in the primitive, and just in front of it a point is not: fronts face outwards,
+ * and no triangle deviates from the surface by more than the segments of a round edge. The parts of a cup share its rim
+ * and are open there. */
 static void surfaces(const shape_rule *rule, const placed_shape *placed)
 {
     const solid_shape *shape = &placed->shape;
@@ -248,7 +249,7 @@ static void its_flat_faces_bound_it(void **state)
         size_t i = 0;
         for (; rule->flat(&shape, i, &normal, &point); i++) {
             bool below = false, above = false;
-            for (int n = 0; n < POINTS; n++) { /* near the plane some point is in, on one side or on either */
+            for (int n = 0; n < POINTS; n++) { /* near the plane some point is inside, on one side or the other */
                 const vec3 p = point_in(rule->extent(&shape).box, 0.1);
                 const double side = vec3_dot(vec3_normalize(normal), vec3_sub(p, point));
                 below |= fabs(side) < 0.05 && side < 0.0 && rule->contains(&shape, p);

@@ -1,4 +1,4 @@
-/* The solids by their definitions, and the rotation that places them. */
+/* Tests of the solids by their definitions, and of the rotation that places them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -75,7 +75,7 @@ static void cup_is_wall_and_floor(void **state)
     assert_false(contains(&s, 1.01, 1, 0));
 }
 
-/* Similar ellipses: along z all of it is 1 / m as far, its wall too. */
+/* Similar ellipses: along z everything is scaled by 1 / m, including its wall. */
 static void an_elliptic_cup_is_narrower_along_z(void **state)
 {
     (void)state;

@@ -1,3 +1,4 @@
+/* Tests of all solids against quadruple precision. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -62,7 +63,7 @@ static vec3 double_of(quad3 v)
     return vec3_make((double)v.x, (double)v.y, (double)v.z);
 }
 
-/* A failure that can be looked at: the shape, the ray and what came out. */
+/* Reports a failure: the shape, the ray and the result. */
 static void told(int good, const char *what, const solid_shape *s, const reference_line *line, const one_hit *h)
 {
     if (good)
@@ -89,7 +90,7 @@ static reference_line line_of(one_ray r)
     return (reference_line){quad3_from(r.o), quad3_from(r.d)};
 }
 
-/* The greatest distance that the line keeps within the surface between two crossings, from a few points. */
+/* The greatest distance of the line from the surface between two crossings, from a few points. */
 static quad depth_between(const solid_shape *s, const reference_line *line, quad from, quad to)
 {
     quad depth = 0;
@@ -120,7 +121,7 @@ static quad3 normal_of(const solid_shape *s, int64_t face, quad3 p)
     else if (own > 0)
         n.y = own == 2 ? 1 : -1;
     else if (s->kind == SHAPE_CONE && p.x == 0 && p.z == 0)
-        n.y = 1; /* the point of a cone has any */
+        n.y = 1; /* the apex of a cone has no normal */
     else if (s->kind == SHAPE_CONE)
         n = quad3_make(p.x, quad_sqrt(p.x * p.x + p.z * p.z) * ((quad)s->radius - s->top_radius) / s->height, p.z);
     else
@@ -128,7 +129,7 @@ static quad3 normal_of(const solid_shape *s, int64_t face, quad3 p)
     return quad3_scale(n, 1 / quad3_length(n));
 }
 
-/* Does the face, continued, pass through the point (its own frame)? */
+/* Does the face, extended, contain the point (in its own frame)? */
 static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
 {
     const int part = (int)(face / FACES_MAX), own = (int)(face % FACES_MAX);
@@ -166,7 +167,7 @@ static quad distance_to_face(const solid_shape *s, int64_t face, quad3 p)
     return 1;
 }
 
-/* The smallest radius of curvature; of a cone, that of its circle at the point. */
+/* The smallest radius of curvature; for a cone, that of its circle at the point. */
 static double least_radius(const solid_shape *s, quad3 p)
 {
     if (s->kind == SHAPE_CONE)
@@ -184,11 +185,11 @@ static void check_point(const solid_shape *s, const scene_geometry *a, const ref
     const quad3 local = quad3_turn(quad3_sub(p, quad3_from(s->position)), s->rotation_deg, 1);
     expect(quad_abs(reference_distance(s, p)) <= h->error, s, line, h);
     expect(distance_to_face(s, h->face, local) <= h->error, s, line, h);
-    /* put back on the surface along the radius, which leans on an ellipse */
+    /* projected onto the surface along the radius, which is oblique on an ellipse */
     const double lean = s->kind != SHAPE_CYLINDER && s->kind != SHAPE_CUP ? 1.0 : s->m > 1.0 ? s->m : 1.0 / s->m;
     expect(quad3_length(quad3_sub(p, reference_at(line, h->t))) <= h->error * lean, s, line, h);
     expect(quad_abs(reference_distance(s, reference_at(line, h->t))) <= h->error, s, line, h);
-    /* 16 roundings of what was added up, and not more */
+    /* 16 roundings of the sum of magnitudes, and not more */
     expect(h->error <= 4e-15 * (3.0 * vec3_length(double_of(line->o)) + 2.0 * h->t + 6.0 * a->extent), s, line, h);
     const quad3 outward = quad3_turn(normal_of(s, h->face, local), s->rotation_deg, 0);
     const double curved = s->kind == SHAPE_PLANE || s->kind == SHAPE_BOX || s->kind == SHAPE_PRISM
@@ -202,9 +203,9 @@ static void check_point(const solid_shape *s, const scene_geometry *a, const ref
     expect(quad_abs(h->cos_i - quad_max(-quad3_dot(n, d), 0)) <= 2e-15, s, line, h);
 }
 
-/* One ray against quadruple precision. Before the hit (or for ever, for a miss) the ray is where it was to within
- * the error bound: what it passes on the other side is no deeper than that; and the hit is on the surface, which
- * check_point sees to. */
+/* One ray against quadruple precision. Before the hit (everywhere, for a miss) the ray is where it should be within the
+ * error bound: it crosses other surfaces by no more than that; and the hit is on the surface, which check_point
+ * verifies. */
 static void check_ray(const solid_shape *s, const scene_geometry *a, one_ray r)
 {
     const reference_line line = line_of(r);
@@ -226,7 +227,7 @@ static void check_ray(const solid_shape *s, const scene_geometry *a, one_ray r)
     expect(h.after == 1 - h.before, s, &line, &h);
 }
 
-/* A start well off the surface, so that in and out are not a matter of roundings. */
+/* A start well off the surface, so that inside and outside are not a matter of rounding. */
 static int start_at(const solid_shape *s, const scene_geometry *a, vec3 o, one_ray *r)
 {
     const double clear = 1e-9 * (1.0 + vec3_length(o));
@@ -268,7 +269,7 @@ static void for_all_shapes(ray_maker *make, int rays)
     for_all_shapes_at(vec3_make(0.0, 0.0, 0.0), make, rays);
 }
 
-/* A place of the shape that matters: its middle, a rim, an edge, a corner, or anywhere about it; in the world. */
+/* An important point of the shape, in the world: its centre, a rim, an edge, a corner, or anywhere near it. */
 static vec3 place_on(const solid_shape *s, uint64_t *seed)
 {
     static const double eighths[] = {-1.0, 1.0, 0.0, 0.5};
@@ -325,15 +326,15 @@ static void from_beside(const solid_shape *s, const scene_geometry *a, uint64_t 
     aim(s, a, from, vec3_sub(place_on(s, seed), from));
 }
 
-/* Ray and solid are near one another and both far from the origin: the world's coordinates are coarse there, and the
- * error bound has to know it. */
+/* Ray and solid are near each other and both far from the origin: world coordinates are coarse there, and the error
+ * bound must include that. */
 static void solids_far_from_the_origin(void **state)
 {
     (void)state;
     for_all_shapes_at(vec3_make(3000.1, -7000.7, 5000.3), from_beside, 400);
 }
 
-/* Along a local axis but for a component that is 0, -0 or next to nothing. */
+/* Along a local axis except for a component that is 0, -0 or tiny. */
 static void along_an_axis(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
 {
     static const double little[] = {0.0,    -0.0,   1e-320, -1e-310, 1e-300, -1e-200, 1e-160,
@@ -355,7 +356,7 @@ static void rays_along_the_axes(void **state)
     for_all_shapes(along_an_axis, 800);
 }
 
-/* Past a point of the surface in its tangent plane, at a height from 1e-14 to 1 above or under it. */
+/* Past a point of the surface in its tangent plane, at a height from 1e-14 to 1 above or below it. */
 static void grazing(const solid_shape *s, const scene_geometry *a, uint64_t *seed)
 {
     vec3 from = random_point(seed, 3.0);
@@ -380,7 +381,7 @@ static void grazing_rays(void **state)
     for_all_shapes(grazing, 400);
 }
 
-/* The length of a line's pieces within the solid, from hit to hit. */
+/* The length of a line's chords within the solid, from hit to hit. */
 static double chord(const scene_geometry *a, vec3 from, vec3 direction)
 {
     one_ray r = {.o = from, .d = direction, .start = FACE_NONE};
@@ -396,8 +397,9 @@ static double chord(const scene_geometry *a, vec3 from, vec3 direction)
     return 0.0;
 }
 
-/* Cavalieri: a solid's volume is the integral of its chords over a plane across them, here by the middles of STEPS x
- * STEPS cells. An ellipse of half axes r and r / m has the area pi r^2 / m; a cup is one such cylinder less another. */
+/* Cavalieri: a solid's volume is the integral of its chords over a plane across them, here by the midpoints of STEPS x
+ * STEPS cells. An ellipse of half axes r and r / m has the area pi r^2 / m; a cup is one such cylinder minus
+ * another. */
 static void an_elliptic_cups_volume_is_that_of_its_closed_form(void **state)
 {
     (void)state;

@@ -1,4 +1,3 @@
-/* Tests of thread placement on synthetic topologies and on this machine. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -40,7 +39,7 @@ static void places_on_two_packages(void **state)
 
     assert_places(machine, PIN_SCATTER, 1, (int[]){0});
     assert_places(machine, PIN_SCATTER, 2, (int[]){0, 8});        /* one per package */
-    assert_places(machine, PIN_SCATTER, 3, (int[]){0, 4, 8});     /* the first package gets the odd one */
+    assert_places(machine, PIN_SCATTER, 3, (int[]){0, 4, 8});     /* the first package takes the odd one */
     assert_places(machine, PIN_SCATTER, 4, (int[]){0, 4, 8, 12}); /* every other core */
     assert_places(machine, PIN_SCATTER, 8, (int[]){0, 2, 4, 6, 8, 10, 12, 14});
     assert_places(machine, PIN_SCATTER, 10, (int[]){0, 2, 4, 6, 8, 10, 12, 14, 1, 9}); /* and again one per package */
@@ -49,7 +48,7 @@ static void places_on_two_packages(void **state)
 }
 
 /* As Linux numbers most machines: first the first threads of all cores, then the second ones. */
-static void places_use_os_indices(void **state)
+static void places_follow_the_system_s_numbers(void **state)
 {
     (void)state;
     topology *machine = described("pack:1 core:4 pu:2(indexes=0,4,1,5,2,6,3,7)");
@@ -71,7 +70,7 @@ static void more_workers_than_units_wrap(void **state)
     topology_destroy(machine);
 }
 
-/* For every tree: count workers are on distinct units, and no core is used twice while another is unused. */
+/* Whatever the tree: count workers on distinct units, and no core twice while another has none. */
 static void assert_scatter_is_fair(const topology *machine, int threads_a_core)
 {
     int units = topology_pu_count(machine), cores = topology_core_count(machine);
@@ -107,8 +106,8 @@ static void scatter_uses_every_core_once_before_any_twice(void **state)
     }
 }
 
-/* Package 0 has one thread per core left, package 1 both: by weight alone, package 1 would get 5 of 8 workers. */
-static void scatter_is_fair_with_unequal_cores(void **state)
+/* Package 0 keeps one thread a core, package 1 both: by weight alone, package 1 would take 5 of 8 workers. */
+static void scatter_is_fair_where_cores_are_unlike(void **state)
 {
     (void)state;
     topology *machine = described("pack:2 core:4 pu:2");
@@ -235,10 +234,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(places_on_two_packages),
-        cmocka_unit_test(places_use_os_indices),
+        cmocka_unit_test(places_follow_the_system_s_numbers),
         cmocka_unit_test(more_workers_than_units_wrap),
         cmocka_unit_test(scatter_uses_every_core_once_before_any_twice),
-        cmocka_unit_test(scatter_is_fair_with_unequal_cores),
+        cmocka_unit_test(scatter_is_fair_where_cores_are_unlike),
         cmocka_unit_test(restricted_to_a_part),
         cmocka_unit_test(bad_descriptions_are_refused),
         cmocka_unit_test(texts_describe_the_machine),

@@ -1,3 +1,4 @@
+/* Tests of a torus's special cases: up to four crossings with a line. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +10,6 @@
 #include "random_stream.h"
 #include "ray_fixture.h"
 #include "solid_reference.h"
-
-/* What a torus has that no other solid has: up to four crossings with a line. */
 
 static solid_shape torus_of(double radius, double tube_radius)
 {
@@ -52,7 +51,7 @@ static void a_line_through_both_tubes_crosses_four_times(void **state)
     scene_geometry_destroy(a);
 }
 
-/* Starts on the surface included: every crossing of a random line, from hit to hit, against quadruple precision, and
+/* Every crossing of a random line, from hit to hit (including starts on the surface), against quadruple precision, and
  * its point's distance from the surface in units of its bound. */
 static void crossings_agree_with_quadruple_precision(void **state)
 {
@@ -76,7 +75,7 @@ static void crossings_agree_with_quadruple_precision(void **state)
         quad t[REFERENCE_CROSSINGS_MAX], passed = 0;
         one_hit hits[8];
         const int events = reference_events(&s, &line, 0, t), n = walk(a, r, hits, 8);
-        bool grazes = false; /* its crossings may be seen otherwise in doubles */
+        bool grazes = false; /* its crossings may differ in double precision */
         for (int k = 0; k + 1 < events; k++)
             grazes |= t[k + 1] - t[k] < (quad)1e-5 * size;
         unlike += n != events;
@@ -120,8 +119,8 @@ static void its_volume_is_that_of_pappus(void **state)
     scene_geometry_destroy(a);
 }
 
-/* A ball that fills the hole reaches into the tube and loses to it there: no air between them, and the tube's inner
- * side is an interface between the two. */
+/* A ball that fills the hole overlaps the tube, which has the higher priority: no air between them, and the tube's
+ * inner side is an interface between the two. */
 static void what_reaches_into_the_tube_is_hidden_there(void **state)
 {
     (void)state;
@@ -137,7 +136,8 @@ static void what_reaches_into_the_tube_is_hidden_there(void **state)
         assert_int_equal(a->regions[hits[k].surface].solid, 0);
     }
     scene_geometry_destroy(a);
-    const solid_shape over[2] = {shapes[1], shapes[0]}; /* now the ball wins, and hides two of the tube's crossings */
+    const solid_shape over[2] = {
+        shapes[1], shapes[0]}; /* now the ball has the higher priority and hides two of the tube's crossings */
     a = scene_geometry_of(over, 2);
     assert_int_equal(walk(a, across, hits, 8), 4);
     static const int covered[5] = {-1, 1, 0, 1, -1};
@@ -146,8 +146,8 @@ static void what_reaches_into_the_tube_is_hidden_there(void **state)
     scene_geometry_destroy(a);
 }
 
-/* Light through both tubes is dimmed by each interface; an opaque torus blocks with either tube, and lets light through
- * its hole. */
+/* Light through both tubes is attenuated by each interface; an opaque torus blocks with either tube, and lets light
+ * through its hole. */
 static void shadows_see_both_tubes(void **state)
 {
     (void)state;
@@ -169,7 +169,7 @@ static void shadows_see_both_tubes(void **state)
     scene_geometry_destroy(a);
 }
 
-/* Mirrored inside over and over: every chord ends on the surface, ahead, and none escapes. */
+/* Mirrored inside repeatedly: every chord ends on the surface, ahead, and none escapes. */
 static void nothing_escapes_from_a_mirrored_tube(void **state)
 {
     (void)state;
@@ -192,8 +192,8 @@ static void nothing_escapes_from_a_mirrored_tube(void **state)
     }
 }
 
-/* A start on the surface, with a set that says where: inside and leaning out it leaves at once, and outside it enters
- * no sooner than it has left. */
+/* A start on the surface, with a set that states the side: inside and directed outwards it leaves at once, and outside
+ * it enters no sooner than it has left. */
 static void the_set_is_believed_on_its_own_surface(void **state)
 {
     (void)state;

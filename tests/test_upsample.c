@@ -1,3 +1,4 @@
+/* Tests of RGB-to-spectrum upsampling: round trips of colours, and exact cases. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,7 +14,7 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* Simpson's rule on every 0.1 nm: much finer than the fit's own rule, and another one. */
+/* Simpson's rule on every 0.1 nm: much finer than the fit's own rule, and a different one. */
 enum { WAVELENGTHS = 8001 };
 
 static double wavelength_nm(int k)
@@ -21,7 +22,7 @@ static double wavelength_nm(int k)
     return OBSERVER_LOW_NM + (OBSERVER_HIGH_NM - OBSERVER_LOW_NM) * k / (WAVELENGTHS - 1.0);
 }
 
-/* What each wavelength of a surface under D65 adds to XYZ; the caller frees. */
+/* The contribution of each wavelength of a surface under D65 to XYZ; the caller frees it. */
 static double (*daylight_weights(void))[3]
 {
     double(*weights)[3] = malloc(WAVELENGTHS * sizeof *weights);
@@ -35,7 +36,7 @@ static double (*daylight_weights(void))[3]
     return weights;
 }
 
-/* CIEDE2000 between a colour and its spectrum as seen under D65; checks that the spectrum is a reflectance. */
+/* CIEDE2000 between a colour and its spectrum as seen under D65; checks that the spectrum is a valid reflectance. */
 static double round_trip(double (*weights)[3], const upsampled_spectrum *l, const double rgb[3])
 {
     double xyz[3] = {0.0, 0.0, 0.0}, wanted[3], lab[3], wanted_lab[3];
@@ -117,7 +118,7 @@ static void whole_cube_comes_back(void **state)
     assert_true(sum / 729 < 1e-7 && worst < 1e-5 && worst_corner < 1e-5);
 }
 
-/* The steps of 8 bits next to black and white, where the fit is stiffest. */
+/* The 8-bit steps next to black and white, where the fit is stiffest. */
 static void neighbours_of_black_and_white_come_back(void **state)
 {
     (void)state;
@@ -134,8 +135,7 @@ static void neighbours_of_black_and_white_come_back(void **state)
     assert_true(worst < 0.01);
 }
 
-/* Colours that no picture holds; what must hold is that nothing breaks, and nobody sees a difference (1 is just seen).
- */
+/* Colours that occur in no image; nothing may break, and the difference must be invisible (1 is just visible). */
 static void far_corners_stay_finite(void **state)
 {
     (void)state;
@@ -224,7 +224,7 @@ static void emission_is_linear_in_its_scale(void **state)
     }
 }
 
-/* Lights of any power are their colour, by the components relative to the largest. */
+/* Lights of any power keep their colour: the components relative to the largest. */
 static void lights_come_back(void **state)
 {
     (void)state;

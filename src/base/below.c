@@ -1,3 +1,4 @@
+/* Opening files below a root folder. */
 #include "base/below.h"
 
 #include <errno.h>
@@ -10,7 +11,7 @@
 
 enum { FLAGS = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY };
 
-/* The name under which the system shows an open file; opening that opens the very same one. */
+/* The name in /proc of an open file; opening it opens the same file. */
 typedef struct shown {
     char name[32];
 } shown;
@@ -27,7 +28,7 @@ static bool lies_below(const char *name, const char *root)
     char real[PATH_MAX];
     const size_t length = strlen(root);
     const ssize_t size = readlink(name, real, sizeof real);
-    /* One that is as long as there is room may have been cut off. */
+    /* A name as long as the buffer may have been truncated. */
     return size > 0 && (size_t)size < sizeof real && (size_t)size > length + 1 && memcmp(real, root, length) == 0 &&
            real[length] == '/';
 }
@@ -36,7 +37,7 @@ int below_open(const char *path, const char *root)
 {
     if (!root || !*root)
         return open(path, FLAGS);
-    const int place = open(path, O_PATH | O_CLOEXEC); /* of devices, too, nothing happens by that */
+    const int place = open(path, O_PATH | O_CLOEXEC); /* O_PATH has no side effects, even on devices */
     if (place < 0)
         return -1;
     const shown file = show(place);

@@ -1,6 +1,7 @@
+/* Sums of ray counters. */
 #include "base/counters.h"
 
-/* The struct is 64-bit integers from end to end, so its sum is one loop. */
+/* The struct consists only of 64-bit integers, so its sum is one loop. */
 _Static_assert(sizeof(ray_counters) % sizeof(uint64_t) == 0, "ray_counters is an array of 64-bit integers");
 
 void ray_counters_add(ray_counters *into, const ray_counters *from)

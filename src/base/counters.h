@@ -1,8 +1,8 @@
-/* What the tracer counts: plain integers, one set a worker, summed after the join, so that counting disturbs nothing
- * and the totals do not depend on the number of threads. A ray is a straight piece between two events. Camera and
- * shadow rays, and rays by depth, count when they are traced; reflected and refracted ones when they are put into a
- * queue. Of a frame that was not interrupted both agree: every queued ray is traced. A build with -DCUVETTE_COUNTERS=0
- * leaves the per-ray counters at zero. Ownership: values. */
+/* The ray counters of the tracer: plain integers, one set per worker, summed after the join, so that counting costs no
+ * synchronisation and the totals do not depend on the number of threads. A ray is a straight piece between two events.
+ * Camera and shadow rays, and rays by depth, count when they are traced; reflected and refracted ones when they are put
+ * into a queue. Of a frame that was not interrupted both agree: every queued ray is traced. A build with
+ * -DCUVETTE_COUNTERS=0 leaves the per-ray counters at zero. Ownership: values. */
 #pragma once
 
 #include "base/lanes.h"

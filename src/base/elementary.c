@@ -1,3 +1,4 @@
+/* Powers and angles from + - * / and sqrt alone. */
 #include "base/elementary.h"
 #include "base/elementary_inline.h"
 
@@ -8,7 +9,7 @@ double elementary_pow(double x, double y)
     return y == 0.0 ? 1.0 : x < 0.0 || x != x || y != y ? (double)NAN : elementary_pow_inline(x, y);
 }
 
-/* Taylor series on |x| <= pi/4; the terms left out are under 1e-17. */
+/* Taylor series on |x| <= pi/4; the omitted terms are below 1e-17. */
 static double sine_series(double x)
 {
     double s = x * x, p = -1.0 / 1307674368000.0;

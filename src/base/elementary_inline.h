@@ -1,7 +1,7 @@
-/* elementary_pow as straight-line code without branches, for kernels that vectorise. See base/elementary.h.
- * x = 2^e m with m in [1/sqrt 2, sqrt 2); log2 m = 2 atanh((m-1)/(m+1)) / ln 2, by its Taylor series to the 21st
- * power (the 23rd is under 1e-18); 2^t by its nearest whole power and the Taylor series of e^(r ln 2) to the
- * 13th power (the 14th is under 1e-17). */
+/* elementary_pow as branch-free straight-line code, for kernels that vectorise. See base/elementary.h. x = 2^e m with m
+ * in [1/sqrt 2, sqrt 2); log2 m = 2 atanh((m-1)/(m+1)) / ln 2, by its Taylor series to the 21st power (the 23rd is
+ * below 1e-18); 2^t by its nearest integer power and the Taylor series of e^(r ln 2) to the 13th power (the 14th is
+ * below 1e-17). */
 #pragma once
 
 #include "base/lanes.h"
@@ -14,7 +14,7 @@ static inline double elementary_log2_inline(double x)
     int64_t high = mask_less(1.4142135623730951, m);
     m = blend(high, 0.5 * m, m);
     int64_t e = (int64_t)((uint64_t)bits >> 52) - exponent_bias - high;
-    /* e as a double by the bits of 1.5 2^52 + e: a conversion that every instruction set has */
+    /* e as a double by the bits of 1.5 2^52 + e: a conversion that every instruction set supports */
     double e_real = lanes_double(e + 0x4338000000000000) - 6755399441055744.0;
     double f = (m - 1.0) / (m + 1.0), s = f * f;
     double p = 1.0 / 21.0;
@@ -35,7 +35,7 @@ static inline double elementary_log2_inline(double x)
 static inline double elementary_exp2_inline(double t)
 {
     double clamped = greater(lesser(t, 1000.0), -1001.0);
-    double shifted = clamped + 6755399441055744.0; /* 1.5 2^52: rounds to the nearest whole number */
+    double shifted = clamped + 6755399441055744.0; /* 1.5 2^52: rounds to the nearest integer */
     double n = shifted - 6755399441055744.0;
     double r = (clamped - n) * 0.69314718055994530942;
     double p = 1.0 / 6227020800.0;

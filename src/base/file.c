@@ -1,3 +1,4 @@
+/* Reading and atomic writing of whole files, and folders. */
 #include "base/file.h"
 
 #include "base/below.h"
@@ -18,8 +19,8 @@ static status no_room(diagnostic *why, const char *path)
     return out_of_memory(why);
 }
 
-/* Fills *why with an error of the system about path. The reason is text of its own, because strerror is not
- * safe among threads and follows the locale. */
+/* Fills *why with a system error about path. The reason is a text of its own, because strerror is not thread-safe and
+ * depends on the locale. */
 static status system_error(diagnostic *why, status code, const char *path, const char *doing, int error)
 {
     const char *reason = strerrordesc_np(error), *remedy = NULL;
@@ -31,14 +32,14 @@ static status system_error(diagnostic *why, status code, const char *path, const
     case EFBIG: remedy = "raise the limit on file size"; break;
     case EACCES:
     case EPERM:
-    case EROFS: remedy = "change the permissions or choose another place"; break;
+    case EROFS: remedy = "change the permissions or choose another folder"; break;
     case ENOENT: remedy = "check the path"; break;
     default: break;
     }
     return diagnose_at(why, path, code, remedy, "%s: %s", doing, reason ? reason : "unknown error");
 }
 
-/* Reads to the end of the file whatever fstat said: files of /proc claim to be empty. */
+/* Reads to the end of the file regardless of the size from fstat: files of /proc report 0. */
 static status read_descriptor(int fd, const char *path, size_t limit, size_t expected, char **text, size_t *size,
                               diagnostic *why)
 {
@@ -121,7 +122,7 @@ char *file_beside(const char *path, const char *name)
     return text_format("%.*s%s", folder, path, name);
 }
 
-/* The file that path stands for after its symbolic links, which need not exist yet; NULL with errno. */
+/* The file that path refers to after its symbolic links, which need not exist yet; NULL with errno. */
 static char *resolve(const char *path)
 {
     char *current = strdup(path);
@@ -140,8 +141,8 @@ static char *resolve(const char *path)
     return NULL;
 }
 
-/* Creates a new file beside writer->path. open() applies the umask, which could be read only by changing it for
- * every thread; the name is short, because the target's may be as long as the file system allows. */
+/* Creates a new file in the folder of writer->path. open() applies the umask, which could only be read by changing it
+ * for every thread; the name is short, because the target's may be as long as the file system allows. */
 static int open_temporary(file_writer *writer)
 {
     for (unsigned n = 0; n < 10000; n++) {
@@ -163,7 +164,7 @@ static int open_temporary(file_writer *writer)
 static int open_target(file_writer *writer)
 {
     if (strcmp(writer->path, "-") == 0) {
-        fflush(stdout); /* what was printed before stays before */
+        fflush(stdout); /* keeps earlier output first */
         return fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
     }
     char *resolved = resolve(writer->path);
@@ -176,7 +177,7 @@ static int open_target(file_writer *writer)
     if (!exists && errno != ENOENT)
         return -1;
     if (exists && !S_ISREG(about.st_mode))
-        return open(resolved, O_WRONLY | O_CLOEXEC | O_NOCTTY); /* devices and pipes have no other version to keep */
+        return open(resolved, O_WRONLY | O_CLOEXEC | O_NOCTTY); /* a device or pipe is written directly */
     if (exists && euidaccess(resolved, W_OK) != 0)
         return -1;
     int fd = open_temporary(writer);
@@ -255,7 +256,7 @@ status file_writer_commit(file_writer *writer, diagnostic *why)
         if (error)
             code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error);
         else
-            code = diagnose_at(why, writer->path, STATUS_FAILURE, "check the space that is left on the disk",
+            code = diagnose_at(why, writer->path, STATUS_FAILURE, "check the free space on the disk",
                                "cannot write: a write failed");
     } else if (writer->temporary) {
         file_flush_folder(writer->path);

@@ -1,15 +1,16 @@
+/* Setting and restoring the floating-point environment. */
 #include "base/float_environment.h"
 
-/* C17 7.6.4.3 defines FE_DFL_ENV by what a program starts with; glibc (since 2.21) and musl also end flushing to
- * zero, on x86 the bits FTZ and DAZ of MXCSR. */
+/* C17 7.6.4.3 defines FE_DFL_ENV as the environment at program start; glibc (since 2.21) and musl also disable flushing
+ * to zero, on x86 the bits FTZ and DAZ of MXCSR. */
 void float_environment_set(void)
 {
     fesetenv(FE_DFL_ENV);
 }
 
-/* Changing the whole environment takes 0.3 us on x86, more than the nearest hit of a ray. Most callers are in the
- * default one: then only the raised exceptions are kept. MXCSR: Intel's manual, volume 1, 10.2.3; its low six bits
- * are the exceptions. */
+/* Changing the whole environment takes 0.3 us on x86, more than the nearest hit of a ray. Most callers have the default
+ * environment: then only the raised exceptions are saved. MXCSR: Intel's manual, volume 1, 10.2.3; its low six bits are
+ * the exceptions. */
 #if defined(__x86_64__) && defined(__GLIBC__)
 #include <fpu_control.h>
 #include <xmmintrin.h>
@@ -55,7 +56,7 @@ void float_environment_enter(float_environment *outer)
     outer->was_default = is_default(outer->control);
     if (outer->was_default)
         return;
-    fegetenv(&outer->kept);
+    fegetenv(&outer->saved);
     fesetenv(FE_DFL_ENV);
 }
 
@@ -64,5 +65,5 @@ void float_environment_leave(const float_environment *outer)
     if (outer->was_default)
         control_put_back(outer->control);
     else
-        fesetenv(&outer->kept);
+        fesetenv(&outer->saved);
 }

@@ -1,3 +1,4 @@
+/* Growable arrays. */
 #include "base/grow.h"
 
 #include <stdint.h>

@@ -1,8 +1,9 @@
+/* The FNV-1a hash with a final mix. */
 #include "base/hash.h"
 
 static const uint64_t FNV_PRIME = UINT64_C(1099511628211); /* 64-bit FNV prime, draft-eastlake-fnv */
 
-/* Multiplication carries upwards only: without the shift, changes to the top bits of two words could cancel. */
+/* Multiplication carries only upwards: without the shift, changes to the top bits of two words could cancel. */
 static uint64_t step(uint64_t hash, uint64_t word)
 {
     hash = (hash ^ word) * FNV_PRIME;

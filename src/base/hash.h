@@ -1,5 +1,5 @@
-/* A 64-bit fingerprint of data: FNV-1a over 64-bit words (or bytes), each step folded down by a shift, with a
- * final mix (Fowler, Noll, Vo; Appleby's fmix64). Not for security. The same on every machine. */
+/* A 64-bit hash of data: FNV-1a over 64-bit words (or bytes), with a shift folded into each step, and a final mix
+ * (Fowler, Noll, Vo; Appleby's fmix64). Not for security. Identical on every platform. */
 #pragma once
 
 #include <stddef.h>

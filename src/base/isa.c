@@ -1,3 +1,4 @@
+/* The choice of the instruction set at run time. */
 #include "base/isa.h"
 
 #include <stdlib.h>
@@ -29,11 +30,11 @@ status isa_choose(isa *out, diagnostic *why)
         if (strcmp(wanted, names[level]) != 0)
             continue;
         if (level > (int)*out)
-            return diagnose(why, STATUS_BAD_INPUT, "unset it, or name a lower one",
-                            "CUVETTE_ISA=%s asks for more than this processor has (%s)", wanted, names[*out]);
+            return diagnose(why, STATUS_BAD_INPUT, "unset it, or choose a lower level",
+                            "CUVETTE_ISA=%s is not supported by this processor, which has %s", wanted, names[*out]);
         *out = (isa)level;
         return STATUS_OK;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "one of: sse2, avx2, avx512", "CUVETTE_ISA=%s names no instruction set",
+    return diagnose(why, STATUS_BAD_INPUT, "use sse2, avx2 or avx512", "CUVETTE_ISA=%s is not an instruction set",
                     wanted);
 }

@@ -1,6 +1,6 @@
-/* Selects without branches, for loops that the compiler is to vectorise. A mask is 0 or -1 in 64 bits, as
- * wide as the doubles beside it: blending bits is a form that gcc and clang both vectorise where `?:`
- * in a large loop ends as control flow. Pure; cannot fail. */
+/* Branch-free selection, for loops that the compiler should vectorise. A mask is 0 or -1 in 64 bits, as wide as a
+ * double: gcc and clang both vectorise blends of bits, while `?:` in a large loop becomes control flow. Pure; cannot
+ * fail. */
 #pragma once
 
 #include <stdint.h>

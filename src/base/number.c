@@ -1,3 +1,4 @@
+/* Parsing and formatting of numbers, independent of the locale. */
 #include "base/number.h"
 
 #include <errno.h>
@@ -41,7 +42,7 @@ static bool is_decimal(const char *text)
     return *c == 0;
 }
 
-/* glibc and musl hand out a constant for "C": nothing is allocated and nothing has to be freed. */
+/* glibc and musl return a constant for "C": nothing is allocated or has to be freed. */
 static locale_t c_locale(void)
 {
     return newlocale(LC_ALL_MASK, "C", (locale_t)0);
@@ -87,7 +88,7 @@ char *number_format(double value, char text[NUMBER_TEXT_MAX])
 {
     if (isnan(value) || isinf(value))
         return strcpy(text, isnan(value) ? "nan" : value < 0 ? "-inf" : "inf");
-    /* 15 digits always survive in a normal double and 17 always tell it, so the first that reads back is the
+    /* 15 digits always survive in a normal double and 17 always identify it, so the first text that reads back is the
      * shortest; %g drops trailing zeros. Subnormal numbers hold fewer digits. */
     for (int digits = fabs(value) < DBL_MIN ? 1 : 15; digits <= 17; digits++) {
         number_format_digits(value, digits, text);

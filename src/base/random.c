@@ -1,6 +1,7 @@
+/* The generator Philox4x32-10. */
 #include "base/random.h"
 
-/* Random123's headers convert freely. */
+/* Random123's headers use implicit conversions. */
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic"
 #pragma GCC diagnostic ignored "-Wconversion"

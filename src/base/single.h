@@ -1,5 +1,5 @@
-/* Rounding to single precision, kept as a double. Not written as (double)(float)x: gcc 12 drops both conversions where
- * it makes vectors of straight-line code (-O2 and above). Pure; cannot fail. */
+/* Rounding to single precision, with the result as a double. Not written as (double)(float)x: gcc 12 drops both
+ * conversions when it vectorises straight-line code (-O2 and above). Pure; cannot fail. */
 #pragma once
 
 /* The nearest float; |x| at most FLT_MAX. */

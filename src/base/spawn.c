@@ -1,3 +1,4 @@
+/* Starting another program. */
 #include "base/spawn.h"
 #include <fcntl.h>
 #include <signal.h>

@@ -1,3 +1,4 @@
+/* Diagnostics: their text and position. */
 #include "base/status.h"
 
 #include <stdarg.h>
@@ -5,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Replaces ASCII control characters and the C1 controls of Unicode (UTF-8 C2 80 .. C2 9F), which terminals obey too. */
+/* Replaces ASCII control characters and the C1 controls of Unicode (UTF-8 C2 80 .. C2 9F), which terminals also
+ * interpret. */
 static void make_one_line(char *text)
 {
     for (unsigned char *c = (unsigned char *)text; *c; c++) {
@@ -18,7 +20,7 @@ static void make_one_line(char *text)
     }
 }
 
-/* Drops a UTF-8 sequence that was cut by the end of the buffer. */
+/* Drops a UTF-8 sequence truncated by the end of the buffer. */
 static void drop_cut_sequence(char *text)
 {
     size_t length = strlen(text), start = length;
@@ -43,7 +45,7 @@ static status fill(diagnostic *why, status code, const char *remedy, const char 
 {
     if (!why)
         return code;
-    /* Through copies, because the arguments may lie in *why itself. */
+    /* Through copies, because the arguments may point into *why itself. */
     char what_text[sizeof why->what + 1], remedy_text[sizeof why->remedy];
     copy_line(remedy_text, sizeof remedy_text, remedy ? remedy : "");
     if (vsnprintf(what_text, sizeof what_text, what, arguments) < 0)

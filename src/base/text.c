@@ -1,3 +1,4 @@
+/* Edit distance, the nearest word, and formatted strings. */
 #include "base/text.h"
 
 #include <stdarg.h>

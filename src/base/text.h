@@ -1,4 +1,4 @@
-/* Small helpers for text. Pure unless said otherwise. */
+/* String helpers. Pure unless stated otherwise. */
 #pragma once
 
 #include <stddef.h>
@@ -10,5 +10,5 @@ unsigned text_distance(const char *a, const char *b);
 /* The word of words[0..count-1] nearest to wrong, or NULL if none is within a third of its length (at least 1). */
 const char *text_nearest(const char *wrong, const char *const *words, size_t count);
 
-/* printf into fresh memory (free it), or NULL. */
+/* printf into newly allocated memory (free it), or NULL. */
 char *text_format(const char *format, ...) __attribute__((format(printf, 1, 2)));

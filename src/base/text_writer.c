@@ -1,3 +1,4 @@
+/* Text in memory, written through a stream. */
 #include "base/text_writer.h"
 
 #include <stdint.h>
@@ -5,7 +6,7 @@
 #include <string.h>
 #include <sys/types.h>
 
-/* With room for a final 0. */
+/* Including room for a final 0. */
 static bool make_room(text_writer *w, size_t more)
 {
     if (more < w->capacity - w->size)
@@ -26,7 +27,7 @@ static ssize_t append(void *of, const char *bytes, size_t count)
     text_writer *w = of;
     if (w->failed || !make_room(w, count)) {
         w->failed = true;
-        return 0; /* an error, to the stream */
+        return 0; /* reports an error to the stream */
     }
     memcpy(w->text + w->size, bytes, count);
     w->size += count;
@@ -42,7 +43,7 @@ status text_writer_open(text_writer *writer, diagnostic *why)
     return out_of_memory(why);
 }
 
-/* Writes what the stream still holds; did all find room? */
+/* Flushes the stream; did everything fit? */
 static bool end_stream(text_writer *w)
 {
     const bool bad = !w->stream || ferror(w->stream);

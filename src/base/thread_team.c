@@ -1,3 +1,4 @@
+/* The thread team: a parallel loop over tasks. */
 #include "base/thread_team.h"
 
 #include "base/float_environment.h"
@@ -16,7 +17,7 @@ struct thread_team {
     int size;
     pthread_mutex_t lock;
     pthread_cond_t begin, end;
-    unsigned long run; /* number of the present one */
+    unsigned long run; /* number of the current loop */
     int busy;          /* threads that have not finished it */
     bool quit;
     thread_team_task *task;

@@ -1,4 +1,4 @@
-/* Vectors and rotations of three dimensions, doubles. Pure inline functions; cannot fail. */
+/* Three-dimensional vectors and rotations in double precision. Pure inline functions; cannot fail. */
 #pragma once
 
 #include <math.h>

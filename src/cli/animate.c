@@ -1,3 +1,4 @@
+/* `cuvette animate`: reads scene and scripts, renders the animation, prints its account. */
 #include "cli/animate.h"
 #include "cli/cli.h"
 #include "cli/inert_notes.h"
@@ -14,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --script is script= of every slime. */
+/* Sets the parameter script of every slime to --script. */
 static status set_scripts(const animate_request *request, scene *s, diagnostic *why)
 {
     status result = STATUS_OK;
@@ -30,7 +31,7 @@ static status set_scripts(const animate_request *request, scene *s, diagnostic *
     return result;
 }
 
-/* As many frames as the script wants, and two seconds to come to rest. */
+/* Without --duration: the length of the scripts plus two seconds in which the slimes come to rest. */
 static status choose_duration(animate_request *request, const scene *s, diagnostic *why)
 {
     const double rest_s = 2, without_script_s = 4;
@@ -53,8 +54,8 @@ static status read_scene(animate_request *request, const animate_names *names, s
     TRY(scene_input_read(&request->input, out, why));
     if (!scene_moves(*out))
         return diagnose_at(why, request->input.path, STATUS_BAD_INPUT,
-                           "give it a mesh with 'generate: slime', or use 'cuvette render'",
-                           "nothing moves in the scene");
+                           "add a mesh with 'generate: slime', or use 'cuvette render'",
+                           "nothing moves in this scene: it has no slime");
     TRY(set_scripts(request, *out, why));
     if (request->rows)
         TRY(outputs_check_place("--rows", request->rows, *out, why));
@@ -67,14 +68,14 @@ static status read_scene(animate_request *request, const animate_names *names, s
 
 static void print_summary(const animate_request *request, const scene *s, const animate_account *a)
 {
-    printf("%" PRId64 " frames of %lldx%lld pixels, %.6g a second -> %s: %" PRId64 " rendered", a->rendered + a->kept,
+    printf("%" PRId64 " frames of %lldx%lld pixels, %.6g per second -> %s: %" PRId64 " rendered", a->rendered + a->kept,
            (long long)s->render.width, (long long)s->render.height, (double)request->fps_num / (double)request->fps_den,
            request->output, a->rendered);
     if (a->rendered)
         printf(" in %.4f s each", a->wall_s / (double)a->rendered);
-    printf(", %" PRId64 " kept; %.3g s of motion", a->kept, a->simulated_s);
+    printf(", %" PRId64 " kept; %.3g s of motion simulated", a->kept, a->simulated_s);
     if (a->step_s > 0)
-        printf(", simulated at %.3g s a second", a->simulated_s / a->step_s);
+        printf(" at %.3g s per second", a->simulated_s / a->step_s);
     putchar('\n');
 }
 

@@ -1,4 +1,4 @@
-/* What a film is of, for telling the frames of one from those of another. */
+/* The definition of an animation, by which its frames are told from those of another. */
 #include "cli/animate.h"
 #include "base/hash.h"
 #include "base/number.h"
@@ -16,12 +16,12 @@ static bool is_time_of_slime(const param *row)
     return row->group == PARAM_MESH && strcmp(row->name, "time_s") == 0;
 }
 
-/* The moment that a slime shows is the frame's; of files the contents count, so that a folder may be moved. */
+/* Skips time_s of slimes, which the frame sets, and file names: only contents count, so that a folder may be moved. */
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
     if (row->performance_only || row->type == PARAM_PATH || is_time_of_slime(row))
         return STATUS_OK;
-    json_object_del(context, path); /* so that what is set last stands last */
+    json_object_del(context, path); /* so that the last assignment is the last entry */
     return json_object_set_new(context, path, json_of_text(value)) == 0 ? STATUS_OK : STATUS_FAILURE;
 }
 
@@ -31,7 +31,7 @@ static bool add_request(json_t *parameters, const animate_request *request, cons
     snprintf(fps, sizeof fps, "%" PRId64 "/%" PRId64, request->fps_num, request->fps_den);
     const char *accel = s->render.accel == HIERARCHY_EMBREE
                             ? "embree"
-                            : "not embree"; /* whose hits are of single precision: another film */
+                            : "not embree"; /* Embree's hits have single precision and give other frames */
     return json_object_set_new(parameters, "render.accel", json_string(accel)) == 0 &&
            json_object_set_new(parameters, "--fps", json_string(fps)) == 0 &&
            json_object_set_new(parameters, "--start", json_string(number_format(request->start_s, start))) == 0;
@@ -49,7 +49,7 @@ static void hash_parameters(uint64_t *hash, json_t *parameters)
     }
 }
 
-/* Of each solid what its parameters do not say. */
+/* Hashes shape and material of each solid, which are not parameters. */
 static void hash_solids(uint64_t *hash, const scene *s)
 {
     for (size_t i = 0; i < s->solid_count; i++) {

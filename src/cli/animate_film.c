@@ -1,3 +1,4 @@
+/* Renders an animation frame by frame, into numbered images or one stream. */
 #include "cli/animate.h"
 #include "base/file.h"
 #include "cli/terminal.h"
@@ -11,8 +12,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A film in the making. */
-typedef struct film_job {
+/* An animation being rendered. */
+typedef struct animation_job {
     const animate_request *request;
     const animate_names *names; /* NULL: one stream */
     uint64_t definition;
@@ -20,78 +21,79 @@ typedef struct film_job {
     scene_motion *motion;
     job *with;
     file_writer stream;
-    animate_rows *rows; /* NULL: none wanted */
+    animate_rows *rows; /* NULL: no table */
     int64_t frame, count;
     progress_line line;
     char label[64];
-    scene_motion_report moved; /* to this frame */
+    scene_motion_report last_motion; /* motion up to this frame */
     animate_account *account;
-} film_job;
+} animation_job;
 
 static bool show_progress(void *context, double share_done)
 {
-    film_job *f = context;
+    animation_job *f = context;
     progress_draw(&f->line, ((double)f->frame + share_done) / (double)f->count);
-    return !terminal_stop_asked(NULL);
+    return !terminal_stop_requested(NULL);
 }
 
-static status say_interrupted(const film_job *f, diagnostic *why)
+static status report_interrupted(const animation_job *f, diagnostic *why)
 {
-    const char *remedy = f->names ? "run it again, and it goes on there" : "";
+    const char *remedy = f->names ? "run the same command again to resume" : "";
     return diagnose_at(why, f->request->output, STATUS_INTERRUPTED, remedy, "interrupted at %s%s", f->label,
-                       f->stream.temporary ? ", and nothing is left of the film" : "");
+                       f->stream.temporary ? "; nothing is written" : "");
 }
 
-/* Is that frame's picture there, and its row where rows are wanted? */
-static bool is_there(const film_job *f, const char *path)
+/* Returns whether the frame's image exists, and its row where a table is written. */
+static bool is_done(const animation_job *f, const char *path)
 {
     return path && access(path, F_OK) == 0 && (!f->rows || animate_rows_have(f->rows, f->frame));
 }
 
-/* Frames are of equal length but for the way to the first one, which has a line of its own. */
+/* Frames take equal time, except the motion up to the first one, which has a progress line of its own. */
 static bool show_motion(void *context, double share_done)
 {
-    film_job *f = context;
+    animation_job *f = context;
     if (f->frame > 0)
         return show_progress(f, 0);
     progress_draw(&f->line, share_done);
-    return !terminal_stop_asked(NULL);
+    return !terminal_stop_requested(NULL);
 }
 
-static status advance(film_job *f, double to_s, bool skins, diagnostic *why)
+static status advance(animation_job *f, double to_s, bool skins, diagnostic *why)
 {
     const load_watch watch = {show_motion, f};
     const bool own_line = f->frame == 0 && to_s > 0;
     if (own_line)
-        progress_start(&f->line, "moving to the first frame");
+        progress_start(&f->line, "simulating up to the first frame");
     status result = scene_motion_advance_until(f->motion, to_s, skins, &watch, why);
     if (own_line) {
         progress_erase(&f->line);
         progress_start(&f->line, f->label);
     }
     if (result != STATUS_OK)
-        return result == STATUS_INTERRUPTED ? say_interrupted(f, why) : result;
-    f->moved = scene_motion_last(f->motion);
+        return result == STATUS_INTERRUPTED ? report_interrupted(f, why) : result;
+    f->last_motion = scene_motion_last(f->motion);
     animate_account *account = f->account;
-    account->steps += f->moved.steps;
-    account->step_s += f->moved.step_s;
-    account->skin_s += f->moved.skin_s;
+    account->steps += f->last_motion.steps;
+    account->step_s += f->last_motion.step_s;
+    account->skin_s += f->last_motion.skin_s;
     account->simulated_s = to_s;
     return STATUS_OK;
 }
 
-/* A reader has each frame at once; one who left is a failure without words, as for all that goes to standard output. */
-static status flush_stream(film_job *f, diagnostic *why)
+/* Flushes after each frame for the reader of a pipe. A closed pipe is a failure without a message, as for all
+ * output. */
+static status flush_stream(animation_job *f, diagnostic *why)
 {
     if (fflush(f->stream.stream) == 0 && !ferror(f->stream.stream))
         return STATUS_OK;
     if (errno == EPIPE)
         return STATUS_FAILURE;
-    status result = file_writer_commit(&f->stream, why); /* knows best why it failed */
-    return result == STATUS_OK ? diagnose(why, STATUS_FAILURE, "", "cannot write the film") : result;
+    status result = file_writer_commit(&f->stream, why); /* has the reason of the failure */
+    return result == STATUS_OK ? diagnose(why, STATUS_FAILURE, "", "cannot write the animation") : result;
 }
 
-static status write_image(film_job *f, const char *path, const film *img, diagnostic *why)
+static status write_image(animation_job *f, const char *path, const film *img, diagnostic *why)
 {
     if (path)
         return record_image(img, path, 8, why);
@@ -103,41 +105,41 @@ static status write_image(film_job *f, const char *path, const film *img, diagno
     return result == STATUS_OK ? flush_stream(f, why) : result;
 }
 
-static status render_frame(film_job *f, const char *path, diagnostic *why)
+static status render_frame(animation_job *f, const char *path, diagnostic *why)
 {
     const render_options options = {.progress = show_progress, .context = f};
-    job_account made;
-    status ended = job_render(f->with, f->s, &options, &made, why);
+    job_account rendered;
+    status ended = job_render(f->with, f->s, &options, &rendered, why);
     if (ended == STATUS_INTERRUPTED)
-        ended = say_interrupted(f, why);
-    THEN(ended, write_image(f, path, made.result->img, why));
+        ended = report_interrupted(f, why);
+    THEN(ended, write_image(f, path, rendered.result->img, why));
     if (ended == STATUS_OK && f->rows) {
         const animate_row row = {.definition = f->definition,
                                  .frame = f->frame,
                                  .time_s = animate_time_s(f->request, f->frame),
-                                 .made = &made,
-                                 .moved = f->moved,
+                                 .account = &rendered,
+                                 .motion = f->last_motion,
                                  .body = scene_motion_body(f->motion, 0)};
         ended = animate_rows_add(f->rows, &row, why);
     }
     if (ended == STATUS_OK) {
         f->account->rendered++;
-        f->account->wall_s += made.result->wall_s;
+        f->account->wall_s += rendered.result->wall_s;
     }
-    job_account_release(&made);
+    job_account_release(&rendered);
     return ended;
 }
 
-static status make_frame(film_job *f, diagnostic *why)
+static status make_frame(animation_job *f, diagnostic *why)
 {
     char *path = f->names ? animate_name(f->names, f->frame) : NULL;
     if (f->names && !path)
         return out_of_memory(why);
-    const bool kept = is_there(f, path);
+    const bool exists = is_done(f, path);
     snprintf(f->label, sizeof f->label, "frame %" PRId64 " of %" PRId64, f->frame + 1, f->count);
-    status result = show_progress(f, 0) ? STATUS_OK : say_interrupted(f, why);
-    THEN(result, advance(f, animate_time_s(f->request, f->frame), !kept, why));
-    if (result == STATUS_OK && kept)
+    status result = show_progress(f, 0) ? STATUS_OK : report_interrupted(f, why);
+    THEN(result, advance(f, animate_time_s(f->request, f->frame), !exists, why));
+    if (result == STATUS_OK && exists)
         f->account->kept++;
     else if (result == STATUS_OK)
         result = render_frame(f, path, why);
@@ -145,7 +147,7 @@ static status make_frame(film_job *f, diagnostic *why)
     return result;
 }
 
-static status make_frames(film_job *f, diagnostic *why)
+static status make_frames(animation_job *f, diagnostic *why)
 {
     status result = STATUS_OK;
     progress_start(&f->line, f->label);
@@ -155,7 +157,7 @@ static status make_frames(film_job *f, diagnostic *why)
     return result;
 }
 
-static status open_stream(film_job *f, diagnostic *why)
+static status open_stream(animation_job *f, diagnostic *why)
 {
     const animate_request *request = f->request;
     TRY(file_writer_open(&f->stream, request->output, why));
@@ -163,12 +165,12 @@ static status open_stream(film_job *f, diagnostic *why)
                      request->fps_num, request->fps_den, why);
 }
 
-static status close_stream(film_job *f, status ended, diagnostic *why)
+static status close_stream(animation_job *f, status ended, diagnostic *why)
 {
     return f->stream.stream ? file_writer_end(&f->stream, ended, why) : ended;
 }
 
-static status make_film(film_job *f, diagnostic *why)
+static status make_animation(animation_job *f, diagnostic *why)
 {
     status result = f->names ? STATUS_OK : open_stream(f, why);
     THEN(result, make_frames(f, why));
@@ -178,20 +180,20 @@ static status make_film(film_job *f, diagnostic *why)
 status animate_film(const animate_request *request, const animate_names *names, const animate_definition *d, job *with,
                     scene *s, scene_motion *motion, animate_account *account, diagnostic *why)
 {
-    film_job f = {.request = request,
-                  .names = names,
-                  .definition = d->hash,
-                  .s = s,
-                  .motion = motion,
-                  .with = with,
-                  .count = animate_count(request),
-                  .account = account};
+    animation_job f = {.request = request,
+                       .names = names,
+                       .definition = d->hash,
+                       .s = s,
+                       .motion = motion,
+                       .with = with,
+                       .count = animate_count(request),
+                       .account = account};
     *account = (animate_account){0};
     status result =
         request->rows ? animate_rows_open(request->rows, d->hash, request->restart || !names, &f.rows, why) : STATUS_OK;
     if (result == STATUS_OK && names)
         result = animate_index_begin(names, d, f.count, request->restart, why);
-    THEN(result, make_film(&f, why));
+    THEN(result, make_animation(&f, why));
     animate_rows_close(f.rows);
     return result;
 }

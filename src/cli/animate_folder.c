@@ -1,4 +1,4 @@
-/* What lies in the folder of a film's frames: its own, those of other films, and what the scene reads. */
+/* Checks of the folder of an animation: its own frames, frames of other animations, and files that the scene reads. */
 #include "cli/animate.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const char elsewhere[] = "put this film into another folder, or name its frames otherwise";
+static const char elsewhere[] = "write to another folder, or use another name for the frames";
 
 static status refuse(const animate_names *names, const char *name, const char *remedy, const char *what,
                      diagnostic *why)
@@ -23,7 +23,7 @@ static status refuse(const animate_names *names, const char *name, const char *r
     return diagnose(why, STATUS_BAD_INPUT, remedy, "%s", what);
 }
 
-/* *out is NULL where there is no such folder yet. */
+/* *out is NULL where the folder does not exist yet. */
 static status open_folder(const animate_names *names, DIR **out, diagnostic *why)
 {
     *out = opendir(names->folder);
@@ -49,19 +49,19 @@ static bool is_own_index(const animate_names *names, const char *name)
 static status check_frame(const animate_names *names, DIR *in, const char *name, int64_t known, diagnostic *why)
 {
     if (is_folder(in, name))
-        return refuse(names, name, elsewhere, "is a folder, and named as a frame", why);
+        return refuse(names, name, elsewhere, "is a folder with the name of a frame", why);
     if (known < 0)
         return diagnose_at(why, names->folder, STATUS_BAD_INPUT,
-                           "remove them yourself, or put this film into another folder",
-                           "there are frames of this name without a ledger that says of which film, as %.96s", name);
+                           "remove the frames yourself, or write to another folder",
+                           "the folder has frames without a progress index, for example %.96s", name);
     char what[128];
-    snprintf(what, sizeof what, "is named as a frame, but the film there has %" PRId64, known);
+    snprintf(what, sizeof what, "has the name of a frame, but the animation there has only %" PRId64 " frames", known);
     return animate_name_frame(names, name) < known
                ? STATUS_OK
-               : refuse(names, name, "remove it yourself, or put this film into another folder", what, why);
+               : refuse(names, name, "remove it yourself, or write to another folder", what, why);
 }
 
-/* Is that a ledger of another film, one of whose frames would be one of this film's first count? */
+/* Returns whether that is the index of another animation with a frame named like one of this one's first count. */
 static bool overlaps(const animate_names *names, const char *progress_index, int64_t count)
 {
     animate_names other = {.digits = 0};
@@ -93,7 +93,7 @@ status animate_folder_check(const animate_names *names, int64_t known, int64_t w
             result = check_frame(names, folder, name, known, why);
         else if (outputs_ends_with(name, ".json") && !is_own_index(names, name) &&
                  overlaps(names, name, known > wanted ? known : wanted))
-            result = refuse(names, name, elsewhere, "another film has frames of the same names", why);
+            result = refuse(names, name, elsewhere, "another animation has frames with the same names", why);
     }
     if (folder)
         closedir(folder);
@@ -119,7 +119,7 @@ status animate_folder_clear(const animate_names *names, diagnostic *why)
 
 typedef struct read_search {
     const animate_names *names;
-    char found[256]; /* of the file that is read, for the message */
+    char found[256]; /* path of the file, for the message */
 } read_search;
 
 static bool is_in_place(const animate_names *names, const char *path)
@@ -133,7 +133,7 @@ static bool is_in_place(const animate_names *names, const char *path)
     return same;
 }
 
-/* A name that leads to a file by a link stands for that too. */
+/* Checks the path and, for a symbolic link, its target. */
 static bool is_frame(void *context, const char *path)
 {
     read_search *x = context;
@@ -150,6 +150,6 @@ status animate_names_check(const animate_names *names, const scene *s, diagnosti
     read_search x = {.names = names};
     if (!scene_files_any(s, is_frame, &x))
         return STATUS_OK;
-    return options_wrong("-o", names->pattern, why, elsewhere, "the scene is read from %s, which has such a name",
-                         x.found);
+    return options_wrong("-o", names->pattern, why, elsewhere,
+                         "the scene is read from %s, which has the name of a frame", x.found);
 }

@@ -1,3 +1,4 @@
+/* The progress index of an animation: PATTERN.json next to its frames. */
 #include "cli/animate.h"
 #include "base/file.h"
 #include "cli/outputs.h"
@@ -10,7 +11,7 @@
 
 enum { INDEX_BYTES_MAX = 1 << 26 };
 
-static const char otherwise[] = "put this film into another folder, or add --restart, which removes the frames there";
+static const char otherwise[] = "write to another folder, or add --restart, which removes the frames there";
 
 static status refuse(const char *path, diagnostic *why, const char *what)
 {
@@ -41,7 +42,7 @@ static status write_index(const char *path, const animate_names *names, const an
     return result;
 }
 
-/* The first parameter in which two films differ; NULL for none. */
+/* The first parameter in which two definitions differ; NULL for none. */
 static const char *first_difference(const json_t *there, json_t *here)
 {
     const char *path;
@@ -63,12 +64,12 @@ static status refuse_definition(const char *path, const json_t *progress_index, 
     char what[320];
     if (!differs)
         snprintf(what, sizeof what,
-                 "the frames there are of another film: a file of the scene, or what it holds, is another");
+                 "the frames there belong to another animation: a file that the scene reads has changed");
     else if (!before)
-        snprintf(what, sizeof what, "the frames there are of another film, which had no %.96s", differs);
+        snprintf(what, sizeof what, "the frames there belong to another animation, without %.96s", differs);
     else
-        snprintf(what, sizeof what, "the frames there are of another film: %.96s was %.64s and is %.64s", differs,
-                 before, json_string_value(json_object_get(d->parameters, differs)));
+        snprintf(what, sizeof what, "the frames there belong to another animation: %.96s was %.64s and is now %.64s",
+                 differs, before, json_string_value(json_object_get(d->parameters, differs)));
     return refuse(path, why, what);
 }
 
@@ -97,7 +98,7 @@ int64_t animate_index_count(const char *path)
     return count;
 }
 
-/* *count: of the frames that the ledger says the film has. */
+/* *count: the number of frames in the index. */
 static status compare(const char *path, const animate_definition *d, bool restart, int64_t *count, diagnostic *why)
 {
     status result;
@@ -111,11 +112,11 @@ static status compare(const char *path, const animate_definition *d, bool restar
     char what[160];
     *count = count_of(progress_index);
     if (!definition || !version || *count < 0) {
-        result = diagnose_at(why, path, STATUS_BAD_INPUT,
-                             "put this film into another folder, or remove it and the frames yourself",
-                             "is no ledger of a film");
+        result =
+            diagnose_at(why, path, STATUS_BAD_INPUT, "write to another folder, or remove it and the frames yourself",
+                        "is not the progress index of an animation");
     } else if (!restart && strcmp(version, CUVETTE_VERSION) != 0) {
-        snprintf(what, sizeof what, "the frames there are by version %.32s of the program, this is %s", version,
+        snprintf(what, sizeof what, "the frames there were rendered by version %.32s, this is version %s", version,
                  CUVETTE_VERSION);
         result = refuse(path, why, what);
     } else if (!restart && strcmp(definition, hash) != 0) {

@@ -1,3 +1,4 @@
+/* File names of an animation's frames: parsing of the pattern, name of a frame, frame of a name. */
 #include "cli/animate.h"
 #include "base/file.h"
 #include "base/text.h"
@@ -16,9 +17,9 @@ static status wrong(const char *pattern, const char *remedy, const char *what, d
     return options_wrong("-o", pattern, why, remedy, "%s", what);
 }
 
-static const char number_form[] = "write one %d, or %05d for five digits; %% stands for a percent sign";
+static const char number_form[] = "write one %d, or %05d for five digits; write %% for a percent sign";
 
-/* The conversion that begins at text, "%d" or "%05d": how long it is, 0 for another one. */
+/* The length of the conversion "%d" or "%05d" at text; 0 for any other. */
 static size_t conversion_length(const char *text, int *digits)
 {
     size_t at = 1;
@@ -30,7 +31,7 @@ static size_t conversion_length(const char *text, int *digits)
     return right ? at + 1 : 0;
 }
 
-/* Cuts name at its number; %% becomes %. */
+/* Splits name at its number; %% becomes %. */
 static status split(const char *pattern, const char *name, animate_names *out, diagnostic *why)
 {
     char *part = out->before;
@@ -43,14 +44,14 @@ static status split(const char *pattern, const char *name, animate_names *out, d
         int digits;
         size_t length = conversion_length(at, &digits);
         if (length == 0)
-            return wrong(pattern, number_form, "a % that begins no number of a frame", why);
+            return wrong(pattern, number_form, "invalid frame number after '%'", why);
         if (out->digits >= 0)
-            return wrong(pattern, number_form, "more than one number of a frame", why);
+            return wrong(pattern, number_form, "the name has more than one frame number", why);
         out->digits = digits;
         part = out->after;
         at += length;
     }
-    return out->digits >= 0 ? STATUS_OK : wrong(pattern, number_form, "no number of a frame in the name", why);
+    return out->digits >= 0 ? STATUS_OK : wrong(pattern, number_form, "the name has no frame number", why);
 }
 
 status animate_names_parse(const char *pattern, animate_names *out, diagnostic *why)
@@ -58,10 +59,10 @@ status animate_names_parse(const char *pattern, animate_names *out, diagnostic *
     const char *name = file_name_of(pattern);
     *out = (animate_names){.pattern = pattern, .digits = -1};
     if (image_format_of(name) == IMAGE_UNKNOWN)
-        return wrong(pattern, "end it in .png, .jpg or .pfm for frames, .y4m for a film",
-                     "the ending names no format of pictures or films", why);
+        return wrong(pattern, "use .png, .jpg or .pfm for frames, .y4m for one film file", "unknown file name ending",
+                     why);
     if (memchr(pattern, '%', (size_t)(name - pattern)))
-        return wrong(pattern, "number the files, not their folder", "a % in the folder's name", why);
+        return wrong(pattern, "number the files, not their folder", "the folder's name has a %", why);
     out->folder = outputs_folder_of(pattern);
     out->before = calloc(1, strlen(name) + 1);
     out->after = calloc(1, strlen(name) + 1);
@@ -95,6 +96,6 @@ int64_t animate_name_frame(const animate_names *names, const char *name)
     if (count > DIGITS_MAX || count < (size_t)names->digits || strspn(digits, "0123456789") < count)
         return -1;
     if (digits[0] == '0' && count > 1 && count > (size_t)names->digits)
-        return -1; /* no number is written so */
+        return -1; /* printf writes no further leading zeros */
     return strtoll(digits, NULL, 10);
 }

@@ -1,3 +1,4 @@
+/* The command line of `cuvette animate`. */
 #include "cli/animate.h"
 #include "base/number.h"
 #include "cli/options.h"
@@ -10,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define SECONDS_MAX 86400.0 /* of the parameter time_s */
+#define SECONDS_MAX 86400.0 /* upper limit of the parameter time_s */
 enum { FRAMES_MAX = 10000000, RATE_PART_MAX = 1000000 };
 
 static status take_seconds(const command_option *o, void *request, const char *value, diagnostic *why)
@@ -19,7 +20,7 @@ static status take_seconds(const command_option *o, void *request, const char *v
     const bool is_time = number_parse_real(value, seconds) && *seconds >= 0 && *seconds <= SECONDS_MAX;
     char name[32];
     snprintf(name, sizeof name, "--%s", o->name);
-    return is_time ? STATUS_OK : options_wrong(name, value, why, "give seconds, from 0 to 86400", "is no such time");
+    return is_time ? STATUS_OK : options_wrong(name, value, why, "give seconds from 0 to 86400", "invalid time");
 }
 
 static int64_t common_divisor(int64_t a, int64_t b)
@@ -32,9 +33,9 @@ static int64_t common_divisor(int64_t a, int64_t b)
     return a;
 }
 
-static status take_rate(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_rate(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    animate_request *request = into;
+    animate_request *request = context;
     (void)o;
     char whole[32];
     const size_t length = strcspn(value, "/");
@@ -46,8 +47,8 @@ static status take_rate(const command_option *o, void *into, const char *value, 
     }
     if (!right || num < 1 || den < 1 || num > RATE_PART_MAX || den > RATE_PART_MAX)
         return options_wrong("--fps", value, why,
-                             "give an integer or a fraction of integers up to 1000000, as 25 or 30000/1001",
-                             "is no rate of frames");
+                             "give an integer or a fraction of integers up to 1000000, such as 25 or 30000/1001",
+                             "invalid frame rate");
     const int64_t divisor = common_divisor(num, den);
     request->fps_num = num / divisor;
     request->fps_den = den / divisor;
@@ -56,20 +57,20 @@ static status take_rate(const command_option *o, void *into, const char *value, 
 
 static const command_option options[] = {
     {"output", 'o', "PATTERN",
-     "frames as pictures, numbered from 0 by one %d or %05d in the name: .png, .jpg or .pfm; or one film, .y4m (- for "
-     "standard output)",
+     "write frames, .png, .jpg or .pfm, numbered from 0 by one %d or %05d in the name; or one .y4m file (-: standard "
+     "output)",
      OPTION_FILLS(option_text, animate_request, output)},
-    {"script", 0, "FILE", "what hands do with the slimes, for all of them",
+    {"script", 0, "FILE", "read the hand script of all slimes from FILE",
      OPTION_FILLS(option_text, animate_request, script)},
-    {"duration", 0, "S", "seconds; when not said 2 more than the script has, or 4 without one",
+    {"duration", 0, "S", "length in seconds (default: that of the script plus 2, or 4 without a script)",
      OPTION_FILLS(take_seconds, animate_request, duration_s)},
-    {"fps", 0, "N", "frames a second, as 25 (the default) or 30000/1001", .take = take_rate},
-    {"start", 0, "S", "the first frame's time, in seconds after the motion's beginning; 0 when not said",
+    {"fps", 0, "N", "frames per second, such as 25 (the default) or 30000/1001", .take = take_rate},
+    {"start", 0, "S", "time of the first frame, in seconds since the start of the motion (default: 0)",
      OPTION_FILLS(take_seconds, animate_request, start_s)},
     OPTION_SET("'toy.stiffness=80'"),
-    {"rows", 0, "FILE", "append a row a frame, once, to a .csv: times, counts, energies",
+    {"rows", 0, "FILE", "append one row per frame to a .csv: times, counts, energies",
      OPTION_FILLS(option_text, animate_request, rows)},
-    {"restart", 0, NULL, "remove the frames of the film that is there, and begin anew",
+    {"restart", 0, NULL, "remove the existing frames and start again",
      OPTION_FILLS(option_flag, animate_request, restart)},
     {"json", 0, NULL, "print the account as one JSON object", OPTION_FILLS(option_flag, animate_request, json)},
     {0},
@@ -78,15 +79,17 @@ static const command_option options[] = {
 static status check_output(const animate_request *request, diagnostic *why)
 {
     if (!request->output)
-        return options_wrong("animate", NULL, why, "add -o frames/%05d.png for pictures, -o NAME.y4m for a film",
-                             "nothing is asked for");
+        return options_wrong("animate", NULL, why,
+                             "add -o frames/%05d.png for images, or -o NAME.y4m for one film file",
+                             "no output is given");
     const bool to_stdout = strcmp(request->output, "-") == 0;
     if (to_stdout && request->json)
-        return options_wrong("--json", "", why, "name a file by -o", "standard output cannot hold film and account");
+        return options_wrong("--json", "", why, "give a file with -o",
+                             "standard output cannot take both the film and the account");
     if (to_stdout && isatty(STDOUT_FILENO))
-        return options_wrong("-o", "-", why, "send it into a file or another program", "a terminal shows no films");
+        return options_wrong("-o", "-", why, "redirect it into a file or a pipe", "the terminal cannot show a film");
     if (request->restart && animate_is_stream(request))
-        return options_wrong("--restart", "", why, "leave it out", "a film in one file always begins anew");
+        return options_wrong("--restart", "", why, "remove it", "one film file is always written from the start");
     return STATUS_OK;
 }
 
@@ -96,28 +99,28 @@ static status check_rows(const animate_request *request, diagnostic *why)
     size_t which;
     if (!request->rows)
         return STATUS_OK;
-    TRY(outputs_ending("--rows", request->rows, endings, 1, "end it in .csv", &which, why));
+    TRY(outputs_ending("--rows", request->rows, endings, 1, "use a name that ends in .csv", &which, why));
     return outputs_check_folder("--rows", request->rows, why);
 }
 
-/* A script is named from the working folder, but the parameter's is looked for in the scene's. */
+/* --script is relative to the working folder, whereas the parameter script is relative to the scene's folder. */
 static status find_script(animate_request *request, diagnostic *why)
 {
     if (!request->script)
         return STATUS_OK;
     struct stat about;
     if (stat(request->script, &about) == 0 && !S_ISREG(about.st_mode))
-        return options_wrong("--script", request->script, why, "name a regular file: a script is read more than once",
-                             "is no regular file");
+        return options_wrong("--script", request->script, why,
+                             "give a regular file, since a script is read more than once", "not a regular file");
     request->script_path = realpath(request->script, NULL);
     if (request->script_path)
         return STATUS_OK;
     return options_wrong("--script", request->script, why, "check the path", "cannot open: %s", strerrordesc_np(errno));
 }
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
-    animate_request *request = asked;
+    animate_request *request = context;
     TRY(check_output(request, why));
     TRY(check_rows(request, why));
     return find_script(request, why);
@@ -126,12 +129,12 @@ static status check_request(void *asked, diagnostic *why)
 static const scene_command animate_command = {
     .name = "animate",
     .form = {.options = options,
-             .words = "SCENE",
+             .synopsis = "SCENE",
              SCENE_WORD("animate"),
              .about =
-                 "Render a film of the scene file SCENE, whose slimes move.\vFrame k shows the time START + k / FPS; "
-                 "there are DURATION times FPS of them, rounded, at least one. Frames that are there already are not "
-                 "rendered again: a film that was stopped goes on when it is asked for again. For example:\n"
+                 "Render an animation of the scene file SCENE, whose slimes move.\vFrame k shows the time START + k / "
+                 "FPS; there are DURATION times FPS frames, rounded, at least one. Existing frames are not rendered "
+                 "again: the same command resumes an interrupted animation. For example:\n"
                  "  cuvette animate experiments/scenes/slime.yaml -o frames/%05d.png\n"
                  "  cuvette animate experiments/scenes/slime.yaml -o - | ffmpeg -i - slime.mp4"},
     .check = check_request,
@@ -170,7 +173,6 @@ status animate_check_length(const animate_request *request, diagnostic *why)
     const double frames = request->duration_s * (double)request->fps_num / (double)request->fps_den;
     if (frames <= FRAMES_MAX && request->start_s + request->duration_s <= SECONDS_MAX)
         return STATUS_OK;
-    return options_wrong("animate", NULL, why,
-                         "give a --duration with at most 10000000 frames, that ends within 86400 s",
-                         "the film is too long");
+    return options_wrong("animate", NULL, why, "give a --duration of at most 10000000 frames that ends within 86400 s",
+                         "the animation is too long");
 }

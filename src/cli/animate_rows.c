@@ -1,3 +1,4 @@
+/* The CSV table of an animation: one row per rendered frame. */
 #include "cli/animate.h"
 #include "base/number.h"
 #include "study/csv.h"
@@ -10,22 +11,22 @@
 struct animate_rows {
     char *path;
     table *file;
-    struct film_row *there; /* in order of frames */
+    struct existing_row *existing; /* rows of the file, sorted by frame */
     size_t count;
 };
 
-typedef struct film_row {
+typedef struct existing_row {
     int64_t frame;
     char film_hash[32];
-} film_row;
+} existing_row;
 
 static void put(csv_line *line, const animate_row *r, const char *name)
 {
-    row_put(line, frame_quantity(name), r->made, -1);
+    row_put(line, frame_quantity(name), r->account, -1);
 }
 
-/* A column's name and how it is written stand together, so that header and row cannot part. line; r: the row; m: the
- * motion's report; b: the first slime's account. */
+/* Name and writer of each column, in one list so that header and rows agree. r: the row; m: the motion's report; b: the
+ * first slime's account. */
 #define COLUMNS(X)                                         \
     X("definition", csv_hash(line, r->definition))         \
     X("frame", csv_count(line, r->frame))                  \
@@ -68,7 +69,7 @@ static void put_header(csv_line *line)
 
 static void put_row(csv_line *line, const animate_row *r)
 {
-    const scene_motion_report m = r->moved;
+    const scene_motion_report m = r->motion;
     const softbody_account b = softbody_measure(r->body);
 #define VALUE(name, put) put;
     COLUMNS(VALUE)
@@ -78,7 +79,7 @@ static void put_row(csv_line *line, const animate_row *r)
 
 static status refuse(const char *path, const char *what, diagnostic *why)
 {
-    return diagnose_at(why, path, STATUS_BAD_INPUT, "name another file by --rows, or move this one away", "%s", what);
+    return diagnose_at(why, path, STATUS_BAD_INPUT, "give another file with --rows, or move this one away", "%s", what);
 }
 
 static bool has_header(const csv *there, const char *header)
@@ -89,47 +90,47 @@ static bool has_header(const csv *there, const char *header)
 
 static int compare_frames(const void *a, const void *b)
 {
-    const int64_t x = ((const film_row *)a)->frame, y = ((const film_row *)b)->frame;
+    const int64_t x = ((const existing_row *)a)->frame, y = ((const existing_row *)b)->frame;
     return (x > y) - (x < y);
 }
 
-/* What rows there are, all of them of this film. */
+/* Reads the existing rows; all must belong to this animation. */
 static status take_rows(animate_rows *rows, const char *path, const csv *there, const char *header, uint64_t definition,
                         diagnostic *why)
 {
     char hash[32];
     snprintf(hash, sizeof hash, "%016" PRIx64, definition);
     if (there->whole == 0 && there->size < strlen(header) && memcmp(there->raw, header, there->size) == 0)
-        return STATUS_OK; /* killed while it was made */
+        return STATUS_OK; /* the program was killed while it wrote the header */
     if (!has_header(there, header))
-        return refuse(path, "has other columns than the rows of a film", why);
-    rows->there = calloc(there->row_count + 1, sizeof *rows->there);
-    if (!rows->there)
+        return refuse(path, "has other columns than the table of an animation", why);
+    rows->existing = calloc(there->row_count + 1, sizeof *rows->existing);
+    if (!rows->existing)
         return out_of_memory(why);
     const int frame = csv_column(there, "frame"), of = csv_column(there, "definition"),
               img = csv_column(there, "film_hash");
     for (size_t i = 0; i < there->row_count; i++) {
         if (strcmp(csv_field(there, i, of), hash) != 0)
-            return refuse(path, "holds rows of another film", why);
-        if (!number_parse_int(csv_field(there, i, frame), &rows->there[i].frame))
-            return refuse(path, "holds a row without a frame's number", why);
-        snprintf(rows->there[i].film_hash, sizeof rows->there[i].film_hash, "%s", csv_field(there, i, img));
+            return refuse(path, "has rows of another animation", why);
+        if (!number_parse_int(csv_field(there, i, frame), &rows->existing[i].frame))
+            return refuse(path, "has a row without a frame number", why);
+        snprintf(rows->existing[i].film_hash, sizeof rows->existing[i].film_hash, "%s", csv_field(there, i, img));
     }
     rows->count = there->row_count;
-    qsort(rows->there, rows->count, sizeof *rows->there, compare_frames);
+    qsort(rows->existing, rows->count, sizeof *rows->existing, compare_frames);
     return STATUS_OK;
 }
 
-/* The table says what is right for a study. */
+/* Replaces the remedy of table_open, which is that of a study. */
 static status open_table(const char *path, const char *header, table **out, diagnostic *why)
 {
     const status result = table_open(path, header, out, why);
-    return result == STATUS_BAD_INPUT ? diagnose(why, result, "wait for it to end, or name another file by --rows",
-                                                 "another process is writing these rows")
+    return result == STATUS_BAD_INPUT ? diagnose(why, result, "wait for it to end, or give another file with --rows",
+                                                 "another process is writing this table")
                                       : result;
 }
 
-status animate_rows_open(const char *path, uint64_t definition, bool anew, animate_rows **out, diagnostic *why)
+status animate_rows_open(const char *path, uint64_t definition, bool restart, animate_rows **out, diagnostic *why)
 {
     csv_line header = {0};
     put_header(&header);
@@ -140,8 +141,8 @@ status animate_rows_open(const char *path, uint64_t definition, bool anew, anima
     status result = rows && rows->path && !header.failed ? csv_read(path, &there, why) : out_of_memory(why);
     if (result == STATUS_OK && there)
         result = take_rows(rows, path, there, header.text, definition, why);
-    if (result == STATUS_OK && anew && rows->count > 0)
-        result = refuse(path, "has rows already, and this film begins anew", why);
+    if (result == STATUS_OK && restart && rows->count > 0)
+        result = refuse(path, "has rows already, but this animation starts again", why);
     THEN(result, open_table(path, header.text, &rows->file, why));
     csv_destroy(there);
     csv_line_free(&header);
@@ -159,15 +160,15 @@ void animate_rows_close(animate_rows *rows)
         return;
     if (rows->file)
         table_close(rows->file);
-    free(rows->there);
+    free(rows->existing);
     free(rows->path);
     free(rows);
 }
 
-static const film_row *find(const animate_rows *rows, int64_t frame)
+static const existing_row *find(const animate_rows *rows, int64_t frame)
 {
-    const film_row key = {.frame = frame};
-    return rows->count > 0 ? bsearch(&key, rows->there, rows->count, sizeof key, compare_frames) : NULL;
+    const existing_row key = {.frame = frame};
+    return rows->count > 0 ? bsearch(&key, rows->existing, rows->count, sizeof key, compare_frames) : NULL;
 }
 
 bool animate_rows_have(const animate_rows *rows, int64_t frame)
@@ -178,12 +179,12 @@ bool animate_rows_have(const animate_rows *rows, int64_t frame)
 status animate_rows_add(animate_rows *rows, const animate_row *row, diagnostic *why)
 {
     char hash[32];
-    const film_row *there = find(rows, row->frame);
-    snprintf(hash, sizeof hash, "%016" PRIx64, job_account_hash(row->made));
+    const existing_row *there = find(rows, row->frame);
+    snprintf(hash, sizeof hash, "%016" PRIx64, job_account_hash(row->account));
     if (there && strcmp(there->film_hash, hash) != 0)
-        return diagnose_at(why, rows->path, STATUS_BAD_INPUT,
-                           "make the film anew, with --restart and another file by --rows",
-                           "frame %" PRId64 " is film %s now, and %s in its row", row->frame, hash, there->film_hash);
+        return diagnose_at(
+            why, rows->path, STATUS_BAD_INPUT, "render the animation again with --restart and another --rows file",
+            "frame %" PRId64 " has film hash %s, but its row has %s", row->frame, hash, there->film_hash);
     if (there)
         return STATUS_OK;
     csv_line line = {0};

@@ -1,7 +1,7 @@
-/* The program `cuvette`: a table of subcommands, and what they share. A subcommand parses its own options with argp,
- * does its work through the rooms below, and returns a status with the reason in a diagnostic; main.c alone prints
- * the error and turns the status into the exit code (0 done, 1 the machine failed, 2 wrong input, 130 interrupted).
- * Data goes to standard output, progress and errors to standard error. */
+/* The commands of the program `cuvette`, and the dispatcher that they share. A command parses its options with argp,
+ * calls the modules, and returns a status with the reason in a diagnostic. Only main.c prints the error and maps the
+ * status to the exit code (0 success, 1 system failure, 2 invalid input, 130 interrupted). Data goes to standard
+ * output, progress and errors to standard error. */
 #pragma once
 
 #include "base/status.h"
@@ -9,8 +9,8 @@
 
 typedef struct command {
     const char *name;
-    const char *purpose; /* one line for the help, no full stop */
-    /* argv[0] is the words so far ("cuvette render"); the rest is the subcommand's own. */
+    const char *purpose; /* one help line without a full stop, at most 67 columns */
+    /* argv[0] is the program and the command ("cuvette render"), followed by the command's own arguments. */
     status (*run)(int argc, char **argv, diagnostic *why);
 } command;
 
@@ -29,6 +29,6 @@ status command_motion(int argc, char **argv, diagnostic *why);
 status command_lab(int argc, char **argv, diagnostic *why);
 status command_machine(int argc, char **argv, diagnostic *why);
 
-/* Parses "program [OPTION...] COMMAND ..." and runs the command of the table that it names. about stands above the list
- * of commands in the help. */
+/* Parses "program [OPTION...] COMMAND ..." and runs that command of the table. about is the first paragraph of the
+ * help, above the list of commands. */
 status command_dispatch(const command *table, size_t count, const char *about, int argc, char **argv, diagnostic *why);

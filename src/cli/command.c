@@ -1,3 +1,4 @@
+/* The dispatcher of commands: help text, selection by name, unknown names. */
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "base/text.h"
@@ -7,7 +8,7 @@
 
 enum { COMMANDS_MAX = 16 };
 
-/* Help text made from the table, so that it cannot fall behind it. */
+/* The help text, generated from the table so that the two always agree. */
 static char *table_text(const command *table, size_t count, const char *about, const char *program)
 {
     char *text = text_format("%s\vCommands:\n", about);
@@ -18,7 +19,8 @@ static char *table_text(const command *table, size_t count, const char *about, c
     }
     if (!text)
         return NULL;
-    char *whole = text_format("%s\n'%s COMMAND --help' explains one. The manual page is cuvette(1).", text, program);
+    char *whole =
+        text_format("%s\n'%s COMMAND --help' prints the help of one. The manual page is cuvette(1).", text, program);
     free(text);
     return whole;
 }
@@ -58,23 +60,24 @@ status command_dispatch(const command *table, size_t count, const char *about, i
     if (!help)
         return out_of_memory(why);
     const char *word = NULL;
-    const command_form form = {.words = "COMMAND [ARGUMENT...]", .about = help, .words_most = 1, .ends_at_word = true};
+    const command_form form = {
+        .synopsis = "COMMAND [ARGUMENT...]", .about = help, .argument_limit = 1, .ends_at_argument = true};
     status result = command_form_read(&form, argc, argv, &word, why);
     free(help);
     if (result != STATUS_OK)
         return result;
     if (!word) {
         char remedy[96];
-        snprintf(remedy, sizeof remedy, "'%s --help' lists them", argv[0]);
+        snprintf(remedy, sizeof remedy, "'%s --help' lists the commands", argv[0]);
         options_locate(why, argv[0]);
-        return diagnose(why, STATUS_BAD_INPUT, remedy, "name a command");
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "no command is given");
     }
     int at = 1;
     while (argv[at] != word)
         at++;
     for (size_t i = 0; i < count; i++) {
         if (strcmp(argv[at], table[i].name) == 0) {
-            argv[at - 1] = argv[0]; /* only a "--" can stand before the command */
+            argv[at - 1] = argv[0]; /* replaces a "--", the only word that can precede the command */
             return run_command(&table[i], argc - at + 1, argv + at - 1, why);
         }
     }

@@ -1,3 +1,4 @@
+/* `cuvette compare`: the difference of two images, as numbers and as a map. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "report/report.h"
@@ -7,12 +8,12 @@
 #include <stdio.h>
 
 typedef struct compare_request {
-    const char *paths[2], *map; /* map: NULL when not wanted */
+    const char *paths[2], *map; /* map: NULL for none */
     bool json;
 } compare_request;
 
 static const command_option options[] = {
-    {"diff", 0, "FILE", "write where they differ, the FLIP error in false colour: .png, .jpg or .pfm",
+    {"diff", 0, "FILE", "write the FLIP error map in false colour: .png, .jpg or .pfm",
      OPTION_FILLS(option_text, compare_request, map)},
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, compare_request, json)},
     {0},
@@ -20,14 +21,14 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .words = "A B",
-    .words_at = offsetof(compare_request, paths),
-    .words_most = 2,
-    .excess_remedy = "compare takes two pictures",
-    .excess = "'%.128s' is one too many",
-    .about = "Say how far the pictures A and B lie apart, as a display shows them: mean squared error, peak "
-             "signal-to-noise ratio, structural similarity, FLIP, the largest difference, the pixels that differ. PNG, "
-             "JPEG, PFM and 24-bit BMP go together, of one size.\vFor example:\n"
+    .synopsis = "A B",
+    .arguments_at = offsetof(compare_request, paths),
+    .argument_limit = 2,
+    .excess_remedy = "compare takes two images",
+    .excess = "unexpected argument '%.128s'",
+    .about = "Compare the images A and B as a display shows them: mean squared error, peak signal-to-noise ratio, "
+             "structural similarity, FLIP, the largest difference and the share of differing pixels. Both images must "
+             "have the same size; PNG, JPEG, PFM and 24-bit BMP can be mixed.\vFor example:\n"
              "  cuvette compare depth4.png depth8.png --diff where.png",
 };
 
@@ -41,8 +42,7 @@ static status check_request(const compare_request *request, diagnostic *why)
 {
     if (!request->paths[1])
         return options_wrong("compare", NULL, why, "give two PNG, JPEG, PFM or 24-bit BMP files",
-                             request->paths[0] ? "there is nothing to compare the picture with"
-                                               : "no pictures are named");
+                             request->paths[0] ? "only one image is given" : "no images are given");
     return request->map ? outputs_check_image("--diff", request->map, request->paths, 2, why) : STATUS_OK;
 }
 

@@ -1,7 +1,7 @@
 # bash completion for cuvette(1)                                        -*- shell-script -*-
-# The names of parameters come from the program itself, so that they cannot fall behind it.
+# Parameter names come from the program itself, so that both always agree.
 
-_cuvette_files() # ENDINGS: a pattern for files, and folders
+_cuvette_files() # ENDINGS: completes files that match the pattern, and folders
 {
     local IFS=$'\n'
     compopt -o filenames
@@ -13,7 +13,7 @@ _cuvette_words() # WORD...
     mapfile -t COMPREPLY < <(compgen -W "$*" -- "$current")
 }
 
-# Paths of the parameters of the scene on the line, of a scene without names when there is none.
+# Completes parameter paths of the scene on the command line, or of the general table without one.
 _cuvette_parameters()
 {
     local word scene=
@@ -25,7 +25,7 @@ _cuvette_parameters()
         awk 'NR > 1 && $1 !~ /^(LIGHT|MATERIAL|SOLID)\./ { print $1 "=" }')"
 }
 
-_cuvette_objects() # SUFFIX WORD...: what the scene on the line holds, the camera, and these words
+_cuvette_objects() # SUFFIX WORD...: completes the objects of the scene on the command line, the camera, and these words
 {
     local word scene= suffix=$1
     shift
@@ -36,7 +36,7 @@ _cuvette_objects() # SUFFIX WORD...: what the scene on the line holds, the camer
     _cuvette_words "$({ printf 'x %s\n' camera "$@"; [[ $scene ]] && "${COMP_WORDS[0]}" scene "$scene" --list 2>/dev/null; } | awk -v s="$suffix" '{ print $2 s }')"
 }
 
-_cuvette_value() # OPTION: completes what follows it; false when it takes nothing
+_cuvette_value() # OPTION: completes its value; false for a flag
 {
     case $1 in
     -s | --set) _cuvette_parameters ;;

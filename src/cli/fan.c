@@ -1,3 +1,4 @@
+/* `cuvette fan`: follows a fan of rays and writes its caustic and focus as a drawing or CSV. */
 #include "cli/cli.h"
 #include "cli/fan_writers.h"
 #include "cli/options.h"
@@ -9,7 +10,7 @@
 
 typedef struct fan_request {
     scene_input input;
-    size_t format; /* index of the ending */
+    size_t format; /* FAN_SVG or FAN_CSV */
     fan_rule rule;
     int64_t rays;
     bool has_width, whole_trees;
@@ -29,9 +30,9 @@ static status take_vector(const command_option *o, void *request, const char *va
     return result;
 }
 
-static status take_size(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_size(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    fan_request *request = into;
+    fan_request *request = context;
     const bool spreads = strcmp(o->name, "spread") == 0;
     const char *name = spreads ? "--spread" : "--width";
     const status result = options_reals(name, value, spreads ? "degrees" : "scene units", 1,
@@ -40,7 +41,7 @@ static status take_size(const command_option *o, void *into, const char *value, 
     if (result != STATUS_OK)
         return result;
     if (request->has_width)
-        return options_wrong(name, value, why, "give one of them", "--width and --spread exclude each other");
+        return options_wrong(name, value, why, "give only one of them", "--width and --spread exclude each other");
     if (!(size >= 0.0 && size <= most))
         return options_wrong(name, value, why, spreads ? "give 0 to 179 degrees" : "give 0 to 1e6", "out of range");
     request->has_width = true;
@@ -49,33 +50,34 @@ static status take_size(const command_option *o, void *into, const char *value, 
 }
 
 static const command_option options[] = {
-    {"from", 0, "X,Y,Z", "where the middle ray sets out", OPTION_FILLS(take_vector, fan_request, rule.from)},
-    {"to", 0, "X,Y,Z", "a point that it goes towards", OPTION_FILLS(take_vector, fan_request, rule.to)},
-    {"rays", 0, "N", "how many rays, 21 when not said", OPTION_FILLS(option_integer, fan_request, rays), .lowest = 1,
+    {"from", 0, "X,Y,Z", "origin of the central ray", OPTION_FILLS(take_vector, fan_request, rule.from)},
+    {"to", 0, "X,Y,Z", "point on the central ray", OPTION_FILLS(take_vector, fan_request, rule.to)},
+    {"rays", 0, "N", "number of rays (default: 21)", OPTION_FILLS(option_integer, fan_request, rays), .lowest = 1,
      .highest = FAN_RAYS_MAX},
-    {"width", 0, "W", "a pencil of parallel rays, as wide as this; 1 when neither is said", .take = take_size},
-    {"spread", 0, "DEG", "a fan from one point, of this angle", .take = take_size},
-    {"plane", 0, "NX,NY,NZ", "the normal of the rays' plane", OPTION_FILLS(take_vector, fan_request, rule.normal)},
+    {"width", 0, "W", "width of a parallel beam (default: 1, without --spread)", .take = take_size},
+    {"spread", 0, "DEG", "full angle of a fan from one point, in degrees", .take = take_size},
+    {"plane", 0, "NX,NY,NZ", "normal of the plane of the rays", OPTION_FILLS(take_vector, fan_request, rule.normal)},
     OPTION_DEPTH,
     OPTION_LAMBDA,
     OPTION_SET("'rod.visible=off'"),
-    {"tree", 0, NULL, "draw each ray's whole tree, not its refracted way alone",
+    {"tree", 0, NULL, "draw the whole ray tree of each ray, not only its refracted path",
      OPTION_FILLS(option_flag, fan_request, whole_trees)},
-    OPTION_OUTPUT("write there: .svg, a drawing, or .csv, a row a ray"),
+    OPTION_OUTPUT("write a drawing (.svg) or one row per ray (.csv)"),
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
     static const char *const endings[] = {".svg", ".csv"};
-    fan_request *request = asked;
+    fan_request *request = context;
     request->rule.rays = (int)request->rays;
     if (isnan(request->rule.from.x) || isnan(request->rule.to.x))
-        return options_wrong("fan", NULL, why, "give --from X,Y,Z and --to X,Y,Z", "the rays have no axis");
+        return options_wrong("fan", NULL, why, "give --from X,Y,Z and --to X,Y,Z", "the axis of the fan is not given");
     if (!request->input.output)
-        return options_wrong("fan", NULL, why, "add -o FILE.svg for the drawing or -o FILE.csv for a row a ray",
-                             "nothing is asked for");
-    return outputs_ending("-o", request->input.output, endings, 2, "end it in .svg or .csv", &request->format, why);
+        return options_wrong("fan", NULL, why, "add -o FILE.svg for a drawing or -o FILE.csv for one row per ray",
+                             "no output is given");
+    return outputs_ending("-o", request->input.output, endings, 2, "use a name that ends in .svg or .csv",
+                          &request->format, why);
 }
 
 static status write_fan(const void *content, FILE *out, diagnostic *why)
@@ -84,13 +86,13 @@ static status write_fan(const void *content, FILE *out, diagnostic *why)
     return t->as_csv ? fan_write_csv(t, out, why) : fan_write_drawing(t, out, why);
 }
 
-/* One line for people. */
+/* Prints the summary, one line. */
 static void print_summary(const fan_request *request, const fan *f)
 {
     int left = 0;
     for (int i = 0; i < f->count; i++)
         left += f->ray[i].leaves;
-    printf("%d rays, %d followed to their end, %d crossings of neighbours", f->count, left, f->crossing_count);
+    printf("%d rays, %d followed to the end, %d crossings of adjacent rays", f->count, left, f->crossing_count);
     if (f->has_focus)
         printf(", %s %.6g,%.6g,%.6g (rms distance %.3g)", f->is_virtual ? "virtual mean focus" : "mean focus",
                fan_shown(f->focus.x), fan_shown(f->focus.y), fan_shown(f->focus.z), f->focus_rms);
@@ -113,9 +115,9 @@ static status follow(const fan_request *request, const scene *s, probe *p, diagn
     return result;
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const fan_request *request = asked;
+    const fan_request *request = context;
     probe *p = NULL;
     status result = scene_input_probe(&request->input, s, level, &p, why);
     if (result == STATUS_OK) {
@@ -129,13 +131,14 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 static const scene_command fan_command = {
     .name = "fan",
     .form = {.options = options,
-             .words = "SCENE --from X,Y,Z --to X,Y,Z -o FILE",
+             .synopsis = "SCENE --from X,Y,Z --to X,Y,Z -o FILE",
              SCENE_WORD("fan"),
-             .about = "Send many rays through the scene side by side, or from one point, in one plane; follow each "
-                      "along its refracted way; and find where neighbours cross, the caustic, and the mean focus.\vThe "
-                      "plane is level where --from and --to are equally high, else upright. For example:\n"
-                      "  cuvette fan experiments/scenes/rod.yaml --from -3,1.5,0 --to 3,1.5,0 --width 1.6 --rays 41 "
-                      "--set rod.visible=off -o fan.svg"},
+             .about =
+                 "Trace a fan of rays in one plane, parallel or from one point, along their refracted paths; find "
+                 "the crossings of adjacent rays (the caustic) and the mean focus.\vWithout --plane, the plane is "
+                 "horizontal if --from and --to have the same height, otherwise vertical. For example:\n"
+                 "  cuvette fan experiments/scenes/rod.yaml --from -3,1.5,0 --to 3,1.5,0 \\\n    --width 1.6 --rays 41 "
+                 "--set rod.visible=off -o fan.svg"},
     .check = check_request,
     .run = run,
 };

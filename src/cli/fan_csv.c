@@ -1,3 +1,4 @@
+/* A fan of rays as CSV, one row per ray. */
 #include "cli/fan_writers.h"
 #include "study/csv.h"
 #include "scene/model/open.h"
@@ -9,7 +10,7 @@ static void add_vector(csv_line *line, bool there, vec3 v)
     csv_real(line, there ? v.z : (double)NAN);
 }
 
-/* How a way ended: "sky", "cut", or the opaque solid that it met. */
+/* The end of a path: "sky", "cut", or the name of the opaque solid that it hit. */
 static const char *end_words(const fanned *t, const fan_ray *ray)
 {
     const ray_node *last = &t->f->node[ray->first + ray->count - 1];

@@ -1,17 +1,18 @@
-/* A fan of rays in its own plane: the section of the solids, the rays' ways, the caustic and the mean focus. */
+/* A fan of rays drawn in its plane: the section of the solids, the ray paths, the caustic and the mean focus. */
 #include "report/diagram.h"
 #include "cli/fan_writers.h"
 #include "report/svg.h"
 #include "scene/model/scene.h"
 
-/* Branches lighter than this are not drawn with whole trees; nor is a wider picture made for a caustic farther off than
- * this share of the rest. */
+/* LIGHTEST: with whole trees, branches with a smaller weight are not drawn. FAR_OFF: the window is not enlarged for
+ * points that lie farther outside than this fraction of its diagonal. */
 #define LIGHTEST 0.004
 #define FAR_OFF 0.6
 
 static const double outer_width = 960.0, least_height = 260.0, most_height = 760.0;
 
-/* A level plane with the axis to the right; others with what is up in them upwards, and the rays' way to the right. */
+/* A horizontal plane has the axis to the right; any other has up upwards, and the direction of the rays to the
+ * right. */
 static section_plane plane_of(const fan *f)
 {
     const vec3 up = vec3_sub(vec3_make(0, 1, 0), vec3_scale(f->normal, f->normal.y));
@@ -56,7 +57,7 @@ static diagram_box box_of(const fanned *t, const section_plane *plane)
     return box;
 }
 
-/* The end of a node's piece; one into the sky leads out of the window. */
+/* The end of a node's segment; a segment to the sky leads out of the window. */
 static vec3 end_of(const diagram *d, const ray_node *node)
 {
     const double across = hypot(d->plane.u1 - d->plane.u0, d->plane.v1 - d->plane.v0);
@@ -70,7 +71,7 @@ static vec3 end_of(const diagram *d, const ray_node *node)
     return vec3_add(from, vec3_scale(node->direction, 2.0 * (across + off)));
 }
 
-/* Many rays side by side are drawn thinner. */
+/* Line weight factor: many rays are drawn thinner. */
 static double crowding(const fan *f)
 {
     return f->count > 20 ? sqrt(20.0 / f->count) : 1.0;
@@ -117,7 +118,7 @@ static status draw_rays(const diagram *d, const fanned *t, diagnostic *why)
     return result;
 }
 
-/* Crossings of neighbours, and where they are neighbours themselves the line between them: the envelope of the rays. */
+/* The crossings of adjacent rays, and lines between crossings of successive pairs: the envelope of the rays. */
 static void draw_caustic(const diagram *d, const fan *f)
 {
     for (int i = 0; i + 1 < f->crossing_count; i++) {
@@ -139,7 +140,7 @@ static void draw_key(const fanned *t, FILE *out, double left, double y)
     x = svg_key(out, x, y, SVG_BLUE, NULL, "refracted", 106.0);
     x = svg_key(out, x, y, SVG_VERMILLION, NULL, "reflected", 106.0);
     fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2\" fill=\"" SVG_ORANGE "\"/>\n", x + 4.0, y - 4.0);
-    svg_label(out, x + 12.0, y, "start", SVG_INK, "neighbours cross (caustic)");
+    svg_label(out, x + 12.0, y, "start", SVG_INK, "crossings (caustic)");
     x += 196.0;
     fprintf(out, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" stroke=\"" SVG_PURPLE "\" stroke-width=\"1.2\"/>\n", x + 4.0,
             y - 4.0);
@@ -157,7 +158,7 @@ static void write_caption(const fanned *t, char *text, size_t size)
 {
     const fan_rule *r = t->rule;
     char shape[64];
-    snprintf(shape, sizeof shape, r->spreads ? "a fan of %.6g degrees" : "a pencil %.6g wide",
+    snprintf(shape, sizeof shape, r->spreads ? "a fan of %.6g degrees" : "a beam %.6g wide",
              r->spreads ? r->spread_deg : r->width);
     snprintf(text, size, "%d rays, %s, from (%.4g, %.4g, %.4g) towards (%.4g, %.4g, %.4g); %.6g nm", r->rays, shape,
              r->from.x, r->from.y, r->from.z, r->to.x, r->to.y, r->to.z, t->s->render.lambda_nm);

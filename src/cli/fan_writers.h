@@ -1,5 +1,5 @@
-/* A fan of rays as CSV and as a drawing. Each writes all of it to a stream, whose errors are left in the stream.
- * Ownership: everything is borrowed. */
+/* Writers of a fan of rays, as CSV and as a drawing. Errors of the stream stay in the stream, where the caller checks
+ * them. Ownership: everything is borrowed. */
 #pragma once
 
 #include "render/inspect/fan.h"
@@ -10,11 +10,11 @@ typedef struct fanned {
     probe *p;
     const fan_rule *rule;
     const fan *f;
-    bool whole_trees; /* drawn in place of the refracted ways alone */
+    bool whole_trees; /* draw whole ray trees, not only the refracted paths */
     bool as_csv;
 } fanned;
 
-/* A coordinate without what rounding leaves of a zero, for a line of text. */
+/* A coordinate rounded to 1e-9, so that rounding errors around zero print as 0. */
 static inline double fan_shown(double value)
 {
     return floor(value * 1e9 + 0.5) / 1e9 + 0.0;

@@ -1,3 +1,4 @@
+/* Notes on command-line and study parameters that have no effect on the image. */
 #include "cli/inert_notes.h"
 #include "cli/terminal.h"
 #include "scene/model/hints.h"
@@ -8,7 +9,7 @@
 
 enum { PATH_MAX_HERE = 200 };
 
-/* The path of a change, which may stand before the value. */
+/* Copies the path of a change: path, or the part of text before '='. */
 static bool path_of(const char *path, const char *text, char out[PATH_MAX_HERE])
 {
     const size_t length = path ? strlen(path) : strcspn(text, "=");
@@ -37,7 +38,7 @@ static bool is_hinted(const scene *s, const char *path)
     return x.found;
 }
 
-static void say(const inert_answer *answer)
+static void print_note(const inert_answer *answer)
 {
     char line[NOTE_LINE_MAX];
     terminal_note(note_line(&answer->note, line, sizeof line));
@@ -48,10 +49,10 @@ void inert_note_assignment(const scene *s, const char *assignment)
     char path[PATH_MAX_HERE];
     inert_answer answer;
     if (path_of(NULL, assignment, path) && inert_ask(s, path, NULL, &answer))
-        say(&answer);
+        print_note(&answer);
 }
 
-/* Set again later on the command line. */
+/* Returns whether a later option sets the same path. */
 static bool is_set_again(const scene_input *input, size_t at, const char *path)
 {
     char other[PATH_MAX_HERE];
@@ -61,7 +62,7 @@ static bool is_set_again(const scene_input *input, size_t at, const char *path)
     return false;
 }
 
-/* A film moves its slimes: their time_s does not count. */
+/* An animation sets time_s of its slimes, so that its value on the command line has no effect. */
 static scene *in_motion(const scene *s)
 {
     scene *moved = scene_clone(s);
@@ -71,7 +72,7 @@ static scene *in_motion(const scene *s)
     return moved;
 }
 
-/* Says which changes of the command line do nothing: with a witness, only what it alone can tell. */
+/* Notes the changes of the command line that have no effect; with a witness, only those that need it. */
 static void note_changes(const scene *s, const scene_input *input, const inert_witness *witness)
 {
     for (size_t i = 0; i < input->count; i++) {
@@ -81,7 +82,7 @@ static void note_changes(const scene *s, const scene_input *input, const inert_w
             continue;
         const bool is_plain = inert_ask(s, path, NULL, &answer);
         if (witness ? !is_plain && inert_ask(s, path, witness, &answer) : is_plain && !is_hinted(s, path))
-            say(&answer);
+            print_note(&answer);
     }
 }
 
@@ -92,7 +93,7 @@ void inert_note_changes(const scene *s, const scene_input *input)
     scene_destroy(moved);
 }
 
-/* --- what a frame tells --- */
+/* --- notes that need a rendered frame --- */
 
 typedef struct frame_of {
     const job_account *frame;
@@ -133,7 +134,7 @@ static status note_in_all_cells(const study *s, const char *path, diagnostic *wh
         scene_destroy(setting);
     }
     if (inert)
-        say(&answer);
+        print_note(&answer);
     return STATUS_OK;
 }
 

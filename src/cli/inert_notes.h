@@ -1,20 +1,20 @@
-/* Notes on parameters that a person sets and that cannot act (scene/model/inert/inert.h), one line each on standard
- * error. What the linter notes of the same place is not said twice. Everything is borrowed. */
+/* Notes on parameters that are set but have no effect (scene/model/inert/inert.h), one line each on standard error.
+ * Places with a note of the linter get no second one. Ownership: everything is borrowed. */
 #pragma once
 
 #include "cli/scene_input.h"
 #include "scene/model/inert/inert.h"
 #include "study/study.h"
 
-/* Of the command line. s: as it changed it. */
+/* Notes on the changes of the command line. s: the changed scene. */
 void inert_note_changes(const scene *s, const scene_input *input);
 
-/* Of the command line, too, what shows only in a frame: rendered by this job. Renders another one
- * where a note depends on it, if that takes no more than a moment. */
+/* Further notes on the command line that need the rendered frame. Where a note needs a second frame for comparison, the
+ * job renders it, if the first one took less than a second. */
 void inert_note_frame(const scene_input *input, job *with, const job_account *frame);
 
-/* Of one PATH=VALUE. */
+/* A note on one PATH=VALUE. */
 void inert_note_assignment(const scene *s, const char *assignment);
 
-/* Of a study's axes and fixed parameters: what is inert in every cell. */
+/* Notes on the axes and fixed parameters of a study that have no effect in any cell. */
 status inert_note_study(const study *s, diagnostic *why);

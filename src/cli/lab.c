@@ -1,3 +1,4 @@
+/* `cuvette lab`: starts the laboratory's HTTP server and opens its page in the browser. */
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
@@ -21,14 +22,14 @@ typedef struct lab_request {
 
 static const command_option options[] = {
     {"folder", 0, "DIR",
-     "the folder whose scenes, models and studies are there, and where files are saved; nothing outside of it is read "
-     "or written (default: the working folder, or the scene's where that lies elsewhere)",
+     "folder of the scenes, models and studies, where files are also saved; nothing outside it is read or written "
+     "(default: the working folder, or that of SCENE if SCENE is outside it)",
      OPTION_FILLS(option_text, lab_request, folder)},
-    {"results", 0, "DIR", "folder for rows of studies, within the other (default: results there)",
+    {"results", 0, "DIR", "folder for the rows of studies, inside --folder (default: its subfolder results)",
      OPTION_FILLS(option_text, lab_request, results)},
-    {"port", 0, "N", "port on 127.0.0.1 (default: any that is free)", OPTION_FILLS(option_integer, lab_request, port),
+    {"port", 0, "N", "port on 127.0.0.1 (default: any free port)", OPTION_FILLS(option_integer, lab_request, port),
      .lowest = 0, .highest = 65535},
-    {"threads", 0, "N", "threads for scenes that do not say how many (default: one a processing unit)",
+    {"threads", 0, "N", "threads for scenes that do not set render.threads (default: one per processing unit)",
      OPTION_FILLS(option_integer, lab_request, threads), .lowest = 1, .highest = 1024},
     {"no-browser", 0, NULL, "do not open the address in a browser", OPTION_FILLS(option_flag, lab_request, no_browser)},
     {0},
@@ -36,21 +37,22 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .words = "[SCENE]",
-    .words_at = offsetof(lab_request, scene),
-    .words_most = 1,
+    .synopsis = "[SCENE]",
+    .arguments_at = offsetof(lab_request, scene),
+    .argument_limit = 1,
     .excess_remedy = "give one SCENE",
-    .excess = "'%.128s' is one argument too many",
-    .about = "Open the laboratory in the browser: look at a scene and turn every parameter of it, ask a pixel why, "
-             "compare, edit, play with a slime, run studies. The page is served by this program on 127.0.0.1 alone, to "
-             "those who know the token in the address that is printed.\vFor example:\n"
+    .excess = "unexpected argument '%.128s'",
+    .about = "Open the laboratory in the browser: view a scene, change any of its parameters, inspect the rays of a "
+             "pixel, compare images, edit the scene, move a slime, run studies. This program serves the page on "
+             "127.0.0.1 only; access requires the token in the printed address.\vFor example:\n"
              "  cuvette lab experiments/scenes/rod.yaml\n"
-             "From another machine: ssh -L 8000:127.0.0.1:8000 HOST cuvette lab --port 8000 --no-browser SCENE, and "
-             "open the address that it prints here. Ctrl-C ends it.",
+             "From another machine, run the following and open the printed address locally:\n"
+             "  ssh -L 8000:127.0.0.1:8000 HOST cuvette lab --port 8000 --no-browser SCENE\n"
+             "Ctrl-C ends the laboratory.",
 };
 
-/* The working folder where the scene lies below it (or is not there, which is said later), otherwise the scene's own.
- * Fresh memory. */
+/* The working folder if the scene is below it (or does not exist, which is reported later), otherwise the scene's
+ * folder. Allocated. */
 static char *choose_folder(const lab_request *request)
 {
     char *here = realpath(".", NULL), *there = request->scene ? realpath(request->scene, NULL) : NULL;
@@ -66,8 +68,8 @@ static char *choose_folder(const lab_request *request)
     return strdup(".");
 }
 
-/* In a process of its own, whose words go nowhere, and in a session of its own: the Ctrl-C that ends the laboratory is
- * not for the browser. */
+/* Starts the browser in its own process without output, and in its own session, so that the Ctrl-C that ends the
+ * laboratory does not reach it. */
 static void open_browser(const char *address)
 {
     const pid_t child = fork();
@@ -88,7 +90,7 @@ static void open_browser(const char *address)
 
 static void wait_for_stop(void)
 {
-    while (!terminal_stop_asked(NULL))
+    while (!terminal_stop_requested(NULL))
         usleep(50000);
 }
 
@@ -124,7 +126,7 @@ status command_lab(int argc, char **argv, diagnostic *why)
     status code = command_form_read(&form, argc, argv, &request, why);
     char *chosen = NULL, *results = NULL;
     if (code == STATUS_OK && !request.folder && !(chosen = choose_folder(&request)))
-        code = diagnose(why, STATUS_FAILURE, "", "the working folder cannot be found");
+        code = diagnose(why, STATUS_FAILURE, "", "cannot find the working folder");
     const char *folder = request.folder ? request.folder : chosen;
     if (code == STATUS_OK && !request.results) {
         results = strcmp(folder, ".") == 0 ? strdup("results") : text_format("%s/results", folder);

@@ -1,9 +1,13 @@
+/* `cuvette machine`: hardware, clocks, and what disturbs measurements. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "cli/options.h"
+#include "cli/terminal.h"
 #include "report/machine.h"
+#include "report/wrap.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 static const command_option options[] = {
     {"json", 0, NULL, "print JSON", .take = option_flag},
@@ -12,31 +16,36 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .excess_remedy = "leave it out",
-    .excess = "'%.128s' is one argument too many",
-    .about = "Print what this machine is: its processors and caches, the step and the cost of its clocks, the vector "
-             "instructions in use, and what could disturb a measurement now.",
+    .excess_remedy = "remove it",
+    .excess = "unexpected argument '%.128s'",
+    .about = "Describe this machine: processors and caches, resolution and overhead of the clocks, the vector "
+             "instruction set in use, and what could currently disturb a measurement.",
 };
 
 static void print_text(const machine_account *a)
 {
+    const int columns = terminal_columns(STDOUT_FILENO);
     char *summary = topology_summary(a->machine);
-    printf("machine         %s\n", summary ? summary : "unknown");
+    wrap_row(stdout, columns, "machine         ", "%s", summary ? summary : "unknown");
     free(summary);
-    printf("usable          processing units %d, cores %d, packages %d\n", topology_pu_count(a->machine),
-           topology_core_count(a->machine), topology_package_count(a->machine));
-    printf("instructions    %s in use, %s is the best of this processor\n", isa_name(a->chosen), isa_name(a->best));
-    printf("kernel          %s %s %s\n", a->kernel.sysname, a->kernel.release, a->kernel.machine);
-    printf("wall clock      tick %.0f ns, a reading costs %.0f ns\n", a->wall.tick_s * 1e9, a->wall.overhead_s * 1e9);
-    printf("thread clock    tick %.0f ns, a reading costs %.0f ns\n", a->cpu.tick_s * 1e9, a->cpu.overhead_s * 1e9);
-    printf("hw counters     %s\n", a->has_hardware_counters ? "available" : "not available");
-    printf("build           cuvette %s, compiler %s, %s\n", CUVETTE_VERSION, __VERSION__, CUVETTE_COMPILER_FLAGS);
+    wrap_row(stdout, columns, "usable          ", "processing units %d, cores %d, packages %d",
+             topology_pu_count(a->machine), topology_core_count(a->machine), topology_package_count(a->machine));
+    wrap_row(stdout, columns, "instructions    ", "%s in use, %s is the best that this processor has",
+             isa_name(a->chosen), isa_name(a->best));
+    wrap_row(stdout, columns, "kernel          ", "%s %s %s", a->kernel.sysname, a->kernel.release, a->kernel.machine);
+    wrap_row(stdout, columns, "wall clock      ", "resolution %.0f ns, overhead %.0f ns a reading",
+             a->wall.tick_s * 1e9, a->wall.overhead_s * 1e9);
+    wrap_row(stdout, columns, "thread clock    ", "resolution %.0f ns, overhead %.0f ns a reading", a->cpu.tick_s * 1e9,
+             a->cpu.overhead_s * 1e9);
+    wrap_row(stdout, columns, "hw counters     ", "%s", a->has_hardware_counters ? "available" : "not available");
+    wrap_row(stdout, columns, "build           ", "cuvette %s, compiler %s, %s", CUVETTE_VERSION, __VERSION__,
+             CUVETTE_COMPILER_FLAGS);
     size_t i;
     json_t *line;
     json_array_foreach(a->disturbances, i, line)
-        printf("%-15s %s\n", i == 0 ? "disturbances" : "", json_string_value(line));
+        wrap_row(stdout, columns, i == 0 ? "disturbances    " : "                ", "%s", json_string_value(line));
     if (json_array_size(a->disturbances) == 0)
-        printf("disturbances    none seen\n");
+        wrap_row(stdout, columns, "disturbances    ", "none found");
 }
 
 status command_machine(int argc, char **argv, diagnostic *why)

@@ -1,3 +1,4 @@
+/* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
 #include "base/float_environment.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
@@ -8,34 +9,34 @@
 static status command_help(int argc, char **argv, diagnostic *why);
 
 static const command commands[] = {
-    {"render", "render a scene; write the picture, the counts, the times", command_render},
-    {"animate", "render a film of a scene whose slimes move", command_animate},
-    {"scene", "check, change and write a scene; build one without an editor", command_scene},
-    {"trace", "take one ray apart: the whole tree that it grows into", command_trace},
-    {"fan", "send many rays through the scene: their focus, their caustic", command_fan},
-    {"params", "print the table of parameters", command_params},
-    {"media", "print the catalogue of media: refractive indices, dispersion, sources", command_media},
-    {"mesh", "make a mesh of triangles, describe it, write it for other programs", command_mesh},
-    {"study", "run, list, merge and sum up studies", command_study},
-    {"compare", "say how far two pictures lie apart", command_compare},
-    {"realism", "measure how far what is traced lies from textbook optics", command_realism},
-    {"motion", "measure how slimes move beside textbook mechanics", command_motion},
+    {"render", "render a scene; write the image, the ray counts and the times", command_render},
+    {"animate", "render an animation of a scene with moving slimes", command_animate},
+    {"scene", "check, edit and write a scene, or build a new one", command_scene},
+    {"trace", "trace one ray and print its ray tree", command_trace},
+    {"fan", "trace a fan of rays; find their focus and their caustic", command_fan},
+    {"params", "print the parameter table", command_params},
+    {"media", "print the media catalogue: refractive index, dispersion, source", command_media},
+    {"mesh", "describe, generate or convert a triangle mesh", command_mesh},
+    {"study", "run, list, merge and summarise studies (parameter sweeps)", command_study},
+    {"compare", "compare two images", command_compare},
+    {"realism", "compare the traced optics of a scene with closed-form theory", command_realism},
+    {"motion", "compare the motion of slimes with closed-form mechanics", command_motion},
     {"lab", "open the laboratory in the browser", command_lab},
-    {"machine", "print what this machine is, and what could disturb a measurement", command_machine},
-    {"help", "explain a command", command_help},
+    {"machine", "describe this machine and what disturbs measurements on it", command_machine},
+    {"help", "print the help of a command", command_help},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
-static const char about[] = "Cuvette, a ray-tracing laboratory: describe a scene, sweep any of its parameters, get the "
-                            "picture, the exact ray counts and honest times.";
+static const char about[] = "Cuvette, a ray-tracing laboratory: describe a scene, sweep any of its parameters, and get "
+                            "the image, the exact ray counts and reliable times.";
 
 static status dispatch(int argc, char **argv, diagnostic *why)
 {
     return command_dispatch(commands, COMMAND_COUNT, about, argc, argv, why);
 }
 
-/* "cuvette help study run" is "cuvette study run --help". */
+/* Runs "cuvette help study run" as "cuvette study run --help". */
 static status command_help(int argc, char **argv, diagnostic *why)
 {
     enum { WORDS_MAX = 8 };
@@ -59,7 +60,7 @@ static void print_version(FILE *stream, struct argp_state *state)
 
 int main(int argc, char **argv)
 {
-    float_environment_set(); /* the start-up code of a library can have left another one */
+    float_environment_set(); /* the start-up code of a library may have changed it */
     terminal_prepare();
     argp_err_exit_status = STATUS_BAD_INPUT;
     argp_program_version_hook = print_version;

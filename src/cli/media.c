@@ -1,45 +1,49 @@
+/* `cuvette media`: the media catalogue as a table, one medium in detail, or JSON. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "report/media_rows.h"
 #include "cli/options.h"
+#include "cli/terminal.h"
 #include "base/number.h"
 #include <stdbool.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 typedef struct media_request {
     const char *name; /* NULL: all */
-    double at_nm;     /* 0: not asked */
+    double at_nm;     /* 0: not given */
     bool json;
 } media_request;
 
-static status take_wavelength(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_wavelength(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    media_request *request = into;
+    media_request *request = context;
     (void)o;
     return number_parse_real(value, &request->at_nm) && request->at_nm > 0.0
                ? STATUS_OK
-               : options_wrong("media", NULL, why, "give nanometres, such as --at 550", "'%.128s' is no wavelength",
+               : options_wrong("media", NULL, why, "give nanometres, such as --at 550", "invalid wavelength '%.128s'",
                                value);
 }
 
 static const command_option options[] = {
-    {"at", 0, "NM", "print the index at this wavelength too", .take = take_wavelength},
+    {"at", 0, "NM", "also print the index at this wavelength", .take = take_wavelength},
     {"json", 0, NULL, "print JSON", OPTION_FILLS(option_flag, media_request, json)},
     {0},
 };
 
 static const command_form form = {
     .options = options,
-    .words = "[NAME]",
-    .words_at = offsetof(media_request, name),
-    .words_most = 1,
-    .excess_remedy = "name one medium, or none for all",
-    .excess = "'%.128s' is one too many",
-    .about = "Print the catalogue of media: refractive indices at the lines d, F and C, Abbe's number, the range of "
-             "wavelengths and the temperature of the measurement, what the indices are relative to, and who measured. "
-             "With a name, all about that one: its dispersion law with every coefficient, and what to beware "
-             "of.\vIndices are as published, relative to air or to vacuum; for one medium those relative to vacuum "
-             "stand beside them. A star marks an index outside the range that was measured. --at never extrapolates.",
+    .synopsis = "[NAME]",
+    .arguments_at = offsetof(media_request, name),
+    .argument_limit = 1,
+    .excess_remedy = "give one medium, or none for all",
+    .excess = "unexpected argument '%.128s'",
+    .about = "Print the media catalogue: refractive index at the lines d, F and C, Abbe number, wavelength range and "
+             "temperature of the measurement, reference (air or vacuum) and source. With a name, print all data of "
+             "that medium: the dispersion formula with its coefficients, and caveats.\vIndices are as published, "
+             "relative to air or to vacuum; for one medium the index relative to vacuum is printed too. A star marks "
+             "an index outside the measured range. --at never extrapolates. On a terminal the lines are wrapped to "
+             "its width; a pipe or a file gets the full lines.",
 };
 
 static status find(const media_request *request, const medium **out, diagnostic *why)
@@ -56,14 +60,15 @@ static status find(const media_request *request, const medium **out, diagnostic 
     return result;
 }
 
-/* One medium is refused outside its range; in the table of all such an index is left out. */
+/* For one medium, a wavelength outside the measured range is an error; in the table that index is left out. */
 static status check_range(const medium *m, double at_nm, diagnostic *why)
 {
     if (at_nm == 0.0 || dispersion_covers(&m->law, at_nm, at_nm))
         return STATUS_OK;
     char at[NUMBER_TEXT_MAX], range[MEDIA_RANGE_MAX], remedy[MEDIA_RANGE_MAX + 64];
     const bool single = m->law.low_nm == m->law.high_nm;
-    snprintf(remedy, sizeof remedy, single ? "its one wavelength is %s nm" : "give a wavelength from its range, %s nm",
+    snprintf(remedy, sizeof remedy,
+             single ? "give its only wavelength, %s nm" : "give a wavelength from its range, %s nm",
              media_range_text(m, range));
     return options_wrong("media", NULL, why, remedy, "%s was not measured at %s nm", m->name, number_format(at_nm, at));
 }
@@ -72,10 +77,11 @@ static status print(const media_request *request, const medium *only, diagnostic
 {
     if (request->json)
         return json_print(media_rows_json(only, request->at_nm), why);
+    const int columns = terminal_columns(STDOUT_FILENO);
     if (only)
-        media_rows_details(stdout, only, request->at_nm);
+        media_rows_details(stdout, only, request->at_nm, columns);
     else
-        media_rows_table(stdout, request->at_nm);
+        media_rows_table(stdout, request->at_nm, columns);
     return STATUS_OK;
 }
 

@@ -1,5 +1,5 @@
-/* cuvette mesh: what a file or a computed body is made of, and its triangles for other programs. The body's numbers are
- * the parameters of a scene's mesh, set by the parameter table. */
+/* `cuvette mesh`: describes a mesh of a file or of a generator, or writes its triangles for other programs. The options
+ * of the generators are parameters of a scene's mesh, set through the parameter table. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "report/mesh_rows.h"
@@ -14,7 +14,7 @@
 #include <string.h>
 
 typedef struct mesh_request {
-    scene *around; /* holds the one mesh */
+    scene *around; /* the scene with the one mesh */
     const char *file;
     bool generate;
     int format;         /* mesh_format; MESH_FORMAT_COUNT: describe it */
@@ -22,9 +22,9 @@ typedef struct mesh_request {
     bool json;
 } mesh_request;
 
-static status take_format(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_format(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    mesh_request *request = into;
+    mesh_request *request = context;
     (void)o;
     const char *names[MESH_FORMAT_COUNT];
     for (int format = 0; format < MESH_FORMAT_COUNT; format++)
@@ -32,9 +32,9 @@ static status take_format(const command_option *o, void *into, const char *value
     return options_choice("--format", "format", value, names, MESH_FORMAT_COUNT, &request->format, why);
 }
 
-static status take_parameter(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_parameter(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    mesh_request *request = into;
+    mesh_request *request = context;
     char path[64], name[64];
     snprintf(path, sizeof path, "body.%s", o->parameter ? o->parameter : o->name);
     snprintf(name, sizeof name, "--%s", o->name);
@@ -43,26 +43,27 @@ static status take_parameter(const command_option *o, void *into, const char *va
 }
 
 static const command_option options[] = {
-    {"generate", 0, "BODY", "make sparse, dense, sphere, icosphere, torus, lathe, terrain or box",
+    {"generate", 0, "BODY", "generate sparse, dense, sphere, icosphere, torus, lathe, terrain or box",
      .take = take_parameter},
-    {"count", 0, "N", "triangles of sparse and dense, and about as many of sphere; 10000", .take = take_parameter},
-    {"level", 0, "N", "bisections of the icosphere, 0 to 11; 4", .take = take_parameter},
-    {"major", 0, "R", "distance of the torus's tube from its axis; 1", .take = take_parameter},
-    {"minor", 0, "R", "radius of the torus's tube; 0.4", .take = take_parameter},
-    {"around", 0, "N", "segments around the axis of torus and lathe, cells of terrain along x; 64",
+    {"count", 0, "N", "number of triangles of sparse and dense, approximate for sphere; default 10000",
      .take = take_parameter},
-    {"tube", 0, "N", "segments around the torus's tube, cells of terrain along z; 32", .take = take_parameter},
-    {"profile", 0, "R,Y,R,Y,...", "radius and height of the points that lathe turns; a cylinder",
+    {"level", 0, "N", "icosphere: number of subdivisions, 0 to 11; default 4", .take = take_parameter},
+    {"major", 0, "R", "torus: radius of the centre line of the tube; default 1", .take = take_parameter},
+    {"minor", 0, "R", "torus: radius of the tube; default 0.4", .take = take_parameter},
+    {"around", 0, "N", "torus, lathe: segments around the axis; terrain: cells along x; default 64",
      .take = take_parameter},
-    {"crease", 0, "DEG", "lathe: a profile that turns by more keeps its edge; 30", .take = take_parameter,
-     .parameter = "crease_deg"},
-    {"size", 0, "X,Y,Z", "edges of the box; of terrain, with the height of its hills as Y; 1,1,1",
+    {"tube", 0, "N", "torus: segments around the tube; terrain: cells along z; default 32", .take = take_parameter},
+    {"profile", 0, "R,Y,R,Y,...", "lathe: radius and height of each point of the profile; default a cylinder",
      .take = take_parameter},
-    {"depth", 0, "D", "terrain: how deep its flat bottom lies; 0 leaves it open", .take = take_parameter},
-    {"seed", 0, "N", "terrain: which hills; 1", .take = take_parameter},
-    {"format", 'f', "FORMAT", "write the triangles as obj, bin or ply; else by the ending of -o FILE",
+    {"crease", 0, "DEG", "lathe: angle of the profile above which an edge stays sharp; default 30",
+     .take = take_parameter, .parameter = "crease_deg"},
+    {"size", 0, "X,Y,Z", "box: edge lengths; terrain: size, with the height of the hills as Y; default 1,1,1",
+     .take = take_parameter},
+    {"depth", 0, "D", "terrain: depth of its flat bottom, 0 leaves the mesh open; default 0", .take = take_parameter},
+    {"seed", 0, "N", "terrain: seed of the random hills; default 1", .take = take_parameter},
+    {"format", 'f', "FORMAT", "write the triangles as obj, bin or ply (default: by the ending of -o FILE)",
      .take = take_format},
-    {"output", 'o', "FILE", "write there instead of to standard output",
+    {"output", 'o', "FILE", "write to FILE instead of standard output",
      OPTION_FILLS(option_text, mesh_request, output)},
     {"json", 0, NULL, "print the description as JSON", OPTION_FILLS(option_flag, mesh_request, json)},
     {0},
@@ -70,23 +71,24 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .words = "FILE\n--generate BODY",
-    .words_at = offsetof(mesh_request, file),
-    .words_most = 1,
-    .about = "Read a mesh of triangles (OBJ, PLY, STL, glTF), or make one, and say what it is: its numbers, bounds, "
-             "area, whether it is closed, its volume or its first hole. With --format, write its triangles "
+    .synopsis = "FILE\n--generate BODY",
+    .arguments_at = offsetof(mesh_request, file),
+    .argument_limit = 1,
+    .about = "Read a triangle mesh (OBJ, PLY, STL, glTF) or generate one, and describe it: triangle and vertex counts, "
+             "bounds, area, whether it is closed, and its volume or first hole. With --format, write its triangles "
              "instead.\vFor example:\n"
              "  cuvette mesh teapot.obj\n"
              "  cuvette mesh --generate torus --minor 0.4 --around 256 --tube 128\n"
              "  cuvette mesh --generate sparse --count 50000 -f obj -o sparse.obj\n"
-             "Sparse, dense and sphere are the triangle sets of the speed study, the same to the bit everywhere.",
+             "Sparse, dense and sphere are the triangle sets of the speed study; they are bit-identical on every "
+             "machine.",
 };
 
 static status check_request(const mesh_request *request, diagnostic *why)
 {
-    const char *what = NULL, *remedy = "give one of them";
+    const char *what = NULL, *remedy = "give only one of them";
     if (!request->generate && !request->file)
-        what = "no mesh is named", remedy = "give a file, or --generate with a body, as --generate torus";
+        what = "no mesh is given", remedy = "give a file, or a generator such as --generate torus";
     else if (request->generate && request->file)
         what = "a file and --generate exclude each other";
     else if (request->json && request->format != MESH_FORMAT_COUNT)
@@ -94,7 +96,7 @@ static status check_request(const mesh_request *request, diagnostic *why)
     return what ? options_wrong("mesh", NULL, why, remedy, "%s", what) : STATUS_OK;
 }
 
-/* A file's ending says the format where no option does; a description goes into a .txt. */
+/* Without --format, the ending of the output file selects the format; .txt selects the description. */
 static status choose_format(mesh_request *request, diagnostic *why)
 {
     const char *dot = request->output ? strrchr(request->output, '.') : NULL;
@@ -107,11 +109,11 @@ static status choose_format(mesh_request *request, diagnostic *why)
         }
     if (strcmp(dot, ".txt") == 0)
         return STATUS_OK;
-    return options_wrong("-o", NULL, why, "end it in .obj, .bin or .ply, give --format, or .txt for the description",
-                         "'%.80s' says no format", request->output);
+    return options_wrong("-o", NULL, why, "use .obj, .bin or .ply, or .txt for the description, or give --format",
+                         "unknown file name ending of '%.80s'", request->output);
 }
 
-/* The mesh that is asked for; the scene keeps it. */
+/* Loads or generates the mesh, which the scene owns. */
 static status obtain(const mesh_request *request, diagnostic *why)
 {
     status result = request->file ? scene_set(request->around, "body.file", request->file, why) : STATUS_OK;

@@ -1,6 +1,10 @@
+/* `cuvette motion`: the motion of a scene's slimes against closed-form mechanics, as a table, CSV or JSON. */
 #include "cli/cli.h"
 #include "report/json.h"
+#include "report/wrap.h"
+#include "base/number.h"
 #include "cli/scene_input.h"
+#include "cli/terminal.h"
 #include "scene/motion/motion.h"
 #include "scene/model/params.h"
 #include "scene/model/slime.h"
@@ -8,6 +12,8 @@
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+#include <unistd.h>
 
 typedef struct motion_request {
     scene_input input;
@@ -21,20 +27,20 @@ static const command_option options[] = {
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
-    const motion_request *request = asked;
+    const motion_request *request = context;
     return request->json && request->csv
-               ? options_wrong("motion", NULL, why, "leave one of them out", "JSON and CSV do not go together")
+               ? options_wrong("motion", NULL, why, "give only one of them", "--json and --csv exclude each other")
                : STATUS_OK;
 }
 
-static status check_scene(void *asked, const scene *s, diagnostic *why)
+static status check_scene(void *context, const scene *s, diagnostic *why)
 {
-    const motion_request *request = asked;
+    const motion_request *request = context;
     return scene_moves(s) ? STATUS_OK
-                          : options_wrong(request->input.path, NULL, why, "give a mesh 'generate: slime'",
-                                          "nothing moves in this scene");
+                          : options_wrong(request->input.path, NULL, why, "add a mesh with 'generate: slime'",
+                                          "nothing moves in this scene: it has no slime");
 }
 
 static const char *motion_word(const mesh_entry *m)
@@ -42,25 +48,50 @@ static const char *motion_word(const mesh_entry *m)
     return param_find(PARAM_MESH, "integrator")->choices[m->slime.integrator];
 }
 
-static void print_number(double value, int digits, int width)
+static const char *number_text(double value, int digits, char text[NUMBER_TEXT_MAX])
 {
-    if (isfinite(value))
-        printf(" %*.*g", width, digits, value);
-    else
-        printf(" %*s", width, "-");
+    if (!isfinite(value))
+        return "-";
+    snprintf(text, NUMBER_TEXT_MAX, "%.*g", digits, value);
+    return text;
 }
 
-static void print_text(const mesh_entry *m, const softbody_trial_report *r)
+/* The cells of a row as text; unit and what may have any length. */
+typedef struct trial_cells {
+    const char *name, *measured, *theory, *error, *unit, *what;
+} trial_cells;
+
+/* Width of the columns before `what`. A terminal without room for more gets the unit in the last column. */
+enum { TABLE_WIDTH = 88, CELLS_MAX = 256 };
+
+static void print_cells(const trial_cells *c, int columns)
 {
+    char start[CELLS_MAX];
+    const bool wide = !columns || columns > TABLE_WIDTH;
+    snprintf(start, sizeof start, "  %-24s %16s %16s %9s  ", c->name, c->measured, c->theory, c->error);
+    if (wide)
+        snprintf(start + strlen(start), sizeof start - strlen(start), "%-12s ", c->unit);
+    if (wide || !c->unit[0])
+        wrap_row(stdout, columns, start, "%s", c->what);
+    else
+        wrap_row(stdout, columns, start, "%s; %s", c->unit, c->what);
+}
+
+static void print_text(const mesh_entry *m, const softbody_trial_report *r, int columns)
+{
+    static const trial_cells titles = {"", "measured", "theory", "error", "unit", "what"};
+    char measured[NUMBER_TEXT_MAX], theory[NUMBER_TEXT_MAX], error[NUMBER_TEXT_MAX];
     printf("%s: level %lld, %s, steps of %g s\n", m->name, (long long)m->level, motion_word(m), m->slime.dt_s);
-    printf("  %-24s %16s %16s %9s  %-12s %s\n", "", "measured", "theory", "error", "unit", "what");
+    print_cells(&titles, columns);
     for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++) {
         const softbody_trial *v = &r->value[i];
-        printf("  %-24s", v->name);
-        print_number(v->measured, 10, 16);
-        print_number(v->theory, 10, 16);
-        print_number(softbody_trial_error(v), 2, 9);
-        printf("  %-12s %s\n", v->unit, v->what);
+        const trial_cells cells = {v->name,
+                                   number_text(v->measured, 10, measured),
+                                   number_text(v->theory, 10, theory),
+                                   number_text(softbody_trial_error(v), 2, error),
+                                   v->unit,
+                                   v->what};
+        print_cells(&cells, columns);
     }
 }
 
@@ -108,9 +139,9 @@ static status write_json(const motion_request *request, json_t *slimes, diagnost
     return json_print(o, why);
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const motion_request *request = asked;
+    const motion_request *request = context;
     json_t *slimes = json_array();
     status result = STATUS_OK;
     if (request->csv)
@@ -126,7 +157,7 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
         else if (request->csv)
             print_csv(m, &report);
         else if (!request->json)
-            print_text(m, &report);
+            print_text(m, &report, terminal_columns(STDOUT_FILENO));
     }
     if (result == STATUS_OK && request->json)
         result = write_json(request, slimes, why);
@@ -137,17 +168,18 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 static const scene_command motion_command = {
     .name = "motion",
     .form = {.options = options,
-             .words = "SCENE",
+             .synopsis = "SCENE",
              SCENE_WORD("motion"),
              .about =
-                 "Measure how each slime of the scene file SCENE moves with its stiffness, its integrator and its "
-                 "step, beside the closed forms of mechanics: a spring's swing, a fall, a bounce, what a free body "
-                 "keeps, its volume, the longest stable step, and how fast it is computed.\vFor example:\n"
+                 "Compare the motion of each slime of the scene file SCENE, with its stiffness, integrator and time "
+                 "step, with closed-form mechanics: oscillation of a spring, fall, bounce, quantities that a free "
+                 "body conserves, volume, longest stable step; also measure the simulation speed.\vFor example:\n"
                  "  cuvette motion experiments/scenes/slime.yaml\n"
-                 "  cuvette motion experiments/scenes/slime.yaml --set toy.integrator=verlet --set toy.dt_s=0.0005"},
+                 "  cuvette motion experiments/scenes/slime.yaml --set toy.integrator=verlet \\\n    --set "
+                 "toy.dt_s=0.0005"},
     .check = check_request,
     .check_scene = check_scene,
-    .unloaded = true, /* the trials move slimes of their own */
+    .unloaded = true, /* the trials simulate slimes of their own */
     .run = run,
 };
 

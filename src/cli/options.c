@@ -1,3 +1,4 @@
+/* The command-line parser: options and arguments by argp, with diagnostics in place of argp's error output. */
 #include "cli/options.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -11,7 +12,7 @@
 
 enum { OPTIONS_MAX = 32, KEY_USAGE = 0x10000, KEY_HELP };
 
-/* The same options as argp will see, in getopt's form. */
+/* The options in the form of getopt_long. */
 typedef struct getopt_table {
     struct option options[OPTIONS_MAX + 4];
     const char *names[OPTIONS_MAX + 4];
@@ -64,15 +65,15 @@ static status unknown_long_option(const getopt_table *table, const char *program
     size_t length = strcspn(typed + 2, "=");
     snprintf(word, sizeof word, "%.*s", (int)(length < 63 ? length : 63), typed + 2);
     if (count_with_prefix(table, word) > 1) {
-        snprintf(remedy, sizeof remedy, "write it out; '%s --help' lists the options", program);
-        return diagnose(why, STATUS_BAD_INPUT, remedy, "option '--%s' stands for several", word);
+        snprintf(remedy, sizeof remedy, "write the full name; '%s --help' lists the options", program);
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "option '--%s' is ambiguous", word);
     }
     const char *nearest = text_nearest(word, table->names, table->count);
     if (nearest)
         snprintf(remedy, sizeof remedy, "did you mean '--%s'?", nearest);
     else
         snprintf(remedy, sizeof remedy, "'%s --help' lists the options", program);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "there is no option '--%s'", word);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "unknown option '--%s'", word);
 }
 
 static status explain(const getopt_table *table, int result, const char *program, const char *typed, diagnostic *why)
@@ -80,18 +81,18 @@ static status explain(const getopt_table *table, int result, const char *program
     char remedy[192];
     const char *known = name_of_key(table, optopt);
     if (result == ':') {
-        snprintf(remedy, sizeof remedy, "'%s --help' says what it takes", program);
-        return diagnose(why, STATUS_BAD_INPUT, remedy, "option '--%s' needs a value", known ? known : "?");
+        snprintf(remedy, sizeof remedy, "'%s --help' describes the value", program);
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "option '--%s' requires a value", known ? known : "?");
     }
     if (optopt == 0)
         return unknown_long_option(table, program, typed, why);
     if (known)
-        return diagnose(why, STATUS_BAD_INPUT, "leave out what follows the '='", "option '--%s' takes no value", known);
+        return diagnose(why, STATUS_BAD_INPUT, "remove the '=' and the value", "option '--%s' takes no value", known);
     snprintf(remedy, sizeof remedy, "'%s --help' lists the options", program);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "there is no option '-%c'", optopt);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "unknown option '-%c'", optopt);
 }
 
-/* Goes through a copy of argv as argp will, since argp does not say what it stumbled over. */
+/* Parses a copy of argv with getopt_long first, because argp does not report which option is wrong. */
 static status check(const struct argp *argp, unsigned flags, int argc, char **argv, diagnostic *why)
 {
     getopt_table table;
@@ -101,7 +102,7 @@ static status check(const struct argp *argp, unsigned flags, int argc, char **ar
         return out_of_memory(why);
     memcpy(copy, argv, (size_t)argc * sizeof *copy);
     status result = STATUS_OK;
-    optind = 0; /* glibc: start anew */
+    optind = 0; /* glibc: restart the scan */
     opterr = 0;
     for (;;) {
         int key = getopt_long(argc, copy, table.short_options, table.options, NULL);
@@ -132,30 +133,30 @@ typedef struct form_reading {
     const command_form *form;
     const char *program;
     void *request;
-    size_t words;
+    size_t arguments;
     diagnostic *why;
-    status wrong; /* what EINVAL stands for */
+    status wrong; /* the status behind EINVAL */
 } form_reading;
 
 static error_t take_word(form_reading *reading, const char *word, struct argp_state *state)
 {
     const command_form *form = reading->form;
-    if (form->word)
-        return form->word(reading->request, word), 0;
-    if (reading->words == form->words_most && !form->excess)
+    if (form->take_argument)
+        return form->take_argument(reading->request, word), 0;
+    if (reading->arguments == form->argument_limit && !form->excess)
         return ARGP_ERR_UNKNOWN;
-    if (reading->words == form->words_most) {
+    if (reading->arguments == form->argument_limit) {
         options_wrong(NULL, NULL, reading->why, form->excess_remedy, form->excess, word);
         options_locate(reading->why, reading->program);
         return EINVAL;
     }
-    ((const char **)((char *)reading->request + form->words_at))[reading->words++] = word;
-    if (form->ends_at_word)
+    ((const char **)((char *)reading->request + form->arguments_at))[reading->arguments++] = word;
+    if (form->ends_at_argument)
         state->next = state->argc;
     return 0;
 }
 
-/* A mistake fills *why and is EINVAL. */
+/* Returns EINVAL for an error, with the reason in *why. */
 static error_t take_key(int key, char *value, struct argp_state *state)
 {
     form_reading *reading = state->input;
@@ -174,12 +175,12 @@ status command_form_read(const command_form *form, int argc, char **argv, void *
 {
     struct argp_option options[OPTIONS_MAX + 1] = {{0}};
     form_reading reading = {form, argv[0], request, 0, why, STATUS_BAD_INPUT};
-    const unsigned flags = form->ends_at_word ? ARGP_IN_ORDER : 0;
+    const unsigned flags = form->ends_at_argument ? ARGP_IN_ORDER : 0;
     for (int i = 0; form->options && form->options[i].name && i < OPTIONS_MAX; i++) {
         const command_option *o = &form->options[i];
         options[i] = (struct argp_option){o->name, o->letter ? o->letter : KEY_FIRST + i, o->form, 0, o->purpose, 0};
     }
-    const struct argp argp = {.options = options, .parser = take_key, .args_doc = form->words, .doc = form->about};
+    const struct argp argp = {.options = options, .parser = take_key, .args_doc = form->synopsis, .doc = form->about};
     TRY(check(&argp, flags, argc, argv, why));
     const error_t error = argp_parse(&argp, argc, argv, flags, NULL, &reading);
     if (error == EINVAL)
@@ -258,8 +259,7 @@ status options_reals(const char *option, const char *value, const char *form, si
                                  at);
         at += length;
         if ((*at == ',') != (i + 1 < count))
-            return options_wrong(option, value, why, remedy, "there are %s than %zu numbers", *at ? "more" : "fewer",
-                                 count);
+            return options_wrong(option, value, why, remedy, "%s than %zu numbers", *at ? "more" : "fewer", count);
         at += *at == ',';
     }
     return STATUS_OK;
@@ -276,7 +276,7 @@ status options_unknown_word(const char *what, const char *wrong, const char *con
         size_t used = strlen(remedy);
         snprintf(remedy + used, sizeof remedy - used, "%s %s", i ? "," : "", words[i]);
     }
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "there is no %s '%.64s'", what, wrong);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "unknown %s '%.64s'", what, wrong);
 }
 
 status options_choice(const char *where, const char *what, const char *value, const char *const *words, size_t count,

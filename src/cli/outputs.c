@@ -1,3 +1,4 @@
+/* Output files of the commands: checks of their names before any work, and writing. */
 #include "cli/outputs.h"
 #include "base/file.h"
 #include "cli/options.h"
@@ -39,7 +40,7 @@ char *outputs_folder_of(const char *path)
     return slash == path ? strdup("/") : strndup(path, (size_t)(slash - path));
 }
 
-/* Do two paths, spelt as they may be, stand for one file? It need not exist yet. */
+/* Returns whether two paths name the same file, however spelt. The file need not exist yet. */
 static bool same_file(const char *a, const char *b)
 {
     if (strcmp(a, b) == 0 || outputs_same_entry(a, b))
@@ -55,40 +56,41 @@ static status check_folder(const named_file *file, diagnostic *why)
 {
     struct stat about;
     if (stat(file->path, &about) == 0 && S_ISDIR(about.st_mode))
-        return wrong(file, why, "name a file in it", "is a folder");
+        return wrong(file, why, "give a file in it", "is a folder");
     char *folder = outputs_folder_of(file->path);
     if (!folder)
         return out_of_memory(why);
     bool there = stat(folder, &about) == 0 && S_ISDIR(about.st_mode);
     free(folder);
-    return there ? STATUS_OK : wrong(file, why, "make it first, or name another", "its folder is not there");
+    return there ? STATUS_OK : wrong(file, why, "create it first, or give another", "the folder does not exist");
 }
 
 typedef struct search {
     const scene *s;
-    bool (*is_it)(void *context, const char *path);
+    bool (*matches)(void *context, const char *path);
     void *context;
 } search;
 
-static bool ask(const search *x, const char *named)
+static bool matches_file(const search *x, const char *named)
 {
     char *path = named && named[0] ? scene_file_path(x->s, named) : NULL;
-    const bool is_it = path && x->is_it(x->context, path);
+    const bool found = path && x->matches(x->context, path);
     free(path);
-    return is_it;
+    return found;
 }
 
-bool scene_files_any(const scene *s, bool (*is_it)(void *context, const char *path), void *context)
+bool scene_files_any(const scene *s, bool (*matches)(void *context, const char *path), void *context)
 {
-    const search x = {s, is_it, context};
-    if ((s->path && s->path[0] && is_it(context, s->path)) || ask(&x, s->background.image_path))
+    const search x = {s, matches, context};
+    if ((s->path && s->path[0] && matches(context, s->path)) || matches_file(&x, s->background.image_path))
         return true;
     for (size_t i = 0; i < s->texture_count; i++)
-        if (ask(&x, s->textures[i].path))
+        if (matches_file(&x, s->textures[i].path))
             return true;
     for (size_t i = 0; i < s->mesh_count; i++) {
         const mesh_entry *m = &s->meshes[i];
-        if ((m->source == MESH_FILE && ask(&x, m->path)) || (m->source == MESH_SLIME && ask(&x, m->script_path)))
+        if ((m->source == MESH_FILE && matches_file(&x, m->path)) ||
+            (m->source == MESH_SLIME && matches_file(&x, m->script_path)))
             return true;
     }
     return false;
@@ -114,13 +116,14 @@ static status check_image(const outputs *o, const named_file *file, bool is_map,
 {
     image_format format = image_format_of(file->path);
     if (strcmp(file->path, "-") == 0)
-        return wrong(file, why, "name a file that ends in .png, .jpg or .pfm", "standard output has no picture format");
+        return wrong(file, why, "give a file that ends in .png, .jpg or .pfm", "standard output has no image format");
     if (is_map && format != IMAGE_PNG && format != IMAGE_PFM)
-        return wrong(file, why, "end it in .png for a picture with a key, .pfm for the numbers", "no format for a map");
+        return wrong(file, why, "use .png for an image with a colour scale, .pfm for the numbers",
+                     "unsupported format of a map");
     if (format == IMAGE_UNKNOWN)
-        return wrong(file, why, "end it in .png, .jpg or .pfm", "the ending names no picture format");
+        return wrong(file, why, "use .png, .jpg or .pfm", "unknown image format");
     if (!is_map && o->bits == 16 && format != IMAGE_PNG)
-        return wrong(file, why, "leave out --bits, or end it in .png", "only PNG has 16 bits");
+        return wrong(file, why, "remove --bits, or use .png", "only PNG supports 16 bits");
     return STATUS_OK;
 }
 
@@ -132,7 +135,7 @@ static bool is_same(void *context, const char *path)
 static status check_not_read(const named_file *file, const scene *s, diagnostic *why)
 {
     if (scene_files_any(s, is_same, (void *)(uintptr_t)file->path))
-        return wrong(file, why, "name another file", "the scene is read from it");
+        return wrong(file, why, "give another file", "the scene is read from this file");
     return STATUS_OK;
 }
 
@@ -143,24 +146,24 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
     if (at < TIMELINE)
         TRY(check_image(o, file, at > 0, why));
     else if (!outputs_ends_with(file->path, ".json"))
-        return wrong(file, why, "end it in .json", "a timeline is a JSON file");
+        return wrong(file, why, "use .json", "a timeline must be a JSON file");
     TRY(check_folder(file, why));
     TRY(check_not_read(file, s, why));
     for (size_t i = 0; i < at; i++)
         if (files[i].path && same_file(file->path, files[i].path))
-            return wrong(file, why, "name another file", "two results cannot go into one file");
+            return wrong(file, why, "give another file", "two outputs have the same file");
     return STATUS_OK;
 }
 
-/* Each layer's file, as if it were named. */
+/* Checks the file of each layer like a named output. */
 static status check_layers(const outputs *o, const named_file *files, size_t count, const scene *s, diagnostic *why)
 {
     const named_file prefix = {"--layers", o->layers};
     const char *word = integrator_with_layers();
     if (!integrator_traits_of(&s->render)->layers) {
         char remedy[64];
-        snprintf(remedy, sizeof remedy, "set render.integrator to %s", word ? word : "one that gives layers");
-        return wrong(&prefix, why, remedy, "this render.integrator gives no layers");
+        snprintf(remedy, sizeof remedy, "set render.integrator to %s", word ? word : "one with layers");
+        return wrong(&prefix, why, remedy, "this render.integrator has no layers");
     }
     status result = STATUS_OK;
     for (int i = 0; i < LAYER_COUNT && result == STATUS_OK; i++) {
@@ -170,7 +173,7 @@ static status check_layers(const outputs *o, const named_file *files, size_t cou
         THEN(result, check_not_read(&file, s, why));
         for (size_t k = 0; k < count && result == STATUS_OK; k++)
             if (files[k].path && same_file(path, files[k].path))
-                result = wrong(&file, why, "give another prefix", "two results cannot go into one file");
+                result = wrong(&file, why, "give another prefix", "two outputs have the same file");
         free(path);
     }
     return result;
@@ -182,7 +185,7 @@ status outputs_check(const outputs *o, const scene *s, diagnostic *why)
         {"-o", o->img}, {"--rays", o->rays}, {"--time", o->time}, {"--noise", o->noise}, {"--timeline", o->timeline}};
     if (o->noise && (!integrator_traits_of(&s->render)->by_chance || s->render.paths < 2))
         return wrong(&files[3], why, "set render.integrator to path and render.paths to 16 or more",
-                     "nothing is drawn by chance");
+                     "this scene is rendered without random samples");
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++)
         if (files[i].path)
             TRY(check_file(o, files, i, s, why));
@@ -196,7 +199,7 @@ status outputs_check_image(const char *option, const char *path, const char *con
     TRY(check_folder(&file, why));
     for (size_t i = 0; i < count; i++)
         if (same_file(path, read[i]))
-            return wrong(&file, why, "name another file", "one of the pictures is read from it");
+            return wrong(&file, why, "give another file", "one of the images is read from this file");
     return STATUS_OK;
 }
 
@@ -209,7 +212,7 @@ status outputs_ending(const char *option, const char *path, const char *const *e
             *which = i;
             return STATUS_OK;
         }
-    return wrong(&file, why, remedy, "the ending names no format");
+    return wrong(&file, why, remedy, "unknown file name ending");
 }
 
 status outputs_check_folder(const char *option, const char *path, diagnostic *why)
@@ -230,7 +233,7 @@ status outputs_check_script(const char *option, const char *path, const scene *s
 {
     const named_file file = {option, path};
     const bool is_read = strcmp(path, "-") != 0 && is_script_of(path, s);
-    return is_read ? wrong(&file, why, "name another file", "a script of the scene is read from it") : STATUS_OK;
+    return is_read ? wrong(&file, why, "give another file", "a script of the scene is read from this file") : STATUS_OK;
 }
 
 status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),

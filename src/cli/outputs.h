@@ -1,47 +1,48 @@
-/* The files that a render leaves: the picture, the maps of rays and time by pixel, the timeline. Their names are
- * looked at before anything is rendered, so that an hour's work is not lost to a misspelt ending. Ownership: names
- * are borrowed. */
+/* Output files: the image of a render, its per-pixel maps, timeline and layers, and text outputs. Names are checked
+ * before anything is rendered, so that an hour of work is not lost to a misspelt ending. Ownership: names are
+ * borrowed. */
 #pragma once
 
 #include "render/core/renderer.h"
 #include <stdio.h>
 
 typedef struct outputs {
-    const char *img, *rays, *time, *noise, *timeline, *layers; /* NULL: not wanted; layers: a prefix */
-    int bits;                                                  /* of a PNG picture: 8 or 16; 0 when not said */
+    const char *img, *rays, *time, *noise, *timeline, *layers; /* NULL: none; layers: a prefix */
+    int bits;                                                  /* bits per channel of a PNG: 8 or 16; 0: not given */
 } outputs;
 
-/* The folder of a path in fresh memory, "." for a bare name. */
+/* The folder of a path, allocated; "." for a bare name. */
 char *outputs_folder_of(const char *path);
 bool outputs_same_entry(const char *a, const char *b);
-bool outputs_ends_with(const char *path, const char *ending); /* letter case ignored */
+bool outputs_ends_with(const char *path, const char *ending); /* ignores case */
 
-/* The files that a scene reads, as they are found from the working folder: its own, its sky, its textures, its meshes
- * and the scripts of its slimes, not those that a mesh's file names in turn. Is one of them what is looked for? Calls
- * is_it with each until it returns true. */
-bool scene_files_any(const scene *s, bool (*is_it)(void *context, const char *path), void *context);
+/* Calls matches with each file that a scene reads until it returns true, and returns whether it did. Paths are relative
+ * to the working folder: the scene file, its environment image, textures, meshes and scripts of slimes, but not files
+ * that a mesh file refers to. */
+bool scene_files_any(const scene *s, bool (*matches)(void *context, const char *path), void *context);
 
-/* Endings, folders, and no file named twice or in place of one that the scene reads. */
+/* Checks endings and folders, and that no output equals another one or a file that the scene reads. */
 status outputs_check(const outputs *o, const scene *s, diagnostic *why);
 
-/* The same for one picture by itself that no scene has to do with; read are the count files that are read. option is
- * what named it. */
+/* The same for one image without a scene; read: the count files that the command reads; option: the option with the
+ * name. */
 status outputs_check_image(const char *option, const char *path, const char *const *read, size_t count,
                            diagnostic *why);
 
-/* Of a text file: which of the endings its name has, by index. remedy says what to do when it has none of them. */
+/* Sets *which to the index of the ending that path has; reports an error with the remedy if it has none of them. */
 status outputs_ending(const char *option, const char *path, const char *const *endings, size_t count,
                       const char *remedy, size_t *which, diagnostic *why);
-/* Its folder alone: for what may be written in place of what was read. "-" is always right. */
+/* Checks the folder only, for an output that may replace the input. "-" is always valid. */
 status outputs_check_folder(const char *option, const char *path, diagnostic *why);
-/* Its folder, and that the scene does not read it. "-" is always right. */
+/* Checks the folder, and that the scene does not read the file. "-" is always valid. */
 status outputs_check_place(const char *option, const char *path, const scene *s, diagnostic *why);
-/* That no script is read from it: for what may be written in place of the scene itself. "-" is always right. */
+/* Checks that the file is no script of the scene, for an output that may replace the scene file. "-" is always
+ * valid. */
 status outputs_check_script(const char *option, const char *path, const scene *s, diagnostic *why);
 
-/* Writes a text file, whole or not at all; path NULL or "-": to standard output. */
+/* Writes a text file atomically; path NULL or "-": writes to standard output. */
 status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),
                           const void *content, diagnostic *why);
 
-/* Writes them all; result has what was wanted, or a part of it. */
+/* Writes all outputs for which result has data; an interrupted render has a part of them. */
 status outputs_write(const outputs *o, const render_result *result, diagnostic *why);

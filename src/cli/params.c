@@ -1,3 +1,4 @@
+/* `cuvette params`: the parameter table as text, JSON or roff. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "cli/options.h"
@@ -9,30 +10,31 @@
 #include <unistd.h>
 
 typedef struct params_request {
-    const char *words[2]; /* scene and filter, either one alone, or none */
+    const char *arguments[2]; /* scene and filter, one of the two, or none */
     const char *scene_path, *filter;
     bool json, manual;
 } params_request;
 
 static const command_option options[] = {
     {"json", 0, NULL, "print JSON", OPTION_FILLS(option_flag, params_request, json)},
-    {"man", 0, NULL, "print the parameter part of the manual page, as roff",
+    {"man", 0, NULL, "print the parameter section of the manual page as roff",
      OPTION_FILLS(option_flag, params_request, manual)},
     {0},
 };
 
 static const command_form form = {
     .options = options,
-    .words = "[SCENE] [PATH-OR-WORD]",
-    .words_at = offsetof(params_request, words),
-    .words_most = 2,
-    .excess_remedy = "name one scene and one parameter or word at most",
-    .excess = "'%.128s' is one too many",
-    .about = "Print the table of parameters: name, default, unit, range, meaning. With a scene, its own parameters and "
-             "their values. With a path, a part of one, or a word, only those that it fits.\vA name is what --set "
-             "takes, what a scene file has under its group, and what a study sweeps. MESH, TEXTURE, LIGHT, MATERIAL "
-             "and SOLID stand for the names that a scene gives. One element of a vector is lamp.position.x (.y .z, for "
-             "colours .r .g .b).",
+    .synopsis = "[SCENE] [PATH-OR-WORD]",
+    .arguments_at = offsetof(params_request, arguments),
+    .argument_limit = 2,
+    .excess_remedy = "give at most one scene and one path or word",
+    .excess = "unexpected argument '%.128s'",
+    .about = "Print the parameter table: name, default, unit, range, meaning. With a scene, print the parameters of "
+             "that scene and their values. With a path, a part of a path, or a word, print the matching parameters "
+             "only.\vThe same names are used by --set, by scene files (under their group) and by the grid of a study. "
+             "MESH, TEXTURE, LIGHT, MATERIAL and SOLID are placeholders for the names of a scene's objects. An element "
+             "of a vector is lamp.position.x (.y .z, for colours .r .g .b). On a terminal the lines are wrapped to its "
+             "width; a pipe or a file gets the full lines.",
 };
 
 static bool ends_with(const char *text, const char *ending)
@@ -41,7 +43,7 @@ static bool ends_with(const char *text, const char *ending)
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-/* A path or word has no slash, and no ending of a scene file. */
+/* A path or word of the table has neither a slash nor the ending of a scene file. */
 static bool names_scene(const char *word)
 {
     struct stat found;
@@ -49,18 +51,16 @@ static bool names_scene(const char *word)
            (stat(word, &found) == 0 && S_ISREG(found.st_mode));
 }
 
-static status sort_words(params_request *request, diagnostic *why)
+static status sort_arguments(params_request *request, diagnostic *why)
 {
-    const char *first = request->words[0], *second = request->words[1];
+    const char *first = request->arguments[0], *second = request->arguments[1];
     if (first && (second || names_scene(first)))
         request->scene_path = first;
     request->filter = request->scene_path ? second : first;
     if (request->manual && (request->json || first))
-        return options_wrong("params", NULL, why, "leave out what else was given",
-                             "--man prints the whole reference, as roff");
+        return options_wrong("params", NULL, why, "remove the other arguments", "--man takes no other argument");
     if (second && names_scene(second) && strchr(second, '.'))
-        return options_wrong("params", NULL, why, "name one scene, then a path or word",
-                             "a second scene is one too many");
+        return options_wrong("params", NULL, why, "give one scene, then a path or word", "only one scene can be given");
     return STATUS_OK;
 }
 
@@ -82,7 +82,7 @@ status command_params(int argc, char **argv, diagnostic *why)
     params_request request = {0};
     scene *s = NULL;
     status result = command_form_read(&form, argc, argv, &request, why);
-    THEN(result, sort_words(&request, why));
+    THEN(result, sort_arguments(&request, why));
     if (result == STATUS_OK && request.scene_path)
         result = scene_read(request.scene_path, &s, why);
     THEN(result, print(&request, s, why));

@@ -1,11 +1,15 @@
+/* `cuvette realism`: metrics of a traced scene against closed-form optics, as a table, CSV, JSON or a curve. */
 #include "cli/cli.h"
 #include "report/json.h"
+#include "report/wrap.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
+#include "cli/terminal.h"
 #include "realism/realism.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct realism_request {
     scene_input input;
@@ -13,9 +17,9 @@ typedef struct realism_request {
     int curve; /* realism_curve, or -1 */
 } realism_request;
 
-static status take_curve(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_curve(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    realism_request *request = into;
+    realism_request *request = context;
     const char *names[REALISM_CURVE_COUNT];
     (void)o;
     for (int i = 0; i < REALISM_CURVE_COUNT; i++)
@@ -28,17 +32,17 @@ static const command_option options[] = {
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, realism_request, json)},
     OPTION_CSV(realism_request),
     {"curve", 0, "NAME",
-     "print a curve as CSV instead, x, measured, theory: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption "
-     "or edges",
+     "print one curve (x, measured, theory) as CSV: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption or "
+     "edges",
      .take = take_curve},
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
-    const realism_request *request = asked;
+    const realism_request *request = context;
     return request->json && (request->csv || request->curve >= 0)
-               ? options_wrong("realism", NULL, why, "leave one of them out", "JSON and CSV do not go together")
+               ? options_wrong("realism", NULL, why, "give only one of them", "--json excludes --csv and --curve")
                : STATUS_OK;
 }
 
@@ -47,25 +51,57 @@ static const char *verdict(const realism_value *v)
     return !realism_is_defined(v) ? "none" : realism_passes(v) ? "pass" : "FAIL";
 }
 
-static void print_text(const realism_report *r)
+/* The cells of a row as text; unit and what may have any length. */
+typedef struct metric_cells {
+    const char *verdict, *metric, *measured, *theory, *error, *tolerance, *unit, *what;
+} metric_cells;
+
+/* Width of the columns before `what`. A terminal without room for more gets tolerance and unit in the last column. */
+enum { TABLE_WIDTH = 103, CELLS_MAX = 256 };
+
+static void print_cells(const metric_cells *c, int columns)
 {
+    char start[CELLS_MAX];
+    if (!columns || columns > TABLE_WIDTH) {
+        snprintf(start, sizeof start, "%-4s  %-24s %18s %18s %9s %9s  %-12s ", c->verdict, c->metric, c->measured,
+                 c->theory, c->error, c->tolerance, c->unit);
+        wrap_row(stdout, columns, start, "%s", c->what);
+        return;
+    }
+    snprintf(start, sizeof start, "%-4s  %-24s %18s %18s %9s  ", c->verdict, c->metric, c->measured, c->theory,
+             c->error);
+    if (c->tolerance[0] == '-')
+        wrap_row(stdout, columns, start, "%s", c->what);
+    else
+        wrap_row(stdout, columns, start, "%s%s%s; %s", c->tolerance, c->unit[0] ? " " : "", c->unit, c->what);
+}
+
+static void print_value(const realism_value *v, int columns)
+{
+    char measured[32] = "-", theory[32] = "-", error[32] = "-", tolerance[32] = "-";
+    if (realism_is_defined(v)) {
+        snprintf(measured, sizeof measured, "%.12g", v->measured);
+        snprintf(theory, sizeof theory, "%.12g", v->theory);
+        snprintf(error, sizeof error, "%.1e", realism_error(v));
+        snprintf(tolerance, sizeof tolerance, "%.1e", v->tolerance);
+    }
+    const metric_cells cells = {verdict(v), v->metric, measured, theory, error, tolerance, v->unit, v->what};
+    print_cells(&cells, columns);
+}
+
+static void print_text(const realism_report *r, int columns)
+{
+    static const metric_cells titles = {"", "metric", "measured", "theory", "error", "tolerance", "unit", "what"};
     int defined = 0, passed = 0;
-    printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", "", "metric", "measured", "theory", "error", "tolerance",
-           "unit", "what");
+    print_cells(&titles, columns);
     for (int i = 0; i < r->count; i++) {
-        const realism_value *v = &r->value[i];
-        defined += realism_is_defined(v);
-        passed += realism_passes(v);
-        if (realism_is_defined(v))
-            printf("%-4s  %-24s %18.12g %18.12g %9.1e %9.1e  %-12s %s\n", verdict(v), v->metric, v->measured, v->theory,
-                   realism_error(v), v->tolerance, v->unit, v->what);
-        else
-            printf("%-4s  %-24s %18s %18s %9s %9s  %-12s %s\n", verdict(v), v->metric, "-", "-", "-", "-", v->unit,
-                   v->what);
+        defined += realism_is_defined(&r->value[i]);
+        passed += realism_passes(&r->value[i]);
+        print_value(&r->value[i], columns);
     }
     printf("%d of %d pass", passed, defined);
     if (defined < r->count)
-        printf("; %d are not defined for this scene", r->count - defined);
+        printf("; %d not defined for this scene", r->count - defined);
     putchar('\n');
 }
 
@@ -130,9 +166,9 @@ static status print_curve(const scene *s, isa level, realism_curve which, diagno
     return STATUS_OK;
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const realism_request *request = asked;
+    const realism_request *request = context;
     if (!request->json && !request->csv && request->curve < 0)
         scene_input_note_hints(s);
     if (request->curve >= 0)
@@ -144,20 +180,21 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
     if (request->csv)
         print_csv(&report);
     else
-        print_text(&report);
+        print_text(&report, terminal_columns(STDOUT_FILENO));
     return STATUS_OK;
 }
 
 static const scene_command realism_command = {
     .name = "realism",
     .form = {.options = options,
-             .words = "SCENE",
+             .synopsis = "SCENE",
              SCENE_WORD("realism"),
-             .about = "Measure how far what is traced lies from textbook optics, in the scene file SCENE: a vessel (a "
-                      "cup), a liquid in it (a cylinder) and a rod (a box); or a prism, a drop, or two plates. It "
-                      "succeeds whether the metrics pass or not.\vFor example:\n"
+             .about = "Compare the traced optics of the scene file SCENE with closed-form theory. The scene holds a "
+                      "vessel (a cup), a liquid in it (a cylinder) and a rod (a box); or a prism, a drop, or two "
+                      "plates. The exit status is 0 whether or not the metrics pass. On a terminal the lines "
+                      "are wrapped to its width.\vFor example:\n"
                       "  cuvette realism experiments/scenes/rod.yaml\n"
-                      "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant --set "
+                      "  cuvette realism experiments/scenes/rod.yaml --set render.weights=constant \\\n    --set "
                       "clear.reflectivity=0.1 --set clear.transparency=0.9\n"
                       "  cuvette realism experiments/scenes/prism.yaml"},
     .check = check_request,

@@ -1,3 +1,4 @@
+/* `cuvette render`: renders a scene, writes image, maps and timeline, prints the account. */
 #include "cli/cli.h"
 #include "report/json.h"
 #include "cli/options.h"
@@ -13,60 +14,60 @@ typedef struct render_request {
     scene_input input;
     outputs files;
     bool json;
-    int64_t repeat; /* 0: not said */
+    int64_t repeat; /* 0: not given */
 } render_request;
 
-static status take_bits(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_bits(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    render_request *request = into;
+    render_request *request = context;
     int64_t bits = 8;
     (void)o;
     const status result = options_integer("--bits", value, 8, 16, &bits, why);
     if (result == STATUS_OK && bits != 8 && bits != 16)
-        return options_wrong("--bits", NULL, why, "give 8 or 16", "a PNG cannot have %d bits", (int)bits);
+        return options_wrong("--bits", NULL, why, "give 8 or 16", "unsupported bit depth %d", (int)bits);
     request->files.bits = (int)bits;
     return result;
 }
 
 static const command_option options[] = {
-    {"output", 'o', "FILE", "write the picture: .png, .jpg or .pfm (linear floats)",
+    {"output", 'o', "FILE", "write the image: .png, .jpg or .pfm (linear floats)",
      OPTION_FILLS(option_text, render_request, files.img)},
     OPTION_SET("'render.depth=8' or 'lamp.position.x=2'"),
-    {"json", 0, NULL, "print the account as one JSON object: hash, times, counts, parameters",
+    {"json", 0, NULL, "print one JSON object: hash, times, counts, parameters",
      OPTION_FILLS(option_flag, render_request, json)},
-    {"bits", 0, "N", "bits a channel of a PNG: 8 (the default) or 16", .take = take_bits},
-    {"rays", 0, "FILE", "write the rays by pixel: .png with a key, or .pfm",
+    {"bits", 0, "N", "bits per channel of a PNG: 8 (the default) or 16", .take = take_bits},
+    {"rays", 0, "FILE", "write the ray count of each pixel: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.rays)},
-    {"time", 0, "FILE", "write the nanoseconds by pixel: .png with a key, or .pfm",
+    {"time", 0, "FILE", "write the nanoseconds of each pixel: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.time)},
-    {"noise", 0, "FILE", "write the standard error of random paths by pixel: .png with a key, or .pfm",
+    {"noise", 0, "FILE", "write the standard error of each pixel (random paths): .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.noise)},
-    {"timeline", 0, "FILE", "write when each tile was taken by whom: .json, for chrome://tracing or Perfetto",
+    {"timeline", 0, "FILE", "write time and thread of each tile: .json for chrome://tracing or Perfetto",
      OPTION_FILLS(option_text, render_request, files.timeline)},
-    {"layers", 0, "PREFIX", "write each named layer of an integrator that gives them (aov) as PREFIX-LAYER.pfm",
+    {"layers", 0, "PREFIX", "write the layers of render.integrator=aov as PREFIX-LAYER.pfm",
      OPTION_FILLS(option_text, render_request, files.layers)},
     {"repeat", 0, "N", "render N times; wall_s and cpu_s are the medians",
      OPTION_FILLS(option_integer, render_request, repeat), .lowest = 1, .highest = 1000000},
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
-    const render_request *request = asked;
+    const render_request *request = context;
     const outputs *files = &request->files;
     if (files->img || files->rays || files->time || files->noise || files->timeline || files->layers || request->json)
         return STATUS_OK;
-    return options_wrong("render", NULL, why, "add -o FILE for the picture or --json for the counts",
-                         "nothing is asked for");
+    return options_wrong("render", NULL, why, "add -o FILE for the image or --json for the counts",
+                         "no output is given");
 }
 
-static status check_scene(void *asked, const scene *s, diagnostic *why)
+static status check_scene(void *context, const scene *s, diagnostic *why)
 {
-    const render_request *request = asked;
+    const render_request *request = context;
     return outputs_check(&request->files, s, why);
 }
 
-/* One line for people; programs take --json. */
+/* Prints the summary, one line; programs use --json. */
 static void print_summary(const job_account *f, const outputs *files)
 {
     const scene *s = f->of;
@@ -99,13 +100,13 @@ static status write_results(const render_request *request, const job_account *f,
     return STATUS_OK;
 }
 
-static status say_interrupted(const render_request *request, const job_account *f, diagnostic *why)
+static status report_interrupted(const render_request *request, const job_account *f, diagnostic *why)
 {
     if (!f->result)
         return diagnose(why, STATUS_INTERRUPTED, "", "interrupted before the first pixel");
     bool partial = f->count == 0 && request->files.img;
     diagnose(why, STATUS_INTERRUPTED, "", "interrupted; %s",
-             partial ? "the picture holds what was finished" : "what was finished is kept");
+             partial ? "the image holds the finished tiles" : "finished results are kept");
     diagnostic_locate(why, request->files.img, 0, 0);
     return STATUS_INTERRUPTED;
 }
@@ -120,15 +121,16 @@ static status render_and_write(const render_request *request, const scene *s, jo
 {
     const outputs *files = &request->files;
     progress_line line;
-    const render_options wanted = {.pixel_rays = files->rays,
-                                   .pixel_time = files->time,
-                                   .timeline = files->timeline,
-                                   .layers = files->layers,
-                                   .progress = show_progress,
-                                   .context = &line};
+    const render_options frame_options = {.pixel_rays = files->rays,
+                                          .pixel_time = files->time,
+                                          .timeline = files->timeline,
+                                          .layers = files->layers,
+                                          .progress = show_progress,
+                                          .context = &line};
     job_account measured;
     progress_start(&line, "rendering");
-    status result = job_repeat(with, s, request->repeat > 0 ? (size_t)request->repeat : 1, &wanted, &measured, why);
+    status result =
+        job_repeat(with, s, request->repeat > 0 ? (size_t)request->repeat : 1, &frame_options, &measured, why);
     progress_erase(&line);
     if ((result == STATUS_OK || result == STATUS_INTERRUPTED) && measured.result) {
         status written = write_results(request, &measured, why);
@@ -137,14 +139,14 @@ static status render_and_write(const render_request *request, const scene *s, jo
     if (result == STATUS_OK && !request->json)
         inert_note_frame(&request->input, with, &measured);
     if (result == STATUS_INTERRUPTED)
-        result = say_interrupted(request, &measured, why);
+        result = report_interrupted(request, &measured, why);
     job_account_release(&measured);
     return result;
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const render_request *request = asked;
+    const render_request *request = context;
     job *with = NULL;
     status result = scene_input_job(true, &with, why);
     if (result == STATUS_OK && !request->json) {
@@ -159,11 +161,11 @@ static status run(void *asked, scene *s, isa level, diagnostic *why)
 static const scene_command render_command = {
     .name = "render",
     .form = {.options = options,
-             .words = "SCENE",
+             .synopsis = "SCENE",
              SCENE_WORD("render"),
              .about = "Render the scene file SCENE.\vFor example:\n"
                       "  cuvette render experiments/scenes/rod.yaml -o rod.png --set render.depth=4\n"
-                      "'cuvette params SCENE' lists what --set can reach."},
+                      "'cuvette params SCENE' lists the parameters of --set."},
     .check = check_request,
     .check_scene = check_scene,
     .run = run,

@@ -1,3 +1,4 @@
+/* `cuvette scene`: checks, lists, edits and writes scene files. */
 #include "base/grow.h"
 #include "cli/cli.h"
 #include "cli/inert_notes.h"
@@ -12,44 +13,44 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct asked_edit {
+typedef struct edit_option {
     const scene_edit *edit;
     const char *text;
-} asked_edit;
+} edit_option;
 
 typedef struct scene_request {
-    const char *path, *output; /* NULL: none, and standard output */
-    asked_edit *edits;
+    const char *path, *output; /* path NULL: no file; output NULL: standard output */
+    edit_option *edits;
     size_t edit_count;
     bool begins_empty, only_checks, only_lists, writes_all;
 } scene_request;
 
 enum { OPTIONS_MOST = 16 };
 
-static status take_edit(const command_option *o, void *into, const char *text, diagnostic *why)
+static status take_edit(const command_option *o, void *context, const char *text, diagnostic *why)
 {
-    scene_request *request = into;
+    scene_request *request = context;
     if (!room_for_one(&request->edits, request->edit_count, sizeof *request->edits))
         return out_of_memory(why);
-    request->edits[request->edit_count++] = (asked_edit){&scene_edits[o->at], text};
+    request->edits[request->edit_count++] = (edit_option){&scene_edits[o->at], text};
     return STATUS_OK;
 }
 
 static const command_option plain_options[] = {
-    {"new", 0, NULL, "begin with an empty scene in place of a file",
+    {"new", 0, NULL, "start with an empty scene instead of a file",
      OPTION_FILLS(option_flag, scene_request, begins_empty)},
-    {"check", 0, NULL, "only say whether the scene is right, its files too, and what looks wrong in it",
+    {"check", 0, NULL, "only check the scene and its files, and note likely mistakes",
      OPTION_FILLS(option_flag, scene_request, only_checks)},
-    {"list", 0, NULL, "only list its objects: kind, name, and of a solid shape and material",
+    {"list", 0, NULL, "only list the objects: kind and name; for a solid also shape and material",
      OPTION_FILLS(option_flag, scene_request, only_lists)},
-    {"all", 0, NULL, "write every parameter, not only what differs from the defaults",
+    {"all", 0, NULL, "write every parameter, not only those that differ from the defaults",
      OPTION_FILLS(option_flag, scene_request, writes_all)},
-    {"output", 'o', "FILE", "write there: .yaml or .yml, which may be the scene itself; standard output when not said",
+    {"output", 'o', "FILE", "write to FILE, .yaml or .yml; may be the input file (default: standard output)",
      OPTION_FILLS(option_text, scene_request, output)},
     {0},
 };
 
-/* The options of the edits come first, from their table. */
+/* Builds the option list: the edits from their table, then the plain options. */
 static void make_options(command_option options[OPTIONS_MOST])
 {
     for (size_t i = 0; i < scene_edit_count; i++)
@@ -67,18 +68,17 @@ static status check_request(const scene_request *request, diagnostic *why)
     static const char *const endings[] = {".yaml", ".yml"};
     size_t unused;
     if (!request->path && !request->begins_empty)
-        return options_wrong("scene", NULL, why,
-                             "name a scene file, as experiments/scenes/rod.yaml, or begin with --new",
-                             "no scene is named");
+        return options_wrong("scene", NULL, why, "give a scene file, such as experiments/scenes/rod.yaml, or --new",
+                             "no scene is given");
     if (request->path && request->begins_empty)
-        return options_wrong("scene", NULL, why, "give one of them", "a scene file and --new exclude each other");
+        return options_wrong("scene", NULL, why, "give only one of them", "a scene file and --new exclude each other");
     if (request->only_checks && request->only_lists)
-        return options_wrong("scene", NULL, why, "give one of them", "--check and --list exclude each other");
+        return options_wrong("scene", NULL, why, "give only one of them", "--check and --list exclude each other");
     if (request->output && (request->only_checks || request->only_lists))
-        return options_wrong("scene", NULL, why, "leave out -o FILE", "--check and --list write no scene");
+        return options_wrong("scene", NULL, why, "remove -o FILE", "--check and --list write no scene");
     if (!request->output || strcmp(request->output, "-") == 0)
         return STATUS_OK;
-    TRY(outputs_ending("-o", request->output, endings, 2, "end it in .yaml or .yml", &unused, why));
+    TRY(outputs_ending("-o", request->output, endings, 2, "use a name that ends in .yaml or .yml", &unused, why));
     return outputs_check_folder("-o", request->output, why);
 }
 
@@ -92,7 +92,7 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
     for (size_t i = 0; i < request->edit_count && result == STATUS_OK; i++)
         result = scene_edit_apply(*out, request->edits[i].edit, request->edits[i].text, why);
     if (result == STATUS_OK) {
-        /* For checks that have no line to name. */
+        /* The place of errors that have no line. */
         diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         result = scene_check(*out, why);
     }
@@ -122,16 +122,16 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
 {
     status result = scene_input_load(s, why);
     if (result == STATUS_OK)
-        result = scene_check(s, why); /* again, with the meshes' triangles */
+        result = scene_check(s, why); /* again, now with the triangles of the meshes */
     if (result != STATUS_OK) {
-        if (why->line == 0) /* what has a line knows better */
+        if (why->line == 0) /* keep the place of an error that has a line */
             diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         return result;
     }
     isa level = ISA_SSE2;
     TRY(scene_input_isa(&level, why));
     TRY(scene_input_lint(s, level, NULL, why));
-    printf("%s: right; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n",
+    printf("%s: valid; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n",
            request->path ? request->path : "--new", s->mesh_count, s->texture_count, s->material_count, s->light_count,
            s->solid_count);
     return STATUS_OK;
@@ -149,9 +149,9 @@ static status run(const scene_request *request, scene *s, diagnostic *why)
 }
 
 static const char about[] =
-    "Read a scene, or begin with an empty one; change it by the options, one after another; check it, and write it in "
-    "one normal form. Only what differs from the defaults is written. Comments are not kept.\vNothing is written when "
-    "something is wrong. For example:\n"
+    "Read a scene file, or start with an empty scene; apply the edits in the order of the options; check the scene and "
+    "write it in a normal form. Only values that differ from the defaults are written; comments are dropped.\vIf there "
+    "is an error, nothing is written. For example:\n"
     "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
     "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8";
 
@@ -160,11 +160,11 @@ status command_scene(int argc, char **argv, diagnostic *why)
     command_option options[OPTIONS_MOST];
     make_options(options);
     const command_form form = {.options = options,
-                               .words = "[FILE]",
-                               .words_at = offsetof(scene_request, path),
-                               .words_most = 1,
-                               .excess_remedy = "scene takes one file",
-                               .excess = "there is more than one scene",
+                               .synopsis = "[FILE]",
+                               .arguments_at = offsetof(scene_request, path),
+                               .argument_limit = 1,
+                               .excess_remedy = "give one scene file",
+                               .excess = "only one scene can be given",
                                .about = about};
     scene_request request = {.path = NULL};
     scene *s = NULL;

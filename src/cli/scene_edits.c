@@ -1,3 +1,4 @@
+/* The edits of `cuvette scene`: parsing of their values and application to the scene. */
 #include "cli/scene_edits.h"
 #include "cli/options.h"
 #include "scene/model/edit/edit.h"
@@ -11,7 +12,7 @@ static status malformed(const scene_edit *edit, const char *text, diagnostic *wh
 {
     char remedy[96];
     snprintf(remedy, sizeof remedy, "write %s %s", edit->option, edit->form);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "'%.80s' is not of the form %s", text, edit->form);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "'%.80s' does not have the form %s", text, edit->form);
 }
 
 static status apply_set(scene *s, const scene_edit *edit, const char *path, const char *value, diagnostic *why)
@@ -59,8 +60,8 @@ static status apply_title(scene *s, const scene_edit *edit, const char *none, co
     return scene_set_title(s, text, why);
 }
 
-/* Cuts "a=1,b=2,3,c=4" where a comma is followed by "WORD=": the commas of vectors stay. Returns where the next
- * parameter begins, NULL at the end. */
+/* Splits "a=1,b=2,3,c=4" at the first comma before "WORD=", so that the commas of vectors stay. Returns the start of
+ * the next parameter, NULL at the end. */
 static char *cut_parameter(char *text)
 {
     for (char *comma = strchr(text, ','); comma; comma = strchr(comma + 1, ',')) {
@@ -73,7 +74,7 @@ static char *cut_parameter(char *text)
     return NULL;
 }
 
-/* "size=1,2,3" of the new object, if it is the material's name, which is to come first, or else if it is not. */
+/* Sets "size=1,2,3" of the new object. The material is set in a first pass (wants_material), the others after it. */
 static status put_parameter(scene *s, const char *name, char *parameter, bool wants_material, diagnostic *why)
 {
     char *equals = strchr(parameter, '='), path[2 * SCENE_NAME_MAX];
@@ -112,18 +113,19 @@ static status add_object(scene *s, const char *kind, const char *name, const cha
     static const char *const kinds[] = {"solid", "light", "material", "mesh", "texture"};
     const bool is_solid = strcmp(kind, "solid") == 0;
     if (is_solid && !shape)
-        return diagnose(why, STATUS_BAD_INPUT, "write solid:NAME=SHAPE, as solid:rod=box", "%.80s has no shape", name);
+        return diagnose(why, STATUS_BAD_INPUT, "write solid:NAME=SHAPE, such as solid:rod=box", "%.80s has no shape",
+                        name);
     if (is_solid)
         return add_solid(s, name, shape, why);
     if (shape)
-        return diagnose(why, STATUS_BAD_INPUT, "leave it out", "a %.20s has no shape", kind);
+        return diagnose(why, STATUS_BAD_INPUT, "remove '=SHAPE'", "a %.20s has no shape", kind);
     static const param_group groups[] = {PARAM_SOLID, PARAM_LIGHT, PARAM_MATERIAL, PARAM_MESH, PARAM_TEXTURE};
     int which = 0;
     TRY(options_choice(NULL, "kind of object", kind, kinds, sizeof kinds / sizeof *kinds, &which, why));
     return scene_add(s, groups[which], name, NULL, why);
 }
 
-/* Cuts "solid:rod=box,size=1,2,3" into its parts. */
+/* Splits "solid:rod=box,size=1,2,3" into its parts, adds the object and sets its parameters. */
 static status apply_add(scene *s, const scene_edit *edit, const char *none, const char *text, diagnostic *why)
 {
     (void)none;
@@ -151,22 +153,24 @@ static status apply_add(scene *s, const scene_edit *edit, const char *none, cons
 
 const scene_edit scene_edits[] = {
     {"--add", 0, false, "KIND:NAME[=SHAPE][,PARAM=VALUE]...",
-     "add a solid, light, material, mesh or texture, as solid:rod=box,size=0.25,3,0.25", apply_add},
-    {"--set", 's', true, "PATH=VALUE", "set a parameter, or NAME.material and NAME.shape of a solid", apply_set},
+     "add a solid, light, material, mesh or texture, such as solid:rod=box,size=0.25,3,0.25", apply_add},
+    {"--set", 's', true, "PATH=VALUE",
+     "set a parameter, or the material or shape of a solid (NAME.material, NAME.shape)", apply_set},
     {"--move", 0, true, "NAME=DX,DY,DZ",
-     "move a solid, a light, the camera; all, solids, lights, or words joined by +, as all+camera", apply_move},
+     "move a solid, a light, the camera, or a group: all, solids, lights, or names joined by +, such as all+camera",
+     apply_move},
     {"--turn", 0, true, "NAME=RX,RY,RZ",
-     "turn a solid or the camera, where it stands, or all and so on, about the origin: about the world's x, then y, "
-     "then z axis, in degrees",
+     "rotate a solid or the camera about its position, or a group about the origin: about the world's x, then y, then "
+     "z axis, in degrees",
      apply_turn},
     {"--scale", 0, true, "NAME=FACTOR",
-     "scale a solid or a light, where it stands, or all and so on, about the origin; with all solids, lengths in "
-     "metres stay (render.unit_m)",
+     "scale a solid or a light about its position, or a group about the origin; scaling all solids adapts "
+     "render.unit_m, so that lengths in metres stay",
      apply_scale},
-    {"--rename", 0, true, "OLD=NEW", "give an object another name", apply_rename},
-    {"--delete", 0, false, "NAME", "take an object away; camera, background and render go back to their defaults",
+    {"--rename", 0, true, "OLD=NEW", "rename an object", apply_rename},
+    {"--delete", 0, false, "NAME", "delete an object; camera, background and render return to their defaults",
      apply_delete},
-    {"--title", 0, false, "TEXT", "give the scene another title", apply_title},
+    {"--title", 0, false, "TEXT", "set the title of the scene", apply_title},
 };
 const size_t scene_edit_count = sizeof scene_edits / sizeof *scene_edits;
 

@@ -1,3 +1,4 @@
+/* The scene of a command: --set and its short forms, reading, loading, notes. */
 #include "cli/scene_input.h"
 #include "base/grow.h"
 #include "cli/outputs.h"
@@ -38,8 +39,8 @@ status scene_command_read(const scene_command *command, int argc, char **argv, v
     const scene_input *input = request;
     TRY(command_form_read(&command->form, argc, argv, request, why));
     if (!input->path)
-        return options_wrong(command->name, NULL, why, "name a scene file, as experiments/scenes/rod.yaml",
-                             "no scene is named");
+        return options_wrong(command->name, NULL, why, "give a scene file, such as experiments/scenes/rod.yaml",
+                             "no scene is given");
     return command->check ? command->check(request, why) : STATUS_OK;
 }
 
@@ -78,7 +79,7 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
     for (size_t i = 0; result == STATUS_OK && input->from_beginning && i < (*out)->mesh_count; i++)
         (*out)->meshes[i].time_s = 0;
     if (result == STATUS_OK) {
-        diagnostic_locate(why, input->path, 0, 0); /* for checks that have no line to name */
+        diagnostic_locate(why, input->path, 0, 0); /* the place of errors that have no line */
         result = scene_check(*out, why);
     }
     return result;
@@ -87,13 +88,13 @@ status scene_input_read(const scene_input *input, scene **out, diagnostic *why)
 static bool show_motion(void *context, double share_done)
 {
     progress_draw(context, share_done);
-    return !terminal_stop_asked(NULL);
+    return !terminal_stop_requested(NULL);
 }
 
 status scene_input_load(scene *s, diagnostic *why)
 {
     progress_line line;
-    progress_start(&line, "moving");
+    progress_start(&line, "simulating");
     const load_watch watch = {show_motion, &line};
     const status result = scene_load_until(s, &watch, why);
     progress_erase(&line);
@@ -108,7 +109,7 @@ status scene_input_isa(isa *level, diagnostic *why)
 status scene_input_job(bool measured, job **out, diagnostic *why)
 {
     isa level = ISA_SSE2;
-    const job_settings settings = {.level = &level, .measured = measured, .stop = terminal_stop_asked};
+    const job_settings settings = {.level = &level, .measured = measured, .stop = terminal_stop_requested};
     TRY(scene_input_isa(&level, why));
     return job_create(&settings, out, why);
 }
@@ -144,11 +145,11 @@ void scene_input_note_tree(const scene *s)
     if (!path && !drawn && !layers && !spectral)
         return;
     snprintf(text, sizeof text,
-             "the scene's picture is %s%s%s; rays are here traced as Whitted did, at render.lambda_nm = %.6g",
-             path     ? "made of random paths"
-             : drawn  ? "drawn into a depth buffer"
-             : layers ? "a layer of what camera rays meet first"
+             "the scene is rendered %s%s%s; this command traces Whitted-style rays at render.lambda_nm = %.6g",
+             path     ? "with random paths"
+             : drawn  ? "with a depth buffer"
+             : layers ? "as a layer of the first hits"
                       : "",
-             path && spectral ? " and " : "", spectral ? "spectral" : "", s->render.lambda_nm);
+             path && spectral ? " and " : "", spectral ? "spectrally" : "", s->render.lambda_nm);
     terminal_note(text);
 }

@@ -1,3 +1,4 @@
+/* `cuvette study`: runs, lists, merges and summarises studies. */
 #include "base/text_writer.h"
 #include "cli/cli.h"
 #include "cli/inert_notes.h"
@@ -15,10 +16,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What a subcommand does with each study that it was given. */
+/* The action of a subcommand on each given study. */
 typedef status study_action(const study *s, const study_request *request, diagnostic *why);
 
-/* All files are read before anything is done with the first: a mistake in the last one shows at once. */
+/* Reads all files before acting on the first, so that an error in the last one is reported at once. */
 static status read_and_act(const study_request *request, study_action *act, diagnostic *why)
 {
     study **studies = calloc(request->file_count + 1, sizeof *studies);
@@ -44,14 +45,14 @@ static status for_each_study(study_verb verb, study_action *act, int argc, char 
     return result;
 }
 
-/* Is the path the place, or a part of it, or the other way round? */
+/* Returns whether path equals place or is an element of it ("lamp.position.x" of "lamp.position"). */
 static bool is_part(const char *place, const char *path)
 {
     const size_t length = strlen(place);
     return strncmp(place, path, length) == 0 && (path[length] == '\0' || path[length] == '.');
 }
 
-/* A solid's parameter as its material's. */
+/* Returns whether place is a solid's parameter and path the same parameter of its material. */
 static bool is_of_material(const scene *s, const char *place, const char *path)
 {
     const char *dot = strchr(place, '.');
@@ -78,7 +79,8 @@ static bool varies(void *context, const char *place)
     return false;
 }
 
-/* Notes on the scene with the fixed parameters, before anything is measured. Slimes are not moved for them. */
+/* Prints notes on the scene with the fixed parameters before anything is measured. Slimes are not simulated for
+ * this. */
 static status lint(const study *s, const study_request *request, diagnostic *why)
 {
     study_progress progress;
@@ -108,24 +110,25 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .shard = request->shard,
                                    .shards = request->shards,
                                    .progress = terminal,
-                                   .stop = terminal_stop_asked};
+                                   .stop = terminal_stop_requested};
     size_t rows = 0;
     status result = request->quiet ? STATUS_OK : lint(s, request, why);
     THEN(result, study_run(s, &options, &rows, why));
     if (result == STATUS_INTERRUPTED) {
         diagnose(why, STATUS_INTERRUPTED,
-                 study_keeps_files(s) ? "run it again to go on; pictures are made at the end" : "run it again to go on",
+                 study_keeps_files(s) ? "run it again to resume; images are written at the end"
+                                      : "run it again to resume",
                  "interrupted; its %zu new rows are kept", rows);
         diagnostic_locate(why, s->path, 0, 0);
     }
     if (result != STATUS_OK || request->quiet)
         return result;
     if (rows)
-        printf("%s: %zu rows, warm-ups among them, written into %s/%s%s\n", s->name, rows, request->results, s->name,
-               study_keeps_files(s) ? "; see images/index.tsv there for what is kept" : "");
+        printf("%s: %zu rows, including warm-ups, written to %s/%s%s\n", s->name, rows, request->results, s->name,
+               study_keeps_files(s) ? "; images/index.tsv there lists the images" : "");
     else
         printf("%s: complete, nothing to do\n", s->name);
-    return terminal_flush(why); /* an hour may pass before the next one */
+    return terminal_flush(why); /* the next study may take an hour */
 }
 
 static status print_status(const study *s, const study_request *request, diagnostic *why)
@@ -146,7 +149,7 @@ static status merge_one(const study *s, const study_request *request, diagnostic
     return STATUS_OK;
 }
 
-/* People see the columns that one looks at first, programs all of them. */
+/* A terminal gets the most important columns, a pipe or file all of them. */
 static status print_summary(const study *s, const study_request *request, diagnostic *why)
 {
     if (!terminal_columns(STDOUT_FILENO))
@@ -187,7 +190,7 @@ static int is_study_file(const struct dirent *entry)
     return length > 6 && strcmp(entry->d_name + length - 6, ".study") == 0;
 }
 
-/* A file that cannot be read has its line too, and the list goes on. */
+/* Prints the line of one study; an unreadable file is an error that does not end the list. */
 static status list_one(const char *folder, const char *name, diagnostic *why)
 {
     char path[4096];
@@ -208,7 +211,7 @@ static status list_folder(const char *folder, diagnostic *why)
     struct dirent **entries = NULL;
     int count = scandir(folder, &entries, is_study_file, alphasort);
     if (count < 0)
-        return options_wrong(folder, NULL, why, "name a folder with *.study files", "cannot be listed: %s",
+        return options_wrong(folder, NULL, why, "give a folder with *.study files", "cannot list the folder: %s",
                              strerrordesc_np(errno));
     status result = STATUS_OK;
     for (int i = 0; i < count; i++) {
@@ -232,17 +235,17 @@ static status command_list(int argc, char **argv, diagnostic *why)
 }
 
 static const command commands[] = {
-    {"run", "measure what is missing of studies", command_run},
+    {"run", "measure the missing rows of studies", command_run},
     {"list", "list the studies of a folder", command_list},
-    {"status", "say how far studies are", command_status},
-    {"merge", "join the rows of shards", command_merge},
-    {"summary", "print medians and intervals by cell", command_summary},
+    {"status", "print the progress of studies", command_status},
+    {"merge", "merge the rows of shards", command_merge},
+    {"summary", "print medians and confidence intervals of each cell", command_summary},
 };
 
 status command_study(int argc, char **argv, diagnostic *why)
 {
     return command_dispatch(
         commands, sizeof commands / sizeof commands[0],
-        "A study is a scene, a grid over its parameters, and repetitions; its rows go to results/STUDY/rows.csv.", argc,
+        "A study is a scene, a grid over its parameters, and repetitions. Its rows go to results/STUDY/rows.csv.", argc,
         argv, why);
 }

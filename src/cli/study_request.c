@@ -1,3 +1,4 @@
+/* The command lines of the subcommands of `cuvette study`. */
 #include "cli/study_request.h"
 #include "cli/options.h"
 #include "base/number.h"
@@ -7,9 +8,9 @@
 
 enum { SHARDS_MAX = 10000 };
 
-static status take_shard(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_shard(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    study_request *request = into;
+    study_request *request = context;
     char part[24];
     int64_t shard, shards;
     const char *slash = strchr(value, '/');
@@ -18,7 +19,7 @@ static status take_shard(const command_option *o, void *into, const char *value,
     snprintf(part, sizeof part, "%.*s", fits ? (int)(slash - value) : 0, value);
     if (!fits || !number_parse_int(part, &shard) || !number_parse_int(slash + 1, &shards) || shards < 1 ||
         shards > SHARDS_MAX || shard < 0 || shard >= shards)
-        return options_wrong("--shard", value, why, "give I/N with 0 <= I < N, as 0/2 and 1/2", "'%.64s' names no part",
+        return options_wrong("--shard", value, why, "give I/N with 0 <= I < N, such as 0/2", "invalid shard '%.64s'",
                              value);
     request->shard = (long)shard;
     request->shards = (long)shards;
@@ -32,44 +33,45 @@ static void take_file(void *request, const char *file)
 }
 
 static const command_option run_options[] = {
-    {"results", 'r', "DIR", "put results/STUDY/ into DIR instead of results",
+    {"results", 'r', "DIR", "write to DIR/STUDY/ instead of results/STUDY/",
      OPTION_FILLS(option_text, study_request, results)},
-    {"shard", 0, "I/N", "do part I of N, counted from 0: the parts may run at one time, on one or many machines",
+    {"shard", 0, "I/N", "run part I of N, counted from 0; parts can run concurrently, on one or several machines",
      .take = take_shard},
-    {"quiet", 'q', NULL, "say nothing but errors", OPTION_FILLS(option_flag, study_request, quiet)},
+    {"quiet", 'q', NULL, "print errors only", OPTION_FILLS(option_flag, study_request, quiet)},
     {0},
 };
 
 static const command_option results_options[] = {
-    {"results", 'r', "DIR", "where the results are; 'results' if not said",
+    {"results", 'r', "DIR", "folder of the results (default: results)",
      OPTION_FILLS(option_text, study_request, results)},
     {0},
 };
 
 static const command_form forms[STUDY_VERB_COUNT] = {
     [STUDY_RUN] = {.options = run_options,
-                   .word = take_file,
-                   .words = "FILE...",
-                   .about = "Measure what is missing of each study, row by row.\vA study that is stopped, or killed, "
-                            "goes on where it was when it is run again. Rows are never rewritten."},
-    [STUDY_LIST] = {.word = take_file,
-                    .words = "[DIR]",
-                    .about = "List the study files of a folder; 'experiments' if none is named."},
+                   .take_argument = take_file,
+                   .synopsis = "FILE...",
+                   .about =
+                       "Measure the missing rows of each study.\vAn interrupted or killed study resumes when it is "
+                       "run again. Rows are never rewritten."},
+    [STUDY_LIST] = {.take_argument = take_file,
+                    .synopsis = "[DIR]",
+                    .about = "List the study files of a folder (default: experiments)."},
     [STUDY_STATUS] =
         {.options = results_options,
-         .word = take_file,
-         .words = "FILE...",
+         .take_argument = take_file,
+         .synopsis = "FILE...",
          .about =
-             "Say how many cells of each study are done, and how many rows are marked because their film differs."},
+             "Print the number of finished cells of each study, and of rows marked because their film hash differs."},
     [STUDY_MERGE] = {.options = results_options,
-                     .word = take_file,
-                     .words = "FILE...",
-                     .about = "Join the rows of a study's shards into its rows.csv."},
+                     .take_argument = take_file,
+                     .synopsis = "FILE...",
+                     .about = "Merge the rows of a study's shards into its rows.csv."},
     [STUDY_SUMMARY] = {.options = results_options,
-                       .word = take_file,
-                       .words = "FILE",
-                       .about = "Print one line a cell: medians, 95% intervals, counts.\vOn a terminal the columns "
-                                "that one looks at first; into a file or pipe all of them, separated by tabs."},
+                       .take_argument = take_file,
+                       .synopsis = "FILE",
+                       .about = "Print one line per cell: medians, 95% confidence intervals, counts.\vA terminal gets "
+                                "the most important columns; a pipe or a file gets all of them, separated by tabs."},
 };
 
 static status check_files(const study_request *request, const char *program, diagnostic *why)
@@ -77,13 +79,13 @@ static status check_files(const study_request *request, const char *program, dia
     const char *what = NULL, *remedy = NULL;
     bool lists = request->verb == STUDY_LIST;
     if (request->file_count == 0 && !lists)
-        what = "no study is named", remedy = "name a study file, as experiments/depth.study";
+        what = "no study is given", remedy = "give a study file, such as experiments/depth.study";
     else if (request->file_count > 1 && lists)
-        what = "more than one folder is named", remedy = "name one";
+        what = "more than one folder is given", remedy = "give one folder";
     else if (request->file_count > 1 && request->verb == STUDY_SUMMARY)
-        what = "more than one study is named", remedy = "name one: each has columns of its own";
+        what = "more than one study is given", remedy = "give one study, since each has its own columns";
     else if (!request->results[0])
-        what = "--results is empty", remedy = "name a folder";
+        what = "--results is empty", remedy = "give a folder";
     if (!what)
         return STATUS_OK;
     options_locate(why, program);

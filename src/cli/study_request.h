@@ -1,5 +1,5 @@
-/* The command lines of `cuvette study`. Ownership: study_request_release releases what parsing filled, also after an
- * error; words are borrowed from argv. */
+/* The command lines of `cuvette study`, and the table of its summary. Ownership: study_request_release frees a request,
+ * also after a parsing error; strings are borrowed from argv. */
 #pragma once
 
 #include "base/status.h"
@@ -28,7 +28,7 @@ typedef struct study_request {
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why);
 void study_request_release(study_request *request);
 
-/* Prints the summary of a study for people: the few columns that one looks at first, aligned. They are cell, axes, n,
- * median and 95% interval of the wall time, median of the CPU time, rays and marked rows, from the text that
- * study_summary writes; tsv is cut apart in the course of it. */
+/* Prints the summary of a study for a terminal, with aligned columns: cell, axes, n, median and 95% interval of the
+ * wall time, median CPU time, rays and marked rows; with a reference also flip and error_rms. tsv is the output of
+ * study_summary and is modified. */
 status study_table_print(FILE *out, char *tsv, diagnostic *why);

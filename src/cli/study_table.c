@@ -1,3 +1,4 @@
+/* The summary of a study as an aligned table for a terminal. */
 #include "cli/study_request.h"
 #include "base/number.h"
 #include "base/text.h"
@@ -5,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Fields of the text, row by row; row 0 is the header. */
+/* The fields of the summary, by rows; row 0 is the header. */
 typedef struct fields {
     char **field;
     size_t rows, columns;
@@ -40,7 +41,7 @@ static size_t column_of(const fields *f, const char *name)
     return column;
 }
 
-/* A time to four digits; more would be noise. */
+/* A time with four digits; further ones are measurement noise. */
 static const char *rounded(const fields *f, size_t row, const char *name, char text[NUMBER_TEXT_MAX])
 {
     double value;
@@ -56,8 +57,8 @@ static bool has_column(const fields *f, const char *name)
     return strcmp(f->field[column_of(f, name)], name) == 0;
 }
 
-/* The columns from the cell to n as they are, then wall_s, cpu_s, rays and marked, and of a study with a reference how
- * far the pictures lie from it. Fresh memory. */
+/* The text of a field of the table: the columns from cell to n unchanged, then wall_s, cpu_s, rays and marked, and the
+ * image difference of a study with a reference. Allocated. */
 static char *shown(const fields *f, size_t row, size_t column)
 {
     size_t plain = column_of(f, "n") + 1;

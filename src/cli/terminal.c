@@ -1,4 +1,6 @@
+/* Terminal and signals of the program: stop request, checked standard output, colour, progress line. */
 #include "cli/terminal.h"
+#include "base/number.h"
 #include "measure/clock.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -11,22 +13,22 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-static volatile sig_atomic_t stop_asked;
+static volatile sig_atomic_t stop_requested;
 
-static void ask_stop(int signal_number)
+static void request_stop(int signal_number)
 {
     (void)signal_number;
-    stop_asked = 1;
+    stop_requested = 1;
 }
 
-bool terminal_stop_asked(void *unused)
+bool terminal_stop_requested(void *unused)
 {
     (void)unused;
-    return stop_asked != 0;
+    return stop_requested != 0;
 }
 
-/* A picture must never land in descriptor 1 because the caller had closed it: hold the place with something that
- * cannot be written (read, for standard input). */
+/* An image file must never get descriptor 1 because the caller has closed it: a closed descriptor is opened on
+ * /dev/null, in the direction that fails (write-only for standard input, read-only for the outputs). */
 static void hold_standard_descriptors(void)
 {
     for (int fd = 0; fd <= 2; fd++)
@@ -34,7 +36,7 @@ static void hold_standard_descriptors(void)
             (void)!open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
 }
 
-/* The errno of an earlier failed write is gone: a pipe without a reader can still be told. */
+/* The errno of an earlier failed write is lost, but poll still reports a pipe without a reader. */
 static bool reader_left(void)
 {
     struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
@@ -49,13 +51,13 @@ status terminal_flush(diagnostic *why)
         return STATUS_OK;
     int error = errno ? errno : EIO;
     __fpurge(stdout);
-    clearerr(stdout); /* said once */
+    clearerr(stdout); /* report the error once */
     if (error == EPIPE || reader_left())
         return STATUS_FAILURE;
     return diagnose(why, STATUS_FAILURE, "", "cannot write to standard output: %s", strerror(error));
 }
 
-/* For the ways out through exit(), such as argp's help. */
+/* For exits through exit(), such as argp's --help. */
 static void check_stdout_at_exit(void)
 {
     if (__fpending(stdout) == 0 && !ferror(stdout))
@@ -70,7 +72,7 @@ static void check_stdout_at_exit(void)
 void terminal_prepare(void)
 {
     hold_standard_descriptors();
-    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = (int)SA_RESETHAND};
+    struct sigaction action = {.sa_handler = request_stop, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
@@ -86,11 +88,16 @@ bool terminal_is_smart(int fd)
 
 int terminal_columns(int fd)
 {
-    enum { COLUMNS = 80 }; /* of a terminal that does not say */
+    enum { COLUMNS_DEFAULT = 80, COLUMNS_MAX = 10000 };
     struct winsize size;
+    int64_t columns;
     if (!isatty(fd))
         return 0;
-    return ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : COLUMNS;
+    if (ioctl(fd, TIOCGWINSZ, &size) == 0 && size.ws_col > 1)
+        return size.ws_col;
+    const char *given = getenv("COLUMNS");
+    return given && number_parse_int(given, &columns) && columns > 1 && columns <= COLUMNS_MAX ? (int)columns
+                                                                                               : COLUMNS_DEFAULT;
 }
 
 static bool has_color(int fd)
@@ -105,7 +112,7 @@ void terminal_error(const diagnostic *why)
     if (why->what[0] == '\0')
         return;
     diagnostic_text(why, text, sizeof text);
-    for (char *c = text; *c; c++) /* a file's name may hold anything; an error is one line */
+    for (char *c = text; *c; c++) /* a file name may hold control characters; an error is one line */
         if ((unsigned char)*c < ' ' || *c == 127)
             *c = '?';
     bool color = has_color(STDERR_FILENO);

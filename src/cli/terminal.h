@@ -1,36 +1,36 @@
-/* What the program does with the terminal and with signals: the one line of progress, colour, the wish to stop, and
- * standard output that is known to have arrived. The stop flag and the exit handler are the program's only global
- * state. */
+/* Terminal and signals: the progress line, colour, the stop request of SIGINT and SIGTERM, and checked standard output.
+ * The stop flag and the exit handler are the program's only global state. */
 #pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
 
-/* Opens what is closed of descriptors 0 to 2, ignores SIGPIPE, makes SIGINT and SIGTERM a wish to stop (the second
- * one kills), and has exit() check that standard output was written. Call it first. */
+/* Opens closed descriptors among 0 to 2, ignores SIGPIPE, turns SIGINT and SIGTERM into a stop request (a second signal
+ * kills), and makes exit() check that standard output was written. Must be called first. */
 void terminal_prepare(void);
 
-/* Has SIGINT or SIGTERM come? unused: so that others can be told to ask. */
-bool terminal_stop_asked(void *unused);
+/* Returns whether SIGINT or SIGTERM has arrived. unused: lets the function serve as a callback. */
+bool terminal_stop_requested(void *unused);
 
-/* Flushes standard output; failure if something could not be written. The reader of a pipe who left is a failure
- * without words: *why is then left empty. */
+/* Flushes standard output. STATUS_FAILURE where data could not be written; if the reader of a pipe has closed it, *why
+ * stays empty, so that nothing is printed. */
 status terminal_flush(diagnostic *why);
 
-/* Is fd a terminal that moves its cursor, and takes colour? TERM=dumb does not. */
+/* Returns whether fd is a terminal with cursor movement and colour; TERM=dumb has neither. */
 bool terminal_is_smart(int fd);
 
-/* Columns of the terminal that fd is; 0 when it is none. */
+/* Width of the terminal fd in columns: as the terminal reports it, otherwise COLUMNS, otherwise 80. 0 if fd is not a
+ * terminal. */
 int terminal_columns(int fd);
 
-/* "cuvette: ..." in one line on standard error; nothing for an empty diagnostic. */
+/* Prints "cuvette: ..." as one line on standard error; nothing for an empty diagnostic. */
 void terminal_error(const diagnostic *why);
 
-/* "cuvette: note: ..." in one line on standard error. */
+/* Prints "cuvette: note: ..." as one line on standard error. */
 void terminal_note(const char *text);
 
-/* One line of progress with the time left, on standard error if that is a terminal, nothing elsewhere. Work of under
- * half a second shows none. Ownership: the label is borrowed. */
+/* A progress line with the time left, on standard error where that is a terminal. Work of less than half a second shows
+ * no line. Ownership: the label is borrowed. */
 typedef struct progress_line {
     const char *label;
     double started_s;
@@ -41,5 +41,5 @@ typedef struct progress_line {
 void progress_start(progress_line *line, const char *label);
 /* share_done: 0..1 */
 void progress_draw(progress_line *line, double share_done);
-/* Leaves the line as it was before. Harmless when nothing is shown. */
+/* Erases the line; does nothing when no line is shown. */
 void progress_erase(progress_line *line);

@@ -1,3 +1,4 @@
+/* `cuvette trace`: the ray tree of a pixel or a ray, as text, JSON or a drawing. */
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
@@ -16,34 +17,35 @@ typedef struct trace_request {
     double pixel[2], ray[6];
 } trace_request;
 
-static status take_format(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_format(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    trace_request *request = into;
+    trace_request *request = context;
     const trace_format format = strcmp(o->name, "text") == 0   ? FORMAT_TEXT
                                 : strcmp(o->name, "json") == 0 ? FORMAT_JSON
                                                                : FORMAT_SVG;
     (void)value;
     if (request->format != FORMAT_NONE && request->format != format)
-        return options_wrong("trace", NULL, why, "give one of --text, --json, --svg", "there is more than one format");
+        return options_wrong("trace", NULL, why, "give only one of --text, --json, --svg",
+                             "more than one format is given");
     request->format = format;
     return STATUS_OK;
 }
 
-static status take_pixel(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_pixel(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    trace_request *request = into;
+    trace_request *request = context;
     (void)o;
     request->by_pixel = true;
     const status result = options_reals("--pixel", value, "X,Y as two integers", 2, request->pixel, why);
     for (int k = 0; k < 2 && result == STATUS_OK; k++)
         if (floor(request->pixel[k]) != request->pixel[k] || fabs(request->pixel[k]) > 1e9)
-            return options_wrong("--pixel", value, why, "give X,Y as two integers", "there is no such pixel");
+            return options_wrong("--pixel", value, why, "give X,Y as two integers", "invalid pixel");
     return result;
 }
 
-static status take_ray(const command_option *o, void *into, const char *value, diagnostic *why)
+static status take_ray(const command_option *o, void *context, const char *value, diagnostic *why)
 {
-    trace_request *request = into;
+    trace_request *request = context;
     request->by_ray = true;
     return options_reals("--ray", value, o->form, 6, request->ray, why);
 }
@@ -54,25 +56,25 @@ static const command_option options[] = {
     OPTION_DEPTH,
     OPTION_LAMBDA,
     OPTION_SET("'liquid.ior=1.4'"),
-    {"text", 0, NULL, "print an indented tree, a line a ray (the default)", .take = take_format},
+    {"text", 0, NULL, "print an indented tree, one line per ray (the default)", .take = take_format},
     {"json", 0, NULL, "print one JSON object", .take = take_format},
     {"svg", 0, NULL, "draw the tree in the plane of incidence and from above", .take = take_format},
-    OPTION_OUTPUT("write there; without a format, the ending says which: .txt, .json, .svg"),
+    OPTION_OUTPUT("write to FILE; its ending selects the format: .txt, .json, .svg"),
     {0},
 };
 
-static status check_request(void *asked, diagnostic *why)
+static status check_request(void *context, diagnostic *why)
 {
     static const char *const endings[] = {".txt", ".json", ".svg"};
-    trace_request *request = asked;
+    trace_request *request = context;
     if (request->by_pixel == request->by_ray)
         return options_wrong("trace", NULL, why, "give --pixel X,Y or --ray OX,OY,OZ,DX,DY,DZ",
-                             request->by_ray ? "--pixel and --ray exclude each other" : "no ray is named");
+                             request->by_ray ? "--pixel and --ray exclude each other" : "no ray is given");
     size_t which = FORMAT_TEXT;
     status result = STATUS_OK;
     if (request->format == FORMAT_NONE && request->input.output && strcmp(request->input.output, "-") != 0)
         result = outputs_ending("-o", request->input.output, endings, 3,
-                                "end it in .txt, .json or .svg, or give --text, --json or --svg", &which, why);
+                                "use .txt, .json or .svg, or give --text, --json or --svg", &which, why);
     if (request->format == FORMAT_NONE)
         request->format = (trace_format)which;
     return result;
@@ -106,9 +108,9 @@ static status write_as(const void *content, FILE *out, diagnostic *why)
     return trace_write_text(&f->tree, out, why);
 }
 
-static status run(void *asked, scene *s, isa level, diagnostic *why)
+static status run(void *context, scene *s, isa level, diagnostic *why)
 {
-    const trace_request *request = asked;
+    const trace_request *request = context;
     probe *p = NULL;
     ray_tree tree = {0};
     status result = scene_input_probe(&request->input, s, level, &p, why);
@@ -127,11 +129,11 @@ static const scene_command trace_command = {
     .name = "trace",
     .form =
         {.options = options,
-         .words = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ)",
+         .synopsis = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ)",
          SCENE_WORD("trace"),
          .about =
-             "Take one ray apart: the whole tree of rays that it grows into, with media, angles, reflectances and what "
-             "each brings to the picture. The tree of a pixel has the pixel's radiance, to the bit.\vFor example:\n"
+             "Trace one ray and print its ray tree: media, angles, reflectances, and the contribution of each ray to "
+             "the pixel. The radiance of a pixel's tree equals the image, bit for bit.\vFor example:\n"
              "  cuvette trace experiments/scenes/rod.yaml --pixel 400,300 --depth 3\n"
              "  cuvette trace experiments/scenes/rod.yaml --ray -3,1.5,0.4,1,0,0 -o ray.svg"},
     .check = check_request,

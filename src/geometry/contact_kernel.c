@@ -1,19 +1,19 @@
-/* Contact: which boundaries lie at one place.
+/* Contact: the test whether boundaries coincide.
  *
- * Two boundaries that a ray crosses at t1 and t2 are in contact when these distances are equal within the boundaries'
- * own error bounds at these crossings: |t1 - t2| <= e1 / cos1 + e2 / cos2. e is the bound on a point's error across its
- * surface (primitives/kind.h); the cosine carries it over to the ray. Nothing else enters: no other solid, no extent of
- * the scene. The narrowest gap that is seen is therefore e1 + e2, the sum of both surfaces' 16 DBL_EPSILON (|start| +
- * |path| + extent): 2e-14 to 1.4e-13 scene units in the scene of the rod.
+ * Two boundaries that a ray crosses at t1 and t2 are in contact if these distances are equal within the boundaries' own
+ * error bounds at these crossings: |t1 - t2| <= e1 / cos1 + e2 / cos2. e bounds a point's error across its surface
+ * (primitives/kind.h); the cosine converts it into one along the ray. Nothing else matters: no other solid, and not the
+ * extent of the scene. The narrowest gap that is resolved is therefore e1 + e2, the sum of both surfaces' 16
+ * DBL_EPSILON (|start| + |path| + extent): 2e-14 to 1.4e-13 scene units in the scene of the rod.
  *
- * Crossings in contact are one crossing: the sets before and behind it are those before the first and behind the last
- * of them. Faces that coincide by their numbers, whatever rounding made of these, enclose no film of another medium. */
+ * Crossings in contact are one crossing: the sets before and after it are those before the first and after the last of
+ * them. Faces that coincide by their numbers, up to rounding, enclose no film of another medium. */
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"
 #include "geometry/primitives/primitive.h"
 
-/* What column k crosses, its error bound along the ray, and how far the solid or copy extends. */
+/* A crossing of column k: its primitive, its error bound along the ray, and the extent of the solid or copy. */
 typedef struct crossing {
     int of; /* a primitive */
     double t, bound, extent;
@@ -25,8 +25,8 @@ static ray_batch ray_of(const ray_batch *rays, int i, const uint64_t *inside)
         1, &rays->ox[i], &rays->oy[i], &rays->oz[i], &rays->dx[i], &rays->dy[i], &rays->dz[i], &rays->start[i], inside};
 }
 
-/* -d . n at the point: the cosine of incidence, for a shadow ray times its length, so that a distance divided by it is
- * one in t. */
+/* -d . n at the point: the cosine of incidence (for a shadow ray times its length), which converts a distance across
+ * the surface into one in t. */
 static double facing(const surface_batch *point, const ray_batch *one)
 {
     const double along = one->dx[0] * point->nx[0] + one->dy[0] * point->ny[0] + one->dz[0] * point->nz[0];
@@ -42,8 +42,8 @@ static crossing crossing_of(const scene_geometry *a, const ray_batch *rays, int 
     return (crossing){p, t, point.error[0] / facing(&point, &one), a->primitives[p].extent};
 }
 
-/* A point on a mesh is as exact as its triangle; the distance along the ray depends on the ray's start and length, too.
- */
+/* A point on a mesh is as exact as its triangle; the distance along the ray also depends on the ray's start and
+ * length. */
 static crossing mesh_crossing_of(const scene_geometry *a, const ray_batch *rays, int i, const instance_hit *hit)
 {
     const uint64_t inside = 0;
@@ -58,8 +58,8 @@ static crossing mesh_crossing_of(const scene_geometry *a, const ray_batch *rays,
     return (crossing){part->primitive, hit->t, error / facing(&point, &one), instance_set_extent(a->meshes, hit->face)};
 }
 
-/* Upper limit of a contact: half the filter's window or less, whatever else is in the scene. It acts where a ray grazes
- * within 1e-7 rad. */
+/* Upper limit of a contact: at most half the filter's window, independent of the rest of the scene. It matters only
+ * where a ray grazes a surface within 1e-7 rad. */
 static double widest_contact(const ray_batch *rays, int i, const crossing *c, double extent)
 {
     return 0.5 * BOUNDARY_CLOSE * (c->t + greater(c->extent, extent) * steps_per_unit(rays, i));
@@ -71,7 +71,7 @@ static bool in_contact(const ray_batch *rays, int i, const crossing *c, const cr
     return apart <= widest_contact(rays, i, c, other->extent) && apart <= c->bound + other->bound;
 }
 
-/* Where a primitive's boundary at t lies: -1 before the crossing, 0 in contact with it, 1 behind it. */
+/* The position of a primitive's boundary at t: -1 before the crossing, 0 in contact with it, 1 after it. */
 static int side_of(const scene_geometry *a, const ray_batch *rays, int i, const crossing *c, int p, double t,
                    bool leaving)
 {
@@ -90,7 +90,7 @@ static void set_bit(uint64_t *set, int bit, bool on)
     *set = (*set & ~((uint64_t)1 << bit)) | (uint64_t)on << bit;
 }
 
-/* A mesh's boundaries in contact with a crossing, and the distance of the farthest from it; negative for none. */
+/* The boundaries of a mesh in contact with a crossing, and the distance of the farthest of them; negative for none. */
 typedef struct mesh_contact {
     const scene_geometry *a;
     const ray_batch *rays;
@@ -99,7 +99,7 @@ typedef struct mesh_contact {
     double reach;
 } mesh_contact;
 
-static void take_contact(void *context, const instance_hit *hit)
+static void collect_contact(void *context, const instance_hit *hit)
 {
     mesh_contact *m = context;
     const crossing other = mesh_crossing_of(m->a, m->rays, m->ray, hit);
@@ -107,16 +107,16 @@ static void take_contact(void *context, const instance_hit *hit)
         m->reach = greater(m->reach, magnitude(hit->t - m->at->t));
 }
 
-/* How far mesh p's boundaries in contact lie from the crossing at most, and a little more; negative for none. */
+/* The largest distance of mesh p's boundaries in contact from the crossing, and a margin; negative for none. */
 static double mesh_reach(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s,
                          const crossing *at, int p)
 {
     mesh_contact m = {a, rays, s->ray[k], at, -1.0};
-    KERNEL(mesh_each_near)(a, rays, k, s, p, at->t, take_contact, &m);
+    KERNEL(mesh_each_near)(a, rays, k, s, p, at->t, collect_contact, &m);
     return m.reach < 0.0 ? m.reach : m.reach + 0.5 * at->bound;
 }
 
-/* The sets on both sides of the crossing as to the meshes with other boundaries near it. */
+/* Updates the sets on both sides of the crossing for the meshes with other boundaries near it. */
 static void merge_meshes(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
                          const crossing *at)
 {
@@ -127,7 +127,7 @@ static void merge_meshes(const scene_geometry *a, const ray_batch *rays, int k, 
         const double contact = mesh_reach(a, rays, k, s, at, p), reach = greater(contact, 0.5 * at->bound);
         KERNEL(mesh_sets_closely)
         (a, rays, k, s, c->before[k], bit, at->t - reach, at->t + reach, &c->inside_before[k], &c->inside_after[k]);
-        if (contact >= 0.0) /* else one of two boundaries at one place would be met again, without the other */
+        if (contact >= 0.0) /* otherwise one of two coincident boundaries would be hit again without the other */
             s->meshes->until[k] = greater(s->meshes->until[k], at->t + reach);
     }
 }
@@ -148,10 +148,10 @@ static void cross_mesh_of_owner(const scene_geometry *a, const ray_batch *rays, 
     c->hit_primitive[k] = p;
 }
 
-/* Of several boundaries in contact at column k's crossing, the one of the body that owns the surface is crossed: its
- * normal, frame and colours are seen. */
-static void cross_the_owners(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
-                             instance_hit *mesh_hits, const crossing *at)
+/* Of several boundaries in contact at column k's crossing, selects that of the region that owns the surface: its
+ * normal, frame and material are used for shading. */
+static void select_owner(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, hit_batch *c,
+                         instance_hit *mesh_hits, const crossing *at)
 {
     const region *owner = &a->regions[c->surface[k]];
     const int pieces[2] = {owner->outside, owner->hollow};
@@ -200,5 +200,5 @@ void KERNEL(merge_contacts)(const scene_geometry *a, const ray_batch *rays, int 
         merge_meshes(a, rays, k, s, c, &at);
     c->after[k] = scene_geometry_priority_index(a, c->inside_after[k]);
     c->surface[k] = scene_geometry_surface(a, (int)c->before[k], (int)c->after[k]);
-    cross_the_owners(a, rays, k, s, c, mesh_hits, &at);
+    select_owner(a, rays, k, s, c, mesh_hits, &at);
 }

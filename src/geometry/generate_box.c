@@ -1,6 +1,7 @@
+/* A box mesh. */
 #include "geometry/mesh_generators_parts.h"
 
-/* Half the edges as signs: the side's outward normal, its right and its upper direction as seen from outside. */
+/* Half the edges as signs: a face's outward normal, and its right and upper directions as seen from outside. */
 static const struct {
     vec3 normal, right, up;
 } sides[6] = {{{0, 0, -1}, {1, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
@@ -9,8 +10,8 @@ static const struct {
 
 status generate_box(vec3 size, mesh **out, diagnostic *why)
 {
-    if (!body_length(size.x) || !body_length(size.y) || !body_length(size.z))
-        return diagnose(why, STATUS_BAD_INPUT, "use edges greater than 0, at most 1e9", "a box of %g by %g by %g",
+    if (!generate_is_length(size.x) || !generate_is_length(size.y) || !generate_is_length(size.z))
+        return diagnose(why, STATUS_BAD_INPUT, "use edges greater than 0, at most 1e9", "invalid box size %g x %g x %g",
                         size.x, size.y, size.z);
     mesh *m;
     TRY(mesh_create(24, 12, true, true, false, &m, why));
@@ -26,5 +27,5 @@ status generate_box(vec3 size, mesh **out, diagnostic *why)
         }
         generate_quad(m, &triangle, v, v + 1, v + 2, v + 3);
     }
-    return body_end(m, true, out, why);
+    return generate_finish(m, true, out, why);
 }

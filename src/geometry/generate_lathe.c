@@ -1,5 +1,6 @@
-/* A profile turned about the y axis. Its points become rows of around + 1 vertices; where it has a crease or reaches
- * the axis in one, a point has two rows, for the normals of the segment before and of the one after. */
+/* A surface of revolution about the y axis. The points of its profile become rows of around + 1 vertices. A point with
+ * a crease, or one where the profile touches the axis, has two rows, for the normals of the segments before and after
+ * it. */
 #include "geometry/mesh_generators_parts.h"
 
 #include "base/elementary.h"
@@ -9,13 +10,13 @@
 typedef struct row {
     profile_point at, normal;
     double v;
-} row; /* normal: its parts away from the axis and along it */
+} row; /* normal: its components away from the axis and along it */
 
 typedef struct lathe {
     const profile_point *profile;
     size_t count;  /* of points */
-    bool backward; /* taken from its end to its beginning, so that the fronts look outwards */
-    bool ring;     /* it ends where it began */
+    bool backward; /* the profile is reversed so that the fronts face outwards */
+    bool ring;     /* the profile is a closed curve */
     double crease_deg, length;
     row *rows;
     size_t row_count;
@@ -35,27 +36,29 @@ static bool equal(profile_point a, profile_point b)
 static status check(const profile_point *profile, size_t count, int around, double crease_deg, diagnostic *why)
 {
     if (around < 3)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 3", "a turned body of %d segments", around);
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 3", "a surface of revolution cannot have %d segments",
+                        around);
     if (!(crease_deg >= 0.0 && crease_deg <= 180.0))
-        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 180", "a crease at %g degrees", crease_deg);
+        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 180 degrees", "crease angle %g is out of range", crease_deg);
     if (count < 2 || count > MESH_VERTICES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 2", "a profile of %zu points", count);
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 2", "a profile cannot have %zu points", count);
     bool off_axis = false;
     for (size_t k = 0; k < count; k++) {
         const profile_point p = profile[k];
         if (!(p.radius >= 0.0 && p.radius <= MESH_FAR && fabs(p.height) <= MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "a radius is 0 to 1e9, a height -1e9 to 1e9",
-                            "point %zu of the profile is %g, %g", k, p.radius, p.height);
+            return diagnose(why, STATUS_BAD_INPUT, "use a radius of 0 to 1e9 and a height of -1e9 to 1e9",
+                            "point %zu of the profile is out of range: %g, %g", k, p.radius, p.height);
         if (k > 0 && equal(p, profile[k - 1]))
-            return diagnose(why, STATUS_BAD_INPUT, "leave one of them out", "points %zu and %zu of the profile are one",
+            return diagnose(why, STATUS_BAD_INPUT, "remove one of them", "points %zu and %zu of the profile are equal",
                             k - 1, k);
         off_axis |= p.radius > 0.0;
     }
     return off_axis ? STATUS_OK
-                    : diagnose(why, STATUS_BAD_INPUT, "use a radius greater than 0", "the profile lies on the axis");
+                    : diagnose(why, STATUS_BAD_INPUT, "use a radius greater than 0",
+                               "all points of the profile are on the axis");
 }
 
-/* Six times the volume by 2 pi that the profile's cones enclose, from below upwards. */
+/* The volume enclosed by the cones of the profile, from bottom to top, times 6 / (2 pi). */
 static double enclosed(const profile_point *p, size_t count)
 {
     double sum = 0.0;
@@ -66,7 +69,8 @@ static double enclosed(const profile_point *p, size_t count)
     return sum;
 }
 
-/* Of the segment that begins at point k: its length, and its unit normal, outwards where it leads up. */
+/* The length of the segment that begins at point k, and its unit normal, which points outwards if the segment goes
+ * up. */
 static double segment(const lathe *l, size_t k, profile_point *normal)
 {
     const profile_point a = point_at(l, k), b = point_at(l, k + 1);
@@ -89,7 +93,7 @@ static bool blend(const lathe *l, profile_point a, profile_point b, profile_poin
 
 static size_t add_row(lathe *l, profile_point at, profile_point normal, double v)
 {
-    /* on the axis the surface goes on on the other side, mirrored */
+    /* across the axis the surface continues as its mirror image */
     if (at.radius == 0.0)
         blend(l, normal, (profile_point){-normal.radius, normal.height}, &normal);
     l->rows[l->row_count] = (row){at, normal, v};
@@ -124,7 +128,7 @@ static void place_rows(const lathe *l, int around, mesh *m)
 {
     const size_t columns = (size_t)around + 1;
     for (size_t i = 0; i < columns; i++) {
-        const vec3 away = body_azimuth((int)i, around);
+        const vec3 away = generate_azimuth((int)i, around);
         for (size_t r = 0; r < l->row_count; r++) {
             const row *at = &l->rows[r];
             const size_t v = r * columns + i;
@@ -135,7 +139,7 @@ static void place_rows(const lathe *l, int around, mesh *m)
     }
 }
 
-/* Triangles of the segments: one instead of two where an end is on the axis. Returns their number; triangles may be
+/* The triangles of the segments: one instead of two where an end is on the axis. Returns their number; triangles may be
  * NULL. */
 static size_t join_rows(const lathe *l, int around, mesh_triangle *triangles)
 {
@@ -168,7 +172,7 @@ static status make(lathe *l, int around, bool closed, mesh **out, diagnostic *wh
         return result;
     place_rows(l, around, m);
     join_rows(l, around, m->triangles);
-    return body_end(m, closed, out, why);
+    return generate_finish(m, closed, out, why);
 }
 
 status generate_lathe(const profile_point *profile, size_t count, int around, double crease_deg, mesh **out,

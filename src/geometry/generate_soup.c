@@ -1,3 +1,4 @@
+/* The random triangle sets of the speed studies. */
 #include "base/single.h"
 #include "geometry/mesh_generators_parts.h"
 
@@ -13,15 +14,15 @@ static uint64_t splitmix64(uint64_t *state)
     return z ^ z >> 31;
 }
 
-/* In [0, 1), a multiple of 2^-24: a float. */
+/* A uniform number in [0, 1), a multiple of 2^-24: exactly a float. */
 static double draw(uint64_t *state)
 {
     return (double)(splitmix64(state) >> 40) * 0x1p-24;
 }
 
-/* c + e x of floats rounded once to a float, as a fused multiply-add gives it. The product is exact in a double; the
- * sum is rounded to odd, after which rounding to a float is right (Boldo and Melquiond, "Emulation of a FMA and
- * correctly rounded sums", IEEE TC 57(4), 2008). */
+/* c + e x of floats, rounded once to a float like a fused multiply-add. The product is exact in a double; the sum is
+ * rounded to odd, after which rounding to a float is correct (Boldo and Melquiond, "Emulation of a FMA and correctly
+ * rounded sums", IEEE TC 57(4), 2008). */
 static double fused(double c, double e, double x)
 {
     const double product = e * x;
@@ -36,7 +37,7 @@ static double fused(double c, double e, double x)
     return single_round(sum);
 }
 
-/* Cube root of a float as the nearest float, by Newton's iteration from above. */
+/* Cube root of a float, rounded to the nearest float, by Newton's iteration from above. */
 static float cube_root(float x)
 {
     double root = x, next = x;
@@ -63,20 +64,20 @@ static status soup(size_t count, double edge, mesh **out, diagnostic *why)
             m->triangles[t].corner[k] = (uint32_t)(3 * t) + (uint32_t)k;
         }
     }
-    return body_end(m, false, out, why);
+    return generate_finish(m, false, out, why);
 }
 
 static status check_count(size_t count, diagnostic *why)
 {
     if (count >= 1 && count <= MESH_TRIANGLES_MAX)
         return STATUS_OK;
-    return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "%zu random triangles", count);
+    return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "a triangle set cannot have %zu triangles", count);
 }
 
 status generate_sparse_soup(size_t count, mesh **out, diagnostic *why)
 {
     status result = check_count(count, why);
-    /* single precision, step by step */
+    /* in single precision at every step */
     return result == STATUS_OK ? soup(count, (double)(2.0f / cube_root((float)count) / 4.0f), out, why) : result;
 }
 

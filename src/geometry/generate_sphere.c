@@ -1,6 +1,6 @@
-/* Spheres from the icosahedron. Each of its 20 faces has a triangular grid of vertices of its own, row i of f + 1
- * holding i + 1 of them, so that texture coordinates need not meet across an edge; positions on a common edge are the
- * same to the bit. */
+/* Spheres from the icosahedron. Each of its 20 faces has its own triangular grid of vertices, row i of f + 1 holding i
+ * + 1 of them, so that texture coordinates may be discontinuous at an edge; positions on a common edge are
+ * bit-identical. */
 #include "base/single.h"
 #include "geometry/mesh_generators_parts.h"
 
@@ -11,7 +11,7 @@ static const uint8_t faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7,
 
 static vec3 icosahedron(int vertex)
 {
-    const double g = 0.5 * (1.0 + sqrt(5.0)); /* golden section */
+    const double g = 0.5 * (1.0 + sqrt(5.0)); /* golden ratio */
     const vec3 at[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                          {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
     return at[vertex];
@@ -22,7 +22,7 @@ static size_t row_start(size_t row)
     return row * (row + 1) / 2;
 }
 
-/* A mesh of 20 f f triangles whose vertices are still to be placed. */
+/* A mesh of 20 f f triangles without vertex positions. */
 static status make_grids(size_t f, mesh **out, diagnostic *why)
 {
     const size_t per_face = row_start(f + 1);
@@ -42,16 +42,17 @@ static status make_grids(size_t f, mesh **out, diagnostic *why)
     return result;
 }
 
-/* Normals and texture coordinates of a face, whose longitudes are taken near that of its middle. */
-static void clothe(mesh *m, size_t face, size_t per_face)
+/* Normals and texture coordinates of a face; longitudes are taken near that of its centre. */
+static void set_attributes(mesh *m, size_t face, size_t per_face)
 {
     const vec3 sum =
         vec3_add(vec3_add(icosahedron(faces[face][0]), icosahedron(faces[face][1])), icosahedron(faces[face][2]));
     const double middle_deg = generate_longitude_deg(sum);
     for (size_t v = face * per_face; v < (face + 1) * per_face; v++) {
         const vec3 p = m->vertices[v];
-        double away_deg =
-            p.x == 0.0 && p.z == 0.0 ? 0.0 : generate_longitude_deg(p) - middle_deg; /* a pole has none of its own */
+        double away_deg = p.x == 0.0 && p.z == 0.0
+                              ? 0.0
+                              : generate_longitude_deg(p) - middle_deg; /* a pole has no longitude of its own */
         away_deg += away_deg > 180.0 ? -360.0 : away_deg < -180.0 ? 360.0 : 0.0;
         m->normals[v] = p;
         m->uvs[v] = (mesh_uv){0.5 + (middle_deg + away_deg) / 360.0, generate_latitude_v(p)};
@@ -63,7 +64,7 @@ static vec3 singly(vec3 p)
     return vec3_make(single_round(p.x), single_round(p.y), single_round(p.z));
 }
 
-/* The flat face's points pushed out to the sphere. The order of the sum is part of the recipe. */
+/* Projects the points of the flat face onto the sphere. The order of the sum is part of the definition. */
 static void place_flat(mesh *m, size_t face, size_t f)
 {
     const vec3 a = icosahedron(faces[face][0]), b = icosahedron(faces[face][1]), c = icosahedron(faces[face][2]);
@@ -78,7 +79,7 @@ static void place_flat(mesh *m, size_t face, size_t f)
     }
 }
 
-/* Points between those that are `step` rows apart, until all f + 1 rows are there. */
+/* Bisects rows that are `step` apart until all f + 1 rows exist. */
 static void place_bisected(mesh *m, size_t face, size_t f)
 {
     vec3 *grid = m->vertices + face * row_start(f + 1);
@@ -104,15 +105,15 @@ static status make_sphere(size_t f, void (*place)(mesh *m, size_t face, size_t f
     TRY(make_grids(f, &m, why));
     for (size_t face = 0; face < 20; face++) {
         place(m, face, f);
-        clothe(m, face, row_start(f + 1));
+        set_attributes(m, face, row_start(f + 1));
     }
-    return body_end(m, true, out, why);
+    return generate_finish(m, true, out, why);
 }
 
 status generate_sphere(size_t count, mesh **out, diagnostic *why)
 {
     if (count < 1 || count > MESH_TRIANGLES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "a sphere of %zu triangles", count);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "a sphere cannot have %zu triangles", count);
     const size_t f = (size_t)floor(sqrt((double)count / 20.0) + 0.5);
     return make_sphere(f < 1 ? 1 : f, place_flat, out, why);
 }
@@ -120,6 +121,6 @@ status generate_sphere(size_t count, mesh **out, diagnostic *why)
 status generate_icosphere(int level, mesh **out, diagnostic *why)
 {
     if (level < 0 || level > ICOSPHERE_LEVEL_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 11", "level %d of an icosphere", level);
+        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 11", "icosphere level %d is out of range", level);
     return make_sphere((size_t)1 << level, place_bisected, out, why);
 }

@@ -1,3 +1,4 @@
+/* A height field mesh. */
 #include "geometry/mesh_generators_parts.h"
 
 typedef struct field {
@@ -9,17 +10,18 @@ typedef struct field {
 static status check(const field *f, diagnostic *why)
 {
     if (f->columns < 2 || f->rows < 2)
-        return diagnose(why, STATUS_BAD_INPUT, "use at least 2 by 2", "a field of too few heights");
-    if (!body_length(f->size_x) || !body_length(f->size_z))
-        return diagnose(why, STATUS_BAD_INPUT, "use sizes greater than 0, at most 1e9", "a height field of %g by %g",
-                        f->size_x, f->size_z);
+        return diagnose(why, STATUS_BAD_INPUT, "use at least 2 by 2", "too few heights in a height field");
+    if (!generate_is_length(f->size_x) || !generate_is_length(f->size_z))
+        return diagnose(why, STATUS_BAD_INPUT, "use sizes greater than 0, at most 1e9",
+                        "invalid height field size %g x %g", f->size_x, f->size_z);
     if (!(f->depth >= 0.0 && f->depth <= MESH_FAR))
-        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 1e9", "a height field of depth %g", f->depth);
+        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 1e9", "invalid height field depth %g", f->depth);
     for (size_t k = 0; k < f->columns * f->rows; k++) {
         const double height = f->heights[k];
         if (!(fabs(height) <= MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "use -1e9 to 1e9", "height %g in column %zu of row %zu", height,
-                            k % f->columns, k / f->columns);
+            return diagnose(why, STATUS_BAD_INPUT, "use -1e9 to 1e9",
+                            "height %g in column %zu of row %zu is out of range", height, k % f->columns,
+                            k / f->columns);
         if (f->depth > 0.0 && !(height > -f->depth))
             return diagnose(why, STATUS_BAD_INPUT, "use a greater depth",
                             "height %g in column %zu of row %zu is not above the bottom at %g", height, k % f->columns,
@@ -28,8 +30,8 @@ static status check(const field *f, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Slope of the surface along one axis at point k, by the neighbours that are there: at, of count, stand stride apart.
- */
+/* Slope of the surface along one axis at point k, from its existing neighbours: it is number `at` of count points,
+ * which are stride apart in memory. */
 static double slope(const field *f, size_t k, size_t at, size_t count, size_t stride, double spacing)
 {
     const size_t before = at > 0 ? stride : 0, after = at + 1 < count ? stride : 0;
@@ -52,8 +54,7 @@ static void place_top(const field *f, mesh *m, size_t *triangle)
     }
 }
 
-/* Numbers of the points along a side, the four sides in turn to the right as they are seen from outside, from the front
- * one on. */
+/* Numbers of the points along a side; the sides are numbered from the front to the right, as seen from outside. */
 static size_t along_side(const field *f, int side, size_t at)
 {
     const size_t last_column = f->columns - 1, last_row = f->rows - 1;
@@ -65,7 +66,7 @@ static size_t along_side(const field *f, int side, size_t at)
     }
 }
 
-/* The sides' upper and lower edges, then the bottom's edge and middle: all with normals of their own. */
+/* The upper and lower edges of the sides, then the edge and centre of the bottom, all with their own normals. */
 static void place_below(const field *f, mesh *m, size_t *triangle)
 {
     static const vec3 normals[4] = {{0, 0, -1}, {1, 0, 0}, {0, 0, 1}, {-1, 0, 0}};
@@ -111,5 +112,5 @@ status generate_height_field(const double *heights, int columns, int rows, doubl
     place_top(&f, m, &triangle);
     if (closed)
         place_below(&f, m, &triangle);
-    return body_end(m, closed, out, why);
+    return generate_finish(m, closed, out, why);
 }

@@ -1,3 +1,4 @@
+/* Building, sharing and updating of hierarchies, for all kinds. */
 #include "geometry/hierarchy_private.h"
 
 #include "geometry/mesh_share.h"
@@ -11,7 +12,7 @@ static double now_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* All triangles as they come. */
+/* Puts all triangles into blocks, in order. */
 static status build_none(hierarchy *h, diagnostic *why)
 {
     const size_t count = h->of->triangle_count;
@@ -39,8 +40,8 @@ static status build(hierarchy *h, int threads, diagnostic *why)
     case HIERARCHY_EMBREE: return hierarchy_build_embree(h, threads, why);
     case HIERARCHY_KIND_COUNT: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant, bvh or embree",
-                    "there is no hierarchy of kind %d", (int)h->kind);
+    return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant, bvh or embree", "unknown hierarchy kind %d",
+                    (int)h->kind);
 }
 
 status hierarchy_build(const mesh *m, hierarchy_kind kind, int threads, hierarchy **out, diagnostic *why)
@@ -82,7 +83,7 @@ hierarchy_report hierarchy_describe(const hierarchy *h)
     return h->report;
 }
 
-/* Refits a hierarchy that its mesh keeps. false: it is to be built anew. */
+/* Refits a hierarchy owned by its mesh. false: it must be rebuilt. */
 static bool follow_by_refit(hierarchy *h, double ratio, hierarchy_moves *moves)
 {
     const double begun = now_s();
@@ -98,14 +99,14 @@ static bool follow_by_refit(hierarchy *h, double ratio, hierarchy_moves *moves)
     return cheap;
 }
 
-static status follow_by_build(hierarchy **kept, int threads, hierarchy_moves *moves, diagnostic *why)
+static status follow_by_build(hierarchy **stored, int threads, hierarchy_moves *moves, diagnostic *why)
 {
-    const mesh *m = (*kept)->of;
-    const hierarchy_kind kind = (*kept)->kind;
+    const mesh *m = (*stored)->of;
+    const hierarchy_kind kind = (*stored)->kind;
     const double begun = now_s();
-    hierarchy_destroy(*kept); /* first, so that there is never room for two needed */
-    *kept = NULL;
-    const status s = hierarchy_build(m, kind, threads, kept, why);
+    hierarchy_destroy(*stored); /* first, so that memory for two is never needed */
+    *stored = NULL;
+    const status s = hierarchy_build(m, kind, threads, stored, why);
     moves->rebuilt += s == STATUS_OK;
     moves->build_s += now_s() - begun;
     return s;
@@ -117,15 +118,15 @@ status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_move
     status s = STATUS_OK;
     pthread_mutex_lock(&m->share->mutex);
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT && s == STATUS_OK; kind++) {
-        hierarchy *kept = __atomic_load_n(&m->share->hierarchies[kind], __ATOMIC_ACQUIRE);
-        if (!kept || follow_by_refit(kept, ratio, &moves))
+        hierarchy *stored = __atomic_load_n(&m->share->hierarchies[kind], __ATOMIC_ACQUIRE);
+        if (!stored || follow_by_refit(stored, ratio, &moves))
             continue;
-        s = follow_by_build(&kept, threads, &moves, why);
-        __atomic_store_n(&m->share->hierarchies[kind], kept, __ATOMIC_RELEASE);
+        s = follow_by_build(&stored, threads, &moves, why);
+        __atomic_store_n(&m->share->hierarchies[kind], stored, __ATOMIC_RELEASE);
     }
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT && s != STATUS_OK; kind++)
-        hierarchy_destroy(
-            __atomic_exchange_n(&m->share->hierarchies[kind], NULL, __ATOMIC_ACQ_REL)); /* those left would not fit */
+        hierarchy_destroy(__atomic_exchange_n(&m->share->hierarchies[kind], NULL,
+                                              __ATOMIC_ACQ_REL)); /* the others would not fit the mesh */
     pthread_mutex_unlock(&m->share->mutex);
     if (out)
         *out = moves;
@@ -137,17 +138,17 @@ status hierarchy_of_mesh(const mesh *m, hierarchy_kind kind, int threads, const 
     *out = NULL;
     if (kind < HIERARCHY_NONE || kind >= HIERARCHY_KIND_COUNT)
         return diagnose(why, STATUS_BAD_INPUT, "choose none, sphere, octant, bvh or embree",
-                        "there is no hierarchy of kind %d", (int)kind);
-    hierarchy **kept = &m->share->hierarchies[kind], *h = __atomic_load_n(kept, __ATOMIC_ACQUIRE);
+                        "unknown hierarchy kind %d", (int)kind);
+    hierarchy **stored = &m->share->hierarchies[kind], *h = __atomic_load_n(stored, __ATOMIC_ACQUIRE);
     status s = STATUS_OK;
     if (!h) {
         pthread_mutex_lock(&m->share->mutex);
-        h = __atomic_load_n(kept, __ATOMIC_ACQUIRE);
+        h = __atomic_load_n(stored, __ATOMIC_ACQUIRE);
         if (!h) {
             s = hierarchy_build(m, kind, threads, &h, why);
             if (s == STATUS_OK) {
                 m->share->destroy = hierarchy_destroy;
-                __atomic_store_n(kept, h, __ATOMIC_RELEASE);
+                __atomic_store_n(stored, h, __ATOMIC_RELEASE);
             }
         }
         pthread_mutex_unlock(&m->share->mutex);

@@ -1,3 +1,4 @@
+/* The blocks of four triangles of a hierarchy, in single or double precision. */
 #include "geometry/hierarchy_private.h"
 
 #include <stdlib.h>

@@ -1,23 +1,23 @@
-/* A ray made ready for a hierarchy's boxes, which are met in single precision, eight at a time, and never missed where
- * a triangle in them is hit: planes are single numbers rounded outwards, the ray's origin is rounded to both sides by
- * more than it needs, and distances to near planes are made smaller, to far ones larger, by more than the rounding of
- * the three operations (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is left out only if it begins beyond
- * the best hit, not at it, so that the lower number of two triangles at one distance is found whichever comes first. */
+/* The conservative ray-box test of the hierarchies: single precision, eight boxes at a time. It never misses a box that
+ * contains a hit triangle: box planes are floats rounded outwards, the ray's origin is rounded to both sides by more
+ * than necessary, and distances to near planes are decreased, to far planes increased, by more than the rounding error
+ * of the three operations (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is culled only if it begins beyond
+ * the best hit, not at it, so that of two triangles at one distance the lower number wins in any order of traversal. */
 #pragma once
 
 #include "geometry/hierarchy_query.h"
 
-/* The ray for boxes. Planes of a node stand in a row, low ones before high ones; near and far say which is which for
- * this ray. */
+/* The ray prepared for the box test. A node stores its low planes before its high planes; near and far are the offsets
+ * of the planes that this ray enters and leaves by. */
 typedef struct box_ray {
     float near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
     int near[3], far[3];
     float t_min;
 } box_ray;
 
-enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH }; /* children that wait on a way down */
-#define BOX_SLACK 0x1p-21f                            /* of 2^-24 a rounding, of which there are three */
-#define FLOAT_STEP 0x1p-22f                           /* more than from one float to the next but one */
+enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH }; /* children that wait during the traversal */
+#define BOX_SLACK 0x1p-21f                            /* 2^-24 per rounding, of which there are three */
+#define FLOAT_STEP 0x1p-22f                           /* more than the distance to the next float but one */
 #define FLOAT_TINY 1e-37f
 
 ALWAYS_INLINE float float_above(double v)
@@ -49,7 +49,8 @@ ALWAYS_INLINE void box_ray_start(box_ray *b, const ray_query *q)
     b->t_min = t_min > 0.0f ? t_min : 0.0f;
 }
 
-/* A child on the stack: its distance above its number; where that is not negative it sorts by its bits. */
+/* A child on the stack: its distance in the upper half, its number in the lower. Non-negative floats sort by their
+ * bits. */
 ALWAYS_INLINE uint64_t pending(float near, uint32_t child)
 {
     uint32_t bits;
@@ -66,7 +67,7 @@ ALWAYS_INLINE float pending_near(uint64_t p)
     return near;
 }
 
-/* Where the ray meets the planes of a node's boxes. */
+/* The entry and exit distances of a node's boxes. */
 ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *__restrict near, float *__restrict far)
 {
     const float *p = (const float *)(const void *)node;
@@ -86,5 +87,5 @@ ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *__restri
     }
 }
 
-/* The way down from a child, for a ray that some way led there. */
+/* Traverses from a child that a group of rays has already reached. */
 void KERNEL(walk_bvh_from)(const hierarchy *h, ray_query *q, const box_ray *b, enum query_mode mode, uint32_t at);

@@ -1,8 +1,9 @@
+/* The driver of the bvh builder: computes the references, builds the tree and collapses it. */
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>
 
-enum { PIECE = 16384 }; /* triangles that are referred to at a time */
+enum { PIECE = 16384 }; /* triangles per task when references are computed */
 
 static double least(double a, double b, double c)
 {
@@ -21,8 +22,8 @@ static bool same_place(const vec3 *a, const vec3 *b)
     return a->x == b->x && a->y == b->y && a->z == b->z;
 }
 
-/* A triangle with two corners in one place is hit by no ray and is left out. */
-static bool refer(const mesh *m, uint32_t triangle, bvh_ref *r)
+/* A triangle with two corners at one position can never be hit and is left out. */
+static bool make_reference(const mesh *m, uint32_t triangle, bvh_ref *r)
 {
     const uint32_t *corner = m->triangles[triangle].corner;
     const vec3 *a = &m->vertices[corner[0]], *b = &m->vertices[corner[1]], *c = &m->vertices[corner[2]];
@@ -39,20 +40,20 @@ static bool refer(const mesh *m, uint32_t triangle, bvh_ref *r)
     return true;
 }
 
-typedef struct reading {
+typedef struct reference_job {
     const mesh *m;
     bvh_ref *refs;
-    bvh_range *pieces; /* what became of each PIECE triangles; first is where they stand */
-} reading;
+    bvh_range *pieces; /* the references of each PIECE triangles; first is their position */
+} reference_job;
 
 static void read_piece(void *context, size_t index, int member)
 {
     (void)member;
-    const reading *r = context;
+    const reference_job *r = context;
     size_t first = index * PIECE, end = first + PIECE < r->m->triangle_count ? first + PIECE : r->m->triangle_count;
     bvh_range piece = {.box = bvh_box_empty(), .centers = bvh_box_empty(), .first = (uint32_t)first};
     for (size_t i = first; i < end; i++)
-        if (refer(r->m, (uint32_t)i, &r->refs[first + piece.count]))
+        if (make_reference(r->m, (uint32_t)i, &r->refs[first + piece.count]))
             bvh_range_add(&piece, &r->refs[first + piece.count++]);
     r->pieces[index] = piece;
 }
@@ -60,7 +61,7 @@ static void read_piece(void *context, size_t index, int member)
 static status read_triangles(const mesh *m, thread_team *t, bvh_ref *refs, bvh_range *all, diagnostic *why)
 {
     size_t count = (m->triangle_count + PIECE - 1) / PIECE;
-    reading r = {m, refs, aligned_alloc(64, (count + 1) * 64 * ((sizeof(bvh_range) + 63) / 64))};
+    reference_job r = {m, refs, aligned_alloc(64, (count + 1) * 64 * ((sizeof(bvh_range) + 63) / 64))};
     if (!r.pieces)
         return out_of_memory(why);
     thread_team_run(t, read_piece, &r, count);
@@ -89,7 +90,7 @@ static status build(hierarchy *h, thread_team *t, bvh_ref *refs, diagnostic *why
     return code;
 }
 
-/* More threads than tasks would only be waited for. */
+/* The number of threads for a build: no more than there are tasks. */
 static int useful(int threads, size_t triangles)
 {
     size_t most = triangles / TASK_TRIANGLES + 1;

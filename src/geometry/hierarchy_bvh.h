@@ -1,13 +1,13 @@
-/* The parts of the builder of the hierarchy `bvh`; for src/geometry/hierarchy_bvh*.c alone.
+/* The builder of the hierarchy `bvh`; private to src/geometry/hierarchy_bvh*.c.
  *
- * Triangles become references, boxes of single precision, and are split in two again and again by the binned
- * surface-area heuristic (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007): a tree of
- * branches. Which of them become leaves and how they are gathered into nodes of eight is then chosen at the least
- * expected cost (Ylitie, Karras and Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs",
- * 2017, section 3.1).
+ * Triangles become references (single-precision boxes), which the binned surface-area heuristic splits into a binary
+ * tree of branches (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007). Which branches become
+ * leaves, and how the tree is collapsed into nodes of eight, is then chosen at the least expected cost (Ylitie, Karras
+ * and Laine, "Efficient incoherent ray traversal on GPUs through compressed wide BVHs", 2017, section 3.1).
  *
- * The tree depends on the set of references alone, never on their order: boxes and counts of bins do not, halves are
- * those of a complete order, and a leaf's triangles are sorted. So it is the same for any number of threads. */
+ * The tree depends on the set of references and not on their order: boxes and bin counts are independent of the order,
+ * median halves follow a total order, and the triangles of a leaf are sorted. So any number of threads builds the same
+ * tree. */
 #pragma once
 
 #include "geometry/hierarchy_private.h"
@@ -15,25 +15,25 @@
 
 #include <string.h>
 
-/* Binary levels: SAH may use them up to where halving alone stays within. */
+/* Levels of the binary tree. SAH splits are allowed as long as median splits alone could still finish within them. */
 enum { BRANCH_DEPTH_MAX = BVH_DEPTH_MAX - 1, LEAF_TRIANGLES_MAX = LEAF_BLOCKS_MAX * BLOCK };
 
-/* The time of a visit to a node (eight boxes), in those of the test of one block. Measured on sets of 50000 triangles:
- * between half and twice this, or with a constant for each leaf, frames take as long or longer. */
+/* The time of a visit to a node (eight boxes) over that of a block test. Measured on sets of 50000 triangles: with half
+ * or twice this value, or with a constant cost per leaf, frames take as long or longer. */
 #define COST_NODE 1.0f
 
-/* A box of four lanes, of which the first three are axes; the fourth is kept free of slow (denormal) numbers. */
+/* A box of four lanes: three axes, and a fourth that holds no denormal (slow) number. */
 typedef struct bvh_box {
     float low[4] __attribute__((aligned(16))), high[4] __attribute__((aligned(16)));
 } bvh_box;
 
-/* A triangle's box; the fourth lane of low holds its number, see bvh_triangle. */
+/* A triangle's box; the fourth lane of low holds the triangle's number (see bvh_triangle). */
 typedef bvh_box bvh_ref;
 
-/* A run of references with its bounds. */
+/* A contiguous range of references with its bounds. */
 typedef struct bvh_range {
     bvh_box box;
-    bvh_box centers; /* of the boxes' centres, doubled: low + high */
+    bvh_box centers; /* bounds of the boxes' doubled centres, low + high */
     uint32_t first, count;
 } bvh_range;
 
@@ -41,15 +41,15 @@ typedef struct bvh_range {
 typedef struct bvh_branch {
     float low[3], high[3];
     uint32_t first, count;
-    struct bvh_branch *half[2]; /* NULL where it is not split */
+    struct bvh_branch *half[2]; /* NULL for an unsplit branch */
     float cost[WIDTH];          /* [i], i = 1..7: least cost as at most i subtrees */
-    uint8_t share[WIDTH + 1];   /* [i], i = 2..8: of i subtrees, the first half's; 0: as for i - 1 */
-    bool leaf;                  /* as one subtree */
-    uint32_t depth;             /* of the nodes below and at it; with the next two found when the tree is gathered */
+    uint8_t share[WIDTH + 1];   /* [i], i = 2..8: how many of i subtrees the first half gets; 0: as for i - 1 */
+    bool leaf;                  /* cheapest as a leaf when it is one subtree */
+    uint32_t depth; /* levels of nodes from here down; this and the next three are set when the tree is collapsed */
     size_t nodes, blocks, leaves;
 } bvh_branch;
 
-/* A number that is no denormal as a float. */
+/* The number as a float that is not denormal. */
 static inline float bvh_lane_of(uint32_t triangle)
 {
     uint32_t bits = triangle | 0x40000000u;
@@ -65,8 +65,8 @@ static inline uint32_t bvh_triangle(const bvh_ref *r)
     return bits & 0x3fffffffu;
 }
 
-/* The largest float that is not above v, and the smallest not below, where |v| is 0 or at least the smallest normal
- * float: bits that a float does not have are cut off, after they were carried over where that is the way outwards. */
+/* The largest float not above v, and the smallest not below it, where |v| is 0 or at least the smallest normal float.
+ * The bits that a float lacks are cut off, after a carry where rounding goes outwards. */
 #define BVH_CUT_LEAST 0x1p-126
 #define BVH_CUT UINT64_C(0x1fffffff)
 
@@ -95,7 +95,7 @@ static inline float bvh_cut_above(double v)
     return bvh_cut_float(v, 1 - bvh_sign(v));
 }
 
-/* The same of any v. */
+/* The same for any v. */
 static inline float bvh_float_below(double v)
 {
     if (fabs(v) < BVH_CUT_LEAST)
@@ -136,7 +136,7 @@ static inline float bvh_half_area(const float *low, const float *high)
     return x * y + y * z + z * x;
 }
 
-/* The box around a node's children along an axis; slots without a child are empty boxes and change nothing. */
+/* The box around a node's children along an axis; unused slots hold empty boxes and change nothing. */
 static inline void bvh_around(const bvh_node *n, int axis, float *low, float *high)
 {
     float l[WIDTH / 2], g[WIDTH / 2];
@@ -155,24 +155,24 @@ static inline void bvh_around(const bvh_node *n, int axis, float *low, float *hi
 
 enum { BINS_MAX = 16 };
 
-/* A range's references by where their centres lie, along each axis. */
+/* Bins of a range's references by their centres, along each axis. */
 typedef struct bvh_bins {
     int count;
-    float base[4], scale[4]; /* bin = (doubled centre - base) scale; scale 0 where all centres are in one place */
+    float base[4], scale[4]; /* bin = (doubled centre - base) scale; scale is 0 where all centres coincide */
     bvh_box box[3][BINS_MAX];
     uint32_t members[3][BINS_MAX];
 } bvh_bins;
 
-/* Bins below `bin` are the first half. cost: sum over the halves of area times blocks. */
+/* A split plane: bins below `bin` are the first half. cost: sum of area times blocks over both halves. */
 typedef struct bvh_cut {
     int axis, bin;
     float cost;
 } bvh_cut;
 
-/* Splits a range of at least two: reorders its references and describes the halves. depth: of the range's branch, from
+/* Splits a range of at least two references: reorders them and describes the halves. depth: of the range's branch, from
  * 0. */
 void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2]);
-/* The same by a team; for ranges so large that it pays. STATUS_FAILURE when memory is out. */
+/* The same by a thread team, for large ranges. STATUS_FAILURE: out of memory. */
 status bvh_split_together(thread_team *t, bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2],
                           diagnostic *why);
 
@@ -180,19 +180,19 @@ status bvh_split_together(thread_team *t, bvh_ref *refs, const bvh_range *range,
 bool bvh_may_bin(const bvh_range *range, int depth); /* false where the tree would become too deep */
 void bvh_bins_begin(bvh_bins *s, const bvh_range *range);
 void bvh_bins_fill(bvh_bins *s, const bvh_ref *refs, size_t count);
-bool bvh_cheapest(const bvh_bins *s, bvh_cut *cut); /* false where no cut is better than another */
-/* Moves the references of the first half to the front and returns their number; centers: bounds of the halves' doubled
- * centres. */
+bool bvh_cheapest(const bvh_bins *s, bvh_cut *cut); /* false where all splits cost the same */
+/* Moves the references of the first half to the front and returns their number. centers: bounds of the doubled centres
+ * of each half. */
 uint32_t bvh_part(bvh_ref *refs, size_t count, const bvh_bins *s, bvh_cut cut, bvh_box centers[2]);
-void bvh_median_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2],
-                       bvh_range half[2]);
-/* Halves of equal counts, for where bins do not help. */
+void bvh_describe_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower,
+                         const bvh_box centers[2], bvh_range half[2]);
+/* Halves of equal counts, where bins cannot separate the references. */
 void bvh_split_at_median(bvh_ref *refs, const bvh_range *range, bvh_range half[2]);
 
-/* Cost and shares of a branch from its halves', when those are known. */
+/* Chooses the cost and shares of a branch from those of its halves. */
 void bvh_choose(bvh_branch *b);
 
-/* A binary tree, and the memory of its branches, of each member of a team its own. */
+/* A binary tree, and the memory of its branches, one store per member of the thread team. */
 typedef struct bvh_store bvh_store;
 typedef struct bvh_tree {
     bvh_branch *root; /* NULL: no triangles */
@@ -200,18 +200,18 @@ typedef struct bvh_tree {
     int store_count;
 } bvh_tree;
 
-/* Ranges and subtrees of at most so many triangles are one member's work. */
+/* Ranges and subtrees of at most this size are built by a single thread. */
 enum { TASK_TRIANGLES = 8192 };
 
-/* Grows a tree over refs, which it reorders. bvh_free releases it, also after STATUS_FAILURE (memory is out). */
+/* Builds a tree over refs, which it reorders. bvh_free releases it, also after STATUS_FAILURE (out of memory). */
 status bvh_build_tree(bvh_tree *tree, thread_team *t, bvh_ref *refs, const bvh_range *all, diagnostic *why);
 void bvh_free(bvh_tree *tree);
 
-/* The kernels of hierarchy_refit: blocks and boxes anew. */
+/* The kernels of hierarchy_refit: recompute blocks and boxes. */
 void hierarchy_refit_nodes_sse2(hierarchy *h);
 void hierarchy_refit_nodes_avx2(hierarchy *h);
 void hierarchy_refit_nodes_avx512(hierarchy *h);
 
-/* Counts what becomes of a tree, and writes it to h; root NULL: no triangles. STATUS_FAILURE when memory is out or the
- * tree too large. */
+/* Collapses the tree into nodes and leaves and writes it to h. root NULL: no triangles. STATUS_FAILURE: out of memory
+ * or the tree is too large. */
 status bvh_collapse(hierarchy *h, bvh_branch *root, const bvh_ref *refs, thread_team *t, diagnostic *why);

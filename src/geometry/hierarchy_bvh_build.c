@@ -1,31 +1,32 @@
+/* The binary tree of the bvh builder: the top is split by all threads together, the subtrees by one thread each. */
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>
 
-/* Ranges of so few triangles are not split: they fill one block. */
+/* Ranges of at most this many triangles are not split: they fill one block. */
 enum { UNSPLIT = BLOCK, BRANCHES_AT_ONCE = 256 };
 
-/* Branches, many at a time. */
+/* Branches, allocated in chunks. */
 struct bvh_store {
     bvh_store *before;
     size_t used;
     bvh_branch branches[BRANCHES_AT_ONCE];
 };
 
-/* A range that one member splits to the end. */
+/* A range that a single thread splits completely. */
 typedef struct task {
     bvh_range range;
     int depth;
     bvh_branch **out;
 } task;
 
-typedef struct growth {
+typedef struct tree_build {
     bvh_tree *tree;
     thread_team *t;
     bvh_ref *refs;
     task *tasks;
     size_t task_count, task_room;
-} growth;
+} tree_build;
 
 static bvh_branch *new_branch(bvh_store **own, const bvh_range *range)
 {
@@ -46,8 +47,8 @@ static bvh_branch *new_branch(bvh_store **own, const bvh_range *range)
     return b;
 }
 
-/* NULL when memory is out. */
-static bvh_branch *grow(bvh_store **own, bvh_ref *refs, const bvh_range *range, int depth)
+/* NULL: out of memory. */
+static bvh_branch *build_subtree(bvh_store **own, bvh_ref *refs, const bvh_range *range, int depth)
 {
     bvh_branch *b = new_branch(own, range);
     if (!b)
@@ -56,7 +57,7 @@ static bvh_branch *grow(bvh_store **own, bvh_ref *refs, const bvh_range *range, 
         bvh_range half[2];
         bvh_split(refs, range, depth, half);
         for (int i = 0; i < 2; i++) {
-            b->half[i] = grow(own, refs, &half[i], depth + 1);
+            b->half[i] = build_subtree(own, refs, &half[i], depth + 1);
             if (!b->half[i])
                 return NULL;
         }
@@ -67,12 +68,12 @@ static bvh_branch *grow(bvh_store **own, bvh_ref *refs, const bvh_range *range, 
 
 static void build_task(void *context, size_t index, int member)
 {
-    growth *g = context;
+    tree_build *g = context;
     task *own = &g->tasks[index];
-    *own->out = grow(&g->tree->stores[member], g->refs, &own->range, own->depth);
+    *own->out = build_subtree(&g->tree->stores[member], g->refs, &own->range, own->depth);
 }
 
-static bool add_task(growth *g, const bvh_range *range, int depth, bvh_branch **out)
+static bool add_task(tree_build *g, const bvh_range *range, int depth, bvh_branch **out)
 {
     if (g->task_count == g->task_room) {
         size_t room = g->task_room ? 2 * g->task_room : 64;
@@ -89,8 +90,8 @@ static bool add_task(growth *g, const bvh_range *range, int depth, bvh_branch **
     return true;
 }
 
-/* The branches of many triangles, each split by all members together; the rest become tasks. */
-static status build_top(growth *g, const bvh_range *range, int depth, bvh_branch **out, diagnostic *why)
+/* Splits large ranges with all threads together; the remaining ranges become tasks. */
+static status build_top(tree_build *g, const bvh_range *range, int depth, bvh_branch **out, diagnostic *why)
 {
     if (range->count <= TASK_TRIANGLES)
         return add_task(g, range, depth, out) ? STATUS_OK : out_of_memory(why);
@@ -113,7 +114,7 @@ static void choose_top(bvh_branch *b)
     bvh_choose(b);
 }
 
-static status build_all(growth *g, const bvh_range *all, diagnostic *why)
+static status build_all(tree_build *g, const bvh_range *all, diagnostic *why)
 {
     TRY(build_top(g, all, 0, &g->tree->root, why));
     thread_team_run(g->t, build_task, g, g->task_count);
@@ -132,7 +133,7 @@ status bvh_build_tree(bvh_tree *tree, thread_team *t, bvh_ref *refs, const bvh_r
     tree->stores = calloc((size_t)tree->store_count, sizeof(bvh_store *));
     if (!tree->stores)
         return out_of_memory(why);
-    growth g = {.tree = tree, .t = t, .refs = refs};
+    tree_build g = {.tree = tree, .t = t, .refs = refs};
     status code = build_all(&g, all, why);
     free(g.tasks);
     return code;

@@ -1,3 +1,4 @@
+/* The collapse of the binary tree into nodes of eight children and leaves of blocks, at the least expected cost. */
 #include "base/grow.h"
 #include "geometry/hierarchy_bvh.h"
 
@@ -8,7 +9,7 @@ static uint32_t blocks_of(uint32_t triangles)
     return (triangles + BLOCK - 1) / BLOCK;
 }
 
-/* The least cost of `subtrees` of them out of both halves, 2..8. */
+/* The least cost of dividing `subtrees` (2..8) subtrees between both halves. */
 static float best_share(const bvh_branch *b, int subtrees, uint8_t *share)
 {
     const float *first = b->half[0]->cost, *second = b->half[1]->cost;
@@ -34,7 +35,7 @@ void bvh_choose(bvh_branch *b)
             b->cost[i] = as_leaf;
         return;
     }
-    uint8_t all = 1; /* shares of 1 and 7 can be had whatever the costs are (they may be infinite, or no numbers) */
+    uint8_t all = 1; /* valid shares (1 and 7), even if the costs are infinite or NaN */
     b->share[WIDTH] = all;
     float as_node = best_share(b, WIDTH, &b->share[WIDTH]) + area * COST_NODE;
     if (!(as_leaf <= as_node)) {
@@ -49,8 +50,8 @@ void bvh_choose(bvh_branch *b)
     }
 }
 
-/* The branches that stand for b as `subtrees` subtrees; returns how many there are. */
-static int instance_set(bvh_branch *b, int subtrees, bvh_branch **out)
+/* The branches that represent b as `subtrees` subtrees; returns their number. */
+static int subtrees_of(bvh_branch *b, int subtrees, bvh_branch **out)
 {
     while (subtrees > 1 && subtrees < WIDTH && (!b->half[0] || b->share[subtrees] == 0))
         subtrees--;
@@ -58,8 +59,8 @@ static int instance_set(bvh_branch *b, int subtrees, bvh_branch **out)
         *out = b;
         return 1;
     }
-    int count = instance_set(b->half[0], b->share[subtrees], out);
-    return count + instance_set(b->half[1], subtrees - b->share[subtrees], out + count);
+    int count = subtrees_of(b->half[0], b->share[subtrees], out);
+    return count + subtrees_of(b->half[1], subtrees - b->share[subtrees], out + count);
 }
 
 static int children_of(bvh_branch *b, bool root, bvh_branch **out)
@@ -68,26 +69,26 @@ static int children_of(bvh_branch *b, bool root, bvh_branch **out)
         *out = b;
         return 1;
     }
-    return instance_set(b, WIDTH, out);
+    return subtrees_of(b, WIDTH, out);
 }
 
-/* Subtrees that are counted or written by one member each, and where they go. */
-typedef struct param_place {
+/* A subtree that a single thread counts or writes, and its position in the arrays. */
+typedef struct subtree {
     bvh_branch *b;
     size_t node, block;
-} place;
-typedef struct gathering {
+} subtree;
+typedef struct collapse_job {
     hierarchy *h;
     const bvh_ref *refs;
-    place *places;
+    subtree *list;
     size_t count, room;
-} gathering;
+} collapse_job;
 
-static bool add_place(gathering *g, bvh_branch *b, size_t node, size_t block)
+static bool add_subtree(collapse_job *g, bvh_branch *b, size_t node, size_t block)
 {
-    if (!GROW(g->places, g->room, g->count + 1))
+    if (!GROW(g->list, g->room, g->count + 1))
         return false;
-    g->places[g->count++] = (place){b, node, block};
+    g->list[g->count++] = (subtree){b, node, block};
     return true;
 }
 
@@ -96,18 +97,18 @@ static bool small(const bvh_branch *b)
     return b->leaf || b->count <= TASK_TRIANGLES;
 }
 
-/* The subtrees below b, itself not one, that are small. */
-static bool find_small(gathering *g, bvh_branch *b, bool root)
+/* Lists the small subtrees below b, which is not small itself. */
+static bool find_small(collapse_job *g, bvh_branch *b, bool root)
 {
     bvh_branch *children[WIDTH];
     int count = children_of(b, root, children);
     for (int i = 0; i < count; i++)
-        if (!(small(children[i]) ? add_place(g, children[i], 0, 0) : find_small(g, children[i], false)))
+        if (!(small(children[i]) ? add_subtree(g, children[i], 0, 0) : find_small(g, children[i], false)))
             return false;
     return true;
 }
 
-/* What becomes of b. small_known: what becomes of small subtrees below it is known already. */
+/* Counts the nodes, blocks and leaves of b. small_known: small subtrees below it are counted already. */
 static void count_tree(bvh_branch *b, bool root, bool small_known)
 {
     if (b->leaf && !root) {
@@ -121,7 +122,7 @@ static void count_tree(bvh_branch *b, bool root, bool small_known)
     size_t nodes = 1, blocks = 0, leaves = 0;
     uint32_t depth = 0;
     for (int i = 0; i < count; i++) {
-        const bvh_branch *c = children[i]; /* b itself where the root is a leaf */
+        const bvh_branch *c = children[i]; /* b itself if the root is a leaf */
         if (!small_known || !small(c))
             count_tree(children[i], false, small_known);
         nodes += c->nodes;
@@ -135,11 +136,11 @@ static void count_tree(bvh_branch *b, bool root, bool small_known)
     b->depth = depth + 1;
 }
 
-static void count_place(void *context, size_t index, int member)
+static void count_subtree(void *context, size_t index, int member)
 {
     (void)member;
-    gathering *g = context;
-    count_tree(g->places[index].b, false, false);
+    collapse_job *g = context;
+    count_tree(g->list[index].b, false, false);
 }
 
 static void write_leaf(hierarchy *h, const bvh_branch *b, const bvh_ref *refs, size_t first_block)
@@ -164,9 +165,9 @@ static void write_boxes(bvh_node *n, bvh_branch *const *children, int count)
     n->child_count = (uint32_t)count;
 }
 
-/* Depth first: a node, then each child's subtree; blocks in the order of their leaves. With later: small subtrees are
- * only noted there. false when there is no memory for that. */
-static bool write_tree(gathering *g, bvh_branch *b, bool root, size_t node, size_t block, gathering *later)
+/* Writes in depth-first order: a node, then each child's subtree; blocks in the order of their leaves. If `later` is
+ * given, small subtrees are only listed there. false: out of memory. */
+static bool write_tree(collapse_job *g, bvh_branch *b, bool root, size_t node, size_t block, collapse_job *later)
 {
     bvh_branch *children[WIDTH];
     int count = children_of(b, root, children);
@@ -178,7 +179,8 @@ static bool write_tree(gathering *g, bvh_branch *b, bool root, size_t node, size
         n->child[i] = c->leaf ? child_leaf((uint32_t)block, blocks_of(c->count)) : (uint32_t)node;
         if (c->leaf)
             write_leaf(g->h, c, g->refs, block);
-        else if (!(later && small(c) ? add_place(later, c, node, block) : write_tree(g, c, false, node, block, later)))
+        else if (!(later && small(c) ? add_subtree(later, c, node, block)
+                                     : write_tree(g, c, false, node, block, later)))
             return false;
         node += c->leaf ? 0 : c->nodes;
         block += c->leaf ? blocks_of(c->count) : c->blocks;
@@ -186,18 +188,19 @@ static bool write_tree(gathering *g, bvh_branch *b, bool root, size_t node, size
     return true;
 }
 
-static void write_place(void *context, size_t index, int member)
+static void write_subtree(void *context, size_t index, int member)
 {
     (void)member;
-    gathering *g = context;
-    const place *p = &g->places[index];
+    collapse_job *g = context;
+    const subtree *p = &g->list[index];
     write_tree(g, p->b, false, p->node, p->block, NULL);
 }
 
 static status make_room(hierarchy *h, size_t nodes, size_t blocks, diagnostic *why)
 {
     if (blocks > child_first_block(UINT32_MAX) || nodes >= CHILD_LEAF)
-        return diagnose(why, STATUS_FAILURE, "a mesh of fewer triangles", "the hierarchy would have too many leaves");
+        return diagnose(why, STATUS_FAILURE, "use a mesh with fewer triangles",
+                        "the hierarchy would have too many leaves");
     h->nodes = aligned_alloc(64, nodes * sizeof *h->nodes);
     h->node_count = nodes;
     if (!h->nodes || !hierarchy_make_blocks(h, blocks))
@@ -215,17 +218,17 @@ static status no_triangles(hierarchy *h, diagnostic *why)
     return STATUS_OK;
 }
 
-static status gather(gathering *g, bvh_branch *root, thread_team *t, diagnostic *why)
+static status collapse(collapse_job *g, bvh_branch *root, thread_team *t, diagnostic *why)
 {
     if (!find_small(g, root, true))
         return out_of_memory(why);
-    thread_team_run(t, count_place, g, g->count);
+    thread_team_run(t, count_subtree, g, g->count);
     count_tree(root, true, true);
     TRY(make_room(g->h, root->nodes, root->blocks, why));
     g->count = 0;
     if (!write_tree(g, root, true, 0, 0, g))
         return out_of_memory(why);
-    thread_team_run(t, write_place, g, g->count);
+    thread_team_run(t, write_subtree, g, g->count);
     g->h->report.nodes = root->nodes;
     g->h->report.leaves = root->leaves;
     g->h->report.depth = (int)root->depth;
@@ -236,8 +239,8 @@ status bvh_collapse(hierarchy *h, bvh_branch *root, const bvh_ref *refs, thread_
 {
     if (!root)
         return no_triangles(h, why);
-    gathering g = {.h = h, .refs = refs};
-    status code = gather(&g, root, t, why);
-    free(g.places);
+    collapse_job g = {.h = h, .refs = refs};
+    status code = collapse(&g, root, t, why);
+    free(g.list);
     return code;
 }

@@ -1,4 +1,5 @@
-/* One ray's way down the hierarchy `bvh`: nearest children first, farther ones wait on a stack with their distances. */
+/* Single-ray traversal of the hierarchy `bvh`: nearest children first; farther ones wait on a stack with their
+ * distances. */
 #include "geometry/hierarchy_boxes.h"
 
 ALWAYS_INLINE void walk_down(const hierarchy *h, ray_query *q, const box_ray *ray, enum query_mode mode, bool single,

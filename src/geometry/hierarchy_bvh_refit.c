@@ -1,4 +1,4 @@
-/* A bvh whose mesh has moved, and what a bvh costs. */
+/* The refit of a bvh after its mesh moved, and the cost of a bvh. */
 #include "base/isa.h"
 #include "geometry/hierarchy_bvh.h"
 
@@ -8,7 +8,7 @@ bool hierarchy_refit(hierarchy *h)
                                                           hierarchy_refit_nodes_avx512};
     if (h->kind != HIERARCHY_BVH || h->referred != h->of->triangle_count || (h->single && !h->of->single))
         return false;
-    refit[isa_best()](h); /* the same bits from all */
+    refit[isa_best()](h); /* all kernels give identical bits */
     return true;
 }
 

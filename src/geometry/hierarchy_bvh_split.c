@@ -1,6 +1,7 @@
+/* One split of the bvh builder: bins, the cheapest split plane, the partition, and the median split. */
 #include "geometry/hierarchy_bvh.h"
 
-#define FLAT 1e-30f /* centres that are no farther apart are in one place: the width of a bin could not be inverted */
+#define FLAT 1e-30f /* centres within this distance coincide: the width of a bin could not be inverted */
 
 static bvh_range empty_range(uint32_t first)
 {
@@ -8,7 +9,7 @@ static bvh_range empty_range(uint32_t first)
     return r;
 }
 
-/* More bins than references tell nothing. */
+/* There are never more bins than references: they would give no information. */
 void bvh_bins_begin(bvh_bins *s, const bvh_range *range)
 {
     uint32_t wanted = 4 + range->count / 8;
@@ -77,7 +78,7 @@ static void exchange(bvh_ref *a, bvh_ref *b)
     *b = t;
 }
 
-/* Lomuto's partition, because it needs no branch that a processor would guess wrongly half of the time. */
+/* Lomuto's partition, which needs no unpredictable branch. */
 uint32_t bvh_part(bvh_ref *refs, size_t count, const bvh_bins *s, bvh_cut cut, bvh_box centers[2])
 {
     int axis = cut.axis;
@@ -100,8 +101,8 @@ uint32_t bvh_part(bvh_ref *refs, size_t count, const bvh_bins *s, bvh_cut cut, b
     return lower;
 }
 
-void bvh_median_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower, const bvh_box centers[2],
-                       bvh_range half[2])
+void bvh_describe_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, uint32_t lower,
+                         const bvh_box centers[2], bvh_range half[2])
 {
     half[0] = (bvh_range){bvh_box_empty(), centers[0], range->first, lower};
     half[1] = (bvh_range){bvh_box_empty(), centers[1], range->first + lower, range->count - lower};
@@ -109,7 +110,7 @@ void bvh_median_halves(const bvh_range *range, const bvh_bins *s, bvh_cut cut, u
         bvh_box_add(&half[i >= cut.bin].box, s->box[cut.axis][i].low, s->box[cut.axis][i].high);
 }
 
-/* A complete order: by centre, then by number. */
+/* A total order: by centre, then by number. */
 static bool before(const bvh_ref *a, const bvh_ref *b, int axis)
 {
     float x = a->low[axis] + a->high[axis], y = b->low[axis] + b->high[axis];
@@ -168,15 +169,15 @@ void bvh_split_at_median(bvh_ref *refs, const bvh_range *range, bvh_range half[2
         bvh_range_add(&half[i >= lower], &own[i]);
 }
 
-/* Levels that halving down to single triangles takes. */
-static int halvings(uint32_t count)
+/* Levels that median splits need down to single triangles. */
+static int median_levels(uint32_t count)
 {
     return count > 1 ? 32 - __builtin_clz(count - 1) : 0;
 }
 
 bool bvh_may_bin(const bvh_range *range, int depth)
 {
-    return depth + halvings(range->count) < BRANCH_DEPTH_MAX;
+    return depth + median_levels(range->count) < BRANCH_DEPTH_MAX;
 }
 
 bool bvh_cheapest(const bvh_bins *s, bvh_cut *cut)
@@ -185,7 +186,7 @@ bool bvh_cheapest(const bvh_bins *s, bvh_cut *cut)
     for (int axis = 0; axis < 3; axis++)
         if (s->scale[axis] > 0.0f)
             best_of_axis(s, axis, cut);
-    return cut->axis >= 0 && cut->cost > 0.0f; /* of boxes without area none is better than another */
+    return cut->axis >= 0 && cut->cost > 0.0f; /* with boxes of zero area no split is better than another */
 }
 
 void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[2])
@@ -198,7 +199,7 @@ void bvh_split(bvh_ref *refs, const bvh_range *range, int depth, bvh_range half[
         if (bvh_cheapest(&s, &cut)) {
             bvh_box centers[2];
             uint32_t lower = bvh_part(refs + range->first, range->count, &s, cut, centers);
-            bvh_median_halves(range, &s, cut, lower, centers, half);
+            bvh_describe_halves(range, &s, cut, lower, centers, half);
             return;
         }
     }

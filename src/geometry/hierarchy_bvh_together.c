@@ -1,8 +1,9 @@
+/* One split of a large range by all threads together. */
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>
 
-/* A large range is worked at in pieces of so many references. */
+/* References per task of a large range. */
 enum { PIECE = 16384 };
 
 typedef struct piece {
@@ -51,11 +52,11 @@ static void add_bins(bvh_bins *sum, const bvh_bins *s)
         }
 }
 
-/* Each piece holds its lower references, then its upper ones. Those upper ones that lie before the end of all lower
- * ones change places with the lower ones beyond it; there are as many of these as of those. */
-static void settle(const job *j, size_t pieces)
+/* Joins the partitions of the pieces. Each piece holds its lower references, then its upper ones. Upper ones before the
+ * end of all lower ones are swapped with the lower ones after it; both have the same number. */
+static void join_partitions(const job *j, size_t pieces)
 {
-    uint32_t upper = 0, lower = j->count, upper_end = 0, lower_begin = j->count; /* empty runs of either kind */
+    uint32_t upper = 0, lower = j->count, upper_end = 0, lower_begin = j->count; /* empty ranges of both kinds */
     size_t from_front = 0, from_back = pieces;
     for (;;) {
         while (upper == upper_end) {
@@ -104,8 +105,8 @@ status bvh_split_together(thread_team *t, bvh_ref *refs, const bvh_range *range,
             for (int k = 0; k < 2; k++)
                 bvh_box_add(&centers[k], j.pieces[i].centers[k].low, j.pieces[i].centers[k].high);
         }
-        settle(&j, pieces);
-        bvh_median_halves(range, &j.bins, j.cut, j.lower, centers, half);
+        join_partitions(&j, pieces);
+        bvh_describe_halves(range, &j.bins, j.cut, j.lower, centers, half);
     } else {
         bvh_split_at_median(refs, range, half);
     }

@@ -1,6 +1,6 @@
-/* Embree 3 as a yardstick: its own hierarchy and triangle test, in single precision, one ray at a time. The Makefile
- * defines CUVETTE_EMBREE where its header is there. Sides of triangles are told from the mesh's own corners, not from
- * Embree's normal. */
+/* Embree 3 as a reference for speed: its own hierarchy and triangle test, in single precision, one ray at a time. The
+ * Makefile defines CUVETTE_EMBREE if Embree's header is present. Sides of triangles are determined from the mesh's own
+ * corners and not from Embree's normal. */
 #include "geometry/hierarchy_private.h"
 
 #ifdef CUVETTE_EMBREE
@@ -14,12 +14,12 @@ typedef struct foreign {
     RTCScene scene;
 } foreign;
 
-/* A query, as far as Embree's filter needs it. */
+/* A query, as Embree's filter needs it. */
 typedef struct query {
-    struct RTCIntersectContext context; /* first, so that Embree's pointer to it is one to the query */
+    struct RTCIntersectContext context; /* first, so that Embree's pointer to it also points to the query */
     const hierarchy *h;
     const mesh_ray *ray;
-    mesh_visit *visit; /* NULL but for all hits */
+    mesh_visit *visit; /* NULL except for QUERY_ALL */
     void *visited;
 } query;
 
@@ -31,9 +31,8 @@ static int facing_of(const mesh *m, const mesh_ray *ray, uint32_t triangle)
     return vec3_dot(normal, ray->direction) < 0.0 ? FACING_FRONT : FACING_BACK;
 }
 
-/* Refuses hits that the ray does not look for; where all are wanted it hands on each and refuses it too, so that the
- * search goes on. Single rays alone are asked for, so that what Embree hands over is laid out as one ray and one hit.
- */
+/* Rejects hits that the ray does not look for. For QUERY_ALL it reports each hit and rejects it too, so that the search
+ * continues. Only single rays are traced, so that Embree passes one ray and one hit. */
 static void filter(const struct RTCFilterFunctionNArguments *p)
 {
     const query *q = (const query *)p->context;
@@ -86,7 +85,7 @@ bool hierarchy_embree_any(const hierarchy *h, const mesh_ray *ray)
     struct RTCRay r;
     query q = start(h, ray, &r);
     rtcOccluded1(f->scene, &q.context, &r);
-    return r.tfar < 0.0f; /* Embree's sign of a hit */
+    return r.tfar < 0.0f; /* Embree marks a hit by a negative tfar */
 }
 
 void hierarchy_embree_all(const hierarchy *h, const mesh_ray *ray, mesh_visit *visit, void *context)
@@ -101,7 +100,7 @@ void hierarchy_embree_all(const hierarchy *h, const mesh_ray *ray, mesh_visit *v
     rtcIntersect1(f->scene, &q.context, &r);
 }
 
-/* Copies the mesh into buffers of Embree's own. */
+/* Copies the mesh into Embree's own buffers. */
 static bool fill(const mesh *m, RTCGeometry g)
 {
     float *v =
@@ -148,15 +147,15 @@ static bool commit(const hierarchy *h, foreign *f)
 
 status hierarchy_build_embree(hierarchy *h, int threads, diagnostic *why)
 {
-    char wish[32];
-    snprintf(wish, sizeof wish, "threads=%d", threads);
+    char config[32];
+    snprintf(config, sizeof config, "threads=%d", threads);
     foreign *f = calloc(1, sizeof *f);
     h->foreign = f;
     if (!f)
         return out_of_memory(why);
-    f->device = rtcNewDevice(wish);
+    f->device = rtcNewDevice(config);
     if (!f->device)
-        return diagnose(why, STATUS_FAILURE, "choose another hierarchy", "Embree finds no device (error %d)",
+        return diagnose(why, STATUS_FAILURE, "choose another hierarchy", "Embree cannot create a device (error %d)",
                         (int)rtcGetDeviceError(NULL));
     size_t bytes = 0;
     rtcSetDeviceMemoryMonitorFunction(f->device, count_bytes, &bytes);

@@ -1,7 +1,7 @@
-/* The kernels' one set of entries: what a query is and which way down it goes. */
+/* The entry points of the hierarchy kernels: prepare the query and choose the traversal. */
 #include "geometry/hierarchy_query.h"
 
-/* All triangles, one after another. */
+/* Tests all triangles in order. */
 static void walk_blocks(const hierarchy *h, ray_query *q, enum query_mode mode)
 {
     if (h->single)
@@ -66,7 +66,7 @@ static void boxes(const hierarchy *h, const mesh_ray *ray, box_visit *visit, voi
     }
 }
 
-/* Starts up to TOGETHER rays; ready are those that can hit something. */
+/* Starts up to TOGETHER rays; `ready` lists those that can hit something. */
 static int start_all(const hierarchy *h, const mesh_ray *rays, int count, ray_query *queries, ray_query **ready)
 {
     int n = 0;

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Without AVX compilers remark on how wide vectors are passed to functions; here none is, as all are inlined. */
+/* Without AVX compilers warn about passing wide vectors to functions; all functions here are inlined. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 typedef float float4 __attribute__((vector_size(16)));
@@ -26,8 +26,8 @@ ALWAYS_INLINE double4 double4_all(double v)
     return (double4){v, v, v, v};
 }
 
-/* The set of lanes whose mask is -1, one bit a lane; lane_first is the lowest of a set that is not empty. AVX-512
- * narrows a vector in one instruction, which makes bytes the quicker form there. */
+/* The set of lanes whose mask is -1, one bit per lane; lane_first is the lowest lane of a non-empty set. AVX-512
+ * narrows a vector in one instruction, which makes the byte form faster there. */
 #ifdef __AVX512VL__
 ALWAYS_INLINE uint64_t lanes_of8(int8x32 mask)
 {

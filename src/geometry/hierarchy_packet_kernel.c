@@ -1,10 +1,10 @@
-/* Rays that are alike go down the hierarchy `bvh` together: whole nodes are left out for all of them by one test (of a
- * ray that stands for the least and the most of every ray's numbers: Boulos et al., "Packet-based Whitted and
- * distribution ray tracing", GI 2007), boxes are met by eight rays at a time when their turn comes, and so are
- * triangles. Where few are left of the many, each goes on by itself.
+/* Packet traversal of the hierarchy `bvh` by coherent rays. A whole node is culled for all rays by one test, with
+ * interval arithmetic over the packet (Boulos et al., "Packet-based Whitted and distribution ray tracing", GI 2007);
+ * boxes and triangles are then tested by eight rays at a time. When few rays of the packet are left, each continues
+ * alone.
  *
- * A ray sees every box and triangle that it would see alone, or more; what counts as a hit is decided by the one
- * triangle test. So the hits are the same to the bit. */
+ * A ray tests at least every box and triangle that it would test alone, and the same triangle test decides on hits. So
+ * the hits are bit-identical. */
 #include "geometry/hierarchy_boxes.h"
 
 enum { LANES = 8, GROUPS = TOGETHER / LANES, ALONE = 6 };
@@ -12,7 +12,7 @@ enum { LANES = 8, GROUPS = TOGETHER / LANES, ALONE = 6 };
 typedef double double8 __attribute__((vector_size(64)));
 typedef int64_t int8x64 __attribute__((vector_size(64)));
 
-/* Which rays: a byte a group of eight. */
+/* A set of rays: a byte per group of eight. */
 typedef struct ray_set {
     uint8_t bits[GROUPS];
 } ray_set;
@@ -23,16 +23,16 @@ typedef struct packet {
     _Alignas(64) float t_min[TOGETHER], t_best[TOGETHER];
     _Alignas(64) double origin[3][TOGETHER], shear[3][TOGETHER]; /* along the query's axes x, y, z */
     _Alignas(64) double t_limit[TOGETHER], t_start[TOGETHER];    /* each query's t_best and t_min */
-    _Alignas(64) double place[3][TOGETHER],
-        inverse[3][TOGETHER]; /* origin and inverse direction along the scene's axes */
+    _Alignas(64) double mesh_origin[3][TOGETHER],
+        inverse[3][TOGETHER]; /* origin and inverse direction along the mesh's axes */
     _Alignas(64) int64_t parallel[3][TOGETHER], skip[TOGETHER], wanted[TOGETHER], best[TOGETHER], facing[TOGETHER];
     _Alignas(64) double weight_u[TOGETHER], weight_v[TOGETHER], det[TOGETHER]; /* of the best hits */
     ray_query *ray[TOGETHER];
     int count, groups;
     int near[3], far[3], axis[3];
-    box_ray all;      /* stands for all of them */
+    box_ray all;      /* bounds of all rays */
     float t_farthest; /* the largest t_best */
-    bool changed;     /* some t_best is less than it was when t_farthest was found */
+    bool changed;     /* some t_best has decreased since t_farthest was computed */
     ray_set alive;
 } packet;
 
@@ -65,7 +65,7 @@ static void widen(packet *p, const box_ray *b, bool first)
     all->t_min = LESS(all->t_min, b->t_min);
 }
 
-/* Lanes beyond count repeat the last ray, and are in no set. */
+/* Lanes beyond count repeat the last ray and are in no set. */
 static void packet_start(packet *p, ray_query *const *rays, int count)
 {
     p->count = count;
@@ -83,7 +83,7 @@ static void packet_start(packet *p, ray_query *const *rays, int count)
             p->near_inverse[k][i] = b.near_inverse[k], p->far_inverse[k][i] = b.far_inverse[k];
         }
         p->t_min[i] = b.t_min;
-        p->t_best[i] = i < count ? float_above(q->t_best) : 0.0f; /* so that they hold nobody up */
+        p->t_best[i] = i < count ? float_above(q->t_best) : 0.0f; /* so that unused lanes never count */
         p->t_farthest = MORE(p->t_farthest, p->t_best[i]);
         p->origin[0][i] = q->origin[q->x], p->origin[1][i] = q->origin[q->y], p->origin[2][i] = q->origin[q->z];
         p->shear[0][i] = q->shear_x, p->shear[1][i] = q->shear_y, p->shear[2][i] = q->shear_z;
@@ -91,7 +91,7 @@ static void packet_start(packet *p, ray_query *const *rays, int count)
         p->weight_u[i] = p->weight_v[i] = p->det[i] = 0.0, p->facing[i] = 0;
         p->skip[i] = q->skip, p->wanted[i] = q->wanted, p->best[i] = q->best;
         for (int k = 0; k < 3; k++) {
-            p->place[k][i] = q->origin[k], p->inverse[k][i] = q->inverse[k];
+            p->mesh_origin[k][i] = q->origin[k], p->inverse[k][i] = q->inverse[k];
             p->parallel[k][i] = mask_less(magnitude(q->direction[k]), PARALLEL);
         }
         p->alive.bits[i / LANES] |= (uint8_t)((i < count) << i % LANES);
@@ -121,7 +121,7 @@ ALWAYS_INLINE float8 floats_at(const float *p)
     return v;
 }
 
-/* Where eight rays from number i on meet the planes of one box. */
+/* The distances at which eight rays, from number i on, cross the planes of one box. */
 ALWAYS_INLINE void slabs_of_rays(const packet *p, int i, const float *restrict near_plane,
                                  const float *restrict far_plane, float *restrict near, float *restrict far)
 {
@@ -145,7 +145,7 @@ ALWAYS_INLINE void slabs_of_rays(const packet *p, int i, const float *restrict n
     }
 }
 
-/* The rays of a set that meet one box of a node before their best hits. Returns how many. */
+/* The rays of a set that enter one box of a node before their best hits. Returns their number. */
 static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, const ray_set *of, ray_set *in)
 {
     const float *plane = (const float *)(const void *)node + slot;
@@ -168,9 +168,9 @@ static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, con
     return count;
 }
 
-/* The farthest that any ray still looks: it only falls. Floats that are not negative are in the order of their bits,
- * and whole numbers have a largest whatever the order in which they are gone through. */
-static void note_farthest(packet *p)
+/* Updates t_farthest, the largest distance that any ray still looks for; it only decreases. Non-negative floats sort by
+ * their bits, and the maximum of integers is independent of the order. */
+static void update_farthest(packet *p)
 {
     int32_t bits[TOGETHER], farthest = 0;
     memcpy(bits, p->t_best, sizeof bits);
@@ -221,7 +221,7 @@ ALWAYS_INLINE int8x64 any_bits(double8 a)
     return (int8x64)a;
 }
 
-/* Eight rays that the edge functions let through one triangle: weights and corners as seen by each. */
+/* A triangle that the edge functions of some of eight rays let through: weights and corners as seen by each ray. */
 typedef struct passed {
     double8 u, v, w, x[3], y[3], z[3], t;
 } passed;
@@ -231,9 +231,9 @@ ALWAYS_INLINE int8x64 clamp_together(const packet *p, int i, const double (*corn
 {
     const double8 zero = double8_all(0.0);
     double8 near = double8_all(-(double)INFINITY), far = double8_all((double)INFINITY);
-    int8x64 met = {-1, -1, -1, -1, -1, -1, -1, -1};
+    int8x64 hit = {-1, -1, -1, -1, -1, -1, -1, -1};
     for (int k = 0; k < 3; k++) {
-        const double8 o = doubles_at(&p->place[k][i]), inverse = doubles_at(&p->inverse[k][i]);
+        const double8 o = doubles_at(&p->mesh_origin[k][i]), inverse = doubles_at(&p->inverse[k][i]);
         const double8 low = double8_all(least_of(corner[k])) - o, high = double8_all(most_of(corner[k])) - o;
         const int8x64 parallel = ints_at(&p->parallel[k][i]);
         const int8x64 aside = (low > zero + PARALLEL_MARGIN) | (high < zero - PARALLEL_MARGIN);
@@ -243,13 +243,13 @@ ALWAYS_INLINE int8x64 clamp_together(const packet *p, int i, const double (*corn
         const double8 last = double8_lesser(far, out + double8_magnitude(out) * BOX_MARGIN);
         near = double8_blend(parallel, near, first);
         far = double8_blend(parallel, far, last);
-        met &= ~(parallel & aside);
+        hit &= ~(parallel & aside);
     }
     *t = double8_greater(*t, near);
-    return met & (near <= far) & (far >= doubles_at(&p->t_start[i]));
+    return hit & (near <= far) & (far >= doubles_at(&p->t_start[i]));
 }
 
-/* query_consider for the rays of `mask` among eight. Returns those that it accepts. */
+/* query_consider for the rays of `mask` among eight. Returns those that accept the hit. */
 ALWAYS_INLINE int8x64 consider_together(packet *p, int i, int8x64 mask, const passed *h, const double (*corner)[3],
                                         uint32_t triangle)
 {
@@ -287,8 +287,8 @@ ALWAYS_INLINE int8x64 consider_together(packet *p, int i, int8x64 mask, const pa
     return better;
 }
 
-/* The float limits of eight rays follow the exact ones; a ray that is done looks no farther than nowhere. */
-ALWAYS_INLINE void note_limits(packet *p, int group)
+/* Updates the float limits of eight rays from the exact ones; a finished ray gets a limit that nothing is below. */
+ALWAYS_INLINE void update_limits(packet *p, int group)
 {
     for (int k = 0; k < LANES; k++) {
         const int i = group * LANES + k;
@@ -298,7 +298,7 @@ ALWAYS_INLINE void note_limits(packet *p, int group)
     p->changed = true;
 }
 
-/* One triangle, eight rays at a time. corner[axis][corner], axes the scene's. */
+/* Tests one triangle, eight rays at a time. corner[axis][corner], in the mesh's axes. */
 static void triangle_together(packet *p, const ray_set *set, enum query_mode mode, const double (*corner)[3],
                               uint32_t triangle)
 {
@@ -328,7 +328,7 @@ static void triangle_together(packet *p, const ray_set *set, enum query_mode mod
             (((int8x64){wanted, wanted, wanted, wanted, wanted, wanted, wanted, wanted} & lane_bit) != 0);
         if (!bits_of8(__builtin_convertvector(inside, int8x32)))
             continue;
-        /* As in query_blocks: what lies beyond the best hit without doubt. */
+        /* As in query_blocks: hits that are certainly beyond the best hit. */
         const double8 sz = doubles_at(&p->shear[2][i]);
         h.t = (h.u * (sz * h.z[0]) + h.v * (sz * h.z[1]) + h.w * (sz * h.z[2])) / (h.u + h.v + h.w);
         const int8x64 near = inside & (h.t <= doubles_at(&p->t_limit[i]));
@@ -339,7 +339,7 @@ static void triangle_together(packet *p, const ray_set *set, enum query_mode mod
         if (!bits)
             continue;
         p->alive.bits[g] &= (uint8_t)(mode == QUERY_ANY ? ~bits : 255);
-        note_limits(p, g);
+        update_limits(p, g);
     }
 }
 
@@ -358,11 +358,11 @@ static void leaf_together(const hierarchy *h, packet *p, const ray_set *set, enu
         }
     }
     if (p->changed)
-        note_farthest(p);
+        update_farthest(p);
 }
 
-/* What the packet knows of a ray's best hit, back to the ray, and the other way. */
-static void give_back(const packet *p, int i)
+/* Copies a ray's best hit from the packet to its query, and back. */
+static void store_hit(const packet *p, int i)
 {
     ray_query *q = p->ray[i];
     q->t_best = p->t_limit[i];
@@ -371,7 +371,7 @@ static void give_back(const packet *p, int i)
     q->best_facing = (int)p->facing[i];
 }
 
-static void take_over(packet *p, int i)
+static void load_hit(packet *p, int i)
 {
     const ray_query *q = p->ray[i];
     p->t_limit[i] = q->t_best;
@@ -380,8 +380,8 @@ static void take_over(packet *p, int i)
     p->facing[i] = q->best_facing;
 }
 
-/* The few rays of a set, each by itself from a child on. */
-static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t child)
+/* Traverses from a child with each of the few rays of a set alone. */
+static void traverse_alone(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t child)
 {
     for (int g = 0; g < p->groups; g++) {
         for (uint8_t bits = set->bits[g]; bits; bits = (uint8_t)LANES_LESS_FIRST(bits)) {
@@ -393,17 +393,17 @@ static void go_alone(const hierarchy *h, packet *p, const ray_set *set, enum que
             }
             b.t_min = p->t_min[i];
             const uint32_t before = p->ray[i]->best;
-            give_back(p, i);
+            store_hit(p, i);
             KERNEL(walk_bvh_from)(h, p->ray[i], &b, mode, child);
-            take_over(p, i);
+            load_hit(p, i);
             p->alive.bits[g] &= (uint8_t) ~((mode == QUERY_ANY && p->ray[i]->best != before) << lane);
             p->t_best[i] = p->alive.bits[g] >> lane & 1 ? float_above(p->t_limit[i]) : 0.0f;
         }
     }
-    note_farthest(p);
+    update_farthest(p);
 }
 
-/* A node's children that any ray may meet, the nearest on top. */
+/* Pushes a node's children that any ray may hit, the nearest on top. */
 static int push_children(const packet *p, const bvh_node *nodes, uint32_t at, const ray_set *set, waiting *stack,
                          int top)
 {
@@ -411,13 +411,13 @@ static int push_children(const packet *p, const bvh_node *nodes, uint32_t at, co
     slabs(&nodes[at], &p->all, near, far);
     const float8 n = floats_at(near), f = floats_at(far);
     const int bottom = top;
-    for (uint64_t met = lanes_of8((n <= f) & (n <= float8_all(p->t_farthest)) & (f >= float8_all(p->all.t_min))); met;
-         met = LANES_LESS_FIRST(met)) {
-        const unsigned slot = lane_first(met);
-        int place = top++;
-        for (; place > bottom && stack[place - 1].near < near[slot]; place--)
-            stack[place] = stack[place - 1];
-        stack[place] = (waiting){nodes[at].child[slot], at, slot, near[slot], *set};
+    for (uint64_t hit = lanes_of8((n <= f) & (n <= float8_all(p->t_farthest)) & (f >= float8_all(p->all.t_min))); hit;
+         hit = LANES_LESS_FIRST(hit)) {
+        const unsigned slot = lane_first(hit);
+        int position = top++;
+        for (; position > bottom && stack[position - 1].near < near[slot]; position--)
+            stack[position] = stack[position - 1];
+        stack[position] = (waiting){nodes[at].child[slot], at, slot, near[slot], *set};
     }
     return top;
 }
@@ -438,7 +438,7 @@ static void packet_walk(const hierarchy *h, packet *p, enum query_mode mode)
         if (count == 0)
             continue;
         if (count <= ALONE)
-            go_alone(h, p, &rays, mode, next.child);
+            traverse_alone(h, p, &rays, mode, next.child);
         else if (next.child & CHILD_LEAF)
             leaf_together(h, p, &rays, mode, next.child);
         else
@@ -446,8 +446,8 @@ static void packet_walk(const hierarchy *h, packet *p, enum query_mode mode)
     }
 }
 
-/* Rays of one packet run the same way along each axis, and mostly along the same one. */
-static int kind_of(const ray_query *q)
+/* The class of a ray: rays of one packet have the same direction signs and major axis. */
+static int ray_class(const ray_query *q)
 {
     return (q->direction[0] < 0.0) | (q->direction[1] < 0.0) << 1 | (q->direction[2] < 0.0) << 2 | q->z << 3;
 }
@@ -456,27 +456,27 @@ void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int c
 {
     enum { KINDS = 24, FEW = 12 };
     packet p;
-    ray_query *alike[TOGETHER];
+    ray_query *coherent[TOGETHER];
     bool taken[TOGETHER] = {false};
     for (int first = 0; first < count; first++) {
         if (taken[first])
             continue;
-        const int kind = kind_of(rays[first]);
+        const int kind = ray_class(rays[first]);
         int n = 0;
         for (int i = first; i < count; i++) {
-            if (taken[i] || kind_of(rays[i]) != kind)
+            if (taken[i] || ray_class(rays[i]) != kind)
                 continue;
             taken[i] = true;
-            alike[n++] = rays[i];
+            coherent[n++] = rays[i];
         }
         if (n < FEW) {
             for (int i = 0; i < n; i++)
-                KERNEL(walk_bvh)(h, alike[i], mode);
+                KERNEL(walk_bvh)(h, coherent[i], mode);
             continue;
         }
-        packet_start(&p, alike, n);
+        packet_start(&p, coherent, n);
         packet_walk(h, &p, mode);
         for (int i = 0; i < n; i++)
-            give_back(&p, i);
+            store_hit(&p, i);
     }
 }

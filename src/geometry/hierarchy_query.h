@@ -1,14 +1,15 @@
-/* A ray made ready for a mesh's hierarchy, and the one triangle test that all hierarchies share.
+/* The triangle test that all hierarchies share, and a ray prepared for it.
  *
  * Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013, in double precision: corners are
- * moved so that the ray starts at the origin and sheared so that it runs along an axis; signs of three edge functions
- * then say whether it passes inside. An edge function changes its sign exactly when its corners change places, and zero
- * counts as inside, so that no ray slips between two triangles that share an edge. Four triangles at a time; what is
- * left is looked at one by one.
+ * translated so that the ray starts at the origin and sheared so that it runs along an axis; the signs of three edge
+ * functions then decide whether it passes inside. An edge function changes its sign exactly when its corners are
+ * swapped, and zero counts as inside, so that no ray slips between two triangles that share an edge. Four triangles are
+ * tested at a time; those that the edge functions let through are then tested one by one.
  *
- * A hit's t is never less than where the ray comes into the triangle's own box (by a margin of 2^-40): whatever a
- * triangle seen edge-on makes of it, no hierarchy that culls by boxes with a wider margin loses it. As t is only ever
- * made larger by this, what lies beyond the best hit before lies beyond it after, and need not be looked at. */
+ * A hit's t is never less than the ray's entry into the triangle's own box (with a margin of 2^-40). So no hierarchy
+ * that culls by boxes with a wider margin loses a hit, whatever rounding makes of a triangle seen edge-on. As this
+ * clamp only increases t, a triangle beyond the best hit before the clamp is beyond it after the clamp and can be
+ * skipped. */
 #pragma once
 
 #include "base/lanes.h"
@@ -17,30 +18,30 @@
 
 enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL, QUERY_BOXES };
 
-/* Components of a direction whose largest is 1..2 that are smaller than this are parallel to their plane: within reach
- * such a ray does not leave it by more than PARALLEL_MARGIN. */
+/* A direction is scaled so that its largest component is 1..2. A component smaller than PARALLEL counts as parallel to
+ * its plane: within the reach of coordinates such a ray moves across the plane by less than PARALLEL_MARGIN. */
 #define PARALLEL 1e-30
 #define PARALLEL_MARGIN 1e-20
 #define ORIGIN_FAR 1e18
 #define BOX_MARGIN 0x1p-40
 
-/* t is measured along a direction whose largest component was brought into 1..2 by a power of two: exact, and far from
+/* t is measured along a direction whose largest component is scaled into 1..2 by a power of two: exact, and far from
  * overflow. */
 typedef struct ray_query {
     double origin[3], direction[3], inverse[3];
     double shear_x, shear_y, shear_z;
-    int x, y, z; /* axes: z is the direction's largest; x and y such that windings stay as they are */
+    int x, y, z; /* axes: z is the direction's largest; x and y keep the winding */
     double t_min, t_best, unscale;
     double weight_u, weight_v, det; /* of the best hit */
     uint32_t skip, best;
     int wanted, best_facing;
     mesh_visit *visit;    /* QUERY_ALL */
     box_visit *visit_box; /* QUERY_BOXES */
-    double t_start;       /* t_min as the caller has it */
+    double t_start;       /* t_min as the caller passed it */
     void *context;
 } ray_query;
 
-/* False for a ray that hits nothing: of no direction, or from beyond all reach. */
+/* False for a ray that cannot hit anything: its direction is zero, or its origin is out of range. */
 ALWAYS_INLINE bool query_start(ray_query *q, const mesh_ray *ray)
 {
     const double o[3] = {ray->origin.x, ray->origin.y, ray->origin.z};
@@ -104,8 +105,8 @@ ALWAYS_INLINE double most_of(const double *p)
     return greater(greater(p[0], p[1]), p[2]);
 }
 
-/* Brings t up to where the ray comes into the box around the corners; false if it never is in there, or not after
- * t_min. corner[axis][corner], from the ray's origin. */
+/* Raises t to the ray's entry into the box around the corners; false if the ray misses the box or leaves it before
+ * t_min. corner[axis][corner] is relative to the ray's origin. */
 ALWAYS_INLINE bool query_clamp(const ray_query *q, const double (*corner)[3], double *t)
 {
     double near = -(double)INFINITY, far = (double)INFINITY;
@@ -125,14 +126,14 @@ ALWAYS_INLINE bool query_clamp(const ray_query *q, const double (*corner)[3], do
     return near <= far && far >= q->t_min;
 }
 
-/* One triangle that the edge functions let through. True if the search is over. */
+/* Tests one triangle that the edge functions let through. True if the search is over. */
 static __attribute__((noinline)) bool query_consider(ray_query *q, enum query_mode mode, const double (*corner)[3],
                                                      uint32_t triangle)
 {
     double x[3], y[3], z[3];
     for (int j = 0; j < 3; j++)
         z[j] = q->shear_z * corner[q->z][j];
-    /* Wholly behind, or beyond what was found: t lies between the corners', but for the margin. */
+    /* Entirely behind the ray's start or beyond the best hit: t is between the corners', up to the margin. */
     if (most_of(z) * (1.0 + 2.0 * BOX_MARGIN) < q->t_min || least_of(z) * (1.0 - 2.0 * BOX_MARGIN) > q->t_best ||
         triangle == q->skip)
         return false;
@@ -140,13 +141,13 @@ static __attribute__((noinline)) bool query_consider(ray_query *q, enum query_mo
         x[j] = corner[q->x][j] - q->shear_x * corner[q->z][j];
         y[j] = corner[q->y][j] - q->shear_y * corner[q->z][j];
     }
-    /* weights of the corners */
+    /* barycentric weights */
     const double u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0],
                  det = u + v + w;
     const int facing = det > 0.0 ? FACING_FRONT : FACING_BACK;
     if (!(det > 0.0 || det < 0.0) || !(facing & q->wanted))
         return false;
-    /* A sliver seen edge-on: all three are rounding noise, and only its extent tells whether it is met. */
+    /* A sliver seen edge-on: the weights are rounding noise, and only its extent decides whether it is hit. */
     if (!(least_of(x) <= 0.0 && most_of(x) >= 0.0 && least_of(y) <= 0.0 && most_of(y) >= 0.0))
         return false;
     double t = (u * z[0] + v * z[1] + w * z[2]) / det;
@@ -179,7 +180,7 @@ ALWAYS_INLINE double4 block_load(const void *block, bool single, int corner, int
     return v;
 }
 
-/* Shows the triangles of blocks to who asked for boxes. True if the search is over. */
+/* Reports the triangles of blocks to the `boxes` callback. True if the search is over. */
 static __attribute__((noinline)) bool query_show(ray_query *q, const hierarchy *h, size_t first, size_t count)
 {
     for (size_t i = first; i < first + count; i++) {
@@ -187,7 +188,7 @@ static __attribute__((noinline)) bool query_show(ray_query *q, const hierarchy *
             h->single ? ((const block_single *)h->blocks)[i].triangle : ((const block_double *)h->blocks)[i].triangle;
         for (int lane = 0; lane < BLOCK; lane++) {
             if (lane > 0 && numbers[lane] == numbers[lane - 1])
-                continue; /* a block is filled up by repeating its last triangle */
+                continue; /* padding: a block repeats its last triangle */
             const double t_max = q->visit_box(q->context, numbers[lane], q->t_best * q->unscale);
             if (t_max < q->t_start)
                 return true;
@@ -218,7 +219,7 @@ ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mod
             y[j] = (block_load(block, single, j, ky) - oy) - sy * z[j];
         }
         const double4 u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];
-        /* Sign bits: is any below zero, and any above? Adding zero makes +0 of -0. */
+        /* Sign bits: any weight below zero, any above? Adding zero turns -0 into +0. */
         const int4x64 below = (int4x64)(u + zero) | (int4x64)(v + zero) | (int4x64)(w + zero);
         const int4x64 above = (int4x64)(zero - u) | (int4x64)(zero - v) | (int4x64)(zero - w);
         unsigned set = lanes_of4((below & above) >= 0);
@@ -231,7 +232,7 @@ ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mod
             const uint32_t *numbers =
                 single ? ((const block_single *)block)->triangle : ((const block_double *)block)->triangle;
             if (mode == QUERY_ALL && ((lane > 0 && numbers[lane] == numbers[lane - 1])))
-                continue; /* a block is filled up by repeating its last triangle */
+                continue; /* padding: a block repeats its last triangle */
             double corner[3][3];
             for (int k = 0; k < 3; k++)
                 for (int j = 0; j < 3; j++)
@@ -245,10 +246,10 @@ ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mod
     return false;
 }
 
-/* The ways down, by instruction set. What was found is in *q. */
+/* The traversals, by instruction set. The result is in *q. */
 void KERNEL(walk_bvh)(const hierarchy *h, ray_query *q, enum query_mode mode);
 void KERNEL(walk_spheres)(const hierarchy *h, ray_query *q, enum query_mode mode);
 
-/* Rays down the hierarchy `bvh` together, as far as they are alike; each has been started. Nearest or any. */
+/* Traverses the hierarchy `bvh` with several started rays at once, as far as they are coherent. Nearest or any. */
 enum { TOGETHER = 128 };
 void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int count, enum query_mode mode);

@@ -1,7 +1,7 @@
-/* Boxes of a bvh from its leaves up, where its mesh has moved, the tree as it is. Nodes stand behind their parents and
- * blocks in the order of their leaves, so that one walk from the last node to the first finds every child done, and
- * goes through both arrays about as they lie. Corners are compared while they are in registers: what was just written
- * in parts is slow to read as a vector. */
+/* The bottom-up refit of a bvh's boxes and blocks after its mesh moved; the tree is kept. Nodes are stored after their
+ * parents and blocks in the order of their leaves, so that one pass from the last node to the first has every child
+ * ready and accesses both arrays nearly sequentially. Corners are compared while they are in registers: reading a
+ * vector just after its parts were written is slow. */
 #include "geometry/hierarchy_bvh.h"
 #include "geometry/hierarchy_lanes.h"
 
@@ -20,7 +20,7 @@ ALWAYS_INLINE double4 greater(double4 a, double4 b)
     return choose(a > b, a, b);
 }
 
-/* What the corners of a leaf reach, by axis and lane. */
+/* The bounds of a leaf's corners, by axis and lane. */
 typedef struct reach {
     double4 low[3], high[3];
 } reach;
@@ -35,7 +35,7 @@ ALWAYS_INLINE void place(void *block, bool single, int corner, int axis, double4
     }
 }
 
-/* Corners of a block's triangles anew. */
+/* Recomputes the corners of a block's triangles. */
 ALWAYS_INLINE reach move_block(const mesh *m, void *block, bool single)
 {
     const uint32_t *numbers = single ? ((block_single *)block)->triangle : ((block_double *)block)->triangle;
@@ -58,7 +58,7 @@ ALWAYS_INLINE reach move_block(const mesh *m, void *block, bool single)
     return r;
 }
 
-/* The least of each axis' lanes, in the lane of that number. */
+/* The minimum of each axis' lanes, in the lane of the axis' number. */
 ALWAYS_INLINE double4 least_of_lanes(const double4 *v)
 {
     const double4 xy =
@@ -75,7 +75,7 @@ ALWAYS_INLINE double4 most_of_lanes(const double4 *v)
     return greater(__builtin_shufflevector(xy, z, 0, 1, 4, 5), __builtin_shufflevector(xy, z, 2, 3, 6, 7));
 }
 
-/* As bvh_cut_below, with the sign that bits are carried over for; bvh_cut_above is the same with the other one. */
+/* As bvh_cut_below, with a carry for negative numbers; bvh_cut_above carries for the others. */
 ALWAYS_INLINE float4 cut(double4 v, bits4 carried)
 {
     const bits4 bits = ((bits4)v + (carried << 29) - carried) & ~(bits4){BVH_CUT, BVH_CUT, BVH_CUT, BVH_CUT};
@@ -120,8 +120,8 @@ ALWAYS_INLINE void refit_leaf(hierarchy *h, bvh_node *n, int slot, bool single)
     write_box(n, slot, least_of_lanes(r.low), most_of_lanes(r.high));
 }
 
-/* Nodes ahead whose blocks, and whose triangles by their blocks, are asked for before they are needed: of a large mesh
- * each lies in memory. Vertices are left to the processor; asking for them too costs as much as it saves. */
+/* Prefetch distances in nodes, for blocks and for the triangles in them: in a large mesh each access goes to main
+ * memory. Vertices are not prefetched; that costs as much as it saves. */
 enum { BLOCKS_AHEAD = 8, TRIANGLES_AHEAD = 4 };
 
 ALWAYS_INLINE void fetch_blocks(const hierarchy *h, const bvh_node *n, size_t stride)

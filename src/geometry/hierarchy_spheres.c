@@ -1,6 +1,6 @@
-/* Builds the trees of spheres. `sphere` is a tree of one node. `octant` is the report's: around the triangles stands a
- * shell; its centre divides them among eight octants by their own centres, but those larger than a quarter of the
- * shell's radius stay with it. */
+/* The builder of the sphere trees. `sphere` is a tree of one node. `octant` is the tree of the original report: a shell
+ * bounds the triangles; its centre divides them among eight octants by their own centres, except those larger than a
+ * quarter of the shell's radius, which stay with the shell. */
 #include "geometry/hierarchy_private.h"
 
 #include "base/single.h"
@@ -10,7 +10,7 @@
 
 enum { OCTANTS = 8, STAY = OCTANTS };
 
-/* Triangles are moved about in `order`; `octant` says where each goes in the one division under way. */
+/* `order` is permuted in place; `octant` holds the destination of each triangle in the current division. */
 typedef struct spheres_build {
     hierarchy *h;
     uint32_t *order, *moved;
@@ -51,7 +51,7 @@ static double radius_of(const box *b)
     return 0.5 * sqrt(square);
 }
 
-/* The shell about the boxes of triangles: the boxes, because a hit may lie anywhere in its triangle's
+/* The bounding sphere of the triangles' boxes; of the boxes, because a hit may be anywhere in its triangle's box
  * (hierarchy_query.h). */
 static void shell_of(const spheres_build *b, size_t first, size_t count, sphere_node *s)
 {
@@ -81,8 +81,8 @@ static void shell_of(const spheres_build *b, size_t first, size_t count, sphere_
     s->radius = nextafterf((float)(sqrt(most) * (1.0 + 0x1p-40)), INFINITY);
 }
 
-/* Sorts a node's triangles by octant, those that stay first; start[i]: where octant i - 1's begin, start[0] those that
- * stay. */
+/* Sorts a node's triangles by octant, those that stay with the shell first. start[i]: the first triangle of octant i -
+ * 1; start[0]: the first that stays. */
 static void divide(spheres_build *b, size_t first, size_t count, const sphere_node *s, size_t start[OCTANTS + 2])
 {
     size_t number[OCTANTS + 1] = {0}, at[OCTANTS + 1];
@@ -105,8 +105,8 @@ static void divide(spheres_build *b, size_t first, size_t count, const sphere_no
     memcpy(b->order + first, b->moved + first, count * sizeof *b->order);
 }
 
-/* Makes node number `at` of triangles first .. first + count - 1. */
-static void grow(spheres_build *b, size_t at, size_t first, size_t count, int level)
+/* Builds node number `at` from triangles first .. first + count - 1. */
+static void build_node(spheres_build *b, size_t at, size_t first, size_t count, int level)
 {
     sphere_node s = {.first_block = (uint32_t)b->blocks};
     size_t start[OCTANTS + 2], octants = 0;
@@ -129,7 +129,7 @@ static void grow(spheres_build *b, size_t at, size_t first, size_t count, int le
     b->nodes += octants;
     for (size_t k = 1, child = s.first_child; k <= OCTANTS; k++)
         if (start[k + 1] > start[k])
-            grow(b, child++, start[k], start[k + 1] - start[k], level + 1);
+            build_node(b, child++, start[k], start[k + 1] - start[k], level + 1);
 }
 
 static void pass(spheres_build *b, bool write)
@@ -142,7 +142,7 @@ static void pass(spheres_build *b, bool write)
     for (size_t i = 0; i < count; i++)
         b->order[i] = (uint32_t)i;
     if (count)
-        grow(b, 0, 0, count, 1);
+        build_node(b, 0, 0, count, 1);
 }
 
 status hierarchy_build_spheres(hierarchy *h, diagnostic *why)

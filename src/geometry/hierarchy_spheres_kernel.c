@@ -1,18 +1,18 @@
-/* The way down trees of spheres. A sphere is met if the ray's line passes it within its radius and by a margin wider
- * than the rounding, and some of what is inside lies between t_min and the best hit. */
+/* The traversal of sphere trees. A sphere is hit if the ray's line passes within its radius plus a margin wider than
+ * the rounding error, and part of its inside is between t_min and the best hit. */
 #include "geometry/hierarchy_query.h"
 
 #define SPHERE_MARGIN 0x1p-20
 
-/* Spheres that are still to be visited: of each level at most all children of one node. */
+/* The spheres on the stack: per level at most all children of one node. */
 typedef struct sphere_pending {
     double near;
     uint32_t node;
 } sphere_pending;
 enum { STACK = SPHERES_DEPTH_MAX * 8 };
 
-/* Distance at which the ray comes into the sphere; +inf if it is missed. The centre's distance from the line by
- * components, as a difference of squares would lose it (Haines et al., "Precision improvements for ray/sphere
+/* The ray's distance to its entry into the sphere; +inf for a miss. The centre's distance from the line is computed by
+ * components, since a difference of squares would cancel (Haines et al., "Precision improvements for ray/sphere
  * intersection", Ray Tracing Gems, 2019). */
 ALWAYS_INLINE double sphere_near(const ray_query *q, double inverse_square, const sphere_node *s)
 {
@@ -30,7 +30,7 @@ ALWAYS_INLINE double sphere_near(const ray_query *q, double inverse_square, cons
     const double radius = (double)s->radius * (1.0 + SPHERE_MARGIN) + reach * BOX_MARGIN;
     if (!(off <= radius * radius))
         return (double)INFINITY;
-    /* The direction is at least 1 long, so that the radius bounds half of the way inside. */
+    /* The direction is at least 1 long, so that the radius bounds half of the chord's length in t. */
     const double near = along - radius, far = along + radius;
     return far < q->t_min || near > q->t_best ? (double)INFINITY : near;
 }

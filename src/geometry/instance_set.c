@@ -1,3 +1,4 @@
+/* The instance set: its build, the bounds of its instances, and the frames of their copies. */
 #include "geometry/instance_set.h"
 
 #include <limits.h>
@@ -28,7 +29,7 @@ vec3 instance_set_vertex_point(const instanced_mesh *p, uint32_t copy, uint32_t 
     return vec3_add(instance_set_origin(p, copy), p->turned ? mat3_apply(p->rotation, scaled) : scaled);
 }
 
-/* Normals go over by the inverse transposed matrix: R S^-1. */
+/* Normals transform by the inverse transpose: R S^-1. */
 vec3 instance_set_vertex_normal(const instanced_mesh *p, uint32_t vertex)
 {
     if (!p->triangles->normals)
@@ -74,7 +75,7 @@ static size_t instances_of(const instanced_mesh *p)
     return (size_t)p->copies[0] * p->copies[1] * p->copies[2];
 }
 
-/* Bounds in the world of a box in a part's frame, about its origin; a little wider than rounding needs. */
+/* World bounds of a box in a mesh's local frame, about the frame's origin; widened beyond the rounding error. */
 static bounds3 bounds_in_world(const instanced_mesh *p)
 {
     const bounds3 b = p->triangles->bounds;
@@ -93,8 +94,8 @@ static bounds3 bounds_in_world(const instanced_mesh *p)
     return world;
 }
 
-/* In the part's place in the row; a mesh without triangles has no bounds, and the triangle of zeros stays, which no
- * tree takes in. */
+/* Writes one proxy triangle per copy. A mesh without triangles has no bounds; its proxies stay zero, and the hierarchy
+ * leaves them out. */
 static void span_copies(instance_set *f, const instanced_mesh *p)
 {
     const bounds3 box = bounds_in_world(p);
@@ -113,7 +114,7 @@ static void span_copies(instance_set *f, const instanced_mesh *p)
     }
 }
 
-/* A triangle that spans the bounds stands for each instance. */
+/* Builds the top-level hierarchy over the proxies. */
 static status make_top(instance_set *f, diagnostic *why)
 {
     status code = mesh_create(3 * f->instance_count, f->instance_count, false, false, false, &f->proxies, why);
@@ -121,8 +122,8 @@ static status make_top(instance_set *f, diagnostic *why)
         span_copies(f, &f->parts[i]);
     THEN(code, mesh_finish(f->proxies, why));
     if (code == STATUS_BAD_INPUT)
-        code = diagnose(why, STATUS_BAD_INPUT, "scale them down, or stand them nearer",
-                        "meshes reach farther than 1e9 scene units");
+        code = diagnose(why, STATUS_BAD_INPUT, "reduce their scale, or place them nearer to the origin",
+                        "meshes extend beyond 1e9 scene units");
     return code == STATUS_OK ? hierarchy_build(f->proxies, HIERARCHY_BVH, 1, &f->top, why) : code;
 }
 
@@ -159,7 +160,7 @@ status instance_set_build(const instance_source *sources, int count, instance_se
     status code = STATUS_OK;
     if (f->instance_count > COPIES_MAX)
         code = diagnose(why, STATUS_BAD_INPUT, "use fewer copies",
-                        "the meshes have %zu copies together, more than 4194304", f->instance_count);
+                        "the meshes have %zu copies in all, more than 4194304", f->instance_count);
     if (code == STATUS_OK && f->instance_count > 1)
         code = make_top(f, why);
     if (code != STATUS_OK) {
@@ -180,8 +181,8 @@ void instance_set_destroy(instance_set *f)
     free(f);
 }
 
-/* Does a back come before a front, along a direction of no axis and no diagonal? A front and a back at one place are
- * copies that touch, or an edge: what comes behind them says it. */
+/* Is the point inside the mesh: is the first hit a back and not a front, along a direction that is not an axis or a
+ * diagonal? Where a back and a front coincide (copies that touch, or an edge), the hits after them decide. */
 static bool is_inside(const instance_set *f, uint64_t bit, double reach, vec3 point)
 {
     instance_ray ray = {.origin = point,
@@ -191,7 +192,7 @@ static bool is_inside(const instance_set *f, uint64_t bit, double reach, vec3 po
                         .wanted = bit};
     for (;;) {
         instance_hit back, front;
-        ray.inside = bit; /* looks for backs */
+        ray.inside = bit; /* look for backs */
         instance_kernels_sse2.nearest(f, &ray, 1, &back);
         ray.inside = 0;
         instance_kernels_sse2.nearest(f, &ray, 1, &front);

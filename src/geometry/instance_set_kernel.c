@@ -1,31 +1,31 @@
-/* Rays among all copies of all meshes. Each copy is asked in its own frame, where distances along the ray are the same,
- * because the direction is not made a unit vector there. */
+/* Traversal of the instance set. Each copy is traversed in its own frame. The ray's direction is not normalised there,
+ * so that distances along the ray are the same in all frames. */
 #include "base/kernel.h"
 #include "base/lanes.h"
 #include "geometry/instance_set.h"
 
 #define TREES KERNEL(hierarchy_kernels)
 
-/* Every crossing that a path has with the copies that it asks. */
+/* Reports every crossing of a ray with the copies that it visits. */
 typedef struct visit {
     instance_found *found;
     void *context;
     const instance_set *f;
     const instance_ray *ray;
-    int primitive; /* of the copy that is asked */
+    int primitive; /* of the visited copy */
     uint32_t copy;
 } visit;
 
-/* What one way down asks each copy that it comes by. */
-typedef struct quest {
+/* The state of one traversal of the top-level hierarchy. */
+typedef struct traversal {
     const instance_set *f;
     const instance_ray *ray;
-    bool any, blocked; /* any: whatever is first met; nothing is hidden */
-    visit *all;        /* every crossing, and nothing is hidden; else NULL */
+    bool any, blocked; /* any: stop at the first hit; priorities are ignored */
+    visit *all;        /* report every crossing and ignore priorities; else NULL */
     double t_max;
-    double beyond; /* how far from its start it looks at skins */
+    double beyond; /* the distance from its start within which it ignores open surfaces */
     instance_hit *best;
-} quest;
+} traversal;
 
 static vec3 direction_in(const instanced_mesh *p, vec3 d)
 {
@@ -33,7 +33,7 @@ static vec3 direction_in(const instanced_mesh *p, vec3 d)
     return p->scaled ? vec3_make(turned.x / p->scale.x, turned.y / p->scale.y, turned.z / p->scale.z) : turned;
 }
 
-/* An error across a face's triangle, along the ray. */
+/* Converts an error bound across a face's triangle into one along the ray. */
 static double along_ray(const instance_set *f, const instance_ray *ray, int64_t face, double error)
 {
     const instanced_mesh *p = &f->parts[f->by_primitive[mesh_face_primitive(face)]];
@@ -52,8 +52,8 @@ static double sum_of_magnitudes(vec3 v)
     return fabs(v.x) + fabs(v.y) + fabs(v.z);
 }
 
-/* A ray that starts on a mesh may lie on either side of it by rounding, and of a skin at the same place: of skins it
- * sees those beyond its point's error bound. */
+/* A ray that starts on a mesh may be on either side of it by rounding, and of a coincident open surface: it ignores
+ * open surfaces within the error bound of its start. */
 static double beyond_start(const instance_set *f, const instance_ray *ray)
 {
     if (!f->skins || !is_mesh_face(ray->start))
@@ -62,9 +62,9 @@ static double beyond_start(const instance_set *f, const instance_ray *ray)
     return along_ray(f, ray, ray->start, POINT_ERROR * (sum_of_magnitudes(ray->origin) + p->reach));
 }
 
-/* Where a ray that starts on a surface crosses a mesh at its start, within the crossing's error bound, the two were in
- * contact there, and the ray's set already says on which side of the mesh it is. The bound; 0 for all other crossings.
- */
+/* If a ray that starts on a surface crosses a mesh at its start, within the crossing's error bound, the two surfaces
+ * were in contact there, and the ray's set is already on the right side of the mesh. Returns that bound; 0 for all
+ * other crossings. */
 static double at_start(const instance_set *f, const instance_ray *ray, const instance_hit *hit)
 {
     const instanced_mesh *p = &f->parts[f->by_primitive[mesh_face_primitive(hit->face)]];
@@ -77,13 +77,13 @@ static double at_start(const instance_set *f, const instance_ray *ray, const ins
     return hit->t <= bound ? bound : 0.0;
 }
 
-static quest quest_of(const instance_set *f, const instance_ray *ray)
+static traversal traversal_of(const instance_set *f, const instance_ray *ray)
 {
-    return (quest){.f = f, .ray = ray, .t_max = ray->t_max, .beyond = beyond_start(f, ray)};
+    return (traversal){.f = f, .ray = ray, .t_max = ray->t_max, .beyond = beyond_start(f, ray)};
 }
 
-/* The ray in a copy's frame; false where that mesh is of no concern to it. */
-static bool ray_in(const quest *q, const instanced_mesh *p, uint32_t copy, mesh_ray *local)
+/* The ray in a copy's frame; false if that mesh cannot affect the ray. */
+static bool ray_in(const traversal *q, const instanced_mesh *p, uint32_t copy, mesh_ray *local)
 {
     const instance_ray *ray = q->ray;
     const uint64_t bit = (uint64_t)1 << p->primitive;
@@ -110,8 +110,8 @@ static bool ray_in(const quest *q, const instanced_mesh *p, uint32_t copy, mesh_
     return true;
 }
 
-/* Of equal distances the lower face number wins, so that the order of looking does not matter. */
-static void take(quest *q, const instanced_mesh *p, uint32_t copy, const mesh_hit *hit)
+/* At equal distances the lower face number wins, so that the result is independent of the order. */
+static void accept_hit(traversal *q, const instanced_mesh *p, uint32_t copy, const mesh_hit *hit)
 {
     if (hit->triangle == TRIANGLE_NONE)
         return;
@@ -142,7 +142,7 @@ static const instanced_mesh *part_of_instance(const instance_set *f, size_t inst
     return p;
 }
 
-static void ask_copy(quest *q, size_t instance)
+static void ask_copy(traversal *q, size_t instance)
 {
     const instanced_mesh *p = part_of_instance(q->f, instance);
     const uint32_t copy = (uint32_t)(instance - p->first_instance);
@@ -161,25 +161,25 @@ static void ask_copy(quest *q, size_t instance)
     }
     mesh_hit hit;
     TREES.nearest(p->tree, &local, &hit);
-    take(q, p, copy, &hit);
+    accept_hit(q, p, copy, &hit);
 }
 
 static double come_by(void *context, uint32_t instance, double t_max)
 {
-    quest *q = context;
+    traversal *q = context;
     (void)t_max;
     ask_copy(q, instance);
     return q->blocked ? -1.0 : q->t_max;
 }
 
-static void walk(quest *q)
+static void walk(traversal *q)
 {
     const mesh_ray ray = {
         .origin = q->ray->origin, .direction = q->ray->direction, .t_min = q->ray->t_min, .t_max = q->t_max};
     TREES.boxes(q->f->top, &ray, come_by, q);
 }
 
-static void ask(quest *q)
+static void ask(traversal *q)
 {
     if (q->f->instance_count == 1)
         ask_copy(q, 0);
@@ -187,7 +187,7 @@ static void ask(quest *q)
         walk(q);
 }
 
-/* With so few copies it pays to ask one after another, each for all rays, which then go down together. */
+/* Up to this number of copies it is faster to traverse them in turn, each with all rays as a packet. */
 enum { FEW_COPIES = 8 };
 
 static void nearest_of_copy(const instance_set *f, size_t instance, const instance_ray *rays, int count,
@@ -197,26 +197,26 @@ static void nearest_of_copy(const instance_set *f, size_t instance, const instan
     const uint32_t copy = (uint32_t)(instance - p->first_instance);
     mesh_ray local[BATCH];
     mesh_hit found[BATCH];
-    int ray[BATCH], asked = 0;
+    int ray[BATCH], queued = 0;
     for (int i = 0; i < count; i++) {
-        quest q = quest_of(f, &rays[i]);
+        traversal q = traversal_of(f, &rays[i]);
         q.t_max = hits[i].face == FACE_NONE ? q.t_max : hits[i].t;
-        if (ray_in(&q, p, copy, &local[asked]))
-            ray[asked++] = i;
+        if (ray_in(&q, p, copy, &local[queued]))
+            ray[queued++] = i;
     }
-    if (asked == 0)
+    if (queued == 0)
         return;
-    TREES.nearest_batch(p->tree, local, asked, found);
-    for (int k = 0; k < asked; k++) {
-        quest q = {.best = &hits[ray[k]]};
-        take(&q, p, copy, &found[k]);
+    TREES.nearest_batch(p->tree, local, queued, found);
+    for (int k = 0; k < queued; k++) {
+        traversal q = {.best = &hits[ray[k]]};
+        accept_hit(&q, p, copy, &found[k]);
     }
 }
 
 static void nearest_one(const instance_set *f, const instance_ray *ray, instance_hit *hit)
 {
     *hit = (instance_hit){.t = HUGE_VAL, .face = FACE_NONE};
-    quest q = quest_of(f, ray);
+    traversal q = traversal_of(f, ray);
     q.best = hit;
     ask(&q);
 }
@@ -243,17 +243,17 @@ static void any_of_copy(const instance_set *f, size_t instance, const instance_r
     const instanced_mesh *p = part_of_instance(f, instance);
     mesh_ray local[BATCH];
     bool found[BATCH];
-    int ray[BATCH], asked = 0;
+    int ray[BATCH], queued = 0;
     for (int i = 0; i < count; i++) {
-        quest q = quest_of(f, &rays[i]);
+        traversal q = traversal_of(f, &rays[i]);
         q.any = true;
-        if (!blocked[i] && ray_in(&q, p, (uint32_t)(instance - p->first_instance), &local[asked]))
-            ray[asked++] = i;
+        if (!blocked[i] && ray_in(&q, p, (uint32_t)(instance - p->first_instance), &local[queued]))
+            ray[queued++] = i;
     }
-    if (asked == 0)
+    if (queued == 0)
         return;
-    TREES.any_batch(p->tree, local, asked, found);
-    for (int k = 0; k < asked; k++)
+    TREES.any_batch(p->tree, local, queued, found);
+    for (int k = 0; k < queued; k++)
         blocked[ray[k]] = found[k];
 }
 
@@ -264,7 +264,7 @@ static void any(const instance_set *f, const instance_ray *rays, int count, bool
     for (size_t instance = 0; f->instance_count <= FEW_COPIES && instance < f->instance_count; instance++)
         any_of_copy(f, instance, rays, count, blocked);
     for (int i = 0; f->instance_count > FEW_COPIES && i < count; i++) {
-        quest q = quest_of(f, &rays[i]);
+        traversal q = traversal_of(f, &rays[i]);
         q.any = true;
         ask(&q);
         blocked[i] = q.blocked;
@@ -274,14 +274,13 @@ static void any(const instance_set *f, const instance_ray *rays, int count, bool
 static void each(const instance_set *f, const instance_ray *ray, instance_found *found, void *context)
 {
     visit v = {.found = found, .context = context, .f = f, .ray = ray};
-    quest q = quest_of(f, ray);
+    traversal q = traversal_of(f, ray);
     q.any = true;
     q.all = &v;
     ask(&q);
 }
 
-/* The last crossings of each mesh's fronts and backs on the path, whichever triangles, and how far those copies extend.
- */
+/* The last crossings of a ray with each mesh's fronts and backs, and the extents of the crossed copies. */
 typedef struct last_crossings {
     const instance_set *f;
     double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], front_extent[PRIMITIVES_MAX], back_extent[PRIMITIVES_MAX];
@@ -310,8 +309,8 @@ static void look_at_all(const instance_set *f, const instance_ray *ray, last_cro
     each(f, ray, take_last, last);
 }
 
-/* Is a ray at the end of its path in a closed mesh? What was crossed last says so: fronts lead in, backs lead out.
- * Where both are at one place, at a silhouette or between two copies that touch, it is in what it was in before. */
+/* Is the ray, at the end of its range, in the closed mesh? The last crossing decides: fronts lead in, backs lead out.
+ * If both coincide (a silhouette, or two copies that touch), the ray is inside if it was before. */
 static bool is_in(const instance_set *f, const instance_ray *ray, const last_crossings *all, int number)
 {
     const uint64_t bit = (uint64_t)1 << number;

@@ -1,11 +1,11 @@
-/* Points, normals and texture coordinates where rays meet meshes. */
+/* Points, normals and texture coordinates where rays hit meshes. */
 #include "geometry/instance_set.h"
 
 #include "base/lanes.h"
 
 typedef struct corner_set {
     vec3 a, b, c;
-} corner_set; /* a triangle's corners, scaled, in the part's frame turned to the world */
+} corner_set; /* a triangle's corners, scaled and rotated to the world's axes */
 
 static vec3 turned(const instanced_mesh *p, vec3 v)
 {
@@ -18,10 +18,9 @@ static vec3 mix(vec3 a, vec3 b, vec3 c, double u, double v)
     return vec3_add(a, vec3_add(vec3_scale(vec3_sub(b, a), u), vec3_scale(vec3_sub(c, a), v)));
 }
 
-/* The interpolated normal, or one between it and the geometric one, so that a mirror there sends the ray out of the
- * surface and not into it: the halfway vector of the ray and the outgoing direction raised to just above the surface
- * (Keller et al., "The Iray light transport simulation and rendering system", 2017, A.3). All unit vectors; d . g < 0.
- */
+/* The interpolated normal, bent towards the geometric normal where necessary so that a mirror reflects the ray out of
+ * the surface: the halfway vector of the ray and the outgoing direction raised to just above the surface (Keller et
+ * al., "The Iray light transport simulation and rendering system", 2017, A.3). All are unit vectors; d . g < 0. */
 static vec3 bent_normal(vec3 n, vec3 g, vec3 d)
 {
     const double least = 0.01;
@@ -43,25 +42,25 @@ static vec3 smooth_normal(const instanced_mesh *p, mesh_triangle tri, double u, 
     const double length = vec3_length(n), side = vec3_dot(n, g);
     if (!(length > 1e-12) || side == 0.0)
         return g;
-    n = vec3_scale(n, (side < 0.0 ? -1.0 : 1.0) / length); /* on the geometric normal's side, which is the ray's */
+    n = vec3_scale(n, (side < 0.0 ? -1.0 : 1.0) / length); /* on the ray's side, like the geometric normal */
     return bent_normal(n, g, d);
 }
 
-/* A triangle's edges from its first corner, its normal and the length of their cross product. */
+/* A triangle's edges from its first corner, its normal, and the length of their cross product. */
 typedef struct edge_pair {
     vec3 b, c, n;
     double area2;
 } edge_pair;
 
-/* How fast a number that is 0 at the first corner, and at_b and at_c at the others, grows across the triangle: the
- * length of its gradient. */
+/* Length of the gradient across the triangle of a value that is 0 at the first corner, and at_b and at_c at the
+ * others. */
 static double steepness(const edge_pair *e, double at_b, double at_c)
 {
     const vec3 along = vec3_add(vec3_scale(vec3_cross(e->c, e->n), at_b), vec3_scale(vec3_cross(e->n, e->b), at_c));
     return vec3_length(along) / e->area2;
 }
 
-/* Texture coordinates, and how far u or v, whichever is faster, runs in a scene unit. */
+/* Texture coordinates, and the larger gradient of u and v per scene unit. */
 static void texture_at(const mesh *m, mesh_triangle tri, double u, double v, const edge_pair *e, mesh_points *more,
                        int i)
 {

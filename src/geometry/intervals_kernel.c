@@ -1,15 +1,14 @@
-/* First pass over a batch: for every primitive the interval [in, out] in which each ray is inside it.
+/* First pass over a batch: for every primitive, the interval [in, out] in which each ray is inside it.
  *
- * The set that a ray carries is trusted where arithmetic cannot tell: a ray that is inside a primitive has no entry
- * (in = -inf) and leaves it at once if its exit lies behind; a ray that is outside a convex primitive whose
- * face it starts on never meets it again; one that is outside another primitive although the interval says otherwise is
- * at its edge to within rounding: it enters now if more of the interval lies ahead than behind, else it has just left.
- */
+ * The ray's set decides where rounding errors could. A ray that is inside a primitive has no entry (in = -inf) and
+ * leaves it at once if its exit is behind. A ray that is outside a convex primitive and starts on its face never hits
+ * it again. A ray that is outside another primitive, although its interval contains the start, is at its edge up to
+ * rounding: it enters now if more of the interval is ahead than behind; otherwise it has just left. */
 #include "geometry/kernels.h"
 
 #include "geometry/primitives/primitive.h"
 
-/* Of a mesh the set says all that is known before its triangles are asked: in it from ever to ever, or never. */
+/* For a mesh the interval follows from the set, until its triangles are tested: (-inf, inf) or empty. */
 static void membership(int bit, const ray_batch *rays, ray_scratch *s)
 {
     double *restrict in = s->in[bit], *restrict out = s->out[bit];
@@ -20,7 +19,8 @@ static void membership(int bit, const ray_batch *rays, ray_scratch *s)
     }
 }
 
-/* What the primitives that are not turned share: inverse components, and the leading coefficient of round cylinders. */
+/* Terms shared by primitives that are not rotated: inverse components, and the leading coefficient of round
+ * cylinders. */
 static void shared_terms(const ray_batch *rays, ray_scratch *restrict s)
 {
     /* VECTORISE */

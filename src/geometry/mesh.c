@@ -1,3 +1,4 @@
+/* Creation, ownership, volume and area of triangle meshes. */
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
 #include "geometry/mesh_share.h"
@@ -45,10 +46,10 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
                    mesh **out, diagnostic *why)
 {
     if (triangle_count > MESH_TRIANGLES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 268435456 triangles", "%zu triangles are too many",
-                        triangle_count);
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 268435456 triangles",
+                        "a mesh of %zu triangles is too large", triangle_count);
     if (vertex_count > MESH_VERTICES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 536870912 vertices", "%zu vertices are too many",
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 536870912 vertices", "a mesh of %zu vertices is too large",
                         vertex_count);
     mesh *m = calloc(1, sizeof *m);
     if (!m)
@@ -95,8 +96,8 @@ double mesh_triangle_volume6(const mesh *m, size_t triangle, vec3 origin)
     return vec3_dot(a, vec3_cross(b, vec3_sub(m->vertices[corner[2]], origin)));
 }
 
-/* Sum of the signed tetrahedra over the triangles (divergence theorem), from the middle of the bounds, where least
- * cancels. */
+/* Sum of the signed tetrahedra over the triangles (divergence theorem), from the centre of the bounds, where
+ * cancellation is least. */
 double mesh_volume(const mesh *m)
 {
     const vec3 middle =

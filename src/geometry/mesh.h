@@ -1,10 +1,10 @@
-/* A triangle mesh: indexed vertices with optional normals and texture coordinates, and a material slot a face.
- * Triangles are seen from both sides; a triangle's front is where its vertices run counterclockwise, so that its
- * geometric normal (b - a) x (c - a) points towards who looks at the front. A mesh whose every edge joins two
- * triangles, once in each direction, is closed: it bounds a volume, which lies behind the fronts.
+/* A triangle mesh: indexed vertices with optional normals and texture coordinates, and one material slot per face.
+ * Triangles are visible from both sides. The vertices of a triangle run counterclockwise seen from its front, so that
+ * its geometric normal (b - a) x (c - a) points towards a viewer in front. A mesh whose every edge joins two triangles,
+ * once in each direction, is closed: it bounds a volume, which is behind the fronts.
  *
- * A mesh is not changed once it is made (but for mesh_move), and is shared: mesh_retain and mesh_release count its
- * owners (from any thread). Makers and readers fill one through mesh_create, and end with mesh_finish. */
+ * A finished mesh is immutable (except for mesh_move) and shared: mesh_retain and mesh_release count its owners, from
+ * any thread. Generators and readers create a mesh with mesh_create, fill it, and end with mesh_finish. */
 #pragma once
 
 #include "base/status.h"
@@ -13,23 +13,22 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Numbers of triangles and of vertices fit into 32 bits, and their three corners times the memory of one into any
- * size_t. */
+/* Numbers of triangles and of vertices fit into 32 bits, and three corners per triangle times the memory of one into
+ * any size_t. */
 enum { MESH_TRIANGLES_MAX = 1 << 28, MESH_VERTICES_MAX = 1 << 29, MESH_SLOTS_MAX = 256 };
-#define MESH_FAR 1e9 /* coordinates are finite and not larger than this */
+#define MESH_FAR 1e9 /* the largest magnitude of a coordinate */
 
 typedef struct mesh_triangle {
     uint32_t corner[3];
 } mesh_triangle;
 typedef struct mesh_uv {
     double u, v;
-} mesh_uv; /* u to the right, v upwards in the picture, whose lower left corner is 0, 0 */
+} mesh_uv; /* u to the right, v upwards in the texture image; 0, 0 is its lower left corner */
 typedef struct bounds3 {
     vec3 low, high;
 } bounds3;
 
-/* What mesh_finish found about a mesh that is not closed: an edge (by two vertices) that is not shared as it should be.
- */
+/* Why mesh_finish found a mesh not closed: an edge (by two vertices) that is not shared by two triangles. */
 typedef struct mesh_hole {
     uint32_t from, to;
     size_t triangle;
@@ -45,39 +44,40 @@ typedef struct mesh {
     uint8_t *slots;                   /* material slot by triangle; NULL: all 0 */
     int slot_count;                   /* at least 1 */
     char *slot_names[MESH_SLOTS_MAX]; /* owned; NULL where a slot has no name */
-    /* found by mesh_finish: */
-    bounds3 bounds;           /* of the vertices that triangles use; low > high when there is no triangle */
-    bool closed;              /* and every front looks outwards */
+    /* set by mesh_finish: */
+    bounds3 bounds;           /* of the vertices that triangles use; low > high without triangles */
+    bool closed;              /* closed, with every front facing outwards */
     bool single;              /* every coordinate is exactly a float */
-    mesh_hole hole;           /* of a mesh that is not closed */
-    struct mesh_share *share; /* number of owners, and what others have made for it (geometry/hierarchy.h) */
+    mesh_hole hole;           /* for a mesh that is not closed */
+    struct mesh_share *share; /* number of owners, and the hierarchies built for it (geometry/hierarchy.h) */
 } mesh;
 
-/* An unfinished mesh with room for so many; all zero; with_* say which optional arrays to have. STATUS_BAD_INPUT beyond
- * the limits, STATUS_FAILURE when memory is out. The caller is its one owner. */
+/* Creates an unfinished mesh, all zero; with_* select the optional arrays. STATUS_BAD_INPUT beyond the limits,
+ * STATUS_FAILURE: out of memory. The caller is its only owner. */
 status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
                    mesh **out, diagnostic *why);
 
-/* Checks that indices are in range and numbers finite and within MESH_FAR, normalises normals (a zero one becomes the
- * triangle's), finds bounds and whether the mesh is closed: vertices at equal positions are one here (-0 equals 0).
- * Triangles that run the wrong way round in an otherwise closed mesh are turned round, and so is a closed mesh that is
- * inside out (negative volume). A triangle with two equal corners joins nothing and is skipped in this. A connected
- * part of which three quarters agree keeps their direction, so that a hollow stays one; one more mixed comes to look
- * outwards. Normals that were given stay as they are. Of a surface with one side only the hole is an edge shared by 2.
- * STATUS_BAD_INPUT names the triangle or vertex. */
+/* Finishes a mesh. Checks that indices are in range and coordinates finite and within MESH_FAR, normalises normals (a
+ * zero normal becomes the triangle's), computes the bounds, and finds whether the mesh is closed; for this, vertices at
+ * equal positions are one vertex (-0 equals 0) and a triangle with two equal corners is skipped.
+ *
+ * Triangles with the wrong winding in an otherwise closed mesh are flipped, and so is a closed mesh that is inside out
+ * (negative volume). A connected part of which three quarters of the triangles agree keeps their direction, so that a
+ * hollow stays a hollow; a more mixed part is made to face outwards. Given normals are not changed. For a one-sided
+ * surface the hole is an edge shared by 2 triangles. The message of STATUS_BAD_INPUT names the triangle or vertex. */
 status mesh_finish(mesh *m, diagnostic *why);
 
 void mesh_retain(const mesh *m);
 void mesh_release(const mesh *m); /* NULL is allowed */
-long mesh_owners(const mesh *m);  /* how many there are now */
+long mesh_owners(const mesh *m);  /* the current number of owners */
 
-/* Moves the vertices of a finished mesh, and gives it these normals where it has any (they are normalised as by
- * mesh_finish): of a body that moves, between frames, when no other thread looks at it. Vertices that lay at one place
- * must do so still, for whether it is closed is not found out again. Hierarchies that were kept with it do not fit any
- * more until hierarchy_follow (geometry/hierarchy.h). vertices and normals: one for each vertex; normals NULL leaves
- * them. STATUS_BAD_INPUT as mesh_finish, the mesh is then as it was. */
+/* Moves the vertices of a finished mesh, and replaces its normals if it has any (normalised as by mesh_finish): for an
+ * animated solid between frames, while no other thread uses the mesh. Vertices with equal positions must stay together,
+ * since `closed` is not computed again. The mesh's hierarchies are invalid until hierarchy_follow
+ * (geometry/hierarchy.h). vertices and normals: one per vertex; normals NULL keeps them. STATUS_BAD_INPUT as
+ * mesh_finish, with the mesh unchanged. */
 status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic *why);
 
-/* Volume enclosed by a closed mesh (negative when inside out), and surface area. */
+/* The volume enclosed by a closed mesh (negative when inside out), and the surface area. */
 double mesh_volume(const mesh *m);
 double mesh_area(const mesh *m);

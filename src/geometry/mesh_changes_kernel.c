@@ -1,6 +1,6 @@
-/* What meshes add to the second pass over a batch (nearest_interface_kernel.c): their crossings among those of the
- * convex primitives, and the bits of a ray's set that stand for them. Between two changes of medium only meshes of a
- * lower rank can be crossed, unseen; their bits are set right where the next change is. */
+/* The part of meshes in the second pass over a batch (nearest_interface_kernel.c): their crossings among those of the
+ * other primitives, and their bits of a ray's set. Between two changes of medium a ray can cross only meshes of lower
+ * priority, which are hidden; their bits are updated at the next change. */
 #include "geometry/kernels.h"
 
 #include "geometry/instance_set.h"
@@ -21,8 +21,8 @@ static instance_ray ray_of_column(const ray_batch *rays, int k, const ray_scratc
                           .inside = s->inside[k]};
 }
 
-/* A front and a back of one mesh within this share of the distance and of the mesh's own extent are at one place: well
- * above rounding. */
+/* A front and a back of one mesh within this share of the distance and of the mesh's own extent coincide: well above
+ * the rounding error. */
 #define ONE_PLACE 0x1p-40
 
 static double close_to(const ray_scratch *s, int k, double t)
@@ -34,35 +34,34 @@ void KERNEL(mesh_changes)(const scene_geometry *a, const ray_batch *rays, int n,
                           instance_hit *hits)
 {
     const instance_set *f = a->meshes;
-    instance_ray asked[BATCH];
+    instance_ray queries[BATCH];
     for (int k = 0; k < n; k++) {
-        asked[k] = ray_of_column(rays, k, s);
-        asked[k].t_max = c->t[k] + close_to(s, k, c->t[k]);
-        asked[k].before = c->before[k];
-        asked[k].wanted = f->primitives;
+        queries[k] = ray_of_column(rays, k, s);
+        queries[k].t_max = c->t[k] + close_to(s, k, c->t[k]);
+        queries[k].before = c->before[k];
+        queries[k].wanted = f->primitives;
     }
     if (n <= 0)
         return;
-    INSTANCE_SET.nearest(f, asked, n, hits);
+    INSTANCE_SET.nearest(f, queries, n, hits);
     for (int k = 0; k < n; k++) {
-        const bool met = hits[k].face != FACE_NONE;
-        const bool near = met && c->hit_primitive[k] >= 0 && fabs(c->t[k] - hits[k].t) <= close_to(s, k, hits[k].t);
+        const bool found = hits[k].face != FACE_NONE;
+        const bool near = found && c->hit_primitive[k] >= 0 && fabs(c->t[k] - hits[k].t) <= close_to(s, k, hits[k].t);
         s->meshes->near[k] = near ? (uint64_t)1 << mesh_face_primitive(hits[k].face) : 0;
-        if (met && hits[k].t < c->t[k]) {
+        if (found && hits[k].t < c->t[k]) {
             c->t[k] = hits[k].t;
             c->hit_primitive[k] = mesh_face_primitive(hits[k].face);
         }
     }
 }
 
-/* The meshes of the crossings that are found, but for those of the copy with that face: a mesh's own parts do not
- * touch. */
+/* The meshes of the crossings that are found, except for the copy with that face: parts of one mesh do not touch. */
 typedef struct others {
     int64_t face;
     uint64_t set;
 } others;
 
-static void take_others(void *context, const instance_hit *hit)
+static void collect_others(void *context, const instance_hit *hit)
 {
     others *o = context;
     const int p = mesh_face_primitive(hit->face);
@@ -71,8 +70,8 @@ static void take_others(void *context, const instance_hit *hit)
         o->set |= (uint64_t)1 << p;
 }
 
-/* The meshes with a boundary close to column k's crossing. A single mesh that is not hidden was already looked for that
- * far. */
+/* The meshes with a boundary close to column k's crossing. For a single visible mesh the nearest query has covered this
+ * range already. */
 static uint64_t near_meshes(const instance_set *f, const ray_batch *rays, int k, const ray_scratch *s,
                             const hit_batch *c, const instance_hit *hit)
 {
@@ -85,12 +84,12 @@ static uint64_t near_meshes(const instance_set *f, const ray_batch *rays, int k,
     ray.t_max = c->t[k] + close;
     ray.wanted = f->primitives;
     others o = {on_mesh ? hit->face : FACE_NONE, 0};
-    INSTANCE_SET.each(f, &ray, take_others, &o);
+    INSTANCE_SET.each(f, &ray, collect_others, &o);
     return o.set;
 }
 
-/* The set at t, where the ray has been in the medium of that rank all the way from where it was looked at last: of the
- * meshes that are hidden there what their last crossings say. */
+/* The set at t, where the ray has been in the medium of that priority index since it was last updated. The bits of the
+ * meshes hidden there follow from their last crossings. */
 static uint64_t set_at(const instance_set *f, const ray_batch *rays, int k, const ray_scratch *s,
                        int64_t priority_index, double t, uint64_t set)
 {
@@ -162,12 +161,12 @@ instance_hit KERNEL(mesh_hit_between)(const scene_geometry *a, const ray_batch *
     return hit;
 }
 
-/* Rays that a mesh of the set is in the way of, between 0 and 1: those that set out in a closed one are in it from the
+/* Marks rays that a mesh of the set blocks between 0 and 1. A ray that starts inside a closed mesh is blocked at its
  * start. */
 void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, int64_t *marked,
                           const int64_t *settled)
 {
-    instance_ray asked[BATCH];
+    instance_ray queries[BATCH];
     bool found[BATCH];
     int ray[BATCH], count = 0;
     for (int i = 0; i < rays->count; i++) {
@@ -177,18 +176,18 @@ void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64
             marked[i] = -1;
             continue;
         }
-        asked[count] = (instance_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
-                                      .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
-                                      .t_min = 0.0,
-                                      .t_max = 1.0,
-                                      .start = rays->start[i],
-                                      .inside = rays->inside[i],
-                                      .wanted = wanted};
+        queries[count] = (instance_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
+                                        .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
+                                        .t_min = 0.0,
+                                        .t_max = 1.0,
+                                        .start = rays->start[i],
+                                        .inside = rays->inside[i],
+                                        .wanted = wanted};
         ray[count++] = i;
     }
     if (count == 0)
         return;
-    INSTANCE_SET.any(a->meshes, asked, count, found);
+    INSTANCE_SET.any(a->meshes, queries, count, found);
     for (int k = 0; k < count; k++)
         marked[ray[k]] |= -(int64_t)found[k];
 }

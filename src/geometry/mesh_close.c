@@ -1,6 +1,6 @@
-/* Is a mesh closed? Half-edges (a triangle's, from one corner to the next) are put in order by the lower and the higher
- * of their two positions: counted into a list for each lower one, and each list, which is short, sorted. Linear in
- * practice. */
+/* The test whether a mesh is closed. Half-edges (a triangle's, from one corner to the next) are sorted by the lower and
+ * the higher of their two positions: first by counting, into a list for each lower position, then within each list,
+ * which is short. Linear time in practice. */
 #include "geometry/mesh_parts.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@ typedef struct half_edge {
     uint32_t higher, half;
 } half_edge;
 
-/* edges[start[v]] .. edges[start[v + 1] - 1] are those whose lower position is v. */
+/* edges[start[v]] .. edges[start[v + 1] - 1] are the half-edges whose lower position is v. */
 typedef struct edge_lists {
     uint32_t *same, *start;
     half_edge *edges;
@@ -59,7 +59,7 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
     half_edge *edges = lists->edges = malloc((3 * m->triangle_count + 1) * sizeof *edges);
     if (!start || !edges)
         return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
-    /* twice over the half-edges: count them two places on, and put them where the one before ends */
+    /* two passes over the half-edges: count them two entries ahead, then place each at the end of the list before */
     for (int writing = 0; writing < 2; writing++) {
         for (size_t t = 0; t < m->triangle_count; t++) {
             const uint32_t *corner = m->triangles[t].corner;
@@ -80,20 +80,20 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Position where a half-edge begins. */
+/* The position where a half-edge begins. */
 static uint32_t begins(const mesh *m, const uint32_t *same, uint32_t half)
 {
     return same[m->triangles[half / 3].corner[half % 3]];
 }
 
 typedef struct edge_findings {
-    size_t odd;     /* lowest half-edge that is not shared by two; SIZE_MAX: none */
+    size_t odd;     /* lowest half-edge whose edge is not shared by two triangles; SIZE_MAX: none */
     int sharing;    /* triangles that share its edge */
-    size_t edges;   /* shared by two */
-    size_t against; /* of these, edges that both triangles run in one direction */
+    size_t edges;   /* edges shared by two */
+    size_t against; /* of these, edges with the same direction in both triangles */
 } edge_findings;
 
-/* Looks at each edge; mates may be NULL. */
+/* Classifies each edge; mates may be NULL. */
 static edge_findings find_pairs(const mesh *m, const edge_lists *lists, uint32_t *mates)
 {
     edge_findings found = {.odd = SIZE_MAX};
@@ -145,8 +145,7 @@ static status orient(mesh *m, const edge_lists *lists, diagnostic *why)
         if (!mesh_orient(m, &n, &at))
             name_hole(m, at, 2);
     } else {
-        result = diagnose(why, STATUS_FAILURE, "use fewer triangles",
-                          "out of memory for the neighbours of a mesh's triangles");
+        result = diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
     }
     free(mates);
     free(n.queue);

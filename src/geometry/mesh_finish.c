@@ -1,3 +1,4 @@
+/* The checks, normals and bounds of a mesh at mesh_finish. */
 #include "base/single.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
@@ -12,13 +13,13 @@ static status check_vertices(const mesh *m, diagnostic *why)
     for (size_t v = 0; v < m->vertex_count; v++) {
         const vec3 p = m->vertices[v];
         if (!within(p, MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "coordinates are finite and at most 1e9",
-                            "vertex %zu lies at %g, %g, %g", v, p.x, p.y, p.z);
+            return diagnose(why, STATUS_BAD_INPUT, "use finite coordinates of at most 1e9",
+                            "vertex %zu has the coordinates %g, %g, %g", v, p.x, p.y, p.z);
         if (m->normals && !within(m->normals[v], 0x1.fffffffffffffp1023))
-            return diagnose(why, STATUS_BAD_INPUT, "normals are finite", "vertex %zu has a normal that is no number",
+            return diagnose(why, STATUS_BAD_INPUT, "use finite normals", "vertex %zu has a normal that is not finite",
                             v);
         if (m->uvs && !(fabs(m->uvs[v].u) <= MESH_FAR && fabs(m->uvs[v].v) <= MESH_FAR))
-            return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite and at most 1e9",
+            return diagnose(why, STATUS_BAD_INPUT, "use finite texture coordinates of at most 1e9",
                             "vertex %zu has texture coordinates %g, %g", v, m->uvs[v].u, m->uvs[v].v);
     }
     return STATUS_OK;
@@ -27,17 +28,17 @@ static status check_vertices(const mesh *m, diagnostic *why)
 status mesh_check(const mesh *m, diagnostic *why)
 {
     if (m->slot_count < 1 || m->slot_count > MESH_SLOTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 256", "%d material slots", m->slot_count);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 256", "a mesh cannot have %d material slots", m->slot_count);
     for (size_t t = 0; t < m->triangle_count; t++) {
         for (int k = 0; k < 3; k++) {
             if (m->triangles[t].corner[k] >= m->vertex_count)
-                return diagnose(why, STATUS_BAD_INPUT, "vertices are counted from 0",
-                                "triangle %zu names vertex %lu of %zu", t, (unsigned long)m->triangles[t].corner[k],
+                return diagnose(why, STATUS_BAD_INPUT, "number vertices from 0",
+                                "triangle %zu refers to vertex %lu of %zu", t, (unsigned long)m->triangles[t].corner[k],
                                 m->vertex_count);
         }
         if (m->slots && m->slots[t] >= m->slot_count)
-            return diagnose(why, STATUS_BAD_INPUT, "slots are counted from 0",
-                            "triangle %zu names material slot %d of %d", t, m->slots[t], m->slot_count);
+            return diagnose(why, STATUS_BAD_INPUT, "number slots from 0",
+                            "triangle %zu refers to material slot %d of %d", t, m->slots[t], m->slot_count);
     }
     return check_vertices(m, why);
 }
@@ -47,7 +48,7 @@ static double largest(vec3 v)
     return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
 }
 
-/* Its direction as a unit vector, whatever its length; false for the zero vector. */
+/* The direction as a unit vector, for any length; false for the zero vector. */
 static bool direction_of(vec3 v, vec3 *unit)
 {
     const double scale = largest(v);
@@ -58,12 +59,12 @@ static bool direction_of(vec3 v, vec3 *unit)
     return true;
 }
 
-/* Unit normal of a triangle's front; a zero vector where it has none. */
+/* Unit normal of a triangle's front; a zero vector if it has none. */
 static vec3 front_of(const mesh *m, mesh_triangle triangle)
 {
     const vec3 *at = m->vertices, a = at[triangle.corner[0]];
     vec3 b, c, normal = vec3_make(0.0, 0.0, 0.0);
-    /* the edges as unit vectors: the product of small ones would vanish */
+    /* edges as unit vectors: the product of small ones would underflow */
     if (direction_of(vec3_sub(at[triangle.corner[1]], a), &b) && direction_of(vec3_sub(at[triangle.corner[2]], a), &c))
         direction_of(vec3_cross(b, c), &normal);
     return normal;
@@ -83,7 +84,7 @@ void mesh_normalize(mesh *m)
     }
     for (size_t v = 0; missing && v < m->vertex_count; v++)
         if (largest(m->normals[v]) == 0.0)
-            m->normals[v] = vec3_make(0.0, 1.0, 0.0); /* no triangle with an area is there */
+            m->normals[v] = vec3_make(0.0, 1.0, 0.0); /* no adjacent triangle has an area */
 }
 
 void mesh_find_bounds(mesh *m)

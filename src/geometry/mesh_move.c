@@ -1,5 +1,5 @@
-/* A finished mesh whose vertices move, once a frame: one pass over the new positions says whether they may be and what
- * they reach; only then are they copied, so that a mesh that cannot be moved stays as it was. */
+/* The motion of a finished mesh's vertices, once per frame. One pass checks the new positions and computes their
+ * bounds; only then are they copied, so that a failure leaves the mesh unchanged. */
 #include "base/single.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_parts.h"
@@ -8,15 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PIECE = 512 }; /* vertices that are looked at while they are in the first-level cache */
+enum { PIECE = 512 }; /* vertices per block, processed while in the first-level cache */
 
 typedef struct extent {
     double low[3], high[3];
-    bool within; /* finite and not beyond MESH_FAR */
+    bool within; /* finite and within MESH_FAR */
     bool single;
 } extent;
 
-/* Bits below a float's last, and the smallest normal float: above it a double without such bits is a float. */
+/* The bits of a double below a float's last bit, and the smallest normal float: a larger double without these bits is
+ * exactly a float. */
 #define BELOW_SINGLE 0x1fffffffu
 #define SINGLE_NORMAL 0x1p-126
 
@@ -66,8 +67,8 @@ static bool all_finite(const vec3 *v, size_t count)
     return finite;
 }
 
-/* Bounds are of the vertices that triangles use. Where they use all, which is found out once, triangles need not be
- * looked at. */
+/* Bounds are those of the vertices that triangles use. If triangles use all vertices, which is determined once, the
+ * triangles need not be read. */
 static bool uses_every_vertex(mesh *m)
 {
     if (m->share->used == MESH_USED_UNKNOWN) {
@@ -81,7 +82,7 @@ static bool uses_every_vertex(mesh *m)
             }
         free(used);
         if (!used)
-            return false; /* as good, but slower */
+            return false; /* correct too, but slower */
         m->share->used = count == m->vertex_count ? MESH_USED_ALL : MESH_USED_SOME;
     }
     return m->share->used == MESH_USED_ALL;
@@ -94,7 +95,7 @@ status mesh_move(mesh *m, const vec3 *vertices, const vec3 *normals, diagnostic 
     for (size_t first = 0; first < m->vertex_count; first += PIECE)
         extend(&e, vertices + first, m->vertex_count - first < PIECE ? m->vertex_count - first : PIECE);
     if (!e.within || (turns && !all_finite(normals, m->vertex_count))) {
-        mesh moved = *m; /* says which vertex it is */
+        mesh moved = *m; /* for the error message about the vertex */
         moved.vertices = (vec3 *)vertices;
         moved.normals = turns ? (vec3 *)normals : NULL;
         return mesh_check(&moved, why);

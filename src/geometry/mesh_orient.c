@@ -1,5 +1,5 @@
-/* Neighbouring triangles of a surface agree when they run their common edge in opposite directions; flood fill makes
- * them agree. */
+/* Consistent winding of a mesh by flood fill: neighbouring triangles agree if they run along their common edge in
+ * opposite directions. */
 #include "geometry/mesh_parts.h"
 
 enum { UNSEEN = 2 };
@@ -17,8 +17,8 @@ static uint32_t begins(const mesh *m, const mesh_neighbours *n, uint32_t half)
     return n->same[m->triangles[half / 3].corner[half % 3]];
 }
 
-/* The connected part of triangle n->queue[first]; returns the end of its stretch of the queue, 0 if it cannot be made
- * to agree. */
+/* Fills the connected part of triangle n->queue[first]. Returns the end of its range of the queue, 0 if neighbours
+ * cannot agree. */
 static size_t flood(const mesh *m, mesh_neighbours *n, size_t first, size_t *at)
 {
     size_t end = first + 1;
@@ -40,8 +40,8 @@ static size_t flood(const mesh *m, mesh_neighbours *n, size_t first, size_t *at)
     return end;
 }
 
-/* Which of its two directions a part takes. */
-static void settle(const mesh *m, mesh_neighbours *n, size_t first, size_t end)
+/* Chooses one of the two directions of a connected part. */
+static void choose_direction(const mesh *m, mesh_neighbours *n, size_t first, size_t end)
 {
     const vec3 middle = m->vertices[m->triangles[n->queue[first]].corner[0]];
     size_t turned = 0;
@@ -71,7 +71,7 @@ bool mesh_orient(mesh *m, mesh_neighbours *n, size_t *at)
         end = flood(m, n, first, at);
         if (end == 0)
             return false;
-        settle(m, n, first, end);
+        choose_direction(m, n, first, end);
     }
     for (size_t t = 0; t < m->triangle_count; t++)
         if (n->turned[t])

@@ -1,4 +1,4 @@
-/* Vertices at equal positions, found by hashing: one table of vertex numbers, open addressing. */
+/* The search for vertices at equal positions: a hash table of vertex numbers with open addressing. */
 #include "geometry/mesh_parts.h"
 
 #include <stdlib.h>
@@ -12,7 +12,7 @@ static uint64_t bits_of(double x)
     return bits;
 }
 
-/* Coordinates that are floats differ in their high bits only: each step brings those down. */
+/* Coordinates that are floats differ in their high bits only: each step mixes these into the low bits. */
 static uint64_t position_hash(vec3 p)
 {
     uint64_t h = bits_of(p.x) * UINT64_C(0x9e3779b97f4a7c15);
@@ -28,7 +28,7 @@ static bool same_place(vec3 a, vec3 b)
 
 status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
 {
-    enum { AHEAD = 16 }; /* the table is larger than the caches: ask for its lines early */
+    enum { AHEAD = 16 }; /* the table exceeds the caches: prefetch its lines */
     size_t size = 16;
     while (size < 2 * m->vertex_count)
         size *= 2;

@@ -1,12 +1,12 @@
-/* Second pass over a batch: from the intervals of all primitives, who wins.
+/* Second pass over a batch: the nearest interface of each ray, from the intervals of all primitives.
  *
- * While a ray is in the body of rank b the medium can change at two kinds of points only: where it leaves
- * that body, and where it enters one of a higher rank. The nearest of these is the next change; everything
- * that happens below rank b before it has no effect. So one pass over the bodies finds it.
+ * While a ray is in the region of priority index b, the medium can change at two kinds of points only: where the ray
+ * leaves that region, and where it enters one of higher priority. The nearest of these is the next change; nothing
+ * below priority index b before it has an effect. So one pass over the regions finds it.
  *
- * If the media on both sides are equal it is no interface: the crossing is marked as done in the intervals (the ray is
- * not started anew) and the next change is sought, for those rays alone. Where another boundary lies near the crossing,
- * contact_kernel.c decides whether they are one. */
+ * If the media on both sides are equal, it is no interface: the intervals are advanced past the crossing (the ray is
+ * not restarted) and the next change is searched, for those rays only. If another boundary is near the crossing,
+ * contact_kernel.c decides whether they coincide. */
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"
@@ -14,15 +14,16 @@
 #include "geometry/primitives/primitive.h"
 #include <math.h>
 
-/* Beyond this a crossing is never: see roots.h. */
+/* A crossing beyond this distance counts as infinite: see roots.h. */
 #define NEVER 1e120
 ALWAYS_INLINE int64_t set_mask(uint64_t set, int bit)
 {
     return -(int64_t)((set & (uint64_t)1 << bit) != 0);
 }
 
-/* In which bodies is the set; the highest of them. */
-static void ranks_of(const scene_geometry *a, int n, const uint64_t *restrict set, int64_t *restrict priority_index)
+/* The highest priority index among the regions in the set. */
+static void priority_indices_of(const scene_geometry *a, int n, const uint64_t *restrict set,
+                                int64_t *restrict priority_index)
 {
     for (int i = 0; i < n; i++)
         priority_index[i] = 0;
@@ -35,7 +36,7 @@ static void ranks_of(const scene_geometry *a, int n, const uint64_t *restrict se
     }
 }
 
-/* Next change by a body without a hollow. */
+/* Next change by a region without a hollow. */
 static void next_of_plain(int n, int64_t priority_index, int64_t hit_primitive, const double *restrict in,
                           const double *restrict out, const ray_scratch *restrict s, hit_batch *restrict c)
 {
@@ -49,8 +50,8 @@ static void next_of_plain(int n, int64_t priority_index, int64_t hit_primitive, 
     }
 }
 
-/* Next change by a body with a hollow. Its one boundary ahead is where it is left, if the ray is in it: out of its
- * outside or into its hollow; else where it is entered: through its outside, or out of the hollow if that covers the
+/* Next change by a region with a hollow. If the ray is in the region, its one boundary ahead is the exit: out of its
+ * outside or into its hollow. Otherwise it is the entry: through its outside, or out of the hollow if that covers the
  * entry. */
 static void next_of_hollow(int n, int64_t priority_index, int64_t outside, int64_t hollow, const double *restrict in,
                            const double *restrict out, const double *restrict hollow_in,
@@ -73,8 +74,8 @@ static void next_of_hollow(int n, int64_t priority_index, int64_t outside, int64
     }
 }
 
-/* Adds `many` primitives from the one numbered first to the sets just before and just behind t, and to the set of those
- * whose interval reaches in between; the first call starts the sets. */
+/* Adds `many` primitives, from number `first` on, to the sets just before and just after t, and to the set of those
+ * whose interval overlaps the range in between; the first call initialises the sets. */
 ALWAYS_INLINE void sets_around(int n, int first, int many, ray_scratch *restrict s, hit_batch *restrict c)
 {
     /* VECTORISE */
@@ -95,7 +96,7 @@ ALWAYS_INLINE void sets_around(int n, int first, int many, ray_scratch *restrict
     }
 }
 
-/* The bit of a row of further intervals becomes its primitive's. */
+/* Moves the bit of a further row to its primitive's bit. */
 static void fold_row(const scene_geometry *a, int row, int n, ray_scratch *restrict s, hit_batch *restrict c)
 {
     int p = row;
@@ -111,7 +112,7 @@ static void fold_row(const scene_geometry *a, int row, int n, ray_scratch *restr
     }
 }
 
-/* Constant counts, so that the inner loop unrolls. */
+/* Calls with constant counts, so that the inner loop unrolls. */
 static void all_sets_around(const scene_geometry *a, int n, ray_scratch *s, hit_batch *c)
 {
     /* VECTORISE */
@@ -126,7 +127,7 @@ static void all_sets_around(const scene_geometry *a, int n, ray_scratch *s, hit_
         sets_around(n, k, 4, s, c);
     for (; k < a->primitive_count; k++)
         sets_around(n, k, 1, s, c);
-    /* An interval that reaches in between and does not cover both ends has a boundary there. */
+    /* An interval that overlaps the range and does not contain both its ends has a boundary in it. */
     /* VECTORISE */
     for (int i = 0; i < n; i++)
         s->near[i] &= ~(c->inside_before[i] & c->inside_after[i]);
@@ -134,14 +135,14 @@ static void all_sets_around(const scene_geometry *a, int n, ray_scratch *s, hit_
         fold_row(a, __builtin_ctzll(left), n, s, c);
 }
 
-/* -1 where the body of that rank is opaque: bit rank - 1 of the set. */
+/* -1 if the region of that priority index is opaque: bit priority_index - 1 of the set. */
 ALWAYS_INLINE int64_t opaque_mask(uint64_t opaque_regions, int64_t priority_index)
 {
     const int64_t some = -(int64_t)(priority_index > 0);
     return -(int64_t)(opaque_regions >> (uint64_t)(priority_index + some) & 1) & some;
 }
 
-/* Whose surface it is: scene_geometry_surface. */
+/* The region that owns each interface: scene_geometry_surface. */
 static void surfaces(uint64_t opaque_regions, int n, const int64_t *restrict before, const int64_t *restrict after,
                      int64_t *restrict surface)
 {
@@ -154,27 +155,27 @@ static void surfaces(uint64_t opaque_regions, int n, const int64_t *restrict bef
     }
 }
 
-/* Columns that need a second, exact check: another boundary is near, or the media are perhaps equal. */
+/* Marks columns that need a second, exact check: another boundary is near, or the media may be equal. */
 static void mark_attention(const scene_geometry *a, int n, const ray_scratch *restrict s, const hit_batch *restrict c,
                            int64_t *restrict attention)
 {
     const int64_t doubt = -(int64_t)!a->distinct;
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        const int64_t met = -(int64_t)(c->hit_primitive[i] >= 0);
+        const int64_t hit = -(int64_t)(c->hit_primitive[i] >= 0);
         const uint64_t changed = c->inside_before[i] ^ c->inside_after[i];
-        /* 0 where all of these are the one bit that is crossed; gcc vectorises variable shifts to the right only */
-        const uint64_t shifted = changed >> (uint64_t)(c->hit_primitive[i] & met);
+        /* 0 if all of these are only the crossed bit; gcc vectorises variable shifts to the right only */
+        const uint64_t shifted = changed >> (uint64_t)(c->hit_primitive[i] & hit);
         const uint64_t others = (s->near[i] ^ changed) | (changed & (changed - 1)) | (shifted ^ 1);
-        attention[i] = (~mask_same((int64_t)others, 0) | mask_same(c->before[i], c->after[i]) | doubt) & met;
+        attention[i] = (~mask_same((int64_t)others, 0) | mask_same(c->before[i], c->after[i]) | doubt) & hit;
     }
 }
 
-/* The next change of medium of the first n columns. */
+/* The next change of medium for the first n columns. */
 static void next_changes(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
                          instance_hit *mesh_hits)
 {
-    ranks_of(a, n, s->inside, c->before);
+    priority_indices_of(a, n, s->inside, c->before);
     for (int i = 0; i < n; i++) {
         c->t[i] = NEVER;
         c->hit_primitive[i] = -1;
@@ -193,14 +194,14 @@ static void next_changes(const scene_geometry *a, const ray_batch *rays, int n, 
     all_sets_around(a, n, s, c);
     if (a->meshes)
         KERNEL(mesh_sets)(a, rays, n, s, c, mesh_hits);
-    ranks_of(a, n, c->inside_after, c->after);
+    priority_indices_of(a, n, c->inside_after, c->after);
     surfaces(a->opaque_regions, n, c->before, c->after, c->surface);
     mark_attention(a, n, s, c, s->attention);
     for (int k = 0; a->meshes && k < n; k++) {
         s->attention[k] |= -(int64_t)(c->hit_primitive[k] >= 0 && s->meshes->near[k]);
         s->meshes->until[k] = greater(c->t[k], s->meshes->from[k]);
-        /* Through an edge a front and a back are at one place: the second crossing there is the last, or they would
-         * follow one another for ever. */
+        /* At an edge a front and a back coincide: the second crossing there is the last; otherwise the two would
+         * alternate without end. */
         if (c->hit_primitive[k] >= 0 && c->t[k] <= s->meshes->from[k]) {
             const bool on_mesh = is_mesh(a, (int)c->hit_primitive[k]);
             const double extent =
@@ -210,7 +211,7 @@ static void next_changes(const scene_geometry *a, const ray_batch *rays, int n, 
     }
 }
 
-/* Is column k an interface? */
+/* Is column k's crossing an interface? */
 static bool is_interface(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
                          instance_hit *mesh_hits)
 {
@@ -220,8 +221,8 @@ static bool is_interface(const scene_geometry *a, const ray_batch *rays, int k, 
     return a->regions[c->before[k]].medium != a->regions[c->after[k]].medium;
 }
 
-/* The rows of a primitive of several intervals, behind t: those that are spent give way to the next. */
-static void pass_rows(int first, int rows, bool inside, int k, int m, double t, ray_scratch *s)
+/* Advances the rows of a primitive with several intervals past t: finished intervals are replaced by the next ones. */
+static void advance_rows(int first, int rows, bool inside, int k, int m, double t, ray_scratch *s)
 {
     int spent = 0;
     while (spent < rows && (inside ? s->out[first + spent][k] : s->in[first + spent][k]) <= t)
@@ -238,9 +239,9 @@ static void pass_rows(int first, int rows, bool inside, int k, int m, double t, 
         s->out[first][m] = t;
 }
 
-/* Column k crosses without effect: what lies behind the crossing becomes column m, to be looked at again. */
-static void pass_on(const scene_geometry *a, int k, int m, ray_scratch *s, const hit_batch *c,
-                    const instance_hit *mesh_hits)
+/* Column k's crossing has no effect: the ray after the crossing becomes column m, for another search. */
+static void skip_crossing(const scene_geometry *a, int k, int m, ray_scratch *s, const hit_batch *c,
+                          const instance_hit *mesh_hits)
 {
     const uint64_t set = c->inside_after[k] & ~(a->meshes ? a->meshes->skins : 0);
     const double t = c->t[k];
@@ -249,7 +250,7 @@ static void pass_on(const scene_geometry *a, int k, int m, ray_scratch *s, const
         const bool endless = is_mesh(a, p);
         if (a->primitives[p].rows > 1) {
             const int rows = a->primitives[p].rows;
-            pass_rows(p, rows, set >> p & 1, k, m, t, s);
+            advance_rows(p, rows, set >> p & 1, k, m, t, s);
             p += rows - 1;
             continue;
         }
@@ -272,7 +273,7 @@ static void pass_on(const scene_geometry *a, int k, int m, ray_scratch *s, const
     }
 }
 
-/* Column k was followed on through one medium to its crossing, or to `end`. */
+/* Records the medium segment of column k up to its crossing, or up to `end`. */
 static void record_segment(int k, double end, ray_scratch *s, const hit_batch *c)
 {
     medium_segments *w = s->segments;
@@ -296,7 +297,7 @@ static void begin(const scene_geometry *a, const ray_batch *rays, ray_scratch *s
         s->segments->count = 0;
 }
 
-/* The media up to each ray's first crossing. */
+/* Records the media up to each ray's first crossing. */
 static void record_first_segments(int n, ray_scratch *s, const hit_batch *hits)
 {
     for (int i = 0; i < n; i++) {
@@ -330,7 +331,7 @@ static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch 
     int left = 0;
     for (int i = 0; i < rays->count; i++)
         if (s->attention[i] && !is_interface(a, rays, i, s, hits, mesh_hits))
-            pass_on(a, i, left++, s, hits, mesh_hits);
+            skip_crossing(a, i, left++, s, hits, mesh_hits);
     while (left > 0) {
         const int n = left;
         next_changes(a, rays, n, s, &s->again, again);
@@ -339,7 +340,7 @@ static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch 
             if (s->segments)
                 record_segment(k, HUGE_VAL, s, &s->again);
             if (s->attention[k] && !is_interface(a, rays, k, s, &s->again, again)) {
-                pass_on(a, k, left++, s, &s->again, again);
+                skip_crossing(a, k, left++, s, &s->again, again);
                 continue;
             }
             copy_hit(&s->again, k, hits, s->ray[k]);
@@ -348,15 +349,14 @@ static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch 
         }
     }
     for (int i = 0; a->meshes && i < rays->count; i++)
-        hits->inside_after[i] &= ~a->meshes->skins; /* nothing is ever in a skin */
+        hits->inside_after[i] &= ~a->meshes->skins; /* a set never contains open surfaces */
 }
 
-/* Does the path from 0 to 1 go through the body's matter in the interval of that row, whatever hides it? Where the ends
- * of a piece of it lie within the filter's window they may be in contact: then, and where the body is doubtful, it is
- * undecided. */
-static void touching(const scene_geometry *a, const region *b, int row, bool doubtful, int n,
-                     const double *restrict steps, const ray_scratch *restrict s, int64_t *restrict blocked,
-                     int64_t *restrict undecided)
+/* Does the range 0..1 of the ray overlap the region in the interval of that row, whatever hides it? If the ends of an
+ * overlap are within the filter's window, they may be in contact: then, and if `doubtful`, it is undecided. */
+static void mark_overlap(const scene_geometry *a, const region *b, int row, bool doubtful, int n,
+                         const double *restrict steps, const ray_scratch *restrict s, int64_t *restrict blocked,
+                         int64_t *restrict undecided)
 {
     const double *restrict in = s->in[row], *restrict out = s->out[row];
     const double extent = a->primitives[b->outside].extent;
@@ -364,9 +364,9 @@ static void touching(const scene_geometry *a, const region *b, int row, bool dou
     if (b->hollow < 0) {
         /* VECTORISE */
         for (int i = 0; i < n; i++) {
-            const int64_t met = mask_less(in[i], 1.0) & mask_less(0.0, out[i]);
-            blocked[i] |= met & certain & mask_less(BOUNDARY_CLOSE * (1.0 + extent * steps[i]), out[i] - in[i]);
-            undecided[i] |= met;
+            const int64_t overlap = mask_less(in[i], 1.0) & mask_less(0.0, out[i]);
+            blocked[i] |= overlap & certain & mask_less(BOUNDARY_CLOSE * (1.0 + extent * steps[i]), out[i] - in[i]);
+            undecided[i] |= overlap;
         }
         return;
     }
@@ -384,8 +384,8 @@ static void touching(const scene_geometry *a, const region *b, int row, bool dou
     }
 }
 
-/* The primitives of the bodies that first sight looks at. */
-static uint64_t first_sight_primitives(const scene_geometry *a, int solid_shadows)
+/* The primitives of the regions that cast shadows. */
+static uint64_t shadow_casting_primitives(const scene_geometry *a, int solid_shadows)
 {
     uint64_t wanted = 0;
     for (int r = 1; r <= a->region_count; r++) {
@@ -404,9 +404,9 @@ static bool any_undecided(int n, const ray_scratch *s)
     return any != 0;
 }
 
-/* First sight: blocked for certain by an opaque body that nothing clear can hide; undecided where order or attenuation
- * matters, which is everywhere if the surroundings absorb. */
-static void first_sight(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s)
+/* Quick shadow test: blocked for certain by an opaque region that no transparent one can hide; undecided where order or
+ * attenuation matters, which is everywhere if the surroundings absorb. */
+static void quick_shadow_test(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s)
 {
     const int n = rays->count;
     const int64_t everywhere = mask_of(a->regions[0].attenuates);
@@ -416,7 +416,7 @@ static void first_sight(const scene_geometry *a, const ray_batch *rays, int soli
         s->low[i] = steps_per_unit(rays, i);
     }
     uint64_t sure = 0, unsure = 0; /* meshes */
-    bool hidden = false;           /* can a clear body of a higher rank hide this one? */
+    bool hidden = false;           /* can a transparent region of higher priority hide this one? */
     for (int r = a->region_count; r >= 1; r--) {
         const region *b = &a->regions[r];
         const bool doubtful = hidden || !b->opaque, casts = region_casts_shadow(b, solid_shadows);
@@ -424,7 +424,7 @@ static void first_sight(const scene_geometry *a, const ray_batch *rays, int soli
             *(doubtful ? &unsure : &sure) |= (uint64_t)1 << b->outside;
         else if (casts)
             for (int k = 0; k < a->primitives[b->outside].rows; k++)
-                touching(a, b, b->outside + k, doubtful, n, s->low, s, s->blocked, s->undecided);
+                mark_overlap(a, b, b->outside + k, doubtful, n, s->low, s, s->blocked, s->undecided);
         hidden |= !b->opaque;
     }
     if (sure)
@@ -433,48 +433,47 @@ static void first_sight(const scene_geometry *a, const ray_batch *rays, int soli
         KERNEL(mesh_shadows)(a, rays, unsure, s->undecided, s->blocked);
 }
 
-/* The slot of the mesh that column k crosses; 0 where another body's surface bounds it. */
-static int slot_met(const scene_geometry *a, const region *met, const hit_batch *c, const instance_hit *mesh_hits,
-                    int k)
+/* The material slot of the mesh face that column k crosses; 0 if the surface is another region's. */
+static int crossed_slot(const scene_geometry *a, const region *owner, const hit_batch *c, const instance_hit *mesh_hits,
+                        int k)
 {
-    if (c->hit_primitive[k] != met->outside || mesh_hits[k].face == FACE_NONE)
+    if (c->hit_primitive[k] != owner->outside || mesh_hits[k].face == FACE_NONE)
         return 0;
-    const mesh *m = a->meshes->parts[a->meshes->by_primitive[met->outside]].triangles;
+    const mesh *m = a->meshes->parts[a->meshes->by_primitive[owner->outside]].triangles;
     return m->slots ? m->slots[mesh_face_triangle(mesh_hits[k].face)] : 0;
 }
 
-/* One interface on the way of the shadow ray in column k: what of the light it lets through. */
-static double let_through(const scene_geometry *a, int solid_shadows, const hit_batch *c, const instance_hit *mesh_hits,
-                          int k)
+/* The transmittance of the interface that the shadow ray in column k crosses. */
+static double interface_transmittance(const scene_geometry *a, int solid_shadows, const hit_batch *c,
+                                      const instance_hit *mesh_hits, int k)
 {
     const region *before = &a->regions[c->before[k]], *after = &a->regions[c->after[k]];
     if (solid_shadows || after->opaque || before->opaque)
         return 0.0;
-    const region *met = c->before[k] > c->after[k] ? before : after;
-    return met->face_shadow_transmittance ? met->face_shadow_transmittance[slot_met(a, met, c, mesh_hits, k)]
-                                          : met->shadow_transmittance;
+    const region *owner = c->before[k] > c->after[k] ? before : after;
+    return owner->face_shadow_transmittance ? owner->face_shadow_transmittance[crossed_slot(a, owner, c, mesh_hits, k)]
+                                            : owner->shadow_transmittance;
 }
 
-/* The interface that the shadow ray in column k crosses. */
-static void note_crossing(const scene_geometry *a, int k, ray_scratch *s, const hit_batch *c,
-                          const instance_hit *mesh_hits)
+/* Records the interface that the shadow ray in column k crosses. */
+static void record_crossing(const scene_geometry *a, int k, ray_scratch *s, const hit_batch *c,
+                            const instance_hit *mesh_hits)
 {
     ray_crossings *x = s->crossings;
     if (x->count == CROSSINGS_MAX)
         x->full(x->context);
-    const int met = (int)c->hit_primitive[k];
-    x->crossings[x->count++] =
-        (ray_crossing){.ray = s->ray[k],
-                       .primitive = met,
-                       .before = (int)c->before[k],
-                       .after = (int)c->after[k],
-                       .t = c->t[k],
-                       .inside = c->inside_before[k],
-                       .mesh = is_mesh(a, met) ? mesh_hits[k] : (instance_hit){.face = FACE_NONE}};
+    const int p = (int)c->hit_primitive[k];
+    x->crossings[x->count++] = (ray_crossing){.ray = s->ray[k],
+                                              .primitive = p,
+                                              .before = (int)c->before[k],
+                                              .after = (int)c->after[k],
+                                              .t = c->t[k],
+                                              .inside = c->inside_before[k],
+                                              .mesh = is_mesh(a, p) ? mesh_hits[k] : (instance_hit){.face = FACE_NONE}};
 }
 
-/* Moves the undecided columns to the front; returns how many. */
-static int keep_undecided(const scene_geometry *a, const ray_batch *rays, ray_scratch *s)
+/* Moves the undecided columns to the front; returns their number. */
+static int compact_undecided(const scene_geometry *a, const ray_batch *rays, ray_scratch *s)
 {
     int n = 0;
     for (int i = 0; i < rays->count; i++) {
@@ -504,19 +503,19 @@ static int keep_undecided(const scene_geometry *a, const ray_batch *rays, ray_sc
 static void shadow(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s,
                    double *transmitted)
 {
-    const uint64_t wanted = first_sight_primitives(a, solid_shadows);
+    const uint64_t wanted = shadow_casting_primitives(a, solid_shadows);
     if (s->segments)
         s->segments->count = 0;
     if (s->crossings)
         s->crossings->count = 0;
     KERNEL(intervals_of)(a, rays, wanted, s);
-    first_sight(a, rays, solid_shadows, s);
+    quick_shadow_test(a, rays, solid_shadows, s);
     for (int i = 0; i < rays->count; i++)
         transmitted[i] = s->blocked[i] ? 0.0 : 1.0;
     if (!any_undecided(rays->count, s))
         return;
     KERNEL(intervals_of)(a, rays, ~wanted, s);
-    for (int left = keep_undecided(a, rays, s); left > 0;) {
+    for (int left = compact_undecided(a, rays, s); left > 0;) {
         const int n = left;
         hit_batch *c = &s->again;
         instance_hit *again = a->meshes ? s->meshes->again : NULL;
@@ -530,12 +529,12 @@ static void shadow(const scene_geometry *a, const ray_batch *rays, int solid_sha
             if (c->hit_primitive[k] < 0 || c->t[k] >= 1.0)
                 continue;
             if (!s->attention[k] || is_interface(a, rays, k, s, c, again)) {
-                transmitted[s->ray[k]] *= let_through(a, solid_shadows, c, again, k);
+                transmitted[s->ray[k]] *= interface_transmittance(a, solid_shadows, c, again, k);
                 if (s->crossings && transmitted[s->ray[k]] > 0.0)
-                    note_crossing(a, k, s, c, again);
+                    record_crossing(a, k, s, c, again);
             }
             if (transmitted[s->ray[k]] > 0.0)
-                pass_on(a, k, left++, s, c, again);
+                skip_crossing(a, k, left++, s, c, again);
         }
     }
 }

@@ -1,22 +1,21 @@
-/* Batches of rays and what they hit, as structures of arrays. A batch is short enough for the first-level
- * cache. Ownership: the arrays of a ray_batch belong to whoever queued the rays; hits and scratch are plain values. */
+/* Batches of rays and their hits, as structures of arrays. A batch fits into the first-level cache. Ownership: the
+ * arrays of a ray_batch belong to the caller that queued the rays; hits and scratch are plain values. */
 #pragma once
 
 #include "geometry/scene_geometry.h"
 #include <float.h>
 #include <stdint.h>
 
-/* Rows are a cache line longer than a batch: rows of exactly 1024 bytes would all fall into the same few sets of the
- * first-level cache and drive one another out. */
+/* Rows are a cache line longer than a batch: rows of exactly 1024 bytes would all map to the same few sets of the
+ * first-level cache and evict each other. */
 enum { BATCH = 128, LANES_MAX = 8 /* doubles in the widest vector */, ROW = BATCH + LANES_MAX };
 
-/* A computed point may be off by this share of the sum of all magnitudes that it is computed from: see
- * primitives/kind.h. */
+/* The error bound of a computed point, as a share of the sum of the magnitudes of its terms: see primitives/kind.h. */
 #define POINT_ERROR (16.0 * DBL_EPSILON)
 
-/* A view of up to BATCH rays. Directions of rays that look for their nearest interface are unit vectors; a shadow
- * ray's reaches from its start to the light. start is the face that the ray starts on, or FACE_NONE; that
- * face's own root is known to be zero. inside is the set of primitives that the ray is in when it sets out. */
+/* A view of up to BATCH rays. A ray that looks for its nearest interface has a unit direction; a shadow ray's direction
+ * reaches from its start to the light. start is the face that the ray starts on, or FACE_NONE; the root of that face is
+ * exactly zero. inside is the set of primitives that contain the ray's start. */
 typedef struct ray_batch {
     int count;
     const double *ox, *oy, *oz, *dx, *dy, *dz;
@@ -27,63 +26,63 @@ typedef struct ray_batch {
 /* Nearest interface by ray. */
 typedef struct hit_batch {
     double t[ROW];              /* infinite for a miss */
-    int64_t hit_primitive[ROW]; /* the primitive whose surface it is; -1 for a miss */
-    int64_t before[ROW];        /* rank of the medium before it ... */
-    int64_t after[ROW];         /* ... and behind it */
-    int64_t surface[ROW]; /* rank of the body whose surface it is: an opaque one's if either side is opaque, else the
-                             higher one's */
-    uint64_t inside_before[ROW], inside_after[ROW]; /* sets just before and just behind it */
+    int64_t hit_primitive[ROW]; /* the primitive of the surface; -1 for a miss */
+    int64_t before[ROW];        /* priority index of the medium before it ... */
+    int64_t after[ROW];         /* ... and after it */
+    int64_t surface[ROW];       /* priority index of the region whose surface it is (see scene_geometry_surface) */
+    uint64_t inside_before[ROW], inside_after[ROW]; /* sets just before and just after it */
 } hit_batch;
 
-/* A piece of a ray within one medium, and how long it is (scene units; for ever on a ray that meets nothing: 1e120). */
+/* A segment of a ray within one medium, and its length in scene units (1e120, infinite in effect, if the ray leaves the
+ * scene). */
 typedef struct medium_segment {
     int ray, priority_index;
     double length;
 } medium_segment;
 
-/* Where a ray meets a mesh. */
+/* A hit of a ray on a mesh. */
 typedef struct instance_hit {
-    double t, u, v; /* as a mesh_hit's (geometry/hierarchy.h); t infinite for a miss */
+    double t, u, v; /* as in mesh_hit (geometry/hierarchy.h); t is infinite for a miss */
     int64_t face;   /* mesh_face_number (geometry/instance_set.h); FACE_NONE for a miss */
     int facing;
 } instance_hit;
 
-/* What a batch needs where there are meshes: the meshes' hits by ray, and of rays that are looked at another time. */
+/* Per-batch state for meshes: the mesh hits by ray, and those of rays that are traced again. */
 typedef struct mesh_scratch {
     instance_hit hit[ROW], again[ROW];
-    double from[ROW];   /* how far a column has been followed */
-    double until[ROW];  /* the sets behind a column's hit are those here: beyond its error bound, if another boundary
-                           lies close to it */
-    int64_t last[ROW];  /* the mesh face where that was, or where the ray starts */
-    uint64_t near[ROW]; /* meshes with a boundary close to the column's crossing, other than that of the copy that is
-                           crossed */
+    double from[ROW]; /* the t up to which a column has been traced */
+    /* The t for which the sets after a column's hit hold: that of the hit, or beyond its error bound if another
+     * boundary is close to it. */
+    double until[ROW];
+    int64_t last[ROW];  /* the mesh face at `from`, or the one that the ray starts on */
+    uint64_t near[ROW]; /* meshes with a boundary close to the column's crossing, other than the copy that is crossed */
 } mesh_scratch;
 
-/* Of analytic solids no batch has more. Rays through many meshes may: then what there is is handed over to `full`,
- * which empties the list. */
+/* The most segments of a batch with analytic solids alone. Rays through many meshes may have more: a full list is
+ * passed to `full`, which empties it. */
 enum { SEGMENTS_MAX = BATCH * (2 * PRIMITIVES_MAX + 2) };
 
-/* The media that each ray of a batch went through, up to its hit or its light; those of one ray in order. Kept apart
- * from the scratch, whose rows lie in the cache as they were measured to be fastest. */
+/* The medium segments of the rays of a batch, up to their hit or light; those of one ray are in order. Separate from
+ * the scratch, whose layout was measured to be the fastest for the cache. */
 typedef struct medium_segments {
     int count;
     void (*full)(void *context);
     void *context;
-    double passed[ROW], unit[ROW]; /* how far a column has been followed; length of a step of 1 */
+    double passed[ROW], unit[ROW]; /* the length along which a column has been traced; the length of a step of 1 */
     medium_segment segment[SEGMENTS_MAX];
 } medium_segments;
 
-/* An interface that a shadow ray crosses straight on. */
+/* An interface that a shadow ray crosses without refraction. */
 typedef struct ray_crossing {
     int ray, primitive;
-    int before, after; /* ranks */
+    int before, after; /* priority indices */
     double t;
     uint64_t inside;   /* primitives that the ray is in just before it */
-    instance_hit mesh; /* where the primitive is a mesh */
+    instance_hit mesh; /* if the primitive is a mesh */
 } ray_crossing;
 
-/* The interfaces of each shadow ray of a batch that is not blocked before them, for who wants more of them than the
- * bodies' clearness. As with medium_segments, a full list is handed over to `full`, which empties it. */
+/* The interfaces of the shadow rays of a batch, up to a blocking one. Needed by callers that compute more than the
+ * regions' shadow transmittance. As with medium_segments, a full list is passed to `full`, which empties it. */
 enum { CROSSINGS_MAX = BATCH * 8 };
 typedef struct ray_crossings {
     int count;
@@ -92,8 +91,8 @@ typedef struct ray_crossings {
     ray_crossing crossings[CROSSINGS_MAX];
 } ray_crossings;
 
-/* Intervals [in, out] by row and ray, and what is derived from them. Contents but ways mean nothing between
- * calls. */
+/* Intervals [in, out] by row and ray, and values derived from them. Apart from the segments and crossings, nothing is
+ * kept between calls. */
 typedef struct ray_scratch {
     double in[PRIMITIVES_MAX][ROW], out[PRIMITIVES_MAX][ROW];
     double inverse_y[ROW], inverse_x[ROW], inverse_z[ROW];
@@ -101,16 +100,17 @@ typedef struct ray_scratch {
     double slack[ROW], low[ROW], high[ROW];
     uint64_t inside[ROW];
     uint64_t near[ROW]; /* primitives with a boundary close to the column's crossing: see BOUNDARY_CLOSE */
-    hit_batch again;    /* of rays that are looked at another time */
+    hit_batch again;    /* for rays that are traced again */
     int64_t attention[ROW], undecided[ROW], blocked[ROW];
-    int ray[ROW];              /* which ray of the batch a column belongs to */
-    medium_segments *segments; /* the caller's; NULL: what rays go through is not noted */
-    mesh_scratch *meshes;      /* the caller's; may be NULL where there are no meshes */
-    ray_crossings *crossings;  /* the caller's; NULL: interfaces of shadow rays are not noted */
+    int ray[ROW];              /* the ray of the batch that a column belongs to */
+    medium_segments *segments; /* the caller's; NULL: medium segments are not recorded */
+    mesh_scratch *meshes;      /* the caller's; may be NULL without meshes */
+    ray_crossings *crossings;  /* the caller's; NULL: interfaces of shadow rays are not recorded */
 } ray_scratch;
 
-/* Points on one primitive's surface. normal is a unit vector against the ray; cos_i = -d.n, in (0, 1] for a unit vector
- * d. error is a bound on the distance from the point to the exact one across the surface, in scene units. */
+/* Points on the surface of one primitive. normal is a unit vector against the ray; cos_i = -d.n, in (0, 1] for a unit
+ * vector d. error bounds the distance between the computed and the exact surface point, across the surface, in scene
+ * units. */
 typedef struct surface_batch {
     double px[ROW], py[ROW], pz[ROW];
     double nx[ROW], ny[ROW], nz[ROW];
@@ -118,16 +118,15 @@ typedef struct surface_batch {
     int64_t face[ROW];
 } surface_batch;
 
-/* The kernels, one set for each instruction set; the same bits from all. */
+/* The kernels, one set per instruction set. All sets return bit-identical results. */
 typedef struct geometry_kernels {
     /* The nearest interface of every ray. */
     void (*nearest)(const scene_geometry *a, const ray_batch *rays, ray_scratch *scratch, hit_batch *hits);
-    /* The share of light, 0..1, that comes through from the other end (t = 1). With solid_shadows any interface blocks.
-     */
+    /* The share of light, 0..1, that arrives from the other end (t = 1). With solid_shadows any interface blocks. */
     void (*shadow)(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *scratch,
                    double *transmitted);
-    /* Points where rays, all of which meet primitive p (numbered bit) at t, meet it. rays->inside is here the set just
-     * before the point: it says whether a ray enters the primitive or leaves it. */
+    /* The points where rays hit primitive p (numbered bit) at t; all rays hit it. Here rays->inside is the set just
+     * before the point, which determines whether a ray enters or leaves the primitive. */
     void (*surface)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);
 } geometry_kernels;
 

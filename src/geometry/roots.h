@@ -1,9 +1,9 @@
-/* Where a straight line crosses planes and quadrics in a primitive's own frame: the one set of formulas, used by the
- * pass over all rays and again for the face of a hit (primitives/). No branches; pure.
+/* Intersections of a line with planes and quadrics in a primitive's own frame: the only set of these formulas, used
+ * both by the pass over all rays and for the face of a hit (primitives/). No branches; pure.
  *
- * The root of the face that a ray starts on is zero exactly, not nearly. A component of a direction that
- * is zero is taken as 1e-300, and a line along a cylinder's axis as leaning by 1e-140: the crossings that this makes
- * lie at 1e130 and beyond, which is never, without a special case. */
+ * The root of the face that a ray starts on is exactly zero. A zero component of a direction is replaced by 1e-300, and
+ * a line along a cylinder's axis is tilted by 1e-140: the roots are then at 1e130 or beyond, in effect at infinity,
+ * without a special case. */
 #pragma once
 
 #include "base/kernel.h"
@@ -33,7 +33,7 @@ ALWAYS_INLINE double inverse_of_component(double d)
     return 1.0 / blend(mask_less(magnitude(d), 1e-300), sign, d);
 }
 
-/* Crossings of the planes y = bottom and y = top. */
+/* Roots of the planes y = bottom and y = top. */
 typedef struct slab_roots {
     double in, out;
 } slab_roots;
@@ -46,14 +46,14 @@ ALWAYS_INLINE slab_roots slab_cross(double y, double inverse_y, double low, doub
     return s;
 }
 
-/* Crossings of a quadric a t^2 + 2 b t + c = 0 given its reduced discriminant b^2 - a c: [in, out] and whether it is
- * met. */
+/* Roots of a quadric a t^2 + 2 b t + c = 0, given its reduced discriminant b^2 - a c: [in, out], and whether it is
+ * hit. */
 typedef struct quadric_roots {
     double in, out;
     int64_t hit;
 } quadric_roots;
 
-/* Without a crossing the roots are not numbers and hit is 0. */
+/* For a miss the roots are NaN and hit is 0. */
 ALWAYS_INLINE quadric_roots quadric_cross(double b, double inverse_a, double discriminant, int64_t own)
 {
     double middle = -b * inverse_a;
@@ -62,7 +62,7 @@ ALWAYS_INLINE quadric_roots quadric_cross(double b, double inverse_a, double dis
     return q;
 }
 
-/* dx of a ray in a cylinder's frame, kept from vanishing together with dz. */
+/* dx of a ray in a cylinder's frame, kept from being zero together with dz. */
 ALWAYS_INLINE double cylinder_dx(double dx, double dz)
 {
     return blend(mask_less(magnitude(dx), 1e-140) & mask_less(magnitude(dz), 1e-140), 1e-140, dx);

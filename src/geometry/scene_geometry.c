@@ -1,3 +1,4 @@
+/* The build of the scene geometry, and its queries by point. */
 #include "geometry/scene_geometry.h"
 #include "base/elementary.h"
 #include "geometry/instance_set.h"
@@ -6,7 +7,8 @@
 
 #include <stdlib.h>
 
-/* Indices of the sources, lowest rank first: ascending priority, and of equals the later one first. */
+/* Indices of the sources in the order of priority indices: ascending priority, and of equal priorities the later source
+ * first. */
 static void order_by_priority(const region_source *sources, int count, int *order)
 {
     for (int i = 0; i < count; i++) {
@@ -19,7 +21,7 @@ static void order_by_priority(const region_source *sources, int count, int *orde
     }
 }
 
-/* Unit vectors outwards; the corner before the first side lies in front, at -z, the next ones to its right, as seen
+/* Outward unit normals; the corner before the first side is in front, at -z, the next ones follow to its right as seen
  * from outside. */
 static const vec3 *add_normals(scene_geometry *a, int sides)
 {
@@ -49,7 +51,7 @@ static void add_primitive(scene_geometry *a, int priority_index, const primitive
     }
 }
 
-static void add_body(scene_geometry *a, int priority_index, const region_source *source)
+static void add_region(scene_geometry *a, int priority_index, const region_source *source)
 {
     primitive parts[SHAPE_PRIMITIVES];
     const shape_rule *shape = shape_of(source->shape);
@@ -81,17 +83,17 @@ static bool media_are_distinct(const scene_geometry *a)
     return true;
 }
 
-/* order: the sources by rank. */
-static status plant_meshes(scene_geometry *a, const region_source *sources, const int *order, diagnostic *why)
+/* Builds the instance set. order: the sources by priority index. */
+static status build_instance_set(scene_geometry *a, const region_source *sources, const int *order, diagnostic *why)
 {
-    instance_source planted[PRIMITIVES_MAX];
+    instance_source mesh_sources[PRIMITIVES_MAX];
     int count = 0;
     for (int r = 1; r <= a->region_count; r++) {
         const region_source *source = &sources[order[r - 1]];
         if (shape_of(source->shape)->triangles)
-            planted[count++] = (instance_source){source->shape, source->tree, a->regions[r].outside, r};
+            mesh_sources[count++] = (instance_source){source->shape, source->tree, a->regions[r].outside, r};
     }
-    return count > 0 ? instance_set_build(planted, count, &a->meshes, why) : STATUS_OK;
+    return count > 0 ? instance_set_build(mesh_sources, count, &a->meshes, why) : STATUS_OK;
 }
 
 status scene_geometry_build(const region_source *sources, int count, int64_t outside_medium, scene_geometry **out,
@@ -101,8 +103,8 @@ status scene_geometry_build(const region_source *sources, int count, int64_t out
     for (int i = 0; i < count; i++)
         primitives += shape_places(sources[i].shape);
     if (primitives > PRIMITIVES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 64 in all; a cup and a torus count as two",
-                        "the visible solids make %d primitives", primitives);
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64; a cup and a torus count as two",
+                        "the visible solids have %d primitives", primitives);
     scene_geometry *a = calloc(1, sizeof *a);
     int *order = calloc((size_t)count + 1, sizeof *order);
     if (a) {
@@ -121,8 +123,8 @@ status scene_geometry_build(const region_source *sources, int count, int64_t out
     a->region_count = count;
     order_by_priority(sources, count, order);
     for (int r = 0; r < count; r++)
-        add_body(a, r + 1, &sources[order[r]]);
-    status code = plant_meshes(a, sources, order, why);
+        add_region(a, r + 1, &sources[order[r]]);
+    status code = build_instance_set(a, sources, order, why);
     free(order);
     if (code != STATUS_OK) {
         scene_geometry_destroy(a);

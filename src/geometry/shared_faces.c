@@ -1,9 +1,10 @@
+/* A test whether two solids may have coincident faces. */
 #include "geometry/shared_faces.h"
 
 #include "geometry/shapes/shape.h"
 #include <math.h>
 
-/* The plane n.x = at, n a unit vector. */
+/* The plane n.x = at; n is a unit vector. */
 typedef struct flat {
     vec3 n;
     double at;
@@ -31,14 +32,14 @@ static size_t flat_count(const solid_shape *s)
     return count;
 }
 
-/* Up to rounding; a sliver without a normal counts as well. */
-static bool is_one_plane(flat a, flat b)
+/* Are the planes equal up to rounding? A sliver without a normal counts as equal. */
+static bool is_same_plane(flat a, flat b)
 {
     const double same = vec3_dot(a.n, b.n), slack = 1e-9 * (1.0 + fabs(a.at));
     return !(fabs(same) < 1.0 - 1e-12) && !(fabs(a.at - (same < 0.0 ? -b.at : b.at)) > slack);
 }
 
-/* Triangles of several copies, and such as are not loaded. */
+/* A mesh with several copies, or one that is not loaded. */
 static bool is_unknown(const solid_shape *s)
 {
     return shape_of(s)->triangles && (!s->mesh || s->copies.x > 1.0 || s->copies.y > 1.0 || s->copies.z > 1.0);
@@ -54,7 +55,7 @@ bool solid_shapes_may_share_faces(const solid_shape *a, const solid_shape *b)
     flat one, other;
     for (size_t i = 0; flat_at(a, i, &one); i++) {
         for (size_t k = 0; flat_at(b, k, &other); k++)
-            if (is_one_plane(one, other))
+            if (is_same_plane(one, other))
                 return true;
     }
     return false;

@@ -1,3 +1,4 @@
+/* Checks and queries that all shapes share, and rotation matrices. */
 #include "geometry/shapes/shape.h"
 
 #include "base/elementary.h"
@@ -47,10 +48,10 @@ const shape_rule *shape_of(const solid_shape *shape)
 status solid_shape_check(const solid_shape *shape, diagnostic *why)
 {
     if (!vec3_is_finite(shape->position) || !vec3_is_finite(shape->rotation_deg))
-        return diagnose(why, STATUS_BAD_INPUT, "give finite numbers", "position or rotation is not finite");
+        return diagnose(why, STATUS_BAD_INPUT, "use finite numbers", "position or rotation is not finite");
     const shape_rule *rule = shape_of_kind(shape->kind);
     if (!rule)
-        return diagnose(why, STATUS_BAD_INPUT, "", "no such shape");
+        return diagnose(why, STATUS_BAD_INPUT, "", "unknown shape");
     return rule->check ? rule->check(shape, why) : STATUS_OK;
 }
 
@@ -61,7 +62,7 @@ bool solid_shape_contains(const solid_shape *shape, vec3 point)
     return rule->contains && rule->contains(shape, mat3_apply_transposed(rotation, vec3_sub(point, shape->position)));
 }
 
-/* R = R_z R_y R_x: the point is turned about x first. R_x takes y towards z, R_y z towards x, R_z x towards y. */
+/* R = R_z R_y R_x: rotation about x comes first. R_x takes y towards z, R_y z towards x, R_z x towards y. */
 mat3 rotation_from_deg(vec3 rotation_deg)
 {
     double sx, cx, sy, cy, sz, cz;

@@ -1,8 +1,9 @@
-/* Solids, as a person describes them. Each shape is a row of SHAPES here and a file in geometry/shapes/ with all that
- * the program knows of it (geometry/shapes/shape.h); the kernels work on the primitives that a shape is made of.
+/* Solids as a scene file describes them. Each shape is a row of SHAPES here and a file in geometry/shapes/ with
+ * everything that is specific to it (geometry/shapes/shape.h); the kernels work on the primitives that a shape consists
+ * of.
  *
- * A solid stands in a frame of its own: local y is its axis; it is turned by rotation_deg (about x, then y, then z,
- * right-hand rule on the axes' names) and then moved to position.
+ * A solid has its own local frame with its axis along y. It is rotated by rotation_deg (about x, then y, then z,
+ * right-handed) and then moved to position.
  *
  * Pure; ownership: values; a shape borrows its mesh. */
 #pragma once
@@ -12,7 +13,7 @@
 #include "geometry/mesh.h"
 #include <stdbool.h>
 
-/* By age: studies' hashes hold a kind's number, so that a new one comes last. */
+/* In order of introduction: hashes of studies contain the number of a kind, so a new kind goes last. */
 #define SHAPES(X)         \
     X(PLANE, plane)       \
     X(CYLINDER, cylinder) \
@@ -32,29 +33,28 @@ typedef struct solid_shape {
     shape_kind kind;
     vec3 position;                                 /* scene units */
     vec3 rotation_deg;                             /* about x, then y, then z */
-    double radius, height, m, inner_radius, floor; /* those that kind has; the others are ignored */
+    double radius, height, m, inner_radius, floor; /* only those that the kind uses */
     double tube_radius, top_radius;
     int64_t sides;
     vec3 size;
-    const struct mesh *mesh; /* NULL until it is there */
+    const struct mesh *mesh; /* NULL until loaded */
     vec3 scale;              /* above 0 */
-    vec3 copies;             /* whole numbers from 1, along the axes of the solid's frame */
-    vec3 spacing;            /* from copy to copy, in that frame */
+    vec3 copies;             /* integers from 1, along the axes of the local frame */
+    vec3 spacing;            /* between copies, in the local frame */
 } solid_shape;
 
-/* Copies of one mesh, and of all meshes together. */
+/* The most copies of one mesh, and of all meshes together. */
 enum { COPIES_MAX = 1 << 22 };
 
-/* All that is known of the shape's kind: geometry/shapes/shape.h. */
+/* The rule of the shape's kind: geometry/shapes/shape.h. */
 struct shape_rule;
 const struct shape_rule *shape_of(const solid_shape *shape);
 
-/* Checks what single ranges cannot: inner_radius < radius, floor < height. */
+/* Checks constraints between parameters: inner_radius < radius, floor < height. */
 status solid_shape_check(const solid_shape *shape, diagnostic *why);
 
-/* Does the closed solid contain the point? By its definition; for tests and for hints. Of a mesh it is not known here,
- * and false. */
+/* Does the closed solid contain the point, by its definition? For tests and hints. Always false for a mesh. */
 bool solid_shape_contains(const solid_shape *shape, vec3 point);
 
-/* The rotation of rotation_deg: local to world. */
+/* The rotation matrix of rotation_deg: local to world. */
 mat3 rotation_from_deg(vec3 rotation_deg);

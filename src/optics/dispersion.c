@@ -1,3 +1,4 @@
+/* The formulas of the dispersion laws, and the Abbe number. */
 #include "optics/dispersion.h"
 #include <math.h>
 
@@ -24,7 +25,7 @@ const char *dispersion_formula(dispersion_kind kind)
     return kinds[kind].formula;
 }
 
-/* x^p for whole p, by multiplication: libm's pow may differ in the last place from machine to machine. */
+/* x^p for integer p, by multiplication: libm's pow may differ in the last place between platforms. */
 static double whole_power(double x, double p)
 {
     double result = 1.0;
@@ -33,7 +34,7 @@ static double whole_power(double x, double p)
     return p < 0.0 ? 1.0 / result : result;
 }
 
-/* Sellmeier, Ann. Phys. 219, 272 (1871), as glass catalogues write it. */
+/* Sellmeier, Ann. Phys. 219, 272 (1871), in the form of glass catalogues. */
 static double sellmeier_squared(const dispersion *law, double L2, bool lengths)
 {
     double n2 = 1.0;
@@ -52,7 +53,7 @@ static double power_sum(const dispersion *law, double L)
     return sum;
 }
 
-/* Horner's rule in 1 / L^2. */
+/* By Horner's rule in 1 / L^2. */
 static double cauchy(const dispersion *law, double L2)
 {
     double n = 0.0;
@@ -106,7 +107,7 @@ bool dispersion_covers(const dispersion *law, double low_nm, double high_nm)
            (law->coefficient[0] <= low_nm && high_nm <= law->coefficient[law->count - 2]);
 }
 
-/* Abbe's number; Born and Wolf, Principles of Optics, 7th ed., 4.7.1. */
+/* Abbe number; Born and Wolf, Principles of Optics, 7th ed., 4.7.1. */
 double dispersion_abbe_number(const dispersion *law)
 {
     const double n_d = dispersion_index(law, LINE_HELIUM_D_NM);

@@ -1,8 +1,8 @@
 /* Dispersion: the refractive index as a function of the wavelength, by the formulas in which measurements and glass
- * catalogues are published. Ownership: a law is a plain value. Errors: dispersion_check alone refuses; the other
- * functions are pure, cannot fail, and want a law that it has passed.
- * Wavelengths are given in nm; L in the formulas is the wavelength in um. It is the wavelength in air, as in a
- * catalogue; read as the one in vacuum, 0.03% longer, it would move no index of the catalogue by more than 1e-4. */
+ * catalogues are published. Ownership: a law is a plain value. Errors: only dispersion_check reports errors; the other
+ * functions are pure, cannot fail, and require a law that passes dispersion_check. Wavelengths are in nm; L in the
+ * formulas is the wavelength in um. It is the wavelength in air, as in a catalogue; the wavelength in vacuum, 0.03%
+ * longer, would change no index of the catalogue by more than 1e-4. */
 #pragma once
 
 #include "base/status.h"
@@ -15,11 +15,11 @@
 #define LINE_HYDROGEN_C_NM 656.2725
 #define LINE_SODIUM_D_NM 589.3
 
-/* The visible, for which a law must give an index. */
+/* The visible range, over which a law must give an index. */
 #define VISIBLE_LOW_NM 380.0
 #define VISIBLE_HIGH_NM 780.0
 
-/* Beside each its formula; its coefficients in order. */
+/* For each kind its formula, and its coefficients in order. */
 typedef enum dispersion_kind {
     DISPERSION_CONSTANT,          /* n = a; a */
     DISPERSION_SELLMEIER,         /* n^2 = 1 + sum B L^2 / (L^2 - C), C in um^2; B C B C ... */
@@ -28,7 +28,7 @@ typedef enum dispersion_kind {
     DISPERSION_CAUCHY_POWERS,     /* n = a0 + sum a L^p, p whole; a0 a p a p ... */
     DISPERSION_CAUCHY,            /* n = A + B / L^2 + C / L^4 + ...; A B C ... */
     DISPERSION_GAS,               /* n - 1 = sum B / (C - L^-2), both in um^-2; B C B C ... */
-    DISPERSION_TABLE              /* linear, beyond the ends as there; lambda_nm n lambda_nm n ... */
+    DISPERSION_TABLE              /* linear, constant beyond the ends; lambda_nm n lambda_nm n ... */
 } dispersion_kind;
 
 enum { DISPERSION_KIND_COUNT = DISPERSION_TABLE + 1, DISPERSION_TERMS_MAX = 32, DISPERSION_POWER_MAX = 16 };
@@ -37,23 +37,23 @@ typedef struct dispersion {
     dispersion_kind kind;
     int count; /* of coefficients */
     double coefficient[DISPERSION_TERMS_MAX];
-    double low_nm, high_nm; /* where it was measured; both 0: not stated */
+    double low_nm, high_nm; /* range of the measurement; both 0: not stated */
 } dispersion;
 
-/* "constant", "sellmeier", "sellmeier-lengths", ...; and the formula in words. */
+/* "constant", "sellmeier", "sellmeier-lengths", ...; and the formula as text. */
 const char *dispersion_name(dispersion_kind kind);
 const char *dispersion_formula(dispersion_kind kind);
 
-/* The index at a wavelength above 0, also outside the range where the law was measured. The same bits on every machine.
- */
+/* The index at a wavelength above 0, also outside the range of the measurement. Identical bits on every platform. */
 double dispersion_index(const dispersion *law, double lambda_nm);
 
-/* Is this a law? As many coefficients as its kind takes, all finite, powers whole, a table ascending, no resonance in
- * the visible, and there an index from 0.1 to 100 at each whole nanometre. STATUS_BAD_INPUT if not. */
+/* Checks a law: the number of coefficients for its kind, all finite, powers integers, a table ascending, no resonance
+ * in the visible, and an index from 0.1 to 100 there at each whole nanometre. STATUS_BAD_INPUT otherwise. */
 status dispersion_check(const dispersion *law, diagnostic *why);
 
-/* Was it measured over all of low_nm..high_nm? Where that is not stated: yes, but for a table its own ends count. */
+/* Was the law measured over all of low_nm..high_nm? If the range is not stated: yes, but a table has the range of its
+ * own wavelengths. */
 bool dispersion_covers(const dispersion *law, double low_nm, double high_nm);
 
-/* Abbe's number V_d = (n_d - 1) / (n_F - n_C); infinite for a law without dispersion between F and C. */
+/* Abbe number V_d = (n_d - 1) / (n_F - n_C); infinite for a law without dispersion between F and C. */
 double dispersion_abbe_number(const dispersion *law);

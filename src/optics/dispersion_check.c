@@ -1,3 +1,4 @@
+/* The check of a dispersion law. */
 #include "base/number.h"
 #include "optics/dispersion.h"
 #include <math.h>
@@ -5,7 +6,7 @@
 
 static const double index_low = 0.1, index_high = 100.0;
 
-/* How many numbers a law takes: each count from `first` on in steps of `step`, up to `most`. */
+/* The valid numbers of coefficients: from `first` in steps of `step`, up to `most`. */
 static const struct {
     const char *remedy;
     int first, step, most;
@@ -35,34 +36,34 @@ static bool count_fits(dispersion_kind kind, int count)
 static status check_numbers(const dispersion *law, diagnostic *why)
 {
     if ((unsigned)law->kind >= DISPERSION_KIND_COUNT)
-        return diagnose(why, STATUS_BAD_INPUT, "", "there is no dispersion law of number %d", (int)law->kind);
+        return diagnose(why, STATUS_BAD_INPUT, "", "unknown dispersion law %d", (int)law->kind);
     const char *remedy = coefficients_of(law->kind), *name = dispersion_name(law->kind);
     if (law->count > DISPERSION_TERMS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, remedy, "a dispersion law has at most %d numbers, not %d",
                         DISPERSION_TERMS_MAX, law->count);
     if (!count_fits(law->kind, law->count))
-        return diagnose(why, STATUS_BAD_INPUT, remedy, "%d numbers do not make the dispersion law '%s'", law->count,
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "%d numbers do not fit the dispersion law '%s'", law->count,
                         name);
     for (int i = 0; i < law->count; i++)
         if (!isfinite(law->coefficient[i]))
-            return diagnose(why, STATUS_BAD_INPUT, "give a finite one",
+            return diagnose(why, STATUS_BAD_INPUT, "use finite numbers",
                             "number %d of the dispersion law '%s' is not finite", i + 1, name);
     const double low = law->low_nm, high = law->high_nm;
     if ((low != 0.0 || high != 0.0) && !(low > 0.0 && low <= high && isfinite(high)))
-        return diagnose(why, STATUS_BAD_INPUT, "give a lower and a higher wavelength in nm, both above 0",
-                        "%g..%g nm is no range of wavelengths", low, high);
+        return diagnose(why, STATUS_BAD_INPUT, "use a lower and a higher wavelength in nm, both above 0",
+                        "%g..%g nm is not a range of wavelengths", low, high);
     return STATUS_OK;
 }
 
 static status check_powers(const dispersion *law, diagnostic *why)
 {
     char remedy[64];
-    snprintf(remedy, sizeof remedy, "use a whole power from %d to %d", -DISPERSION_POWER_MAX, DISPERSION_POWER_MAX);
+    snprintf(remedy, sizeof remedy, "use an integer power from %d to %d", -DISPERSION_POWER_MAX, DISPERSION_POWER_MAX);
     for (int i = 2; i < law->count; i += 2) {
         const double p = law->coefficient[i];
         if (p != floor(p) || fabs(p) > DISPERSION_POWER_MAX)
             return diagnose(why, STATUS_BAD_INPUT, remedy,
-                            "the wavelength's power %g is not one that a dispersion law takes", p);
+                            "the power %g of the wavelength is not valid in a dispersion law", p);
     }
     return STATUS_OK;
 }
@@ -86,7 +87,7 @@ static status check_table(const dispersion *law, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The samples could straddle a resonance, where the index is infinite. */
+/* A resonance, where the index is infinite, could fall between the samples of the visible range. */
 static status check_resonances(const dispersion *law, diagnostic *why)
 {
     for (int i = 1; i < law->count; i += 2) {

@@ -1,19 +1,20 @@
-/* A smooth interface between two media: Snell, Fresnel, reflection and refraction of a direction. All is
- * inline and without branches, so that kernels and tests use the one formula. Pure; cannot fail.
- * Signs: the normal faces the incoming ray, so cos_i = -d.n >= 0; directions are unit vectors; n_from and
- * n_to are the indices on the ray's side and beyond. */
+/* A smooth interface between two media: Snell, Fresnel, reflection and refraction of a direction. All functions are
+ * inline and branch-free, so that kernels and tests share one formula. Pure; cannot fail. Signs: the normal faces the
+ * incoming ray, so cos_i = -d.n >= 0; directions are unit vectors; n_from and n_to are the indices on the ray's side
+ * and on the other side. */
 #pragma once
 
 #include "base/lanes.h"
 #include "base/vec3.h"
 #include <math.h>
 
-/* Power reflectances, for the two polarisations and unpolarised light; all in [0, 1], transmittance is 1 - R. */
+/* Power reflectances, for the two polarisations and for unpolarised light; all in [0, 1]; the transmittance is 1 -
+ * R. */
 typedef struct fresnel {
     double eta;         /* n_from / n_to */
     double cos_t;       /* cosine of the angle of refraction; 0 under total internal reflection */
     double R_s, R_p, R; /* R = (R_s + R_p) / 2 */
-    int64_t total;      /* -1: total internal reflection; 0: not */
+    int64_t total;      /* -1: total internal reflection; 0: none */
 } fresnel;
 
 /* Fresnel's equations for dielectrics; Hecht, Optics, 5th ed., 4.6.2 (eqs. 4.34 and 4.40, squared). */
@@ -32,8 +33,8 @@ static inline fresnel fresnel_dielectric(double cos_i, double n_from, double n_t
     return f;
 }
 
-/* One Newton step towards unit length: exact to the last place for a vector that was a unit vector but for
- * rounding. It keeps a long chain of bounces from drifting. */
+/* One Newton step towards unit length: exact to the last place for a vector that is a unit vector up to rounding. It
+ * prevents drift over a long chain of bounces. */
 static inline vec3 direction_tidy(vec3 d)
 {
     return vec3_scale(d, 1.5 - 0.5 * vec3_dot(d, d));

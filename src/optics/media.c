@@ -1,3 +1,4 @@
+/* The catalogue of media. */
 #include "optics/media.h"
 #include <assert.h>
 #include <math.h>
@@ -7,7 +8,7 @@
 #define IN_DATABASE(path) "refractiveindex.info, " path
 #define AND_AS_QUOTED "; also as the literature quotes the original"
 #define AIR_ASSUMED \
-    "The source states no reference; taken as relative to air, in which refractometers and prisms stand."
+    "The source states no reference; assumed relative to air, in which refractometers and prisms are used."
 
 static const medium catalogue[] = {
     {.name = "air",
@@ -59,15 +60,14 @@ static const medium catalogue[] = {
      .verified = IN_DATABASE("organic/C7H8 - toluene/nk/Moutzouris.yml"),
      .note = AIR_ASSUMED},
     {.name = "olive-oil",
-     .title = "olive oil, at the sodium line alone",
+     .title = "olive oil, at the sodium D line only",
      .law = {DISPERSION_CONSTANT, 1, {1.4691}, 589.3, 589.3},
      .relative_to_air = true,
      .temperature_c = 20.0,
      .source = "Codex Alimentarius, CXS 33",
-     .verified = "nothing yet",
-     .note = "The middle of the range 1.4677 to 1.4705 that the standard allows at 589.3 nm. No dispersion law of good "
-             "standing "
-             "was found: constant, so not for a study of colours."},
+     .verified = "not verified",
+     .note = "The middle of the range 1.4677 to 1.4705 that the standard allows at 589.3 nm. No reliable "
+             "dispersion law was found; the index is constant, so do not use it to study colours."},
     {.name = "bk7-liquid",
      .title = "liquid that matches BK7",
      .law = {DISPERSION_CAUCHY_POWERS, 5, {1.502639, 0.0047089420, -2.0, 0.000063670450, -4.0}, 350.0, 1550.0},
@@ -75,7 +75,7 @@ static const medium catalogue[] = {
      .temperature_c = 25.0,
      .source = "Cargille, data sheet BK-7 Matching Liquid, 27 March 2023",
      .verified = IN_DATABASE("specs/cargille/index-matching liquids/nk/BK7_matching_liquid.yml"),
-     .note = "Its curve crosses that of bk7 near the line d, and is steeper. " AIR_ASSUMED},
+     .note = "Its dispersion curve crosses that of bk7 near the d line and is steeper. " AIR_ASSUMED},
     {.name = "fused-silica",
      .title = "fused silica",
      .law = {DISPERSION_SELLMEIER_LENGTHS,

@@ -1,13 +1,13 @@
-/* The catalogue of media: what liquids, glasses, plastics and crystals of a laboratory refract, by published dispersion
- * laws. Each row says who measured it, at which temperature and over which wavelengths.
- * Ownership: all is constant and lives as long as the program. Errors: none; an unknown name is NULL.
- * A refractometer and a prism on a table compare with the air around them, and so do glass catalogues: such a law is
- * relative to air. medium_index is absolute, relative to vacuum, for all; air itself is a row. */
+/* The catalogue of media: refractive indices of a laboratory's liquids, glasses, plastics and crystals, by published
+ * dispersion laws. Each row states its source, temperature and range of wavelengths. Ownership: all data are constant.
+ * Errors: none; an unknown name gives NULL. Refractometers and goniometers measure relative to the surrounding air, and
+ * glass catalogues do the same: such a law is relative to air. medium_index is absolute (relative to vacuum) for all
+ * media; air itself is a row. */
 #pragma once
 
 #include "optics/dispersion.h"
 
-/* The names, in the catalogue's order, for whoever needs them as words. */
+/* The names in the catalogue's order, for use as words. */
 #define MEDIA_NAMES(X) \
     X("air")           \
     X("water")         \
@@ -29,11 +29,11 @@ typedef struct medium {
     const char *name;     /* "fused-silica" */
     const char *title;    /* "fused silica" */
     dispersion law;       /* as published */
-    bool relative_to_air; /* the law; else to vacuum */
+    bool relative_to_air; /* the law is relative to air; else to vacuum */
     double temperature_c; /* of the medium; NaN: at room temperature */
     const char *source;   /* who measured or published it */
     const char *verified; /* what the coefficients were compared with */
-    const char *note;     /* what to beware of; "" when nothing */
+    const char *note;     /* limits of the data; "" for none */
 } medium;
 
 size_t media_count(void);
@@ -41,6 +41,5 @@ const medium *media_at(size_t i); /* i < media_count() */
 const medium *media_find(const char *name);
 
 /* Index relative to vacuum. A law relative to air is multiplied by the index of dry air at 15 C and 101325 Pa; Ciddor,
- * Appl. Opt. 35, 1566 (1996). That the air of a laboratory at sea level is warmer and moist changes it by less than
- * 4e-5. */
+ * Appl. Opt. 35, 1566 (1996). The warmer and moister air of a laboratory at sea level changes it by less than 4e-5. */
 double medium_index(const medium *m, double lambda_nm);

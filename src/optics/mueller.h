@@ -1,23 +1,22 @@
-/* Polarised light at smooth interfaces: Stokes vectors, and what a ray that is followed backwards
- * from the eye carries instead of them. What a tracer calls for every ray is inline and without branches (+ - * / sqrt
- * alone), so that kernels and tests use the one formula. Pure; cannot fail; all values, nothing is owned.
+/* Polarised light at smooth interfaces: Stokes vectors, and the row vector that a ray traced backwards from the eye
+ * carries instead of them. The functions that a tracer calls for every ray are inline and branch-free (only + - * /
+ * sqrt), so that kernels and tests share one formula. Pure; cannot fail; all values, nothing is owned.
  *
  * Signs. A ray runs from the eye along a unit vector d; its light travels along -d. Its frame is (x, y) with y = d x x
- * (d cross x), so x cross y = d. Of a Stokes vector in that frame
- *   i  is the intensity (radiance),
- *   q > 0: the field lies along x, q < 0: along y,
- *   u > 0: the field lies at +45 degrees, from x towards y,
- *   v > 0: the field turns from x towards y: clockwise for the eye that the light runs into, which is right-handed
- *   light
- *          in Hecht's and Born and Wolf's sense. (Of light that travels along +d the same v is left-handed.)
+ * (d cross x), so x cross y = d. For a Stokes vector in that frame
+ *   i      is the intensity (radiance),
+ *   q > 0: the field is along x, q < 0: along y,
+ *   u > 0: the field is at +45 degrees, from x towards y,
+ *   v > 0: the field rotates from x towards y: clockwise for the eye that the light reaches, which is right-handed
+ *          light in Hecht's and Born and Wolf's sense. (For light that travels along +d the same v is left-handed.)
  * In complex amplitudes with exp(-i omega t), as in Born and Wolf: u + i v = 2 conj(E_x) E_y. In an s/p frame x = s = d
- * x n / |d x n| and y = p = d x s, for each ray its own p: at normal incidence the reflected p is the other way round,
- * r_p = -r_s, and nothing jumps. The normal n faces the ray: cos_i = -d.n >= 0; n_from is the index on the side of the
- * ray that comes from the eye, n_to the one beyond.
+ * x n / |d x n| and y = p = d x s, with a separate p for each ray: at normal incidence the reflected p is reversed, r_p
+ * = -r_s, and nothing jumps. The normal n faces the ray: cos_i = -d.n >= 0; n_from is the index on the side of the ray
+ * that comes from the eye, n_to that on the other side.
  *
  * Transmittance is that of power, n_t cos_t / (n_i cos_i) |t|^2 = 1 - R, the same number from either side. The factor
- * n^2 that radiance takes on behind an interface is left out, as renderers commonly do: eye and lights stand in one
- * medium, where it has gone again. */
+ * n^2 of radiance across an interface is omitted, as is common in renderers: eye and lights are in one medium, where it
+ * has cancelled. */
 #pragma once
 
 #include "base/lanes.h"
@@ -31,8 +30,8 @@ typedef struct stokes {
 
 /* --- frames --- */
 
-/* The canonical frame of direction d, a function of d alone, so that no ray carries its frame: Duff and others,
- * Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017. Where d.z changes sign it jumps. */
+/* The canonical frame of direction d, a function of d alone, so that no ray stores its frame: Duff and others, Building
+ * an Orthonormal Basis, Revisited, JCGT 6(1), 2017. It is discontinuous where d.z changes sign. */
 static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
 {
     double sign = blend(mask_less(d.z, 0.0), -1.0, 1.0);
@@ -41,13 +40,13 @@ static inline void polarisation_frame(vec3 d, vec3 *x, vec3 *y)
     *y = vec3_make(b, sign + d.y * d.y * a, -d.y);
 }
 
-/* A turn of the frame by an angle a, from x towards y, as Stokes vectors feel it. */
+/* A rotation of the frame by an angle a, from x towards y, as it acts on Stokes vectors. */
 typedef struct frame_turn {
     double cos_2a, sin_2a;
 } frame_turn;
 
-/* The turn that brings x of the frame (x, y) into the direction e, of any length; what e has across the frame's plane
- * does not count. No turn for an e without a part in the plane. */
+/* The rotation that brings x of the frame (x, y) to the direction e, of any length, projected onto the frame's plane.
+ * The identity if that projection is zero. */
 static inline frame_turn frame_turn_to(vec3 x, vec3 y, vec3 e)
 {
     double c = vec3_dot(e, x), s = vec3_dot(e, y), length2 = c * c + s * s;
@@ -59,7 +58,7 @@ static inline frame_turn frame_turn_to(vec3 x, vec3 y, vec3 e)
     return t;
 }
 
-/* The same light in a frame turned by a: q + i u turns by -2a. An analyser's row turns alike. */
+/* The same light in a frame rotated by a: q + i u rotates by -2a. The row of an analyser rotates in the same way. */
 static inline stokes stokes_rotate(stokes s, double cos_2a, double sin_2a)
 {
     stokes r = {s.i, s.q * cos_2a + s.u * sin_2a, s.u * cos_2a - s.q * sin_2a, s.v};
@@ -67,7 +66,7 @@ static inline stokes stokes_rotate(stokes s, double cos_2a, double sin_2a)
 }
 
 /* Light of intensity 1 with its field along e, in the canonical frame of ray d. Half of it is the row of an ideal
- * polarising filter that lets e pass. */
+ * polarising filter that transmits e. */
 static inline stokes stokes_linear(vec3 d, vec3 e)
 {
     vec3 x, y;
@@ -79,20 +78,22 @@ static inline stokes stokes_linear(vec3 d, vec3 e)
 
 /* --- interfaces, in s/p frames --- */
 
-/* What an interface does to amplitudes r_s, r_p (or t_s, t_p), as powers: the four numbers of its Mueller matrix
- *   | mean half  0     0     |
- *   | half mean  0     0     |
- *   | 0    0     real -imag  |
- *   | 0    0     imag  real  |
- * A dielectric is a diattenuator (half) and, where it reflects totally, a retarder (imag). */
+/* The effect of an interface on amplitudes, r_s and r_p (or t_s and t_p), as powers: the four numbers of its Mueller
+ * matrix
+ *  | mean half  0     0     |
+ *  | half mean  0     0     |
+ *  | 0    0     real -imag  |
+ *  | 0    0     imag  real  |
+ * A dielectric is a diattenuator (half) and, under total internal reflection, a retarder (imag). */
 typedef struct sp_response {
     double mean, half; /* (|r_s|^2 + |r_p|^2) / 2, (|r_s|^2 - |r_p|^2) / 2 */
     double real, imag; /* conj(r_s) r_p */
 } sp_response;
 
-/* Reflection. f is fresnel_dielectric at cos_i. Below the critical angle r_s r_p is real. Under total reflection
- * conj(r_s) r_p = exp(-i delta) with tan(delta / 2) = cos_i sqrt(sin_i^2 - n^2) / sin_i^2, n = n_to / n_from:
- * Born and Wolf, Principles of Optics, 7th ed., 1.5.4. Halved angles make cos and sin delta rational. */
+/* Reflection. f is fresnel_dielectric at cos_i. Below the critical angle r_s r_p is real. Under total internal
+ * reflection conj(r_s) r_p = exp(-i delta) with tan(delta / 2) = cos_i sqrt(sin_i^2 - n^2) / sin_i^2, n = n_to /
+ * n_from: Born and Wolf, Principles of Optics, 7th ed., 1.5.4. The half-angle form makes cos and sin of delta
+ * rational. */
 static inline sp_response sp_reflect(fresnel f, double cos_i)
 {
     double below = (f.eta * cos_i + f.cos_t) * (cos_i + f.eta * f.cos_t);
@@ -107,8 +108,8 @@ static inline sp_response sp_reflect(fresnel f, double cos_i)
     return r;
 }
 
-/* Refraction: t_s and t_p are positive, so that conj(t_s) t_p is the root of the powers' product. 0 under total
- * reflection. */
+/* Refraction: t_s and t_p are positive, so that conj(t_s) t_p is the square root of the product of the powers. 0 under
+ * total internal reflection. */
 static inline sp_response sp_refract(fresnel f)
 {
     sp_response r = {1.0 - f.R, 0.5 * (f.R_p - f.R_s), sqrt((1.0 - f.R_s) * (1.0 - f.R_p)), 0.0};
@@ -125,21 +126,21 @@ static inline sp_response sp_mirror(void)
 /* --- backwards: the analyser's row --- */
 
 /* A ray from the eye carries the first row of the product of all Mueller matrices between eye and ray, in the ray's
- * canonical frame: (1, 0, 0, 0) at the eye, and .i is at every place the weight of unpolarised light from there. What
- * the eye sees of light s that joins at a ray is analyser_sees(row, s), both in that ray's canonical frame. */
+ * canonical frame: (1, 0, 0, 0) at the eye; .i is everywhere the weight of unpolarised light from there. The eye sees
+ * light s that joins at a ray with the intensity analyser_sees(row, s), both in that ray's canonical frame. */
 static inline double analyser_sees(stokes row, stokes s)
 {
     return row.i * s.i + row.q * s.q + row.u * s.u + row.v * s.v;
 }
 
-/* The row beyond an interface, in the frame of child, the reflected or refracted direction. */
+/* The row after an interface, in the frame of child, the reflected or refracted direction. */
 static inline stokes analyser_across(stokes row, vec3 d, vec3 n, vec3 child, sp_response r)
 {
     vec3 x, y, child_x, child_y, s = vec3_cross(d, n);
     polarisation_frame(d, &x, &y);
     polarisation_frame(child, &child_x, &child_y);
-    /* At normal incidence any plane is one of incidence, but it must be the same one for both frames. Nearer to it than
-     * 1e-9 radians s and p reflect alike up to the angle's square, which is below the last place. */
+    /* At normal incidence any plane is a plane of incidence, but both frames must use the same one. Within 1e-9 radians
+     * of it s and p reflect equally up to the square of the angle, which is below the last place. */
     int64_t any = mask_less(vec3_dot(s, s), 0x1p-60);
     s = vec3_make(blend(any, x.x, s.x), blend(any, x.y, s.y), blend(any, x.z, s.z));
     frame_turn to_sp = frame_turn_to(x, y, s), from_sp = frame_turn_to(child_x, child_y, s);
@@ -155,18 +156,18 @@ static inline stokes analyser_reflect(stokes row, vec3 d, vec3 n, double cos_i, 
     return analyser_across(row, d, n, reflected, sp_reflect(fresnel_dielectric(cos_i, n_from, n_to), cos_i));
 }
 
-/* The light goes from n_to into n_from; its transmittances are those of the way back. A row of zeros under total
- * reflection. */
+/* The light travels from n_to into n_from; the transmittances are those of that direction. A row of zeros under total
+ * internal reflection. */
 static inline stokes analyser_refract(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
                                       vec3 refracted)
 {
     return analyser_across(row, d, n, refracted, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
 }
 
-/* Of a coating that sends back a share 1 of the light that would pass, unpolarised: its matrix has the first row of
- * refraction's and no other, so that what comes back and what passes add up whatever the polarisation of the light that
- * comes. Such a matrix is not its own reverse: an analyser whose row is (1, q) in the plane of incidence sees 1 + c q
- * (R_s - R_p) / 2 of a surrounding light of 1. To be scaled by the coating's share c. */
+/* A coating that returns a share of 1 of the light that would be transmitted, unpolarised. Its matrix has the first row
+ * of refraction's matrix and zeros elsewhere, so that returned and transmitted light add up for every polarisation of
+ * the incident light. Such a matrix is not its own reverse: an analyser whose row is (1, q) in the plane of incidence
+ * sees 1 + c q (R_s - R_p) / 2 of a surrounding light of 1. To be scaled by the coating's share c. */
 static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, double n_from, double n_to,
                                       vec3 reflected)
 {
@@ -174,7 +175,7 @@ static inline stokes analyser_coating(stokes row, vec3 d, vec3 n, double cos_i, 
     return analyser_across(intensity, d, n, reflected, sp_refract(fresnel_dielectric(cos_i, n_from, n_to)));
 }
 
-/* To be scaled by the mirror's reflectance. */
+/* A mirror; to be scaled by the mirror's reflectance. */
 static inline stokes analyser_mirror(stokes row, vec3 d, vec3 n, vec3 reflected)
 {
     return analyser_across(row, d, n, reflected, sp_mirror());

@@ -1,3 +1,4 @@
+/* The tables of the standard observer and of D65, and the sRGB matrices. */
 #include "optics/observer.h"
 
 enum { FIRST_NM = 360, LAST_NM = 830, STEP_NM = 5, ENTRIES = (LAST_NM - FIRST_NM) / STEP_NM + 1 };
@@ -75,7 +76,7 @@ static const double xyz_to_srgb[3][3] = {
     {0.055667302503356754, -0.2041134425123081, 1.0576787475637783},
 };
 
-/* Entry at or below a wavelength, and how far it is towards the next, 0 .. 1; -1 outside the tables. */
+/* Entry at or below a wavelength, and the fraction of the step to the next, 0 .. 1; -1 outside the tables. */
 static int entry_below(double lambda_nm, double *part)
 {
     if (!(lambda_nm >= FIRST_NM && lambda_nm <= LAST_NM))
@@ -112,7 +113,7 @@ void observer_weights(double lambda_nm, double xyz[3])
 
 static void multiply(const double m[3][3], const double v[3], double out[3])
 {
-    const double a = v[0], b = v[1], c = v[2]; /* v and out may be one */
+    const double a = v[0], b = v[1], c = v[2]; /* v and out may be the same array */
     for (int i = 0; i < 3; i++)
         out[i] = m[i][0] * a + m[i][1] * b + m[i][2] * c;
 }

@@ -1,8 +1,9 @@
+/* The fit of smooth spectra to colours. */
 #include "optics/upsample.h"
 #include "base/lanes.h"
 
-/* Gauss's rule of three points on every 5 nm of the tables: observer times D65 is quadratic there, which leaves three
- * degrees of its five for S. */
+/* Three-point Gauss quadrature on every 5 nm interval of the tables: observer times D65 is quadratic there, which
+ * leaves three of the rule's five degrees for S. */
 enum {
     STEP_NM = 5,
     INTERVALS = (OBSERVER_HIGH_NM - OBSERVER_LOW_NM) / STEP_NM,
@@ -13,19 +14,20 @@ enum {
 static const double SATURATED = 0x1p60;   /* sigmoid(+-SATURATED) is 1 and 0 exactly */
 static const double CLOSE_ENOUGH = 1e-20; /* square of a distance in CIELAB */
 
-/* What each wavelength adds to X/Xn, Y/Yn, Z/Zn of a surface under D65; the weights of each sum to 1. */
+/* The contribution of each wavelength to X/Xn, Y/Yn, Z/Zn of a surface under D65; each row of weights sums to 1. */
 typedef struct daylight {
     double t[SAMPLES], weight[3][SAMPLES];
 } daylight;
 
-/* Coefficients, the distance of their colour from the target in L*, a*, b*, and its derivatives. */
+/* Coefficients, the difference of their colour from the target in L*, a*, b*, and its derivatives. */
 typedef struct trial {
     double c[3], distance[3], slope[3][3], square;
 } trial;
 
 static void daylight_make(daylight *d)
 {
-    const double offset[3] = {-sqrt(0.6), 0.0, sqrt(0.6)}, share[3] = {5.0, 8.0, 5.0}; /* of -1 .. 1; of 18 */
+    const double offset[3] = {-sqrt(0.6), 0.0, sqrt(0.6)},
+                 share[3] = {5.0, 8.0, 5.0}; /* offsets within -1 .. 1; weights out of 18 */
     double sum[3] = {0.0, 0.0, 0.0};
     for (int k = 0; k < SAMPLES; k++) {
         double intervals = k / 3 + 0.5 + 0.5 * offset[k % 3], lambda_nm = OBSERVER_LOW_NM + STEP_NM * intervals, xyz[3];
@@ -41,7 +43,7 @@ static void daylight_make(daylight *d)
             d->weight[i][k] /= sum[i];
 }
 
-/* Newton's method in Halley's form, which triples the digits at each step; for t of 0.008 .. 1.1. */
+/* Halley's method, which triples the digits at each step; for t of 0.008 .. 1.1. */
 static double cube_root(double t)
 {
     double y = 0.35 + 0.65 * t;
@@ -68,7 +70,7 @@ static double lab_f(double t, double *slope)
 /* L*, a*, b* are linear in f(X/Xn), f(Y/Yn), f(Z/Zn). */
 static const double lab_of_f[3][3] = {{0.0, 116.0, 0.0}, {500.0, -500.0, 0.0}, {0.0, 200.0, -200.0}};
 
-/* Of a colour relative to white, less the target: what the fit makes small. */
+/* Computes the difference from the target, which the fit minimises, for a colour relative to white. */
 static void evaluate(const daylight *d, const double target_f[3], trial *at)
 {
     double relative[3] = {0.0, 0.0, 0.0}, by_c[3][3] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
@@ -100,7 +102,7 @@ static void evaluate(const daylight *d, const double target_f[3], trial *at)
     }
 }
 
-/* Solves (J'J + damping diag(J'J)) step = -J' distance by Cholesky's factors. */
+/* Solves (J'J + damping diag(J'J)) step = -J' distance by a Cholesky factorisation. */
 static void damped_step(const trial *at, double damping, double step[3])
 {
     double a[3][3], b[3];
@@ -132,8 +134,8 @@ static void damped_step(const trial *at, double damping, double step[3])
     }
 }
 
-/* Levenberg and Marquardt's method, from the coefficients that the caller put into best. Never ends further away than
- * it began: a step that does not come closer (or is no number) is not taken. */
+/* Levenberg-Marquardt, from the coefficients that the caller stored in best. The result is never worse than the start:
+ * a step that does not reduce the distance (or is NaN) is rejected. */
 static void fit(const daylight *d, const double target_f[3], trial *best)
 {
     double damping = 1e-3;
@@ -179,7 +181,7 @@ static upsampled_spectrum upsample_clamped(const double rgb[3])
         target_f[i] = lab_f(xyz[i] / white_xyz[i], &unused);
     daylight d;
     daylight_make(&d);
-    trial best = {.c = {0.0, 0.0, grey_coefficient(xyz[1])}}; /* the grey as bright as the colour */
+    trial best = {.c = {0.0, 0.0, grey_coefficient(xyz[1])}}; /* start from the grey of equal luminance */
     fit(&d, target_f, &best);
     return (upsampled_spectrum){.c = {best.c[0], best.c[1], best.c[2]}, .scale = 1.0};
 }

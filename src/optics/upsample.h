@@ -1,12 +1,11 @@
-/* Colours of three numbers lifted to spectra: S(lambda) = sigmoid(c0 t^2 + c1 t + c2) with t the wavelength, -1 at
- * OBSERVER_LOW_NM and 1 at OBSERVER_HIGH_NM, and sigmoid(x) = 1/2 + x / (2 sqrt(1 + x^2)): smooth, and within 0 .. 1
- * whatever the coefficients, so that a lifted reflectance keeps energy. Jakob and Hanika, "A Low-Dimensional Function
- * Space for Efficient Spectral Upsampling", Computer Graphics Forum 38(2), 2019. The coefficients are fitted at the
- * call, so that the spectrum seen by the observer under D65 is the colour again: 20 microseconds, so lift a colour
- * once, not once a ray. Greys are exact: a constant spectrum, of black 0 and of white 1. Seen again, colours of
- * 8 bits are within a CIEDE2000 of 3e-4 (the corners of the gamut, 5e-6), and within 0.006 one step from black, where
- * the curves are steepest.
- * Values, not objects: nothing to release. Pure; cannot fail. */
+/* RGB-to-spectrum upsampling: S(lambda) = sigmoid(c0 t^2 + c1 t + c2) with t the wavelength, -1 at OBSERVER_LOW_NM and
+ * 1 at OBSERVER_HIGH_NM, and sigmoid(x) = 1/2 + x / (2 sqrt(1 + x^2)): smooth, and within 0 .. 1 for all coefficients,
+ * so that an upsampled reflectance conserves energy. Jakob and Hanika, "A Low-Dimensional Function Space for Efficient
+ * Spectral Upsampling", Computer Graphics Forum 38(2), 2019. Each call fits the coefficients so that the spectrum, seen
+ * by the observer under D65, has the given colour: 20 microseconds, so upsample once per colour and not once per ray.
+ * Greys are exact: a constant spectrum, 0 for black and 1 for white. The round trip of 8-bit colours is within a
+ * CIEDE2000 of 3e-4 (at the corners of the gamut, 5e-6), and within 0.006 one step from black, where the curves are
+ * steepest. Values, not objects: nothing to free. Pure; cannot fail. */
 #pragma once
 
 #include "optics/observer.h"
@@ -14,14 +13,14 @@
 
 typedef struct upsampled_spectrum {
     double c[3];  /* c0, c1, c2 */
-    double scale; /* 1 for a reflectance; of an emission, what its largest component is half of */
+    double scale; /* 1 for a reflectance; for an emission, twice its largest component */
 } upsampled_spectrum;
 
-/* Linear sRGB; components are taken to 0 .. 1 first (and what is not a number to 0). */
+/* Linear sRGB; components are clamped to 0 .. 1 first (NaN to 0). */
 upsampled_spectrum upsample_reflectance(const double rgb[3]);
 
-/* Linear sRGB of any size; negative components (and what is not a number) are taken to 0. The shape is fitted to the
- * colour at half of full brightness, where every hue is in reach of smooth spectra; white is D65 exactly. */
+/* Linear sRGB of any magnitude; negative components (and NaN) are clamped to 0. The shape is fitted to the colour at
+ * half of full brightness, where smooth spectra reach every hue; white is exactly D65. */
 upsampled_spectrum upsample_emission(const double rgb[3]);
 
 /* S(lambda), 0 .. 1. */
@@ -34,7 +33,7 @@ static inline double upsampled_reflectance(const upsampled_spectrum *l, double l
     return 0.5 + 0.5 * x / sqrt(1.0 + x * x); /* Jakob and Hanika, eq. 4 */
 }
 
-/* scale S(lambda) D65(lambda), radiance in the unit of observer_d65. */
+/* scale S(lambda) D65(lambda), a radiance in units of observer_d65. */
 static inline double upsampled_emission(const upsampled_spectrum *l, double lambda_nm)
 {
     return l->scale * upsampled_reflectance(l, lambda_nm) * observer_d65(lambda_nm);

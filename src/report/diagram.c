@@ -1,3 +1,4 @@
+/* A diagram: window, rays, arrows and marks. */
 #include "report/diagram_parts.h"
 
 #include "geometry/shapes/shape.h"
@@ -37,7 +38,7 @@ section_plane diagram_plane(vec3 point, vec3 e_u, vec3 e_v)
     return (section_plane){.origin = vec3_scale(n, vec3_dot(n, point)), .e_u = e_u, .e_v = e_v};
 }
 
-/* The window: the box and some room around it, widened to the frame's shape. */
+/* Sets the window: the box with a margin of 4 %, widened to the aspect ratio of the frame. */
 static void fit(diagram *d, const diagram_box *box)
 {
     const double room = 0.04 * fmax(box->u1 - box->u0, box->v1 - box->v0) + 1e-9;
@@ -63,10 +64,10 @@ status diagram_begin(diagram *d, FILE *out, const probe *p, const scene *s, cons
 void diagram_end(diagram *d)
 {
     section_release(&d->cut);
-    free(d->kept);
+    free(d->needed);
 }
 
-/* Cuts a piece to the window: Liang and Barsky 1984. False when nothing is left. */
+/* Clips a segment to the window (Liang and Barsky 1984). Returns false if nothing is left. */
 static bool clip(const section_plane *w, section_point *a, section_point *b)
 {
     const double du = b->u - a->u, dv = b->v - a->v;

@@ -1,9 +1,9 @@
-/* A diagram's axes: ticks at round numbers, and what the axes measure. */
+/* The axes of a diagram: ticks at round numbers, and names. */
 #include "report/diagram_parts.h"
 #include "base/number.h"
 #include <string.h>
 
-/* The step of 1, 2 or 5 times a power of ten that gives at most `most` ticks. */
+/* The smallest step of 1, 2 or 5 times a power of ten with at most `most` ticks. */
 static double tick_step(double extent, double most)
 {
     double power = 1e-6;
@@ -16,7 +16,7 @@ static double tick_step(double extent, double most)
     return factors[3] * power;
 }
 
-/* "x", or the direction's components where it is no axis of the world. */
+/* "x", or the components of a direction that is not a world axis. */
 static void name_axis(vec3 e, char *text, size_t size)
 {
     const double parts[3] = {e.x, e.y, e.z};

@@ -1,4 +1,4 @@
-/* A diagram's ground: media as areas, boundaries as lines, and the key to them. */
+/* The background of a diagram: media as areas, boundaries as lines, and their legend. */
 #include "report/diagram_parts.h"
 #include "scene/model/medium.h"
 #include "image/image.h"
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Refractive index at render.lambda_nm; 1 for what cannot be told. */
+/* Refractive index at render.lambda_nm; 1 where it is unknown. */
 static double index_of(const scene *s, int i)
 {
     index_law law;
@@ -20,7 +20,7 @@ static bool is_opaque(const scene *s, int i)
     return material_is_opaque(&s->solids[i].surface);
 }
 
-/* Opaque solids in a pale tone of their colour, clear ones the bluer the more they refract. */
+/* Opaque solids have a pale tone of their colour; the blue of transparent ones deepens with their refractive index. */
 static void write_fill(FILE *out, const scene *s, int i)
 {
     if (is_opaque(s, i)) {
@@ -52,7 +52,7 @@ static status write_area(const diagram *d, int of, section_step *steps, diagnost
         for (size_t k = steps[i].starts_ring ? 0 : 1; k < line->count; k++) {
             const size_t index = line->first + (steps[i].backwards ? line->count - 1 - k : k);
             const section_point at = cut->point[index];
-            if (d->kept[index])
+            if (d->needed[index])
                 fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", diagram_x(d, at.u), diagram_y(d, at.v));
         }
     }
@@ -65,13 +65,13 @@ static void write_boundary(const diagram *d, const section_line *line)
     fputs("<path d=\"", d->out);
     for (size_t k = 0; k < line->count; k++) {
         const section_point at = d->cut.point[line->first + k];
-        if (d->kept[line->first + k])
+        if (d->needed[line->first + k])
             fprintf(d->out, "%s%.2f %.2f", k == 0 ? "M" : "L", diagram_x(d, at.u), diagram_y(d, at.v));
     }
     fputs("\"/>\n", d->out);
 }
 
-/* Squared distance of p from the piece a b, scene units. */
+/* Squared distance of p from the segment ab, in scene units squared. */
 static double distance2(section_point p, section_point a, section_point b)
 {
     const double du = b.u - a.u, dv = b.v - a.v, length2 = du * du + dv * dv;
@@ -81,13 +81,13 @@ static double distance2(section_point p, section_point a, section_point b)
     return off_u * off_u + off_v * off_v;
 }
 
-/* Marks the points without which a line would change visibly: Douglas and Peucker 1973. */
-static void keep_needed(diagram *d, size_t first, size_t last)
+/* Marks the points that the line needs within the tolerance (Douglas and Peucker 1973). */
+static void mark_needed(diagram *d, size_t first, size_t last)
 {
     const double tolerance = 0.03 / d->scale; /* pixels */
     size_t farthest = first;
     double most = tolerance * tolerance;
-    d->kept[first] = d->kept[last] = true;
+    d->needed[first] = d->needed[last] = true;
     for (size_t k = first + 1; k < last; k++) {
         const double off = distance2(d->cut.point[k], d->cut.point[first], d->cut.point[last]);
         if (off > most)
@@ -95,17 +95,17 @@ static void keep_needed(diagram *d, size_t first, size_t last)
     }
     if (farthest == first)
         return;
-    keep_needed(d, first, farthest);
-    keep_needed(d, farthest, last);
+    mark_needed(d, first, farthest);
+    mark_needed(d, farthest, last);
 }
 
 status diagram_media(diagram *d, diagnostic *why)
 {
     section_step *steps = calloc(d->cut.line_count + 1, sizeof *steps);
-    d->kept = calloc(d->cut.point_count + 1, sizeof *d->kept);
-    for (size_t i = 0; i < d->cut.line_count && d->kept; i++)
-        keep_needed(d, d->cut.line[i].first, d->cut.line[i].first + d->cut.line[i].count - 1);
-    if (!steps || !d->kept) {
+    d->needed = calloc(d->cut.point_count + 1, sizeof *d->needed);
+    for (size_t i = 0; i < d->cut.line_count && d->needed; i++)
+        mark_needed(d, d->cut.line[i].first, d->cut.line[i].first + d->cut.line[i].count - 1);
+    if (!steps || !d->needed) {
         free(steps);
         return out_of_memory(why);
     }
@@ -144,7 +144,7 @@ double diagram_media_key(FILE *out, const probe *p, const scene *s, double left,
         key_words(p, s, i, text, sizeof text);
         for (const char *c = text; *c; c++)
             letters += ((unsigned char)*c & 0xc0) != 0x80;
-        const double width = 39.0 + 6.9 * letters; /* no font is measured: about */
+        const double width = 39.0 + 6.9 * letters; /* estimated: 6.9 px per letter at font size 11 */
         if (x > left && x + width > right)
             x = left, y += DIAGRAM_ROW;
         if (out) {

@@ -1,4 +1,4 @@
-/* The inside of a diagram, shared by diagram.c, diagram_axes.c and diagram_media.c. */
+/* Internals of a diagram, shared by diagram.c, diagram_axes.c and diagram_media.c. */
 #pragma once
 
 #include "report/diagram.h"

@@ -1,3 +1,4 @@
+/* The JSON writer, and jansson values of reals, texts and diagnostics. */
 #include "report/json.h"
 #include "base/number.h"
 #include <math.h>
@@ -32,7 +33,7 @@ static void write_real(FILE *stream, double value)
 {
     char text[NUMBER_TEXT_MAX];
     number_format(value, text);
-    /* A real stays one when it is read back. */
+    /* ".0" keeps a real from reading back as an integer. */
     fprintf(stream, "%s%s", text, strpbrk(text, ".e") ? "" : ".0");
 }
 
@@ -51,14 +52,14 @@ static bool write_text(FILE *stream, const char *text)
 
 json_t *json_of_diagnostic(const diagnostic *why)
 {
-    json_t *told = json_pack("{s:o, s:o}", "error", json_of_text(why->what), "remedy", json_of_text(why->remedy));
-    if (told && why->file[0])
-        json_object_set_new(told, "file", json_of_text(why->file));
-    if (told && why->line > 0)
-        json_object_set_new(told, "line", json_integer(why->line));
-    if (told && why->column > 0)
-        json_object_set_new(told, "column", json_integer(why->column));
-    return told;
+    json_t *object = json_pack("{s:o, s:o}", "error", json_of_text(why->what), "remedy", json_of_text(why->remedy));
+    if (object && why->file[0])
+        json_object_set_new(object, "file", json_of_text(why->file));
+    if (object && why->line > 0)
+        json_object_set_new(object, "line", json_integer(why->line));
+    if (object && why->column > 0)
+        json_object_set_new(object, "column", json_integer(why->column));
+    return object;
 }
 
 bool json_write_text(FILE *stream, const char *text)
@@ -73,7 +74,7 @@ void json_write_real(FILE *stream, double value)
 {
     char text[NUMBER_TEXT_MAX];
     const bool is_digit = value >= 0.0 && value <= 9.0 && floor(value) == value && !signbit(value);
-    if (is_digit) /* most zeros and ones of a large tree, at a tenth of printf's price */
+    if (is_digit) /* zeros and ones dominate large ray trees; this takes a tenth of printf's time */
         fputc('0' + (int)value, stream);
     else
         fputs(isfinite(value) ? number_format_digits(value, 17, text) : "null", stream);
@@ -132,7 +133,7 @@ static bool write_value(FILE *stream, const json_t *value, int indent)
 {
     switch (json_typeof(value)) {
     case JSON_OBJECT:
-        /* jansson iterates over objects that are not const; nothing is changed */
+        /* jansson iterates only over non-const objects; the object is not modified */
         return write_object(stream, (json_t *)(uintptr_t)value, indent);
     case JSON_ARRAY: return write_list(stream, value, indent);
     case JSON_STRING: return write_text(stream, json_string_value(value));

@@ -1,3 +1,4 @@
+/* Measures this machine's clocks and disturbances, and reports them as JSON. */
 #include "report/machine.h"
 #include "report/json.h"
 #include "measure/usage.h"

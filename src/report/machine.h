@@ -1,5 +1,5 @@
-/* What this machine is, as far as it matters to a measurement: processors, clocks, vector instructions, and what could
- * disturb now. Ownership: machine_measure fills, machine_release releases, also after an error. */
+/* The account of this machine for measurements: processors, clocks, vector instruction sets, and current disturbances.
+ * Ownership: machine_measure allocates, machine_release frees, also after an error. */
 #pragma once
 
 #include "base/isa.h"
@@ -19,10 +19,10 @@ typedef struct machine_account {
     json_t *disturbances; /* list of texts */
 } machine_account;
 
-/* Takes half a second, in which it watches the load of others. An instruction set that the environment asks for wrongly
- * is STATUS_BAD_INPUT. */
+/* Takes half a second to measure the load of other processes. STATUS_BAD_INPUT for an invalid instruction set in the
+ * environment (CUVETTE_ISA). */
 status machine_measure(machine_account *a, diagnostic *why);
 void machine_release(machine_account *a);
 
-/* What `cuvette machine --json` prints; NULL when memory is out. */
+/* The output of `cuvette machine --json`; NULL when memory is out. */
 json_t *machine_json(const machine_account *a);

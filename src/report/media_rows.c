@@ -1,7 +1,11 @@
+/* The media catalogue as a table, one medium in detail, or JSON. */
 #include "report/media_rows.h"
 #include "report/json.h"
+#include "report/wrap.h"
 #include "base/number.h"
 #include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
 #include <string.h>
 
 typedef struct spectral_line {
@@ -12,7 +16,7 @@ typedef struct spectral_line {
 static const spectral_line lines[] = {
     {"n_d", LINE_HELIUM_D_NM}, {"n_F", LINE_HYDROGEN_F_NM}, {"n_C", LINE_HYDROGEN_C_NM}, {"n_D", LINE_SODIUM_D_NM}};
 
-enum { LINES_TABLE = 3, LINES_ALL = 4 }; /* the table leaves out the sodium line */
+enum { LINES_TABLE = 3, LINES_ALL = 4 }; /* the table has no column for the sodium line */
 
 char *media_range_text(const medium *m, char text[MEDIA_RANGE_MAX])
 {
@@ -37,77 +41,130 @@ static const char *reference_of(const medium *m)
     return m->relative_to_air ? "air" : "vacuum";
 }
 
-static void print_row(FILE *stream, const medium *m, double at_nm)
+enum { CELLS_MAX = 192, TABLE_WIDTH = 79, AT_WIDTH = 9, LABEL_WIDTH = 16 };
+
+/* Returns whether the terminal is too narrow for the columns from the range on, which then precede the source. */
+static bool is_narrow(double at_nm, int columns)
 {
-    char text[NUMBER_TEXT_MAX], range[MEDIA_RANGE_MAX];
+    return columns && columns < TABLE_WIDTH + (at_nm > 0.0 ? AT_WIDTH : 0);
+}
+
+/* Appends a cell to the cells of a row. */
+static void put(char cells[CELLS_MAX], const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void put(char cells[CELLS_MAX], const char *format, ...)
+{
+    const size_t used = strlen(cells);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(cells + used, CELLS_MAX - used, format, arguments);
+    va_end(arguments);
+}
+
+static void put_indices(char cells[CELLS_MAX], const medium *m, double at_nm)
+{
     const double abbe = dispersion_abbe_number(&m->law);
-    fprintf(stream, "%-12s", m->name);
+    put(cells, "%-12s", m->name);
     for (int i = 0; i < LINES_TABLE; i++) {
         const double lambda_nm = lines[i].lambda_nm;
-        fprintf(stream, "  %.5f%c", dispersion_index(&m->law, lambda_nm),
-                dispersion_covers(&m->law, lambda_nm, lambda_nm) ? ' ' : '*');
+        put(cells, "  %.5f%c", dispersion_index(&m->law, lambda_nm),
+            dispersion_covers(&m->law, lambda_nm, lambda_nm) ? ' ' : '*');
     }
     if (isfinite(abbe))
-        fprintf(stream, "  %5.2f%c", abbe,
-                dispersion_covers(&m->law, LINE_HYDROGEN_F_NM, LINE_HYDROGEN_C_NM) ? ' ' : '*');
+        put(cells, "  %5.2f%c", abbe, dispersion_covers(&m->law, LINE_HYDROGEN_F_NM, LINE_HYDROGEN_C_NM) ? ' ' : '*');
     else
-        fprintf(stream, "  %5s ", "-");
+        put(cells, "  %5s ", "-");
     if (at_nm > 0.0 && dispersion_covers(&m->law, at_nm, at_nm))
-        fprintf(stream, "  %.5f", dispersion_index(&m->law, at_nm));
+        put(cells, "  %.5f", dispersion_index(&m->law, at_nm));
     else if (at_nm > 0.0)
-        fprintf(stream, "  %-7s", "-");
-    fprintf(stream, "  %-11s", media_range_text(m, range));
-    fprintf(stream, "  %-4s  %-8s  %s\n", temperature_text(m, text), reference_of(m), m->source);
+        put(cells, "  %-7s", "-");
+    put(cells, "  ");
 }
 
-void media_rows_table(FILE *stream, double at_nm)
+static void print_row(FILE *stream, const medium *m, double at_nm, int columns)
 {
-    fprintf(stream, "%-12s  %-8s  %-8s  %-8s  %5s ", "name", lines[0].name, lines[1].name, lines[2].name, "V_d");
+    char text[NUMBER_TEXT_MAX], range[MEDIA_RANGE_MAX], cells[CELLS_MAX] = "";
+    const char *temperature = temperature_text(m, text);
+    media_range_text(m, range);
+    put_indices(cells, m, at_nm);
+    if (is_narrow(at_nm, columns)) {
+        wrap_row(stream, columns, cells, "%s; %s; %s; %s", range, temperature, reference_of(m), m->source);
+        return;
+    }
+    put(cells, "%-11s  %-4s  %-8s  ", range, temperature, reference_of(m));
+    wrap_row(stream, columns, cells, "%s", m->source);
+}
+
+void media_rows_table(FILE *stream, double at_nm, int columns)
+{
+    char cells[CELLS_MAX] = "";
+    put(cells, "%-12s  %-8s  %-8s  %-8s  %5s   ", "name", lines[0].name, lines[1].name, lines[2].name, "V_d");
     if (at_nm > 0.0)
-        fprintf(stream, "  %-7s", "n_at");
-    fprintf(stream, "  %-11s  %-4s  %-8s  %s\n", "range_nm", "T_C", "relative", "source");
+        put(cells, "%-7s  ", "n_at");
+    if (is_narrow(at_nm, columns)) {
+        wrap_row(stream, columns, cells, "range_nm; T_C; relative; source");
+    } else {
+        put(cells, "%-11s  %-4s  %-8s  ", "range_nm", "T_C", "relative");
+        wrap_row(stream, columns, cells, "source");
+    }
     for (size_t i = 0; i < media_count(); i++)
-        print_row(stream, media_at(i), at_nm);
+        print_row(stream, media_at(i), at_nm, columns);
 }
 
-static void print_index(FILE *stream, const medium *m, const char *label, double lambda_nm)
+static const char *label(const char *name, char text[LABEL_WIDTH + 1])
 {
-    char at[NUMBER_TEXT_MAX];
-    fprintf(stream, "%-15s %.8f at %s nm", label, dispersion_index(&m->law, lambda_nm), number_format(lambda_nm, at));
+    snprintf(text, LABEL_WIDTH + 1, "%-*s", LABEL_WIDTH, name);
+    return text;
+}
+
+static void print_index(FILE *stream, const medium *m, const char *name, double lambda_nm, int columns)
+{
+    char at[NUMBER_TEXT_MAX], start[LABEL_WIDTH + 1], absolute[64] = "";
     if (m->relative_to_air)
-        fprintf(stream, ", relative to vacuum %.8f", medium_index(m, lambda_nm));
-    fprintf(stream, "%s\n", dispersion_covers(&m->law, lambda_nm, lambda_nm) ? "" : ", extrapolated");
+        snprintf(absolute, sizeof absolute, ", relative to vacuum %.8f", medium_index(m, lambda_nm));
+    wrap_row(stream, columns, label(name, start), "%.8f at %s nm%s%s", dispersion_index(&m->law, lambda_nm),
+             number_format(lambda_nm, at), absolute,
+             dispersion_covers(&m->law, lambda_nm, lambda_nm) ? "" : ", extrapolated");
 }
 
-void media_rows_details(FILE *stream, const medium *m, double at_nm)
+static void print_law(FILE *stream, const medium *m, int columns)
 {
-    char text[NUMBER_TEXT_MAX], range[MEDIA_RANGE_MAX];
-    const double abbe = dispersion_abbe_number(&m->law);
-    fprintf(stream, "name            %s\n", m->name);
-    fprintf(stream, "medium          %s\n", m->title);
-    for (int i = 0; i < LINES_ALL; i++)
-        print_index(stream, m, lines[i].name, lines[i].lambda_nm);
-    if (isfinite(abbe))
-        fprintf(stream, "V_d             %.4f%s\n", abbe,
-                dispersion_covers(&m->law, LINE_HYDROGEN_F_NM, LINE_HYDROGEN_C_NM) ? "" : ", extrapolated");
-    else
-        fprintf(stream, "V_d             none: the law has no dispersion\n");
-    if (at_nm > 0.0)
-        print_index(stream, m, "n_at", at_nm);
-    fprintf(stream, "relative to     %s\n", reference_of(m));
-    fprintf(stream, "range           %s nm\n", media_range_text(m, range));
-    fprintf(stream, "temperature     %s%s\n", temperature_text(m, text), isnan(m->temperature_c) ? "" : " C");
-    fprintf(stream, "law             %s: %s\n", dispersion_name(m->law.kind), dispersion_formula(m->law.kind));
-    fprintf(stream, "coefficients   ");
-    for (int i = 0; i < m->law.count; i++)
-        fprintf(stream, " %s", number_format(m->law.coefficient[i], text));
-    fprintf(stream, "\nsource          %s\n", m->source);
-    fprintf(stream, "compared with   %s\n", m->verified);
-    if (m->note[0])
-        fprintf(stream, "note            %s\n", m->note);
+    char start[LABEL_WIDTH + 1], all[DISPERSION_TERMS_MAX * NUMBER_TEXT_MAX] = "", text[NUMBER_TEXT_MAX];
+    wrap_row(stream, columns, label("law", start), "%s: %s", dispersion_name(m->law.kind),
+             dispersion_formula(m->law.kind));
+    for (int i = 0; i < m->law.count; i++) {
+        const size_t used = strlen(all);
+        snprintf(all + used, sizeof all - used, "%s%s", i ? " " : "", number_format(m->law.coefficient[i], text));
+    }
+    wrap_row(stream, columns, label("coefficients", start), "%s", all);
 }
 
-/* The lines' indices, published or relative to vacuum. */
+void media_rows_details(FILE *stream, const medium *m, double at_nm, int columns)
+{
+    char text[NUMBER_TEXT_MAX], range[MEDIA_RANGE_MAX], start[LABEL_WIDTH + 1];
+    const double abbe = dispersion_abbe_number(&m->law);
+    wrap_row(stream, columns, label("name", start), "%s", m->name);
+    wrap_row(stream, columns, label("medium", start), "%s", m->title);
+    for (int i = 0; i < LINES_ALL; i++)
+        print_index(stream, m, lines[i].name, lines[i].lambda_nm, columns);
+    if (isfinite(abbe))
+        wrap_row(stream, columns, label("V_d", start), "%.4f%s", abbe,
+                 dispersion_covers(&m->law, LINE_HYDROGEN_F_NM, LINE_HYDROGEN_C_NM) ? "" : ", extrapolated");
+    else
+        wrap_row(stream, columns, label("V_d", start), "none: the index is constant");
+    if (at_nm > 0.0)
+        print_index(stream, m, "n_at", at_nm, columns);
+    wrap_row(stream, columns, label("relative to", start), "%s", reference_of(m));
+    wrap_row(stream, columns, label("range", start), "%s nm", media_range_text(m, range));
+    wrap_row(stream, columns, label("temperature", start), "%s%s", temperature_text(m, text),
+             isnan(m->temperature_c) ? "" : " C");
+    print_law(stream, m, columns);
+    wrap_row(stream, columns, label("source", start), "%s", m->source);
+    wrap_row(stream, columns, label("compared with", start), "%s", m->verified);
+    if (m->note[0])
+        wrap_row(stream, columns, label("note", start), "%s", m->note);
+}
+
+/* The indices at the spectral lines, as published or relative to vacuum (absolute). */
 static json_t *indices_json(const medium *m, bool absolute)
 {
     json_t *o = json_object();

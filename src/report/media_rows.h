@@ -1,5 +1,5 @@
-/* The catalogue of media as a person and a program read it: one line each, all about one, or JSON. Ownership: the JSON
- * is a new reference. Errors of the stream are left in the stream. at_nm is a further wavelength, 0 for none. */
+/* The media catalogue as a table, one medium in detail, or JSON. at_nm is a further wavelength, 0 for none. Ownership:
+ * the JSON is a new reference. Errors of the stream stay in the stream, where the caller checks them. */
 #pragma once
 
 #include "optics/media.h"
@@ -8,11 +8,12 @@
 
 enum { MEDIA_RANGE_MAX = 72 };
 
-/* "210..3710"; "589.3" for a single wavelength; "-" where none is stated; returns text. */
+/* "210..3710"; "589.3" for a single wavelength; "-" if the range is unknown. Returns text. */
 char *media_range_text(const medium *m, char text[MEDIA_RANGE_MAX]);
 
-void media_rows_table(FILE *stream, double at_nm);
-void media_rows_details(FILE *stream, const medium *m, double at_nm);
+/* columns: width of the terminal to which lines are wrapped; 0: no wrapping. */
+void media_rows_table(FILE *stream, double at_nm, int columns);
+void media_rows_details(FILE *stream, const medium *m, double at_nm, int columns);
 
-/* All media, or only one when it is not NULL; NULL without memory. */
+/* All media, or one medium unless only is NULL; NULL when memory is out. */
 json_t *media_rows_json(const medium *only, double at_nm);

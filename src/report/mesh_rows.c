@@ -1,8 +1,9 @@
+/* The description of a mesh: counts, bounds, area, volume or first hole, memory. */
 #include "report/mesh_rows.h"
 #include "report/json.h"
 #include "base/number.h"
 
-/* Of the mesh's own arrays. */
+/* Size of the mesh's arrays. */
 static size_t memory_bytes(const mesh *m)
 {
     const size_t by_vertex =
@@ -21,9 +22,9 @@ static void print_hole(FILE *stream, const mesh *m)
 {
     const mesh_hole *h = &m->hole;
     if (m->triangle_count == 0 || h->sharing == 0)
-        fputs("closed     no: no triangle has an area\n", stream);
+        fputs("closed     no: every triangle has zero area\n", stream);
     else if (h->sharing == 2)
-        fprintf(stream, "closed     no: one-sided at the edge from vertex %lu to %lu of triangle %zu\n",
+        fprintf(stream, "closed     no: inconsistent orientation at the edge from vertex %lu to %lu of triangle %zu\n",
                 (unsigned long)h->from, (unsigned long)h->to, h->triangle);
     else
         fprintf(stream, "closed     no: the edge from vertex %lu to %lu of triangle %zu is shared by %d, not 2\n",

@@ -1,5 +1,5 @@
-/* What a mesh is, as a person and as a program read it. Ownership: the JSON is a new reference, NULL without memory.
- * Errors of the stream are left in the stream. */
+/* The description of a mesh as text and as JSON. Ownership: the JSON is a new reference, NULL when memory is out.
+ * Errors of the stream stay in the stream, where the caller checks them. */
 #pragma once
 
 #include "geometry/mesh.h"

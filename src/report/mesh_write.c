@@ -1,3 +1,4 @@
+/* Writers of meshes: Wavefront OBJ, raw floats, binary PLY. */
 #include "report/mesh_write.h"
 
 #include <string.h>
@@ -21,7 +22,7 @@ static void write_obj(const mesh *m, FILE *stream)
     }
 }
 
-/* The low bytes first, whatever the machine. */
+/* Little-endian on every machine. */
 static void put_bits(uint64_t bits, int bytes, FILE *stream)
 {
     for (int k = 0; k < bytes; k++)

@@ -1,13 +1,13 @@
-/* Meshes out: for other renderers, so that all trace the same triangles. Ownership: nothing is kept. Errors of the
- * stream are left in the stream, where a file's commit finds them.
+/* Writers of meshes for other renderers, so that all of them trace the same triangles. Ownership: nothing is kept.
+ * Errors of the stream stay in the stream, where the caller checks them.
  *
  *   obj  Wavefront: positions and triangles
- *   bin  nine little-endian floats a triangle, nothing else
- *   ply  Stanford, binary, little-endian: all that the mesh has (normals nx ny nz, texture coordinates s t, slots
+ *   bin  nine little-endian floats per triangle, nothing else
+ *   ply  Stanford, binary, little-endian: all data of the mesh (normals nx ny nz, texture coordinates s t, slots
  *        as material_index)
  *
- * Coordinates that are floats are written with 9 significant digits, others with 17, so that they read back the
- * same. */
+ * Single-precision coordinates are written with 9 significant digits, double-precision ones with 17, so that they read
+ * back the same. */
 #pragma once
 
 #include "geometry/mesh.h"

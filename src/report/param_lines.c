@@ -1,3 +1,4 @@
+/* The lines of the parameter table: collection and filter. */
 #include "report/param_rows.h"
 #include "base/grow.h"
 #include "base/text.h"
@@ -6,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of groups whose objects have names of their own; the others stand under the group's. */
+/* Placeholders of groups whose objects have names; the other groups use their own name as prefix. */
 static const char *const prefixes[PARAM_GROUP_COUNT] = {[PARAM_MESH] = "MESH",
                                                         [PARAM_TEXTURE] = "TEXTURE",
                                                         [PARAM_LIGHT] = "LIGHT",
@@ -52,7 +53,8 @@ void param_lines_release(param_lines *all)
     *all = (param_lines){0};
 }
 
-/* Is the word the path, or whole words of it ("rod", "priority", "lamp.position")? An element of a vector names it. */
+/* Returns whether word is the path or whole components of it ("rod", "priority", "lamp.position"), or an element of
+ * that vector. */
 static bool names(const char *word, const char *path)
 {
     size_t length = strlen(word), whole = strlen(path);
@@ -69,9 +71,9 @@ static bool mentions(const char *word, const param_line *l)
     return strcasestr(l->path, word) || strcasestr(l->row->meaning, word);
 }
 
-static status nothing_fits(const param_lines *all, const char *filter, bool of_scene, diagnostic *why)
+static status no_match(const param_lines *all, const char *filter, bool of_scene, diagnostic *why)
 {
-    char remedy[256] = "'cuvette params' without it lists all";
+    char remedy[256] = "'cuvette params' lists all parameters";
     const char **known = calloc(2 * all->count + 1, sizeof *known);
     for (size_t i = 0; known && i < all->count; i++) {
         known[2 * i] = all->line[i].path;
@@ -81,9 +83,9 @@ static status nothing_fits(const param_lines *all, const char *filter, bool of_s
     if (nearest)
         snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
     else if (!of_scene && strchr(filter, '.'))
-        snprintf(remedy, sizeof remedy, "name the scene before it, for the names that a scene gives");
+        snprintf(remedy, sizeof remedy, "give the scene first if the path has the name of an object");
     free(known);
-    return diagnose_at(why, "params", STATUS_BAD_INPUT, remedy, "no parameter fits '%.64s'", filter);
+    return diagnose_at(why, "params", STATUS_BAD_INPUT, remedy, "no parameter matches '%.64s'", filter);
 }
 
 static status narrow(param_lines *all, const char *filter, bool of_scene, diagnostic *why)
@@ -95,7 +97,7 @@ static status narrow(param_lines *all, const char *filter, bool of_scene, diagno
     for (size_t i = 0; i < all->count; i++)
         kept += named ? names(filter, all->line[i].path) : mentions(filter, &all->line[i]);
     if (kept == 0)
-        return nothing_fits(all, filter, of_scene, why);
+        return no_match(all, filter, of_scene, why);
     kept = 0;
     for (size_t i = 0; i < all->count; i++) {
         param_line l = all->line[i];

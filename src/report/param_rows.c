@@ -1,15 +1,19 @@
+/* The parameter table as text, as JSON, and as roff for the manual page. */
 #include "geometry/solid.h"
 #include "report/param_rows.h"
 #include "geometry/shapes/shape.h"
 #include "report/json.h"
 #include "report/report.h"
+#include "report/wrap.h"
+#include "base/text.h"
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 static int wider(int width, const char *text)
 {
     int length = (int)strlen(text);
-    return length > width && length <= 48 ? length : width; /* one long value must not push the table apart */
+    return length > width && length <= 48 ? length : width; /* a single long value must not widen the column */
 }
 
 static const char *or_dash(const char *text)
@@ -17,69 +21,64 @@ static const char *or_dash(const char *text)
     return text[0] ? text : "-";
 }
 
-/* Wraps text to the columns from indent on, of those that the terminal has. */
-static void print_wrapped(FILE *stream, const char *text, int indent, int columns)
-{
-    int at = indent;
-    for (const char *word = text; *word;) {
-        int length = (int)strcspn(word, " ");
-        if (columns && at > indent && at + 1 + length > columns) {
-            fprintf(stream, "\n%*s", indent, "");
-            at = indent;
-        }
-        at += fprintf(stream, "%s%.*s", at > indent ? " " : "", length, word);
-        word += length + (word[length] == ' ');
-    }
-    fputc('\n', stream);
-}
+/* Column widths of the table. A terminal without room for the range column gets the range before the meaning. */
+typedef struct table_widths {
+    int path, value, unit, range; /* range 0: no column of its own */
+} table_widths;
 
-/* Has the terminal no room for the meaning at the end of the line? It then stands below. */
-static bool is_narrow(int used, int columns)
+static table_widths measure(const param_lines *all, const char *value_title, int columns)
 {
-    enum { ROOM_MIN = 24 };
-    return columns && columns - used < ROOM_MIN;
-}
-
-static void print_meaning(FILE *stream, const char *text, int used, int columns)
-{
-    enum { BELOW = 4 };
-    bool below = is_narrow(used, columns);
-    if (below)
-        fprintf(stream, "\n%*s", BELOW, "");
-    else
-        fputs("  ", stream);
-    print_wrapped(stream, text, below ? BELOW : used + 2, columns);
-}
-
-static void print_lines(FILE *stream, const param_lines *all, const char *value_title, int columns)
-{
-    int path = 4, value = wider(0, value_title), unit = 4, range = 5;
+    table_widths w = {.path = 4, .value = wider(0, value_title), .unit = 4, .range = 5};
     char text[PARAM_PATH_MAX];
     for (size_t i = 0; i < all->count; i++) {
-        path = wider(path, all->line[i].path);
-        value = wider(value, all->line[i].value);
-        unit = wider(unit, all->line[i].row->unit);
-        range = wider(range, param_range_text(all->line[i].row, text, sizeof text));
+        w.path = wider(w.path, all->line[i].path);
+        w.value = wider(w.value, all->line[i].value);
+        w.unit = wider(w.unit, all->line[i].row->unit);
+        w.range = wider(w.range, param_range_text(all->line[i].row, text, sizeof text));
     }
-    int used = path + value + unit + range + 6;
-    if (is_narrow(used, columns))
-        range = 0; /* no blanks at the end of a line */
-    fprintf(stream, "%-*s  %-*s  %-*s  %-*s", path, "name", value, value_title, unit, "unit", range, "range");
-    print_meaning(stream, "meaning", used, columns);
-    for (size_t i = 0; i < all->count; i++) {
+    if (columns && w.path + w.value + w.unit + w.range + 6 > columns)
+        w.range = 0;
+    return w;
+}
+
+typedef struct table_cells {
+    const char *path, *value, *unit, *range, *meaning;
+} table_cells;
+
+static bool print_cells(FILE *stream, const table_widths *w, const table_cells *c, int columns)
+{
+    char *start = w->range ? text_format("%-*s  %-*s  %-*s  %-*s  ", w->path, c->path, w->value, c->value, w->unit,
+                                         c->unit, w->range, c->range)
+                           : text_format("%-*s  %-*s  %-*s  ", w->path, c->path, w->value, c->value, w->unit, c->unit);
+    if (start && w->range)
+        wrap_row(stream, columns, start, "%s", c->meaning);
+    else if (start)
+        wrap_row(stream, columns, start, "%s; %s", c->range, c->meaning);
+    free(start);
+    return start != NULL;
+}
+
+static bool print_lines(FILE *stream, const param_lines *all, const char *value_title, int columns)
+{
+    const table_widths widths = measure(all, value_title, columns);
+    const table_cells titles = {"name", value_title, "unit", "range", "meaning"};
+    bool good = print_cells(stream, &widths, &titles, columns);
+    for (size_t i = 0; i < all->count && good; i++) {
         const param_line *l = &all->line[i];
-        fprintf(stream, "%-*s  %-*s  %-*s  %-*s", path, l->path, value, or_dash(l->value), unit, or_dash(l->row->unit),
-                range, param_range_text(l->row, text, sizeof text));
-        print_meaning(stream, l->row->meaning, used, columns);
+        char range[PARAM_PATH_MAX];
+        const table_cells cells = {l->path, or_dash(l->value), or_dash(l->row->unit),
+                                   param_range_text(l->row, range, sizeof range), l->row->meaning};
+        good = print_cells(stream, &widths, &cells, columns);
     }
+    return good;
 }
 
 status param_rows_print(FILE *stream, const scene *s, const char *filter, int columns, diagnostic *why)
 {
     param_lines all;
     status result = param_lines_collect(s, filter, &all, why);
-    if (result == STATUS_OK)
-        print_lines(stream, &all, s ? "value" : "default", columns);
+    if (result == STATUS_OK && !print_lines(stream, &all, s ? "value" : "default", columns))
+        result = out_of_memory(why);
     param_lines_release(&all);
     return result;
 }

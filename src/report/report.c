@@ -1,3 +1,4 @@
+/* The JSON account of a render, of its parameters and of an image comparison. */
 #include "report/report.h"
 #include "report/json.h"
 #include "report/param_rows.h"
@@ -8,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* "0,2.75,-6", with or without brackets, as a list of numbers. */
+/* Parses "0,2.75,-6", with or without brackets, into a list of numbers. */
 static json_t *list_of_numbers(const char *text)
 {
     json_t *list = json_array();
@@ -52,11 +53,11 @@ json_t *report_value(const param *row, const char *text)
 
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
-    json_object_del(context, path); /* so that what is added last stands last */
+    json_object_del(context, path); /* so that the last assignment is the last entry */
     return json_object_set_new(context, path, report_value(row, value)) ? STATUS_FAILURE : STATUS_OK;
 }
 
-/* The camera's and the background's, of which some may be out of use. */
+/* Adds all parameters of camera and background, including those without effect (alternatives of others). */
 static status add_alternatives(json_t *params, const scene *s)
 {
     status code = STATUS_OK;
@@ -72,7 +73,7 @@ static status add_alternatives(json_t *params, const scene *s)
     return code;
 }
 
-/* Those out of use stand before those that take their place: set one by one in this order they make the scene. */
+/* Parameters without effect precede those that replace them, so that setting all in this order reproduces the scene. */
 json_t *report_params(const scene *s)
 {
     json_t *params = json_object();
@@ -124,8 +125,7 @@ json_t *report_quantity(const quantity *q, const job_account *a, int worker)
     return NULL;
 }
 
-/* Groups that are null where there is nothing to say of them: noise of what is not drawn by chance, meshes of a scene
- * without any. */
+/* Returns whether the group of key is null: noise of a render without random samples, meshes of a scene without any. */
 static bool is_void(const job_account *a, const char *key)
 {
     const mesh_report *m = &a->result->meshes;
@@ -133,7 +133,8 @@ static bool is_void(const job_account *a, const char *key)
            (strncmp(key, "meshes.", 7) == 0 && m->triangles == 0 && m->drawn == 0);
 }
 
-/* Takes over value: under "rays.camera" as camera in the object rays. NULL for value makes the group null. */
+/* Stores value, and takes its reference: "rays.camera" is camera in the object rays. value NULL sets the group to
+ * null. */
 static int put(json_t *o, const char *key, json_t *value)
 {
     char group[64];

@@ -1,3 +1,4 @@
+/* The SVG 1.1 writer. */
 #include "report/svg.h"
 
 void svg_escape(FILE *out, const char *text)

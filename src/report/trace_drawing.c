@@ -1,17 +1,17 @@
-/* A tree of rays drawn twice, side by side: in the plane of incidence of its first hit, and from above. */
+/* A drawing of a ray tree with two panels: the plane of incidence of the first hit, and the view from above. */
 #include "report/diagram.h"
 #include "report/svg.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"
 
-/* Rays lighter than this share of the root's are not drawn. */
+/* Rays with less than this fraction of the root's weight are not drawn. */
 #define LIGHTEST 0.002
 
 typedef struct ray_style {
     const char *color, *words, *dashes;
 } ray_style;
 
-/* By kind; of shadow rays those whose light comes through. */
+/* By kind; for shadow rays, those that reach the light. */
 static const ray_style styles[] = {
     [RAY_CAMERA] = {SVG_INK, "camera ray", NULL},
     [RAY_REFLECT] = {SVG_VERMILLION, "reflected", NULL},
@@ -20,12 +20,12 @@ static const ray_style styles[] = {
 };
 static const ray_style blocked = {SVG_GREY, "blocked", "5,3"};
 
-typedef struct img {
+typedef struct drawing {
     const traced *t;
-    double sky_length; /* at which rays to the sky are drawn, scene units */
-} img;
+    double sky_length; /* drawn length of rays to the sky, scene units */
+} drawing;
 
-/* A shadow ray's weight is that of the ray whose hit it leaves: its own is a radiance. */
+/* The weight of a shadow ray is that of its parent, because its own throughput is a radiance. */
 static double weight_of(const ray_tree *tree, const ray_node *node)
 {
     const ray_node *by = node->kind == RAY_SHADOW ? &tree->node[node->parent] : node;
@@ -38,7 +38,7 @@ static vec3 along(const ray_node *node, double length)
     return vec3_add(node->origin, vec3_scale(node->direction, length));
 }
 
-static vec3 end_of(const img *a, const ray_node *node)
+static vec3 end_of(const drawing *a, const ray_node *node)
 {
     if (node->end == RAY_END_HIT)
         return node->hit.point;
@@ -47,15 +47,15 @@ static vec3 end_of(const img *a, const ray_node *node)
     return along(node, diagram_is_cut(node) ? 0.5 * a->sky_length : a->sky_length);
 }
 
-/* Solids that the tree's rays meet, or that are a medium on their way. */
-static void note_met(const ray_tree *tree, bool *met)
+/* Marks the solids that the rays of the tree hit or pass through. */
+static void mark_hit_solids(const ray_tree *tree, bool *hit)
 {
     for (size_t i = 0; i < tree->count; i++) {
         const ray_node *node = &tree->node[i];
         if (node->medium >= 0)
-            met[node->medium] = true;
+            hit[node->medium] = true;
         if (node->end == RAY_END_HIT)
-            met[node->hit.solid] = met[node->hit.face_solid] = true;
+            hit[node->hit.solid] = hit[node->hit.face_solid] = true;
     }
 }
 
@@ -64,17 +64,17 @@ static double diagonal(const diagram_box *box)
     return diagram_box_is_empty(box) ? 0.0 : hypot(box->u1 - box->u0, box->v1 - box->v0);
 }
 
-/* The solids that were met, the first ray's start unless it is far off, and hits near by. */
+/* The bounds of the drawing: the hit solids, the origin of the first ray unless it is far away, and nearby hits. */
 static diagram_box box_of(const traced *t, const section_plane *plane)
 {
     diagram_box box = DIAGRAM_BOX_EMPTY;
     const ray_tree *tree = t->tree;
     const ray_node *root = &tree->node[0];
-    bool met[SCENE_PRIMITIVES_MAX * 4] = {false};
-    if (t->s->solid_count <= sizeof met / sizeof *met)
-        note_met(tree, met);
-    for (size_t i = 0; i < t->s->solid_count && i < sizeof met / sizeof *met; i++)
-        if (met[i] && t->s->solids[i].visible)
+    bool hit[SCENE_PRIMITIVES_MAX * 4] = {false};
+    if (t->s->solid_count <= sizeof hit / sizeof *hit)
+        mark_hit_solids(tree, hit);
+    for (size_t i = 0; i < t->s->solid_count && i < sizeof hit / sizeof *hit; i++)
+        if (hit[i] && t->s->solids[i].visible)
             diagram_include_solid(&box, plane, &t->s->solids[i]);
     diagram_box wide = box;
     diagram_include(&wide, plane, root->origin);
@@ -102,8 +102,8 @@ static diagram_box box_of(const traced *t, const section_plane *plane)
     return box;
 }
 
-/* The plane spanned by the root's direction and the first normal; upright through the ray where there is none. Its v
- * points up as far as it can, its u the way that the ray goes. */
+/* The plane of the root's direction and the first normal; without a hit, the vertical plane through the ray. v is the
+ * projection of up, u points along the ray. */
 static section_plane plane_of_incidence(const ray_tree *tree)
 {
     const ray_node *root = &tree->node[0];
@@ -122,7 +122,7 @@ static section_plane plane_of_incidence(const ray_tree *tree)
     return diagram_plane(root->end == RAY_END_HIT ? root->hit.point : root->origin, e_u, e_v);
 }
 
-/* Height of the section seen from above: where the tree's light is, on the mean. */
+/* Height of the horizontal section: the weighted mean height of the tree's segments. */
 static double level_of(const ray_tree *tree)
 {
     double sum = 0.0, weights = 0.0;
@@ -137,7 +137,7 @@ static double level_of(const ray_tree *tree)
     return weights > 0.0 ? sum / weights : tree->node[0].origin.y;
 }
 
-/* From above; where that is the plane of incidence already, from the side. */
+/* The view from above, or from the side if the plane of incidence is horizontal. */
 static section_plane other_plane(const ray_tree *tree, const section_plane *incidence, char *caption, size_t size)
 {
     const vec3 d = tree->node[0].direction;
@@ -146,11 +146,11 @@ static section_plane other_plane(const ray_tree *tree, const section_plane *inci
         snprintf(caption, size, "from above; section at y = %.4g", level);
         return diagram_plane(vec3_make(0, level, 0), vec3_make(1, 0, 0), vec3_make(0, 0, 1));
     }
-    snprintf(caption, size, "from the side; upright section along the ray");
+    snprintf(caption, size, "from the side; vertical section along the ray");
     return diagram_plane(tree->node[0].origin, vec3_normalize(vec3_make(d.x, 0, d.z)), vec3_make(0, 1, 0));
 }
 
-static void draw_node(const diagram *d, const img *a, const ray_node *node)
+static void draw_node(const diagram *d, const drawing *a, const ray_node *node)
 {
     const double weight = weight_of(a->t->tree, node);
     const ray_style *style = node->end == RAY_END_BLOCKED ? &blocked : &styles[node->kind];
@@ -163,8 +163,8 @@ static void draw_node(const diagram *d, const img *a, const ray_node *node)
         diagram_arrow(d, node->origin, end, style->color, weight);
 }
 
-/* Shadow rays below, the camera's ray on top. */
-static void draw_tree(const diagram *d, const img *a)
+/* In drawing order: shadow rays first, the camera ray on top. */
+static void draw_tree(const diagram *d, const drawing *a)
 {
     const ray_tree *tree = a->t->tree;
     const ray_kind order[] = {RAY_SHADOW, RAY_REFLECT, RAY_REFRACT, RAY_CAMERA};
@@ -181,11 +181,11 @@ static void draw_tree(const diagram *d, const img *a)
         diagram_dot(d, tree->node[0].hit.point, 2.2, SVG_INK, "none");
 }
 
-static status draw_view(const img *a, FILE *out, const section_plane *plane, const diagram_frame *frame,
+static status draw_view(const drawing *a, FILE *out, const section_plane *plane, const diagram_frame *frame,
                         const char *caption, diagnostic *why)
 {
     diagram d;
-    img own = *a;
+    drawing own = *a;
     const diagram_box box = box_of(a->t, plane);
     status result = diagram_begin(&d, out, a->t->p, a->t->s, plane, &box, frame, caption, why);
     own.sky_length = 0.13 * hypot(d.plane.u1 - d.plane.u0, d.plane.v1 - d.plane.v0);
@@ -222,7 +222,7 @@ status trace_write_drawing(const traced *t, FILE *out, diagnostic *why)
 {
     const double side = 470.0, full = DIAGRAM_BEFORE + side + DIAGRAM_BEHIND,
                  foot = DIAGRAM_ABOVE + side + DIAGRAM_BELOW;
-    const img a = {.t = t};
+    const drawing a = {.t = t};
     char caption[160];
     const double media = diagram_media_key(NULL, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
     svg_begin(out, 2.0 * full, media + 32.0, t->s->title && t->s->title[0] ? t->s->title : NULL);
@@ -230,16 +230,17 @@ status trace_write_drawing(const traced *t, FILE *out, diagnostic *why)
     const diagram_frame first = {DIAGRAM_BEFORE, DIAGRAM_ABOVE, side, side};
     status result = draw_view(&a, out, &incidence, &first,
                               t->tree->node[0].end == RAY_END_HIT ? "plane of incidence of the first hit"
-                                                                  : "upright plane through the ray",
+                                                                  : "vertical plane through the ray",
                               why);
     const section_plane other = other_plane(t->tree, &incidence, caption, sizeof caption);
     const diagram_frame second = {full + DIAGRAM_BEFORE, DIAGRAM_ABOVE, side, side};
     THEN(result, draw_view(&a, out, &other, &second, caption, why));
     draw_key(out, DIAGRAM_BEFORE, foot + 14.0);
     diagram_media_key(out, t->p, t->s, DIAGRAM_BEFORE, 2.0 * full, foot + 36.0);
-    snprintf(caption, sizeof caption,
-             "rays: %zu, depth limit %d, %.6g nm; fainter lines weigh less, %zu below %g of the first are left out",
-             t->tree->count, t->tree->depth_limit, t->tree->lambda_nm, t->tree->count - count_drawn(t->tree), LIGHTEST);
+    snprintf(
+        caption, sizeof caption,
+        "rays: %zu, depth limit %d, %.6g nm; fainter lines have less weight, %zu below %g of the first are omitted",
+        t->tree->count, t->tree->depth_limit, t->tree->lambda_nm, t->tree->count - count_drawn(t->tree), LIGHTEST);
     svg_label(out, DIAGRAM_BEFORE, media + 22.0, "start", SVG_GREY, caption);
     svg_end(out);
     return result;

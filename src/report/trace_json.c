@@ -1,3 +1,4 @@
+/* A ray tree as JSON. */
 #include "report/json.h"
 #include "report/trace_writers.h"
 #include "scene/model/open.h"
@@ -39,7 +40,7 @@ static bool write_medium(const traced *t, FILE *out, const char *key, int medium
     return good;
 }
 
-/* What the refraction does to radiance, under each render.radiance. */
+/* The factor of radiance at the refraction, for each value of render.radiance. */
 static void write_factors(FILE *out, const ray_hit *h)
 {
     write_number(out, "T", h->T);
@@ -79,7 +80,7 @@ static bool write_hit(const traced *t, FILE *out, const ray_hit *h)
     return good;
 }
 
-/* What the specification leaves free, behind its keys. */
+/* Further keys of a ray, which follow those of the fixed schema. */
 static bool write_extras(const traced *t, FILE *out, const ray_node *node)
 {
     bool good = true;
@@ -96,7 +97,7 @@ static bool write_extras(const traced *t, FILE *out, const ray_node *node)
     return good;
 }
 
-/* As deep as the tree: 65 levels at most. */
+/* Recurses over the levels of the tree, at most 65. */
 static bool write_ray(const traced *t, FILE *out, int at)
 {
     const ray_node *node = &t->tree->node[at];

@@ -1,3 +1,4 @@
+/* A ray tree as indented text, one line per ray. */
 #include "report/trace_writers.h"
 #include "base/elementary.h"
 #include "scene/model/open.h"
@@ -6,7 +7,7 @@
 const char *const trace_kind_words[] = {"camera", "reflect", "refract", "shadow"};
 const char *const trace_end_words[] = {"hit", "sky", "cut_depth", "cut_weight", "lit", "blocked"};
 
-/* One number where the channels are equal, else three. */
+/* One number if the channels are equal, otherwise three. */
 static void write_channels(FILE *out, const double c[3])
 {
     if (c[0] == c[1] && c[1] == c[2])
@@ -60,7 +61,7 @@ static void write_line(const traced *t, FILE *out, const ray_node *node, int ind
     fputc('\n', out);
 }
 
-/* A node's children stand right behind it in the tree: its order is that of reading. */
+/* The nodes are in depth-first order, so that each node is followed by its children. */
 status trace_write_text(const traced *t, FILE *out, diagnostic *why)
 {
     (void)why;

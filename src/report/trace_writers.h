@@ -1,5 +1,5 @@
-/* A tree of rays as text, as JSON, as a drawing. Each writes all of it to a stream, whose errors are left in the
- * stream. Ownership: everything is borrowed. */
+/* Writers of a ray tree, as text, JSON and a drawing. Errors of the stream stay in the stream, where the caller checks
+ * them. Ownership: everything is borrowed. */
 #pragma once
 
 #include "render/inspect/probe.h"
@@ -16,6 +16,6 @@ extern const char *const trace_kind_words[]; /* by ray_kind */
 extern const char *const trace_end_words[];  /* by ray_end */
 
 status trace_write_text(const traced *t, FILE *out, diagnostic *why);
-/* The schema is fixed: see THE JSON TREE in the manual page. */
+/* The manual page documents the fixed schema in THE JSON TREE. */
 status trace_write_json(const traced *t, FILE *out, diagnostic *why);
 status trace_write_drawing(const traced *t, FILE *out, diagnostic *why);

@@ -11,7 +11,7 @@
 
 #include <stdlib.h>
 
-/* As many handlers may do what takes much memory and time. */
+/* The number of handlers that may do work with much memory and time at once. */
 enum { HEAVY_AT_ONCE = 2 };
 
 /* --- events and the state --- */
@@ -31,8 +31,8 @@ json_t *lab_state(lab *l)
     const bool good =
         state && scene_document_json(l->scene_document, state) && render_worker_json(l->render_worker, state) &&
         json_object_update_new(
-            state, json_pack("{s:o, s:o, s:o, s:{s:i, s:i}}", "slime", live_tell(render_worker_live(l->render_worker)),
-                             "pin", reference_image_json(l->reference_image), "study", studies_tell(l->studies),
+            state, json_pack("{s:o, s:o, s:o, s:{s:i, s:i}}", "slime", live_json(render_worker_live(l->render_worker)),
+                             "pin", reference_image_json(l->reference_image), "study", studies_json(l->studies),
                              "limits", "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) == 0;
     return json_whole(state, good);
 }
@@ -45,19 +45,19 @@ static bool is_open(lab *l)
     return open;
 }
 
-void lab_tell_state(lab *l)
+void lab_publish_state(lab *l)
 {
-    pthread_mutex_lock(&l->tell_lock);
+    pthread_mutex_lock(&l->state_lock);
     if (is_open(l))
         lab_publish(l, "state", lab_state(l));
-    pthread_mutex_unlock(&l->tell_lock);
+    pthread_mutex_unlock(&l->state_lock);
 }
 
 static void on_document(void *of)
 {
     lab *l = of;
     render_worker_wake(l->render_worker);
-    lab_tell_state(l);
+    lab_publish_state(l);
 }
 
 static void on_image(void *of, const shared_image *p)
@@ -66,14 +66,14 @@ static void on_image(void *of, const shared_image *p)
     if (!is_open(l))
         return;
     lab_publish(l, "picture", shared_image_json(p));
-    live *toy = render_worker_live(l->render_worker);
-    if (live_is_on(toy))
-        lab_publish(l, "slime", live_tell(toy));
+    live *live_slime = render_worker_live(l->render_worker);
+    if (live_is_on(live_slime))
+        lab_publish(l, "slime", live_json(live_slime));
 }
 
-static void on_told(void *of)
+static void on_state_changed(void *of)
 {
-    lab_tell_state(of);
+    lab_publish_state(of);
 }
 
 /* --- start and stop --- */
@@ -85,24 +85,25 @@ static status first_scene(const lab *l, scene **out, char **file, diagnostic *wh
         return new_scene(out, why);
     *file = folder_name(l->files, l->settings.scene);
     if (!*file)
-        return diagnose_at(why, l->settings.scene, STATUS_BAD_INPUT, "name a scene below the folder, or another folder",
+        return diagnose_at(why, l->settings.scene, STATUS_BAD_INPUT,
+                           "choose a scene below the folder, or another folder",
                            "is not in the folder of the laboratory");
     return scene_read_below(l->settings.scene, folder_real(l->files), out, why);
 }
 
-void lab_give_threads(const lab *l, scene *s)
+void lab_set_default_threads(const lab *l, scene *s)
 {
     if (l->settings.threads > 0 && s->render.threads == 1)
         s->render.threads = l->settings.threads;
 }
 
-void lab_forget_threads(const lab *l, scene *s)
+void lab_clear_default_threads(const lab *l, scene *s)
 {
     if (s->render.threads == l->settings.threads)
         s->render.threads = 1;
 }
 
-/* The folder itself has no name, but what is in it has. */
+/* folder_name returns NULL for the folder itself, so a file inside is tested too. */
 static bool is_inside(const folder *files, const char *path)
 {
     char *any = text_format("%s/any", path), *name = folder_name(files, path),
@@ -118,7 +119,8 @@ static status check_results(const lab *l, diagnostic *why)
 {
     if (is_inside(l->files, l->settings.results))
         return STATUS_OK;
-    return diagnose_at(why, l->settings.results, STATUS_BAD_INPUT, "give a folder for results below the laboratory's",
+    return diagnose_at(why, l->settings.results, STATUS_BAD_INPUT,
+                       "set --results to a folder inside the laboratory's folder",
                        "is not in the folder of the laboratory");
 }
 
@@ -128,7 +130,7 @@ static status open_document(lab *l, diagnostic *why)
     char *file = NULL;
     status code = first_scene(l, &first, &file, why);
     if (code == STATUS_OK) {
-        lab_give_threads(l, first);
+        lab_set_default_threads(l, first);
         code = scene_document_create(first, file, l->files, on_document, l, &l->scene_document, why);
     }
     free(file);
@@ -161,9 +163,9 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     lab *l = calloc(1, sizeof *l);
     if (!l)
         return out_of_memory(why);
-    *l =
-        (lab){.settings = *settings, .tell_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
-    const render_worker_listener listener = {on_image, on_told, l};
+    *l = (lab){
+        .settings = *settings, .state_lock = PTHREAD_MUTEX_INITIALIZER, .publish_lock = PTHREAD_MUTEX_INITIALIZER};
+    const render_worker_listener listener = {on_image, on_state_changed, l};
     status code = folder_open(settings->folder, &l->files, why);
     THEN(code, check_results(l, why));
     THEN(code, open_document(l, why));
@@ -180,8 +182,8 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     return code;
 }
 
-/* First nothing is published any more, then nothing is measured and nobody waits any more, then no handler runs any
- * more. */
+/* The order matters: first stop events, then studies and renders so that no handler waits any more, then the server
+ * with its handlers. */
 void lab_stop(lab *l)
 {
     if (!l)
@@ -203,7 +205,7 @@ void lab_stop(lab *l)
     scene_document_destroy(l->scene_document);
     folder_close(l->files);
     pthread_mutex_destroy(&l->publish_lock);
-    pthread_mutex_destroy(&l->tell_lock);
+    pthread_mutex_destroy(&l->state_lock);
     free(l->bound);
     free(l->routes);
     free(l);

@@ -1,8 +1,8 @@
-/* The laboratory in a browser: one scene on a desk, a painter who renders it whenever it changes, a toy that moves,
- * studies that run; served to pages and programs through web/http/http.h, by the API of web/README.md. Ownership:
- * lab_start gives, lab_stop releases and joins all threads; the settings' texts are borrowed in between. Errors:
- * STATUS_BAD_INPUT for a scene, folder or port that cannot be had, STATUS_FAILURE for memory and threads. Nothing is
- * printed, no signal is taken. */
+/* The browser laboratory: one scene document, a render worker that renders every change, a live slime and studies,
+ * served to pages and programs over HTTP (web/http/http.h) by the API of web/README.md. Ownership: lab_start
+ * creates, lab_stop releases and joins all threads; the texts in the settings are borrowed until then. Errors:
+ * STATUS_BAD_INPUT for an unusable scene, folder or port, STATUS_FAILURE for memory and threads. Prints nothing and
+ * handles no signal. */
 #pragma once
 
 #include "base/isa.h"
@@ -11,14 +11,15 @@
 typedef struct lab lab;
 
 typedef struct lab_settings {
-    const char *folder;  /* nothing outside of it is read or written */
-    const char *scene;   /* file to open, in the working folder's terms and below folder; NULL: a room with a floor, a
-                            light and a camera */
-    const char *results; /* folder of studies' rows: folder, or below it; it need not be there */
-    int port;            /* 0: any that is free */
+    const char *folder; /* nothing outside it is read or written */
+    /* Scene file to open, relative to the working directory and below folder; NULL: a room with a floor, a light and a
+     * camera. */
+    const char *scene;
+    const char *results; /* folder for the rows of studies: folder itself or below it; it need not exist */
+    int port;            /* 0: any free port */
     isa level;
-    int threads;           /* of scenes as they are opened; 0: what they say */
-    double requests_per_s; /* 0: as web/http/http.h has it */
+    int threads;           /* default of render.threads for opened scenes; 0: keep the scene's value */
+    double requests_per_s; /* 0: the default of web/http/http.h */
 } lab_settings;
 
 status lab_start(const lab_settings *settings, lab **out, diagnostic *why);
@@ -26,5 +27,5 @@ void lab_stop(lab *l); /* NULL is allowed */
 
 /* "http://127.0.0.1:PORT/?token=TOKEN" */
 const char *lab_address(const lab *l);
-/* Who serves it: its port and token by themselves. */
+/* The HTTP server, for its port and token. */
 const struct http_server *lab_server(const lab *l);

@@ -1,4 +1,4 @@
-/* What the laboratory's files share: not for others. */
+/* Declarations shared by the files of the laboratory; private to them. */
 #pragma once
 
 #include "base/vec3.h"
@@ -20,27 +20,28 @@ struct lab {
     struct render_worker *render_worker;
     struct reference_image *reference_image;
     struct studies *studies;
-    semaphore *heavy; /* for handlers that take much memory and time */
+    semaphore *heavy; /* limits the handlers that need much memory and time */
     http_server *server;
     http_route *routes;
-    struct api_bound *bound;   /* their contexts */
-    pthread_mutex_t tell_lock; /* held while the state is looked at and sent: what comes last is the newest; goes before
-                                  all others */
+    struct api_bound *bound; /* contexts of the routes */
+    /* Held while the state is read and sent, so that the last event holds the newest state; acquired before all other
+     * locks. */
+    pthread_mutex_t state_lock;
     pthread_mutex_t publish_lock;
     bool open; /* events may be published */
 };
 
-/* Sends an event to all pages; takes value. From any thread, at any time. */
+/* Sends an event to all pages; takes the reference to value. Thread-safe. */
 void lab_publish(lab *l, const char *event, json_t *value);
 
 /* Sends the state to all pages. */
-void lab_tell_state(lab *l);
+void lab_publish_state(lab *l);
 json_t *lab_state(lab *l);
 
-/* Scenes that are opened and do not say how many threads they want get the settings'. */
-void lab_give_threads(const lab *l, scene *s);
-/* As many as those are not the scene's own wish, and belong to this machine alone: files do without. */
-void lab_forget_threads(const lab *l, scene *s);
+/* Sets the default number of threads in an opened scene that sets none. */
+void lab_set_default_threads(const lab *l, scene *s);
+/* Resets render.threads where it equals that default: the default belongs to this machine, so files do not store it. */
+void lab_clear_default_threads(const lab *l, scene *s);
 
-/* The ray through a place of the full picture, in pixels, of the scene's camera. direction is a unit vector. */
+/* The camera ray through the point (x, y) of the full image, in pixels. direction is a unit vector. */
 void lab_camera_ray(const scene *s, double x, double y, vec3 *origin, vec3 *direction);

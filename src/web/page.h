@@ -1,5 +1,5 @@
-/* The page's files (src/web/page/), which the program carries within itself: the Makefile embeds each under its name.
- * For http_settings.files. Constant; no ownership, cannot fail. */
+/* The files of the page (src/web/page/), embedded in the program by the Makefile under their names, for
+ * http_settings.files. Constants; no ownership, no errors. */
 #pragma once
 
 #include "web/http/http.h"

@@ -31,7 +31,7 @@ export const cases = {
     const screen = await t.open(lab);
     const colour = () => screen.page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     const light = await colour();
-    await screen.button('Dark colours').click();
+    await screen.button('Dark theme').click();
     const dark = await colour();
     t.check(light !== dark, `the background stays ${light}`);
     await t.axe(screen, 'turned dark by the button');

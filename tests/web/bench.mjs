@@ -33,7 +33,7 @@ const change = (screen, ior) =>
         resolve();
       });
     });
-    const before = lab.wanted;
+    const before = lab.newestGeneration;
     lab.set({ 'liquid.ior': value });
     await done;
     return { first, final: performance.now() - began };

@@ -46,7 +46,7 @@ export const cases = {
 
   'the handle in the picture': async (t) => {
     const { screen, a, b } = await pinAndChange(t);
-    const handle = screen.page.getByRole('slider', { name: 'Share of the pinned picture' });
+    const handle = screen.page.getByRole('slider', { name: 'Share of the reference image' });
     const box = await handle.boundingBox();
     const [from, to] = [{ x: box.x + box.width / 2, y: box.y + box.height / 2 }, await screen.place(200, 300)];
     await screen.page.mouse.move(from.x, from.y);
@@ -105,7 +105,7 @@ export const cases = {
     t.equal(changed.map((row) => row.path).sort(), ['plastic.color', 'tiles.color'], 'what changed');
     const psnr = Number(text.match(/PSNR\s+([\d.]+)/)?.[1]);
     t.near(psnr, comparison.psnr_db, 0.01, 'PSNR, dB');
-    await screen.button('Let go of A').click();
+    await screen.button('Clear A').click();
     await screen.until(() => !window.lab.state.pin);
     await screen.quiet();
     t.equal(

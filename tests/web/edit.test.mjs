@@ -7,7 +7,7 @@ const view = camera({ position: eye, target: [0, 0, 0], fovDeg: 45, width: 640, 
 async function change(screen, act) {
   const { generation } = await screen.lab.get('/api/state');
   await act();
-  await screen.until((g) => window.lab.wanted > g, generation);
+  await screen.until((g) => window.lab.newestGeneration > g, generation);
   await screen.settled(generation + 1);
   return screen.lab.get('/api/state');
 }

@@ -9,7 +9,7 @@ const record = (screen) =>
     window.drawn = [];
     let { serial: last } = window.lab.picture;
     window.lab.on('picture', ({ serial, generation, pass, final }) => {
-      if (serial !== last) window.drawn.push({ serial, generation, pass, final, wanted: window.lab.wanted });
+      if (serial !== last) window.drawn.push({ serial, generation, pass, final, wanted: window.lab.newestGeneration });
       last = serial;
     });
   });

@@ -82,7 +82,7 @@ export const cases = {
     const chosen = () => screen.page.evaluate(() => window.lab.view.chosen);
     const first = await chosen();
     const seen = new Set([first]);
-    const all = await screen.page.getByRole('radiogroup', { name: 'What the pointer does' }).getByRole('radio').count();
+    const all = await screen.page.getByRole('radiogroup', { name: 'Pointer tool' }).getByRole('radio').count();
     for (let i = 1; i < all; i++) {
       await screen.page.keyboard.press('ArrowRight');
       seen.add(await chosen());
@@ -147,7 +147,7 @@ export const cases = {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.page.keyboard.press('?');
-    const dialog = screen.page.getByRole('dialog', { name: 'Keys' });
+    const dialog = screen.page.getByRole('dialog', { name: 'Keyboard shortcuts' });
     await dialog.waitFor();
     await t.axe(screen, 'the dialog of keys');
     await t.picture(screen, 'keys');

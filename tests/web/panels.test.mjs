@@ -19,7 +19,7 @@ async function optics(t, dark) {
   await show(t, screen, `parameters-${theme}`);
 
   await page.getByRole('searchbox', { name: /Find a parameter/ }).fill('shadow');
-  await page.getByText('Meanings').click();
+  await page.getByText('Descriptions').click();
   await page
     .getByRole('tabpanel', { name: 'Parameters' })
     .getByText('2 found')
@@ -27,10 +27,10 @@ async function optics(t, dark) {
     .first()
     .waitFor();
   await show(t, screen, `search-${theme}`);
-  await page.getByText('Meanings').click();
+  await page.getByText('Descriptions').click();
   await page.getByRole('searchbox', { name: /Find a parameter/ }).fill('');
 
-  await screen.chooseTool('Ask');
+  await screen.chooseTool('Inspect');
   await screen.clickPixel(440, 470);
   await page.getByRole('treegrid', { name: 'Rays of the pixel' }).getByRole('row').nth(3).waitFor();
   await show(t, screen, `pixel-${theme}`);

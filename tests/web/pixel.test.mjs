@@ -3,11 +3,11 @@ import { writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 
 const ends = {
-  hit: 'meets a surface',
+  hit: 'hits a surface',
   sky: 'background',
-  cut_depth: 'not traced: depth limit',
-  cut_weight: 'not traced: weight too small',
-  lit: 'light comes through',
+  cut_depth: 'cut off: depth limit',
+  cut_weight: 'cut off: weight too small',
+  lit: 'unoccluded',
   blocked: 'blocked',
 };
 const degrees = (cosine) => (Math.acos(Math.min(1, cosine)) * 180) / Math.PI;
@@ -21,7 +21,7 @@ function wanted({ depth, medium, n, throughput, brought, hit }) {
   const row = {
     Depth: [depth],
     Weight: channels(throughput),
-    Brought: brought.some((x) => x !== 0) ? channels(brought) : [],
+    Contribution: brought.some((x) => x !== 0) ? channels(brought) : [],
   };
   if (!hit) return { ...row, Media: [n], Angles: [], Path: [], medium };
   return {
@@ -49,8 +49,8 @@ const rowsOf = (screen) =>
 function compareRow(t, row, node, what) {
   const want = wanted(node);
   t.match(row.Media, new RegExp(`^(in )?${want.medium}\\b`), `${what}: medium`);
-  t.equal(row.Ended, ends[node.end], `${what}: end`);
-  if (node.hit) t.check(row.Meets.startsWith(node.hit.solid), `${what}: meets ${row.Meets}, not ${node.hit.solid}`);
+  t.equal(row.End, ends[node.end], `${what}: end`);
+  if (node.hit) t.check(row.Hits.startsWith(node.hit.solid), `${what}: meets ${row.Hits}, not ${node.hit.solid}`);
   for (const [head, values] of Object.entries(want)) {
     if (head === 'medium' || values === null) continue;
     const shown = numbers(row[head]);
@@ -68,7 +68,7 @@ async function compareTree(t, screen, lab, x, y, what) {
     ([count]) =>
       document.querySelector('.panel-pixel')?.getAttribute('aria-busy') === 'false' &&
       document.querySelectorAll('[role=treegrid] tbody tr').length > 0 &&
-      window.lab.wanted >= count,
+      window.lab.newestGeneration >= count,
     [0],
   );
   await screen.button('Open all').click();
@@ -88,7 +88,7 @@ export const cases = {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
-    await screen.chooseTool('Ask');
+    await screen.chooseTool('Inspect');
     for (const [x, y] of [
       [400, 300],
       [330, 420],
@@ -109,7 +109,7 @@ export const cases = {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
-    await screen.chooseTool('Ask');
+    await screen.chooseTool('Inspect');
     await screen.clickPixel(400, 300);
     const first = await rowsOf(screen);
     const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.7, 'render.depth': 3 } });
@@ -134,7 +134,7 @@ export const cases = {
     await screen.quiet();
     await compareTree(t, screen, lab, 400, 300, 'typed');
     await screen.stage.focus();
-    await screen.chooseTool('Ask');
+    await screen.chooseTool('Inspect');
     await screen.stage.focus();
     await screen.page.keyboard.press('ArrowRight');
     await screen.page.keyboard.press('Shift+ArrowDown');

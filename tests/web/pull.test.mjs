@@ -132,11 +132,11 @@ export const cases = {
     const screen = await t.open(lab);
     await screen.showPanel('Slime');
     await screen.page.getByText('This scene has no slime').waitFor();
-    const tools = screen.page.getByRole('radiogroup', { name: 'What the pointer does' });
+    const tools = screen.page.getByRole('radiogroup', { name: 'Pointer tool' });
     t.equal(await tools.getByText('Grab').isVisible(), false, 'there is no tool to grab it');
     const { generation } = await lab.get('/api/state');
     await screen.button('Add a slime').click();
-    await screen.until((g) => window.lab.wanted > g, generation);
+    await screen.until((g) => window.lab.newestGeneration > g, generation);
     await screen.settled(generation + 1);
     await screen.button('Play').waitFor();
     t.check(await tools.getByText('Grab').isVisible(), 'one that was added can be grabbed');

@@ -68,8 +68,8 @@ export class Screen {
   async settled(generation = 0) {
     const least = Math.max(generation, (await this.lab.get('/api/state')).generation);
     await this.page.waitForFunction((g) => {
-      const { picture, wanted, scene } = window.lab;
-      return picture?.final && picture.generation >= Math.max(g, wanted) && scene?.generation >= g;
+      const { picture, newestGeneration, scene } = window.lab;
+      return picture?.final && picture.generation >= Math.max(g, newestGeneration) && scene?.generation >= g;
     }, least);
   }
 
@@ -163,9 +163,7 @@ export class Screen {
   /** Of the bar over the picture: what the pointer does. The radio buttons are small; people click what stands around
    * them. */
   async chooseTool(name) {
-    const radio = this.page
-      .getByRole('radiogroup', { name: 'What the pointer does' })
-      .getByRole('radio', { name, exact: true });
+    const radio = this.page.getByRole('radiogroup', { name: 'Pointer tool' }).getByRole('radio', { name, exact: true });
     await radio.locator('xpath=ancestor::label').click();
     await this.until((input) => input.checked, await radio.elementHandle());
   }
@@ -190,7 +188,7 @@ export class Screen {
     const { generation } = await this.lab.get('/api/state');
     await field.fill(String(value));
     await field.press('Enter');
-    await this.until((g) => window.lab.wanted > g, generation);
+    await this.until((g) => window.lab.newestGeneration > g, generation);
     await this.settled(generation + 1);
   }
 

@@ -44,7 +44,7 @@ const views = {
     scene: 'experiments/scenes/rod.yaml',
     async show(screen) {
       await screen.showPanel('Pixel');
-      await screen.chooseTool('Ask');
+      await screen.chooseTool('Inspect');
       await screen.clickPixel(330, 420);
       await screen.quiet();
     },

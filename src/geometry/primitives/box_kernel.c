@@ -1,4 +1,4 @@
-/* The box |x| <= half.x and so on. Faces: 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. */
+/* The box primitive: |x| <= half.x and so on. Faces: 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z. */
 #include "geometry/primitives/kind.h"
 
 ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)
@@ -29,8 +29,8 @@ ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, v
                              mask_less(y.in, x.in) & mask_less(z.in, x.in));
     int64_t is_y = ~is_x & blend_int(leaving, mask_less(y.out, z.out), mask_less(z.in, y.in));
     int64_t is_z = ~is_x & ~is_y;
-    /* The face on the positive side: left when the direction is positive there, entered when it is negative. By the
-     * inverses, for which -0.0 is negative: the roots were taken with them. */
+    /* The face on the positive side is the exit for a positive direction and the entry for a negative one. The sign is
+     * that of the inverses, for which -0.0 is negative: the roots were computed with them. */
     double along = blend(is_x, inverse_x, blend(is_y, inverse_y, inverse_z));
     int64_t positive = leaving ^ mask_less(along, 0.0);
     double sign = blend(positive, 1.0, -1.0);

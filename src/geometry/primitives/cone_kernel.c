@@ -1,9 +1,9 @@
-/* The cone or frustum x^2 + z^2 <= w^2, 0 <= y <= top, w = radius + slope y, slope = (second_radius - radius) / top;
- * second_radius, at the top, may be 0. Faces: 0 side, 1 bottom, 2 top.
+/* The cone or frustum primitive: x^2 + z^2 <= w^2, 0 <= y <= top, w = radius + slope y, slope = (second_radius -
+ * radius) / top; second_radius, at the top, may be 0. Faces: 0 side, 1 bottom, 2 top.
  *
- * The side is half of a double cone, a t^2 + 2 b t + c <= 0: a line that is less steep than the side (a > 0) is in one
- * of the halves between its roots, a steeper one in each of them beyond a root. In the half that counts w is above 0.
- */
+ * The side is one half of a double cone, a t^2 + 2 b t + c <= 0: a line that is less steep than the side (a > 0) is
+ * inside one of the halves between its roots; a steeper line is inside each half beyond one root. The half with w > 0
+ * counts. */
 #include "geometry/primitives/kind.h"
 
 ALWAYS_INLINE double cone_slope(const primitive *p)
@@ -11,8 +11,9 @@ ALWAYS_INLINE double cone_slope(const primitive *p)
     return (p->second_radius - p->radius) / p->top;
 }
 
-/* What the endless side's half holds of a ray; the discriminant is Lagrange's identity for x^2 + z^2 - w^2, and t is
- * counted from the point nearest to the solid's middle, but on the side itself from the ray's start, where c = 0. */
+/* The interval of a ray in the infinite side's half. The discriminant is Lagrange's identity for x^2 + z^2 - w^2. t is
+ * measured from the point nearest to the solid's centre; for a ray that starts on the side, from its start, where c =
+ * 0. */
 ALWAYS_INLINE quadric_roots cone_side(const primitive *p, local_ray r, int64_t own)
 {
     const double slope = cone_slope(p), dx = cylinder_dx(r.dx, r.dz), dw = slope * r.dy;
@@ -48,8 +49,8 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
 
 DEFINE_SPANS(p->turned, span)
 
-/* The face by the same comparisons as in the first pass. The side is reached across it; at the apex its normal is the
- * axis. */
+/* The face by the same comparisons as in the first pass. The projection onto the side is perpendicular to it; the
+ * normal at the apex is the axis. */
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
     (void)general;
@@ -93,8 +94,8 @@ static int flats(const primitive *p, flat_face flat[FLATS_MAX])
     return 2;
 }
 
-/* The side once around, with the picture's middle in front, and along its slant; lengths are those of the wider end.
- * Caps as a cylinder's. */
+/* The side: once around, with the middle of the texture image in front, and along its slant; lengths are those of the
+ * wider end. Caps as for a cylinder. */
 static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
     const double slope = cone_slope(p), slant = sqrt(1.0 + slope * slope);

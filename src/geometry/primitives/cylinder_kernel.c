@@ -1,15 +1,15 @@
-/* The cylinder x^2 + m2 z^2 <= radius^2, bottom <= y <= top; top may be infinite, as of a cup's hollow. Faces: 0 side,
- * 1 bottom, 2 top. */
+/* The cylinder primitive: x^2 + m2 z^2 <= radius^2, bottom <= y <= top; top may be infinite, as for a cup's hollow.
+ * Faces: 0 side, 1 bottom, 2 top. */
 #include "geometry/primitives/kind.h"
 
-/* An upright elliptic cylinder is turned by the identity, which changes no bit. */
+/* Is the general code needed? An upright elliptic cylinder uses it with the identity rotation, which changes no bit. */
 static bool is_general(const primitive *p)
 {
     return p->turned || p->m2 != 1.0;
 }
 
-/* The endless cylinder x^2 + m2 z^2 = radius^2; dx as cylinder_dx gives it, inverse_a = 1/a. The discriminant is
- * a r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does not cancel as b^2 - a c does far from the cylinder. */
+/* The infinite cylinder x^2 + m2 z^2 = radius^2; dx as returned by cylinder_dx, inverse_a = 1/a. The discriminant is a
+ * r^2 - m2 (x dz - z dx)^2 (Lagrange's identity), which does not cancel as b^2 - a c does far from the cylinder. */
 ALWAYS_INLINE quadric_roots cylinder_side(const primitive *p, double x, double z, double dx, double dz, double a,
                                           double inverse_a, int64_t own)
 {
@@ -31,16 +31,16 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
 
 DEFINE_SPANS(is_general(p), span)
 
-/* The same comparisons of the same roots as in the first pass: the face is the one that bounded the interval there. */
+/* Compares the same roots as the first pass: the face is the one that bounded the interval there. */
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
     double dx = cylinder_dx(r.dx, r.dz), a = cylinder_axial(dx, r.dz, p->m2), inverse_y = inverse_of_component(r.dy);
     quadric_roots side = cylinder_side(p, r.x, r.z, dx, r.dz, a, 1.0 / a, mask_same(at, 0));
     slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, mask_same(at, 1), mask_same(at, 2));
-    /* A ray that is in it by its set and misses it by a rounding, past an edge, leaves at once (store_interval), and by
-     * the side: the top of a hollow is nowhere. Its roots are no numbers then. */
+    /* A ray that is inside by its set and misses the primitive past an edge, by rounding, leaves at once
+     * (store_interval). It leaves by the side, because the top of a hollow is at infinity. Its roots are NaN then. */
     int64_t is_side = blend_int(leaving, ~mask_less_equal(caps.out, side.out), mask_less(caps.in, side.in));
-    /* in from above or out upwards; -0.0 is downwards, as for the roots */
+    /* entered from above or left upwards; -0.0 counts as downwards, as for the roots */
     int64_t is_top = leaving ^ mask_less(inverse_y, 0.0);
     double inverse = 1.0 / sqrt(q.x * q.x + p->m2 * q.z * q.z);
     double ux = q.x * inverse, uz = q.z * inverse, x = p->radius * ux, z = p->radius * uz;
@@ -75,7 +75,7 @@ static int flats(const primitive *p, flat_face flat[FLATS_MAX])
     return 2;
 }
 
-/* A cup's hollow has no top; it is seen from within. */
+/* Texture coordinates. A cup's hollow has no top and is seen from within. */
 static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
     const double r = p->radius, whole = 2.0 * r;

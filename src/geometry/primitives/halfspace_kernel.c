@@ -1,4 +1,4 @@
-/* The half-space y <= 0. Face 0. */
+/* The half-space primitive: y <= 0. Face 0. */
 #include "geometry/primitives/kind.h"
 
 ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i)

@@ -1,13 +1,13 @@
-/* What the files of the kinds of primitives share: the loops over rays, of which each kind gives the inside.
+/* Functions that all kinds of primitives share: the loops over rays, into which each kind inserts its formulas.
  *
- * Third pass, for the rays that met one primitive: the point, put back exactly on the surface, the normal there, the
+ * Third pass, for the rays that hit one primitive: the point, projected exactly onto the surface, the normal there, the
  * face, and a bound on the point's error.
  *
- * The bound: local coordinates come out of at most 8 roundings of numbers no larger than the ray's start, the
- * way t d and the frame's origin; the root's own error moves the point along the ray, and putting it back on the
- * surface leaves what is across it. 32 half-ulps of the sum of these magnitudes covers it with room to spare (Higham,
- * Accuracy and Stability of Numerical Algorithms, 3.1: gamma_n), which the tests check against quadruple precision.
- * Pure; cannot fail. */
+ * The bound: local coordinates result from at most 8 roundings of numbers no larger than the ray's start, the
+ * displacement t d and the frame's origin. The error of the root itself moves the point along the ray, and the
+ * projection onto the surface leaves only the part across the surface. 32 half-ulps of the sum of these magnitudes
+ * covers it with a wide margin (Higham, Accuracy and Stability of Numerical Algorithms, 3.1: gamma_n), which the tests
+ * check against quadruple precision. Pure; cannot fail. */
 #pragma once
 
 #include "geometry/kernels.h"
@@ -29,14 +29,14 @@ static inline interval interval_of_slab(double y, double dy, double low, double 
     return (interval){s.in, s.out};
 }
 
-/* Of a convex primitive. */
+/* The chord of a convex primitive as a list. */
 static inline int one_chord(interval chord, interval chords[CHORDS_MAX])
 {
     chords[0] = chord;
     return chord.in < chord.out;
 }
 
-/* The one interval of a convex primitive, as the ray's set and the face that it starts on have it: see
+/* Stores the one interval of a convex primitive, consistent with the ray's set and the face that it starts on: see
  * intervals_kernel.c. */
 ALWAYS_INLINE void store_interval(double near, double far, int64_t hit, int64_t own, int64_t inside, double *in,
                                   double *out)
@@ -58,14 +58,14 @@ typedef struct ray_span {
     int64_t hit, own;
 } ray_span;
 
-/* What is within the side and between the caps. */
+/* The intersection of a side's interval and that between the caps. */
 ALWAYS_INLINE ray_span span_within(quadric_roots side, slab_roots caps, int64_t own)
 {
     double near = greater(side.in, caps.in), far = lesser(side.out, caps.out);
     return (ray_span){near, far, side.hit & mask_less(near, far), own};
 }
 
-/* Of ray i, which is r here; at: the face that it starts on, from 0. */
+/* Computes the interval of ray i, which is r in the local frame; at: the face that it starts on, from 0. */
 typedef ray_span span_function(const primitive *p, bool general, local_ray r, int64_t at, const ray_scratch *s, int i);
 
 ALWAYS_INLINE void spans_in(const primitive *p, span_function *span, bool general, int bit, const ray_batch *rays,
@@ -82,18 +82,19 @@ ALWAYS_INLINE void spans_in(const primitive *p, span_function *span, bool genera
     }
 }
 
-/* Where a line crosses a primitive that is not convex: an even number of times in all, in order. */
+/* The crossings of a line with a primitive that is not convex: an even number, in order. */
 enum { CROSSINGS_OF_ONE_MAX = 2 * CHORDS_MAX };
 typedef struct crossings_of_one {
     int count;
     double t[CROSSINGS_OF_ONE_MAX];
 } crossings_of_one;
 
-/* The crossings ahead of a ray, of those of its line but for that of its own face: an odd number if it is inside, else
- * an even one. Where it is not so, the set is believed. A ray that starts on another face starts on this surface to
- * within rounding: the crossing nearest to its start is on the wrong side of it. Of one that starts on this surface the
- * direction contradicts the set: it leaves at once, or does not enter and passes the matter; unless it grazes the
- * hollow side of the surface, and a crossing within `grazing` is its own once more, on the wrong side. */
+/* The crossings ahead of a ray, selected from those of its line without that of its own face: an odd number if the ray
+ * is inside, otherwise an even one. If rounding makes the parity wrong, the set decides. If the ray starts on another
+ * face, its start is on this surface up to rounding: the crossing nearest to its start is on the wrong side of it. If
+ * the ray starts on this surface, its direction contradicts the set: it leaves at once, or does not enter and passes
+ * through nothing; unless it grazes the concave side of the surface, and a crossing within `grazing` is that of its own
+ * face again, on the wrong side. */
 static inline crossings_of_one crossings_ahead(const crossings_of_one *line, bool own, bool inside, double grazing)
 {
     int first = 0;
@@ -105,16 +106,16 @@ static inline crossings_of_one crossings_ahead(const crossings_of_one *line, boo
         const double next = first < line->count ? line->t[first] : HUGE_VAL;
         const bool now = !own ? behind <= next : inside ? next > grazing : behind <= grazing;
         if (now)
-            ahead.t[ahead.count++] = 0.0; /* it crosses there and then */
+            ahead.t[ahead.count++] = 0.0; /* it crosses at its start */
         else
-            first++; /* that is behind it */
+            first++; /* that crossing is behind the start */
     }
     for (int k = first; k < line->count; k++)
         ahead.t[ahead.count++] = line->t[k];
     return ahead;
 }
 
-/* The intervals ahead, by rows. */
+/* Stores the intervals ahead, one per row. */
 static inline void store_rows(const crossings_of_one *ahead, bool inside, int bit, int i, ray_scratch *s)
 {
     int next = 0;
@@ -125,22 +126,22 @@ static inline void store_rows(const crossings_of_one *ahead, bool inside, int bi
 }
 
 typedef struct local_point {
-    vec3 point, normal; /* the normal leads outwards */
+    vec3 point, normal; /* the normal points outwards */
     int64_t face;
 } local_point;
 
-/* q, where r is at t, put back on the surface; at: the face that r starts on, from 0. */
+/* Projects q, the point of r at t, onto the surface; at: the face that r starts on, from 0. */
 typedef local_point point_function(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving);
 
-/* Of ray i. */
-ALWAYS_INLINE void store_point(const primitive *p, point_function *put_back, bool general, const ray_batch *rays,
+/* Stores the point of ray i. */
+ALWAYS_INLINE void store_point(const primitive *p, point_function *project, bool general, const ray_batch *rays,
                                const double *__restrict t, int i, int bit, surface_batch *__restrict s)
 {
     local_ray r =
         ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
     vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), way = vec3_scale(d, t[i]), q = vec3_add(o, way);
     int64_t at = rays->start[i] - p->first_face, leaving = -(int64_t)((rays->inside[i] & (uint64_t)1 << bit) != 0);
-    local_point l = put_back(p, general, r, q, at, leaving);
+    local_point l = project(p, general, r, q, at, leaving);
     double side = blend(leaving, -1.0, 1.0); /* the normal faces the ray */
     vec3 n = vec3_scale(l.normal, side), point = l.point;
     double cosine = -vec3_dot(d, n);
@@ -161,25 +162,25 @@ ALWAYS_INLINE void store_point(const primitive *p, point_function *put_back, boo
     s->face[i] = l.face;
 }
 
-ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool general, const ray_batch *rays,
+ALWAYS_INLINE void points_on(const primitive *p, point_function *project, bool general, const ray_batch *rays,
                              const double *__restrict t, int bit, surface_batch *__restrict s)
 {
     /* VECTORISE */
     for (int i = 0; i < rays->count; i++)
-        store_point(p, put_back, general, rays, t, i, bit, s);
+        store_point(p, project, general, rays, t, i, bit, s);
 }
 
-/* Define rows and points by a body that is compiled for both answers of is_general, an expression in p: whether rays
- * must be turned into the primitive's frame, or it is scaled. */
-#define DEFINE_ROWS(is_general, region)                                                             \
+/* Define rows and points with a body that is compiled for both values of is_general, an expression in p: whether rays
+ * must be transformed into the primitive's frame (it is rotated or scaled). */
+#define DEFINE_ROWS(is_general, body)                                                               \
     static void rows(const primitive *__restrict p, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                               \
         if (is_general)                                                                             \
-            region(p, true, bit, rays, s);                                                          \
+            body(p, true, bit, rays, s);                                                            \
         else                                                                                        \
-            region(p, false, bit, rays, s);                                                         \
+            body(p, false, bit, rays, s);                                                           \
     }
-/* Of a convex primitive. */
+/* The same for a convex primitive. */
 #define DEFINE_SPANS(is_general, span)                                                                         \
     ALWAYS_INLINE void spans(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s) \
     {                                                                                                          \
@@ -188,10 +189,10 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *put_back, bool 
     DEFINE_ROWS(is_general, spans)
 #define DEFINE_POINTS(is_general, point)                                                               \
     static void points(const primitive *__restrict p, const ray_batch *rays, const double *t, int bit, \
-                       surface_batch *met)                                                             \
+                       surface_batch *out)                                                             \
     {                                                                                                  \
         if (is_general)                                                                                \
-            points_on(p, point, true, rays, t, bit, met);                                              \
+            points_on(p, point, true, rays, t, bit, out);                                              \
         else                                                                                           \
-            points_on(p, point, false, rays, t, bit, met);                                             \
+            points_on(p, point, false, rays, t, bit, out);                                             \
     }

@@ -1,6 +1,6 @@
-/* Texture coordinates on surfaces: u to the right and v up as seen from outside, in pictures; per_length is how many of
- * the nearer repeated ones lie on a scene unit. size is what a picture covers, in scene units; 0 spreads one picture
- * over a face. Pure; cannot fail. */
+/* Texture coordinates on surfaces: u to the right and v up as seen from outside, in units of the texture image;
+ * per_length is the number of repetitions of the texture per scene unit, in the direction where they are closer. size
+ * is the extent of the texture image in scene units; 0 stretches one image over a face. Pure; cannot fail. */
 #pragma once
 
 #include "base/elementary.h"
@@ -9,15 +9,15 @@ typedef struct surface_mapping {
     double u, v, per_length;
 } surface_mapping;
 
-/* Flat faces: along two of the local axes, from the face's lower left corner seen from outside. */
+/* Flat faces: along two local axes, from the face's lower left corner as seen from outside. */
 static inline surface_mapping mapping_flat(double x, double y, double width, double height, double size)
 {
     const double across = size > 0.0 ? size : width, up = size > 0.0 ? size : height;
     return (surface_mapping){x / across, y / up, 1.0 / (across < up ? across : up)};
 }
 
-/* Around the axis by the angle, with one picture, or as the length of the arc: to the right as seen from outside, the
- * picture's middle in front, at -z, as on the bodies of geometry/mesh_generators.h. */
+/* Around the axis, by the angle (one image) or by arc length: to the right as seen from outside, the middle of the
+ * image in front, at -z, as on the solids of geometry/mesh_generators.h. */
 static inline surface_mapping mapping_around(double x, double z, double radius, double v, double height, double size)
 {
     const double turn = 0.5 + elementary_atan2_deg(x, -z) / 360.0, arc = 6.283185307179586 * radius;

@@ -1,3 +1,4 @@
+/* Queries of primitives in world coordinates. */
 #include "geometry/primitives/primitive.h"
 
 bool primitive_contains(const primitive *p, vec3 point)

@@ -1,11 +1,11 @@
-/* The regular prism: local points within second_radius of the axis along each of the sides' normals (a circle within
- * the sides), bottom <= y <= top. radius is that of the circle about its corners, of which one lies in front, at -z.
- * Faces: 0 bottom, 1 top, 2 and up the sides, to the right as seen from outside. */
+/* The regular prism primitive: local points within second_radius of the axis along each side's normal (the inscribed
+ * circle), bottom <= y <= top. radius is that of the circumscribed circle; one corner is in front, at -z. Faces: 0
+ * bottom, 1 top, 2 and up the sides, to the right as seen from outside. */
 #include "geometry/primitives/kind.h"
 
 enum { FIRST_SIDE = 2 };
 
-/* Where a ray passes the plane of a side. -1 of enters: it comes from outside. */
+/* A ray's crossing of the plane of a side. enters is -1 if the ray comes from outside. */
 typedef struct plane_root {
     double t;
     int64_t enters;
@@ -54,7 +54,7 @@ ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_bat
 DEFINE_ROWS(p->turned, loop)
 
 /* The face that bounds the interval, by the same roots: the last of those that are entered, or the first of those that
- * are left. A loop over faces within one over rays, which is not vectorised. */
+ * are left. An inner loop over faces, so the loop over rays is not vectorised. */
 static local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)
 {
     (void)general;
@@ -62,26 +62,26 @@ static local_point point(const primitive *p, bool general, local_ray r, vec3 q, 
     const slab_roots caps = slab_cross(r.y, inverse_y, p->bottom, p->top, mask_same(at, 0), mask_same(at, 1));
     const int64_t is_top = leaving ^ mask_less(inverse_y, 0.0);
     double bound = blend(leaving, caps.out, caps.in);
-    int met = -1;
+    int hit = -1;
     for (int k = 0; k < p->sides; k++) {
         const plane_root side =
             side_cross(p->normals[k], p->second_radius, r.x, r.z, r.dx, r.dz, mask_same(at, FIRST_SIDE + k));
         if (side.enters == leaving || !(leaving ? side.t < bound : side.t > bound))
             continue;
-        bound = side.t, met = k;
+        bound = side.t, hit = k;
     }
-    if (met < 0)
+    if (hit < 0)
         return (local_point){vec3_make(q.x, is_top ? p->top : p->bottom, q.z), vec3_make(0.0, is_top ? 1.0 : -1.0, 0.0),
                              p->first_face + (is_top & 1)};
-    const vec3 n = p->normals[met];
+    const vec3 n = p->normals[hit];
     const double off = n.x * q.x + n.z * q.z - p->second_radius;
-    return (local_point){vec3_make(q.x - off * n.x, q.y, q.z - off * n.z), n, p->first_face + FIRST_SIDE + met};
+    return (local_point){vec3_make(q.x - off * n.x, q.y, q.z - off * n.z), n, p->first_face + FIRST_SIDE + hit};
 }
 
-static void points(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *met)
+static void points(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *hit)
 {
     for (int i = 0; i < rays->count; i++)
-        store_point(p, point, true, rays, t, i, bit, met);
+        store_point(p, point, true, rays, t, i, bit, hit);
 }
 
 static bool contains(const primitive *p, vec3 q)
@@ -102,7 +102,7 @@ static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
     return one_chord(whole, found);
 }
 
-/* Those of its sides that lie across x or z, too. */
+/* Its caps, and those of its sides that are perpendicular to x or z. */
 static int flats(const primitive *p, flat_face flat[FLATS_MAX])
 {
     int count = 0;
@@ -117,7 +117,7 @@ static int flats(const primitive *p, flat_face flat[FLATS_MAX])
     return count;
 }
 
-/* Each side on its own, and the caps as the squares about their corners. */
+/* Each side separately, and the caps as the squares around their corners. */
 static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
     const double r = p->radius;

@@ -1,4 +1,4 @@
-/* The sphere x^2 + y^2 + z^2 <= radius^2. Face 0. */
+/* The sphere primitive: x^2 + y^2 + z^2 <= radius^2. Face 0. */
 #include "geometry/primitives/kind.h"
 
 ALWAYS_INLINE quadric_roots sphere_cross(const primitive *p, local_ray r, int64_t own)
@@ -16,7 +16,7 @@ ALWAYS_INLINE ray_span span(const primitive *p, bool general, local_ray r, int64
     return (ray_span){q.in, q.out, q.hit, own};
 }
 
-/* It is turned for its textures alone. */
+/* Its rotation matters only for textures. */
 DEFINE_SPANS(false, span)
 
 ALWAYS_INLINE local_point point(const primitive *p, bool general, local_ray r, vec3 q, int64_t at, int64_t leaving)

@@ -1,29 +1,30 @@
-/* The torus (sqrt(x^2 + z^2) - radius)^2 + y^2 <= second_radius^2 around local y; second_radius, of the tube, is the
- * smaller one. Face 0.
+/* The torus primitive: (sqrt(x^2 + z^2) - radius)^2 + y^2 <= second_radius^2 around local y; second_radius, the tube's,
+ * is the smaller radius. Face 0.
  *
  * With rho = sqrt(x^2 + z^2), R = radius and r = second_radius, a line o + t d crosses it at the roots of the quartic
  * (|p|^2 + R^2 - r^2)^2 - 4 R^2 rho^2 = D ((rho + R)^2 + y^2 - r^2), D = (rho - R)^2 + y^2 - r^2, whose second factor
- * is above 0. Between two roots lies a zero of the derivative: a cubic, without a square term where t is counted from
- * the point nearest to the centre, whose own derivative has known zeros. So signs between known points tell where the
- * roots are. The signs are those of D, which rounds as lengths do and not as their fourth powers: a root is as exact as
- * D.
+ * is positive. Between two roots is a zero of the derivative: a cubic without a square term if t is measured from the
+ * point nearest to the centre; the zeros of its own derivative are known. So signs at known points bracket the roots.
+ * The signs are those of D, whose rounding error is that of lengths and not of their fourth powers: a root is as exact
+ * as D.
  *
- * Of a ray that starts on the surface D / t takes D's place: with D(0) = 0 for exact it is a sum of terms that need no
- * division by t, and the root of the ray's own face is gone. */
+ * For a ray that starts on the surface, D / t replaces D: if D(0) = 0 is taken as exact, D / t is a sum of terms
+ * without a division by t, and the root of the ray's own face is gone. */
 #include "geometry/primitives/kind.h"
 
-/* Counted from its base: its point nearest to the torus's centre, or, on the surface, the ray's start. */
+/* A line, with t measured from its base: its point nearest to the torus's centre, or, if it starts on the surface, its
+ * start. */
 typedef struct torus_line {
     double R, r;
     local_ray base;
     double from;          /* t of the base */
     double rho, rises;    /* at the base: rho, and half the derivative of rho^2 */
     double across2;       /* dx^2 + dz^2 */
-    bool own;             /* the base is on the surface, and that root is not sought */
-    double near;          /* within this of the base, D / t is computed by its terms */
-    double least;         /* a step that is none */
-    double middle;        /* the point nearest to the centre, from the base */
-    double cubic, square; /* the derivative is s^3 + cubic s + square, but for a factor, s from the middle */
+    bool own;             /* the base is on the surface, and that root is excluded */
+    double near;          /* within this distance of the base, D / t is computed by its terms */
+    double least;         /* the step below which the iteration has converged */
+    double middle;        /* the point nearest to the centre, as t from the base */
+    double cubic, square; /* the derivative is proportional to s^3 + cubic s + square, with s measured from `middle` */
 } torus_line;
 
 typedef double torus_value(const torus_line *l, double t);
@@ -47,12 +48,12 @@ static double torus_slope(const torus_line *l, double s)
     return (s * s + l->cubic) * s + l->square;
 }
 
-/* A zero between a and b, where the value's signs differ: false position in the Illinois variant (Dowell and Jarratt,
- * BIT 11, 1971), with a bisection now and then, until a step is but a rounding. */
+/* A zero between a and b, where the value has different signs: the Illinois variant of false position (Dowell and
+ * Jarratt, BIT 11, 1971), with occasional bisection, until a step is within rounding. */
 static double zero_between(torus_value *value, const torus_line *l, double a, double b, double at_a, double at_b)
 {
     double last = a;
-    int kept = 0; /* the end that the last step kept: -1 a, 1 b */
+    int retained = 0; /* the end that the last step retained: -1 a, 1 b */
     for (int step = 1; step < 200; step++) {
         double t = step % 8 ? a + (b - a) * (at_a / (at_a - at_b)) : 0.5 * (a + b);
         if (!(t > a && t < b))
@@ -63,18 +64,18 @@ static double zero_between(torus_value *value, const torus_line *l, double a, do
         last = t;
         if ((here < 0.0) == (at_a < 0.0)) {
             a = t, at_a = here;
-            at_b *= kept == 1 ? 0.5 : 1.0;
-            kept = 1;
+            at_b *= retained == 1 ? 0.5 : 1.0;
+            retained = 1;
         } else {
             b = t, at_b = here;
-            at_a *= kept == -1 ? 0.5 : 1.0;
-            kept = -1;
+            at_a *= retained == -1 ? 0.5 : 1.0;
+            retained = -1;
         }
     }
     return last;
 }
 
-/* Zeros of the value between the given points, which lie in order and apart: at most one between two neighbours. */
+/* Zeros of the value between the given points, which are distinct and in order: at most one between two neighbours. */
 static int zeros_between(torus_value *value, const torus_line *l, const double *points, int count, double *zeros)
 {
     int found = 0;
@@ -88,7 +89,7 @@ static int zeros_between(torus_value *value, const torus_line *l, const double *
     return found;
 }
 
-/* Ascending points strictly between low and high are put between these two. */
+/* Inserts the ascending points strictly between low and high between these two. */
 static int points_within(double low, double high, const double *given, int count, double *points)
 {
     int n = 0;
@@ -100,8 +101,8 @@ static int points_within(double low, double high, const double *given, int count
     return n;
 }
 
-/* Where the line comes near: within a ball and a slab a little larger than the torus. middle: the ray at the point
- * nearest to the centre. */
+/* The range of the line near the torus: within a ball and a slab slightly larger than the torus. middle: the ray at its
+ * point nearest to the centre. */
 static bool torus_reach(const primitive *p, local_ray middle, double length2, double *low, double *high)
 {
     const double whole = p->radius + p->second_radius, thick = 1.125 * p->second_radius;
@@ -121,7 +122,7 @@ static local_ray moved(local_ray r, double t)
     return (local_ray){r.x + t * r.dx, r.y + t * r.dy, r.z + t * r.dz, r.dx, r.dy, r.dz};
 }
 
-/* Where r's line crosses the torus, but for the root of the face that r starts on. */
+/* The crossings of r's line with the torus, without the root of the face that r starts on. */
 static crossings_of_one torus_cross(const primitive *p, local_ray r, bool own)
 {
     crossings_of_one found = {0};
@@ -159,7 +160,7 @@ static crossings_of_one torus_cross(const primitive *p, local_ray r, bool own)
     return found;
 }
 
-/* Few rays meet a torus: a loop over all of them at once would do for each what is needed for few. */
+/* Few rays hit a torus, so a vectorised loop over all rays would waste most of its work. */
 static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch *s)
 {
     for (int i = 0; i < rays->count; i++) {
@@ -203,8 +204,8 @@ static int chords(const primitive *p, local_ray r, interval found[CHORDS_MAX])
     return line.count / 2;
 }
 
-/* Once around, with the picture's middle in front, and once around the tube, with its middle on the outermost circle;
- * lengths are those of the circle in the tube's middle and of the tube's own. */
+/* Once around the axis, with the middle of the texture image in front, and once around the tube, with its middle on the
+ * outermost circle; lengths are those of the circle at the tube's centre and of the tube. */
 static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double size)
 {
     (void)face;

@@ -1,4 +1,4 @@
-/* box: |x| <= size.x / 2, |y| <= size.y / 2, |z| <= size.z / 2. Its position is its centre. */
+/* The shape box: |x| <= size.x / 2, |y| <= size.y / 2, |z| <= size.z / 2. Its position is its centre. */
 #include "geometry/shapes/parts.h"
 
 PRIMITIVE_RULE(box);

@@ -1,5 +1,5 @@
-/* cone: x^2 + z^2 <= w^2, 0 <= y <= height, where w goes from radius at the base to top_radius, which may be 0. Its
- * position is the centre of its base. */
+/* The shape cone: x^2 + z^2 <= w^2, 0 <= y <= height, where w decreases or increases linearly from radius at the base
+ * to top_radius, which may be 0. Its position is the centre of its base. */
 #include "geometry/shapes/parts.h"
 
 PRIMITIVE_RULE(cone);
@@ -9,8 +9,8 @@ static status check(const solid_shape *shape, diagnostic *why)
     status code = check_length(shape->radius, "radius", why);
     THEN(code, check_length(shape->height, "height", why));
     if (code == STATUS_OK && !(shape->top_radius >= 0.0 && isfinite(shape->top_radius)))
-        code =
-            diagnose(why, STATUS_BAD_INPUT, "give a length, or 0 for a point", "top_radius is %g", shape->top_radius);
+        code = diagnose(why, STATUS_BAD_INPUT, "use a length of at least 0; 0 makes a point", "top_radius is %g",
+                        shape->top_radius);
     return code;
 }
 
@@ -50,7 +50,7 @@ static double farthest(const solid_shape *shape, vec3 d)
     return fmax(shape->radius * out, shape->height * d.y + shape->top_radius * out);
 }
 
-/* Half way up. */
+/* Its diameter at half height, or its height. */
 static double thickness(const solid_shape *shape)
 {
     return fmin(shape->height, shape->radius + shape->top_radius);

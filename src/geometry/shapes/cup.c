@@ -1,6 +1,6 @@
-/* cup: a cylinder of radius, m and height less one of inner_radius and the same m that stands on the floor's thickness
- * and is open at the top. Its position is the centre of its base. The ellipses are similar, so that the wall is
- * radius - inner_radius thick along x, and 1 / m of that along z. */
+/* The shape cup: a cylinder of radius, m and height, minus a cylinder of inner_radius and the same m that starts at the
+ * height of the floor and is open at the top. Its position is the centre of its base. The ellipses are similar, so that
+ * the wall is radius - inner_radius thick along x, and 1 / m of that along z. */
 #include "geometry/shapes/parts.h"
 
 static status check(const solid_shape *shape, diagnostic *why)
@@ -19,7 +19,7 @@ static status check(const solid_shape *shape, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The cup is closed, so its hollow is open: the hollow's own surface belongs to the cup. */
+/* The cup is a closed set, so its hollow is open: the hollow's own surface belongs to the cup. */
 static bool contains(const solid_shape *shape, vec3 p)
 {
     const double m = shape->m, r = shape->inner_radius;
@@ -37,7 +37,7 @@ static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
     return level_faces((const double[]){0.0, shape->height, shape->floor}, 3, i, normal, point);
 }
 
-/* Clear of the hollow: below the floor, or to one side of it. */
+/* Is the hidden shape outside the hollow: below the floor, or to one side of the hollow? */
 static bool avoids_hollow(const placed_shape *cover, const placed_shape *hidden)
 {
     const solid_shape *cup = &cover->shape;
@@ -59,7 +59,7 @@ static bool covers(const placed_shape *cover, const placed_shape *hidden)
     return cylinder_covers(cover, hidden) && avoids_hollow(cover, hidden);
 }
 
-/* Its wall or its floor. */
+/* The thickness of the wall or of the floor. */
 static double thickness(const solid_shape *shape)
 {
     return fmin((shape->radius - shape->inner_radius) * fmin(1.0, 1.0 / shape->m), shape->floor);
@@ -81,7 +81,7 @@ static int rings(const solid_shape *shape, shape_ring *out)
     return outside + 2;
 }
 
-/* Its outside, whose top is a ring; and the wall and the floor of its hollow. */
+/* Its outside, whose top is a ring; and the wall and floor of its hollow. */
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     const double r = shape->radius, inner = shape->inner_radius, low = shape->floor, h = shape->height;
@@ -92,8 +92,9 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
 
 const shape_rule shape_cup = {
     .word = "cup",
-    .meaning = "a cylinder less one of inner_radius that stands on its floor and is open at the top; its "
-               "position is the centre of its base",
+    .meaning =
+        "a cylinder minus a cylinder of inner_radius that starts at the height of its floor and is open at the top; "
+        "its position is the centre of its base",
     .parameters = WORDS("radius", "height", "m", "inner_radius", "floor"),
     .hollow = true,
     .curved = true,

@@ -1,5 +1,5 @@
-/* cylinder: x^2 + m^2 z^2 <= radius^2, 0 <= y <= height. Its position is the centre of its base. What a cup's outside
- * shares with it stands here, too. */
+/* The shape cylinder: x^2 + m^2 z^2 <= radius^2, 0 <= y <= height. Its position is the centre of its base. Also the
+ * functions that a cup's outside shares with it. */
 #include "geometry/shapes/parts.h"
 
 PRIMITIVE_RULE(cylinder);
@@ -51,8 +51,8 @@ double cylinder_farthest(const solid_shape *shape, vec3 d)
     return fmax(0.0, shape->height * d.y) + shape->radius * hypot(d.x, d.z / shape->m);
 }
 
-/* Exact around a point if it is round, and about an axis if it is round and stands along it; else too far rather than
- * too near. */
+/* Exact around a point if the cylinder is round, and about an axis if it is round and upright along the axis; otherwise
+ * an overestimate. */
 double cylinder_farthest_from(const placed_shape *placed, const round_frame *f)
 {
     const solid_shape *s = &placed->shape;

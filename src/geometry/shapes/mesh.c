@@ -1,5 +1,6 @@
-/* mesh: a triangle mesh, each axis times scale, as often as copies says, spacing apart. A closed mesh is solid; an open
- * one is a skin, which contains nothing. Copies may touch but not overlap, and a mesh's own parts neither. */
+/* The shape mesh: a triangle mesh, scaled along each axis and copied on a grid with the given spacing. A closed mesh is
+ * a solid; an open mesh is an open surface that contains no points. Neither copies nor the parts of one mesh may
+ * overlap; copies may touch. */
 #include "geometry/shapes/parts.h"
 
 static bool is_whole(double value)
@@ -11,14 +12,14 @@ static status check(const solid_shape *shape, diagnostic *why)
 {
     const vec3 n = shape->copies, s = shape->scale, step = shape->spacing;
     if (!is_whole(n.x) || !is_whole(n.y) || !is_whole(n.z) || n.x * n.y * n.z > COPIES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "give three whole numbers from 1, at most 4194304 copies in all",
+        return diagnose(why, STATUS_BAD_INPUT, "use three whole numbers from 1, at most 4194304 copies in all",
                         "copies is %g, %g, %g", n.x, n.y, n.z);
     if (!(s.x > 0.0 && s.y > 0.0 && s.z > 0.0) || !vec3_is_finite(s) || !vec3_is_finite(step))
-        return diagnose(why, STATUS_BAD_INPUT, "give numbers above 0", "scale is %g, %g, %g", s.x, s.y, s.z);
+        return diagnose(why, STATUS_BAD_INPUT, "use numbers above 0", "scale is %g, %g, %g", s.x, s.y, s.z);
     return STATUS_OK;
 }
 
-/* How far its copies reach from its position. */
+/* The maximum distance of its copies from its position. */
 static double reach(const solid_shape *shape)
 {
     const bounds3 b = shape->mesh->bounds;
@@ -39,13 +40,13 @@ static vec3 times(vec3 a, vec3 b)
     return vec3_make(a.x * b.x, a.y * b.y, a.z * b.z);
 }
 
-/* From the first copy to the last one. */
+/* The offset from the first copy to the last one. */
 static vec3 copies_reach(const solid_shape *shape)
 {
     return times(vec3_sub(shape->copies, vec3_make(1.0, 1.0, 1.0)), shape->spacing);
 }
 
-/* One triangle each, of the first copy. */
+/* One flat face per triangle, of the first copy. */
 static bool flat(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point)
 {
     if (i >= shape->mesh->triangle_count)
@@ -67,7 +68,8 @@ static shape_extent extent(const solid_shape *shape)
     return (shape_extent){b, 0.5 * vec3_length(vec3_sub(b.high, b.low))};
 }
 
-/* The most that measure gives of the vertices of the copies at the corners, whose hull is that of all. */
+/* A measure of a point. most_of_vertices returns its maximum over the vertices of the copies at the grid's corners,
+ * whose convex hull is that of all copies. */
 typedef double point_measure(const void *context, vec3 local);
 
 static double most_of_vertices(const solid_shape *s, point_measure *measure, const void *context)
@@ -112,7 +114,7 @@ static double farthest_from(const placed_shape *placed, const round_frame *frame
     return most_of_vertices(&placed->shape, distance, &(around){placed, frame});
 }
 
-/* Twice the volume over the area: of a plate its thickness, and of no convex body more than its width. */
+/* Twice the volume over the area: for a plate its thickness, for a convex solid at most its width. */
 static double thickness(const solid_shape *shape)
 {
     const double area = mesh_area(shape->mesh);
@@ -121,8 +123,9 @@ static double thickness(const solid_shape *shape)
 
 const shape_rule shape_mesh = {
     .word = "mesh",
-    .meaning = "the triangles of a mesh, each axis times scale, as often as copies says, spacing apart; its "
-               "position is the mesh's origin",
+    .meaning =
+        "a triangle mesh, scaled along each axis and copied on a grid with the given spacing; its position is the "
+        "origin of the mesh",
     .parameters = WORDS("mesh", "scale", "copies", "spacing", "shading"),
     .triangles = true,
     .check = check,

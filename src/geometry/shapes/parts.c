@@ -1,3 +1,4 @@
+/* Functions that several shapes share. */
 #include "geometry/shapes/parts.h"
 
 #include <math.h>
@@ -6,7 +7,7 @@ status check_length(double value, const char *name, diagnostic *why)
 {
     if (isfinite(value) && value > 0.0)
         return STATUS_OK;
-    return diagnose(why, STATUS_BAD_INPUT, "give a length above 0", "%s is %g", name, value);
+    return diagnose(why, STATUS_BAD_INPUT, "use a length above 0", "%s is %g", name, value);
 }
 
 primitive primitive_placed(const solid_shape *shape, const primitive_rule *rule, double reach)

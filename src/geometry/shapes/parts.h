@@ -1,4 +1,4 @@
-/* What several shapes share. Pure. */
+/* Functions that several shapes share. Pure. */
 #pragma once
 
 #include "geometry/scene_geometry.h"
@@ -6,10 +6,10 @@
 #include "geometry/primitives/primitive.h"
 #include "geometry/shapes/placed.h"
 
-/* A list of words with NULL behind. */
+/* A NULL-terminated list of words. */
 #define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* Segments of a round edge: it stays within 8e-5 of its radius of the circle (1 - cos(180 deg / 256)). */
+/* Segments of a round edge: the polygon stays within 8e-5 of its radius of the circle (1 - cos(180 deg / 256)). */
 enum { ROUND_SEGMENTS = 256 };
 
 /* STATUS_BAD_INPUT unless it is finite and above 0. */
@@ -21,9 +21,9 @@ static inline double largest_of(double a, double b, double c)
     return m > c ? m : c;
 }
 
-/* In the shape's place; rule: NULL of a mesh; reach: how far it extends from its position. */
+/* A primitive with the shape's position and rotation; rule: NULL for a mesh; reach: its extent from the position. */
 primitive primitive_placed(const solid_shape *shape, const primitive_rule *rule, double reach);
-/* Of the shape's m. */
+/* The elliptic cylinder with the shape's m. */
 primitive cylinder_placed(const solid_shape *shape, double radius, double bottom, double top);
 
 static inline double least_of_three(vec3 v)
@@ -31,13 +31,13 @@ static inline double least_of_three(vec3 v)
     return fmin(v.x, fmin(v.y, v.z));
 }
 
-/* About the origin. */
+/* The extent of a box of that size about the origin. */
 shape_extent extent_of_size(vec3 size);
 
-/* A profile turned about y, with edges where it turns by more than 30 degrees. */
+/* A surface of revolution about y, with sharp edges where the profile turns by more than 30 degrees. */
 status tessellate_lathe(const profile_point *profile, size_t count, mesh **out, diagnostic *why);
 
-/* What a cylinder and the outside of a cup have in common: radius, height and m. */
+/* The common checks of a cylinder and the outside of a cup: radius, height and m. */
 status cylinder_check(const solid_shape *shape, diagnostic *why);
 bool cylinder_contains(const solid_shape *shape, vec3 local);
 shape_extent cylinder_extent(const solid_shape *shape);
@@ -47,5 +47,5 @@ bool cylinder_covers(const placed_shape *cover, const placed_shape *hidden);
 void cylinder_fit(solid_shape *shape, double size);
 int cylinder_rings(const solid_shape *shape, shape_ring *out);
 vec3 cylinder_tessellation_scale(const solid_shape *shape);
-/* Level faces at these heights, for a rule's flat. */
+/* Horizontal faces at these heights, for a rule's `flat`. */
 bool level_faces(const double *heights, size_t count, size_t i, vec3 *normal, vec3 *point);

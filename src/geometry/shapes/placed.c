@@ -1,3 +1,4 @@
+/* Extents of placed shapes and coverage tests. */
 #include "geometry/shapes/placed.h"
 
 #include <math.h>
@@ -77,7 +78,7 @@ bounds3 shape_world_box(const solid_shape *shape)
         return (bounds3){vec3_scale(ever, -1.0), ever};
     const mat3 turn = rotation_from_deg(shape->rotation_deg);
     double low[3], high[3];
-    for (int k = 0; k < 3; k++) { /* the world's axes as the solid has them */
+    for (int k = 0; k < 3; k++) { /* the world's axes in the solid's frame */
         high[k] = shape_reach(shape, turn.row[k]);
         low[k] = -shape_reach(shape, vec3_scale(turn.row[k], -1.0));
     }

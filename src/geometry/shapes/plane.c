@@ -1,4 +1,4 @@
-/* plane: the half-space y <= 0. */
+/* The shape plane: the half-space y <= 0. Its position is a point of its surface. */
 #include "geometry/shapes/parts.h"
 
 PRIMITIVE_RULE(halfspace);

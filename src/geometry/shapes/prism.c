@@ -1,5 +1,5 @@
-/* prism: 0 <= y <= height over a regular polygon of `sides` corners on a circle of radius about the axis, the first one
- * in front, at -z. Its position is the centre of its base. */
+/* The shape prism: 0 <= y <= height over a regular polygon with `sides` corners on a circle of radius about the axis,
+ * the first corner in front, at -z. Its position is the centre of its base. */
 #include "geometry/shapes/parts.h"
 
 #include "base/elementary.h"
@@ -13,12 +13,11 @@ static status check(const solid_shape *shape, diagnostic *why)
     status code = check_length(shape->radius, "radius", why);
     THEN(code, check_length(shape->height, "height", why));
     if (code == STATUS_OK && (shape->sides < 3 || shape->sides > SIDES_MAX))
-        code = diagnose(why, STATUS_BAD_INPUT, "use 3 to 60; a cylinder is round", "a prism of %lld sides",
-                        (long long)shape->sides);
+        code = diagnose(why, STATUS_BAD_INPUT, "use 3 to 60, or a cylinder", "sides is %lld", (long long)shape->sides);
     return code;
 }
 
-/* The k-th half of a corner's angle, from -z towards +x: of even k a corner, of odd ones the middle of a side. */
+/* The direction of k half sector angles, from -z towards +x: a corner for even k, the middle of a side for odd k. */
 static vec3 direction(const solid_shape *shape, int64_t k)
 {
     double sine, cosine;
@@ -26,7 +25,7 @@ static vec3 direction(const solid_shape *shape, int64_t k)
     return vec3_make(sine, 0.0, -cosine);
 }
 
-/* Radius of the circle within its sides. */
+/* Radius of the inscribed circle. */
 static double within(const solid_shape *shape)
 {
     return shape->radius * -direction(shape, 1).z;
@@ -71,7 +70,8 @@ static shape_extent extent(const solid_shape *shape)
     const vec3 x = vec3_make(1.0, 0.0, 0.0), z = vec3_make(0.0, 0.0, 1.0);
     const vec3 low = vec3_make(-farthest(shape, vec3_scale(x, -1.0)), 0.0, -farthest(shape, vec3_scale(z, -1.0)));
     const vec3 high = vec3_make(farthest(shape, x), shape->height, farthest(shape, z));
-    /* The middle of the box is off the axis where sides are odd; the corner in front is the farthest from it. */
+    /* With an odd number of sides the centre of the box is off the axis; the corner in front is the farthest from
+     * it. */
     const double off = 0.5 * (low.z + high.z);
     return (shape_extent){{low, high}, hypot(shape->radius + fabs(off), 0.5 * shape->height)};
 }

@@ -1,9 +1,9 @@
-/* What the program knows of a shape: one constant rule each, in the file of its name, from which readers, writers,
- * parameters, checks, hints, drawings and the kernels' primitives are all derived. A new shape is its file here, its
- * row in geometry/solid.h, and rows in scene/model/params_table.c for parameters that no shape has had before.
+/* The interface of a shape: one constant rule each, in the file of its name, from which readers, writers, parameters,
+ * checks, hints, drawings and the kernels' primitives are all derived. A new shape is its file here, its row in
+ * geometry/solid.h, and rows in scene/model/params_table.c for parameters that no shape had before.
  *
- * Functions get a shape that passes its check, unless they are the check. "Local" is the solid's own frame; directions
- * are unit vectors. Pure; ownership: rules are constant; shapes borrow their meshes. */
+ * Functions except `check` receive a shape that passes its check. "Local" is the solid's own frame; directions are unit
+ * vectors. Pure; ownership: rules are constant; shapes borrow their meshes. */
 #pragma once
 
 #include "geometry/solid.h"
@@ -11,24 +11,25 @@
 
 struct primitive;
 
-enum { SHAPE_PRIMITIVES = 2, RINGS_MAX = 16 }; /* of one shape, at most */
+enum { SHAPE_PRIMITIVES = 2, RINGS_MAX = 16 }; /* the most per shape */
 
-/* The least box around a shape in its own frame, and the radius of a ball about that box's middle that holds it. */
+/* The bounding box of a shape in its own frame, and the radius of a ball about the box's centre that contains the
+ * shape. */
 typedef struct shape_extent {
     bounds3 box;
     double ball;
 } shape_extent;
 
-/* Corners of a level ring in a drawing: at height y, of the ellipse of half axes x and z, the first one so many degrees
- * from +x towards +z. */
+/* Corners of a horizontal ring in a drawing: at height y, on the ellipse of half axes x and z; the first corner is at
+ * from_deg degrees from +x towards +z. */
 typedef struct shape_ring {
     int part; /* a convex piece, drawn as the outline of all its rings */
     double y, x, z;
-    int corners; /* 0: it is round */
+    int corners; /* 0: a smooth curve */
     double from_deg;
 } shape_ring;
 
-/* A shape and its rotation, local to world. */
+/* A shape and its rotation matrix, local to world. */
 typedef struct placed_shape {
     solid_shape shape;
     mat3 turn;
@@ -44,70 +45,72 @@ typedef struct round_frame {
 
 typedef struct shape_rule {
     const char *word;              /* in files: "cylinder" */
-    const char *meaning;           /* one line for the manual, in its own frame, no full stop */
-    const char *const *parameters; /* of the parameter table, those that it has and not every solid, with NULL behind;
-                                    * NULL for none */
+    const char *meaning;           /* one line for the manual, in the local frame, no full stop */
+    const char *const *parameters; /* without those of every solid; NULL-terminated, NULL for none */
 
-    /* What makes it unlike others. */
-    bool triangles; /* its surface is that of a mesh, which it names; that has materials, texture coordinates and a
-                     * hierarchy of its own, and may be open or not yet loaded */
-    bool unbounded; /* it has no extent: it can only be a ground or a wall to others, and has a size of texture */
-    bool hollow;    /* it is a vessel: what is inside its wall is outside the solid */
+    /* Properties that distinguish it from other shapes. */
+    /* Its surface is a triangle mesh, given by name; the mesh has its own materials, texture coordinates and hierarchy,
+     * and may be open or not yet loaded. */
+    bool triangles;
+    bool unbounded; /* it has no finite extent: it serves only as a ground or wall for others, and has a texture size */
+    bool hollow;    /* it is a vessel: the space within its wall is outside the solid */
     bool isotropic; /* no rotation changes it */
-    bool curved;    /* some of its surface is not flat */
+    bool curved;    /* part of its surface is not flat */
 
-    /* Finds numbers that are wrong together, or no lengths. NULL: nothing can be. */
+    /* Checks for numbers that are invalid together, and for invalid lengths. NULL: nothing to check. */
     status (*check)(const solid_shape *shape, diagnostic *why);
-    /* Does the closed solid contain the local point? NULL: not known. */
+    /* Does the closed solid contain the local point? NULL: unknown. */
     bool (*contains)(const solid_shape *shape, vec3 local);
-    /* Writes what the kernels intersect: primitive_count of them, the second one hollows the first one out. */
+    /* Writes the primitives for the kernels, primitive_count of them; the second one is subtracted from the first. */
     int primitive_count;
-    int further_rows; /* how many more than one each of them takes: see geometry/scene_geometry.h */
+    int further_rows; /* scratch rows that each uses beyond its own: see geometry/scene_geometry.h */
     void (*primitives)(const solid_shape *shape, struct primitive *out);
-    /* By primitive, names of its faces by their number there; the last one is that of all that follow. */
+    /* By primitive, the names of its faces by number; the last name also applies to all higher numbers. */
     const char *const *faces[SHAPE_PRIMITIVES];
-    /* The i-th of its flat faces by its normal and one of its points, both local; false past the last one. */
+    /* The normal and one point of its i-th flat face, both local; false past the last one. */
     bool (*flat)(const solid_shape *shape, size_t i, vec3 *normal, vec3 *point);
 
-    /* NULL of an unbounded one. */
+    /* NULL for an unbounded shape. */
     shape_extent (*extent)(const solid_shape *shape);
-    /* The most of direction . p over its local points p; of an unbounded one INFINITY where it has no end. */
+    /* The maximum of direction . p over its local points p; INFINITY where an unbounded shape has no end. */
     double (*farthest)(const solid_shape *shape, vec3 direction);
-    /* The most of round_distance over its points, or more. NULL: that of the corners of its box. */
+    /* The maximum of round_distance over its points, or an upper bound. NULL: the maximum over the corners of its
+     * box. */
     double (*farthest_from)(const placed_shape *placed, const round_frame *frame);
-    /* Is all of the other one known to lie in it? NULL: nothing is. */
+    /* Is the hidden shape known to be entirely within the cover? NULL: never. */
     bool (*covers)(const placed_shape *cover, const placed_shape *hidden);
-    /* How thick it is where it is thinnest. */
+    /* Its thickness where it is thinnest. */
     double (*thickness)(const solid_shape *shape);
-    /* Makes it fill about a cube of that edge. NULL where there is nothing to set. */
+    /* Scales it to fill about a cube of that edge. NULL if there is nothing to set. */
     void (*fit)(solid_shape *shape, double size);
 
-    /* Writes what it is drawn by in outline, and returns how many. NULL: it has none, or none that is known here. */
+    /* Writes the rings of its outline drawing and returns their number. NULL: it has none, or the outline is computed
+     * elsewhere. */
     int (*rings)(const solid_shape *shape, shape_ring out[RINGS_MAX]);
-    /* The surface of one of its primitives, part, as triangles in its own frame, to be scaled by tessellation_scale.
-     * NULL: it is drawn otherwise. */
+    /* The surface of one of its primitives (number `part`) as triangles in its own frame, to be scaled by
+     * tessellation_scale. NULL: it is drawn in another way. */
     status (*tessellation)(const solid_shape *shape, int part, mesh **out, diagnostic *why);
     vec3 (*tessellation_scale)(const solid_shape *shape); /* NULL: 1 */
-    bool one_tessellation;                                /* it is the same for all, but for the scale */
+    bool one_tessellation;                                /* all solids of the kind share it, up to the scale */
 } shape_rule;
 
 /* NULL past the last kind. */
 const shape_rule *shape_of_kind(shape_kind kind);
-/* False when there is none. */
+/* False if there is none. */
 bool shape_named(const char *word, shape_kind *out);
 bool shape_has(const shape_rule *rule, const char *parameter);
-/* "surface" where it has no name. face: of the solid, a hollow's from HOLLOW_FACES on. */
+/* "surface" for a face without a name. face: of the solid; a hollow's faces start at HOLLOW_FACES. */
 const char *shape_face_name(const shape_rule *rule, int64_t face);
 
-/* A point, as a solid that holds nothing else. */
+/* A point, as a solid that contains nothing else. */
 solid_shape shape_point(vec3 at);
 placed_shape shape_placed(const solid_shape *shape);
-/* How far it reaches along a local direction: as farthest says, of triangles as the box around them does. */
+/* Its maximum along a local direction: as `farthest`, but for triangles that of their bounding box. */
 double shape_reach(const solid_shape *shape, vec3 direction);
-/* The box around it in the world, that of a mesh around its local box; infinite for an unbounded one. */
+/* Its bounding box in the world (for a mesh, that of its local box); infinite for an unbounded shape. */
 bounds3 shape_world_box(const solid_shape *shape);
 
-/* What the shape takes of an arrangement's places, PRIMITIVES_MAX in all. */
+/* The number of PRIMITIVES_MAX entries of a scene geometry that the shape uses. */
 static inline int shape_places(const solid_shape *shape)
 {
     return shape_of(shape)->primitive_count + shape_of(shape)->further_rows;

@@ -1,4 +1,4 @@
-/* sphere: x^2 + y^2 + z^2 <= radius^2. Its position is its centre. */
+/* The shape sphere: x^2 + y^2 + z^2 <= radius^2. Its position is its centre. */
 #include "geometry/shapes/parts.h"
 
 #include "base/elementary.h"
@@ -66,7 +66,7 @@ static int rings(const solid_shape *shape, shape_ring *out)
     return CIRCLES;
 }
 
-/* Of radius 1. Its outline stays within 2e-4 of its radius of the circle (20 4^5 triangles). */
+/* The unit sphere. Its outline stays within 2e-4 of its radius of the circle (20 4^5 triangles). */
 static status tessellation(const solid_shape *shape, int part, mesh **out, diagnostic *why)
 {
     (void)shape, (void)part;

@@ -1,5 +1,5 @@
-/* torus: (sqrt(x^2 + z^2) - radius)^2 + y^2 <= tube_radius^2, a ring with a hole: tube_radius < radius. Its position is
- * its centre, its axis local y. */
+/* The shape torus: (sqrt(x^2 + z^2) - radius)^2 + y^2 <= tube_radius^2, a ring with a hole: tube_radius < radius. Its
+ * position is its centre; its axis is local y. */
 #include "geometry/shapes/parts.h"
 
 #include "base/elementary.h"
@@ -56,7 +56,7 @@ static void fit(solid_shape *shape, double size)
     shape->tube_radius = 0.15 * size;
 }
 
-/* Its outer half, and its hole. */
+/* The outer half of the tube, and its hole. */
 static int rings(const solid_shape *shape, shape_ring *out)
 {
     enum { CIRCLES = 7 }; /* every 30 degrees around the tube */

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-status api_tell(call *c, json_t *told)
+status api_reply_json(call *c, json_t *json)
 {
-    c->told = told;
+    c->json = json;
     return STATUS_OK;
 }
 
@@ -26,7 +26,7 @@ status api_refuse(call *c, int code, const char *what, const char *remedy)
 
 status api_changed(call *c, status code, uint64_t generation)
 {
-    return code == STATUS_OK ? api_tell(c, json_pack("{s:I}", "generation", (json_int_t)generation)) : code;
+    return code == STATUS_OK ? api_reply_json(c, json_pack("{s:I}", "generation", (json_int_t)generation)) : code;
 }
 
 json_t *api_note(const char *place, const char *text, const char *remedy)
@@ -37,7 +37,7 @@ json_t *api_note(const char *place, const char *text, const char *remedy)
 
 /* --- bodies --- */
 
-/* Reads value, if it is of that kind. */
+/* Reads value if the JSON has the expected type. */
 typedef bool reader(const json_t *given, void *value);
 
 static bool take(call *c, const char *key, bool needed, const char *form, reader *read, void *value)
@@ -46,7 +46,7 @@ static bool take(call *c, const char *key, bool needed, const char *form, reader
     const bool missing = !given || json_is_null(given);
     if (missing ? !needed : read(given, value))
         return true;
-    diagnose(&c->why, STATUS_BAD_INPUT, form, "'%s' is not given as %s", key, form);
+    diagnose(&c->why, STATUS_BAD_INPUT, form, "'%s' must be %s", key, form);
     return false;
 }
 
@@ -98,7 +98,7 @@ bool api_take_vector(call *c, const char *key, bool needed, double value[3])
 
 bool api_take_text(call *c, const char *key, bool needed, const char **value)
 {
-    return take(c, key, needed, "a text", read_text, value);
+    return take(c, key, needed, "a string", read_text, value);
 }
 
 bool api_take_flag(call *c, const char *key, bool *value)
@@ -110,12 +110,12 @@ bool api_take_gesture(call *c, const char **gesture)
 {
     *gesture = NULL;
     return api_take_text(c, "gesture", false, gesture) &&
-           take(c, "gesture", false, "a text of at most 64 characters", read_short, gesture);
+           take(c, "gesture", false, "a string of at most 64 characters", read_short, gesture);
 }
 
-/* --- queries, and what is there --- */
+/* --- queries and the current document --- */
 
-bool api_asks_for(const call *c, const char *key)
+bool api_query_flag(const call *c, const char *key)
 {
     const char *value = http_query_value(c->request, key);
     return value && strcmp(value, "0") != 0;
@@ -136,10 +136,10 @@ status api_wait_for_final(call *c, const shared_image **out)
 
 char *api_document_file(const call *c)
 {
-    json_t *told = json_object();
-    const bool known = told && scene_document_json(c->l->scene_document, told);
-    const char *file = json_string_value(json_object_get(told, "file"));
+    json_t *json = json_object();
+    const bool known = json && scene_document_json(c->l->scene_document, json);
+    const char *file = json_string_value(json_object_get(json, "file"));
     char *copy = known ? strdup(file ? file : "") : NULL;
-    json_decref(told);
+    json_decref(json);
     return copy;
 }

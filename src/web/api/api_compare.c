@@ -1,4 +1,4 @@
-/* Two pictures beside each other: A, which was pinned, and B, the newest. */
+/* API: compares two images, the pinned reference image A and the newest image B. */
 #include "web/api/api.h"
 
 #include "report/json.h"
@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The newest picture if it is a final one, or, where it is waited for, the next that is. */
+/* The newest image if it is final; with ?wait, the next final one. */
 static status take_final(call *c, const shared_image **out)
 {
     *out = NULL;
-    if (api_asks_for(c, "wait"))
+    if (api_query_flag(c, "wait"))
         return api_wait_for_final(c, out);
     const shared_image *newest = render_worker_take(c->l->render_worker);
     if (newest && newest->final) {
@@ -19,15 +19,15 @@ static status take_final(call *c, const shared_image **out)
         return STATUS_OK;
     }
     shared_image_release(newest);
-    return api_refuse(c, 409, "the picture is not finished yet", "wait until it is final, or ask with ?wait=1");
+    return api_refuse(c, 409, "the image is not finished yet", "wait until it is final, or add ?wait=1");
 }
 
-static status set_pin(call *c, const shared_image *a)
+static status set_reference(call *c, const shared_image *a)
 {
     reference_image_set(c->l->reference_image, a);
     shared_image_release(a);
-    lab_tell_state(c->l);
-    return api_tell(c, json_pack("{s:o}", "pin", reference_image_json(c->l->reference_image)));
+    lab_publish_state(c->l);
+    return api_reply_json(c, json_pack("{s:o}", "pin", reference_image_json(c->l->reference_image)));
 }
 
 status api_set_reference(call *c)
@@ -35,20 +35,20 @@ status api_set_reference(call *c)
     const shared_image *newest;
     c->refused = 409;
     TRY(take_final(c, &newest));
-    return set_pin(c, newest);
+    return set_reference(c, newest);
 }
 
 status api_clear_reference(call *c)
 {
-    return set_pin(c, NULL);
+    return set_reference(c, NULL);
 }
 
-static status refuse_without_pin(call *c, int code)
+static status refuse_without_reference(call *c, int code)
 {
-    return api_refuse(c, code, "no picture is pinned", "pin one with POST /api/pin");
+    return api_refuse(c, code, "no reference image is pinned", "pin one with POST /api/pin");
 }
 
-/* The bytes belong to what they show. */
+/* The bytes belong to the shared image, so the reply gets a copy. */
 static status send_copy(call *c, const unsigned char *bytes, size_t size)
 {
     void *copy = malloc(size);
@@ -64,10 +64,10 @@ status api_reference_image(call *c)
     unsigned char *own = NULL;
     size_t size = 0;
     if (!api_take_bits(c, &bits))
-        return api_refuse(c, 400, "bits is neither 8 nor 16", "ask for ?bits=8 or ?bits=16");
+        return api_refuse(c, 400, "unsupported bit depth", "use ?bits=8 or ?bits=16");
     const shared_image *a = reference_image_take(c->l->reference_image);
     if (!a)
-        return refuse_without_pin(c, 404);
+        return refuse_without_reference(c, 404);
     c->refused = 409;
     status code = semaphore_acquire(c->l->heavy, &c->why);
     if (code == STATUS_OK) {
@@ -81,19 +81,20 @@ status api_reference_image(call *c)
     return code;
 }
 
-/* A and B, which the caller releases. */
+/* Gets A and B; the caller releases both. */
 static status take_pair(call *c, reference_pair **pair, const shared_image **b)
 {
     c->refused = 409;
-    const shared_image *a = reference_image_take(c->l->reference_image); /* so that nobody waits for B without it */
+    const shared_image *a =
+        reference_image_take(c->l->reference_image); /* fails early: without A there is no point in waiting for B */
     shared_image_release(a);
     if (!a)
-        return refuse_without_pin(c, 409);
+        return refuse_without_reference(c, 409);
     const status code = take_final(c, b);
     if (code != STATUS_OK || (*pair = reference_image_compare(c->l->reference_image, *b)))
         return code;
     shared_image_release(*b);
-    return refuse_without_pin(c, 409);
+    return refuse_without_reference(c, 409);
 }
 
 static json_t *comparison_json(const image_comparison *found)
@@ -116,9 +117,9 @@ status api_compare(call *c)
         semaphore_release(c->l->heavy);
     }
     if (code == STATUS_OK)
-        api_tell(c,
-                 json_pack("{s:o, s:o, s:o, s:o}", "a", shared_image_json(a), "b", shared_image_json(b), "changed",
-                           changed_params(a->of, b->of), "comparison", fits ? comparison_json(&found) : json_null()));
+        api_reply_json(c, json_pack("{s:o, s:o, s:o, s:o}", "a", shared_image_json(a), "b", shared_image_json(b),
+                                    "changed", changed_params(a->of, b->of), "comparison",
+                                    fits ? comparison_json(&found) : json_null()));
     shared_image_release(b);
     reference_pair_release(pair);
     return code;

@@ -1,4 +1,4 @@
-/* The desk's part of the API: the state, the scene, its parameters, undo, the camera. See web/README.md. */
+/* API: the state, the scene, its parameters, undo and the camera. See web/README.md. */
 #include "web/api/api.h"
 #include "base/number.h"
 #include "base/text_writer.h"
@@ -15,7 +15,7 @@
 
 status api_state(call *c)
 {
-    return api_tell(c, lab_state(c->l));
+    return api_reply_json(c, lab_state(c->l));
 }
 
 status api_scene(call *c)
@@ -23,7 +23,7 @@ status api_scene(call *c)
     uint64_t generation;
     scene *now = scene_document_take(c->l->scene_document, &generation),
           *opened = scene_document_take_opened(c->l->scene_document);
-    api_tell(c, now && opened ? scene_json(now, opened, generation) : NULL);
+    api_reply_json(c, now && opened ? scene_json(now, opened, generation) : NULL);
     scene_destroy(now);
     scene_destroy(opened);
     return STATUS_OK;
@@ -31,7 +31,7 @@ status api_scene(call *c)
 
 /* --- set and reset --- */
 
-/* One number or word; false for what is neither. */
+/* Writes one number or word; false for other JSON values. */
 static bool put_item(FILE *out, const json_t *value)
 {
     char text[NUMBER_TEXT_MAX];
@@ -42,7 +42,7 @@ static bool put_item(FILE *out, const json_t *value)
     return good && fputs(word, out) >= 0;
 }
 
-/* As scene_set takes it, in fresh memory; NULL for what is no value (or memory that is out). */
+/* The value in the syntax of scene_set, in allocated memory; NULL for unsupported JSON (or out of memory). */
 static char *value_text(const json_t *value)
 {
     char *joined = NULL;
@@ -56,13 +56,13 @@ static char *value_text(const json_t *value)
     return joined;
 }
 
-/* What is set, and notes on what of that does nothing (scene/model/inert/inert.h); NULL while there are none. */
+/* The parameters to set, and notes on those without effect (scene/model/inert/inert.h); NULL while there are none. */
 typedef struct set_request {
     const json_t *values;
     json_t *notes;
 } set_request;
 
-/* A slime that moves on the page does so whatever its time_s. */
+/* A live slime ignores time_s, so no note is made for it. */
 static void note_inert(set_request *x, const scene *s)
 {
     const char *path;
@@ -88,8 +88,8 @@ static status set_all(void *of, scene *s, diagnostic *why)
     {
         char *text = code == STATUS_OK ? value_text(value) : NULL;
         if (code == STATUS_OK && !text)
-            code = diagnose(why, STATUS_BAD_INPUT, "give a number, a text or a list of numbers",
-                            "%.200s: this is no value", path);
+            code = diagnose(why, STATUS_BAD_INPUT, "give a number, a string or a list of numbers",
+                            "%.200s: not a valid value", path);
         else if (code == STATUS_OK)
             code = scene_set(s, path, text, why);
         free(text);
@@ -108,14 +108,14 @@ status api_set(call *c)
     uint64_t generation = 0;
     char what[128];
     if (!json_is_object(values) || json_object_size(values) == 0)
-        return api_refuse(c, 400, "there is nothing to set", "give {\"set\": {PATH: VALUE}}");
+        return api_refuse(c, 400, "nothing to set", "give {\"set\": {PATH: VALUE}}");
     if (!api_take_gesture(c, &gesture))
         return STATUS_BAD_INPUT;
     snprintf(what, sizeof what, "set %.100s", json_object_iter_key(json_object_iter(values)));
     set_request x = {values, NULL};
     const status code = scene_document_apply(c->l->scene_document, what, gesture, set_all, &x, &generation, &c->why);
     if (code == STATUS_OK && x.notes)
-        api_tell(c, json_pack("{s:I, s:O}", "generation", (json_int_t)generation, "notes", x.notes));
+        api_reply_json(c, json_pack("{s:I, s:O}", "generation", (json_int_t)generation, "notes", x.notes));
     else
         api_changed(c, code, generation);
     json_decref(x.notes);
@@ -135,7 +135,7 @@ status api_reset(call *c)
         good = (text[i] = json_string_value(json_array_get(paths, i))) != NULL;
     const status code =
         good ? scene_document_reset(c->l->scene_document, text, count, &generation, &c->why)
-             : api_refuse(c, 400, "'paths' is no list of paths", "give {\"paths\": [PATH, ..]}, or {} for all");
+             : api_refuse(c, 400, "'paths' must be a list of paths", "give {\"paths\": [PATH, ..]}, or {} for all");
     free(text);
     return api_changed(c, code, generation);
 }
@@ -165,7 +165,7 @@ static bool take_pair(call *c, const char *key, double pair[2])
     for (size_t i = 0; given && i < 2; i++) {
         const json_t *item = json_array_get(given, i);
         if (json_array_size(given) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
-            api_refuse(c, 400, "an angle of the camera is no number", "give [YAW, PITCH] in degrees");
+            api_refuse(c, 400, "a camera angle is not a number", "give [YAW, PITCH] in degrees");
             return false;
         }
         pair[i] = json_number_value(item);
@@ -194,7 +194,7 @@ status api_scene_file(call *c)
     char *text = NULL;
     scene *now = scene_document_take(c->l->scene_document, NULL);
     if (now)
-        lab_forget_threads(c->l, now);
+        lab_clear_default_threads(c->l, now);
     const status code = now ? scene_write_text(now, scene_path(now), false, &text, &c->why) : out_of_memory(&c->why);
     scene_destroy(now);
     return code == STATUS_OK ? api_send(c, "application/yaml; charset=utf-8", text, strlen(text)) : code;
@@ -209,7 +209,7 @@ status api_command(call *c)
                                                    &complete, &c->why)
                                     : out_of_memory(&c->why);
     if (code == STATUS_OK)
-        api_tell(c, json_pack("{s:o,s:b}", "command", json_of_text(text), "complete", (int)complete));
+        api_reply_json(c, json_pack("{s:o,s:b}", "command", json_of_text(text), "complete", (int)complete));
     free(text);
     free(file);
     scene_destroy(now);

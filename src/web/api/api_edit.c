@@ -1,5 +1,5 @@
-/* Objects come, go, move, turn and change their names: POST and DELETE under /api/objects. How new ones look is in
- * new_objects.c. */
+/* API: objects: add, remove, move, turn, scale, rename, change material (/api/objects). new_objects.c sets the
+ * properties of new objects. */
 #include "web/api/api.h"
 #include "scene/model/place/new_objects.h"
 #include "scene/model/check.h"
@@ -12,19 +12,19 @@
 #include <string.h>
 
 typedef struct edit {
-    const char *name;   /* of the object; NULL for a new one */
-    bool or_camera;     /* it may be the camera, or many objects, too */
-    const char *word;   /* its new name; its material, NULL for none; the kind of a new one */
-    const char *wanted; /* name of a new one; NULL: any */
-    const char *file;   /* of a new one, as the folder names it */
+    const char *name;           /* of the object; NULL for a new one */
+    bool or_camera;             /* the camera or a group of objects is allowed too */
+    const char *word;           /* the new name; the material, NULL for none; the kind of a new object */
+    const char *requested_name; /* name of a new object; NULL: any */
+    const char *file;           /* file of a new object, relative to the folder */
     const folder *files;
-    const scene *loaded; /* of a model */
+    const scene *loaded; /* scene loaded from a model or texture file */
     shape_kind shape;
     status (*displace)(scene *s, const char *name, vec3 by, diagnostic *why);
     vec3 by;
     double factor;
-    object_name made; /* what came is called that; "" for nothing */
-    int refused;      /* what to answer rather than 400: 404, 409; 0 */
+    object_name made; /* name of the new object; "" for none */
+    int refused;      /* HTTP code instead of 400: 404, 409; 0: none */
     status (*act)(struct edit *e, scene *s, diagnostic *why);
 } edit;
 
@@ -42,10 +42,10 @@ static status change(void *context, scene *s, diagnostic *why)
     const bool is_one = !e->name || at.object_group >= PARAM_MESH || (e->or_camera && at.object_group == PARAM_CAMERA);
     return is_one ? e->act(e, s, why)
                   : diagnose(why, STATUS_BAD_INPUT, "name a solid, a light, a material, a mesh or a texture",
-                             "that cannot be done with the %.60s", e->name);
+                             "the %.60s cannot be edited in this way", e->name);
 }
 
-/* verb: with the object's name after it, for undo. Answers the generation, and the name of what came. */
+/* verb: for undo, followed by the object's name. Replies with the generation and the name of the new object. */
 static status apply(call *c, edit *e, const char *verb, const char *name, const char *gesture)
 {
     uint64_t generation = 0;
@@ -54,7 +54,7 @@ static status apply(call *c, edit *e, const char *verb, const char *name, const 
     const status code = scene_document_apply(c->l->scene_document, words, gesture, change, e, &generation, &c->why);
     c->refused = e->refused;
     if (code == STATUS_OK && e->made[0])
-        return api_tell(c, json_pack("{s:I, s:s}", "generation", (json_int_t)generation, "name", e->made));
+        return api_reply_json(c, json_pack("{s:I, s:s}", "generation", (json_int_t)generation, "name", e->made));
     return api_changed(c, code, generation);
 }
 
@@ -64,7 +64,7 @@ static status apply_to(call *c, edit e, const char *verb, const char *gesture)
     return apply(c, &e, verb, e.name, gesture);
 }
 
-/* --- what is there --- */
+/* --- existing objects --- */
 
 static status remove_it(edit *e, scene *s, diagnostic *why)
 {
@@ -115,7 +115,7 @@ status api_scale(call *c)
     const json_t *factor = json_object_get(c->body, "factor");
     const char *gesture;
     if (!json_is_number(factor))
-        return api_refuse(c, 400, "'factor' is no number", "give a factor above 0");
+        return api_refuse(c, 400, "'factor' is not a number", "give a factor above 0");
     if (!api_take_gesture(c, &gesture))
         return STATUS_BAD_INPUT;
     return apply_to(c, (edit){.or_camera = true, .factor = json_number_value(factor), .act = scale_it}, "scale",
@@ -136,7 +136,7 @@ status api_rename(call *c)
     return api_take_text(c, "to", true, &e.word) ? apply_to(c, e, "rename", NULL) : STATUS_BAD_INPUT;
 }
 
-/* A solid that loses its material looks as before, for itself alone: the defaults would be black. */
+/* A solid that loses its material keeps a copy of the material's values: the defaults would be black. */
 static status give_material(edit *e, scene *s, diagnostic *why)
 {
     const int index = scene_find_solid(s, e->name);
@@ -151,7 +151,7 @@ status api_material(call *c)
     edit e = {.act = give_material};
     if (!json_is_null(json_object_get(c->body, "material")) && !api_take_text(c, "material", true, &e.word))
         return STATUS_BAD_INPUT;
-    return apply_to(c, e, e.word ? "give a material to" : "take the material of", NULL);
+    return apply_to(c, e, e.word ? "set the material of" : "remove the material of", NULL);
 }
 
 static status copy_it(edit *e, scene *s, diagnostic *why)
@@ -164,15 +164,15 @@ status api_copy(call *c)
     return apply_to(c, (edit){.act = copy_it}, "copy", NULL);
 }
 
-/* --- what is new --- */
+/* --- new objects --- */
 
-/* A texture, or what was loaded of a model. */
+/* Adds a texture, or the loaded model. */
 static status add_file(edit *e, scene *s, diagnostic *why)
 {
     char *path;
     status code = folder_path_from(e->files, e->file, s->path, &path, why);
-    THEN(code, strcmp(e->word, "model") == 0 ? new_model(s, e->loaded, path, e->wanted, e->made, why)
-                                             : new_texture(s, path, e->wanted, e->made, why));
+    THEN(code, strcmp(e->word, "model") == 0 ? new_model(s, e->loaded, path, e->requested_name, e->made, why)
+                                             : new_texture(s, path, e->requested_name, e->made, why));
     free(path);
     return code;
 }
@@ -181,24 +181,23 @@ static status add_object(edit *e, scene *s, diagnostic *why)
 {
     static const struct {
         const char *word;
-        status (*add)(scene *s, const char *wanted, object_name made, diagnostic *why); /* NULL: of a file */
+        status (*add)(scene *s, const char *requested_name, object_name made, diagnostic *why); /* NULL: from a file */
     } kinds[] = {
         {"light", new_light}, {"material", new_material}, {"slime", new_slime}, {"texture", NULL}, {"model", NULL}};
-    if (e->wanted && check_name_is_free(s, e->wanted, why) != STATUS_OK) {
+    if (e->requested_name && check_name_is_free(s, e->requested_name, why) != STATUS_OK) {
         e->refused = 409;
         return STATUS_BAD_INPUT;
     }
     if (strcmp(e->word, "solid") == 0)
-        return new_solid(s, e->shape, e->wanted, e->made, why);
+        return new_solid(s, e->shape, e->requested_name, e->made, why);
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (strcmp(e->word, kinds[i].word) == 0)
-            return kinds[i].add ? kinds[i].add(s, e->wanted, e->made, why) : add_file(e, s, why);
-    return diagnose(why, STATUS_BAD_INPUT, "the kinds are solid, light, material, model, slime and texture",
-                    "no kind '%.60s'", e->word);
+            return kinds[i].add ? kinds[i].add(s, e->requested_name, e->made, why) : add_file(e, s, why);
+    return diagnose(why, STATUS_BAD_INPUT, "use solid, light, material, model, slime or texture",
+                    "unknown kind '%.60s'", e->word);
 }
 
-/* A scene of nothing but that model or picture, which can then be read. It takes its time, and the desk is not held up
- * by it. */
+/* Loads the model or texture into a scene of its own, without holding the lock of the scene document. */
 static status load_alone(lab *l, const char *file, bool is_model, scene **out, diagnostic *why)
 {
     char *path = NULL;
@@ -223,7 +222,7 @@ static status load_alone(lab *l, const char *file, bool is_model, scene **out, d
 static status take_new(call *c, edit *e, scene **loaded)
 {
     const char *shape = NULL;
-    if (!api_take_text(c, "kind", true, &e->word) || !api_take_text(c, "name", false, &e->wanted))
+    if (!api_take_text(c, "kind", true, &e->word) || !api_take_text(c, "name", false, &e->requested_name))
         return STATUS_BAD_INPUT;
     const bool is_model = strcmp(e->word, "model") == 0, is_file = is_model || strcmp(e->word, "texture") == 0,
                is_solid = strcmp(e->word, "solid") == 0;
@@ -244,7 +243,7 @@ status api_add(call *c)
     status code = take_new(c, &e, &loaded);
     e.loaded = loaded;
     THEN(code, apply(c, &e, "add",
-                     e.wanted                       ? e.wanted
+                     e.requested_name               ? e.requested_name
                      : strcmp(e.word, "solid") == 0 ? shape_name(e.shape)
                                                     : e.word,
                      NULL));

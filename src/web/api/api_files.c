@@ -1,4 +1,4 @@
-/* Files of the folder: which there are, opening and saving; the catalogue of media; and the machine. */
+/* API: the files of the folder, opening and saving scenes, the media catalogue and the machine. */
 #include "web/api/api.h"
 #include "scene/model/place/new_scene.h"
 #include "report/json.h"
@@ -12,7 +12,7 @@
 #include <strings.h>
 #include <unistd.h>
 
-/* What leads from the scene's folder to the chosen one; NULL when memory is out. */
+/* The path from the scene's folder to the chosen folder; NULL when out of memory. */
 static char *prefix_of(const lab *l)
 {
     static const char any[] = "name";
@@ -27,10 +27,10 @@ static char *prefix_of(const lab *l)
 
 status api_files(call *c)
 {
-    json_t *all = folder_tell(c->l->files);
+    json_t *all = folder_json(c->l->files);
     char *prefix = prefix_of(c->l);
     if (all && prefix && json_object_set_new(all, "prefix", json_of_text(prefix)) == 0)
-        api_tell(c, json_incref(all));
+        api_reply_json(c, json_incref(all));
     json_decref(all);
     free(prefix);
     return STATUS_OK;
@@ -38,7 +38,7 @@ status api_files(call *c)
 
 status api_media(call *c)
 {
-    return api_tell(c, media_rows_json(NULL, 0.0));
+    return api_reply_json(c, media_rows_json(NULL, 0.0));
 }
 
 status api_machine(call *c)
@@ -46,14 +46,14 @@ status api_machine(call *c)
     machine_account account = {0};
     const status code = machine_measure(&account, &c->why);
     if (code == STATUS_OK)
-        api_tell(c, machine_json(&account));
+        api_reply_json(c, machine_json(&account));
     machine_release(&account);
     return code;
 }
 
 /* --- opening --- */
 
-/* 404 for a name that is right and of nothing. */
+/* Reads a scene; 404 for a valid name without a file. */
 static status read_scene(call *c, const char *name, scene **out)
 {
     const folder *files = c->l->files;
@@ -76,16 +76,16 @@ status api_open(call *c)
     if (!api_take_flag(c, "new", &fresh) || !api_take_text(c, "file", !fresh, &name))
         return STATUS_BAD_INPUT;
     if (fresh && name)
-        return api_refuse(c, 400, "a new scene has no file yet", "give a file, or new");
+        return api_refuse(c, 400, "'file' and 'new' cannot be combined", "give either 'file' or 'new'");
     TRY(fresh ? new_scene(&s, &c->why) : read_scene(c, name, &s));
-    lab_give_threads(c->l, s);
+    lab_set_default_threads(c->l, s);
     status code = scene_document_open(c->l->scene_document, s, name, &generation, &c->why);
     return api_changed(c, code, generation);
 }
 
 /* --- saving --- */
 
-/* Listed among the scenes, once it is there. */
+/* Whether the file would be listed among the scenes. */
 static bool is_scene_name(const char *name)
 {
     const char *ending = strrchr(name, '.');
@@ -93,7 +93,7 @@ static bool is_scene_name(const char *name)
            !strstr(name, "/.");
 }
 
-/* Is it the file that is on the desk? */
+/* Whether the file is the open scene document. */
 static bool is_open(const call *c, const char *name)
 {
     char *file = api_document_file(c);
@@ -107,7 +107,7 @@ static status write_file(call *c, const char *name, const char *path)
     uint64_t generation = 0;
     scene *s = scene_document_take(c->l->scene_document, &generation);
     if (s)
-        lab_forget_threads(c->l, s);
+        lab_clear_default_threads(c->l, s);
     const status code = s ? scene_write(s, path, false, &c->why) : out_of_memory(&c->why);
     scene_destroy(s);
     if (code == STATUS_OK)
@@ -124,10 +124,11 @@ status api_save(call *c)
         return STATUS_BAD_INPUT;
     status code = folder_path(c->l->files, name, false, &path, &c->why);
     if (code == STATUS_OK && !is_scene_name(name))
-        code = diagnose(&c->why, STATUS_BAD_INPUT, "let it end in .yaml, and no part of it begin with a dot",
-                        "'%.200s' is no name for a scene", name);
+        code =
+            diagnose(&c->why, STATUS_BAD_INPUT, "use a name that ends in .yaml and has no part that begins with a dot",
+                     "'%.200s' is not a valid scene name", name);
     else if (code == STATUS_OK && !replace && access(path, F_OK) == 0 && !is_open(c, name))
-        code = api_refuse(c, 409, "there is a file of that name already", "choose another name, or replace it");
+        code = api_refuse(c, 409, "the file already exists", "choose another name, or set 'replace'");
     else if (code == STATUS_OK)
         code = write_file(c, name, path);
     free(path);

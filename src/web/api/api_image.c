@@ -1,4 +1,4 @@
-/* The picture's part of the API. See web/README.md. */
+/* API: the rendered image. See web/README.md. */
 #include "web/api/api.h"
 
 #include <ctype.h>
@@ -13,7 +13,7 @@ static void add_number(http_reply *r, const char *name, uint64_t value)
     http_reply_header(r, name, text);
 }
 
-/* Only what cannot be mistaken for the end of the header's text. */
+/* Keeps only characters that cannot end the quoted string of the header. */
 static void name_download(http_reply *r, const char *name)
 {
     char text[160], *at = text;
@@ -24,7 +24,7 @@ static void name_download(http_reply *r, const char *name)
     http_reply_header(r, "Content-Disposition", text);
 }
 
-/* A reply's own bytes. */
+/* Encodes into memory owned by the reply. */
 static status encode_own(const shared_image *p, image_format format, int bits, unsigned char **bytes, size_t *size,
                          diagnostic *why)
 {
@@ -40,7 +40,7 @@ static status encode_own(const shared_image *p, image_format format, int bits, u
     return code;
 }
 
-/* Small ones, as they come while something moves, wait for nobody. */
+/* Encodes an image; small images, as during motion, do not wait for the semaphore. */
 static status encode(lab *l, const shared_image *p, image_format format, int bits, unsigned char **bytes, size_t *size,
                      diagnostic *why)
 {
@@ -61,13 +61,13 @@ static status reply_image(call *c, image_format format, const char *type)
     size_t size;
     int bits;
     if (!api_take_bits(c, &bits))
-        return api_refuse(c, 400, "a picture has no such number of bits", "give 8 or 16");
-    if (api_asks_for(c, "wait") && api_wait_for_final(c, &p) != STATUS_OK) {
+        return api_refuse(c, 400, "unsupported bit depth", "use ?bits=8 or ?bits=16");
+    if (api_query_flag(c, "wait") && api_wait_for_final(c, &p) != STATUS_OK) {
         c->refused = 409;
         return STATUS_INTERRUPTED;
     }
     if (!p && !(p = render_worker_take(c->l->render_worker)))
-        return api_refuse(c, 404, "there is no picture yet", "ask with ?wait=1");
+        return api_refuse(c, 404, "no image is rendered yet", "add ?wait=1");
     const status code = encode(c->l, p, format, bits, &bytes, &size, &c->why);
     if (code == STATUS_OK) {
         api_send(c, type, bytes, size);

@@ -1,4 +1,4 @@
-/* Playing with the slime: when it moves, and hands that reach through the picture. */
+/* API: the live slime: play, pause, and hands that drag it through the image. */
 #include "web/api/api.h"
 
 #include "report/json.h"
@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* -1 where the key is missing. */
+/* Reads one of the words as its index; -1 where the key is missing. */
 static bool take_word(call *c, const char *key, const char *const *words, const char *remedy, int *index)
 {
     const char *word = NULL;
@@ -20,7 +20,7 @@ static bool take_word(call *c, const char *key, const char *const *words, const 
         if (strcmp(words[i], word) == 0)
             *index = i;
     if (word && *index < 0)
-        api_refuse(c, 400, "there is no such word", remedy);
+        api_refuse(c, 400, "unknown word", remedy);
     return !word || *index >= 0;
 }
 
@@ -37,25 +37,25 @@ status api_slime(call *c)
     static const char *const orders[] = {
         [LIVE_PLAY] = "play", [LIVE_PAUSE] = "pause", [LIVE_RESTART] = "restart", [LIVE_OFF] = "off", NULL};
     static const char *const previews[] = {[LIVE_TRACED] = "traced", [LIVE_ZBUFFER] = "zbuffer", NULL};
-    live *toy = render_worker_live(c->l->render_worker);
+    live *live_slime = render_worker_live(c->l->render_worker);
     int what, preview;
-    if (!take_word(c, "do", orders, "'do' is play, pause, restart or off", &what) ||
-        !take_word(c, "preview", previews, "'preview' is traced or zbuffer", &preview))
+    if (!take_word(c, "do", orders, "use play, pause, restart or off for 'do'", &what) ||
+        !take_word(c, "preview", previews, "use traced or zbuffer for 'preview'", &preview))
         return STATUS_BAD_INPUT;
     if (what < 0 && preview < 0)
-        return api_refuse(c, 400, "nothing is asked for",
+        return api_refuse(c, 400, "neither 'do' nor 'preview' is given",
                           "give 'do' (play, pause, restart, off), 'preview' (traced, zbuffer) or both");
     if (!has_slime(c->l))
         return api_refuse(c, 409, "the scene has no slime",
                           "add one, or open a scene that has a mesh with 'generate: slime'");
     if (preview >= 0)
-        live_set_preview(toy, (live_preview)preview);
+        live_set_preview(live_slime, (live_preview)preview);
     if (what >= 0)
-        live_give(toy, (live_order)what);
-    return api_tell(c, live_tell(toy));
+        live_send(live_slime, (live_command)what);
+    return api_reply_json(c, live_json(live_slime));
 }
 
-/* A hand's number; LIVE_ALL where there is none. */
+/* Reads the number of a hand; LIVE_ALL where it is missing. */
 static bool take_hand(call *c, bool needed, int *hand)
 {
     double number = LIVE_ALL;
@@ -63,7 +63,7 @@ static bool take_hand(call *c, bool needed, int *hand)
         return false;
     const bool is_one = number == LIVE_ALL || (number >= 0 && number <= INT_MAX && number == floor(number));
     if (!is_one)
-        api_refuse(c, 400, "'hand' is no hand's number", "give the number that /api/slime/grab answered");
+        api_refuse(c, 400, "'hand' is not the number of a hand", "give the number that /api/slime/grab returned");
     *hand = is_one ? (int)number : LIVE_ALL;
     return is_one;
 }
@@ -75,7 +75,7 @@ static bool take_place(call *c, double *x, double *y)
         return false;
     const bool good = fabs(*x) <= far && fabs(*y) <= far;
     if (!good)
-        api_refuse(c, 400, "the place is too far from the picture", "give pixels of the full picture");
+        api_refuse(c, 400, "the point is too far outside the image", "give x and y in pixels of the full image");
     return good;
 }
 
@@ -85,8 +85,7 @@ status api_grab(call *c)
     if (!take_place(c, &x, &y) || !api_take_number(c, "reach", false, &reach))
         return STATUS_BAD_INPUT;
     if (reach < 0.0)
-        return api_refuse(c, 400, "a hand cannot reach less than 0",
-                          "give scene units; 0 or nothing: three tenths of the slime's radius");
+        return api_refuse(c, 400, "'reach' is below 0", "give scene units; 0 or omitted: 0.3 of the slime's radius");
     vec3 origin, direction, where;
     int hand = LIVE_MISSED;
     scene *now = scene_document_take(c->l->scene_document, NULL);
@@ -94,28 +93,29 @@ status api_grab(call *c)
         return out_of_memory(&c->why);
     lab_camera_ray(now, x, y, &origin, &direction);
     scene_destroy(now);
-    c->refused = 409; /* what does not go together with what is there now is no fault of the request */
+    c->refused = 409; /* a conflict with the current state is not a bad request */
     const status code =
         live_grab(render_worker_live(c->l->render_worker), origin, direction, reach, &hand, &where, &c->why);
     if (code == STATUS_OK && hand == LIVE_MISSED)
-        return api_refuse(c, 404, "there is no slime", "grab where the slime is seen");
+        return api_refuse(c, 404, "no slime at that point", "grab a visible part of the slime");
     if (code == STATUS_OK)
-        api_tell(c, json_pack("{s:i, s:[o, o, o]}", "hand", hand, "where", json_of_real(where.x), json_of_real(where.y),
-                              json_of_real(where.z)));
+        api_reply_json(c, json_pack("{s:i, s:[o, o, o]}", "hand", hand, "where", json_of_real(where.x),
+                                    json_of_real(where.y), json_of_real(where.z)));
     return code;
 }
 
-/* The way from a place to where the ray through the picture is as far from the camera, along its view, and depth
- * farther; never behind it. */
-static vec3 way_to(const scene *s, double x, double y, double depth, vec3 where)
+/* The offset from `where` to the point on the camera ray of (x, y) at the same depth along the view direction, plus
+ * depth; the target never moves behind the camera. */
+static vec3 hand_offset(const scene *s, double x, double y, double depth, vec3 where)
 {
-    const double nearest = 0.05;
+    const double nearest_share = 0.05;
     vec3 eye, direction, forward;
     lab_camera_ray(s, (double)scene_settings(s)->width / 2.0, (double)scene_settings(s)->height / 2.0, &eye, &forward);
     lab_camera_ray(s, x, y, &eye, &direction);
-    const double away = vec3_dot(vec3_sub(where, eye), forward), along = fmax(away + depth, nearest * fabs(away));
-    const vec3 there = vec3_add(eye, vec3_scale(direction, along / vec3_dot(direction, forward)));
-    return vec3_sub(there, where);
+    const double depth_at_grab = vec3_dot(vec3_sub(where, eye), forward),
+                 new_depth = fmax(depth_at_grab + depth, nearest_share * fabs(depth_at_grab));
+    const vec3 target = vec3_add(eye, vec3_scale(direction, new_depth / vec3_dot(direction, forward)));
+    return vec3_sub(target, where);
 }
 
 status api_move_hand(call *c)
@@ -124,14 +124,14 @@ status api_move_hand(call *c)
     int hand;
     if (!take_hand(c, true, &hand) || !take_place(c, &x, &y) || !api_take_number(c, "depth", false, &depth))
         return STATUS_BAD_INPUT;
-    live *toy = render_worker_live(c->l->render_worker);
+    live *live_slime = render_worker_live(c->l->render_worker);
     vec3 where;
     c->refused = 409;
     scene *now = scene_document_take(c->l->scene_document, NULL);
-    status code = now ? live_where(toy, hand, &where, &c->why) : out_of_memory(&c->why);
-    THEN(code, live_move(toy, hand, way_to(now, x, y, depth, where), &c->why));
+    status code = now ? live_where(live_slime, hand, &where, &c->why) : out_of_memory(&c->why);
+    THEN(code, live_move(live_slime, hand, hand_offset(now, x, y, depth, where), &c->why));
     scene_destroy(now);
-    api_tell(c, json_object());
+    api_reply_json(c, json_object());
     return code;
 }
 
@@ -141,6 +141,6 @@ status api_release(call *c)
     if (!take_hand(c, false, &hand))
         return STATUS_BAD_INPUT;
     c->refused = 409;
-    api_tell(c, json_object());
+    api_reply_json(c, json_object());
     return live_release(render_worker_live(c->l->render_worker), hand, &c->why);
 }

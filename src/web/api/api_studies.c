@@ -1,4 +1,4 @@
-/* Studies and what came of them: the section "Studies" of web/README.md. */
+/* API: studies and their results: the section "Studies" of web/README.md. */
 #include "base/number.h"
 #include "base/text.h"
 #include "report/json.h"
@@ -10,37 +10,37 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- what there is --- */
+/* --- the list --- */
 
-static void add_progress(const lab *l, const study *s, json_t *told)
+static void add_progress(const lab *l, const study *s, json_t *json)
 {
     const char *results = l->settings.results;
     study_progress progress = {0};
     diagnostic why = {.what = ""};
     status code = study_check_results(l, results, s->name, &why);
     THEN(code, study_status(s, results, &progress, &why));
-    json_object_update_new(told, json_pack("{s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
+    json_object_update_new(json, json_pack("{s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
                                            "rows", (json_int_t)progress.rows, "warmups", (json_int_t)progress.warmups,
                                            "marked", (json_int_t)progress.rows_marked));
     if (code != STATUS_OK)
-        json_object_set_new(told, "error", json_of_diagnostic(&why));
+        json_object_set_new(json, "error", json_of_diagnostic(&why));
 }
 
-/* A study of the list; one that cannot be read (s NULL) has its error. */
+/* One study of the list; a study that cannot be read (s NULL) has its error. */
 static json_t *study_json(const lab *l, const char *name, const char *file, const study *s, const diagnostic *why)
 {
-    json_t *told = json_pack("{s:o, s:o, s:b}", "name", json_of_text(name), "file", json_of_text(file), "running",
+    json_t *json = json_pack("{s:o, s:o, s:b}", "name", json_of_text(name), "file", json_of_text(file), "running",
                              studies_runs(l->studies, name));
-    if (told && s && study_json_about(s, told))
-        add_progress(l, s, told);
-    if (told && !s)
-        json_object_set_new(told, "error", json_of_diagnostic(why));
-    return told;
+    if (json && s && study_json_about(s, json))
+        add_progress(l, s, json);
+    if (json && !s)
+        json_object_set_new(json, "error", json_of_diagnostic(why));
+    return json;
 }
 
 typedef struct listing {
     const lab *l;
-    json_t *studies, *names; /* names: those so far, with their files */
+    json_t *studies, *names; /* names: the studies so far, with their files */
 } listing;
 
 static bool list_one(void *context, const char *name, const char *file)
@@ -51,12 +51,12 @@ static bool list_one(void *context, const char *name, const char *file)
     study_open(list->l, file, &s, &why);
     const char *earlier = json_string_value(json_object_get(list->names, name));
     if (earlier) {
-        diagnose(&why, STATUS_BAD_INPUT, "give one of them another name", "%s has this name too", earlier);
+        diagnose(&why, STATUS_BAD_INPUT, "rename one of them", "the name is already used by %s", earlier);
         diagnostic_locate(&why, file, 0, 0);
         study_destroy(s);
         s = NULL;
     } else {
-        json_object_set_new(list->names, name, json_string(file)); /* a name that is not UTF-8 is no study's */
+        json_object_set_new(list->names, name, json_string(file)); /* a name that is not UTF-8 names no study */
     }
     json_array_append_new(list->studies, study_json(list->l, name, file, s, &why));
     study_destroy(s);
@@ -69,21 +69,21 @@ status api_studies(call *c)
     listing list = {.l = l, .studies = json_array(), .names = json_object()};
     const status code = study_each(l, list_one, &list, &c->why);
     char *results = folder_name(l->files, l->settings.results);
-    api_tell(
+    api_reply_json(
         c, json_pack("{s:o, s:o}", "results", results ? json_of_text(results) : json_null(), "studies", list.studies));
     free(results);
     json_decref(list.names);
     return code;
 }
 
-/* The study of the path's {name}. One that is there and cannot be read gives *file all the same. */
+/* Finds the study {name} of the path. *file is set also where the file exists but cannot be read. */
 static status find_study(call *c, study **s, char **file)
 {
     *s = NULL;
     *file = NULL;
     status code = study_find(c->l, http_path_value(c->request, "name"), file, &c->why);
     if (code == STATUS_OK && !*file)
-        return api_refuse(c, 404, "there is no study of that name", "GET /api/studies lists them");
+        return api_refuse(c, 404, "no study has that name", "GET /api/studies lists the studies");
     THEN(code, study_open(c->l, *file, s, &c->why));
     THEN(code, study_check_results(c->l, c->l->settings.results, (*s)->name, &c->why));
     if (code != STATUS_OK) {
@@ -101,7 +101,7 @@ static status take_study(call *c, study **s)
     return code;
 }
 
-/* One that cannot be read is told with its error. */
+/* A study that cannot be read is returned with its error. */
 status api_study(call *c)
 {
     const lab *l = c->l;
@@ -109,25 +109,25 @@ status api_study(call *c)
     char *file;
     const status code = find_study(c, &s, &file);
     if (file && (code == STATUS_OK || code == STATUS_BAD_INPUT)) {
-        json_t *told = study_json(l, http_path_value(c->request, "name"), file, s, &c->why), *summary = NULL;
+        json_t *json = study_json(l, http_path_value(c->request, "name"), file, s, &c->why), *summary = NULL;
         if (s && study_json_summary(s, l->settings.results, &summary, &c->why) != STATUS_OK)
-            json_object_set_new(told, "error", json_of_diagnostic(&c->why));
-        json_object_update_new(told, json_pack("{s:o, s:o, s:o, s:o}", "summary", summary ? summary : json_null(),
+            json_object_set_new(json, "error", json_of_diagnostic(&c->why));
+        json_object_update_new(json, json_pack("{s:o, s:o, s:o, s:o}", "summary", summary ? summary : json_null(),
                                                "runs", s ? study_runs(l, s->name) : json_array(), "figures",
                                                s ? figures_of(l, s->name) : json_array(), "drawable",
                                                s ? figures_drawable(l, s->name) : json_array()));
-        api_tell(c, told);
+        api_reply_json(c, json);
     }
     study_destroy(s);
     free(file);
-    return c->told ? STATUS_OK : code;
+    return c->json ? STATUS_OK : code;
 }
 
 /* --- run and stop --- */
 
 static status tell_run(call *c, status code)
 {
-    return code == STATUS_OK ? api_tell(c, studies_tell(c->l->studies)) : code;
+    return code == STATUS_OK ? api_reply_json(c, studies_json(c->l->studies)) : code;
 }
 
 status api_study_run(call *c)
@@ -142,7 +142,7 @@ status api_study_stop(call *c)
     return tell_run(c, studies_stop(c->l->studies, http_path_value(c->request, "name"), &c->why));
 }
 
-/* --- what was measured --- */
+/* --- results --- */
 
 status api_study_rows(call *c)
 {
@@ -150,14 +150,14 @@ status api_study_rows(call *c)
     int64_t from = 0;
     study *s;
     if (text && (!number_parse_int(text, &from) || from < 0))
-        return api_refuse(c, 400, "from is not a number of rows", "write ?from=N with N from 0");
+        return api_refuse(c, 400, "'from' is not a row number", "use ?from=N with N >= 0");
     status code = take_study(c, &s);
-    THEN(code, study_json_rows(s, c->l->settings.results, (size_t)from, &c->told, &c->why));
+    THEN(code, study_json_rows(s, c->l->settings.results, (size_t)from, &c->json, &c->why));
     study_destroy(s);
     return code;
 }
 
-/* The folder of results of that name, which holds rows of the study. */
+/* The results folder of that name, which holds rows of the study. */
 static status take_run(call *c, const char *run, const study *s, char **results)
 {
     char *rows = text_format("%s/%s/rows.csv", run, s->name);
@@ -176,10 +176,10 @@ status api_study_compare(call *c)
     study *s;
     char *other = NULL;
     if (!with || !with[0])
-        return api_refuse(c, 400, "with what is not said", "write ?with=FOLDER, one of the study's runs");
+        return api_refuse(c, 400, "the folder to compare with is missing", "add ?with=FOLDER, one of the study's runs");
     status code = take_study(c, &s);
     THEN(code, take_run(c, with, s, &other));
-    THEN(code, study_json_compare(s, c->l->settings.results, other, &c->told, &c->why));
+    THEN(code, study_json_compare(s, c->l->settings.results, other, &c->json, &c->why));
     free(other);
     study_destroy(s);
     return code;
@@ -193,26 +193,26 @@ status api_figure(call *c)
     size_t size = 0;
     const status code = figure_read(c->l, http_path_value(c->request, "name"), &svg, &size, &c->why);
     if (code == STATUS_BAD_INPUT)
-        return api_refuse(c, 404, "there is no such figure", "GET /api/studies/{name} lists those of a study");
+        return api_refuse(c, 404, "no figure has that name", "GET /api/studies/{name} lists the figures of a study");
     return code == STATUS_OK ? api_send(c, "image/svg+xml", svg, size) : code;
 }
 
 static status draw(call *c, const study *s)
 {
     lab *l = c->l;
-    char *said = NULL;
+    char *output = NULL;
     bool whole;
     if (studies_runs(l->studies, NULL))
-        return api_refuse(c, 409, "a study measures, and drawing would disturb it",
-                          "draw when it has ended, or stop it");
+        return api_refuse(c, 409, "a study is measuring, and drawing would disturb it",
+                          "draw after it has ended, or stop it");
     if (!studies_begin_drawing(l->studies))
-        return api_refuse(c, 409, "figures are being drawn", "wait for them");
-    const status code = figures_draw(l, s, &said, &whole, &c->why);
+        return api_refuse(c, 409, "figures are already being drawn", "wait until they are finished");
+    const status code = figures_draw(l, s, &output, &whole, &c->why);
     studies_end_drawing(l->studies);
     if (code == STATUS_OK)
-        api_tell(c, json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(said),
-                              "complete", whole));
-    free(said);
+        api_reply_json(c, json_pack("{s:o, s:o, s:b}", "figures", figures_of(l, s->name), "said", json_of_text(output),
+                                    "complete", whole));
+    free(output);
     return code;
 }
 

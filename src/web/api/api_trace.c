@@ -1,5 +1,5 @@
-/* What a pixel's ray grows into: its tree as JSON, as text, as a drawing; what `cuvette trace` writes. And what
- * looks wrong in the scene. */
+/* API: the ray tree of a pixel as JSON, text or drawing, as `cuvette trace` writes it; and the linter's notes on the
+ * scene. */
 #include "web/api/api.h"
 
 #include "base/number.h"
@@ -9,7 +9,7 @@
 #include <limits.h>
 #include <stdlib.h>
 
-/* A kilobyte each, about; a page shows far fewer. */
+/* Limits the reply: about one kilobyte per ray; a page displays far fewer. */
 enum { TRACE_RAYS_MAX = 100000 };
 
 typedef status trace_writer(const traced *t, FILE *out, diagnostic *why);
@@ -19,7 +19,7 @@ typedef struct trace_question {
     trace_writer *write;
     int x, y;
     const char *scene_name;
-    char *bytes; /* the answer */
+    char *bytes; /* the reply */
     size_t size;
 } trace_question;
 
@@ -27,7 +27,7 @@ static status write_tree(trace_question *q, const scene *s, const probe *p, cons
 {
     if (tree->count > TRACE_RAYS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "lower render.depth or render.samples, or set render.min_weight",
-                        "the pixel's tree has %zu rays, more than the %d that are sent", tree->count, TRACE_RAYS_MAX);
+                        "the pixel's tree has %zu rays, more than the limit of %d", tree->count, TRACE_RAYS_MAX);
     text_writer writer;
     TRY(text_writer_open(&writer, why));
     status code = q->write(&(traced){s, p, tree, q->scene_name}, writer.stream, why);
@@ -55,8 +55,8 @@ static bool take_place(call *c, const char *key, int *place)
     if (good)
         *place = (int)value;
     else
-        diagnose(&c->why, STATUS_BAD_INPUT, "ask for a pixel as ?x=X&y=Y, counted from 0,0 at the top left",
-                 text ? "%s is no integer: '%.128s'" : "%s is missing", key, text);
+        diagnose(&c->why, STATUS_BAD_INPUT, "give a pixel as ?x=X&y=Y, counted from 0,0 at the top left",
+                 text ? "%s is not an integer: '%.128s'" : "%s is missing", key, text);
     return good;
 }
 
@@ -91,7 +91,7 @@ status api_trace_drawing(call *c)
     return reply_trace(c, trace_write_drawing, "image/svg+xml");
 }
 
-/* --- the linter's notes on the scene as it is shown now --- */
+/* --- the linter's notes on the current scene --- */
 
 static void take_note(void *list, const scene_note *note)
 {
@@ -101,11 +101,11 @@ static void take_note(void *list, const scene_note *note)
 static status look_for_notes(void *context, scene *s, diagnostic *why)
 {
     call *c = context;
-    return lint_scene(s, c->l->settings.level, &(note_taker){take_note, json_object_get(c->told, "notes")}, why);
+    return lint_scene(s, c->l->settings.level, &(note_taker){take_note, json_object_get(c->json, "notes")}, why);
 }
 
 status api_notes(call *c)
 {
-    api_tell(c, json_pack("{s:[]}", "notes"));
+    api_reply_json(c, json_pack("{s:[]}", "notes"));
     return render_worker_with_scene(c->l->render_worker, look_for_notes, c, &c->why);
 }

@@ -12,7 +12,7 @@ static status add_value(void *context, const char *path, const param *row, const
     return json_object_set_new(context, path, report_value(row, text)) ? STATUS_FAILURE : STATUS_OK;
 }
 
-/* Those in use alone: a camera that is aimed has no angles of its own to differ in. */
+/* Only parameters in use: an aimed camera has no angles of its own. */
 static json_t *values_of(const scene *s)
 {
     json_t *values = json_object();
@@ -25,8 +25,8 @@ static int add_change(json_t *list, const char *path, json_t *a, json_t *b)
         list, json_pack("{s:s, s:O?, s:O?}", "path", path, "a", a ? a : json_null(), "b", b ? b : json_null()));
 }
 
-/* Is path a solid's, with the value that its material gives it? */
-static bool is_materials_own(const scene *s, const json_t *values, const char *path)
+/* Whether path belongs to a solid and has the value of the solid's material. */
+static bool is_inherited(const scene *s, const json_t *values, const char *path)
 {
     const char *dot = strchr(path, '.');
     const size_t length = dot ? (size_t)(dot - path) : 0;
@@ -34,10 +34,10 @@ static bool is_materials_own(const scene *s, const json_t *values, const char *p
         const solid *one = &s->solids[i];
         if (strlen(one->name) != length || strncmp(one->name, path, length) != 0 || one->material_index < 0)
             continue;
-        char *given = text_format("%s%s", s->materials[one->material_index].name, dot);
-        const json_t *theirs = given ? json_object_get(values, given) : NULL;
-        free(given);
-        return theirs && json_equal(theirs, json_object_get(values, path));
+        char *material_path = text_format("%s%s", s->materials[one->material_index].name, dot);
+        const json_t *inherited = material_path ? json_object_get(values, material_path) : NULL;
+        free(material_path);
+        return inherited && json_equal(inherited, json_object_get(values, path));
     }
     return false;
 }
@@ -50,8 +50,7 @@ static json_t *list_changes(const scene *scene_a, const scene *scene_b, json_t *
     json_object_foreach(b, path, value)
     {
         json_t *before = json_object_get(a, path);
-        if (before &&
-            (json_equal(before, value) || (is_materials_own(scene_a, a, path) && is_materials_own(scene_b, b, path))))
+        if (before && (json_equal(before, value) || (is_inherited(scene_a, a, path) && is_inherited(scene_b, b, path))))
             continue;
         bad |= add_change(list, path, before, value);
     }

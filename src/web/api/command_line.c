@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In single quotes where a shell would read it otherwise than it is. */
+/* Writes a word, in single quotes where a shell would change it. */
 static void write_word(FILE *out, const char *word)
 {
     if (*word && word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,=:+-")] == 0) {
@@ -28,7 +28,7 @@ static const char *material_of(const scene *s, const solid *one)
     return one->material_index >= 0 ? s->materials[one->material_index].name : "";
 }
 
-/* Have they the same objects, so that parameters alone tell them apart? */
+/* Whether both scenes have the same objects, so that they differ in parameters only. */
 static bool same_objects(const scene *a, const scene *b)
 {
     static const param_group groups[] = {PARAM_SOLID, PARAM_LIGHT, PARAM_MATERIAL, PARAM_MESH, PARAM_TEXTURE};
@@ -44,11 +44,11 @@ static bool same_objects(const scene *a, const scene *b)
     return same;
 }
 
-/* What the options so far have made of the file's scene. */
+/* The command line so far, and the scene that it renders. */
 typedef struct writing {
     FILE *out;
     scene *so_far;
-    bool camera; /* is aimed otherwise: say all of it */
+    bool camera; /* the camera is aimed differently: write all its parameters */
 } writing;
 
 static status add_option(void *of, const char *path, const param *row, const char *value)
@@ -77,9 +77,8 @@ static status read_again(const folder *files, const char *file, int threads, sce
     return code;
 }
 
-/* As it reads from that file, whose folder need not be the one that its own paths start from; NULL where it cannot be.
- */
-static scene *seen_from(const scene *s, const char *path)
+/* The scene as read from that file, whose folder may differ from the base of the scene's own paths; NULL on error. */
+static scene *rebase_paths(const scene *s, const char *path)
 {
     if (strcmp(s->path, path) == 0)
         return scene_clone(s);
@@ -97,13 +96,13 @@ static bool write_line(FILE *out, scene *from, const char *path, const scene *s)
 {
     fputs("cuvette render ", out);
     write_word(out, path);
-    scene *seen = seen_from(s, path);
+    scene *seen = rebase_paths(s, path);
     writing w = {.out = out, .so_far = from};
     if (seen)
         w.camera = from->camera.aimed != seen->camera.aimed;
     const bool whole = seen && same_objects(from, seen) && scene_each_param(seen, add_option, &w) == STATUS_OK;
     scene_destroy(seen);
-    fputs(" -o picture.png", out);
+    fputs(" -o image.png", out);
     return whole;
 }
 
@@ -119,7 +118,7 @@ status command_line(const folder *files, const char *file, const scene *s, int t
     if (file && read_again(files, file, threads, &from, &path) == STATUS_OK)
         *complete = write_line(writer.stream, from, path, s);
     else
-        fputs("cuvette render scene.yaml -o picture.png", writer.stream);
+        fputs("cuvette render scene.yaml -o image.png", writer.stream);
     scene_destroy(from);
     free(path);
     return text_writer_close(&writer, text, NULL, why);

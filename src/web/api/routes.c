@@ -1,60 +1,60 @@
-/* All that the laboratory answers, and how a call of it goes. */
+/* The table of all routes of the API, and the handling of one call. */
 #include "web/api/api.h"
 
 #include <stdlib.h>
 
-typedef enum body_kind { NO_REGION, ANY_BODY, OBJECT, EMPTY } body_kind;
+typedef enum body_kind { NO_BODY, ANY_BODY, OBJECT, EMPTY } body_kind;
 
 static const struct api_route {
     const char *method, *pattern;
     api_handler *handle;
     body_kind body;
 } routes[] = {
-    {"GET", "/api/state", api_state, NO_REGION},
-    {"GET", "/api/scene", api_scene, NO_REGION},
+    {"GET", "/api/state", api_state, NO_BODY},
+    {"GET", "/api/scene", api_scene, NO_BODY},
     {"POST", "/api/set", api_set, ANY_BODY},
     {"POST", "/api/reset", api_reset, ANY_BODY},
-    {"POST", "/api/undo", api_undo, NO_REGION},
-    {"POST", "/api/redo", api_redo, NO_REGION},
+    {"POST", "/api/undo", api_undo, NO_BODY},
+    {"POST", "/api/redo", api_redo, NO_BODY},
     {"POST", "/api/camera", api_camera, ANY_BODY},
-    {"GET", "/api/scene.yaml", api_scene_file, NO_REGION},
-    {"GET", "/api/command", api_command, NO_REGION},
-    {"GET", "/api/picture.png", api_image_png, NO_REGION},
-    {"GET", "/api/picture.jpg", api_image_jpeg, NO_REGION},
-    {"GET", "/api/trace", api_trace_json, NO_REGION},
-    {"GET", "/api/trace.txt", api_trace_text, NO_REGION},
-    {"GET", "/api/trace.svg", api_trace_drawing, NO_REGION},
-    {"POST", "/api/pin", api_set_reference, NO_REGION},
-    {"DELETE", "/api/pin", api_clear_reference, NO_REGION},
-    {"GET", "/api/pin.png", api_reference_image, NO_REGION},
-    {"GET", "/api/compare", api_compare, NO_REGION},
-    {"GET", "/api/compare.png", api_compare_map, NO_REGION},
+    {"GET", "/api/scene.yaml", api_scene_file, NO_BODY},
+    {"GET", "/api/command", api_command, NO_BODY},
+    {"GET", "/api/picture.png", api_image_png, NO_BODY},
+    {"GET", "/api/picture.jpg", api_image_jpeg, NO_BODY},
+    {"GET", "/api/trace", api_trace_json, NO_BODY},
+    {"GET", "/api/trace.txt", api_trace_text, NO_BODY},
+    {"GET", "/api/trace.svg", api_trace_drawing, NO_BODY},
+    {"POST", "/api/pin", api_set_reference, NO_BODY},
+    {"DELETE", "/api/pin", api_clear_reference, NO_BODY},
+    {"GET", "/api/pin.png", api_reference_image, NO_BODY},
+    {"GET", "/api/compare", api_compare, NO_BODY},
+    {"GET", "/api/compare.png", api_compare_map, NO_BODY},
     {"POST", "/api/objects", api_add, ANY_BODY},
-    {"DELETE", "/api/objects/{name}", api_remove, NO_REGION},
+    {"DELETE", "/api/objects/{name}", api_remove, NO_BODY},
     {"POST", "/api/objects/{name}/move", api_move, ANY_BODY},
     {"POST", "/api/objects/{name}/turn", api_turn, ANY_BODY},
     {"POST", "/api/objects/{name}/scale", api_scale, ANY_BODY},
     {"POST", "/api/objects/{name}/rename", api_rename, ANY_BODY},
     {"POST", "/api/objects/{name}/material", api_material, ANY_BODY},
-    {"POST", "/api/objects/{name}/copy", api_copy, NO_REGION},
-    {"GET", "/api/files", api_files, NO_REGION},
+    {"POST", "/api/objects/{name}/copy", api_copy, NO_BODY},
+    {"GET", "/api/files", api_files, NO_BODY},
     {"POST", "/api/open", api_open, ANY_BODY},
     {"POST", "/api/save", api_save, ANY_BODY},
-    {"GET", "/api/media", api_media, NO_REGION},
+    {"GET", "/api/media", api_media, NO_BODY},
     {"POST", "/api/slime", api_slime, OBJECT},
     {"POST", "/api/slime/grab", api_grab, OBJECT},
     {"POST", "/api/slime/move", api_move_hand, OBJECT},
     {"POST", "/api/slime/release", api_release, OBJECT},
-    {"GET", "/api/studies", api_studies, NO_REGION},
-    {"GET", "/api/studies/{name}", api_study, NO_REGION},
+    {"GET", "/api/studies", api_studies, NO_BODY},
+    {"GET", "/api/studies/{name}", api_study, NO_BODY},
     {"POST", "/api/studies/{name}/run", api_study_run, EMPTY},
     {"POST", "/api/studies/{name}/stop", api_study_stop, EMPTY},
-    {"GET", "/api/studies/{name}/rows", api_study_rows, NO_REGION},
-    {"GET", "/api/studies/{name}/compare", api_study_compare, NO_REGION},
+    {"GET", "/api/studies/{name}/rows", api_study_rows, NO_BODY},
+    {"GET", "/api/studies/{name}/compare", api_study_compare, NO_BODY},
     {"POST", "/api/studies/{name}/draw", api_study_draw, EMPTY},
-    {"GET", "/api/figures/{name}", api_figure, NO_REGION},
-    {"GET", "/api/machine", api_machine, NO_REGION},
-    {"GET", "/api/notes", api_notes, NO_REGION},
+    {"GET", "/api/figures/{name}", api_figure, NO_BODY},
+    {"GET", "/api/machine", api_machine, NO_BODY},
+    {"GET", "/api/notes", api_notes, NO_BODY},
 };
 enum { ROUTES = sizeof routes / sizeof *routes };
 
@@ -63,16 +63,16 @@ struct api_bound {
     const struct api_route *route;
 };
 
-/* False with the reply set. */
+/* Reads the body; false with an error reply set. */
 static bool take_body(call *c, body_kind kind)
 {
-    if (kind == NO_REGION)
+    if (kind == NO_BODY)
         return true;
     c->body = http_body_json(c->request, c->reply);
     if (c->body && kind == OBJECT && !json_is_object(c->body))
-        http_reply_error(c->reply, 400, "the body is no object", "send {..}");
+        http_reply_error(c->reply, 400, "the body is not a JSON object", "send a JSON object");
     else if (c->body && kind == EMPTY && (!json_is_object(c->body) || json_object_size(c->body) > 0))
-        http_reply_error(c->reply, 400, "there is nothing to say here", "send {}");
+        http_reply_error(c->reply, 400, "the body must be an empty object", "send {}");
     else
         return c->body;
     return false;
@@ -85,13 +85,13 @@ static void answer(void *context, const http_request *request, http_reply *reply
     if (take_body(&c, bound->route->body)) {
         const status code = bound->route->handle(&c);
         if (code == STATUS_OK && !c.sent)
-            http_reply_json(reply, 200, json_incref(c.told));
+            http_reply_json(reply, 200, json_incref(c.json));
         else if (code != STATUS_OK && code != STATUS_FAILURE && c.refused)
             http_reply_error(reply, c.refused, c.why.what, c.why.remedy);
         else if (code != STATUS_OK)
             http_reply_diagnostic(reply, code, &c.why);
     }
-    json_decref(c.told);
+    json_decref(c.json);
     json_decref(c.body);
 }
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- what is in the study --- */
+/* --- the definition --- */
 
 typedef struct unit_search {
     const char *path, *unit;
@@ -18,7 +18,7 @@ static status look_for_unit(void *context, const char *path, const param *row, c
     (void)value;
     unit_search *search = context;
     const size_t length = strlen(path);
-    /* One element of a vector is path.x */
+    /* path is search->path or one element of that vector, path.x */
     if (strncmp(path, search->path, length) != 0 || (search->path[length] && search->path[length] != '.'))
         return STATUS_OK;
     search->unit = row->unit;
@@ -40,9 +40,9 @@ static json_t *axis_json(const study *s, const study_axis *axis)
         bad |= json_array_append_new(paths, json_of_text(axis->points[0].paths[i]));
         bad |= json_array_append_new(units, json_of_text(unit_of(s, axis->points[0].paths[i])));
     }
-    json_t *told = json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units,
+    json_t *json = json_pack("{s:o, s:o, s:o, s:I}", "name", json_of_text(axis->name), "paths", paths, "units", units,
                              "count", (json_int_t)axis->count);
-    return json_whole(told, !bad);
+    return json_whole(json, !bad);
 }
 
 bool study_json_about(const study *s, json_t *into)
@@ -56,9 +56,9 @@ bool study_json_about(const study *s, json_t *into)
     return !bad;
 }
 
-/* --- its tables --- */
+/* --- tables --- */
 
-/* A line of fields between tabs, cut apart in place. */
+/* Splits a tab-separated line in place. */
 static json_t *fields_json(char *line)
 {
     json_t *fields = json_array();
@@ -102,7 +102,7 @@ status study_json_summary(const study *s, const char *results, json_t **out, dia
     return code;
 }
 
-/* The columns' names; or of a row, of whatever file, the fields in these columns. */
+/* The column names, or the fields of one row (of any file) in these columns. */
 static json_t *row_json(const csv *columns, const row_ref *of)
 {
     json_t *row = json_array();

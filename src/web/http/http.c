@@ -1,4 +1,4 @@
-/* Start and stop. */
+/* Start and stop of the HTTP server. */
 #include "web/http/http_private.h"
 
 #include <arpa/inet.h>
@@ -12,20 +12,20 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* A socket of our own, because libmicrohttpd's may share its port with another program's. */
+/* A socket of our own: libmicrohttpd may share its port with another program (SO_REUSEPORT). */
 static status listen_at(int port, int backlog, int *out, diagnostic *why)
 {
     const int fd = *out = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (fd < 0)
-        return diagnose(why, STATUS_FAILURE, "", "no socket: %s", strerror(errno));
-    const int on = 1; /* a port that was just given back is free again */
+        return diagnose(why, STATUS_FAILURE, "", "cannot create a socket: %s", strerror(errno));
+    const int on = 1; /* allows a port that was just released */
     setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     const struct sockaddr_in here = {
         .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     if (bind(fd, (const struct sockaddr *)&here, sizeof here) == 0 && listen(fd, backlog) == 0)
         return STATUS_OK;
-    diagnose(why, STATUS_BAD_INPUT, "take another port, or 0 for any that is free",
-             "port %d of 127.0.0.1 cannot be had: %s", port, strerror(errno));
+    diagnose(why, STATUS_BAD_INPUT, "choose another port, or 0 for any free port",
+             "cannot listen on port %d of 127.0.0.1: %s", port, strerror(errno));
     close(fd);
     return STATUS_BAD_INPUT;
 }
@@ -33,18 +33,18 @@ static status listen_at(int port, int backlog, int *out, diagnostic *why)
 static status check(http_settings *s, diagnostic *why)
 {
     if (s->port < 0 || s->port > 65535)
-        return diagnose(why, STATUS_BAD_INPUT, "a port from 1 to 65535, or 0 for any that is free",
+        return diagnose(why, STATUS_BAD_INPUT, "use a port from 1 to 65535, or 0 for any free port",
                         "port %d is out of range", s->port);
     s->body_max = s->body_max ? s->body_max : (size_t)1 << 20;
     s->connections = s->connections ? s->connections : 64;
     if (s->connections < 1 || s->connections > 1024)
-        return diagnose(why, STATUS_BAD_INPUT, "1 to 1024 connections", "%d connections are out of range",
-                        s->connections);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 1024 connections",
+                        "the number of connections, %d, is out of range", s->connections);
     if (!s->event_clients)
         s->event_clients = s->connections / 2 < 32 ? s->connections / 2 : 32;
     if (s->event_clients < 0 || s->event_clients > HTTP_EVENT_CLIENTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "0 to 512 streams of events", "%d streams of events are out of range",
-                        s->event_clients);
+        return diagnose(why, STATUS_BAD_INPUT, "use 0 to 512 event streams",
+                        "the number of event streams, %d, is out of range", s->event_clients);
     s->timeout_s = s->timeout_s > 0 ? s->timeout_s : 10;
     s->requests_per_s = s->requests_per_s > 0 ? s->requests_per_s : 2000;
     return STATUS_OK;
@@ -54,7 +54,7 @@ static status make_token(http_server *s, diagnostic *why)
 {
     unsigned char bits[HTTP_TOKEN_DIGITS / 2];
     if (getrandom(bits, sizeof bits, 0) != (ssize_t)sizeof bits)
-        return diagnose(why, STATUS_FAILURE, "", "no random numbers: %s", strerror(errno));
+        return diagnose(why, STATUS_FAILURE, "", "cannot get random numbers: %s", strerror(errno));
     for (size_t i = 0; i < sizeof bits; i++)
         snprintf(s->token + 2 * i, 3, "%02x", bits[i]);
     explicit_bzero(bits, sizeof bits);
@@ -69,13 +69,13 @@ static status listen_and_serve(http_server *s, diagnostic *why)
     socklen_t size = sizeof here;
     if (getsockname(fd, (struct sockaddr *)&here, &size) != 0) {
         close(fd);
-        return diagnose(why, STATUS_FAILURE, "", "the socket has no port: %s", strerror(errno));
+        return diagnose(why, STATUS_FAILURE, "", "cannot get the port of the socket: %s", strerror(errno));
     }
     s->port = ntohs(here.sin_port);
     snprintf(s->address, sizeof s->address, "http://127.0.0.1:%d/?token=%s", s->port, s->token);
     snprintf(s->cookie, sizeof s->cookie, "cuvette_%d", s->port);
 
-    /* Signals are the program's: its threads take them, ours do not. */
+    /* Block all signals in the server's threads: the program's own threads handle them. */
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -89,7 +89,7 @@ static status listen_and_serve(http_server *s, diagnostic *why)
             MHD_OPTION_URI_LOG_CALLBACK, http_on_target, s, MHD_OPTION_NOTIFY_COMPLETED, http_on_end, s,
             MHD_OPTION_NOTIFY_CONNECTION, http_watch_notify, s, MHD_OPTION_END);
         if (!s->daemon)
-            code = diagnose(why, STATUS_FAILURE, "", "the server's threads cannot be started");
+            code = diagnose(why, STATUS_FAILURE, "", "cannot start the server's threads");
     } else {
         close(fd);
     }
@@ -102,7 +102,7 @@ status http_start(const http_settings *settings, http_server **out, diagnostic *
     *out = NULL;
     http_server *s = calloc(1, sizeof *s);
     if (!s)
-        return diagnose(why, STATUS_FAILURE, "", "no memory for a server");
+        return diagnose(why, STATUS_FAILURE, "", "out of memory for the server");
     s->settings = *settings;
     pthread_mutex_init(&s->bucket_lock, NULL);
     pthread_mutex_init(&s->watch_lock, NULL);

@@ -1,5 +1,6 @@
-/* Streams of server-sent events (HTML Standard, 9.2). Each stream has a short queue of payloads, which all streams
- * share; its connection's thread sleeps until one comes, the client leaves, or it is time for a comment. */
+/* Streams of server-sent events (HTML Standard, 9.2). Each stream has a short queue of payloads that are shared by
+ * all streams; its connection's thread sleeps until an event arrives, the client leaves, or a keep-alive comment is
+ * due. */
 #include "web/http/http_private.h"
 
 #include <errno.h>
@@ -11,7 +12,7 @@
 
 enum { NAME_MAX_LENGTH = 63, SLOW_CLIENT_TIMEOUTS = 6 };
 
-/* Counted under event_lock. */
+/* Reference-counted under event_lock. */
 typedef struct payload {
     int users;
     size_t size;
@@ -25,7 +26,7 @@ struct http_event_client {
     int socket, wake, place; /* wake: an eventfd */
     int waiting;
     payload *queue[HTTP_EVENTS_WAITING]; /* oldest first */
-    payload *sending;                    /* only its thread looks */
+    payload *sending;                    /* used by its thread alone */
     size_t sent;
     bool greeted;
 };
@@ -61,7 +62,7 @@ static ssize_t send_on(http_event_client *c, char *to, size_t room)
     return (ssize_t)size;
 }
 
-/* Takes the oldest that waits; false when the streams end. */
+/* Pops the oldest payload; false when the streams end. */
 static bool take(http_event_client *c)
 {
     pthread_mutex_lock(&c->server->event_lock);
@@ -75,12 +76,12 @@ static bool take(http_event_client *c)
     return !ends;
 }
 
-/* libmicrohttpd wants more bytes, and may wait for them: what it got before is on its way. */
+/* libmicrohttpd's content callback; it may block, because the bytes returned before are already sent. */
 static ssize_t more(void *context, uint64_t position, char *to, size_t room)
 {
     (void)position;
     http_event_client *c = context;
-    if (!c->greeted) { /* sends the reply's head off, so that the page knows that it listens */
+    if (!c->greeted) { /* sends the header, so that the page knows that the stream is open */
         c->greeted = true;
         return comment(c, to, room);
     }
@@ -123,7 +124,7 @@ static void leave(void *context)
     free(c);
 }
 
-/* False where all places are taken. */
+/* False if all slots are taken. */
 static bool join(http_server *s, http_event_client *c)
 {
     pthread_mutex_lock(&s->event_lock);
@@ -152,8 +153,7 @@ void http_events(void *context, const http_request *q, http_reply *r)
                              .wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
     struct MHD_Response *response = NULL;
     if (c->wake < 0 || !join(s, c))
-        http_reply_error(r, 503, "as many streams of events are open as there may be",
-                         "close another page of this lab");
+        http_reply_error(r, 503, "too many event streams are open", "close another page of this laboratory");
     else
         response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, more, c, leave);
     if (response)
@@ -212,11 +212,11 @@ static void wake(const http_event_client *c)
 status http_publish(http_server *s, const char *event, const json_t *value, diagnostic *why)
 {
     if (!is_name(event))
-        return diagnose(why, STATUS_BAD_INPUT, "1 to 63 letters, digits, '-', '_' or '.'", "\"%s\" is no event's name",
-                        event);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 63 letters, digits, '-', '_' or '.'",
+                        "\"%s\" is not a valid event name", event);
     payload *p = payload_of(event, value);
     if (!p)
-        return diagnose(why, STATUS_FAILURE, "", "no memory for the event %s", event);
+        return diagnose(why, STATUS_FAILURE, "", "out of memory for the event %s", event);
     pthread_mutex_lock(&s->event_lock);
     for (int i = 0; i < s->settings.event_clients; i++)
         if (s->event_client[i]) {

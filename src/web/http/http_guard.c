@@ -1,4 +1,4 @@
-/* Who may pass: the path, the host, the origin, the token, the rate. */
+/* The checks of a request: path, host, origin, token and rate. */
 #include "web/http/http_private.h"
 
 #include "measure/clock.h"
@@ -15,7 +15,7 @@ static int hex(char c)
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-/* No part of it is "." or "..", none but the last is empty. */
+/* No part is "." or "..", and only the last may be empty. */
 static bool stays_below(const char *path)
 {
     for (const char *part = path; *part == '/';) {
@@ -28,7 +28,8 @@ static bool stays_below(const char *path)
     return true;
 }
 
-/* Path of a target, decoded; NULL for one that climbs or cannot be read. *no_memory tells the two NULLs apart. */
+/* The decoded path of a target; NULL for a path that leads upwards or is malformed. *no_memory distinguishes the two
+ * causes. */
 static char *safe_path(const char *target, bool *no_memory)
 {
     *no_memory = false;
@@ -44,7 +45,7 @@ static char *safe_path(const char *target, bool *no_memory)
         if (byte == '%') {
             const int high = hex(c[1]), low = high < 0 ? -1 : hex(c[2]);
             byte = low < 0 ? 0 : 16 * high + low;
-            /* A slash that is no border between parts would be one to whoever decodes later. */
+            /* A decoded %2f would become a separator for later code. */
             byte = byte == '/' ? 0 : byte;
             c += low < 0 ? 0 : 2;
         } else if (byte >= 0x7f || byte == '#') {
@@ -63,7 +64,7 @@ static char *safe_path(const char *target, bool *no_memory)
     return NULL;
 }
 
-/* Takes as long for every text of that length, wherever it differs. */
+/* Compares in constant time for texts of the token's length. */
 static bool same_token(const char *token, const char *given)
 {
     if (!given || strlen(given) != HTTP_TOKEN_DIGITS)
@@ -74,7 +75,7 @@ static bool same_token(const char *token, const char *given)
     return difference == 0;
 }
 
-/* The target without its token. NULL: memory. */
+/* The target without its token; NULL when out of memory. */
 static char *clean_target(const char *target)
 {
     char *clean = malloc(strlen(target) + 1);
@@ -97,8 +98,8 @@ static char *clean_target(const char *target)
     return clean;
 }
 
-/* One of the names that this machine has for itself, with our port. */
-static bool is_ours(const http_server *s, const char *host)
+/* Whether the host is a loopback name with our port. */
+static bool is_local_host(const http_server *s, const char *host)
 {
     static const char *const names[] = {"127.0.0.1", "localhost", "[::1]"};
     for (int i = 0; i < 3; i++) {
@@ -150,8 +151,8 @@ static int refuse(http_request *q, int code, const char *what, const char *remed
     return code;
 }
 
-/* The page's first address: remembers the token where no script can read it, and leaves it out of the address. */
-static int let_in(http_request *q)
+/* Redirects the first request: stores the token in a cookie that no script can read and removes it from the address. */
+static int set_token_cookie(http_request *q)
 {
     char *clean = clean_target(q->target), cookie[128];
     snprintf(cookie, sizeof cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict", q->server->cookie, q->server->token);
@@ -170,7 +171,7 @@ static bool has_token(const http_request *q)
     return same_token(q->server->token, MHD_lookup_connection_value(q->connection, MHD_COOKIE_KIND, q->server->cookie));
 }
 
-/* What is not about the token: nothing that another site's page can do gets past here. */
+/* Checks all but the token, against requests that another site's page could cause. */
 static int guard_site(http_request *q, const char *version)
 {
     heads h = {0};
@@ -180,16 +181,15 @@ static int guard_site(http_request *q, const char *version)
         return refuse(q, 400, "this is not HTTP/1.1", "send HTTP/1.1");
     q->path = safe_path(q->target, &no_memory);
     if (no_memory)
-        return refuse(q, 500, "no memory for a request", "try again later");
+        return refuse(q, 500, "out of memory for the request", "try again later");
     if (!q->path)
-        return refuse(q, 400, "the path climbs, or has characters that no path has",
-                      "ask for a path as the page's links write it");
+        return refuse(q, 400, "the path contains '..' or invalid characters", "use a path as in the page's links");
     if (h.hosts != 1 || h.origins > 1)
-        return refuse(q, 400, "there must be one Host, and at most one Origin", "send the header Host once");
-    if (!is_ours(q->server, h.host))
-        return refuse(q, 421, "this server has no such name", "use the address that it printed");
+        return refuse(q, 400, "exactly one Host and at most one Origin are required", "send the header Host once");
+    if (!is_local_host(q->server, h.host))
+        return refuse(q, 421, "unknown host name", "use the address that the program printed");
     if (h.origin && (strncmp(h.origin, "http://", 7) != 0 || strcasecmp(h.origin + 7, h.host) != 0))
-        return refuse(q, 403, "the request comes from another site's page", "use the server's own page");
+        return refuse(q, 403, "the request comes from another site's page", "use this server's own page");
     return 0;
 }
 
@@ -198,18 +198,18 @@ int http_guard(http_request *q, const char *version)
     const int code = guard_site(q, version);
     if (code)
         return code;
-    const char *asked = strcmp(q->method, "GET") == 0
-                            ? MHD_lookup_connection_value(q->connection, MHD_GET_ARGUMENT_KIND, "token")
-                            : NULL;
-    const bool in_address = same_token(q->server->token, asked), known = in_address || has_token(q);
+    const char *query_token = strcmp(q->method, "GET") == 0
+                                  ? MHD_lookup_connection_value(q->connection, MHD_GET_ARGUMENT_KIND, "token")
+                                  : NULL;
+    const bool in_address = same_token(q->server->token, query_token), known = in_address || has_token(q);
     if (!within_rate(q->server, known)) {
         http_reply_header(&q->reply, "Retry-After", "1");
-        return refuse(q, 429, "too many requests at once", "wait a second");
+        return refuse(q, 429, "too many requests", "try again in a second");
     }
     if (!known) {
         http_reply_header(&q->reply, "WWW-Authenticate", "Bearer");
         return refuse(q, 401, "the token is missing or wrong",
                       "open the address that the program printed, with its token");
     }
-    return in_address ? let_in(q) : 0;
+    return in_address ? set_token_cookie(q) : 0;
 }

@@ -1,4 +1,4 @@
-/* What the server's files share: not for others. See web/http/http.h. */
+/* Declarations shared by the files of the HTTP server; private to them. See web/http/http.h. */
 #pragma once
 
 #include "web/http/http.h"
@@ -14,14 +14,14 @@ enum {
     HTTP_HEARTBEAT_MS = 5000
 };
 
-/* Refills at its rate and holds a second's worth. */
+/* Token bucket of a rate limit; refills at its rate and holds one second's worth. */
 typedef struct http_bucket {
     double left, filled_s;
 } http_bucket;
 
-/* One connection's place in the watch. */
+/* A connection's slot in the watchdog. */
 typedef struct http_place {
-    int socket;        /* -1: the place is free */
+    int socket;        /* -1: the slot is free */
     double deadline_s; /* 0: none */
 } http_place;
 
@@ -40,7 +40,7 @@ struct http_server {
     pthread_cond_t watch_wake;
     pthread_t watch;
     bool watching, watch_ends;
-    http_place *places; /* settings.connections of them */
+    http_place *places; /* settings.connections slots */
 
     pthread_mutex_t event_lock;
     bool events_end;
@@ -60,19 +60,19 @@ struct http_reply {
 struct http_request {
     http_server *server;
     struct MHD_Connection *connection;
-    char *target; /* as it came: path and query */
+    char *target; /* as received: path and query */
     char *path;   /* decoded */
     const char *method;
     const http_route *route;
     const http_file *file;
-    char *value[HTTP_VALUES_MAX]; /* of the pattern's braces, in their order */
+    char *value[HTTP_VALUES_MAX]; /* values of the pattern's {name} parts, in order */
     char *body;
     size_t body_size, body_room, received;
     bool head_read;
-    http_reply reply; /* set before the body has come: it is answered with that */
+    http_reply reply; /* if set before the body arrives, the body is discarded */
 };
 
-/* --- http_guard.c: may it pass? Each answers 0, or the code with the reply set. --- */
+/* --- http_guard.c: checks of a request. Each returns 0, or the HTTP code with the reply set. --- */
 
 int http_guard(http_request *q, const char *version);
 
@@ -82,15 +82,15 @@ int http_find_route(http_request *q);
 /* --- http_reply.c --- */
 void http_reply_release(http_reply *r);
 void http_reply_set(http_reply *r, int code, const char *type,
-                    struct MHD_Response *response); /* takes it; NULL: memory was out */
-/* Hands the reply to libmicrohttpd, with the headers that all have. */
+                    struct MHD_Response *response); /* takes it; NULL: out of memory */
+/* Queues the reply with the headers common to all replies. */
 enum MHD_Result http_reply_send(http_reply *r);
 
-/* --- http_watch.c: cuts off who takes longer than timeout_s --- */
+/* --- http_watch.c: closes connections that exceed timeout_s --- */
 status http_watch_start(http_server *s, diagnostic *why);
 void http_watch_stop(http_server *s);
 void http_watch_notify(void *server, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what);
-/* What the connection does now must be done within that time; 0: as long as it takes. */
+/* Sets the time limit of the connection's current action; 0: none. */
 void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s);
 
 /* --- http_events.c --- */

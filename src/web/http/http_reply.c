@@ -1,4 +1,4 @@
-/* What is sent back. */
+/* Replies of the HTTP server. */
 #include "web/http/http_private.h"
 #include "report/json.h"
 
@@ -105,7 +105,7 @@ void http_reply_release(http_reply *r)
 enum MHD_Result http_reply_send(http_reply *r)
 {
     if (!r->response)
-        http_reply_error(r, 500, "there is no reply to that", "");
+        http_reply_error(r, 500, "the handler set no reply", "");
     if (!r->response)
         return MHD_NO;
     bool whole = true;
@@ -113,6 +113,6 @@ enum MHD_Result http_reply_send(http_reply *r)
         whole &= MHD_add_response_header(r->response, on_every_reply[i][0], on_every_reply[i][1]) == MHD_YES;
     for (int i = 0; i < r->header_count; i++)
         whole &= MHD_add_response_header(r->response, r->header_name[i], r->header_value[i]) == MHD_YES;
-    /* Rather no reply than one that lacks what guards the page. */
+    /* Send nothing rather than a reply without the security headers. */
     return whole ? MHD_queue_response(r->connection, (unsigned)r->code, r->response) : MHD_NO;
 }

@@ -1,16 +1,15 @@
-/* A request's way through libmicrohttpd's callbacks: its target, its head, its body, its end. */
+/* libmicrohttpd's callbacks of a request: its target, its headers, its body, its end. */
 #include "web/http/http_private.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-/* Bodies above the limit are still read up to this many times of it, so that who sends one reads our 413 and no broken
- * connection. */
+/* A body above the limit is still read up to this multiple of it, so that the client gets the 413 instead of a
+ * broken connection. */
 enum { PATIENCE = 8 };
 
-/* The one place that sees the target as it came: what libmicrohttpd hands out later is decoded and cut at the first
- * NUL. */
+/* The only callback that gets the raw target: libmicrohttpd decodes it later and cuts it at the first NUL. */
 void *http_on_target(void *server, const char *target, struct MHD_Connection *c)
 {
     http_request *q = calloc(1, sizeof *q);
@@ -58,7 +57,7 @@ static void too_large(http_request *q)
         http_reply_error(&q->reply, 413, "the request's body is too large", "send less at once");
 }
 
-/* Before the body: what is refused here is not kept. */
+/* Runs before the body, so that the body of a refused request is not stored. */
 static enum MHD_Result read_head(http_request *q, const char *method, const char *version)
 {
     q->head_read = true;
@@ -67,7 +66,7 @@ static enum MHD_Result read_head(http_request *q, const char *method, const char
         return MHD_NO;
     if (http_guard(q, version) == 0 && http_find_route(q) == 0 && changes(q) &&
         !is_json(http_header(q, "Content-Type")))
-        http_reply_error(&q->reply, 415, "this is not JSON", "send it with Content-Type: application/json");
+        http_reply_error(&q->reply, 415, "the content type is not JSON", "send it with Content-Type: application/json");
     const char *length = http_header(q, "Content-Length");
     const unsigned long long size = length ? strtoull(length, NULL, 10) : 0;
     if (size > q->server->settings.body_max)
@@ -130,8 +129,7 @@ enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const ch
         http_watch_deadline(q->server, c, 0);
         answer(q);
         http_watch_deadline(q->server, c, s->settings.timeout_s);
-        /* libmicrohttpd takes the time that a handler needs for time in which the client did nothing; a limit that is
-         * set anew starts now. */
+        /* libmicrohttpd counts the handler's time as idle time of the client; setting the timeout restarts it. */
         MHD_set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
         if (q->route == NULL || q->route->handle != http_events)
             MHD_set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)s->settings.timeout_s);

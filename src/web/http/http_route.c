@@ -1,4 +1,4 @@
-/* Which route, or file, a request goes to. */
+/* Finds the route or file of a request. */
 #include "web/http/http_private.h"
 
 #include <stdio.h>
@@ -13,21 +13,21 @@ static void forget_values(http_request *q)
     }
 }
 
-/* Part by part; what stands for braces is kept in q->value. */
+/* Compares part by part; the parts that match {name} are stored in q->value. */
 static bool matches(http_request *q, const char *pattern)
 {
     const char *path = q->path;
     int values = 0;
     while (*pattern == '/' && *path == '/') {
-        const size_t wanted = strcspn(++pattern, "/"), given = strcspn(++path, "/");
-        if (wanted > 2 && pattern[0] == '{' && pattern[wanted - 1] == '}') {
-            if (given == 0 || values == HTTP_VALUES_MAX || !(q->value[values++] = strndup(path, given)))
+        const size_t pattern_length = strcspn(++pattern, "/"), path_length = strcspn(++path, "/");
+        if (pattern_length > 2 && pattern[0] == '{' && pattern[pattern_length - 1] == '}') {
+            if (path_length == 0 || values == HTTP_VALUES_MAX || !(q->value[values++] = strndup(path, path_length)))
                 break;
-        } else if (wanted != given || memcmp(pattern, path, wanted) != 0) {
+        } else if (pattern_length != path_length || memcmp(pattern, path, pattern_length) != 0) {
             break;
         }
-        pattern += wanted;
-        path += given;
+        pattern += pattern_length;
+        path += path_length;
     }
     if (!*pattern && !*path)
         return true;
@@ -70,11 +70,11 @@ int http_find_route(http_request *q)
             add_method(allow, sizeof allow, "GET");
         }
     if (!allow[0]) {
-        http_reply_error(&q->reply, 404, "there is nothing of that name", "see the page at /");
+        http_reply_error(&q->reply, 404, "no page or route has that path", "open the page at /");
         return 404;
     }
     http_reply_header(&q->reply, "Allow", allow);
-    http_reply_error(&q->reply, 405, "that cannot be done with it", "use a method that Allow names");
+    http_reply_error(&q->reply, 405, "the method is not allowed here", "use a method of the header Allow");
     return 405;
 }
 

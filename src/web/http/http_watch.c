@@ -1,6 +1,6 @@
-/* libmicrohttpd cuts off connections on which nothing moves; one that sends a byte now and then would stay. Here each
- * connection has a place with the time by which its request must have come, or its reply be taken; a thread looks once
- * a second. */
+/* The watchdog of slow connections. libmicrohttpd closes connections that are idle, but not those that send a byte
+ * now and then. So each connection has a slot with the deadline of its request or reply, and a thread checks all
+ * slots once a second. */
 #include "web/http/http_private.h"
 
 #include "base/float_environment.h"
@@ -33,11 +33,11 @@ status http_watch_start(http_server *s, diagnostic *why)
 {
     s->places = calloc((size_t)s->settings.connections, sizeof *s->places);
     if (!s->places)
-        return diagnose(why, STATUS_FAILURE, "", "no memory for %d connections", s->settings.connections);
+        return diagnose(why, STATUS_FAILURE, "", "out of memory for %d connections", s->settings.connections);
     for (int i = 0; i < s->settings.connections; i++)
         s->places[i].socket = -1;
     s->watching = pthread_create(&s->watch, NULL, watch, s) == 0;
-    return s->watching ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "the server's threads cannot be started");
+    return s->watching ? STATUS_OK : diagnose(why, STATUS_FAILURE, "", "cannot start the server's threads");
 }
 
 void http_watch_stop(http_server *s)

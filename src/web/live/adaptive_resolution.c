@@ -8,7 +8,7 @@ int adaptive_resolution_divisor(const adaptive_resolution *p)
     return shrinks[p->step];
 }
 
-/* Pixels of one step over those of another. */
+/* The ratio of the pixel counts of two steps. */
 static double growth(int from, int to)
 {
     const double ratio = (double)shrinks[from] / shrinks[to];

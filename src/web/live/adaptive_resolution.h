@@ -1,14 +1,14 @@
-/* How coarse the frames of a film that moves are, so that each takes about as long as it may: coarser when they come
- * too late, finer when there is time, a step at a time and no to and fro. Pure. */
+/* Adaptive resolution of the live frames: the resolution drops when frames take longer than their time and rises
+ * when there is time left, one step at a time, with hysteresis. Pure functions. */
 #pragma once
 
 typedef struct adaptive_resolution {
-    int step;       /* of the steps of coarseness; 0 is the finest */
-    double frame_s; /* what a frame takes now, smoothed; 0: not known */
+    int step;       /* index of the resolution step; 0 is the finest */
+    double frame_s; /* smoothed frame time; 0: unknown */
 } adaptive_resolution;
 
-/* So many times less wide and high. */
+/* The factor by which width and height are divided. */
 int adaptive_resolution_divisor(const adaptive_resolution *p);
 
-/* A frame of that coarseness took wall_s, and may take wanted_s. */
+/* Updates the step: a frame at the current step took wall_s and may take wanted_s. */
 void adaptive_resolution_update(adaptive_resolution *p, double wall_s, double wanted_s);

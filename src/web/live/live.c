@@ -1,4 +1,4 @@
-/* What any thread may ask of the live slime. */
+/* The thread-safe interface of the live slime. */
 #include "web/live/live_private.h"
 
 #include "measure/clock.h"
@@ -31,16 +31,16 @@ void live_destroy(live *l)
     free(l);
 }
 
-/* Unlocks first: who is woken may hold a lock of its own while it asks what is due. */
+/* Unlocks before the call: wake may take a lock whose holder calls live_is_due. */
 static void unlock_and_wake(live *l)
 {
-    l->ordered = true;
+    l->requested = true;
     pthread_mutex_unlock(&l->lock);
     if (l->wake)
         l->wake(l->context);
 }
 
-void live_give(live *l, live_order order)
+void live_send(live *l, live_command order)
 {
     pthread_mutex_lock(&l->lock);
     switch (order) {
@@ -85,7 +85,7 @@ static void withdraw(live *l, const grab_request *q)
         *at = q->next;
 }
 
-/* The lock is held, but while it waits. */
+/* The lock is held, except while waiting. */
 static status wait_for(live *l, grab_request *q, diagnostic *why)
 {
     const struct timespec until = clock_after(LIVE_WAIT_S);
@@ -95,17 +95,17 @@ static status wait_for(live *l, grab_request *q, diagnostic *why)
     if (q->done)
         return q->code;
     withdraw(l, q);
-    return diagnose(why, STATUS_INTERRUPTED, l->stopped ? "" : "try again when the picture moves",
-                    l->stopped ? "the laboratory is closing" : "nothing moves the slime now");
+    return diagnose(why, STATUS_INTERRUPTED, l->stopped ? "" : "try again when the slime moves",
+                    l->stopped ? "the laboratory is closing" : "the slime is not being simulated");
 }
 
-/* Is there something to take hold of? The lock is held. */
+/* Checks that the slime can be grabbed. The lock is held. */
 static status check_on(const live *l, diagnostic *why)
 {
     if (l->mode == LIVE_IS_OFF || !l->account.has_slime)
-        return diagnose(why, STATUS_BAD_INPUT, "let it play", "the slime is not live");
+        return diagnose(why, STATUS_BAD_INPUT, "play the slime first", "the slime is not live");
     if (l->account.in_trouble && !l->restart)
-        return diagnose(why, STATUS_BAD_INPUT, "start it again", "the slime stands still: %s", l->account.trouble.what);
+        return diagnose(why, STATUS_BAD_INPUT, "restart it", "the slime has stopped: %s", l->account.trouble.what);
     return STATUS_OK;
 }
 
@@ -113,8 +113,8 @@ status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, 
 {
     const double length = vec3_length(direction);
     if (!vec3_is_finite(origin) || !(length > 0.0 && isfinite(length)) || !(reach >= 0.0 && isfinite(reach)))
-        return diagnose(why, STATUS_BAD_INPUT, "give a finite ray, and a reach that is not below 0",
-                        "it grabs along no ray");
+        return diagnose(why, STATUS_BAD_INPUT, "give a finite ray and a reach of at least 0",
+                        "the grab ray is not finite");
     grab_request q = {.origin = origin, .direction = vec3_scale(direction, 1.0 / length), .reach = reach, .why = why};
     pthread_mutex_lock(&l->lock);
     status code = check_on(l, why);
@@ -137,11 +137,11 @@ status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, 
 static status find_hand(live *l, int id, live_hand **out, diagnostic *why)
 {
     for (int i = 0; i < LIVE_HANDS_MAX; i++)
-        if (id > 0 && l->held[i].id == id && !l->held[i].let_go) {
+        if (id > 0 && l->held[i].id == id && !l->held[i].released) {
             *out = &l->held[i];
             return STATUS_OK;
         }
-    return diagnose(why, STATUS_BAD_INPUT, "grab again: what it held may have begun anew", "hand %d holds nothing", id);
+    return diagnose(why, STATUS_BAD_INPUT, "grab again: the slime may have restarted", "hand %d holds nothing", id);
 }
 
 status live_where(live *l, int hand, vec3 *where, diagnostic *why)
@@ -159,7 +159,7 @@ status live_move(live *l, int hand, vec3 by, diagnostic *why)
 {
     const double far = 1e6;
     if (!(vec3_length(by) <= far))
-        return diagnose(why, STATUS_BAD_INPUT, "stay within 1e6 scene units", "the hand moves to nowhere");
+        return diagnose(why, STATUS_BAD_INPUT, "stay within 1e6 scene units", "the hand moves too far");
     live_hand *h = NULL;
     pthread_mutex_lock(&l->lock);
     const status code = find_hand(l, hand, &h, why);
@@ -179,7 +179,7 @@ status live_release(live *l, int hand, diagnostic *why)
         return code;
     }
     for (int i = 0; i < LIVE_HANDS_MAX; i++)
-        l->held[i].let_go |= l->held[i].id > 0 && (!h || h == &l->held[i]);
+        l->held[i].released |= l->held[i].id > 0 && (!h || h == &l->held[i]);
     unlock_and_wake(l);
     return STATUS_OK;
 }
@@ -210,7 +210,7 @@ bool live_is_moving(live *l)
 bool live_is_due(live *l)
 {
     pthread_mutex_lock(&l->lock);
-    const bool due = is_moving(l) || l->ordered || l->first;
+    const bool due = is_moving(l) || l->requested || l->first;
     pthread_mutex_unlock(&l->lock);
     return due;
 }
@@ -228,7 +228,7 @@ static json_t *json_of_trouble(const live_account *a)
     return a->in_trouble ? json_of_diagnostic(&a->trouble) : json_null();
 }
 
-json_t *live_tell(live *l)
+json_t *live_json(live *l)
 {
     pthread_mutex_lock(&l->lock);
     const live_account a = l->account;

@@ -1,10 +1,11 @@
-/* The slime while it is played with: it moves in the painter's thread, hands reach into it from others. Off, paused or
- * playing; while it is not off, the scene shown is the desk's with the slime as it lies now.
+/* The live slime: it moves in the render worker's thread, while hands drag it from other threads. It is off, paused
+ * or playing; while it is on, the displayed scene is the scene document with the slime in its live state.
  *
- * Threads: those marked "painter" are called by the painter's thread alone, with the stage (the painter's own copy of
- * the scene) that nobody else looks at meanwhile; the others from any thread. Ownership: live_create gives,
- * live_destroy releases, after live_detach and when no other thread calls any more. Errors: STATUS_BAD_INPUT for what
- * cannot be, among them a body that blew up: it then stands still and says so until it is started again. */
+ * Threads: functions marked "render worker" are called by the render worker's thread alone, with the snapshot (the
+ * render worker's own copy of the scene), which no other thread reads meanwhile; all others are thread-safe.
+ * Ownership: live_create creates, live_destroy releases, after live_detach and when no other thread calls any more.
+ * Errors: STATUS_BAD_INPUT for invalid requests, and for a body whose simulation diverged: it stays still and
+ * reports the error until it is restarted. */
 #pragma once
 
 #include "base/vec3.h"
@@ -14,63 +15,63 @@
 typedef struct live live;
 
 typedef enum live_preview { LIVE_TRACED, LIVE_ZBUFFER } live_preview;
-typedef enum live_order {
+typedef enum live_command {
     LIVE_PLAY,
     LIVE_PAUSE,
     LIVE_RESTART,
     LIVE_OFF
-} live_order; /* restart: from its beginning on, playing */
+} live_command; /* restart: plays from the beginning */
 
-/* wake: something was ordered; the painter should look. */
+/* wake: called after each command, so that the render worker runs it. */
 live *live_create(void (*wake)(void *context), void *context); /* NULL when memory is out */
 void live_destroy(live *l);                                    /* NULL is allowed */
 
-/* --- from any thread --- */
+/* --- thread-safe --- */
 
-void live_give(live *l, live_order order);
+void live_send(live *l, live_command order);
 void live_set_preview(live *l, live_preview preview);
 
-/* Places are world rays and points: the caller knows the camera. A grab waits for the painter, which is woken and
- * answers within a frame; STATUS_INTERRUPTED when it has not after LIVE_WAIT_S, or live_stop was called. The others are
- * heard at its next move and do not wait. STATUS_BAD_INPUT: it is off or blew up, or there is no such hand (any more:
- * it begins anew where its own parameters change). */
+/* Rays and points are in world space: the caller knows the camera. A grab wakes the render worker and waits for it,
+ * usually less than a frame; STATUS_INTERRUPTED after LIVE_WAIT_S or live_stop. The other functions do not wait; the
+ * next step applies them. STATUS_BAD_INPUT: the slime is off or diverged, or no such hand exists (hands end when the
+ * slime restarts because its own parameters changed). */
 #define LIVE_WAIT_S 5.0
 enum { LIVE_MISSED = -1, LIVE_ALL = -2 };
-/* reach: scene units; 0: three tenths of the slime's radius. hand: its number, never given again, or LIVE_MISSED where
- * the ray meets no slime. */
+/* reach: scene units; 0: 0.3 of the slime's radius. hand: its number, never reused, or LIVE_MISSED where the ray
+ * misses the slime. */
 status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, vec3 *where, diagnostic *why);
-status live_move(live *l, int hand, vec3 by, diagnostic *why); /* from where it took hold */
-status live_release(live *l, int hand, diagnostic *why);       /* LIVE_ALL: all that there are */
-/* Where a hand took hold, in the world. */
+status live_move(live *l, int hand, vec3 by, diagnostic *why); /* by: offset from the grab point */
+status live_release(live *l, int hand, diagnostic *why);       /* LIVE_ALL: all hands */
+/* The grab point of a hand, in world space. */
 status live_where(live *l, int hand, vec3 *where, diagnostic *why);
 
-/* Who waits, and who grabs later, gets STATUS_INTERRUPTED at once: the painter will not answer any more. */
+/* Makes waiting and later grabs return STATUS_INTERRUPTED: the render worker is ending. */
 void live_stop(live *l);
 
-/* The state's part; null where it is off and the scene has none. NULL when memory is out. */
-json_t *live_tell(live *l);
+/* The slime in the state JSON; null where it is off and the scene has none. NULL when out of memory. */
+json_t *live_json(live *l);
 
-/* --- painter --- */
+/* --- render worker --- */
 
-bool live_is_on(live *l);     /* not off */
-bool live_is_moving(live *l); /* playing, and not at rest with no hand on it */
-bool live_is_due(live *l);    /* moving, or something was ordered: live_advance has something to do */
+bool live_is_on(live *l);     /* playing or paused */
+bool live_is_moving(live *l); /* playing, and not at rest without hands */
+bool live_is_due(live *l);    /* moving, or a command is pending: live_advance has work */
 live_preview live_preview_of(live *l);
 
-/* The stage is a fresh copy of what is on the desk: takes its slimes over, from their beginning or as they lie now
- * where the slimes' own parameters are what they were. Call it whenever the stage was replaced, before it is loaded:
- * what is live is not computed up to its time_s. What is not live is left to be loaded. */
+/* Takes over the slimes of a new snapshot: from their beginning, or in their live state where the slimes' own
+ * parameters are unchanged. Call it after each new snapshot, before it is loaded: live slimes are not simulated up
+ * to their time_s. Slimes that are not live are left to the loader. */
 status live_attach(live *l, scene *snapshot, diagnostic *why);
-/* The stage is about to go, and is not rendered any more: hands and motion are kept for the next one where that is
+/* Detaches from a snapshot that will not be rendered any more; hands and motion are kept for the next one if
  * possible. */
 void live_detach(live *l);
 
-/* Obeys orders, then moves by the wall time since it was called last, at most about most_s of work. told: live_tell
- * says something else than mere motion would: with each picture it is told anyway. A stage that was live and is off now
- * has to be loaded again. The trouble of a body that blew up is told by live_tell, and is no error here. */
-status live_advance(live *l, double most_s, bool *told, diagnostic *why);
-/* Does the stage look otherwise than when this was asked last? */
+/* Runs pending commands, then simulates the wall time since the last call, with at most about most_s of computation.
+ * state_changed: live_json differs by more than the motion, which is sent with every image anyway. A snapshot whose
+ * slime was switched off must be loaded again. A diverged body is reported by live_json and is not an error here. */
+status live_advance(live *l, double most_s, bool *state_changed, diagnostic *why);
+/* Whether the snapshot's appearance changed since the last call. */
 bool live_take_moved(live *l);
 
-/* A stage that is on is not to be lent to the desk: its slimes lie as hands have drawn them, not as their time_s says.
- */
+/* Do not pass a snapshot with a live slime to scene_document_share_loaded: its slimes are shaped by hands, not by
+ * their time_s. */

@@ -1,5 +1,5 @@
-/* The live slime, shared by live.c (what other threads ask), live_snapshot.c (which scene it is in, and orders) and
- * live_move.c (its motion). */
+/* The private struct of the live slime, shared by live.c (requests of other threads), live_snapshot.c (its scene,
+ * commands and hands) and live_move.c (its motion). */
 #pragma once
 
 #include "scene/motion/motion_hands.h"
@@ -8,7 +8,7 @@
 
 typedef enum live_mode { LIVE_IS_OFF, LIVE_IS_PAUSED, LIVE_IS_PLAYING } live_mode;
 
-/* A grab that waits; on the stack of who asks. */
+/* A waiting grab; lives on the stack of the requesting thread. */
 typedef struct grab_request {
     vec3 origin, direction;
     double reach;
@@ -22,17 +22,17 @@ typedef struct grab_request {
 
 enum { LIVE_HANDS_MAX = 256 };
 
-/* One of those that others know, by a number that is never given again. */
+/* A hand as other threads know it, by a number that is never reused. */
 typedef struct live_hand {
     int id; /* 0: none */
     size_t slime;
-    int number; /* of the body's own */
-    vec3 where; /* in the world */
-    vec3 by;    /* of the world: where it is to be, from there */
-    bool let_go;
+    int number; /* index in the body */
+    vec3 where; /* grab point in world space */
+    vec3 by;    /* world-space offset from the grab point to the target */
+    bool released;
 } live_hand;
 
-/* What is told of it. */
+/* The published summary of the simulation. */
 typedef struct live_account {
     bool has_slime, resting, in_trouble;
     double time_s, speed, volume, volume_at_rest, realtime;
@@ -44,33 +44,33 @@ struct live {
     void (*wake)(void *context);
     void *context;
 
-    /* of all from here to the painter's own; grabs are done under it, which takes a millisecond */
+    /* guards the fields up to the render worker's own; grabs run under it, about a millisecond */
     pthread_mutex_t lock;
     pthread_cond_t answered;
     live_mode mode;
     live_preview preview;
-    bool restart, ordered, stopped;
+    bool restart, requested, stopped;
     grab_request *first;
     live_hand held[LIVE_HANDS_MAX];
     int last_id;
     live_account account;
 
-    /* The painter's own. */
-    scene *snapshot;      /* NULL: none now */
-    scene_motion *motion; /* NULL: not begun */
+    /* Used by the render worker alone. */
+    scene *snapshot;      /* NULL: detached */
+    scene_motion *motion; /* NULL: not started */
     motion_hand *hands;   /* SOFTBODY_HANDS_MAX of each slime */
     double time_s;
-    double moved_at_s; /* wall time of the latest move; NaN: it stood still */
-    double cost;       /* computing time of a second of motion; 0: not known */
+    double moved_at_s; /* wall time of the latest step; NaN: it was still */
+    double cost;       /* computation time per second of motion; 0: unknown */
     double realtime;
-    double quiet_s;      /* how long it has been at rest */
-    bool moved, changed; /* the stage looks otherwise; what is told is other than by mere motion */
+    double quiet_s;      /* time without motion */
+    bool moved, changed; /* the snapshot's appearance changed; the published state changed by more than the motion */
 };
 
 /* --- live_move.c --- */
 
-/* Moves by the wall time since the last call, at most about most_s of work. The lock is not held. STATUS_BAD_INPUT: the
- * body blew up. */
+/* Simulates the wall time since the last call, with at most about most_s of computation. The lock is not held.
+ * STATUS_BAD_INPUT: the body diverged. */
 status live_move_on(live *l, double most_s, diagnostic *why);
-/* Nothing is left of how it moved. */
+/* Resets the motion's clock and rates. */
 void live_stand_still(live *l);

@@ -1,11 +1,11 @@
-/* Which scene the live slime is in, what was ordered, and who takes hold of it: the painter's side. */
+/* The render worker's side of the live slime: its scene, the commands and the hands. */
 #include "web/live/live_private.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* With the lock held: what all hands held is gone. */
+/* Releases all hands. The lock is held. */
 static void forget_hands(live *l)
 {
     for (int i = 0; i < LIVE_HANDS_MAX; i++)
@@ -43,14 +43,14 @@ static void forget_motion(live *l)
     pthread_mutex_unlock(&l->lock);
 }
 
-/* The scene gets back what it had. */
+/* Ends the simulation; the scene gets its original surface back. */
 static void end(live *l)
 {
     scene_motion_end(l->motion);
     forget_motion(l);
 }
 
-/* It can go on no more, and says why. */
+/* Records an error that stops the simulation. */
 static void fail(live *l, const diagnostic *why)
 {
     pthread_mutex_lock(&l->lock);
@@ -83,8 +83,8 @@ static status begin(live *l, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The scene may have another slime of the same name. */
-static status go_over(live *l, diagnostic *why)
+/* Moves the simulation to a new snapshot, or starts a new one where the scene has another slime of the same name. */
+static status transfer_motion(live *l, diagnostic *why)
 {
     bool joined = false;
     const status code = scene_motion_join(l->motion, l->snapshot, &joined, why);
@@ -99,7 +99,7 @@ status live_attach(live *l, scene *snapshot, diagnostic *why)
     l->snapshot = snapshot;
     pthread_mutex_lock(&l->lock);
     l->account.has_slime = scene_moves(snapshot);
-    if (!l->account.has_slime && !l->ordered) /* who ordered knows of a scene to come */
+    if (!l->account.has_slime && !l->requested) /* a pending command may be for a scene to come */
         l->mode = LIVE_IS_OFF;
     const bool still = l->mode == LIVE_IS_OFF || !l->account.has_slime;
     pthread_mutex_unlock(&l->lock);
@@ -108,8 +108,8 @@ status live_attach(live *l, scene *snapshot, diagnostic *why)
         return STATUS_OK;
     }
     if (l->motion)
-        return go_over(l, why);
-    end(l); /* what was in trouble may not be any more */
+        return transfer_motion(l, why);
+    end(l); /* clears an earlier error */
     return begin(l, why);
 }
 
@@ -126,10 +126,10 @@ static status pick(const live *l, const grab_request *q, size_t *index, motion_p
 {
     *best = (motion_place){.distance = INFINITY};
     for (size_t i = 0; i < scene_motion_count(l->motion); i++) {
-        motion_place met;
-        TRY(scene_motion_pick(l->motion, i, MOTION_ANY_SOLID, q->origin, q->direction, &met, why));
-        if (met.distance < best->distance) {
-            *best = met;
+        motion_place hit;
+        TRY(scene_motion_pick(l->motion, i, MOTION_ANY_SOLID, q->origin, q->direction, &hit, why));
+        if (hit.distance < best->distance) {
+            *best = hit;
             *index = i;
         }
     }
@@ -152,11 +152,11 @@ static live_hand *free_hand(live *l)
     return NULL;
 }
 
-static status take_hold(live *l, grab_request *q)
+static status grab(live *l, grab_request *q)
 {
     q->hand = LIVE_MISSED;
     if (!l->motion || l->account.in_trouble)
-        return diagnose(q->why, STATUS_BAD_INPUT, "start it again", "the slime is not live");
+        return diagnose(q->why, STATUS_BAD_INPUT, "restart it", "the slime is not live");
     size_t index = 0;
     motion_place place;
     status code = pick(l, q, &index, &place, q->why);
@@ -166,7 +166,7 @@ static status take_hold(live *l, grab_request *q)
     int number = 0;
     TRY(h ? scene_motion_grab(l->motion, index, &place, reach_of(l, q, index, &place),
                               &l->hands[index * SOFTBODY_HANDS_MAX], &number, q->why)
-          : diagnose(q->why, STATUS_BAD_INPUT, "let one release what it holds", "no hand is free"));
+          : diagnose(q->why, STATUS_BAD_INPUT, "release a hand first", "no hand is free"));
     *h = (live_hand){.id = ++l->last_id, .slime = index, .number = number, .where = place.where};
     q->hand = h->id;
     q->where = place.where;
@@ -176,11 +176,11 @@ static status take_hold(live *l, grab_request *q)
     return STATUS_OK;
 }
 
-static void let_go(live *l)
+static void release_hands(live *l)
 {
     for (int i = 0; i < LIVE_HANDS_MAX; i++) {
         live_hand *h = &l->held[i];
-        if (!h->let_go)
+        if (!h->released)
             continue;
         scene_motion_release(l->motion, h->slime, &l->hands[h->slime * SOFTBODY_HANDS_MAX], h->number);
         *h = (live_hand){.id = 0};
@@ -189,10 +189,10 @@ static void let_go(live *l)
     }
 }
 
-static void answer(live *l)
+static void answer_grabs(live *l)
 {
     for (grab_request *q = l->first; q; q = q->next) {
-        q->code = take_hold(l, q);
+        q->code = grab(l, q);
         q->done = true;
     }
     if (l->first)
@@ -200,37 +200,37 @@ static void answer(live *l)
     l->first = NULL;
 }
 
-/* --- orders --- */
+/* --- commands --- */
 
-/* What was ordered since the last time; nothing where it cannot be done yet. */
-static status obey(live *l, live_mode *mode, diagnostic *why)
+/* Runs the commands since the last call; does nothing where they cannot run yet. */
+static status apply_commands(live *l, live_mode *mode, diagnostic *why)
 {
     pthread_mutex_lock(&l->lock);
     *mode = l->mode;
     const bool restart = l->restart, trouble = l->account.in_trouble;
-    l->changed |= l->ordered;
-    l->restart = l->ordered = false;
+    l->changed |= l->requested;
+    l->restart = l->requested = false;
     pthread_mutex_unlock(&l->lock);
     if (*mode == LIVE_IS_OFF && (l->motion || trouble))
         end(l);
     if (*mode != LIVE_IS_OFF && restart)
         end(l);
-    const bool wanted = *mode != LIVE_IS_OFF && !l->motion && (restart || !trouble);
-    return wanted && scene_moves(l->snapshot) ? begin(l, why) : STATUS_OK;
+    const bool must_begin = *mode != LIVE_IS_OFF && !l->motion && (restart || !trouble);
+    return must_begin && scene_moves(l->snapshot) ? begin(l, why) : STATUS_OK;
 }
 
-/* Who is answered finds what was done in the account. */
-static void hear(live *l)
+/* Serves grabs and releases; measures afterwards, so that a caller who is answered finds the result in the account. */
+static void serve_hands(live *l)
 {
     pthread_mutex_lock(&l->lock);
-    answer(l);
-    let_go(l);
+    answer_grabs(l);
+    release_hands(l);
     if (l->changed)
         measure(l);
     pthread_mutex_unlock(&l->lock);
 }
 
-static bool has_skins(const live *l)
+static bool has_surfaces(const live *l)
 {
     bool all = true;
     for (size_t i = 0; l->motion && i < scene_motion_count(l->motion); i++)
@@ -238,23 +238,24 @@ static bool has_skins(const live *l)
     return all;
 }
 
-/* A body without a skin, which went to where no number is, is of no more use: the scene gets back what it had. */
+/* A body without a surface, because vertices became NaN or infinite, is useless: the scene gets its original surface
+ * back. */
 static void stop(live *l, const diagnostic *why)
 {
-    if (!has_skins(l))
+    if (!has_surfaces(l))
         end(l);
     fail(l, why);
 }
 
-status live_advance(live *l, double most_s, bool *told, diagnostic *why)
+status live_advance(live *l, double most_s, bool *state_changed, diagnostic *why)
 {
-    *told = false;
+    *state_changed = false;
     if (!l->snapshot)
         return STATUS_OK;
     live_mode mode;
     diagnostic bad = {.what = ""};
-    status code = obey(l, &mode, &bad);
-    hear(l);
+    status code = apply_commands(l, &mode, &bad);
+    serve_hands(l);
     if (code == STATUS_OK && live_is_moving(l) && l->motion)
         code = live_move_on(l, most_s, &bad);
     else
@@ -264,10 +265,10 @@ status live_advance(live *l, double most_s, bool *told, diagnostic *why)
     pthread_mutex_lock(&l->lock);
     measure(l);
     pthread_mutex_unlock(&l->lock);
-    *told = l->changed;
+    *state_changed = l->changed;
     l->changed = false;
     if (code == STATUS_OK || code == STATUS_BAD_INPUT)
-        return STATUS_OK; /* told */
+        return STATUS_OK; /* reported by live_json */
     if (why)
         *why = bad;
     return code;

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-/* Before anything was measured: what one slow core traces of a scene with some depth. */
+/* The rate before any measurement: a scene of moderate depth on one slow core. */
 static const double rate_unknown = 1e6;
 
 enum { SHRINK_MAX = 32, STEP = 4 };

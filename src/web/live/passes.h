@@ -1,5 +1,5 @@
-/* In how many passes, and how coarse, a scene is painted so that the first one comes soon: reckoned from how fast
- * pictures came so far. Pure. */
+/* The plan of the render passes: their number and resolution, chosen from the measured speed so that the first image
+ * appears quickly. Pure functions. */
 #pragma once
 
 #include "scene/model/render_settings.h"
@@ -8,14 +8,14 @@
 enum { PASSES_MAX = 6 };
 typedef struct pass_plan {
     int count;
-    int shrink[PASSES_MAX];  /* so many times less wide and high; 1 for the last */
-    bool single[PASSES_MAX]; /* one sample (path) a pixel; false for the last */
+    int shrink[PASSES_MAX];  /* the factor by which width and height are divided; 1 for the last */
+    bool single[PASSES_MAX]; /* one sample (path) per pixel; false for the last */
 } pass_plan;
 
-/* Camera rays of a frame, wavelengths counted, of that shrinkage. */
+/* Camera rays of a pass, times wavelengths. */
 double passes_work(const render_settings *r, int shrink, bool single);
 
-/* rate: work a second as it was last; 0 for unknown. first_s: how long the first pass may take. */
+/* rate: the latest work per second; 0 for unknown. first_s: the time limit of the first pass. */
 pass_plan passes_plan(const render_settings *r, double rate, double first_s);
 
 /* The settings of one pass. */

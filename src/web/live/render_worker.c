@@ -10,15 +10,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How long those who want a scene as it is now wait for it. */
+/* How long a caller waits for the current scene to be loaded. */
 static const double scene_wait_s = 60.0;
 
-/* --- what is asked from outside --- */
+/* --- requests of other threads --- */
 
 void render_worker_wake(render_worker *p)
 {
     pthread_mutex_lock(&p->lock);
-    p->woken = true;
+    p->wake_requested = true;
     pthread_cond_signal(&p->wake);
     pthread_mutex_unlock(&p->lock);
 }
@@ -33,12 +33,12 @@ void render_worker_suspend(render_worker *p, const char *text)
     pthread_mutex_lock(&p->lock);
     snprintf(p->waiting_text, sizeof p->waiting_text, "%s", text ? text : "");
     p->waiting = text ? p->waiting_text : NULL;
-    pthread_cond_broadcast(&p->news);
+    pthread_cond_broadcast(&p->changed);
     pthread_cond_signal(&p->wake);
     while (text && p->busy)
-        pthread_cond_wait(&p->news, &p->lock);
+        pthread_cond_wait(&p->changed, &p->lock);
     pthread_mutex_unlock(&p->lock);
-    p->listener.told(p->listener.context);
+    p->listener.state_changed(p->listener.context);
 }
 
 const shared_image *render_worker_take(render_worker *p)
@@ -51,32 +51,32 @@ const shared_image *render_worker_take(render_worker *p)
     return newest;
 }
 
-/* With the lock held: until there is news, or none can come. */
-static status wait_for_news(render_worker *p, const struct timespec *until, const char *stands_still,
-                            const char *is_late, diagnostic *why)
+/* Waits for the next change; an error where none can come. The lock is held. */
+static status wait_for_change(render_worker *p, const struct timespec *until, const char *reason,
+                              const char *timeout_text, diagnostic *why)
 {
     if (p->waiting)
-        return diagnose(why, STATUS_INTERRUPTED, "ask again when it is done", "%s: %.200s", stands_still, p->waiting);
-    if (p->stop || pthread_cond_clockwait(&p->news, &p->lock, CLOCK_MONOTONIC, until) == ETIMEDOUT)
-        return diagnose(why, STATUS_INTERRUPTED, "ask again", "%s", is_late);
+        return diagnose(why, STATUS_INTERRUPTED, "try again after that", "%s: %.200s", reason, p->waiting);
+    if (p->stop || pthread_cond_clockwait(&p->changed, &p->lock, CLOCK_MONOTONIC, until) == ETIMEDOUT)
+        return diagnose(why, STATUS_INTERRUPTED, "try again", "%s", timeout_text);
     return STATUS_OK;
 }
 
 status render_worker_take_final(render_worker *p, double limit_s, const shared_image **out, diagnostic *why)
 {
-    const uint64_t wanted = scene_document_generation(p->scene_document);
+    const uint64_t min_generation = scene_document_generation(p->scene_document);
     const struct timespec until = clock_after(limit_s);
     status code = STATUS_OK;
     *out = NULL;
     pthread_mutex_lock(&p->lock);
     while (!*out && code == STATUS_OK) {
-        if (p->newest && p->newest->final && p->newest->generation >= wanted) {
+        if (p->newest && p->newest->final && p->newest->generation >= min_generation) {
             shared_image_retain(*out = p->newest);
-        } else if (p->trouble_code != STATUS_OK && p->snapshot_generation >= wanted) {
+        } else if (p->trouble_code != STATUS_OK && p->snapshot_generation >= min_generation) {
             *why = p->trouble;
             code = p->trouble_code;
         } else {
-            code = wait_for_news(p, &until, "nothing is rendered now", "the picture is not finished yet", why);
+            code = wait_for_change(p, &until, "rendering is suspended", "the image is not finished yet", why);
         }
     }
     pthread_mutex_unlock(&p->lock);
@@ -85,23 +85,23 @@ status render_worker_take_final(render_worker *p, double limit_s, const shared_i
 
 live *render_worker_live(render_worker *p)
 {
-    return p->toy;
+    return p->live_slime;
 }
 
-/* Is that generation, or a newer one, on the stage, or known not to get there? The lock is held. */
-static bool is_settled(const render_worker *p, uint64_t wanted)
+/* Whether that generation, or a newer one, is loaded or has failed. The lock is held. */
+static bool is_settled(const render_worker *p, uint64_t min_generation)
 {
-    return p->snapshot_generation >= wanted && (p->snapshot_ready || p->trouble_code != STATUS_OK);
+    return p->snapshot_generation >= min_generation && (p->snapshot_ready || p->trouble_code != STATUS_OK);
 }
 
 static status wait_for_scene(render_worker *p, diagnostic *why)
 {
-    const uint64_t wanted = scene_document_generation(p->scene_document);
+    const uint64_t min_generation = scene_document_generation(p->scene_document);
     const struct timespec until = clock_after(scene_wait_s);
     status code = STATUS_OK;
     pthread_mutex_lock(&p->lock);
-    while (!is_settled(p, wanted) && code == STATUS_OK)
-        code = wait_for_news(p, &until, "nothing is traced now", "the scene is still being loaded", why);
+    while (!is_settled(p, min_generation) && code == STATUS_OK)
+        code = wait_for_change(p, &until, "tracing is suspended", "the scene is still being loaded", why);
     if (code == STATUS_OK && !p->snapshot_ready) {
         *why = p->trouble;
         code = p->trouble_code;
@@ -110,8 +110,8 @@ static status wait_for_scene(render_worker *p, diagnostic *why)
     return code;
 }
 
-/* The stage lock is held. */
-static bool is_there_still(render_worker *p)
+/* The snapshot lock is held. */
+static bool snapshot_is_ready(render_worker *p)
 {
     pthread_mutex_lock(&p->lock);
     const bool is = p->snapshot_ready && p->snapshot_generation > 0;
@@ -119,7 +119,7 @@ static bool is_there_still(render_worker *p)
     return is;
 }
 
-/* Between the two locks the painter may have begun with another scene, which then is waited for. */
+/* The worker may start on another scene between the two locks; then this waits for that scene. */
 status render_worker_with_scene(render_worker *p, status (*look)(void *context, scene *s, diagnostic *why),
                                 void *context, diagnostic *why)
 {
@@ -127,7 +127,7 @@ status render_worker_with_scene(render_worker *p, status (*look)(void *context, 
         TRY(wait_for_scene(p, why));
         status code = STATUS_OK;
         pthread_rwlock_rdlock(&p->snapshot_lock);
-        const bool is_there = is_there_still(p);
+        const bool is_there = snapshot_is_ready(p);
         if (is_there)
             code = look(context, p->snapshot, why);
         pthread_rwlock_unlock(&p->snapshot_lock);
@@ -141,24 +141,24 @@ static bool prepare_locks(render_worker *p)
     pthread_rwlockattr_t kind;
     if (pthread_rwlockattr_init(&kind) != 0)
         return false;
-    /* Those who look, one after another without a gap, shall not keep the painter from going on. */
+    /* Readers that follow each other without a gap must not starve the worker. */
     pthread_rwlockattr_setkind_np(&kind, PTHREAD_RWLOCK_PREFER_WRITER_NONRECURSIVE_NP);
     const bool good = pthread_mutex_init(&p->lock, NULL) == 0 && pthread_rwlock_init(&p->snapshot_lock, &kind) == 0 &&
-                      pthread_cond_init(&p->wake, NULL) == 0 && pthread_cond_init(&p->news, NULL) == 0;
+                      pthread_cond_init(&p->wake, NULL) == 0 && pthread_cond_init(&p->changed, NULL) == 0;
     pthread_rwlockattr_destroy(&kind);
     return good;
 }
 
 static void release(render_worker *p)
 {
-    live_detach(p->toy);
-    live_destroy(p->toy);
+    live_detach(p->live_slime);
+    live_destroy(p->live_slime);
     scene_destroy(p->snapshot);
     shared_image_release(p->newest);
     job_destroy(p->with);
     pthread_rwlock_destroy(&p->snapshot_lock);
     pthread_cond_destroy(&p->wake);
-    pthread_cond_destroy(&p->news);
+    pthread_cond_destroy(&p->changed);
     pthread_mutex_destroy(&p->lock);
     free(p);
 }
@@ -174,12 +174,12 @@ status render_worker_create(scene_document *d, isa level, const render_worker_li
     }
     p->scene_document = d;
     p->listener = *listener;
-    p->traced.step = p->raster.step = 3; /* until it is known how long frames take */
-    p->toy = live_create(wake, p);
+    p->traced.step = p->raster.step = 3; /* start coarse until the frame time is known */
+    p->live_slime = live_create(wake, p);
     const job_settings settings = {.level = &level, .stop = render_worker_must_end, .context = p};
-    status code = p->toy ? job_create(&settings, &p->with, why) : out_of_memory(why);
+    status code = p->live_slime ? job_create(&settings, &p->with, why) : out_of_memory(why);
     if (code == STATUS_OK && pthread_create(&p->thread, NULL, render_worker_thread, p) != 0)
-        code = diagnose(why, STATUS_FAILURE, "end other programs", "no thread can be started");
+        code = diagnose(why, STATUS_FAILURE, "close other programs", "a thread cannot be started");
     if (code == STATUS_OK)
         *out = p;
     else
@@ -191,10 +191,10 @@ void render_worker_end(render_worker *p)
 {
     pthread_mutex_lock(&p->lock);
     p->stop = true;
-    pthread_cond_broadcast(&p->news);
+    pthread_cond_broadcast(&p->changed);
     pthread_cond_signal(&p->wake);
     pthread_mutex_unlock(&p->lock);
-    live_stop(p->toy);
+    live_stop(p->live_slime);
     pthread_join(p->thread, NULL);
 }
 
@@ -226,11 +226,11 @@ bool render_worker_json(render_worker *p, json_t *state)
 {
     scene *now = scene_document_take(p->scene_document, NULL);
     pthread_mutex_lock(&p->lock);
-    json_t *told = json_pack(
+    json_t *json = json_pack(
         "{s:o, s:o, s:o, s:o}", "trouble", p->trouble_code != STATUS_OK ? json_of_diagnostic(&p->trouble) : json_null(),
         "waiting", p->waiting ? json_of_text(p->waiting) : json_null(), "picture",
         p->newest ? shared_image_json(p->newest) : json_null(), "camera", now ? camera_json(now) : NULL);
     pthread_mutex_unlock(&p->lock);
     scene_destroy(now);
-    return json_object_update_new(state, told) == 0;
+    return json_object_update_new(state, json) == 0;
 }

@@ -1,7 +1,7 @@
-/* The painter renders what is on the desk, in a thread of its own, in passes from coarse to fine; a change ends the
- * pass that is on its way. It also moves the slime while that is live (web/live/live.h). One picture, the newest, is
- * there for all. Ownership: render_worker_create gives, render_worker_end joins, render_worker_destroy releases.
- * Pictures are shared and never change: shared_image_retain and shared_image_release count their owners. */
+/* The render worker: renders the scene document in a thread of its own, in passes from coarse to fine; a change
+ * interrupts the current pass. It also simulates the live slime (web/live/live.h). The newest image is shared with
+ * all threads. Ownership: render_worker_create creates, render_worker_end joins, render_worker_destroy releases.
+ * Images are immutable and reference-counted by shared_image_retain and shared_image_release. */
 #pragma once
 
 #include "base/isa.h"
@@ -14,59 +14,61 @@ typedef struct render_worker render_worker;
 
 typedef struct shared_image {
     uint64_t generation;
-    uint64_t serial;   /* one more for each picture, whatever it shows */
+    uint64_t serial;   /* increases with each image, whatever its generation */
     int pass, passes;  /* from 1 */
-    bool final;        /* the film that the scene makes */
+    bool final;        /* the complete film of the scene */
     int width, height; /* of this pass */
     int full_width, full_height;
-    const json_t *numbers; /* report_page's */
-    uint64_t film_hash;    /* of the final one */
+    const json_t *numbers; /* of report_page */
+    uint64_t film_hash;    /* of the final image */
     const image *linear;
-    const scene *of; /* final: the scene that it shows; else NULL */
+    const scene *of; /* final: the rendered scene; otherwise NULL */
 } shared_image;
 
-/* published: called after each pass with the desk and painter unlocked; the picture is borrowed. told: whenever
- * render_worker_json would say something else. */
+/* published: called after each pass without the document's and the worker's locks; the image is borrowed.
+ * state_changed: called when the result of render_worker_json changes. */
 typedef struct render_worker_listener {
     void (*published)(void *context, const shared_image *p);
-    void (*told)(void *context);
+    void (*state_changed)(void *context);
     void *context;
 } render_worker_listener;
 
 status render_worker_create(scene_document *d, isa level, const render_worker_listener *listener, render_worker **out,
                             diagnostic *why);
-/* Ends the thread and all waiting for it; what is asked from then on is answered with STATUS_INTERRUPTED. */
+/* Ends the thread and all waiting; later requests return STATUS_INTERRUPTED. */
 void render_worker_end(render_worker *p);
-/* After render_worker_end, when nobody asks any more. NULL is allowed. */
+/* Call it after render_worker_end, when no thread calls the worker any more. NULL is allowed. */
 void render_worker_destroy(render_worker *p);
 
-/* Something changed on the desk or in the live slime: look. From any thread, returns at once. */
+/* Reports a change of the scene document or the live slime. Thread-safe; returns at once. */
 void render_worker_wake(render_worker *p);
 
-/* Renders nothing while text is not NULL (why, for people; copied). Returns when nothing is being rendered any more. */
+/* Suspends rendering while text is not NULL (the reason, for people; copied). Returns when nothing is being rendered
+ * any more. */
 void render_worker_suspend(render_worker *p, const char *text);
 
-/* The newest picture, kept for the caller; NULL before the first. */
+/* A new reference to the newest image; NULL before the first. */
 const shared_image *render_worker_take(render_worker *p);
-/* The final one of the generation that is on the desk now, or of a newer one. Waits for at most limit_s. NULL and *why
- * where it cannot be rendered (STATUS_BAD_INPUT), where the time is out or the painter waits (STATUS_INTERRUPTED). */
+/* The final image of the document's current generation or a newer one. Waits at most limit_s. NULL and *why if the
+ * scene cannot be rendered (STATUS_BAD_INPUT), after the time limit, or while the worker is suspended
+ * (STATUS_INTERRUPTED). */
 status render_worker_take_final(render_worker *p, double limit_s, const shared_image **out, diagnostic *why);
 void shared_image_retain(const shared_image *p);
 void shared_image_release(const shared_image *p); /* NULL is allowed */
 
-/* The picture as a PNG of 8 bits, made once for all who ask; the bytes are the picture's. */
+/* The image as an 8-bit PNG, encoded once for all callers; the bytes belong to the image. */
 status shared_image_png(const shared_image *p, const unsigned char **bytes, size_t *size, diagnostic *why);
 
-/* The picture as it is described in web/README.md; NULL when memory is out. */
+/* The image's JSON as described in web/README.md; NULL when out of memory. */
 json_t *shared_image_json(const shared_image *p);
 
-/* Adds trouble, waiting, picture, camera; false when memory is out. */
+/* Adds trouble, waiting, picture and camera; false when out of memory. */
 bool render_worker_json(render_worker *p, json_t *state);
 
-/* The live slime of the painter, for web/api/api_slime.c. */
+/* The live slime of the render worker, for web/api/api_slime.c. */
 live *render_worker_live(render_worker *p);
 
-/* Calls look with the scene as it is shown now, slime included, while nothing moves or renders it; for traces. loaded
- * as far as that went. */
+/* Calls look with the displayed scene, including the live slime, loaded as far as possible, while nothing moves or
+ * renders it; for traces. */
 status render_worker_with_scene(render_worker *p, status (*look)(void *context, scene *s, diagnostic *why),
                                 void *context, diagnostic *why);

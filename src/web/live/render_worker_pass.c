@@ -1,11 +1,11 @@
-/* One pass of the painter: how it is rendered, and the picture that comes of it. See
+/* One pass of the render worker: its settings, the render and the resulting image. See
  * web/live/render_worker_private.h. */
 #include "web/live/render_worker_private.h"
 #include "measure/clock.h"
 #include "report/report.h"
 #include "scene/model/scene.h"
 
-/* How often a render looks up for something newer; how long a frame of the live slime may take. */
+/* How often a render checks for an interruption; the target time of a live frame. */
 static const double poll_s = 0.002, live_frame_s = 0.03;
 
 static void publish(render_worker *p, shared_image *shown)
@@ -22,7 +22,7 @@ static void publish(render_worker *p, shared_image *shown)
     pthread_mutex_lock(&p->lock);
     const shared_image *before = p->newest;
     p->newest = made;
-    pthread_cond_broadcast(&p->news);
+    pthread_cond_broadcast(&p->changed);
     pthread_mutex_unlock(&p->lock);
     shared_image_release(before);
     p->listener.published(p->listener.context, made);
@@ -31,10 +31,10 @@ static void publish(render_worker *p, shared_image *shown)
 
 static bool is_raster(render_worker *p, bool moving)
 {
-    return moving && live_preview_of(p->toy) == LIVE_ZBUFFER;
+    return moving && live_preview_of(p->live_slime) == LIVE_ZBUFFER;
 }
 
-/* The pass's own settings on a scene that is the stage's otherwise. tempo: of a film that moves; else NULL. */
+/* The snapshot's scene with the settings of the pass. tempo: of a moving scene; otherwise NULL. */
 static scene pass_scene(const render_worker *p, int pass, const adaptive_resolution *tempo, bool raster)
 {
     scene view = *p->snapshot;
@@ -81,7 +81,7 @@ static void take_rate(render_worker *p, int pass, const render_result *made)
 void render_worker_render_pass(render_worker *p)
 {
     const int pass = p->pass;
-    const bool moving = live_is_moving(p->toy);
+    const bool moving = live_is_moving(p->live_slime);
     const bool raster = is_raster(p, moving);
     adaptive_resolution *tempo = !moving ? NULL : raster ? &p->raster : &p->traced;
     const scene view = pass_scene(p, pass, tempo, raster);
@@ -90,7 +90,7 @@ void render_worker_render_pass(render_worker *p)
     job_account account;
     shared_image shown;
     bool good = false;
-    p->begun_s = clock_wall_s();
+    p->started_s = clock_wall_s();
     pthread_rwlock_rdlock(&p->snapshot_lock);
     const status code = job_render(p->with, &view, &options, &account, &why);
     const render_result *made = account.result;
@@ -103,9 +103,9 @@ void render_worker_render_pass(render_worker *p)
         else
             take_rate(p, pass, made);
         p->pass = moving ? p->plan.count : pass + 1;
-        p->ended = 0;
+        p->interrupted = 0;
     } else if (code == STATUS_INTERRUPTED) {
-        p->ended += pass == 0 && render_worker_is_stale(p);
+        p->interrupted += pass == 0 && render_worker_is_stale(p);
     } else {
         p->pass = p->plan.count;
     }

@@ -1,6 +1,6 @@
-/* What the painter's files share: not for others. render_worker.c answers others and starts and ends the thread,
- * render_worker_thread.c is what it does in turn, render_worker_snapshot.c brings the scene there and moves it,
- * render_worker_pass.c makes a picture of it. See web/live/render_worker.h. */
+/* The private struct of the render worker. render_worker.c is the thread-safe interface, and starts and ends the
+ * thread; render_worker_thread.c is the thread's main loop; render_worker_snapshot.c updates and moves the snapshot;
+ * render_worker_pass.c renders it. See web/live/render_worker.h. */
 #pragma once
 
 #include "job/job.h"
@@ -11,63 +11,66 @@
 
 struct render_worker {
     struct scene_document *scene_document;
-    struct live *toy;
+    struct live *live_slime;
     render_worker_listener listener;
     pthread_t thread;
     job *with;
 
-    pthread_mutex_t lock; /* of what follows */
-    pthread_cond_t wake, news;
-    bool woken, stop, busy;
+    pthread_mutex_t lock; /* guards the fields below */
+    pthread_cond_t wake, changed;
+    bool wake_requested, stop, busy;
     const char *waiting; /* waiting_text, or NULL */
     char waiting_text[256];
     const shared_image *newest;
     uint64_t serial;
     diagnostic trouble;
-    status trouble_code;          /* of the stage's generation */
+    status trouble_code;          /* of the snapshot's generation */
     uint64_t snapshot_generation; /* 0: none yet */
     bool snapshot_ready;          /* loaded */
 
-    pthread_rwlock_t snapshot_lock; /* read to look at the stage or to render it, written to replace or move it */
+    pthread_rwlock_t snapshot_lock; /* read-locked to read or render the snapshot, write-locked to replace or move it */
     scene *snapshot;
 
-    /* the thread's own */
+    /* used by the thread alone */
     pass_plan plan;
-    int pass; /* next */
+    int pass; /* the next pass */
     double rate;
-    int ended;      /* first passes in a row, and loads before them */
-    double begun_s; /* when what is on its way, a load or a pass, began */
-    uint64_t taken; /* the generation that the stage is a copy of, loaded or not; 0: to be taken anew */
+    int interrupted;  /* interrupted first passes in a row, including the loads before them */
+    double started_s; /* start time of the current load or pass */
+    uint64_t
+        taken_generation; /* generation of the document that the snapshot copies, loaded or not; 0: copy it again */
     bool was_on;
-    adaptive_resolution traced, raster; /* of the film of the live slime */
+    adaptive_resolution traced, raster; /* of the frames of the live slime */
 };
 
-/* How long the first pass may take. */
+/* Time limit of the first pass. */
 #define RENDER_WORKER_FIRST_S 0.04
 
 /* --- for the thread alone --- */
 
-/* What it does until render_worker_end; of is the painter. */
+/* The thread's main function, until render_worker_end; of is the render worker. */
 void *render_worker_thread(void *of);
 
-/* Is there something newer on the desk than the stage is of? */
+/* Whether the document has a newer generation than the snapshot. */
 bool render_worker_is_stale(render_worker *p);
-/* Shall what is on its way end? of is the painter. */
+/* Whether to interrupt the current load or pass; of is the render worker. */
 bool render_worker_must_end(void *of);
-/* The stage becomes what is on the desk. */
+/* Copies the scene document to the snapshot. */
 void render_worker_renew_snapshot(render_worker *p);
-/* The slime's orders and its motion. */
+/* Runs the slime's commands and its motion. */
 void render_worker_move_snapshot(render_worker *p);
-/* The next pass, and its picture. */
+/* Renders the next pass and publishes its image. */
 void render_worker_render_pass(render_worker *p);
 
-/* Frees what a picture that is not shared holds. */
+/* Frees the contents of an image that is not shared. */
 void shared_image_drop(const shared_image *p);
-/* One owner; takes what shown holds. NULL when memory is out: it is then the caller's still. */
+/* Makes a shared image with one owner from the contents of shown, or returns NULL when out of memory; the contents
+ * then still belong to the caller. */
 const shared_image *shared_image_create(const shared_image *shown);
 
-/* Pages are to be told the state. */
+/* Calls the listener's state_changed. */
 void render_worker_notify(render_worker *p);
-/* The stage's trouble is this; with the lock held, true where pages are to be told; the other one locks and tells. */
+/* Sets the snapshot's error. render_worker_take_error expects the lock and returns true if the listener must be
+ * called; render_worker_set_error locks and calls it. */
 bool render_worker_take_error(render_worker *p, status code, const diagnostic *why);
 void render_worker_set_error(render_worker *p, status code, const diagnostic *why);

@@ -1,46 +1,46 @@
-/* The painter's stage: the scene that it shows, brought there from the desk and moved. See
+/* The render worker's snapshot: the copy of the scene document that is rendered, kept up to date and moved. See
  * web/live/render_worker_private.h. */
 #include "web/live/render_worker_private.h"
 #include "measure/clock.h"
 #include "scene/motion/motion.h"
 #include "scene/model/scene.h"
 
-/* Of a frame of the live slime, how long its motion may take. */
+/* The share of a live frame that the motion may take. */
 static const double move_s = 0.02;
 
-/* So often may a first pass be ended by newer changes before one is let through: who watches somebody else's drag shall
- * see it. But no longer than so: what takes minutes must not keep back what is newer. */
-enum { ENDED_MAX = 12 };
+/* After so many interruptions by newer changes one first pass may finish, so that a viewer of somebody else's drag
+ * sees an image; but only for let_through_s, so that a slow pass does not delay newer changes. */
+enum { INTERRUPTED_MAX = 12 };
 static const double let_through_s = 0.5;
 
 bool render_worker_is_stale(render_worker *p)
 {
-    return scene_document_generation(p->scene_document) != p->taken;
+    return scene_document_generation(p->scene_document) != p->taken_generation;
 }
 
-/* Shall what is on its way end? A first pass that was ended too often goes on for a while. */
+/* Whether to interrupt the current load or pass. A first pass that was interrupted too often continues for a while. */
 bool render_worker_must_end(void *of)
 {
     render_worker *p = of;
     pthread_mutex_lock(&p->lock);
     const bool now = p->stop || p->waiting;
     pthread_mutex_unlock(&p->lock);
-    const bool let_through = p->ended >= ENDED_MAX && clock_wall_s() - p->begun_s < let_through_s;
-    return now || (render_worker_is_stale(p) && !let_through) || (live_is_due(p->toy) && p->pass > 0);
+    const bool let_through = p->interrupted >= INTERRUPTED_MAX && clock_wall_s() - p->started_s < let_through_s;
+    return now || (render_worker_is_stale(p) && !let_through) || (live_is_due(p->live_slime) && p->pass > 0);
 }
 
-/* A slime's way to its moment may be long: it ends where that is no longer wanted, by the desk or by who plays with it.
- */
+/* Simulating a slime up to its time_s may take long: it is interrupted by a newer document or a command to the live
+ * slime. */
 static bool go_on_loading(void *of, double share_done)
 {
     (void)share_done;
-    return !live_is_due(((render_worker *)of)->toy);
+    return !live_is_due(((render_worker *)of)->live_slime);
 }
 
 static status load_snapshot(render_worker *p, diagnostic *why)
 {
     const load_watch watch = {go_on_loading, p};
-    p->begun_s = clock_wall_s();
+    p->started_s = clock_wall_s();
     return job_load(p->with, p->snapshot, &watch, why);
 }
 
@@ -49,7 +49,7 @@ static bool has_slime(const render_worker *p)
     return p->snapshot && scene_moves(p->snapshot);
 }
 
-/* Under the stage lock, so that nobody looks at a stage that is not loaded. */
+/* Call it under the snapshot lock, so that no reader sees a snapshot that is not loaded. */
 static void set_ready(render_worker *p, bool ready)
 {
     pthread_mutex_lock(&p->lock);
@@ -57,40 +57,40 @@ static void set_ready(render_worker *p, bool ready)
     pthread_mutex_unlock(&p->lock);
 }
 
-/* The stage becomes what is on the desk, with as much as possible of what was loaded before. */
+/* Copies the scene document to the snapshot and reuses as much loaded data as possible. */
 void render_worker_renew_snapshot(render_worker *p)
 {
     diagnostic why = {.line = 0};
     uint64_t generation;
     scene *next = scene_document_take(p->scene_document, &generation);
-    p->taken = generation; /* before it is loaded, which ends when there is a newer one */
+    p->taken_generation = generation; /* set before loading, which a newer generation interrupts */
     const bool had_slime = has_slime(p);
     pthread_rwlock_wrlock(&p->snapshot_lock);
     set_ready(p, false);
     status code = next ? STATUS_OK : out_of_memory(&why);
     if (next) {
-        if (p->snapshot && !live_is_on(p->toy))
+        if (p->snapshot && !live_is_on(p->live_slime))
             scene_borrow_meshes(next, p->snapshot);
-        live_detach(p->toy);
+        live_detach(p->live_slime);
         scene_destroy(p->snapshot);
         p->snapshot = next;
-        code = live_attach(p->toy, next, &why);
+        code = live_attach(p->live_slime, next, &why);
     }
     THEN(code, load_snapshot(p, &why));
     pthread_rwlock_unlock(&p->snapshot_lock);
-    if (code == STATUS_OK && !live_is_on(p->toy))
-        scene_document_lend(p->scene_document, p->snapshot, generation);
+    if (code == STATUS_OK && !live_is_on(p->live_slime))
+        scene_document_share_loaded(p->scene_document, p->snapshot, generation);
     pthread_mutex_lock(&p->lock);
     p->snapshot_generation =
-        code == STATUS_INTERRUPTED ? 0 : generation; /* 0: begun again, from what was loaded so far */
+        code == STATUS_INTERRUPTED ? 0 : generation; /* 0: try again, with the data loaded so far */
     p->snapshot_ready = code == STATUS_OK;
     const bool differs = render_worker_take_error(p, code == STATUS_INTERRUPTED ? STATUS_OK : code, &why);
     pthread_mutex_unlock(&p->lock);
-    if (differs || has_slime(p) != had_slime) /* which is part of the state */
+    if (differs || has_slime(p) != had_slime) /* whether there is a slime is part of the state */
         render_worker_notify(p);
     if (code == STATUS_INTERRUPTED) {
-        p->ended += render_worker_is_stale(p);
-        p->taken = 0;
+        p->interrupted += render_worker_is_stale(p);
+        p->taken_generation = 0;
     }
     p->pass = 0;
     p->plan =
@@ -105,18 +105,18 @@ static bool is_bare(const scene *snapshot)
     return bare;
 }
 
-/* The slime's orders and its motion; a stage that moved is painted anew. What it leaves without a mesh, whenever the
- * order came, is loaded. */
+/* Runs the slime's commands and its motion; a snapshot that moved is rendered again. A slime that is left without a
+ * mesh is loaded, whenever the command came. */
 void render_worker_move_snapshot(render_worker *p)
 {
     diagnostic why = {.line = 0};
-    bool told = false;
+    bool state_changed = false;
     pthread_rwlock_wrlock(&p->snapshot_lock);
-    status code = live_advance(p->toy, move_s, &told, &why);
-    const bool moved = live_take_moved(p->toy),
-               ended = (p->was_on && !live_is_on(p->toy)) || (p->snapshot_ready && is_bare(p->snapshot));
-    p->was_on = live_is_on(p->toy);
-    if (code == STATUS_OK && ended)
+    status code = live_advance(p->live_slime, move_s, &state_changed, &why);
+    const bool moved = live_take_moved(p->live_slime),
+               interrupted = (p->was_on && !live_is_on(p->live_slime)) || (p->snapshot_ready && is_bare(p->snapshot));
+    p->was_on = live_is_on(p->live_slime);
+    if (code == STATUS_OK && interrupted)
         code = load_snapshot(p, &why);
     if (code != STATUS_OK)
         set_ready(p, false);
@@ -125,14 +125,14 @@ void render_worker_move_snapshot(render_worker *p)
         pthread_mutex_lock(&p->lock);
         p->snapshot_generation = 0;
         pthread_mutex_unlock(&p->lock);
-        p->taken = 0; /* begun again */
+        p->taken_generation = 0; /* copy and load again */
     } else if (code != STATUS_OK) {
         render_worker_set_error(p, code, &why);
     }
-    if (moved || ended || told) {
+    if (moved || interrupted || state_changed) {
         p->pass = 0;
         p->plan = passes_plan(&p->snapshot->render, p->rate, RENDER_WORKER_FIRST_S);
     }
-    if (told)
+    if (state_changed)
         render_worker_notify(p);
 }

@@ -1,4 +1,4 @@
-/* What the painter's thread does in turn. See web/live/render_worker_private.h. */
+/* The main loop of the render worker's thread. See web/live/render_worker_private.h. */
 #include "web/live/render_worker_private.h"
 
 #include "base/float_environment.h"
@@ -6,16 +6,16 @@
 
 void render_worker_notify(render_worker *p)
 {
-    p->listener.told(p->listener.context);
+    p->listener.state_changed(p->listener.context);
 }
 
-/* With the lock held; true where pages are to be told. */
+/* The lock is held; true if the listener must be called. */
 bool render_worker_take_error(render_worker *p, status code, const diagnostic *why)
 {
     const bool differs = code != p->trouble_code || (code != STATUS_OK && strcmp(why->what, p->trouble.what) != 0);
     p->trouble_code = code;
     p->trouble = *why;
-    pthread_cond_broadcast(&p->news);
+    pthread_cond_broadcast(&p->changed);
     return differs;
 }
 
@@ -28,22 +28,22 @@ void render_worker_set_error(render_worker *p, status code, const diagnostic *wh
         render_worker_notify(p);
 }
 
-/* Sleeps until there is something to do; false when it is to end. */
+/* Sleeps until there is work; false at the end. */
 static bool wait_for_work(render_worker *p)
 {
     pthread_mutex_lock(&p->lock);
     for (;;) {
         pthread_mutex_unlock(&p->lock);
         const bool due =
-            render_worker_is_stale(p) || (p->snapshot_ready && p->pass < p->plan.count) || live_is_due(p->toy);
+            render_worker_is_stale(p) || (p->snapshot_ready && p->pass < p->plan.count) || live_is_due(p->live_slime);
         pthread_mutex_lock(&p->lock);
         if (p->stop || (due && !p->waiting))
             break;
         p->busy = false;
-        pthread_cond_broadcast(&p->news);
-        while (!p->woken && !p->stop && (p->waiting || !due))
+        pthread_cond_broadcast(&p->changed);
+        while (!p->wake_requested && !p->stop && (p->waiting || !due))
             pthread_cond_wait(&p->wake, &p->lock);
-        p->woken = false;
+        p->wake_requested = false;
     }
     p->busy = !p->stop;
     const bool go_on = !p->stop;
@@ -58,14 +58,14 @@ void *render_worker_thread(void *of)
     while (wait_for_work(p)) {
         if (render_worker_is_stale(p))
             render_worker_renew_snapshot(p);
-        if (p->snapshot && (live_is_due(p->toy) || p->was_on))
+        if (p->snapshot && (live_is_due(p->live_slime) || p->was_on))
             render_worker_move_snapshot(p);
         if (p->snapshot_ready && p->pass < p->plan.count)
             render_worker_render_pass(p);
     }
     pthread_mutex_lock(&p->lock);
     p->busy = false;
-    pthread_cond_broadcast(&p->news);
+    pthread_cond_broadcast(&p->changed);
     pthread_mutex_unlock(&p->lock);
     return NULL;
 }

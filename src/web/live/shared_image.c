@@ -1,4 +1,4 @@
-/* Pictures that are shared: see web/live/render_worker.h. */
+/* Reference-counted images: see web/live/render_worker.h. */
 #include "web/live/render_worker_private.h"
 #include "report/json.h"
 
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 typedef struct shared_picture {
-    shared_image shown; /* first: a picture's address is this one's */
+    shared_image shown; /* first, so that a shared_image pointer can be cast to its owner */
     atomic_int owners;
     pthread_mutex_t lock;
     unsigned char *png;
@@ -73,7 +73,7 @@ json_t *shared_image_json(const shared_image *p)
                   p->width, "height", p->height, "full_width", p->full_width, "full_height", p->full_height);
     if (!o)
         return NULL;
-    json_t *numbers = json_deep_copy(p->numbers); /* references are not counted across threads */
+    json_t *numbers = json_deep_copy(p->numbers); /* jansson's reference counts are not atomic */
     int bad = !numbers || json_object_update(o, numbers);
     json_decref(numbers);
     bad |= json_object_set_new(o, "film_hash", p->final ? json_string(hash) : json_null());

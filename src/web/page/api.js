@@ -1,11 +1,13 @@
 /* The laboratory's API over fetch.
  *
  * exports: ApiError, createApi(listeners)
- *   api.get(path), api.post(path, body), api.del(path)   JSON in and out; throw ApiError; get takes a limit in ms too
- *   api.blob(path)                                       a picture or file: {blob, headers}; throws ApiError
- *   listeners: generation(number) for each reply that has one, reached() for each reply, lost() when nobody answers,
- *   refused() for 401
- * ApiError: message, remedy, status (0: nobody answered), and file, line, column where the server says them. */
+ *   api.get(path), api.post(path, body), api.del(path)   JSON in and out; throw ApiError; get also takes a time
+ *   limit in ms
+ *   api.blob(path)                                       an image or file: {blob, headers}; throws ApiError
+ *   listeners: generation(number) for each reply with a generation, reached() for each reply, lost() when the server
+ *   does
+ *   not answer, refused() for 401
+ * ApiError: message, remedy, status (0: no answer), and file, line, column if the reply has them. */
 
 const PATIENCE_MS = 60000;
 
@@ -24,11 +26,11 @@ export class ApiError extends Error {
 const gone = () =>
   new ApiError(0, {
     error: 'the server does not answer',
-    remedy: 'see whether cuvette lab still runs in its terminal',
+    remedy: 'check in its terminal that cuvette lab is still running',
   });
 const stranger = () =>
   new ApiError(401, {
-    error: 'this page is not known to the server',
+    error: "the server does not accept this page's token",
     remedy: 'open the address that cuvette lab printed when it started',
   });
 

@@ -1,18 +1,18 @@
-/* Says at once that the server is gone, and keeps controls from being used meanwhile.
- * exports: createBanner(banner, parts, lab); parts become inert while there is no server */
+/* The banner that reports a lost server and disables the controls meanwhile.
+ * exports: createBanner(banner, parts, lab); parts become inert while the server is lost */
 
 import { element, icon, replace } from './ui.js';
 
 const words = {
-  lost: ['The server does not answer.', 'Is cuvette lab still running? The page goes on by itself when it is back.'],
+  lost: ['The server does not answer.', 'Is cuvette lab still running? The page reconnects by itself.'],
   refused: [
-    'This page is not known to the server.',
-    'It was probably started anew: open the address that it has printed in its terminal.',
+    "The server does not accept this page's token.",
+    'It was probably restarted: open the address that it printed in its terminal.',
   ],
 };
 
 export function createBanner(banner, parts, lab) {
-  let held = null; /* what had the focus, which goes back to it */
+  let held = null; /* the element that had the focus and gets it back */
   const show = (how) => {
     const [what, remedy] = words[how] || [];
     banner.hidden = !what;
@@ -34,7 +34,7 @@ export function createBanner(banner, parts, lab) {
   let before = lab.connected;
   lab.on('connection', (how) => {
     show(how);
-    if (how === 'open' && before !== 'opening') lab.say('The server is back.');
+    if (how === 'open' && before !== 'opening') lab.say('Reconnected to the server.');
     before = how;
   });
 }

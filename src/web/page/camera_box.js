@@ -1,5 +1,5 @@
-/* The camera in numbers: exact steps, and fields for where it stands and looks. Opens under the picture.
- * exports: cameraBox(root, lab); sets lab.view.camera: {key(event)} for the keys of the picture */
+/* The camera box under the image: exact steps, and fields for position and aim.
+ * exports: cameraBox(root, lab); sets lab.view.camera: {key(event)} for the keys of the image */
 
 import { button, choice, element, gesture, memory, number } from './ui.js';
 import { moveCamera } from './tool_orbit.js';
@@ -9,7 +9,7 @@ const FINE_ORBIT = 1;
 const AXES = ['x', 'y', 'z'];
 const short = (x) => Number(x.toPrecision(5));
 const TURNS = {
-  around: ['Yaw: around to the left', 'Yaw: around to the right', 'Pitch: around, higher', 'Pitch: around, lower'],
+  around: ['Yaw: orbit to the left', 'Yaw: orbit to the right', 'Pitch: orbit upwards', 'Pitch: orbit downwards'],
   spot: ['Yaw: look left', 'Yaw: look right', 'Pitch: look up', 'Pitch: look down'],
 };
 
@@ -76,7 +76,7 @@ export function cameraBox(root, lab) {
     radios: true,
     choices: [
       ['around', 'Around target'],
-      ['spot', 'On the spot'],
+      ['spot', 'In place'],
     ],
     value: settings.around ? 'around' : 'spot',
     onchange: (word) => {
@@ -100,7 +100,7 @@ export function cameraBox(root, lab) {
     icon: 'camera',
     kind: 'quiet',
     small: true,
-    title: 'Exact steps and numbers of the camera',
+    title: 'Move the camera by exact steps and numbers',
     'aria-expanded': 'false',
   });
   lab.view.bar.append(toggle);
@@ -115,11 +115,11 @@ export function cameraBox(root, lab) {
   lab.view.camera = { key: createKeys(lab, settings) };
 }
 
-/* Whatever of place and aim the scene has as parameters: position, and target or yaw and pitch. */
+/* Fields for the parameters of position and aim that the scene has: position, and target or yaw and pitch. */
 function createFields(root, lab) {
   let kinds = '';
   let shown = [];
-  const wanted = [
+  const paths = [
     'camera.position',
     'camera.target',
     'camera.yaw_deg',
@@ -170,7 +170,7 @@ function createFields(root, lab) {
   }
 
   function update() {
-    const rows = wanted.map((path) => lab.param(path)).filter(Boolean);
+    const rows = paths.map((path) => lab.param(path)).filter(Boolean);
     const now = rows.map((row) => row.path).join();
     if (now !== kinds) {
       kinds = now;

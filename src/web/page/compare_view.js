@@ -1,15 +1,16 @@
-/* The pinned picture A and the map of differences, drawn over the picture B.
+/* Draws the reference image A and the difference map over the newest image B.
  *
- * exports: createCompareView(lab, onshare(share)) -> {set({a, map, mode, share, strength, spot}), flip(on)}
- *   a, map      addresses of pictures of B's size, or null
- *   mode        'b': B alone; 'wipe': A to the left of the handle, its share of the width 0..1; 'map': the map,
- *               strength 0..1
- *   spot        [x, y], a pixel that is framed, or null
- * The handle is dragged, or moved with the arrow keys. */
+ * exports: createCompareView(lab, onshare(share)) -> {set({a, map, mode, share, strength, pixel}), flip(on)}
+ *   a, map      URLs of images of B's size, or null
+ *   mode        'b': B alone; 'wipe': A to the left of the handle, over the share 0..1 of the width; 'map': the map
+ *   with
+ *               opacity strength 0..1
+ *   pixel       [x, y], a pixel to frame, or null
+ * The handle is dragged with the pointer or moved with the arrow keys. */
 
 import { element, svg, unique } from './ui.js';
 
-const EDGE = 0.05; /* a share too small for its letter */
+const EDGE = 0.05; /* a smaller share hides the letter */
 
 export function createCompareView(lab, onshare) {
   const { view } = lab;
@@ -23,7 +24,7 @@ export function createCompareView(lab, onshare) {
     type: 'button',
     class: 'wipe-handle',
     role: 'slider',
-    'aria-label': 'Share of the pinned picture',
+    'aria-label': 'Share of the reference image',
     'aria-valuemin': 0,
     'aria-valuemax': 100,
     'aria-orientation': 'horizontal',
@@ -54,7 +55,7 @@ export function createCompareView(lab, onshare) {
     element('span', { class: name === 'B' ? 'wipe-label right' : 'wipe-label', text: name, hidden: true }),
   );
   const layer = view.layer('compare');
-  let now = { a: null, map: null, mode: 'b', share: 0.5, strength: 1, spot: null };
+  let now = { a: null, map: null, mode: 'b', share: 0.5, strength: 1, pixel: null };
   let flipped = false;
 
   layer.append(svg('clipPath', { id: clip }, part), a, map, edge, frame);
@@ -83,7 +84,7 @@ export function createCompareView(lab, onshare) {
     const { width, height } = view;
     for (const image of [a, map]) {
       for (const [name, value] of Object.entries({ width, height })) image.setAttribute(name, value);
-      /* As the picture itself is drawn. */
+      /* Smoothed in the same way as B. */
       image.style.imageRendering = view.scale * devicePixelRatio < 2 ? 'auto' : 'pixelated';
     }
     source(a, now.a);
@@ -94,7 +95,7 @@ export function createCompareView(lab, onshare) {
     map.style.display = now.mode === 'map' && now.map && !flipped ? '' : 'none';
     map.setAttribute('opacity', now.strength);
     edge.setAttribute('d', wiping ? `M${share * width} 0V${height}` : '');
-    frame.setAttribute('d', now.spot ? `M${now.spot}h1v1h-1z` : '');
+    frame.setAttribute('d', now.pixel ? `M${now.pixel}h1v1h-1z` : '');
     place(wiping, share);
   }
 

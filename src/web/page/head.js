@@ -1,6 +1,6 @@
-/* The head of the page: what scene it is, undo, saving and copying, light and dark.
- * exports: createHead(root, lab); sets lab.undo(redo) and lab.name() (the scene's file name without folders and ending)
- * */
+/* The page header: scene name, undo, save and copy, theme.
+ * exports: createHead(root, lab); sets lab.undo(redo) and lab.name() (the scene's file name without folder and
+ * extension) */
 
 import { ask, button, copy, download, element, icon, memory } from './ui.js';
 import { showHelp } from './keys.js';
@@ -22,7 +22,7 @@ export function createHead(root, lab) {
   const reset = button('Reset all', () => resetAll(lab), {
     icon: 'reset',
     kind: 'quiet',
-    title: 'All values back to those with which the scene was opened',
+    title: 'Reset all values to those when the scene was opened',
   });
   root.append(
     element('div', { class: 'brand' }, icon('cuvette'), element('span', { text: 'Cuvette' })),
@@ -34,13 +34,13 @@ export function createHead(root, lab) {
       button('PNG', () => savePicture(lab, 'png'), {
         icon: 'image',
         kind: 'quiet',
-        title: 'Save the final picture as PNG',
+        title: 'Save the final image as PNG',
         'aria-label': 'Save PNG',
       }),
       button('JPEG', () => savePicture(lab, 'jpg'), {
         icon: 'image',
         kind: 'quiet',
-        title: 'Save the final picture as JPEG',
+        title: 'Save the final image as JPEG',
         'aria-label': 'Save JPEG',
       }),
       button('Scene', () => copyScene(lab), {
@@ -52,7 +52,7 @@ export function createHead(root, lab) {
       button('Command', () => copyCommand(lab), {
         icon: 'terminal',
         kind: 'quiet',
-        title: 'Copy the command that renders this picture',
+        title: 'Copy the command that renders this image',
         'aria-label': 'Copy render command',
       }),
     ),
@@ -60,13 +60,13 @@ export function createHead(root, lab) {
       'div',
       { class: 'head-group' },
       themeButton(),
-      button('Help', showHelp, { icon: 'help', kind: 'quiet', bare: true, title: 'Keys (?)' }),
+      button('Help', showHelp, { icon: 'help', kind: 'quiet', bare: true, title: 'Keyboard shortcuts (?)' }),
     ),
   );
 
   lab.on('state', (state) => {
     title.textContent = state.title || 'Untitled scene';
-    file.textContent = state.file || 'not in a file yet';
+    file.textContent = state.file || 'not saved to a file yet';
     mark.hidden = state.saved;
     document.title = `${state.saved ? '' : '• '}${state.title || 'Cuvette'}`;
     for (const [node, what, word] of [
@@ -82,19 +82,18 @@ export function createHead(root, lab) {
 async function resetAll(lab) {
   const yes = await ask(
     'Reset all',
-    'Put all values, and the objects themselves, back to what they were when the scene was ' +
-      'opened? Undo brings them back.',
+    'Reset all values and objects to their state when the scene was ' + 'opened? Undo reverts the reset.',
     'Reset all',
   );
-  if (yes) lab.change('/api/reset', {}).then(() => lab.say('The scene is as it was opened.'), lab.fail);
+  if (yes) lab.change('/api/reset', {}).then(() => lab.say('The scene is reset.'), lab.fail);
 }
 
 async function savePicture(lab, ending) {
-  lab.say('Waiting for the final picture …');
+  lab.say('Waiting for the final image …');
   try {
     const { blob } = await lab.blob(`/api/picture.${ending}?wait=1`);
     download(blob, `${lab.name()}.${ending}`);
-    lab.say(`${lab.name()}.${ending} is saved.`);
+    lab.say(`${lab.name()}.${ending} saved.`);
   } catch (error) {
     lab.fail(error);
   }
@@ -117,7 +116,7 @@ async function copyCommand(lab) {
     lab.say(
       complete
         ? 'The command is on the clipboard.'
-        : 'The command is on the clipboard, but objects came or went: save the scene first.',
+        : 'The command is on the clipboard, but objects were added or removed: save the scene first.',
     );
   } catch (error) {
     lab.fail(error);
@@ -133,12 +132,12 @@ function themeButton() {
     'button',
     { type: 'button', class: 'button quiet bare', onclick: () => set(dark() ? 'light' : 'dark') },
     face,
-    element('span', { class: 'visually-hidden', text: 'Dark colours' }),
+    element('span', { class: 'visually-hidden', text: 'Dark theme' }),
   );
   const show = () => {
     face.replaceChildren(icon(dark() ? 'sun' : 'moon'));
     node.setAttribute('aria-pressed', String(dark()));
-    node.title = dark() ? 'Light colours' : 'Dark colours';
+    node.title = dark() ? 'Light theme' : 'Dark theme';
   };
   const set = (theme) => {
     if (theme) document.documentElement.dataset.theme = theme;

@@ -1,6 +1,5 @@
-/* Small drawings of one line width, in the colour of the text around them.
- * exports: icon(name) -> svg; names: the keys of paths below. Decoration only: the button that holds one is named by
- * its text. */
+/* Line icons in the colour of the surrounding text.
+ * exports: icon(name) -> svg; names: the keys of paths below. Icons are decoration: a button is named by its text. */
 
 import { svg } from './ui_base.js';
 

@@ -1,38 +1,38 @@
-/* Keys of the whole page, and the dialog that lists them. exports: createKeys(lab), showHelp() */
+/* The keyboard shortcuts of the whole page and the dialog that lists them. exports: createKeys(lab), showHelp() */
 
 import { dialog, element, table } from './ui.js';
 
 const list = [
-  ['Ctrl Z', 'undo; Ctrl Shift Z or Ctrl Y redo'],
+  ['Ctrl Z', 'undo; Ctrl Shift Z or Ctrl Y: redo'],
   ['Ctrl S', 'save the scene'],
-  ['?', 'this list'],
-  ['Arrow keys', 'on the picture: orbit by 5°, with Shift by 1°'],
-  ['W S, A D, Q E', 'on the picture: step forward and back, left and right, down and up; with Shift a tenth of it'],
-  ['Page Up, Page Down', 'on the picture: closer to the target, farther from it'],
-  ['+ and -, 0, 1', 'on the picture: zoom, the whole picture, pixel for pixel'],
-  ['Ctrl arrow keys', 'on the picture: move the zoomed picture'],
-  ['Ctrl wheel', 'zoom about the pointer; wheel alone: forward and back while Orbit is chosen'],
-  ['Space or middle button', 'and drag: move the zoomed picture'],
+  ['?', 'show this list'],
+  ['Arrow keys', 'on the image: orbit by 5°, with Shift by 1°'],
+  ['W S, A D, Q E', 'on the image: step forward and back, left and right, down and up; with Shift a tenth of a step'],
+  ['Page Up, Page Down', 'on the image: closer to or farther from the target'],
+  ['+ and -, 0, 1', 'on the image: zoom, fit the image, actual pixels'],
+  ['Ctrl arrow keys', 'on the image: pan'],
+  ['Ctrl wheel', 'zoom about the pointer; wheel alone with Orbit: forward and back'],
+  ['Space or middle button', 'and drag: pan'],
   [
     'Enter',
-    'with Grab, on the picture: take hold of the slime and let go; arrow keys pull, Page Up and ' +
-      'Page Down along the view',
+    'with Grab, on the image: grab or release the slime; arrow keys pull, Page Up and ' +
+      'Page Down pull along the view',
   ],
-  ['Shift drag', 'with Orbit: turn on the spot; with Light: nearer and farther'],
-  ['Arrow keys with Ask', 'on the picture: the next pixel, with Shift the tenth; Escape clears'],
-  ['F', 'while it is held: the pinned picture in place of the newest'],
-  ['Home on the splitter', 'panels of their usual width; arrow keys make them wider and narrower'],
+  ['Shift drag', 'with Orbit: turn in place; with Light: nearer and farther'],
+  ['Arrow keys with Inspect', 'on the image: move by one pixel, with Shift by ten; Escape clears'],
+  ['F', 'while held: show the reference image A'],
+  ['Home on the splitter', 'reset the width of the panels; arrow keys change it'],
 ];
 
 export function showHelp() {
   const keyed = list.map(([keys, what]) => [element('kbd', { text: keys }), what]);
   dialog({
-    title: 'Keys',
+    title: 'Keyboard shortcuts',
     wide: true,
     content: table({
-      caption: 'Keys and what they do',
+      caption: 'Keyboard shortcuts',
       hideCaption: true,
-      columns: ['Keys', 'What they do'],
+      columns: ['Keys', 'Action'],
       rows: keyed,
     }),
   });
@@ -44,7 +44,7 @@ const writes = (target) =>
       'a, select, [contenteditable]',
   );
 
-/* What is being written in a field is part of what is saved. */
+/* Commits a field that is being edited before saving. */
 function save(field, lab) {
   if (writes(field)) {
     field.blur();

@@ -1,6 +1,5 @@
-/* Puts the laboratory together: one object lab (store.js), the picture (view.js), the panels, head and status line.
- * Exports nothing; the browser's
- * console finds it as lab. */
+/* Assembles the laboratory: one object lab (store.js), the image (view.js), the panels, header and status line.
+ * Exports nothing; the browser's console can use lab. */
 
 import { createLab } from './store.js';
 import { createView } from './view.js';
@@ -14,7 +13,7 @@ import { orbitTool } from './tool_orbit.js';
 import { lightTool } from './tool_light.js';
 import { cameraBox } from './camera_box.js';
 
-/* A panel that cannot be loaded leaves the others as they are. */
+/* A panel that cannot be loaded does not affect the others. */
 const modules = ['params', 'edit', 'pixel', 'compare', 'slime', 'studies', 'machine'];
 
 const at = (id) => document.getElementById(id);
@@ -24,7 +23,7 @@ async function start() {
   window.lab = lab;
   createStatus(at('status'), at('live'), lab);
   lab.notes = createNotes(lab);
-  createBanner(at('banner'), [at('head'), at('desk')], lab);
+  createBanner(at('banner'), [at('head'), at('workspace')], lab);
   lab.view = createView(at('view'), lab);
   orbitTool(lab);
   lightTool(lab);
@@ -34,7 +33,7 @@ async function start() {
   createKeys(lab);
   const loaded = await Promise.allSettled(modules.map((name) => import(`./panel_${name}.js`)));
   const panels = loaded.filter((each) => each.status === 'fulfilled').map((each) => each.value.panel);
-  lab.panels = createPanels(at('side'), at('splitter'), at('desk'), panels, lab);
+  lab.panels = createPanels(at('side'), at('splitter'), at('workspace'), panels, lab);
   for (const each of loaded) if (each.status === 'rejected') lab.fail(each.reason);
   lab.start();
 }

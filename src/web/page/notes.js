@@ -1,4 +1,4 @@
-/* The linter's notes on the scene: asked for with each final picture. A new one is told in the status line; the button
+/* The linter's notes on the scene, fetched for each final image. A new note is shown in the status line; the button
  * there lists all.
  *
  * exports: createNotes(lab) -> {count(), show()}; emits 'notes' on the lab when the list has changed */
@@ -7,8 +7,8 @@ import { dialog, element } from './ui.js';
 
 export function createNotes(lab) {
   let notes = [];
-  let asked = 0; /* the generation that was asked about */
-  let dialogue = null;
+  let checkedGeneration = 0; /* the last generation that was checked */
+  let openDialog = null;
 
   const line = (note) => [note.place, note.text].filter(Boolean).join(': ');
 
@@ -23,39 +23,39 @@ export function createNotes(lab) {
               {},
               note.place ? element('code', { text: note.place }) : null,
               element('span', { text: `${note.place ? ' ' : ''}${note.text}.` }),
-              note.remedy ? element('span', { class: 'notes-remedy', text: ` What to do: ${note.remedy}.` }) : null,
+              note.remedy ? element('span', { class: 'notes-remedy', text: ` Remedy: ${note.remedy}.` }) : null,
             ),
           ),
         )
-      : element('p', { text: 'There is nothing to note.' });
+      : element('p', { text: 'No notes.' });
 
   async function ask() {
     const generation = lab.picture?.final ? lab.picture.generation : 0;
-    if (!generation || generation === asked) return;
-    asked = generation;
+    if (!generation || generation === checkedGeneration) return;
+    checkedGeneration = generation;
     const known = new Set(notes.map(line));
     try {
       ({ notes } = await lab.get('/api/notes'));
     } catch (error) {
-      asked = 0; /* a study measures, or the scene cannot be rendered: that is told elsewhere */
+      checkedGeneration = 0; /* a study is measuring, or the scene cannot be rendered: both are reported elsewhere */
       return;
     }
     const [first, ...more] = notes.filter((note) => !known.has(line(note)));
     if (first) lab.say(`Note: ${line(first)}`, more.length ? `${first.remedy}; and ${more.length} more` : first.remedy);
-    if (dialogue) dialogue.node.querySelector('.dialog-body').replaceChildren(list());
+    if (openDialog) openDialog.node.querySelector('.dialog-body').replaceChildren(list());
     lab.emit('notes', notes);
   }
 
   lab.on('picture', ask);
-  lab.on('afresh', () => {
-    asked = 0;
+  lab.on('restarted', () => {
+    checkedGeneration = 0;
   });
   return {
     count: () => notes.length,
     show() {
-      dialogue = dialog({ title: 'Notes on the scene', content: list() });
-      dialogue.closed.then(() => {
-        dialogue = null;
+      openDialog = dialog({ title: 'Notes on the scene', content: list() });
+      openDialog.closed.then(() => {
+        openDialog = null;
       });
     },
   };

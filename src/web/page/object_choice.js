@@ -1,14 +1,15 @@
-/* Which object is chosen, for the list, its details and the picture; and what is done to it.
+/* The selected object, shared by the list, its details and the image, and the changes to it.
  * exports: createChoice(lab) -> choice
- *   choice.name, choice.object          '' and undefined for none; an object that was just made may not be in the scene
+ *   choice.name, choice.object          '' and undefined for none; an object that was just added may not be in the
+ *   scene
  *                                       yet
- *   choice.choose(name)                 '' lets go
- *   choice.on(f)                        f() after another is chosen, or the chosen one is no more
- *   choice.add(body)                    POST /api/objects; chooses what comes
- *   choice.move(by, gesture), choice.turn(by, gesture), choice.scale(factor, gesture)    of the chosen one; those
- *       of one gesture that wait are joined
- *   choice.copy(), choice.remove(), choice.rename(to), choice.dress(material or null)    promises of true where it
- *       was done */
+ *   choice.choose(name)                 '' clears the selection
+ *   choice.on(f)                        f() after another object is selected or the selected one has vanished
+ *   choice.add(body)                    POST /api/objects; selects the new object
+ *   choice.move(by, gesture), choice.turn(by, gesture), choice.scale(factor, gesture)    change the selected object;
+ *       waiting changes of one gesture are merged
+ *   choice.copy(), choice.remove(), choice.rename(to), choice.setMaterial(material or null)    promises of true on
+ *       success */
 
 import { add } from './ray_vectors.js';
 
@@ -16,7 +17,7 @@ const join = (waiting, newer) => ({ by: add(waiting.by, newer.by) });
 
 export function createChoice(lab) {
   const listeners = new Set();
-  let since = 0; /* the generation in which it is to be there */
+  let since = 0; /* the generation in which the selected object first exists */
 
   const choice = {
     name: '',
@@ -29,7 +30,7 @@ export function createChoice(lab) {
     rename,
     remove,
     copy: () => made(lab.change(at('copy'), {})),
-    dress: (material) => done(lab.change(at('material'), { material })),
+    setMaterial: (material) => done(lab.change(at('material'), { material })),
     move: (by, gesture) => done(lab.change(at('move'), { by }, { gesture, merge: join })),
     turn: (by, gesture) => done(lab.change(at('turn'), { by }, { gesture, merge: join })),
     scale: (factor, gesture) =>
@@ -71,7 +72,7 @@ export function createChoice(lab) {
     try {
       const reply = await promise;
       choose(reply.name, reply.generation);
-      lab.say(`${reply.name} is there.`);
+      lab.say(`${reply.name} added.`);
       return true;
     } catch (error) {
       lab.fail(error);
@@ -99,7 +100,7 @@ export function createChoice(lab) {
     const { name } = choice;
     if (!name || !(await done(lab.del(`/api/objects/${encodeURIComponent(name)}`)))) return false;
     choose('');
-    lab.say(`${name} is removed. Undo brings it back.`);
+    lab.say(`${name} removed. Undo restores it.`);
     return true;
   }
 }

@@ -1,5 +1,5 @@
-/* The chosen object: its name, material, place and direction by steps, its file, and all its parameters. Lights are
- * paged through.
+/* The details of the selected object: name, material, steps for position and direction, its file, and all its
+ * parameters. Lights can be paged through.
  * exports: createDetails(lab, choice, files) -> {node} */
 
 import { button, choice as choiceOf, element, empty, group, replace, text } from './ui.js';
@@ -7,10 +7,10 @@ import { createRow } from './param_row.js';
 import { createPads } from './object_pads.js';
 import { hintOf } from './object_list.js';
 
-const GROUPS = { solid: 'Shape and place', material: 'Look', mesh: 'Mesh', light: 'Light', texture: 'Texture' };
-const OWN = '(its own look)';
+const GROUPS = { solid: 'Shape and placement', material: 'Material', mesh: 'Mesh', light: 'Light', texture: 'Texture' };
+const OWN = '(own material)';
 
-/* What tells a control from the others, also when it is made anew. */
+/* Identifies a control, also after it is recreated. */
 function keyOf(control) {
   const path = control.closest('.param')?.dataset.path || '';
   return [
@@ -21,7 +21,7 @@ function keyOf(control) {
 }
 
 export function createDetails(lab, choice, files) {
-  const node = element('section', { class: 'object-details', 'aria-label': 'The chosen object' });
+  const node = element('section', { class: 'object-details', 'aria-label': 'Selected object' });
   const pads = createPads(choice);
   let rows = [];
   let shown = '';
@@ -37,10 +37,9 @@ export function createDetails(lab, choice, files) {
 
   function show() {
     const { object } = choice;
-    if (!object && choice.name) return; /* it is on its way */
+    if (!object && choice.name) return; /* the object is not in the scene yet */
     if (!object) {
-      if (shown !== 'none')
-        replace(node, empty('Choose an object in the list, or with the tool Object in the picture.'));
+      if (shown !== 'none') replace(node, empty('Select an object in the list, or in the image with the tool Object.'));
       shown = 'none';
       rows = [];
       return;
@@ -86,7 +85,7 @@ export function createDetails(lab, choice, files) {
       element(
         'span',
         { class: 'buttons' },
-        button('Copy', () => choice.copy(), { icon: 'copy', small: true, title: 'Another one like it, beside it' }),
+        button('Copy', () => choice.copy(), { icon: 'copy', small: true, title: 'Add a copy next to it' }),
         button('Remove', remove, { icon: 'trash', small: true, kind: 'danger' }),
       ),
     );
@@ -128,7 +127,7 @@ export function createDetails(lab, choice, files) {
             label: 'Material',
             choices: [['', OWN], ...materials],
             value: object.material || '',
-            onchange: (word) => choice.dress(word || null),
+            onchange: (word) => choice.setMaterial(word || null),
           })
         : null;
     const parts = [object.material, object.mesh].filter(Boolean);
@@ -142,7 +141,7 @@ export function createDetails(lab, choice, files) {
             'div',
             { class: 'buttons' },
             parts.map((part) =>
-              button(`To ${part}`, () => choice.choose(part), { icon: 'right', small: true, kind: 'quiet' }),
+              button(`Go to ${part}`, () => choice.choose(part), { icon: 'right', small: true, kind: 'quiet' }),
             ),
           )
         : null,
@@ -152,7 +151,7 @@ export function createDetails(lab, choice, files) {
   function parameters(object, own) {
     const kinds = [...new Set(own.map((row) => row.group))];
     rows = [];
-    /* Rows look as in the panel of parameters. */
+    /* The same layout as in the parameters panel. */
     return element(
       'div',
       { class: 'panel-params object-rows' },
@@ -161,7 +160,7 @@ export function createDetails(lab, choice, files) {
         rows.push(...made);
         const note =
           kind === 'material' && object.kind === 'solid' && object.material
-            ? `of ${object.material}; what is set here is for ${object.name} alone`
+            ? `of ${object.material}; values set here apply to ${object.name} only`
             : null;
         return group(
           GROUPS[kind] || kind,

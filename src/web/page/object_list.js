@@ -1,4 +1,4 @@
-/* All objects of the scene, by kind. exports: createList(lab, choice) -> {node} */
+/* The list of all objects of the scene, by kind. exports: createList(lab, choice) -> {node} */
 
 import { element, empty, replace } from './ui.js';
 

@@ -1,5 +1,5 @@
-/* The chosen object over the picture, while it is looked after there or in its panel: the outline of a simple solid,
- * and a cross where it stands.
+/* The mark of the selected object over the image, while its tool or panel is active: the outline of a simple solid,
+ * and a cross at its position.
  * exports: createMark(lab, choice) -> {at() -> [x,y,z] or null} */
 
 import { svg } from './ui.js';
@@ -20,15 +20,15 @@ export function createMark(lab, choice) {
 
   function draw() {
     const place = at();
-    const wanted = lab.panels?.chosen() === 'edit' || view.chosen === 'object';
-    layer.replaceChildren(...(wanted && place && lab.state?.camera ? [...outline(), ...cross(place)] : []));
+    const visible = lab.panels?.chosen() === 'edit' || view.chosen === 'object';
+    layer.replaceChildren(...(visible && place && lab.state?.camera ? [...outline(), ...cross(place)] : []));
   }
 
   function stroked(tag, attributes) {
     return ['edge', 'line'].map((what) => svg(tag, { class: `object-${what}`, ...attributes }));
   }
 
-  /* Left out where a part of it is behind the camera. */
+  /* Omitted if a part of it is behind the camera. */
   function outline() {
     const solid = solidPoints(lab).find((each) => each.name === choice.name);
     return (solid?.points || []).flatMap((points) => {

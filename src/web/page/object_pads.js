@@ -1,6 +1,6 @@
-/* Exact steps: an object, or many, move and turn along the world's axes and are scaled.
+/* Buttons that move, turn and scale one or more objects by exact steps along the world axes.
  * exports: createPads(choice, {id = 'object', many = ''}) -> {show({turns, scales}) -> node}
- *   choice: {name, move(by, gesture), turn(by, gesture), scale(factor, gesture)}; id: where sizes of steps are kept;
+ *   choice: {name, move(by, gesture), turn(by, gesture), scale(factor, gesture)}; id: key of the stored step sizes;
  *   many: a word for the labels */
 
 import { button, element, gesture, memory, number } from './ui.js';
@@ -17,7 +17,7 @@ export function createPads(choice, { id = 'object', many = '' } = {}) {
   const named = (verb) => (many ? `${verb} ${many}` : verb);
   let last = null;
 
-  /* Presses of one button that follow each other are one step of undo. */
+  /* Consecutive presses of one button are one undo step. */
   function nameOf(what) {
     const now = performance.now();
     if (!last || last.what !== what || now - last.at > PAUSE_MS) last = { what, gesture: gesture('step') };

@@ -1,6 +1,6 @@
-/* Object: a click in the picture chooses what is there, dragging moves it parallel to the picture, as far from the eye
- * as it is. What has no bounds (a plane) is chosen but
- * not dragged: on it, on the sky, and with Shift anywhere, dragging moves what is chosen already.
+/* The tool Object: a click in the image selects an object, dragging moves it parallel to the image plane at its
+ * depth. An object without bounds (a plane) is selected but not dragged: on it, on the background, and with Shift
+ * anywhere, dragging moves the current selection.
  * exports: objectTool(lab, choice, mark) */
 
 import { gesture } from './ui.js';
@@ -24,8 +24,8 @@ export function objectTool(lab, choice, mark) {
     order: 15,
     cursor: 'pointer',
     hint:
-      'Click an object to choose it, drag to move it; with Shift dragging moves what is chosen ' +
-      'already; arrow keys move, Delete removes',
+      'Click an object to select it, drag to move it; with Shift, drag the current ' +
+      'selection; arrow keys move, Delete removes',
     chosen: () => lab.panels?.use('edit'),
     down,
     move,
@@ -38,8 +38,8 @@ export function objectTool(lab, choice, mark) {
     return dot(minus(point, camera.eye), camera.forward);
   }
 
-  /* The world's way for dx, dy picture pixels at that depth. */
-  function way(dx, dy, depth) {
+  /* The world-space offset for dx, dy image pixels at that depth. */
+  function offset(dx, dy, depth) {
     const { right, up: upward, half_width: w, half_height: h } = lab.state.camera;
     return add(times(right, dx * ((2 * w) / view.width) * depth), times(upward, -dy * ((2 * h) / view.height) * depth));
   }
@@ -70,7 +70,7 @@ export function objectTool(lab, choice, mark) {
     return true;
   }
 
-  /* The pointer may have moved on meanwhile, or gone up. */
+  /* Meanwhile the pointer may have moved or been released. */
   function take(now, hit) {
     now.hit = hit;
     const object = hit && lab.object(hit.solid);
@@ -89,7 +89,7 @@ export function objectTool(lab, choice, mark) {
   function go(now, point) {
     if (!(now.depth > 0) || !choice.name) return;
     const start = now.moved || now.from;
-    const by = way(point.x - start.x, point.y - start.y, now.depth);
+    const by = offset(point.x - start.x, point.y - start.y, now.depth);
     now.moved = point;
     if (by.some((x) => x !== 0)) choice.move(by, now.gesture);
   }
@@ -120,7 +120,7 @@ export function objectTool(lab, choice, mark) {
       const fine = event.shiftKey ? 0.1 : 1;
       const [dx, dy] = ways[event.key];
       choice.move(
-        way((dx * fine) / view.scale, (dy * fine) / view.scale, Math.max(depthOf(mark.at()), 0)),
+        offset((dx * fine) / view.scale, (dy * fine) / view.scale, Math.max(depthOf(mark.at()), 0)),
         keys.gesture,
       );
     } else return false;

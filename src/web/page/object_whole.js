@@ -1,5 +1,4 @@
-/* The whole scene, by steps: its solids, its lights, its camera, or some of them. They turn and are scaled about the
- * origin.
+/* Steps for the whole scene: its solids, lights, camera, or some of them. Rotation and scaling are about the origin.
  * exports: createWhole(lab) -> node */
 
 import { check, element, group } from './ui.js';
@@ -30,18 +29,18 @@ export function createWhole(lab) {
   const pads = createPads(whole, { id: 'whole', many: 'all' });
   return group(
     'Whole scene',
-    { id: 'edit.whole', open: false, hint: 'all solids and lights at once, about the origin' },
+    { id: 'edit.whole', open: false, hint: 'move, turn and scale all together, about the origin' },
     element(
       'div',
-      { class: 'buttons', role: 'group', 'aria-label': 'What of the scene' },
+      { class: 'buttons', role: 'group', 'aria-label': 'Parts of the scene' },
       boxes.map(({ box }) => box.node),
     ),
     pads.show({ turns: true, scales: true }),
   );
 
-  /* The camera alone is an object: it turns where it stands, and has no size. */
+  /* The camera alone turns in place and cannot be scaled. */
   function send(what, body, how) {
-    if (!whole.name) return lab.say('Choose solids, lights or the camera.');
+    if (!whole.name) return lab.say('Select solids, lights or the camera first.');
     return lab.change(`/api/objects/${encodeURIComponent(whole.name)}/${what}`, body, how).catch(lab.fail);
   }
 }

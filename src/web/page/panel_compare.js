@@ -1,4 +1,4 @@
-/* Compare: a pinned picture A beside the newest one B, as pictures and in numbers. exports: panel */
+/* The panel Compare: the reference image A and the newest image B, as images and in numbers. exports: panel */
 
 import { button, choice, element, empty, notice, replace, slider } from './ui.js';
 import { changes, costs, similarity, sizes } from './compare_numbers.js';
@@ -12,7 +12,7 @@ const writes = (target) =>
 
 let model = null;
 
-/* Asks whenever there is a pinned picture and a final one that was not compared with it. */
+/* Requests a comparison whenever there is a reference image and a final image that is not compared yet. */
 function createModel(lab) {
   const listeners = new Set();
   const mine = { answer: null, error: null, pin: null, current: false, on: (listener) => listeners.add(listener) };
@@ -29,7 +29,7 @@ function createModel(lab) {
     if (picture.final && !mine.current) ask();
     else tell();
   });
-  lab.on('afresh', () => {
+  lab.on('restarted', () => {
     Object.assign(mine, { pin: null, answer: null, error: null });
     tell();
   });
@@ -57,7 +57,8 @@ function createModel(lab) {
       if (key(answer.a) === of && of === key(mine.pin))
         Object.assign(mine, { answer, error: null, current: answer.b.serial === lab.picture?.serial });
     } catch (error) {
-      if (error.status === 409) mine.current = false; /* B is being rendered again, or A is gone: news of that comes */
+      if (error.status === 409)
+        mine.current = false; /* B is being rendered again, or A was cleared: an event will follow */
       else mine.error = error;
     }
     tell();
@@ -66,7 +67,7 @@ function createModel(lab) {
 
 const same = ({ a, b }) => a.width === b.width && a.height === b.height;
 
-/* How A and B are drawn: the choice, its slider, and the key that flips. */
+/* How A and B are shown: the mode, its slider, and the flip key. */
 function createShow(lab) {
   const view = createCompareView(lab, setShare);
   const how = choice({
@@ -98,10 +99,10 @@ function createShow(lab) {
     unit: '%',
     oninput: (value) => view.set({ strength: value / 100 }),
   });
-  const flip = button('Hold to see A', null, { icon: 'eye', small: true, title: 'Hold it, or the key F' });
+  const flip = button('Hold to see A', null, { icon: 'eye', small: true, title: 'Hold the button or the key F' });
   const legend = element('p', {
     class: 'hint',
-    text: 'FLIP error: black where nothing differs, then purple and orange to pale yellow where much does.',
+    text: 'FLIP error: black for no difference, through purple and orange to pale yellow for large ones.',
   });
   const node = element(
     'div',
@@ -115,7 +116,7 @@ function createShow(lab) {
   let addresses = { a: null, map: null };
 
   hold(flip, view.flip);
-  return { node, set, spot: (place) => view.set({ spot: place }) };
+  return { node, set, markPixel: (pixel) => view.set({ pixel }) };
 
   function setShare(value) {
     share.set(100 * value);
@@ -159,7 +160,7 @@ function hold(node, flip) {
   window.addEventListener('blur', () => flip(false));
 }
 
-/* That pixel in the middle, large enough to see it among its neighbours. */
+/* Zooms in with that pixel in the centre. */
 function closeUp(lab, x, y) {
   const { view } = lab;
   view.zoom(CLOSE_UP / view.scale, view.toScreen(x + 0.5, y + 0.5));
@@ -175,19 +176,19 @@ function pinButtons(lab) {
       .catch(lab.fail);
   const pin = button(
     'Pin as A',
-    ask(() => lab.post('/api/pin', {}), 'The picture is pinned as A'),
+    ask(() => lab.post('/api/pin', {}), 'Image pinned as A'),
     { icon: 'pin', kind: 'primary' },
   );
   const drop = button(
-    'Let go of A',
-    ask(() => lab.del('/api/pin'), 'A is let go of'),
+    'Clear A',
+    ask(() => lab.del('/api/pin'), 'A cleared'),
     { icon: 'close', kind: 'quiet' },
   );
   return {
     node: element('div', { class: 'compare-buttons' }, pin, drop),
     show() {
       pin.disabled = !lab.picture?.final;
-      pin.title = pin.disabled ? 'when the picture is finished' : 'the picture as it is now';
+      pin.title = pin.disabled ? 'available when the image is finished' : 'make the current image the reference A';
       drop.disabled = !model.pin;
     },
   };
@@ -198,9 +199,7 @@ function numbers({ a, b, comparison, changed }, goto) {
     'div',
     { class: 'compare-numbers' },
     comparison ? null : notice(sizes(a, b), { kind: 'warning' }),
-    comparison && a.film_hash === b.film_hash
-      ? notice('The two films are the same, to the last bit.', { kind: 'good' })
-      : null,
+    comparison && a.film_hash === b.film_hash ? notice('The two films are bit-identical.', { kind: 'good' }) : null,
     comparison ? similarity(comparison, goto) : null,
     changes(changed),
     costs(a, b),
@@ -219,7 +218,7 @@ function create(root, lab) {
   const below = element('div', { class: 'compare-below' });
   root.append(buttons.node, how.node, below);
   const goto = (x, y) => {
-    how.spot([x, y]);
+    how.markPixel([x, y]);
     closeUp(lab, x, y);
   };
   let shown = null;
@@ -229,22 +228,22 @@ function create(root, lab) {
     if (model.answer && !model.error) {
       if (shown !== model.answer) {
         replace(below, numbers(model.answer, goto));
-        how.spot(null);
+        how.markPixel(null);
       }
       below.firstChild.setAttribute('aria-busy', String(!model.current));
       shown = model.answer;
       return;
     }
     shown = null;
-    how.spot(null);
+    how.markPixel(null);
     if (model.error) replace(below, notice(model.error.message, { kind: 'error', remedy: model.error.remedy }));
     else
       replace(
         below,
         empty(
           model.pin
-            ? 'A is pinned; the comparison comes with the finished picture.'
-            : 'Pin the finished picture as A, change the scene, and see here what that did.',
+            ? 'A is pinned. The comparison appears when the image is finished.'
+            : 'Pin the finished image as A, then change the scene to compare.',
         ),
       );
   };

@@ -1,5 +1,5 @@
-/* Objects: files of scenes, what can be added, the list of all objects, and the chosen one. exports: panel. The tool
- * Object chooses and moves in the picture. */
+/* The panel Objects: scene files, objects to add, the list of all objects, and the selected one. exports: panel. The
+ * tool Object selects and moves objects in the image. */
 
 import { button, element, group } from './ui.js';
 import { createChoice } from './object_choice.js';
@@ -33,7 +33,7 @@ function fileButtons() {
   );
 }
 
-/* What there is to add is known with the first scene. */
+/* The shapes are known with the first scene. */
 function shapeButtons(lab) {
   const node = element('div', { class: 'buttons', role: 'group', 'aria-label': 'Add a solid' });
   const fill = () => {
@@ -56,7 +56,7 @@ function addButtons(lab) {
     shapeButtons(lab),
     element(
       'div',
-      { class: 'buttons', role: 'group', 'aria-label': 'Add something else' },
+      { class: 'buttons', role: 'group', 'aria-label': 'Add other objects' },
       small('Light', () => choice.add({ kind: 'light' }), 'light'),
       small('Material', () => choice.add({ kind: 'material' })),
       small('Slime', () => choice.add({ kind: 'slime' }), 'hand'),

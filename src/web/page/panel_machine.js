@@ -1,11 +1,11 @@
-/* The machine: its processors and clocks, and what would disturb a measurement now. exports: panel */
+/* The panel Machine: processors, clocks, and current disturbances of measurements. exports: panel */
 
 import { button, element, facts, group, notice, replace, seconds } from './ui.js';
 
 let refresh = null;
-let asked = false;
+let loaded = false;
 
-/* "1 package, 2 cores, .., Intel(R) ..": a part a line. */
+/* Splits "1 package, 2 cores, .., Intel(R) .." into one item per line. */
 const topology = (text) =>
   element(
     'ul',
@@ -14,51 +14,51 @@ const topology = (text) =>
   );
 
 const clock = ({ tick_s: tick, overhead_s: overhead }) =>
-  `steps of ${seconds(tick)}, a reading costs ${seconds(overhead)}`;
+  `resolution ${seconds(tick)}, cost of a reading ${seconds(overhead)}`;
 
 function disturbances(list) {
-  if (!list.length) return notice('Nothing was found that would disturb a measurement.', { kind: 'good' });
+  if (!list.length) return notice('No disturbances of measurements were found.', { kind: 'good' });
   return list.map((text) => notice(text, { kind: 'warning' }));
 }
 
-function draw(place, told) {
+function draw(place, report) {
   replace(
     place,
-    element('h3', { text: 'What disturbs measurements now' }),
-    element('div', { class: 'notices' }, disturbances(told.disturbances)),
+    element('h3', { text: 'Current disturbances of measurements' }),
+    element('div', { class: 'notices' }, disturbances(report.disturbances)),
     group(
       'Processors',
       { id: 'machine-processors' },
       facts([
         [
           'Topology',
-          told.machine
-            ? topology(told.machine)
-            : `${told.packages} packages, ${told.cores} cores, ${told.units} processing units`,
+          report.machine
+            ? topology(report.machine)
+            : `${report.packages} packages, ${report.cores} cores, ${report.units} processing units`,
         ],
         [
           'Vector instructions',
-          told.isa === told.isa_best ? told.isa : `${told.isa}; this machine has ${told.isa_best}`,
+          report.isa === report.isa_best ? report.isa : `${report.isa}; this machine supports ${report.isa_best}`,
         ],
-        ['Hardware counters', told.hardware_counters ? 'there are some' : 'the system gives none'],
+        ['Hardware counters', report.hardware_counters ? 'available' : 'not available'],
       ]),
     ),
     group(
       'Clocks',
       { id: 'machine-clocks' },
       facts([
-        ['Wall clock', clock(told.wall_clock)],
-        ['CPU time of a thread', clock(told.thread_clock)],
+        ['Wall clock', clock(report.wall_clock)],
+        ['CPU time of a thread', clock(report.thread_clock)],
       ]),
     ),
     group(
       'System and program',
       { id: 'machine-program' },
       facts([
-        ['Kernel', told.kernel.join(' ')],
-        ['Cuvette', told.version],
-        ['Compiler', told.compiler],
-        ['Built as', told.flags],
+        ['Kernel', report.kernel.join(' ')],
+        ['Cuvette', report.version],
+        ['Compiler', report.compiler],
+        ['Build', report.flags],
       ]),
     ),
   );
@@ -68,7 +68,7 @@ function create(root, lab) {
   const place = element('div', { class: 'machine', 'aria-live': 'polite' });
   const again = button('Refresh', () => refresh(), {
     icon: 'reset',
-    title: 'takes half a second, in which the load of others is watched',
+    title: 'takes half a second to measure the load of other programs',
   });
   const when = element('span', { class: 'hint' });
   root.append(element('div', { class: 'buttons' }, again, when), place);
@@ -79,7 +79,7 @@ function create(root, lab) {
     try {
       draw(place, await lab.get('/api/machine'));
       when.textContent = `as of ${new Date().toLocaleTimeString()}`;
-      asked = true;
+      loaded = true;
     } catch (error) {
       replace(place, notice(error.message, { kind: 'error', remedy: error.remedy }));
     }
@@ -94,6 +94,6 @@ export const panel = {
   css: 'panel_machine.css',
   create,
   shown() {
-    if (!asked) refresh();
+    if (!loaded) refresh();
   },
 };

@@ -1,5 +1,5 @@
-/* The parameters of the scene, made from the rows of the table: a short list at hand, then all of them by object, and a
- * search.
+/* The panel Parameters, generated from the rows of the parameter table: a short list of main parameters, then all
+ * parameters by object, and a search.
  * exports: panel */
 
 import { button, check, element, empty, group, icon, memory, replace } from './ui.js';
@@ -7,12 +7,12 @@ import { createRow, valueText } from './param_row.js';
 import { hasLaw } from './param_laws.js';
 
 const FOUND_MAX = 80;
-const LATER_MS = 300; /* the list is not made anew while one of its controls is dragged */
+const LATER_MS = 300; /* the list is not rebuilt while one of its controls is dragged */
 const MANY = 36;
 const LAST = ['camera', 'background', 'render'];
 const TITLES = { camera: 'Camera', background: 'Background', render: 'Rendering' };
 
-/* What stands at hand where the scene has it; all else comes from the rows. */
+/* The main parameters, shown where the scene has them. */
 const HAND = {
   clear: ['medium', 'ior', 'coefficients', 'color', 'reflectivity', 'transparency', 'absorb_per_m'],
   opaque: ['color', 'reflectivity'],
@@ -39,10 +39,11 @@ function ordered(names, lab) {
   return [...names].sort((a, b) => place(a) - place(b));
 }
 
-/* Once clear, a solid stays in that list: its slider for transparency must not go away under the hand. */
+/* A solid that was transparent once stays in that list, so that its transparency slider does not vanish while it is
+ * dragged. */
 function handParts(lab, onceClear) {
-  const take = (name, wanted) =>
-    wanted
+  const take = (name, fields) =>
+    fields
       .map((word) => lab.param(`${name}.${word}`))
       .filter((row) => row && (row.name !== 'coefficients' || hasLaw(lab, name)));
   const solids = lab.scene.objects.filter((object) => object.kind === 'solid').map((object) => object.name);
@@ -72,11 +73,11 @@ export const panel = {
       type: 'search',
       class: 'input',
       placeholder: 'Find a parameter',
-      'aria-label': 'Find a parameter by name or meaning',
+      'aria-label': 'Find a parameter by name or description',
       spellcheck: 'false',
     });
-    const said = element('span', { class: 'visually-hidden', role: 'status' });
-    const explain = check('Meanings', memory.get('meanings', false), (on) => {
+    const countLabel = element('span', { class: 'visually-hidden', role: 'status' });
+    const explain = check('Descriptions', memory.get('meanings', false), (on) => {
       root.classList.toggle('explained', on);
       memory.set('meanings', on);
     });
@@ -93,7 +94,7 @@ export const panel = {
         { class: 'param-head' },
         element('div', { class: 'param-search' }, icon('search'), search),
         explain.node,
-        said,
+        countLabel,
       ),
       list,
       results,
@@ -113,7 +114,7 @@ export const panel = {
     if (lab.scene) show(lab.scene);
     else replace(list, empty('Waiting for the scene …'));
 
-    /* Rows are made for a part of the list ('hand', an object's name, 'found'), and forgotten with it. */
+    /* Rows are created for one part of the list ('hand', an object's name, 'found') and dropped with it. */
     function make(part, row, long) {
       const made = createRow(row, lab, { onabout: tell, long });
       if (!rows.has(part)) rows.set(part, []);
@@ -135,7 +136,7 @@ export const panel = {
               element('p', { text: row.meaning }),
               element('p', { class: 'about-range', text: [row.range, row.unit].filter(Boolean).join(', ') }),
             ]
-          : element('p', { class: 'about-range', text: 'Point at a parameter to read what it means.' }),
+          : element('p', { class: 'about-range', text: 'Point at a parameter to read its description.' }),
       );
     }
 
@@ -183,7 +184,7 @@ export const panel = {
       const parts = handParts(lab, onceClear);
       const many = parts.reduce((sum, [, own]) => sum + own.length, 0) > MANY;
       return group(
-        'At hand',
+        'Main parameters',
         { id: 'params.hand' },
         parts.map(([name, own], index) => {
           const open = memory.get(`group.hand.${name}`, !many || index < 2 || name === 'render');
@@ -215,7 +216,7 @@ export const panel = {
         .join(' ');
     }
 
-    /* What is in a folded group is made when it is first opened. */
+    /* A folded group is filled when it is first opened. */
     function objectGroup(name) {
       const node = group(TITLES[name] || name, { open: false, id: `params.${name}`, hint: hint(name) });
       const body = node.querySelector('.group-body');
@@ -226,7 +227,7 @@ export const panel = {
         if (!node.open || body.childElementCount) return;
         const own = grouped(lab.scene.params).get(name) || [];
         const kinds = [...new Set(own.map((row) => row.group))];
-        const titles = { solid: 'Shape and place', material: 'Look', mesh: 'Mesh', light: 'Light' };
+        const titles = { solid: 'Shape and placement', material: 'Material', mesh: 'Mesh', light: 'Light' };
         body.append(
           ...kinds
             .flatMap((kind) => [
@@ -269,27 +270,27 @@ export const panel = {
     }
 
     function find() {
-      const wanted = search.value.trim().toLowerCase().split(/\s+/).filter(Boolean);
+      const words = search.value.trim().toLowerCase().split(/\s+/).filter(Boolean);
       rows.delete('found');
-      list.hidden = wanted.length > 0;
+      list.hidden = words.length > 0;
       results.hidden = !list.hidden;
-      if (!wanted.length) {
-        said.textContent = '';
+      if (!words.length) {
+        countLabel.textContent = '';
         results.replaceChildren();
         return;
       }
       const found = lab.scene.params.filter((row) => {
         const hay = `${row.path} ${row.path.replaceAll('_', ' ')} ${row.meaning}`.toLowerCase();
-        return wanted.every((word) => hay.includes(word));
+        return words.every((word) => hay.includes(word));
       });
-      const paths = found.filter((row) => wanted.every((word) => row.path.toLowerCase().includes(word)));
+      const paths = found.filter((row) => words.every((word) => row.path.toLowerCase().includes(word)));
       const near = new Set(handParts(lab, onceClear).flatMap(([, own]) => own.map((row) => row.path)));
       const handFirst = (some) => [
         ...some.filter((row) => near.has(row.path)),
         ...some.filter((row) => !near.has(row.path)),
       ];
       const best = [...handFirst(paths), ...handFirst(found.filter((row) => !paths.includes(row)))];
-      said.textContent = `${best.length} found`;
+      countLabel.textContent = `${best.length} found`;
       replace(
         results,
         best.length
@@ -297,7 +298,7 @@ export const panel = {
               class: 'hint',
               text: best.length > FOUND_MAX ? `${FOUND_MAX} of ${best.length} found` : `${best.length} found`,
             })
-          : empty('No parameter has that in its name or meaning.'),
+          : empty('No parameter matches in name or description.'),
         best.slice(0, FOUND_MAX).map((row) => make('found', row, true)),
       );
     }

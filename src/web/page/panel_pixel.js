@@ -1,6 +1,6 @@
-/* Pixel: why a pixel has the colour that it has. Its tree of rays as a table, over the picture, and from the side and
- * from above.
- * exports: panel. The tool "Ask" chooses the pixel: click or drag, arrow keys; Escape clears. */
+/* The panel Pixel: explains the colour of a pixel by its ray tree, as a table, over the image, and in a side and a
+ * top view.
+ * exports: panel. The tool Inspect selects the pixel: click, drag or arrow keys; Escape clears. */
 
 import {
   button,
@@ -27,7 +27,7 @@ import { isCut, kinds } from './ray_tree.js';
 
 let question = null;
 let overlay = null;
-const marking = new Set(); /* what shows which ray is pointed at */
+const marking = new Set(); /* all displays of the marked ray */
 
 function mark(ray) {
   for (const shows of marking) shows(ray);
@@ -45,11 +45,11 @@ function start(lab) {
     if (question.tree) overlay.draw();
   });
   lab.view.tool('ask', {
-    label: 'Ask',
+    label: 'Inspect',
     icon: 'pixel',
     order: 40,
     cursor: 'crosshair',
-    hint: 'Ask a pixel why: click it, or move from pixel to pixel with the arrow keys',
+    hint: 'Inspect the rays of a pixel: click it, or move with the arrow keys',
     chosen: () => lab.panels?.use('pixel'),
     down: (point) => {
       if (point.inside) question.ask(point.x, point.y);
@@ -62,7 +62,7 @@ function start(lab) {
   });
 }
 
-/* With other tools: whose rays those are, and a way to be rid of them. */
+/* While another tool is active: names the pixel, with a button that clears the rays. */
 function note(lab) {
   const { pixel } = question;
   lab.view.note('pixel', pixel && lab.view.chosen !== 'ask' ? `Rays of pixel ${pixel.x}, ${pixel.y}` : null, () => {
@@ -87,7 +87,7 @@ function chooser(lab) {
   const y = number({ label: 'y', min: 0, step: 1, onchange: go });
   const clear = button('Clear', () => question.clear(), { kind: 'quiet', small: true, title: 'Clear (Escape)' });
   const tool = button(
-    'Choose in the picture',
+    'Select in the image',
     () => {
       lab.view.use('ask');
       lab.view.stage.focus();
@@ -106,12 +106,12 @@ function chooser(lab) {
   };
 }
 
-/* How many of which kind, and how many were not traced for their depth or weight. */
+/* The number of rays of each kind, and of rays cut off by depth or weight. */
 function parts(tree) {
   const words = { camera: 'from the camera', reflect: 'reflected', refract: 'refracted', shadow: 'to lights' };
   const traced = tree.rays.filter((ray) => !isCut(ray));
   const list = Object.keys(words).map((kind) => [traced.filter((ray) => ray.node.kind === kind).length, words[kind]]);
-  list.push([tree.rays.length - traced.length, 'not traced further']);
+  list.push([tree.rays.length - traced.length, 'cut off']);
   return list
     .filter(([n]) => n)
     .map(([n, what]) => `${count(n)} ${what}`)
@@ -130,33 +130,33 @@ function summary(tree) {
   );
   return facts([
     ['Radiance', radiance.map((x) => digits(x)).join(' · ')],
-    ['Shown as', tinted],
+    ['Displayed as', tinted],
     ['Rays', `${count(tree.rays.length)}: ${parts(tree)}`],
-    ['Deepest', `${deepest} of at most ${depth}`],
-    ['Indices at', `${digits(lambda)} nm`],
+    ['Deepest level', `${deepest} (limit ${depth})`],
+    ['Refractive indices at', `${digits(lambda)} nm`],
   ]);
 }
 
-/* The table shows a tree as Whitted traced it; of other pictures that is not the pixel's own sum. */
+/* The table shows a Whitted ray tree, which for other rendering methods is not the sum that makes the pixel. */
 function otherwise(lab) {
   const how = lab.param('render.integrator')?.value;
   if (how === 'path')
     return (
-      'The picture is made of random paths: this tree has all branches instead, and no light by ' +
-      'way of matt surfaces.'
+      'The image is path traced: this tree has all branches instead, and no light from ' + 'diffuse interreflection.'
     );
-  if (how === 'zbuffer') return 'The picture is drawn into a depth buffer: this tree is what tracing rays would give.';
+  if (how === 'zbuffer')
+    return 'The image is rasterised with a depth buffer: this is the tree that ray tracing would give.';
   if (how && how !== 'whitted' && how !== 'raycast')
-    return 'The picture shows no light: this tree is what tracing rays would give.';
+    return 'The image shows no lighting: this is the tree that ray tracing would give.';
   if (lab.param('render.spectrum')?.value === 'spectral')
-    return 'The picture is spectral: this tree is that of one wavelength.';
+    return 'The image is spectral: this is the tree of one wavelength.';
   return null;
 }
 
 function legend() {
   return element(
     'ul',
-    { class: 'ray-legend', 'aria-label': 'Lines' },
+    { class: 'ray-legend', 'aria-label': 'Legend' },
     kinds.map(([line, words]) =>
       element(
         'li',
@@ -174,12 +174,12 @@ function legend() {
 
 function openDrawing({ x, y }) {
   const address = `/api/trace.svg?x=${x}&y=${y}`;
-  const title = `Pixel ${x}, ${y}: rays in the plane of incidence, and from above`;
+  const title = `Pixel ${x}, ${y}: rays in the plane of incidence and from above`;
   const content = element(
     'div',
     { class: 'trace-drawing' },
     element('img', { src: address, alt: title }),
-    button('Save the drawing', () => download(address, `pixel-${x}-${y}.svg`), { icon: 'save', small: true }),
+    button('Save drawing', () => download(address, `pixel-${x}-${y}.svg`), { icon: 'save', small: true }),
   );
   dialog({ title, wide: true, content });
 }
@@ -227,7 +227,7 @@ function createAnswer(lab) {
       const note = otherwise(lab);
       replace(head, summary(tree), note ? notice(note) : null);
       left.textContent = overlay.left
-        ? `Rays drawn: ${count(overlay.count)}. Lighter ones, in the table alone: ${count(overlay.left)}.`
+        ? `Rays drawn: ${count(overlay.count)}. Rays of lower weight, in the table only: ${count(overlay.left)}.`
         : '';
       left.hidden = !overlay.left;
     },
@@ -251,7 +251,9 @@ function create(root, lab) {
     else
       replace(
         message,
-        question.pixel ? null : empty('Choose Ask above the picture and click a pixel, or give its place here.'),
+        question.pixel
+          ? null
+          : empty('Choose the tool Inspect above the image and click a pixel, or enter its coordinates here.'),
       );
   };
   question.on(show);

@@ -1,5 +1,5 @@
-/* Slime: lets it move, tells how it moves, and turns how it looks and how it is made while it does. The tool Grab is
- * slime_grab.js.
+/* The panel Slime: plays the live slime, shows its motion, and edits its appearance and its body while it moves. The
+ * tool Grab is in slime_grab.js.
  * exports: panel */
 
 import { button, choice, digits, element, empty, group, notice, replace } from './ui.js';
@@ -7,7 +7,7 @@ import { createCurve } from './slime_curve.js';
 import { createGrab } from './slime_grab.js';
 import { createSliders } from './slime_sliders.js';
 
-/* Solids that show a slime, each with its mesh. */
+/* The solids that show a slime, each with its mesh. */
 function slimes(lab) {
   const objects = lab.scene?.objects || [];
   const is = (name) => lab.param(`${name}.generate`)?.value === 'slime';
@@ -17,10 +17,10 @@ function slimes(lab) {
 }
 
 function stateText(slime) {
-  if (!slime.on) return 'Off: the picture shows the moment that the scene names';
-  if (slime.trouble) return 'It stands still';
-  if (!slime.playing) return 'Paused: traced fully';
-  return slime.resting ? 'At rest: traced fully' : 'Moving: previews';
+  if (!slime.on) return 'Off: the image shows the slime at time_s of the scene';
+  if (slime.trouble) return 'Stopped';
+  if (!slime.playing) return 'Paused: full render';
+  return slime.resting ? 'At rest: full render' : 'Moving: previews';
 }
 
 function controls(lab) {
@@ -32,10 +32,10 @@ function controls(lab) {
   const restart = button('Restart', () => order({ do: 'restart' }), { icon: 'reset' });
   const off = button('Off', () => order({ do: 'off' }), {
     icon: 'stop',
-    title: 'Show the moment that the scene names again',
+    title: 'Show the slime at time_s of the scene',
   });
   const grab = button(
-    'Grab in the picture',
+    'Grab in the image',
     () => {
       lab.view.use('grab');
       lab.view.stage.focus();
@@ -45,7 +45,7 @@ function controls(lab) {
   const preview = choice({
     label: 'Preview',
     choices: [
-      ['traced', 'Traced, small'],
+      ['traced', 'Ray traced, low resolution'],
       ['zbuffer', 'Z-buffer'],
     ],
     radios: true,
@@ -76,7 +76,7 @@ function controls(lab) {
   };
 }
 
-/* Numbers that change with each picture; their places stay. */
+/* Readings that change with each image, in fixed places. */
 function readings() {
   const names = ['Time', 'Real time', 'Speed', 'Volume', 'Masses held'];
   const values = names.map(() => element('dd'));
@@ -128,7 +128,7 @@ function tuning(lab) {
         which,
         all.length > 1
           ? choice({
-              label: 'Which',
+              label: 'Solid',
               choices: all.map((one) => one.solid),
               value: chosen,
               onchange: (word) => {
@@ -143,11 +143,11 @@ function tuning(lab) {
         which,
         sliders
           ? [
-              group('Looks', { id: 'slime-looks', hint: 'while it moves' }, sliders.looks),
-              group('Body', { id: 'slime-body', hint: 'a change starts it anew' }, sliders.body),
+              group('Appearance', { id: 'slime-looks', hint: 'editable while it moves' }, sliders.looks),
+              group('Body', { id: 'slime-body', hint: 'a change restarts the slime' }, sliders.body),
             ]
           : notice('No solid shows the slime', {
-              remedy: "give a solid the shape mesh, and the name of the slime's mesh",
+              remedy: "set the solid's shape to mesh and its mesh to the slime's",
             }),
       );
     },
@@ -166,7 +166,7 @@ export const panel = {
     const parts = { controls: controls(lab), readings: readings(), tuning: tuning(lab) };
     const curve = createCurve();
     const trouble = element('div');
-    let told = '';
+    let shownWords = '';
     const live = element(
       'div',
       { class: 'slime-live' },
@@ -200,14 +200,14 @@ export const panel = {
       parts.controls.show(slime);
       parts.readings.show(slime);
       const words = slime.trouble ? `${slime.trouble.error}|${slime.trouble.remedy}` : '';
-      if (words !== told)
+      if (words !== shownWords)
         replace(
           trouble,
           slime.trouble
-            ? notice(slime.trouble.error, { kind: 'error', remedy: `${slime.trouble.remedy}; or start it again` })
+            ? notice(slime.trouble.error, { kind: 'error', remedy: `${slime.trouble.remedy}; or restart it` })
             : null,
         );
-      told = words;
+      shownWords = words;
     };
     shown = () => {
       show();

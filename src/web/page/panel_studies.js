@@ -1,6 +1,5 @@
-/* Studies: the list of them, and the one that was chosen. While one runs, what is shown follows it, a few seconds
- * apart: asking takes time from
- * what is measured. exports: panel */
+/* The panel Studies: the list of studies and the selected one. While a study runs, the display is refreshed every
+ * few seconds only: requests disturb the measurement. exports: panel */
 
 import { button, element, empty, memory, replace } from './ui.js';
 import { createStudyList } from './study_list.js';
@@ -17,7 +16,7 @@ function create(root, lab) {
   let studies = [];
   let results = null;
   let chosen = memory.get('study', null);
-  let asked_at = 0;
+  let fetchedAt = 0;
   let seen = { running: false, name: null };
   let fetched = -1;
   let asking = false;
@@ -29,11 +28,11 @@ function create(root, lab) {
         'div',
         { class: 'study-side-head' },
         element('h2', { text: 'Studies' }),
-        button('Look again', () => refresh(), {
+        button('Refresh', () => refresh(), {
           icon: 'reset',
           kind: 'quiet',
           small: true,
-          title: 'read the files again',
+          title: 'read the study files again',
         }),
       ),
       list.node,
@@ -43,7 +42,7 @@ function create(root, lab) {
   refresh = () => all().catch(lab.fail);
   lab.on('study', follow);
   lab.on('state', () => follow(lab.study));
-  lab.on('afresh', () => refresh());
+  lab.on('restarted', () => refresh());
 
   const path = (study, more = '') => `/api/studies/${encodeURIComponent(study.name)}${more}`;
 
@@ -59,8 +58,8 @@ function create(root, lab) {
   }
 
   async function all() {
-    const told = await lab.get('/api/studies');
-    ({ studies, results } = told);
+    const reply = await lab.get('/api/studies');
+    ({ studies, results } = reply);
     if (!studies.some((study) => study.file === chosen))
       chosen = (studies.find((study) => !study.error) || studies[0])?.file ?? null;
     showList();
@@ -68,30 +67,30 @@ function create(root, lab) {
       replace(
         place,
         empty(
-          'There is no study in the folder. A study is a file NAME.study: a scene, a grid over its ' +
+          'The folder contains no study. A study is a file NAME.study with a scene, a grid over its ' +
             'parameters, and repetitions.',
         ),
       );
     else await one();
   }
 
-  /* Answers that came late are of another study. */
+  /* Ignores a late reply about another study. */
   async function one() {
     const study = studies.find(({ file }) => file === chosen);
     if (!study) return;
-    asked_at = Date.now();
-    const told = study.error && study.cells === undefined ? study : await lab.get(path(study));
+    fetchedAt = Date.now();
+    const reply = study.error && study.cells === undefined ? study : await lab.get(path(study));
     if (study.file !== chosen) return;
-    Object.assign(study, told.file === study.file ? told : {});
+    Object.assign(study, reply.file === study.file ? reply : {});
     showList();
-    details.show(study, told, results);
+    details.show(study, reply, results);
     if (!place.contains(details.node)) replace(place, details.node);
   }
 
   async function run(study) {
     try {
       await lab.post(path(study, '/run'), {});
-      lab.say(`${study.name} is being measured; the picture waits meanwhile.`);
+      lab.say(`${study.name} is being measured; rendering is suspended meanwhile.`);
     } catch (error) {
       lab.fail(error);
     }
@@ -105,17 +104,17 @@ function create(root, lab) {
     }
   }
 
-  /* Every few seconds while it runs, and at its beginning and end. */
+  /* Every few seconds during a run, and at its start and end. */
   async function follow(now) {
     if (!now) return;
     const begun = now.running && (!seen.running || seen.name !== now.name);
     const ended = seen.running && !now.running;
     seen = { running: now.running, name: now.name };
-    if (ended) lab.say(now.error ? `${now.name}: ${now.error.error}` : `${now.name} has ended; all rows are kept.`);
+    if (ended) lab.say(now.error ? `${now.name}: ${now.error.error}` : `${now.name} has ended; all rows are saved.`);
     if (!visible) return;
     details.progress(now);
     if (begun || ended || now.running) showList();
-    const due = now.frames_done !== fetched && Date.now() - asked_at >= APART_MS;
+    const due = now.frames_done !== fetched && Date.now() - fetchedAt >= APART_MS;
     if (!begun && !ended && (!due || asking)) return;
     asking = true;
     fetched = now.frames_done;

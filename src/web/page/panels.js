@@ -1,18 +1,16 @@
-/* The panels as tabs beside the picture, and the splitter between the two. A panel is made when it is first shown.
- * exports: createPanels(side, splitter, desk, panels, lab) -> {use(id), chosen()}
- * panel: {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}; start is called once when the
- * page opens, for tools of the
- * picture; a wide one takes the whole width, without the picture; css is the name of its own style sheet
- * (panel_ID.css), which uses the variables
- * of lab.css for all colours and starts each rule with .panel-ID. The panel's title is its h2: headings within start at
- * h3 */
+/* The panels as tabs next to the image, and the splitter between them. A panel is created when it is first shown.
+ * exports: createPanels(side, splitter, workspace, panels, lab) -> {use(id), chosen()}
+ * panel: {id, title, wide?, css?, start?(lab), create(root, lab), shown?(), hidden?()}; start is called once when
+ * the page opens, for tools of the image; a wide panel takes the whole width, without the image; css is the name of
+ * its own style sheet (panel_ID.css), which uses the variables of lab.css for all colours and starts each rule with
+ * .panel-ID. The panel's title is its h2: headings within start at h3. */
 
 import { element, memory, notice, replace } from './ui.js';
 
 const NARROWEST = 340;
 const STEP = 24;
 
-export function createPanels(side, splitter, desk, panels, lab) {
+export function createPanels(side, splitter, workspace, panels, lab) {
   const list = element('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Panels' });
   const entries = new Map(panels.map((panel) => [panel.id, makeEntry(panel)]));
   let chosen = null;
@@ -28,7 +26,7 @@ export function createPanels(side, splitter, desk, panels, lab) {
       [...entries.values()].map((entry) => entry.frame),
     ),
   );
-  createSplitter(splitter, desk);
+  createSplitter(splitter, workspace);
   for (const entry of entries.values()) guard(entry, () => entry.panel.start?.(lab));
   use(entries.has(memory.get('panel')) ? memory.get('panel') : panels[0]?.id);
   return { use, chosen: () => chosen };
@@ -75,17 +73,14 @@ export function createPanels(side, splitter, desk, panels, lab) {
     });
   }
 
-  /* A panel that fails leaves the others as they are. */
+  /* A failing panel does not affect the others. */
   function guard(entry, act) {
     try {
       act();
     } catch (error) {
       console.error(error);
       entry.made = true;
-      replace(
-        entry.root,
-        notice(`This panel failed: ${error.message}`, { kind: 'error', remedy: 'load the page again' }),
-      );
+      replace(entry.root, notice(`This panel failed: ${error.message}`, { kind: 'error', remedy: 'reload the page' }));
     }
   }
 
@@ -93,7 +88,7 @@ export function createPanels(side, splitter, desk, panels, lab) {
     if (id === chosen || !entries.has(id)) return;
     if (chosen) show(entries.get(chosen), false);
     chosen = id;
-    desk.classList.toggle('wide', Boolean(entries.get(id).panel.wide));
+    workspace.classList.toggle('wide', Boolean(entries.get(id).panel.wide));
     show(entries.get(id), true);
     memory.set('panel', id);
     lab.emit('panel', id);
@@ -117,14 +112,14 @@ export function createPanels(side, splitter, desk, panels, lab) {
   }
 }
 
-function createSplitter(splitter, desk) {
+function createSplitter(splitter, workspace) {
   const root = document.documentElement.style;
   let width = memory.get('width', null);
-  const largest = () => Math.max(NARROWEST, desk.clientWidth - 360);
+  const largest = () => Math.max(NARROWEST, workspace.clientWidth - 360);
   const apply = () => {
     if (width) root.setProperty('--side', `${Math.round(Math.min(largest(), Math.max(NARROWEST, width)))}px`);
     else root.removeProperty('--side');
-    const now = desk.querySelector('.side').clientWidth;
+    const now = workspace.querySelector('.side').clientWidth;
     splitter.setAttribute('aria-valuemin', String(NARROWEST));
     splitter.setAttribute('aria-valuemax', String(Math.round(largest())));
     splitter.setAttribute('aria-valuenow', String(Math.round(now)));
@@ -134,13 +129,13 @@ function createSplitter(splitter, desk) {
     memory.set('width', width);
     apply();
   };
-  const here = () => desk.querySelector('.side').clientWidth;
+  const here = () => workspace.querySelector('.side').clientWidth;
   splitter.addEventListener('pointerdown', (event) => {
     splitter.setPointerCapture(event.pointerId);
     event.preventDefault();
   });
   splitter.addEventListener('pointermove', (event) => {
-    if (splitter.hasPointerCapture(event.pointerId)) set(desk.getBoundingClientRect().right - event.clientX - 3);
+    if (splitter.hasPointerCapture(event.pointerId)) set(workspace.getBoundingClientRect().right - event.clientX - 3);
   });
   splitter.addEventListener('dblclick', () => set(null));
   splitter.addEventListener('keydown', (event) => {
@@ -150,5 +145,5 @@ function createSplitter(splitter, desk) {
     else return;
     event.preventDefault();
   });
-  new ResizeObserver(apply).observe(desk);
+  new ResizeObserver(apply).observe(workspace);
 }

@@ -1,8 +1,8 @@
-/* The control for one parameter, by its type.
+/* The control of one parameter, by its type.
  * exports: controlOf(row, context) -> {node, inputs, single, busy(), set(value)}
- *   context: {name (for screen readers), describedby, send(value, gesture), names: words that may be meant}
+ *   context: {name (for screen readers), describedby, send(value, gesture), names: the suggested words}
  *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged; set(value, true):
- *   after a refused value */
+ *   after a rejected value */
 
 import { element, gesture, toByte, toLinear, unique } from './ui.js';
 import { scale } from './ui_controls.js';
@@ -10,8 +10,8 @@ import { workingRange } from './param_range.js';
 
 const CHANNELS = ['red', 'green', 'blue'];
 const AXES = ['x', 'y', 'z'];
-const PAUSE_MS = 1000; /* keys that follow each other faster are one step of undo */
-const COEFFICIENT = 1e6; /* colours whose bound is beyond this are coefficients by channel */
+const PAUSE_MS = 1000; /* faster key presses are one undo step */
+const COEFFICIENT = 1e6; /* colours with a larger upper bound are per-channel coefficients */
 
 export const written = (x) => (Number.isFinite(x) ? String(Number(x.toPrecision(7))) : '');
 const digitsOf = (x, n) => Number(x.toPrecision(n));
@@ -20,7 +20,7 @@ function attributes(context, label) {
   return { id: unique('param'), 'aria-label': label || context.name, 'aria-describedby': context.describedby };
 }
 
-/* A number field that gives back what was last sent where it is left empty. */
+/* A number field that restores the last sent value if it is left empty. */
 function numberInput(context, label, onvalue) {
   const input = element('input', {
     type: 'number',
@@ -83,8 +83,8 @@ function slider(row, context, label, send) {
     nodes: [range, box.input],
     inputs: [range, box.input],
     busy: () => dragged,
-    set(value, afresh) {
-      if (afresh) fit(value); /* not the range that a refused value made */
+    set(value, rescale) {
+      if (rescale) fit(value); /* not the range of the rejected value */
       show(value);
       if (document.activeElement !== box.input) box.set(value);
     },
@@ -105,9 +105,9 @@ function parts(row, context, names, make) {
   const all = names.map((name, index) => make(`${context.name}, ${name}`, send(index)));
   return {
     all,
-    set(next, afresh) {
+    set(next, rescale) {
       value = [...next];
-      all.forEach((part, index) => part.set(value[index], afresh));
+      all.forEach((part, index) => part.set(value[index], rescale));
     },
   };
 }
@@ -170,7 +170,7 @@ const hex = (value, bright) =>
     )
     .join('')}`;
 
-/* The picker knows colours up to 1: brighter ones are shown, and chosen, divided by their largest channel. */
+/* The colour picker is limited to 1, so a brighter colour is divided by its largest channel for the picker. */
 function colour(row, context) {
   let bright = 1;
   let mine = null;
@@ -277,7 +277,7 @@ function text(row, context) {
     class: 'input',
     spellcheck: 'false',
     autocomplete: 'off',
-    placeholder: list ? 'numbers, with commas' : 'none',
+    placeholder: list ? 'numbers, separated by commas' : 'none',
     list: known?.id,
     ...attributes(context),
   });

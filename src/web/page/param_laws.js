@@ -1,13 +1,13 @@
-/* A medium takes its index from `ior`, from a law with coefficients, or from the catalogue: which of the rows are in
- * use, and what a law begins with.
+/* A medium takes its refractive index from `ior`, from a dispersion law with coefficients, or from the catalogue:
+ * which rows are in use, and the initial coefficients of a law.
  *
  * exports:
- *   hasLaw(lab, object)                 is its medium given by coefficients
- *   whyUnused(lab, object, name)        why that parameter has no effect now; '' where it has
- *   withMedium(lab, object, medium)     {path: value} to set for that medium: a law needs coefficients at once */
+ *   hasLaw(lab, object)                 whether its medium is given by coefficients
+ *   whyUnused(lab, object, name)        why that parameter has no effect now; '' if it has
+ *   withMedium(lab, object, medium)     {path: value} to set for that medium: a law requires coefficients */
 
 const ABBE_NM = [486.1, 587.6, 656.3];
-const SPREAD = 0.004; /* um^2: about that of water and crown glass */
+const SPREAD = 0.004; /* um^2: close to that of water and crown glass */
 
 const round = (x) => Number(x.toPrecision(6));
 const cauchy = (n, nm) => round(n + SPREAD * ((1000 / nm) ** 2 - (1000 / ABBE_NM[1]) ** 2));
@@ -26,13 +26,13 @@ export function whyUnused(lab, object, name) {
   const medium = value(lab, object, 'medium');
   if (!medium) return '';
   if (name === 'ior' && medium !== 'ior')
-    return `the medium ${medium} gives the index; one that is set here takes its place`;
+    return `the index comes from the medium ${medium}; a value set here replaces it`;
   if (name === 'coefficients' && value(lab, object, name).length && !hasLaw(lab, object))
-    return `the medium ${medium} is not given by coefficients`;
+    return `the medium ${medium} uses no coefficients`;
   return '';
 }
 
-/* Those of the scene as it was opened, where it had that law; else some that are near the index of now. */
+/* The coefficients of the opened scene if it had that law; otherwise ones close to the current index. */
 export function withMedium(lab, object, medium) {
   const set = { [`${object}.medium`]: medium };
   if (!(medium in STARTS)) return set;

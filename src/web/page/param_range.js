@@ -1,8 +1,8 @@
-/* The range of a slider: a parameter's bounds, or a part of them that is of use where they are wide.
+/* The range of a slider: a parameter's bounds, or a useful part of wide bounds.
  * exports: workingRange(row, value) -> {min, max, step, log} for scale() of ui_controls.js */
 
-const WIDE = 1000; /* bounds that far apart are not taken as they are */
-const DECADES = 6; /* positive bounds so far apart, about the default, make a logarithmic slider */
+const WIDE = 1000; /* wider bounds are reduced */
+const DECADES = 6; /* positive bounds that span more decades about the default give a logarithmic slider */
 const STEPS = 400;
 
 function niceAbove(x) {

@@ -1,7 +1,7 @@
-/* One parameter: its name, control, unit, way back to its first value, what it means, and why a value was refused.
+/* One parameter: its name, control, unit, reset button, description, and the reason for a rejected value.
  * exports: createRow(row, lab, {onabout(row), long}) -> {node, path, update(row, generation), busy()}
- *   long: the label has the object's name too; busy: it is being dragged.
- * node is .param with data-path, the slider in it an input of type range, the number beside it one of type number */
+ *   long: the label includes the object's name; busy: it is being dragged.
+ * node is .param with data-path, its slider an input of type range, its number field one of type number */
 
 import { button, element, unique } from './ui.js';
 import { controlOf, written } from './param_controls.js';
@@ -86,7 +86,7 @@ export function createRow(first, lab, { onabout, long } = {}) {
     const away = known.initial !== undefined && known.initial !== null && !equal(known.value, known.initial);
     reset.classList.toggle('unseen', !away);
     reset.disabled = !away;
-    reset.title = away ? `Back to ${valueText(known.initial)}` : '';
+    reset.title = away ? `Reset to ${valueText(known.initial)}` : '';
     node.classList.toggle('changed', away);
   }
 
@@ -129,7 +129,7 @@ export function createRow(first, lab, { onabout, long } = {}) {
     showReset();
   }
 
-  /* Also into the field that is being written in. */
+  /* Also updates the field that has the focus. */
   function force(value) {
     const held = document.activeElement;
     if (control.inputs.includes(held)) held.blur();
@@ -143,7 +143,7 @@ export function createRow(first, lab, { onabout, long } = {}) {
     (control.single || control.inputs[0]).focus();
   }
 
-  /* What was sent from here is newer than a scene that was asked for before. */
+  /* A value sent from here is newer than a scene that was requested before. */
   function update(row, generation) {
     showUse();
     if (waiting || control.busy() || generation < settled) return;

@@ -1,17 +1,16 @@
-/* Which pixel is asked about, and the answer: one at a time is on its way, and of those that wait only the newest is
- * sent.
+/* The inspected pixel and its ray tree: one request at a time; of the waiting ones only the newest is sent.
  *
- * exports: createQuestion(lab) -> {pixel: {x, y} or null, tree or null, error or null, busy, ask(x, y), step(dx, dy),
- * clear(), on(f)}
- * It asks again for the same pixel when another final picture has come. */
+ * exports: createQuestion(lab) -> {pixel: {x, y} or null, tree or null, error or null, busy, ask(x, y), step(dx,
+ * dy), clear(), on(f)}
+ * The tree is requested again after each new final image. */
 
-import { grow } from './ray_tree.js';
+import { buildTree } from './ray_tree.js';
 
 export function createQuestion(lab) {
   const listeners = new Set();
   let asking = false;
   let waiting = false;
-  let asked = -1; /* the serial of the picture that was shown when the tree was asked for */
+  let tracedSerial = -1; /* the serial of the displayed image at the time of the request */
 
   const question = {
     pixel: null,
@@ -26,9 +25,9 @@ export function createQuestion(lab) {
     on: (listener) => listeners.add(listener),
   };
   lab.on('picture', (picture) => {
-    if (!question.pixel || !picture.final || picture.serial === asked) return;
+    if (!question.pixel || !picture.final || picture.serial === tracedSerial) return;
     if (question.pixel.x < picture.full_width && question.pixel.y < picture.full_height) send();
-    else clear(); /* the picture has become smaller */
+    else clear(); /* the image has become smaller */
   });
   return question;
 
@@ -66,10 +65,10 @@ export function createQuestion(lab) {
   }
 
   async function fetchTree(pixel) {
-    asked = lab.picture?.serial ?? -1;
+    tracedSerial = lab.picture?.serial ?? -1;
     try {
       const answer = await lab.get(`/api/trace?x=${pixel.x}&y=${pixel.y}`);
-      if (question.pixel) Object.assign(question, { tree: { ...grow(answer), pixel }, error: null });
+      if (question.pixel) Object.assign(question, { tree: { ...buildTree(answer), pixel }, error: null });
     } catch (error) {
       if (question.pixel) Object.assign(question, { tree: null, error });
     }

@@ -1,18 +1,18 @@
-/* A chart: lines of points with intervals over one axis, told apart by colour, marker and dash.
+/* A line chart with intervals over one axis; series differ by colour, marker and dash.
  *
  * exports: plot({title, x, y, series, heading, mark}) -> SVG element
- *   x: {label, log, values}       values: texts where the axis has words, not numbers: points then stand at 0, 1, 2 ..
+ *   x: {label, log, values}       values: words of a categorical axis; points are then at 0, 1, 2 ..
  *   y: {label, log}
  *   series: [{name, points: [{x, y, low, high}]}]      low and high NaN: no interval is known
- *   heading: what the lines are told apart by, over their names
- *   mark: a value of y with a line across, such as 1 for ratios */
+ *   heading: title of the legend, the parameters in which the series differ
+ *   mark: a value of y with a horizontal line, such as 1 for ratios */
 
 import { digits, svg, unique } from './ui.js';
 
 const WIDTH = 860;
 const HEIGHT = 400;
 const FRAME = { left: 76, top: 34, right: 22, bottom: 48 };
-const WORDS = 30; /* more under an axis of slanted words */
+const WORDS = 30; /* more fit on an axis with slanted words */
 const LEGEND = 226;
 const NAME_MAX = 23;
 const TICKS = 6;
@@ -31,7 +31,7 @@ const MARKERS = [
 const round = (value) => Math.round(value * 100) / 100;
 const finite = (values) => values.filter((value) => Number.isFinite(value));
 
-/* How values lie between two ends of the drawing. */
+/* Maps values to positions between two ends of the drawing. */
 function ruler({ log, from, to, a, b }) {
   const bend = log ? Math.log10 : (value) => value;
   const [low, high] = [bend(from), bend(to)];
@@ -61,7 +61,7 @@ function logTicks(from, to) {
   return all.filter((value) => value >= from * 0.999 && value <= to * 1.001);
 }
 
-/* The ends of an axis: a little beyond the values; a linear one starts at 0 where that is not far. */
+/* The ends of an axis: slightly beyond the values; a linear axis starts at 0 if that is close. */
 function ends(values, log, wide) {
   let [from, to] = [Math.min(...values), Math.max(...values)];
   if (log) {
@@ -74,7 +74,7 @@ function ends(values, log, wide) {
   return [from === 0 && wide ? 0 : from - more, to + more];
 }
 
-/* Where few values were measured, on a logarithmic axis, each of them is a better tick than powers of ten. */
+/* On a logarithmic axis with few values, each value is a better tick than powers of ten. */
 function ticksOf(scale, own) {
   if (!scale.log) return linearTicks(scale.from, scale.to);
   const apart = own?.every((value, i) => i === 0 || Math.abs(scale.at(value) - scale.at(own[i - 1])) > 34);
@@ -83,7 +83,7 @@ function ticksOf(scale, own) {
 
 const text = (x, y, anchor, words, more) => svg('text', { x, y, 'text-anchor': anchor, ...more }, words);
 
-/* Words under the axis are slanted where they would not fit beside each other. */
+/* Words under the axis are slanted if they do not fit next to each other. */
 const areSlanted = (values, width) =>
   values && Math.max(...values.map((value) => value.length)) * 6.5 > width / values.length;
 

@@ -1,11 +1,12 @@
-/* The rays of a pixel drawn over the picture.
+/* Draws the rays of a pixel over the image.
  *
  * exports:
  *   createRayOverlay(lab) -> {show(tree or null, pixel), draw(), mark(ray or null), nearest(point) -> ray or null,
  *   count, left}
- *                                      draw: the camera has moved; count, left: rays that are drawn, and that are too
- *                                      faint or too many to be
- *   drawn(tree) -> rays                those that drawings show */
+ *                                      draw: after a move of the camera; count: rays that are drawn; left: rays
+ *                                      omitted
+ *                                      for their low weight or their number
+ *   drawn(tree) -> rays                the rays that drawings show */
 
 import { svg } from './ui.js';
 import { lineClass } from './ray_tree.js';
@@ -65,7 +66,7 @@ export function createRayOverlay(lab) {
     mark(again);
   }
 
-  /* So that it is seen on any picture. */
+  /* Visible on any image. */
   function halo({ ray, a, b }) {
     return svg('line', {
       class: 'ray-halo',
@@ -77,7 +78,7 @@ export function createRayOverlay(lab) {
     });
   }
 
-  /* The pixel itself, and arms of 10 CSS pixels about it, however large the picture's pixels are. */
+  /* The pixel itself with arms of 10 CSS pixels, at any zoom. */
   function cross() {
     const { x, y } = pixel;
     const arm = 10 / lab.view.scale;
@@ -119,7 +120,7 @@ export function createRayOverlay(lab) {
   }
 }
 
-/* The part of it that lies in front of the camera; null for none. */
+/* The part in front of the camera; null for none. */
 function clipNear(a, b, camera, near) {
   const size = length(camera.forward);
   const depth = (p) => dot(minus(p, camera.eye), camera.forward) / size;
@@ -129,7 +130,7 @@ function clipNear(a, b, camera, near) {
   return [da < near ? between() : a, db < near ? between() : b];
 }
 
-/* Liang and Barsky: the part of it that lies in the picture; null for none. */
+/* Liang and Barsky: the part inside the image; null for none. */
 function clipBox(a, b, width, height) {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   let [first, last] = [0, 1];

@@ -1,9 +1,8 @@
-/* A small drawing of the rays of a pixel at right angles onto a plane: from the side, or from above; both axes at one
- * scale, in scene units.
+/* A small orthographic drawing of a pixel's rays, from the side or from above; both axes at one scale, in scene
+ * units.
  * exports: createRayPlot({title, onmark(ray or null), onchoose(ray)}) -> {node, show(tree or null, plane, solids),
  * mark(ray or null)}
- *          sidePlane(camera), topPlane()     {u: [x,y,z], v: [x,y,z], uName, vName}: what is to the right, what is up
- *                                            */
+ *          sidePlane(camera), topPlane()     {u: [x,y,z], v: [x,y,z], uName, vName}: the axes to the right and up */
 
 import { digits, element, svg, unique } from './ui.js';
 import { lineClass } from './ray_tree.js';
@@ -17,7 +16,7 @@ const FRAME = { left: 32, top: 8, right: 8, bottom: 32 };
 
 export const topPlane = () => ({ u: [1, 0, 0], v: [0, 0, 1], uName: 'x', vName: 'z' });
 
-/* Upright, through the line of sight; of a camera that looks straight up or down, through its upper edge. */
+/* Vertical, through the line of sight; for a camera that looks straight up or down, through its up vector. */
 export function sidePlane(camera) {
   const level = ([x, , z]) => unit(Math.hypot(x, z) > 1e-6 ? [x, 0, z] : [0, 0, 0]);
   const u = (camera && (level(camera.forward) || level(camera.up))) || [0, 0, 1];
@@ -94,7 +93,7 @@ export function createRayPlot({ title, onmark, onchoose }) {
   }
 }
 
-/* What the rays meet, the solids there, and the camera where it is not far off. */
+/* The bounds of the rays' hits, of the solids there, and of the camera if it is near. */
 function windowOf(rays, outlines, flat) {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
   const take = ([u, v], into = box) =>
@@ -115,7 +114,7 @@ function windowOf(rays, outlines, flat) {
 const within = ([u, v], box, reach) =>
   u > box[0] - reach && u < box[2] + reach && v > box[1] - reach && v < box[3] + reach;
 
-/* The window about the box in the frame: a point (u, v) to where it is drawn. */
+/* Maps a point (u, v) of the box to the frame. */
 function fit(box) {
   const frame = {
     x: FRAME.left,
@@ -138,7 +137,7 @@ function fit(box) {
   };
 }
 
-/* Steps of 1, 2 or 5 times a power of ten, about five of them across. */
+/* Ticks at steps of 1, 2 or 5 times a power of ten, about five across. */
 function ticks(low, high, step) {
   const first = Math.ceil(low / step);
   const last = Math.floor(high / step);

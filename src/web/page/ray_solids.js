@@ -1,14 +1,14 @@
-/* The outlines of simple solids, seen along any direction: of convex ones the hull of their corners and rims.
+/* The outlines of simple solids, seen along any direction: for convex parts the hull of their corners and rims.
  * exports: solidPoints(lab) -> [{name, points: [[[x,y,z]..]..]}]    for each solid, the points of each of its convex
  *                                                                   parts, in scene units;
  *          hull(points) -> points                                   the convex hull of [u, v], counter-clockwise
- * Solids whose shape has no outline (planes) or no cheap one (meshes) are left out. */
+ * Solids without outline (planes) or without a cheap one (meshes) are omitted. */
 
 import { add } from './ray_vectors.js';
 
 const RIM = 48;
 
-/* A ring as the laboratory gives it: height, half axes, corners (0: round) and the angle of the first one. */
+/* A ring of the API's outlines: height, half axes, number of corners (0: round) and angle of the first corner. */
 function ring([y, x, z, corners, from]) {
   const count = corners || RIM;
   return Array.from({ length: count }, (_, k) => {
@@ -17,7 +17,7 @@ function ring([y, x, z, corners, from]) {
   });
 }
 
-/* About x, then y, then z, as the scene says it. */
+/* Rotates about x, then y, then z, the order of the scene's rotation. */
 function turn(point, [a, b, c]) {
   const turned = (p, i, j, degrees) => {
     const [sin, cos] = [Math.sin((degrees * Math.PI) / 180), Math.cos((degrees * Math.PI) / 180)];

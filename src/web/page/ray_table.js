@@ -1,8 +1,8 @@
-/* The rays of a pixel as a table whose rows open and close.
+/* The rays of a pixel as a table with expandable rows.
  *
- * exports: createRayTable({caption, onmark(ray or null)}) -> {node, show(tree or null), mark(ray or null), reveal(ray),
- * openAll(), closeAll()}
- * Rows are made when they are first seen: a tree may have very many. Arrow keys go through them as in any tree grid. */
+ * exports: createRayTable({caption, onmark(ray or null)}) -> {node, show(tree or null), mark(ray or null),
+ * reveal(ray), openAll(), closeAll()}
+ * Rows are created when they become visible, since a tree may be very large. Arrow keys work as in any tree grid. */
 
 import { element } from './ui.js';
 import { columns, describe, lineClass } from './ray_tree.js';
@@ -28,7 +28,7 @@ export function createRayTable({ caption, onmark }) {
       body,
     ),
   );
-  let rows = new Map(); /* of those that are shown, by ray */
+  let rows = new Map(); /* the visible rows, by ray */
   let open = new Set();
   let tree = null;
   let marked = null;
@@ -39,7 +39,7 @@ export function createRayTable({ caption, onmark }) {
   body.addEventListener('focusin', (event) => note(rayOf(event.target)));
   body.addEventListener('pointermove', (event) =>
     note(rayOf(event.target)),
-  ); /* not 'over': rows that scroll under it were not meant */
+  ); /* not 'over': a row that scrolls under the pointer was not pointed at */
   body.addEventListener('pointerleave', () => note(null));
   body.addEventListener('click', (event) => {
     const ray = rayOf(event.target);
@@ -84,7 +84,7 @@ export function createRayTable({ caption, onmark }) {
     return row && tree ? tree.rays[Number(row.dataset.ray)] : null;
   }
 
-  /* Level by level, while there is room for more rows. */
+  /* Opens level by level while the row limit permits. */
   function openUpTo(most) {
     let shown = tree.roots.length;
     let level = tree.roots;

@@ -1,14 +1,16 @@
-/* A pixel's tree of rays, as /api/trace gives it, as a list, and what is read of each ray. Pure: no page, no server.
+/* A pixel's ray tree from /api/trace as a list, and the texts for each ray. Pure functions without page and server.
  *
  * exports:
- *   grow(answer) -> {answer, rays, roots, reach}     rays in the order of a table; each {index, node, parent, level,
- *                                                    children, weight, from, to};
- *                                                    weight: 0..1 of the camera ray's; reach: how far rays are drawn
- *                                                    that meet nothing
- *   isCut(ray)                                       was it left out for its depth or weight?
+ *   buildTree(answer) -> {answer, rays, roots, reach}    rays in table order; each {index, node, parent, level,
+ *                                                        children, weight, from, to};
+ *                                                        weight: 0..1 of the camera ray's; reach: drawn length of
+ *                                                        rays
+ *                                                        that hit nothing
+ *   isCut(ray)                                       whether it was cut off by depth or weight
  *   lineClass(ray)                                   the class of its line in a drawing
- *   kinds                                            [class, what it is] of each, for legends
- *   columns, describe(ray)                           [key, head, title] of a table, and what stands in it */
+ *   kinds                                            [class, description] of each, for legends
+ *   columns, describe(ray)                           [key, head, title] of the table's columns, and the texts of a
+ *   row */
 
 import { digits } from './ui.js';
 import { add, length, mean, times } from './ray_vectors.js';
@@ -19,17 +21,17 @@ export const kinds = [
   ['ray-refract', 'refracted'],
   ['ray-shadow', 'to a light'],
   ['ray-blocked', 'to a light, blocked'],
-  ['ray-cut', 'not traced further'],
+  ['ray-cut', 'cut off'],
 ];
 
 const kindWords = { camera: 'camera ray', reflect: 'reflected', refract: 'refracted', shadow: 'to a light' };
 
 const endWords = {
-  hit: 'meets a surface',
+  hit: 'hits a surface',
   sky: 'background',
-  cut_depth: 'not traced: depth limit',
-  cut_weight: 'not traced: weight too small',
-  lit: 'light comes through',
+  cut_depth: 'cut off: depth limit',
+  cut_weight: 'cut off: weight too small',
+  lit: 'unoccluded',
   blocked: 'blocked',
 };
 
@@ -40,13 +42,13 @@ export function lineClass(ray) {
   return ray.node.end === 'blocked' ? 'ray ray-blocked' : `ray ray-${ray.node.kind}`;
 }
 
-export function grow(answer) {
+export function buildTree(answer) {
   const first = answer.roots || [answer.root];
   const all = mean(first[0].throughput) || 1;
   const rays = [];
   const visit = (node, parent, level) => {
     const ray = { index: rays.length, node, parent, level, children: [] };
-    /* A shadow ray's throughput is a radiance: it counts as much as the ray whose hit it leaves. */
+    /* A shadow ray's throughput is a radiance, so it gets the weight of its parent ray. */
     ray.weight = node.kind === 'shadow' && parent ? parent.weight : Math.min(1, mean(node.throughput) / all);
     rays.push(ray);
     ray.children = node.children.map((child) => visit(child, ray, level + 1));
@@ -61,7 +63,7 @@ export function grow(answer) {
   return { answer, rays, roots, reach };
 }
 
-/* The size of what is hit; of a single hit, a part of the way there. */
+/* The extent of the hits; for a single hit, a part of its distance. */
 function extent(rays) {
   const hits = rays.filter((ray) => ray.node.hit).map((ray) => ray.node.hit);
   if (!hits.length) return 1;
@@ -84,30 +86,30 @@ function endOf(ray, reach) {
   return add(node.origin, times(node.direction, isCut(ray) ? 0.15 * reach : 0.5 * reach));
 }
 
-/* --- words --- */
+/* --- texts --- */
 
 export const columns = [
-  ['kind', 'Ray', 'how it came about'],
-  ['depth', 'Depth', 'reflections and refractions since the camera'],
-  ['surface', 'Meets', 'solid and surface'],
-  ['media', 'Media', 'before and behind that surface, with their refractive indices'],
-  ['angles', 'Angles', 'of incidence and of refraction, from the normal'],
-  ['reflectance', 'R (s, p)', 'share of the light that is reflected: unpolarised, and of each polarisation'],
-  ['path', 'Path', 'length of the ray up to there'],
+  ['kind', 'Ray', 'origin of the ray'],
+  ['depth', 'Depth', 'number of reflections and refractions since the camera'],
+  ['surface', 'Hits', 'solid and surface'],
+  ['media', 'Media', 'on both sides of the surface, with refractive indices'],
+  ['angles', 'Angles', 'angles of incidence and refraction, from the normal'],
+  ['reflectance', 'R (s, p)', 'reflectance: unpolarised, and of each polarisation'],
+  ['path', 'Path', 'length of the ray up to the hit'],
   [
     'transmittance',
-    'Let through',
-    'share of the light that the medium does not absorb on that way; red, green, blue where they differ',
+    'Transmittance',
+    'share of the light that the medium does not absorb on the path; red, green, blue where they differ',
   ],
-  ['weight', 'Weight', "with how much of it the ray's light counts in the picture"],
-  ['brought', 'Brought', 'radiance that this ray itself brings to the pixel'],
-  ['end', 'Ended', 'what became of it'],
+  ['weight', 'Weight', "share of the ray's light in the pixel"],
+  ['brought', 'Contribution', 'radiance that this ray itself adds to the pixel'],
+  ['end', 'End', 'how the ray ends'],
 ];
 
 const share = (value) => `${digits(100 * value, 3)} %`;
 const degrees = (cosine) => `${digits((Math.acos(Math.min(1, Math.max(0, cosine))) * 180) / Math.PI, 4)}°`;
 
-/* One number where the channels are equal, else three. */
+/* One number if the channels are equal, otherwise three. */
 const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? digits(c[0], 3) : c.map((x) => digits(x, 3)).join(' · '));
 
 const medium = ({ medium: name, n }) => (name === digits(n) ? name : `${name} ${digits(n)}`);
@@ -118,7 +120,7 @@ function surface(hit) {
 
 function angles(hit) {
   if (hit.opaque) return degrees(hit.cos_i);
-  return hit.tir ? `${degrees(hit.cos_i)}, none refracted` : `${degrees(hit.cos_i)} → ${degrees(hit.cos_t)}`;
+  return hit.tir ? `${degrees(hit.cos_i)}, no refraction` : `${degrees(hit.cos_i)} → ${degrees(hit.cos_t)}`;
 }
 
 function reflectance(hit) {

@@ -7,7 +7,7 @@ export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const length = (a) => Math.hypot(a[0], a[1], a[2]);
 export const mean = (a) => (a[0] + a[1] + a[2]) / 3;
 
-/* null for one that has no direction. */
+/* null for a vector without direction */
 export function unit(a) {
   const size = length(a);
   return size > 0 ? times(a, 1 / size) : null;

@@ -1,4 +1,4 @@
-/* Opening, saving and choosing files of the laboratory's folder.
+/* Dialogs that open, save and choose files of the laboratory's folder.
  * exports: createFiles(lab, choice) -> {open(), fresh(), save(), saveAs(), pickSky(), pick(title, kind, empty) ->
  * promise of a name or null, forObject(object) -> node or null} */
 
@@ -7,11 +7,11 @@ import { ask, button, dialog, element, empty, notice, replace, unique } from './
 const MANY = 8;
 
 export function createFiles(lab, choice) {
-  const ours = new Set(); /* files that were written from here since they were opened: they have nothing more to lose */
+  const ours = new Set(); /* files written by this page since they were opened; overwriting them loses nothing */
 
   return { open, fresh, save, saveAs, pickSky, pick, addFile, forObject };
 
-  /* kind: a key of /api/files; actions: of the dialog, beside Cancel. */
+  /* kind: a key of /api/files; actions: buttons of the dialog in addition to Cancel */
   async function pick(title, kind, nothing, actions = []) {
     try {
       const files = await lab.get('/api/files');
@@ -34,7 +34,7 @@ export function createFiles(lab, choice) {
     const content = element(
       'div',
       { class: 'file-choice' },
-      element('p', { class: 'hint', text: `In the folder ${folder}` }),
+      element('p', { class: 'hint', text: `Folder ${folder}` }),
       names.length > MANY ? element('label', { class: 'visually-hidden', for: search.id, text: 'Find a file' }) : null,
       names.length > MANY ? search : null,
       names.length ? list : empty(nothing),
@@ -63,7 +63,7 @@ export function createFiles(lab, choice) {
                 ),
               ),
             )
-          : element('li', { class: 'hint', text: 'No file has that in its name.' }),
+          : element('li', { class: 'hint', text: 'No file name matches.' }),
       );
     };
     search.addEventListener('input', fill);
@@ -80,19 +80,20 @@ export function createFiles(lab, choice) {
     ];
   }
 
-  /* Is there nothing to lose, or may it go? Undo brings it back as long as the laboratory runs. */
+  /* Whether the current scene may be replaced: it is saved, or the user agrees. Undo restores it while the
+   * laboratory runs. */
   async function mayLeave() {
     if (!lab.state || lab.state.saved) return true;
     const answer = await dialog({
       title: 'Unsaved changes',
       content: element('p', {
         text:
-          `${lab.state.file || 'This scene'} has changes that are in no file. Undo goes back to them ` +
+          `${lab.state.file || 'This scene'} has unsaved changes. Undo restores them ` +
           `only while the laboratory runs.`,
       }),
       actions: [
         ['Cancel', null],
-        ['Go on without saving', 'go', 'danger'],
+        ['Continue without saving', 'go', 'danger'],
         ['Save first', 'save', 'primary'],
       ],
     }).closed;
@@ -104,7 +105,7 @@ export function createFiles(lab, choice) {
       await lab.change('/api/open', body);
       ours.delete(body.file);
       choice.choose('');
-      lab.say(body.file ? `${body.file} is open.` : 'A new scene.');
+      lab.say(body.file ? `${body.file} opened.` : 'New scene opened.');
     } catch (error) {
       lab.fail(error);
     }
@@ -112,7 +113,7 @@ export function createFiles(lab, choice) {
 
   async function open() {
     if (!(await mayLeave())) return;
-    const file = await pick('Open a scene', 'scenes', 'There are no scenes in the folder.');
+    const file = await pick('Open a scene', 'scenes', 'The folder contains no scenes.');
     if (file) await opened({ file });
   }
 
@@ -120,13 +121,13 @@ export function createFiles(lab, choice) {
     if (await mayLeave()) await opened({ new: true });
   }
 
-  /* The server asks about other files alone, and one written by hand has more in it than the scene. */
+  /* The server asks before it replaces any other file; a file written by hand may contain more than the scene. */
   async function overwrite(file, failed) {
     const answer = ours.has(file)
       ? 'replace'
       : await dialog({
           title: 'Replace the file',
-          content: element('p', { text: `Replace ${file}? It is written anew: comments are lost.` }),
+          content: element('p', { text: `Replace ${file}? The file is rewritten and its comments are lost.` }),
           actions: [
             ['Cancel', null],
             ['Save as …', 'as'],
@@ -141,12 +142,12 @@ export function createFiles(lab, choice) {
     try {
       await lab.change('/api/save', replaceIt ? { file, replace: true } : { file });
       ours.add(file);
-      lab.say(`${file} is saved.`);
+      lab.say(`${file} saved.`);
       return true;
     } catch (error) {
       if (error.status !== 409) return Boolean(await failed(error));
       return (
-        (await ask('Replace the file', `There is a file ${file} already. Replace it?`, 'Replace', 'danger')) &&
+        (await ask('Replace the file', `The file ${file} already exists. Replace it?`, 'Replace', 'danger')) &&
         write(file, true, failed)
       );
     }
@@ -156,7 +157,7 @@ export function createFiles(lab, choice) {
     return lab.state?.file ? overwrite(lab.state.file) : saveAs();
   }
 
-  /* Where it cannot be written, the name is there to be mended. */
+  /* After an error the dialog keeps the name for correction. */
   async function saveAs(again, problem) {
     const proposed = typeof again === 'string' ? again : lab.state?.file || `${lab.name?.() || 'scene'}.yaml`;
     const input = element('input', {
@@ -170,7 +171,7 @@ export function createFiles(lab, choice) {
     const field = element(
       'div',
       { class: 'field wide' },
-      element('label', { for: input.id, text: 'Name, from the folder of the laboratory on' }),
+      element('label', { for: input.id, text: "File name, relative to the laboratory's folder" }),
       element('span', { class: 'field-control' }, input),
     );
     const made = dialog({
@@ -183,7 +184,7 @@ export function createFiles(lab, choice) {
     });
     input.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter') return;
-      event.preventDefault(); /* it would press the button that gets the focus back */
+      event.preventDefault(); /* Enter would press the button that gets the focus back */
       made.close(input.value.trim());
     });
     input.focus();
@@ -195,12 +196,12 @@ export function createFiles(lab, choice) {
     return file === lab.state?.file ? overwrite(file, mend) : write(file, false, mend);
   }
 
-  /* A file as the scene names it. */
+  /* The file's path relative to the scene's own folder. */
   async function asPath(name) {
     return `${(await lab.get('/api/files')).prefix}${name}`;
   }
 
-  /* none(): what is set instead where an action chose no file. */
+  /* none(): sets the alternative if an action was chosen instead of a file. */
   async function setFile(path, title, kind, nothing, actions, none) {
     const name = await pick(title, kind, nothing, actions);
     if (name === null) return;
@@ -214,54 +215,41 @@ export function createFiles(lab, choice) {
 
   function pickSky() {
     const kind = lab.param('background.kind');
-    const away = kind?.value === 'picture' ? [['No picture', '']] : [];
-    return setFile(
-      'background.picture',
-      'Picture of the sky',
-      'pictures',
-      'There are no pictures in the folder.',
-      away,
-      () => {
-        const plain =
-          kind.initial && kind.initial !== 'picture' ? kind.initial : kind.choices.find((word) => word !== 'picture');
-        return { 'background.kind': plain };
-      },
-    );
+    const away = kind?.value === 'picture' ? [['No image', '']] : [];
+    return setFile('background.picture', 'Sky image', 'pictures', 'The folder contains no images.', away, () => {
+      const plain =
+        kind.initial && kind.initial !== 'picture' ? kind.initial : kind.choices.find((word) => word !== 'picture');
+      return { 'background.kind': plain };
+    });
   }
 
   async function addFile(kind, title) {
     const file = await pick(
       title,
       kind === 'model' ? 'models' : 'pictures',
-      kind === 'model' ? 'There are no models in the folder.' : 'There are no pictures in the folder.',
+      kind === 'model' ? 'The folder contains no models.' : 'The folder contains no images.',
     );
     if (file) await choice.add({ kind, file });
   }
 
-  /* Buttons for what an object has of files. */
+  /* Buttons for the files of an object. */
   function forObject(object) {
     const of = (name) => lab.param(`${object.name}.${name}`);
     const parts = [];
     if (object.kind === 'texture')
       parts.push([
-        'Choose a picture …',
-        () => setFile(`${object.name}.file`, 'Picture', 'pictures', 'There are no pictures in the folder.'),
+        'Choose an image …',
+        () => setFile(`${object.name}.file`, 'Image', 'pictures', 'The folder contains no images.'),
       ]);
     if (object.kind === 'mesh' && of('file'))
       parts.push([
         'Choose a model …',
-        () => setFile(`${object.name}.file`, 'Model', 'models', 'There are no models in the folder.'),
+        () => setFile(`${object.name}.file`, 'Model', 'models', 'The folder contains no models.'),
       ]);
     if (object.kind === 'mesh' && of('script')) {
       parts.push([
-        'Choose what hands do …',
-        () =>
-          setFile(
-            `${object.name}.script`,
-            'What hands do with it',
-            'scripts',
-            'There are no scripts of hands in the folder.',
-          ),
+        'Choose a hand script …',
+        () => setFile(`${object.name}.script`, 'Hand script', 'scripts', 'The folder contains no hand scripts.'),
       ]);
     }
     return parts.length

@@ -1,4 +1,4 @@
-/* A small curve of the slime's volume against its volume at rest, over the last seconds of its motion.
+/* A small chart of the slime's volume relative to its volume at rest, over the last seconds of its motion.
  * exports: createCurve() -> {node, add(slime), clear()} */
 
 import { digits, element, svg } from './ui.js';
@@ -7,7 +7,7 @@ const WIDTH = 320;
 const HEIGHT = 84;
 const LEFT = 44;
 const LONG_S = 10;
-const LEAST = 0.02; /* of the volume at rest: half of the height at least */
+const LEAST = 0.02; /* minimum half range of the chart, as a share of the volume at rest */
 
 const xOf = (time, now) => LEFT + (WIDTH - LEFT) * (1 - (now - time) / LONG_S);
 
@@ -30,7 +30,7 @@ export function createCurve() {
     'figure',
     { class: 'slime-figure' },
     drawing,
-    element('figcaption', { class: 'hint', text: `Volume in % of that at rest (dashed), the last ${LONG_S} s` }),
+    element('figcaption', { class: 'hint', text: `Volume in % of the volume at rest (dashed), last ${LONG_S} s` }),
   );
   let points = [];
   let frame = 0;
@@ -73,7 +73,7 @@ export function createCurve() {
     drawing.setAttribute(
       'aria-label',
       points.length
-        ? `Volume ${digits(100 * points[points.length - 1].share, 4)} % of that at rest`
+        ? `Volume ${digits(100 * points[points.length - 1].share, 4)} % of the volume at rest`
         : 'Volume: no motion yet',
     );
   }

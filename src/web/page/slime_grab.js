@@ -1,28 +1,27 @@
-/* The tool Grab: takes hold of the slime in the picture and draws it, with as many pointers as there are, or with the
- * keys.
+/* The tool Grab: drags the slime in the image with any number of pointers, or with the keyboard.
  * exports: createGrab(lab) */
 
 import { svg } from './ui.js';
 import { createHands } from './slime_hands.js';
 
 const KEYS = 'keys';
-const STEP = 0.02; /* of the picture's width, for a key */
-const DEEP = 0.0015; /* of the distance that is looked at, for a CSS pixel of the wheel */
-const DEEP_KEY = 0.04; /* of it, for a key */
+const STEP = 0.02; /* share of the image width per key press */
+const DEEP = 0.0015; /* share of the viewing distance per CSS pixel of the wheel */
+const DEEP_KEY = 0.04; /* share of the viewing distance per key press */
 
 export function createGrab(lab) {
   const { view } = lab;
   const marks = view.layer('grab');
   const hands = createHands(lab, draw);
-  let cross = null; /* of the keys, in picture pixels */
+  let cross = null; /* the keyboard's cross, in image pixels */
   const tool = {
     label: 'Grab',
     icon: 'hand',
     order: 30,
     cursor: 'grab',
     hint:
-      'Drag the slime; wheel while dragging: along the view. Keys: arrows, Enter to take hold and ' +
-      'let go, Page Up and Page Down along the view',
+      'Drag the slime; wheel while dragging: along the view. Keys: arrows, Enter to grab and ' +
+      'release, Page Up and Page Down along the view',
     chosen: () => lab.panels?.use('slime'),
     dropped() {
       hands.dropAll();
@@ -50,7 +49,7 @@ export function createGrab(lab) {
     draw();
   });
 
-  /* It takes the pointer itself: the bar knows one drag at a time. */
+  /* Captures each pointer itself, because the toolbar supports only one drag at a time. */
   function down(point, event) {
     if (!point.inside) return false;
     view.stage.setPointerCapture(event.pointerId);
@@ -74,16 +73,16 @@ export function createGrab(lab) {
 
   function wheel(point, event, lines) {
     const held = hands.all();
-    if (!held.length) lab.say('The wheel pulls along the view while the slime is held');
+    if (!held.length) lab.say('Grab the slime first: the wheel then pulls it along the view');
     for (const hand of held) push(hand, -lines * DEEP);
   }
 
   function key(event) {
     const far = (event.shiftKey ? 0.2 : 1) * STEP * view.width;
-    const way = { ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, -far], ArrowDown: [0, far] }[event.key];
+    const offset = { ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, -far], ArrowDown: [0, far] }[event.key];
     const deep = { PageUp: DEEP_KEY, PageDown: -DEEP_KEY }[event.key];
     const hand = hands.get(KEYS);
-    if (way) step(hand, way);
+    if (offset) step(hand, offset);
     else if (deep && hand) push(hand, deep);
     else if (event.key === 'Enter') toggle(hand);
     else if (event.key === 'Escape' && hand) hands.drop(KEYS);
@@ -102,10 +101,10 @@ export function createGrab(lab) {
     cross ??= { x: view.width / 2, y: view.height / 2 };
     if (hand) hands.drop(KEYS);
     else hands.take(KEYS, cross.x, cross.y);
-    lab.say(hand ? 'The hand let go' : 'A hand takes hold');
+    lab.say(hand ? 'Slime released' : 'Slime grabbed');
   }
 
-  /* Twice: a dark edge under a bright line, to be seen on any picture. */
+  /* Draws it twice, a dark edge under a bright line, to be visible on any image. */
   function both(tag, attributes) {
     return [svg(tag, { ...attributes, class: 'grab-edge' }), svg(tag, { ...attributes, class: 'grab-mark' })];
   }

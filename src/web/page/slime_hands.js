@@ -1,12 +1,12 @@
-/* Hands that hold the slime, one for each pointer or key that took hold of it; what they are told goes to the server
- * one after the other, the newest
- * place in place of those that wait.
+/* Hands that hold the slime, one per pointer or key. Moves are sent to the server one after the other; the newest
+ * replaces a waiting one.
  * exports: createHands(lab, changed) -> {all(), take(key, x, y), get(key), drop(key), dropAll()}
- *   take: places in pixels of the full picture; a hand is {x, y, depth, where ([x,y,z] where it took hold, null
- *   before), move(x, y, depth)}
- *   changed() is called when a hand came, moved or went */
+ *   take: positions in pixels of the full image; a hand is {x, y, depth, where ([x,y,z] of the grab point, null
+ *   before),
+ *   move(x, y, depth)}
+ *   changed() is called when a hand is added, moved or removed */
 
-/* What is no fault of who drags: what was held began anew, or the page was left. */
+/* Errors that the user cannot avoid: the slime restarted, or the page is being closed. */
 const gone = (error) => error.status === 409 || error.status === 404 || error.status === 0 || error.status === 401;
 
 async function playing(lab) {
@@ -29,7 +29,7 @@ export function createHands(lab, changed) {
       changed();
       send(hand);
     };
-    /* A page that goes can wait for nothing. */
+    /* A page that is being closed cannot wait for a reply. */
     hand.leave = () => {
       if (hand.number !== null) {
         fetch('/api/slime/release', {
@@ -55,7 +55,7 @@ export function createHands(lab, changed) {
       changed();
     } catch (error) {
       forget(key, hand);
-      if (error.status === 404) lab.say('There is no slime there');
+      if (error.status === 404) lab.say('No slime at that point');
       else lab.fail(error);
       return;
     }

@@ -1,6 +1,6 @@
-/* Sliders for how a slime looks and how it is made.
- * exports: createSliders(lab, solid, mesh) -> {looks: [nodes], body: [nodes], update()}; names of the solid that shows
- * it and of its mesh */
+/* Sliders for the appearance and the body of a slime.
+ * exports: createSliders(lab, solid, mesh) -> {looks: [nodes], body: [nodes], update()}; names of the solid that
+ * shows the slime and of its mesh */
 
 import { slider, element, gesture, toByte, toLinear, unique } from './ui.js';
 
@@ -10,7 +10,7 @@ const CHANNELS = [
   ['blue', 2],
 ];
 
-/* of: 'solid' or 'mesh'; at: which element of a list; sign: -1 shows the negative */
+/* of: 'solid' or 'mesh'; at: index in a vector; sign: -1 shows the negative */
 const looks = [
   { heading: 'Colour', of: 'solid', name: 'color', channels: true, min: 0, max: 1, step: 0.005 },
   {
@@ -20,10 +20,10 @@ const looks = [
     min: 0,
     max: 1,
     step: 0.005,
-    hint: 'how much of the colour is seen; clear slime is coloured by what it absorbs',
+    hint: 'strength of the surface colour; absorption colours transparent slime',
   },
   { label: 'Transmission', of: 'solid', name: 'transparency', min: 0, max: 1, step: 0.005 },
-  { label: 'Index', of: 'solid', name: 'ior', min: 1, max: 2.5, step: 0.005 },
+  { label: 'Refractive index', of: 'solid', name: 'ior', min: 1, max: 2.5, step: 0.005 },
   {
     heading: 'Absorption',
     of: 'solid',
@@ -53,7 +53,8 @@ function create(lab, path, entry, label, at) {
   const send = (x, gesture) => {
     const whole = lab.param(path)?.value;
     const value = at === undefined ? sign * x : whole.map((old, index) => (index === at ? sign * x : old));
-    if (at !== undefined) lab.param(path).value = value; /* the next channel's slider may come before the scene does */
+    if (at !== undefined)
+      lab.param(path).value = value; /* the next channel's slider may move before the new scene arrives */
     lab.set({ [path]: value }, gesture).catch(lab.fail);
   };
   const one = slider({ label, min, max, step, log, unit, value: read(), oninput: send });
@@ -61,9 +62,9 @@ function create(lab, path, entry, label, at) {
   return { node: one.node, update: () => one.set(read()) };
 }
 
-const DARKEST = 1e-3; /* what is left of a channel that the chosen colour lacks */
+const DARKEST = 1e-3; /* the transmittance of a channel that is 0 in the chosen colour */
 
-/* The absorption as the colour of white light behind 1 m of it, by Beer and Lambert. */
+/* The absorption coefficients as the colour of white light after 1 m, by the Beer-Lambert law. */
 function tint(lab, path) {
   const input = element('input', { type: 'color', id: unique('tint') });
   let mine = null;
@@ -91,7 +92,7 @@ function tint(lab, path) {
       'span',
       { class: 'field-control' },
       input,
-      element('span', { class: 'hint', text: 'white light behind 1 m of it' }),
+      element('span', { class: 'hint', text: 'colour of white light after 1 m' }),
     ),
   );
   return { node, update };

@@ -1,4 +1,5 @@
-/* The line at the bottom: what is shown, what it cost, and the last message; and the live region for screen readers.
+/* The status line: facts about the displayed image, its cost, and the last message; and the live region for screen
+ * readers.
  * exports: createStatus(root, live, lab); sets lab.say and lab.fail */
 
 import { button, copy, count, digits, element, icon, replace, seconds } from './ui.js';
@@ -52,7 +53,7 @@ export function createStatus(root, live, lab) {
   const soon = () => {
     frame ||= requestAnimationFrame(draw);
   };
-  for (const name of ['picture', 'state', 'connection', 'news', 'notes']) lab.on(name, soon);
+  for (const name of ['picture', 'state', 'connection', 'pass', 'notes']) lab.on(name, soon);
   draw();
 }
 
@@ -68,15 +69,15 @@ function items(lab) {
   const noted = lab.notes?.count() || 0;
   const { picture, state } = lab;
   if (!picture)
-    return [element('span', { class: 'fact', text: lab.connected === 'open' ? 'No picture yet' : 'Connecting …' })];
+    return [element('span', { class: 'fact', text: lab.connected === 'open' ? 'No image yet' : 'Connecting …' })];
   const { rays, wall_s: wall } = picture;
-  const behind = lab.wanted > picture.generation || !picture.final;
+  const behind = lab.newestGeneration > picture.generation || !picture.final;
   return [
     element('span', {
       class: behind ? 'lamp busy' : 'lamp',
       role: 'img',
       'aria-label': behind ? 'rendering' : 'final',
-      title: behind ? 'rendering' : 'final picture',
+      title: behind ? 'rendering' : 'final image',
     }),
     noted ? notesButton(noted, lab) : null,
     fact('pass', picture.passes ? `${picture.pass} of ${picture.passes}` : String(picture.pass)),
@@ -89,12 +90,14 @@ function items(lab) {
     fact('time', seconds(wall), 'wall time of the pass'),
     fact('rays', count(rays)),
     rays && wall ? fact('rays/s', count(rays / wall)) : null,
-    Number.isFinite(picture.noise) ? fact('noise', digits(picture.noise, 3), 'standard error of random paths') : null,
+    Number.isFinite(picture.noise)
+      ? fact('noise', digits(picture.noise, 3), 'standard error of the path-traced image')
+      : null,
     picture.film_hash ? fact('film', hash(picture.film_hash, lab), 'hash of the film; click to copy') : null,
     fact(
       'generation',
       String(picture.generation),
-      state && state.generation > picture.generation ? `the scene is at ${state.generation}` : null,
+      state && state.generation > picture.generation ? `the scene is at generation ${state.generation}` : null,
     ),
   ];
 }
@@ -105,7 +108,7 @@ const notesButton = (noted, lab) =>
     {
       type: 'button',
       class: 'fact notes-button',
-      title: 'what looks wrong in the scene',
+      title: "show the linter's notes on the scene",
       onclick: () => lab.notes.show(),
     },
     icon('warning'),

@@ -1,24 +1,29 @@
-/* What the page knows of the server, and the way changes go there: the object lab.
+/* The page's copy of the server's state, and the queue of changes: the object lab.
  *
  * exports: createLab() -> lab
- *   lab.get, lab.post, lab.del, lab.blob   see api.js; for what is no change of the scene, or needs no order
- *   lab.state, lab.scene, lab.picture, lab.slime, lab.study    what came last; null before
- *   lab.wanted                          the newest generation that is known of: older pictures are not shown
+ *   lab.get, lab.post, lab.del, lab.blob   see api.js; for requests that do not change the scene or need no order
+ *   lab.state, lab.scene, lab.picture, lab.slime, lab.study    the latest values; null before the first
+ *   lab.newestGeneration                the newest known generation: older images are not shown
+ *   lab.newestPass                      the newest known pass, displayed or not
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
- *   lab.on(name, f) -> end()            names: state, scene, picture (a pass was drawn), news (a pass is there), slime,
- *                                       study, connection,
- *                                       afresh (another server: what was known is void), view (the picture's place
- *                                       changed), tool, panel (one was chosen)
+ *   lab.on(name, f) -> end()            names: state, scene, picture (a pass is displayed), pass (a pass is
+ *   available),
+ *                                       slime, study, connection,
+ *                                       restarted (a new server: all earlier data is void), view (the image's
+ *                                       placement
+ *                                       changed), tool, panel (one was selected)
  *   lab.emit(name, value)
  *   lab.param(path)                     the row of that parameter; undefined: the scene has none
  *   lab.object(name)                    the object of that name; undefined
- *   lab.set(values, gesture)            {path: value}; promise of the reply. In order; of one gesture only the newest
+ *   lab.set(values, gesture)            {path: value}; promise of the reply. Sent in order; only the newest of a
+ *   gesture
  *                                       waits
  *   lab.change(path, body, {gesture, merge})   any other POST that changes the scene, in the same order as set;
- *                                              merge(waiting, body) -> body joins
- *                                       two of one gesture and path (default: the newer takes the place of the older)
- *   lab.refresh()                       asks for state and scene anew
- *   lab.start()                         opens the stream of events
+ *                                              merge(waiting, body) -> body merges two of one gesture and path
+ *                                              (default:
+ *                                              the newer replaces the older)
+ *   lab.refresh()                       fetches state and scene again
+ *   lab.start()                         opens the event stream
  *   lab.say(text, remedy), lab.fail(error), lab.notes      set by main.js */
 
 import { createApi } from './api.js';
@@ -26,7 +31,7 @@ import { createApi } from './api.js';
 const RETRY_MS = 1000;
 const STRANGER_RETRY_MS = 5000;
 const PULSE_MS = 10000;
-const SCENE_MS = 150; /* the scene is fetched no more often */
+const SCENE_MS = 150; /* minimum time between two fetches of the scene */
 const EVENTS = ['state', 'picture', 'slime', 'study'];
 
 function createEmitter() {
@@ -49,7 +54,7 @@ function createEmitter() {
   };
 }
 
-/* One request at a time; those that wait keep their order, and of one gesture and path only one waits. */
+/* Sends one request at a time, in order; only the newest request of a gesture and path waits. */
 function createQueue(post) {
   const waiting = [];
   let busy = false;
@@ -104,10 +109,10 @@ export function createLab() {
     state: null,
     scene: null,
     picture: null,
-    news: null,
+    newestPass: null,
     slime: null,
     study: null,
-    wanted: 0,
+    newestGeneration: 0,
     connected: 'opening',
     ...api,
     on,
@@ -132,14 +137,14 @@ export function createLab() {
         },
       )
       .then((reply) => {
-        const [first] = reply.notes || []; /* what was set and does nothing */
+        const [first] = reply.notes || []; /* parameters that have no effect */
         if (first) lab.say(`Note: ${first.place}: ${first.text}`, first.remedy);
         return reply;
       });
   return lab;
 
   function want(generation) {
-    if (generation > lab.wanted) lab.wanted = generation;
+    if (generation > lab.newestGeneration) lab.newestGeneration = generation;
   }
 
   function connection(value) {
@@ -174,7 +179,7 @@ export function createLab() {
     }
   }
 
-  /* A connection that is cut on the way may stay open at this end. */
+  /* A broken connection may stay open at this end. */
   function pulse() {
     if (lab.connected === 'open')
       api.get('/api/state', PULSE_MS).catch((error) => {
@@ -182,21 +187,21 @@ export function createLab() {
       });
   }
 
-  /* The stream does not say why it failed; a request does. */
+  /* The stream does not report the cause of its failure, but a request does. */
   async function ask() {
     lose('lost');
     await lab.get('/api/state').catch(() => undefined);
   }
 
-  /* A server that was started anew counts its generations from the start. */
+  /* A restarted server counts its generations from the beginning. */
   async function recover(mine) {
     try {
       const state = await api.get('/api/state');
       if (stream !== mine) return;
       if (!lab.state || state.generation < lab.state.generation || lab.connected !== 'open') {
-        Object.assign(lab, { wanted: 0, news: null });
+        Object.assign(lab, { newestGeneration: 0, newestPass: null });
         stale = true;
-        emit('afresh', null);
+        emit('restarted', null);
       }
       connection('open');
       receive('state', state);
@@ -211,12 +216,12 @@ export function createLab() {
       lab.state = value;
       lab.slime = value.slime;
       lab.study = value.study;
-      if (value.picture && !(lab.news?.serial > value.picture.serial)) lab.news = value.picture;
+      if (value.picture && !(lab.newestPass?.serial > value.picture.serial)) lab.newestPass = value.picture;
       emit('state', value);
       if (stale || !lab.scene || lab.scene.generation < value.generation) fetchScene();
     } else if (name === 'picture') {
-      lab.news = value;
-      emit('news', value);
+      lab.newestPass = value;
+      emit('pass', value);
     } else {
       lab[name] = value;
       if (lab.state) lab.state[name] = value;
@@ -228,7 +233,7 @@ export function createLab() {
     return api.get('/api/state').then((state) => receive('state', state));
   }
 
-  /* Of all that ask while one is under way, one more is sent. */
+  /* Calls during a fetch are merged into one more fetch. */
   async function fetchScene() {
     if (fetching) {
       again = true;

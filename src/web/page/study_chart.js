@@ -1,4 +1,4 @@
-/* A chart of a study's cells with its choices (what against what, logarithmic or not) and the same as a table.
+/* A chart of a study's cells with controls for its axes, and the same data as a table.
  * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note})} */
 
 import { check, choice, digits, element, empty, group, replace, table } from './ui.js';
@@ -34,7 +34,7 @@ export function createChart({ caption, id }) {
   const bar = element('div', { class: 'study-choices' });
   const place = element('figure', { class: 'study-plot', tabindex: '0', 'aria-label': caption });
   const below = element('div', { class: 'study-numbers' });
-  const alternative = group('The figure as a table', { open: false, id }, below);
+  const alternative = group('Chart data as a table', { open: false, id }, below);
   const node = element('div', { class: 'study-chart' }, bar, place, alternative);
   let what = null;
   let barOf = '';
@@ -54,7 +54,7 @@ export function createChart({ caption, id }) {
     draw();
   }
 
-  /* The choices are made anew only when they change: a list that is open must not go away as rows come. */
+  /* The controls are rebuilt only when their choices change: an open list must not close when rows arrive. */
   function choices(quantity, x, axes, log) {
     const now = JSON.stringify([what.quantities.map(({ key }) => key), axes, quantity.key, x, log]);
     if (now === barOf) return;
@@ -72,24 +72,26 @@ export function createChart({ caption, id }) {
         : null,
       axes.length > 1
         ? choice({
-            label: 'Against',
+            label: 'Horizontal axis',
             choices: axes.map(({ path }) => path),
             value: x,
             onchange: (value) => pick('x', value),
           }).node
         : null,
-      check('Logarithmic across', log.x, (on) => pick('logX', on)).node,
-      check('Logarithmic up', log.y, (on) => pick('logY', on)).node,
+      check('Logarithmic x axis', log.x, (on) => pick('logX', on)).node,
+      check('Logarithmic y axis', log.y, (on) => pick('logY', on)).node,
     );
     if (focused >= 0) bar.querySelectorAll('select, input')[focused]?.focus();
   }
 
   function draw() {
     const quantity = what.quantities.find(({ key }) => key === chosen.quantity) || what.quantities[0];
-    const cells = quantity ? what.cells(quantity) : []; /* those to come too, so that lines keep their looks */
+    const cells = quantity
+      ? what.cells(quantity)
+      : []; /* includes unmeasured cells, so that each line keeps its style */
     bar.hidden = alternative.hidden = !cells.some(({ y }) => Number.isFinite(y));
     if (bar.hidden) {
-      replace(place, empty('There is nothing to draw yet.'));
+      replace(place, empty('No data to draw yet.'));
       return;
     }
     const axes = axesFor(cells, what.paths);
@@ -104,7 +106,7 @@ export function createChart({ caption, id }) {
     const title = `${what.title}: ${quantity.label}`;
     const few =
       quantity.low >= 0 && !cells.some(({ low }) => Number.isFinite(low))
-        ? 'Of fewer than six rows a cell no interval of the median is known.'
+        ? 'Intervals of the median require at least six rows per cell.'
         : '';
     replace(
       place,
@@ -118,7 +120,7 @@ export function createChart({ caption, id }) {
       }),
       element('figcaption', {
         class: 'hint',
-        text: [what.note, few, left ? `${left} more lines are not drawn; the summary has them.` : '']
+        text: [what.note, few, left ? `${left} more lines are not drawn; see the summary.` : '']
           .filter(Boolean)
           .join(' '),
       }),

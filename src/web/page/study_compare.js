@@ -1,5 +1,5 @@
-/* Two runs of a study, cell by cell: a chart of ratios and a table. exports: createCompare(lab) -> {node, show(study,
- * details, results), forget()} */
+/* Compares two runs of a study cell by cell: a chart of ratios and a table. exports: createCompare(lab) -> {node,
+ * show(study, details, results), forget()} */
 
 import { choice, digits, element, empty, notice, replace } from './ui.js';
 import { createChart } from './study_chart.js';
@@ -9,7 +9,7 @@ import { pathsOf } from './study_data.js';
 const text = (value) => (value === null || value === undefined ? 'NA' : String(value));
 const sameness = (value) => (value === null ? 'NA' : value ? 'yes' : 'no');
 
-/* Of the quotient no interval is known; what both intervals allow is at most this. */
+/* Conservative bounds of the ratio from both intervals; its own interval is unknown. */
 function bounds({ a, b }) {
   return {
     low: b.low === null || a.high === null ? NaN : b.low / a.high,
@@ -24,11 +24,11 @@ function rowsOf(answer) {
     'cell',
     ...answer.columns,
     'A / s',
-    'A from',
+    'A low',
     'A to',
     'A n',
     'B / s',
-    'B from',
+    'B low',
     'B to',
     'B n',
     'B / A',
@@ -62,14 +62,13 @@ function verdict({ cells }) {
   return [
     element('p', {
       text:
-        `${both.length} of ${cells.length} cells were measured in both; B takes ` +
+        `${both.length} of ${cells.length} cells were measured in both runs; B takes ` +
         `${digits(middle, 3)} times as long as A in the geometric mean.`,
     }),
     others
-      ? notice(
-          `${others} ${others === 1 ? 'cell has' : 'cells have'} another film: what was rendered is not the same.`,
-          { kind: 'warning' },
-        )
+      ? notice(`${others} ${others === 1 ? 'cell has' : 'cells have'} different films: the rendered images differ.`, {
+          kind: 'warning',
+        })
       : null,
   ];
 }
@@ -77,7 +76,7 @@ function verdict({ cells }) {
 export function createCompare(lab) {
   const bar = element('div');
   const below = element('div', { class: 'study-compare' });
-  const chart = createChart({ caption: 'Ratios of the two runs', id: 'study-ratios' });
+  const chart = createChart({ caption: 'Ratios of two runs', id: 'study-ratios' });
   const sorted = createSortTable({ caption: 'Two runs, cell by cell' });
   const node = element('div', { class: 'study-part' }, bar, below);
   let shown = '';
@@ -100,8 +99,8 @@ export function createCompare(lab) {
       replace(
         bar,
         empty(
-          `No other folder holds rows of ${study.name}. Copy ${results || 'results'} aside before you ` +
-            `measure anew, and compare then.`,
+          `No other folder has rows of ${study.name}. Copy ${results || 'results'} to another folder before ` +
+            `you measure again, then compare.`,
         ),
       );
       replace(below);
@@ -139,12 +138,12 @@ export function createCompare(lab) {
     }));
     replace(below, verdict(answer), chart.node, sorted.node);
     chart.show({
-      title: `${study.title}, ${run} against ours`,
+      title: `${study.title}, ${run} compared with the current results`,
       paths,
       quantities: [quantity],
       cells: () => cells,
       mark: 1,
-      note: 'Medians of wall times; the bars reach as far as the 95% intervals of both medians allow.',
+      note: 'Medians of wall times; the bars are bounds from the 95% intervals of both medians.',
     });
     sorted.show(...rowsOf(answer));
   }

@@ -1,31 +1,32 @@
-/* What is in a study's tables: texts as numbers, which columns are what, and lines of points for charts.
+/* The data of a study's tables: parses numbers, classifies columns, and makes series for charts.
  *
  * exports:
  *   numberOf(text)                    NaN for NA and words
- *   isNumeric(column, rows, index)    are all that is known in that column numbers? Fingerprints are none
+ *   isNumeric(column, rows, index)    whether all known values of the column are numbers; fingerprints are not
  *   pathsOf(study)                    [{path, unit}] of the grid
  *   quantitiesOf(summary, paths)      [{key, label, unit, column, low, high}] that a chart can show
  *   cellsOf(summary, paths, quantity) [{at: {path: text}, y, low, high}]
  *   axesFor(cells, paths)             paths with more than one value, numbers first
- *   seriesOf(cells, paths, x)         {series: [{name, points}], values, heading, left}: values are words of an axis
- *                                     without numbers; left: lines left out */
+ *   seriesOf(cells, paths, x)         {series: [{name, points}], values, heading, left}: values: words of a
+ *   categorical
+ *                                     axis; left: number of lines omitted */
 
 const SERIES_MAX = 14;
 const FINGERPRINTS = /(^|_)(hash|definition|reference|film_expected|reference_film)$/;
 const NAMES = {
-  wall_s: 'wall time of a frame',
-  cpu_s: 'CPU time of a frame',
-  rays_total: 'rays of a frame',
-  noise_rms: 'noise of random paths',
-  imbalance: 'imbalance of the workers',
+  wall_s: 'wall time per frame',
+  cpu_s: 'CPU time per frame',
+  rays_total: 'rays per frame',
+  noise_rms: 'noise of path tracing',
+  imbalance: 'load imbalance of the workers',
   flip: 'FLIP error',
   error_rms: 'error against the reference, rms',
-  build_s: 'time to build hierarchies',
+  build_s: 'time to build the hierarchies',
   motion_s: 'time of the motion',
   peak_rss_bytes: 'peak memory',
   psnr_db: 'PSNR against the reference',
   ssim: 'SSIM against the reference',
-  others_share: 'share of the machine that others used',
+  others_share: 'CPU share of other programs',
 };
 const NOT_SHOWN = new Set(['cell', 'n', 'marked']);
 
@@ -95,7 +96,7 @@ export function axesFor(cells, paths) {
   return [...some.filter(numeric), ...some.filter((one) => !numeric(one))];
 }
 
-/* Does the value of one parameter say that of the other? Then that is no reason for a line of its own. */
+/* Whether the value of one parameter determines that of the other; then it does not distinguish lines. */
 function follows(cells, path, from) {
   const seen = new Map();
   return cells.every((cell) => {

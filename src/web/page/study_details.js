@@ -1,5 +1,5 @@
-/* One study: what it is, how far, its figure, tables and other runs. exports: createDetails(lab, {onrun, onstop}) ->
- * {node, show(study, details, results), progress(running), grew} */
+/* The details of one study: definition, progress, chart, tables and other runs. exports: createDetails(lab, {onrun,
+ * onstop}) -> {node, show(study, details, results), progress(running), grew} */
 
 import { button, check, count, element, empty, facts, group, notice, replace, seconds } from './ui.js';
 import { cellsOf, pathsOf, quantitiesOf } from './study_data.js';
@@ -10,7 +10,7 @@ import { createRows } from './study_rows.js';
 import { createSortTable } from './study_table.js';
 
 const FIRST = /^(cell|n|wall_s_(median|low|high)|cpu_s_median|rays_total|noise_rms|psnr_db|flip|film_hash|marked)$/;
-const stages = { measuring: 'measuring', moving: 'the slime moves', pictures: 'making pictures' };
+const stages = { measuring: 'measuring', moving: 'simulating the slime', pictures: 'rendering images' };
 
 function axisWords({ name, paths, units, count: points }) {
   const own = paths.map((path, i) => (units[i] ? `${path} / ${units[i]}` : path)).join(', ');
@@ -34,12 +34,12 @@ const about = (study, details) =>
       ['Cells', `${count(details.cells_done)} of ${count(details.cells)} done`],
       ['Rows', `${count(details.rows)}, of which ${count(details.warmups)} warm-ups`],
       details.marked
-        ? ['Marked', `${count(details.marked)} rows saw another film than the first one of their cell`]
+        ? ['Marked', `${count(details.marked)} rows with another film than the first row of their cell`]
         : null,
     ].filter(Boolean),
   );
 
-/* The bar, and what happens now in words. */
+/* The progress bar and a description of the current work. */
 function createProgress() {
   const bar = element('progress', { max: 1, value: '0', 'aria-label': 'done' });
   const words = element('p', { class: 'study-now' });
@@ -58,7 +58,7 @@ function createProgress() {
       bar.value = done;
       words.textContent = [
         now.pictures
-          ? `picture ${now.picture} of ${now.pictures}`
+          ? `image ${now.picture} of ${now.pictures}`
           : `${count(now.frames_done)} of ${count(now.frames_all)} frames`,
         `${Math.floor(100 * done)} %`,
         now.pictures || now.left_s === null ? null : `about ${seconds(Math.max(1, Math.round(now.left_s)))} left`,
@@ -71,7 +71,7 @@ function createProgress() {
 }
 
 function createSummary() {
-  const sorted = createSortTable({ caption: 'Summary: one line a cell' });
+  const sorted = createSortTable({ caption: 'Summary: one line per cell' });
   const all = check('All columns', false, () => draw());
   const place = element('div', { class: 'study-part' });
   let summary = null;
@@ -87,7 +87,7 @@ function createSummary() {
 
   function draw() {
     if (!summary) {
-      replace(place, empty('There are no rows to sum up yet.'));
+      replace(place, empty('No rows to summarise yet.'));
       return;
     }
     const kept = summary.columns
@@ -107,7 +107,7 @@ export function createDetails(lab, { onrun, onstop }) {
   const progress = createProgress();
   const trouble = element('div');
   const what = element('div');
-  const chart = createChart({ caption: 'The study in numbers', id: 'study-figure-numbers' });
+  const chart = createChart({ caption: 'Chart of the study', id: 'study-figure-numbers' });
   const summary = createSummary();
   const rows = createRows(lab);
   const figures = createFigures(lab);
@@ -115,8 +115,8 @@ export function createDetails(lab, { onrun, onstop }) {
   const parts = element(
     'div',
     { class: 'study-groups' },
-    group('Figure', { id: 'study-figure', hint: 'medians and their 95% intervals, as the rows come' }, chart.node),
-    group('Summary', { id: 'study-summary', hint: 'one line a cell' }, summary.node),
+    group('Chart', { id: 'study-figure', hint: 'medians with 95% intervals, updated during the run' }, chart.node),
+    group('Summary', { id: 'study-summary', hint: 'one line per cell' }, summary.node),
     rows.node,
     group('Figures of plots/', { id: 'study-drawn', hint: 'drawn by gnuplot' }, figures.node),
     group('Compare two runs', { id: 'study-compare', hint: 'cell by cell' }, compare.node),
@@ -134,9 +134,9 @@ export function createDetails(lab, { onrun, onstop }) {
   let details = null;
   return { node, show, progress: showProgress, grew: (ended) => figures.grew(ended) };
 
-  function show(next, told, results) {
+  function show(next, reply, results) {
     study = next;
-    details = told;
+    details = reply;
     heading.textContent = study.title || study.name;
     const broken = details.error && details.cells === undefined;
     parts.hidden = broken;
@@ -169,17 +169,17 @@ export function createDetails(lab, { onrun, onstop }) {
     stop.hidden = !start.hidden;
     const complete = details.cells > 0 && details.cells_done >= details.cells;
     start.querySelector('.button-label').textContent = complete
-      ? 'Make what is missing'
+      ? 'Complete the study'
       : details.rows
         ? 'Continue'
         : 'Start';
     start.classList.toggle('primary', !complete);
     start.disabled = Boolean(other) || (Boolean(details.error) && details.cells === undefined);
     start.title = other
-      ? `the study ${other} runs`
+      ? `the study ${other} is running`
       : complete
-        ? 'all rows are there; pictures that lack are made'
-        : 'measures what is missing; nothing is rendered beside it';
+        ? 'all rows are measured; renders the missing images'
+        : 'measures the missing rows; rendering is suspended meanwhile';
     const error = details.error || (mine && now.error) || null;
     const where = error?.file ? `${error.file}${error.line ? `:${error.line}` : ''}: ` : '';
     if (trouble.dataset.of !== JSON.stringify(error)) {

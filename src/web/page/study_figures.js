@@ -4,16 +4,16 @@
 import { button, check, element, empty, notice, replace } from './ui.js';
 
 export function createFigures(lab) {
-  const said = element('div');
+  const messages = element('div');
   const list = element('div', { class: 'study-figures' });
   const draw = button('Draw with gnuplot', () => ask(), { icon: 'chart', small: true });
-  const along = check('Draw again when it has ended', false);
+  const along = check('Redraw when the study ends', false);
   const warning = element('p', {
     class: 'hint',
-    text: 'Drawing would disturb what is measured now: these are drawn when it has ended or is stopped.',
+    text: 'Drawing would disturb the measurement: these figures are drawn after the study ends or is stopped.',
   });
   const bar = element('div', { class: 'buttons' }, draw, along.node);
-  const node = element('div', { class: 'study-part' }, bar, warning, said, list);
+  const node = element('div', { class: 'study-part' }, bar, warning, messages, list);
   let study = null;
   let busy = false;
   let version = 0;
@@ -21,11 +21,11 @@ export function createFigures(lab) {
   return { node, show, grew };
 
   function show(next, { figures = [], drawable = [], rows }, running) {
-    if (next.name !== study?.name) replace(said);
+    if (next.name !== study?.name) replace(messages);
     study = next;
     bar.hidden = drawable.length === 0;
     draw.disabled = busy || !rows || running;
-    draw.title = rows ? drawable.join(', ') : 'when there are rows';
+    draw.title = rows ? drawable.join(', ') : 'available when there are rows';
     warning.hidden = bar.hidden || !running;
     drawList(figures, drawable);
   }
@@ -53,7 +53,7 @@ export function createFigures(lab) {
           {},
           element('img', {
             src: `/api/figures/${name}?drawn=${version}`,
-            alt: `The figure ${name}, drawn from the rows by plots/${name}.gp`,
+            alt: `Figure ${name}, drawn from the rows by plots/${name}.gp`,
           }),
           element('figcaption', { class: 'hint', text: name }),
         ),
@@ -61,7 +61,7 @@ export function createFigures(lab) {
     );
   }
 
-  /* More rows are there; ended: and no more will come for now. */
+  /* Called when rows were added; ended: the study has stopped. */
   function grew(ended) {
     if (along.value && !bar.hidden && ended) ask();
   }
@@ -71,22 +71,22 @@ export function createFigures(lab) {
     busy = draw.disabled = true;
     const of = study;
     try {
-      const told = await lab.post(`/api/studies/${encodeURIComponent(of.name)}/draw`, {});
+      const reply = await lab.post(`/api/studies/${encodeURIComponent(of.name)}/draw`, {});
       version++;
       if (of.name === study.name) {
         replace(
-          said,
-          told.complete
+          messages,
+          reply.complete
             ? null
-            : notice('Not all figures could be drawn from the rows so far.', {
+            : notice('Some figures could not be drawn from the current rows.', {
                 kind: 'warning',
-                remedy: told.said.slice(0, 400),
+                remedy: reply.said.slice(0, 400),
               }),
         );
-        drawList(told.figures, []);
+        drawList(reply.figures, []);
       }
     } catch (error) {
-      if (of.name === study.name) replace(said, notice(error.message, { kind: 'error', remedy: error.remedy }));
+      if (of.name === study.name) replace(messages, notice(error.message, { kind: 'error', remedy: error.remedy }));
     }
     busy = draw.disabled = false;
   }

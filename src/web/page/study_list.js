@@ -1,4 +1,4 @@
-/* The list of studies: a button for each, with how far it is. exports: createStudyList({onchoose}) -> {node,
+/* The list of studies: one button per study, with its progress. exports: createStudyList({onchoose}) -> {node,
  * show(studies, chosen, running)} */
 
 import { element, icon, replace, unique } from './ui.js';
@@ -6,7 +6,7 @@ import { element, icon, replace, unique } from './ui.js';
 const shareOf = ({ frames_done: done, frames_all: all, share }) => (all ? (done + (share || 0)) / all : 0);
 
 function state(study, running) {
-  if (running) return `runs, ${Math.floor(100 * shareOf(running))} %`;
+  if (running) return `running, ${Math.floor(100 * shareOf(running))} %`;
   if (study.error) return 'cannot be read';
   if (study.cells_done >= study.cells) return 'complete';
   return study.rows ? `${study.cells_done} of ${study.cells} cells` : `${study.cells} cells`;
@@ -50,7 +50,7 @@ export function createStudyList({ onchoose }) {
     autocomplete: 'off',
   });
   const list = element('ul', { class: 'study-list' });
-  const none = element('p', { class: 'hint', text: 'No study has that in its name, title or file.', hidden: true });
+  const none = element('p', { class: 'hint', text: 'No study matches in name, title or file.', hidden: true });
   const node = element(
     'nav',
     { class: 'study-nav', 'aria-label': 'Studies' },

@@ -1,4 +1,4 @@
-/* The raw rows of a study, the newest first. exports: createRows(lab) -> {node, show(study, count), forget()} */
+/* The raw rows of a study, newest first. exports: createRows(lab) -> {node, show(study, count), forget()} */
 
 import { button, count as inWords, element, empty, group, replace } from './ui.js';
 import { createSortTable } from './study_table.js';
@@ -7,27 +7,27 @@ const PAGE = 50;
 const MOST = 1000;
 
 export function createRows(lab) {
-  const sorted = createSortTable({ caption: 'Raw rows, the newest first' });
+  const sorted = createSortTable({ caption: 'Raw rows, newest first' });
   const about = element('p', { class: 'hint' });
   const more = button(
     'Show 50 more',
     () => {
-      wanted += PAGE;
+      limit += PAGE;
       fetchRows();
     },
     { small: true },
   );
   const place = element('div', { class: 'study-part' });
-  const node = group('Raw rows', { open: false, id: 'study-rows', hint: 'as they were measured' }, place);
+  const node = group('Raw rows', { open: false, id: 'study-rows', hint: 'as measured' }, place);
   node.addEventListener('toggle', () => fetchRows());
   let study = null;
   let count = 0;
-  let wanted = PAGE;
+  let limit = PAGE;
   let shown = '';
   return {
     node,
     show(next, rows) {
-      if (next.name !== study?.name) wanted = PAGE;
+      if (next.name !== study?.name) limit = PAGE;
       study = next;
       count = rows;
       fetchRows();
@@ -36,28 +36,28 @@ export function createRows(lab) {
 
   async function fetchRows() {
     if (!node.open || !study) return;
-    const key = `${study.name} ${count} ${wanted}`;
+    const key = `${study.name} ${count} ${limit}`;
     if (key === shown) return;
     shown = key;
     if (!count) {
-      replace(place, empty('There are no rows yet.'));
+      replace(place, empty('No rows yet.'));
       return;
     }
     try {
-      const told = await lab.get(
-        `/api/studies/${encodeURIComponent(study.name)}/rows?from=${Math.max(0, count - wanted)}`,
+      const reply = await lab.get(
+        `/api/studies/${encodeURIComponent(study.name)}/rows?from=${Math.max(0, count - limit)}`,
       );
-      if (key === shown) draw(told);
+      if (key === shown) draw(reply);
     } catch (error) {
       lab.fail(error);
     }
   }
 
-  function draw(told) {
-    const rows = told.rows.slice(-wanted).reverse();
-    about.textContent = `${inWords(rows.length)} of ${inWords(told.count)} rows`;
-    more.disabled = rows.length >= told.count || wanted >= MOST;
+  function draw(reply) {
+    const rows = reply.rows.slice(-limit).reverse();
+    about.textContent = `${inWords(rows.length)} of ${inWords(reply.count)} rows`;
+    more.disabled = rows.length >= reply.count || limit >= MOST;
     if (!place.contains(sorted.node)) replace(place, sorted.node, element('div', { class: 'buttons' }, more, about));
-    sorted.show(told.columns, rows);
+    sorted.show(reply.columns, rows);
   }
 }

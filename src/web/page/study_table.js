@@ -1,6 +1,6 @@
-/* A table of texts whose columns sort. exports: createSortTable({caption, mono}) -> {node, show(columns, rows)}
- * columns: names; rows: lists of texts. Sorted by a column at a click on its head, the other way at the next, as the
- * rows came at the third. */
+/* A text table with sortable columns. exports: createSortTable({caption, mono}) -> {node, show(columns, rows)}
+ * columns: names; rows: lists of texts. The first click on a head sorts by that column, the second reverses the
+ * order, the third restores the original order. */
 
 import { digits, element, icon, replace } from './ui.js';
 import { isNumeric, numberOf } from './study_data.js';

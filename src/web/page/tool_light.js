@@ -1,5 +1,5 @@
-/* Light: a handle for each light at its place in the picture; dragged it moves the light parallel to the picture, with
- * shift along the line of sight.
+/* The tool Light: one handle per light at its position in the image; dragging moves the light parallel to the image
+ * plane, with Shift along the line of sight.
  * exports: lightTool(lab) */
 
 import { digits, element, gesture, icon } from './ui.js';
@@ -21,7 +21,7 @@ export function lightTool(lab) {
     icon: 'light',
     order: 20,
     cursor: 'default',
-    hint: 'Drag a light; with Shift nearer and farther',
+    hint: 'Drag a light; with Shift: nearer and farther',
     chosen() {
       active = true;
       place();
@@ -61,7 +61,7 @@ export function lightTool(lab) {
     return handle.moved || lab.param(`${handle.name}.position`).value;
   }
 
-  /* In CSS pixels of the stage; held within the picture, with the way that an arrow must point. */
+  /* In CSS pixels of the stage; clamped to the image, with the direction for the arrow of a light outside. */
   function where(point) {
     const camera = lab.state.camera;
     const d = minus(point, camera.eye);
@@ -82,17 +82,17 @@ export function lightTool(lab) {
     const across = [dot(d, camera.right), -dot(d, camera.up)];
     const length = Math.hypot(...across) || 1;
     const middle = { x: (left + right) / 2, y: (top + bottom) / 2 };
-    const way = [across[0] / length, length > 1e-9 ? across[1] / length : 1];
+    const direction = [across[0] / length, length > 1e-9 ? across[1] / length : 1];
     const reach = Math.min(
-      (right - left) / 2 / Math.max(1e-9, Math.abs(way[0])),
-      (bottom - top) / 2 / Math.max(1e-9, Math.abs(way[1])),
+      (right - left) / 2 / Math.max(1e-9, Math.abs(direction[0])),
+      (bottom - top) / 2 / Math.max(1e-9, Math.abs(direction[1])),
     );
     return {
-      x: middle.x + way[0] * reach,
-      y: middle.y + way[1] * reach,
+      x: middle.x + direction[0] * reach,
+      y: middle.y + direction[1] * reach,
       outside: true,
       behind: depth <= 0,
-      angle: Math.atan2(way[1], way[0]),
+      angle: Math.atan2(direction[1], direction[0]),
     };
   }
 
@@ -106,18 +106,20 @@ export function lightTool(lab) {
     handle.node.classList.toggle('low', at.outside && at.y > view.stage.clientHeight / 2);
     handle.node.classList.toggle('left', at.outside && at.x < 90);
     handle.node.classList.toggle('right', at.outside && at.x > view.stage.clientWidth - 90);
-    const told = handle.drag || document.activeElement === handle.node;
-    handle.label.textContent = told ? `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}` : handle.name;
-    const side = at.behind ? ', behind the camera' : at.outside ? ', outside the picture' : '';
+    const showPosition = handle.drag || document.activeElement === handle.node;
+    handle.label.textContent = showPosition
+      ? `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}`
+      : handle.name;
+    const side = at.behind ? ', behind the camera' : at.outside ? ', outside the image' : '';
     handle.node.setAttribute(
       'aria-label',
       `${handle.name}  ${point.map((x) => digits(x, 3)).join(', ')}, light${side}`,
     );
   }
 
-  /* The world's way for dx, dy CSS pixels on the picture, at the light's own depth, so that it stays under the pointer.
-   * One that is not in the picture,
-   * and so perhaps very near or behind the camera, moves as if it were no nearer than the target. */
+  /* The world-space offset for dx, dy CSS pixels in the image at the light's own depth, so that the light stays
+   * under the pointer. A light outside the image may be very near or behind the camera, so at least the target's
+   * depth is used for it. */
   function along(point, dx, dy, { deep, seen }) {
     const camera = lab.state.camera;
     const depth = Math.max(dot(minus(point, camera.eye), camera.forward), seen ? 0 : camera.distance || 1);
@@ -152,7 +154,7 @@ export function lightTool(lab) {
       {
         type: 'button',
         class: 'light-handle',
-        title: `${name}: drag, or arrow keys; with Shift nearer and farther`,
+        title: `${name}: drag or use the arrow keys; with Shift: nearer and farther`,
         onfocus: () => show(handle),
         onblur: () => show(handle),
       },
@@ -188,15 +190,18 @@ export function lightTool(lab) {
     handle.node.addEventListener('pointerup', end);
     handle.node.addEventListener('pointercancel', end);
     handle.node.addEventListener('keydown', (event) => {
-      const way = { ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX] }[
-        event.key
-      ];
-      if (!way || event.ctrlKey || event.altKey) return;
+      const offset = {
+        ArrowLeft: [-KEY_PX, 0],
+        ArrowRight: [KEY_PX, 0],
+        ArrowUp: [0, -KEY_PX],
+        ArrowDown: [0, KEY_PX],
+      }[event.key];
+      if (!offset || event.ctrlKey || event.altKey) return;
       if (!handle.keys || event.timeStamp - handle.keys.at > PAUSE_MS) handle.keys = { gesture: gesture('light') };
       handle.keys.at = event.timeStamp;
       move(
         handle,
-        along(position(handle), ...way, { deep: event.shiftKey, seen: !where(position(handle)).outside }),
+        along(position(handle), ...offset, { deep: event.shiftKey, seen: !where(position(handle)).outside }),
         handle.keys.gesture,
       );
       event.preventDefault();

@@ -1,12 +1,11 @@
-/* Orbit: dragging goes around the point that is looked at, with shift turns on the spot, the wheel goes forward and
- * back.
- * exports: orbitTool(lab), moveCamera(lab, body, gesture): deltas of /api/camera; those of one gesture that wait are
- * added up */
+/* The tool Orbit: dragging orbits about the target, with Shift turns in place; the wheel moves forward and back.
+ * exports: orbitTool(lab), moveCamera(lab, body, gesture): sends deltas to /api/camera; waiting deltas of one
+ * gesture are added */
 
 import { gesture } from './ui.js';
 
-const DEGREES = 0.35; /* for a CSS pixel of dragging */
-const WHEEL = 0.0012; /* of the distance, for a CSS pixel of the wheel */
+const DEGREES = 0.35; /* per CSS pixel of dragging */
+const WHEEL = 0.0012; /* share of the distance per CSS pixel of the wheel */
 const PAUSE_MS = 400;
 
 const sum = (a, b) => (a && b ? a.map((value, index) => value + b[index]) : a || b);
@@ -31,7 +30,7 @@ export function orbitTool(lab) {
     icon: 'orbit',
     order: 10,
     cursor: 'grab',
-    hint: 'Drag to go around the target; with Shift to turn on the spot; wheel for forward and back',
+    hint: 'Drag to orbit about the target; with Shift: turn in place; wheel: forward and back',
     down(point, event) {
       drag = { x: event.clientX, y: event.clientY, gesture: gesture('orbit'), turning: event.shiftKey };
       lab.view.stage.style.cursor = 'grabbing';

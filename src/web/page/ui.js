@@ -1,42 +1,47 @@
-/* What the page's modules share: elements, controls, dialogs, tables, numbers as text.
+/* Helpers shared by the page's modules: elements, controls, dialogs, tables, numbers as text.
  *
  * exports:
- *   element(tag, properties, ...children)      properties: class, text, dataset {}, style {}, on {event: f} or onclick:
+ *   element(tag, properties, ...children)      properties: class, text, dataset {}, style {}, on {event: f} or
+ *   onclick:
  *                                              f, aria-*, and any attribute;
- *                                              false, null and undefined are left out. children: nodes, texts, lists;
- *                                              null is left out
+ *                                              false, null and undefined are omitted. children: nodes, strings,
+ *                                              lists;
+ *                                              null is omitted
  *   svg(tag, attributes, ...children)          the same for SVG elements
- *   replace(node, ...children)                 empties it and fills it anew
- *   unique(prefix)                             an id that nothing else has
- *   gesture(prefix)                            a text for one drag
- *   icon(name)                                 a small drawing; see icons.js
+ *   replace(node, ...children)                 replaces all children
+ *   unique(prefix)                             a unique id
+ *   gesture(prefix)                            a unique string for one drag
+ *   icon(name)                                 a line icon; see icons.js
  *   button(label, onclick, {icon, kind: 'primary' | 'quiet' | 'danger', title, pressed, small, bare, disabled})
- *       bare: the label is for screen readers
- *   field(label, control, {hint, unit, wide})  a labelled control; control gets an id, and aria-describedby for the
+ *       bare: the label is for screen readers only
+ *   field(label, control, {hint, unit, wide})  a labelled control; the control gets an id and aria-describedby for
+ *   the
  *   hint
- *   number({label, value, min, max, step, unit, onchange(value)})      a number field: {node, input, value, set(value)}
+ *   number({label, value, min, max, step, unit, onchange(value)})      a number field: {node, input, value,
+ *   set(value)}
  *   text({label, value, placeholder, onchange(value)})                 a text field, the same
  *   check(label, checked, onchange(checked))                           a checkbox, the same
- *   slider({label, min, max, step, value, log, unit, oninput(value, gesture), onchange(value, gesture)})    slider
- *       and number field: {node, set(value)}
- *   choice({label, choices, value, radios, onchange(value)})           choices: words or [value, label]; select, or
+ *   slider({label, min, max, step, value, log, unit, oninput(value, gesture), onchange(value, gesture)})    a slider
+ *       with a number field: {node, set(value)}
+ *   choice({label, choices, value, radios, onchange(value)})           choices: words or [value, label]; a select or
  *       radio buttons: {node, set(value)}
- *   group(title, {open, id, hint}, ...children)                        a part that folds (details); an open one
- *       with id is remembered
+ *   group(title, {open, id, hint}, ...children)                        a collapsible section (details); with an id
+ *   its
+ *       state is remembered
  *   table({caption, columns, rows, hideCaption, onrow})                columns: names or {label, numeric, key};
- *       cells: text, number, node. head sticks
+ *       cells: string, number, node. The head is sticky
  *   facts(pairs)                               a list of [name, value] as dl
  *   notice(text, {kind: 'info' | 'warning' | 'error' | 'good', remedy})   a box with a message
- *   empty(text)                                what stands where there is nothing yet
- *   dialog({title, content, actions, wide})    actions: [[label, value, kind]]; {node, close(value), closed: promise of
+ *   empty(text)                                a placeholder for missing content
+ *   dialog({title, content, actions, wide})    actions: [[label, value, kind]]; {node, close(value), closed: promise
+ *   of
  *                                              value (null: dismissed)}
  *   ask(title, text, yes)                      promise of true or false
- *   download(blob or address, name)            lets the browser save it
- *   copy(text)                                 promise; to the clipboard
- *   memory.get(key, otherwise), memory.set(key, value)      localStorage, where there is any
- *   digits(x, n), seconds(s), count(n), vector([..], n)     numbers as text: 4 significant digits unless n says
- *                                                           otherwise
- *   toLinear(byte), toByte(linear)             sRGB, 0..255 to and from linear 0..1 */
+ *   download(blob or address, name)            saves a file by the browser
+ *   copy(text)                                 copies to the clipboard; returns a promise
+ *   memory.get(key, otherwise), memory.set(key, value)      localStorage, if available
+ *   digits(x, n), seconds(s), count(n), vector([..], n)     numbers as text: 4 significant digits unless n is given
+ *   toLinear(byte), toByte(linear)             sRGB 0..255 to and from linear 0..1 */
 
 import { icon } from './icons.js';
 import { table } from './ui_table.js';
@@ -149,7 +154,7 @@ export function download(what, name) {
   if (what instanceof Blob) setTimeout(() => URL.revokeObjectURL(address), 10000);
 }
 
-/* The clipboard is refused where the page is not in front; the older way still works there. */
+/* The clipboard API fails when the page has no focus; execCommand still works there. */
 export async function copy(words) {
   try {
     await navigator.clipboard.writeText(words);
@@ -160,6 +165,6 @@ export async function copy(words) {
     area.select();
     const done = document.execCommand('copy');
     area.remove();
-    if (!done) throw new Error('the browser does not let the page copy');
+    if (!done) throw new Error('the browser denied access to the clipboard');
   }
 }

@@ -1,4 +1,4 @@
-/* Elements, ids and memory, for ui.js and its parts.
+/* Elements, ids and memory for ui.js and its parts.
  * exports: element, svg, replace, unique, gesture, memory (see ui.js) */
 
 const SVG = 'http://www.w3.org/2000/svg';
@@ -36,7 +36,7 @@ export const unique = (prefix = 'id') => `${prefix}-${++counter}`;
 export const gesture = (prefix = 'drag') =>
   `${prefix}-${Date.now().toString(36)}-${++counter}-${Math.random().toString(36).slice(2, 8)}`.slice(-64);
 
-/* Browsers may forbid it, or lose it at any time: it is for comfort only. */
+/* Storage may be disabled or cleared at any time: it is only a convenience. */
 export const memory = {
   get(key, otherwise) {
     try {
@@ -50,7 +50,7 @@ export const memory = {
     try {
       localStorage.setItem(`cuvette.${key}`, JSON.stringify(value));
     } catch {
-      /* then it is forgotten */
+      /* the value is not remembered then */
     }
   },
 };

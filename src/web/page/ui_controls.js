@@ -1,5 +1,5 @@
-/* Controls with a label of their own. exports: number, text, check, slider, choice (see ui.js)
- * Each is {node, set(value), ..}; set shows a value and tells nobody. */
+/* Labelled controls. exports: number, text, check, slider, choice (see ui.js)
+ * Each is {node, set(value), ..}; set updates the control without calling its listener. */
 
 import { element, gesture, unique } from './ui_base.js';
 import { digits } from './ui_numbers.js';
@@ -37,7 +37,7 @@ export function number({ label, value, min, max, step, unit, onchange }) {
   });
   input.addEventListener('blur', () => {
     input.value = shown(last);
-  }); /* not what was refused */
+  }); /* restores the last valid value */
   const set = (next) => {
     last = next;
     if (document.activeElement !== input || input.value === '') input.value = shown(next);
@@ -91,7 +91,7 @@ export function check(label, checked, onchange) {
   };
 }
 
-/* Positions of the slider are 0..steps; a logarithmic one that starts at 0 has 0 at its left end. */
+/* Slider positions are 0..steps; a logarithmic slider that starts at 0 has 0 at its left end. */
 export function scale({ min, max, step, log }) {
   const integer = step >= 1;
   const floor = log && min <= 0 ? max * 1e-5 : min;

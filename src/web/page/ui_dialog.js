@@ -1,4 +1,4 @@
-/* Dialogs over the page. exports: dialog, ask (see ui.js) */
+/* Modal dialogs. exports: dialog, ask (see ui.js) */
 
 import { element, unique } from './ui_base.js';
 import { icon } from './icons.js';

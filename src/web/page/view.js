@@ -1,37 +1,42 @@
-/* The picture: what is drawn, where a point of the scene lies in it, and what the pointer does on it.
+/* The image view: draws the image, maps scene points to pixels, and runs the pointer tools.
  *
  * exports: createView(root, lab) -> view
- *   view.width, view.height             of the full picture, in pixels; 0 before the first
- *   view.project([x,y,z])               to {x, y, depth} in picture pixels (x from the left edge, y from the top, not
+ *   view.width, view.height             of the full image in pixels; 0 before the first
+ *   view.project([x,y,z])               to {x, y, depth} in image pixels (x from the left edge, y from the top, not
  *                                       rounded); null behind the camera
- *   view.toScreen(x, y)                 picture pixels to {x, y} in CSS pixels from the upper left corner of the stage
- *   view.fromEvent(event)               {x, y, inside} in picture pixels, not rounded: the pixel is Math.floor of each
- *   view.scale                          CSS pixels of a picture's pixel
- *   view.layer(name)                    an SVG group over the picture in picture pixels (0,0 is the upper left corner
- *                                       of the first pixel); made when first
- *                                       asked for; strokes keep their width on the screen (vector-effect). svg() of
- *                                       ui.js makes what goes in
- *   view.overlay                        an HTML element over the whole stage, for buttons placed by toScreen; only its
- *                                       children take the pointer
+ *   view.toScreen(x, y)                 image pixels to {x, y} in CSS pixels from the upper left corner of the stage
+ *   view.fromEvent(event)               {x, y, inside} in image pixels, not rounded: the pixel is Math.floor of each
+ *   view.scale                          CSS pixels per image pixel
+ *   view.layer(name)                    an SVG group over the image in image pixels (0,0 is the upper left corner of
+ *   the
+ *                                       first pixel); created on first use;
+ *                                       strokes keep their screen width (vector-effect). Use svg() of ui.js for its
+ *                                       children
+ *   view.overlay                        an HTML element over the whole stage, for buttons placed by toScreen; only
+ *   its
+ *                                       children receive pointer events
  *   view.tool(name, tool)               {label, icon, hint, order, cursor, down(point, event), move(point, event,
  *                                       start), up(point, event), hover(point, event),
- *                                       leave(), wheel(point, event), key(event) -> true when it is taken, chosen(),
- *                                       dropped()}; all may be left out.
- *                                       A tool with a label stands in the bar of tools. down may answer false: then no
- *                                       drag begins.
- *                                       point is what fromEvent answers
- *   view.use(name)                      chooses a tool; view.chosen is its name
- *   view.options                        an element in the bar beside the tools, for controls of the chosen one (empty
- *                                       it in dropped)
- *   view.stage                          the element that takes the pointer and keys
- *   view.pixel(x, y)                    [r, g, b] bytes of what is shown; null outside or before the first picture
+ *                                       leave(), wheel(point, event), key(event) -> true when handled, chosen(),
+ *                                       dropped()}; all optional.
+ *                                       A tool with a label appears in the toolbar. If down returns false, no drag
+ *                                       starts.
+ *                                       point is the result of fromEvent
+ *   view.use(name)                      activates a tool; view.chosen is its name
+ *   view.options                        an element of the toolbar for controls of the active tool (empty it in
+ *   dropped)
+ *   view.stage                          the element that receives pointer and key events
+ *   view.pixel(x, y)                    [r, g, b] bytes of the displayed image; null outside or before the first
+ *   image
  *   view.zoom(factor, at), view.fit(), view.actual()     at: {x, y} on the stage
- *   view.show(blob or null)             another picture of the full size in place of the pass (for comparisons); null
- *                                       goes back. Promise
+ *   view.show(blob or null)             displays another image of the full size instead of the pass (for
+ *   comparisons);
+ *                                       null restores the pass. Promise
  *   view.redraw()
- *   view.note(name, text or null, onclose)   a line at the upper edge about what lies over the picture, with a button
- *                                            that takes it away
- * lab.on('view', f) tells that scale, place or size changed: what stands in overlay must be placed anew. */
+ *   view.note(name, text or null, onclose)   a line at the upper edge that names what is drawn over the image, with
+ *   a
+ *                                            button that removes it
+ * lab.on('view', f) reports a change of scale, position or size: elements in overlay must be placed again. */
 
 import { element, svg } from './ui.js';
 import { createPlace } from './view_place.js';
@@ -55,7 +60,7 @@ export function createView(root, lab) {
       id: 'picture',
       tabindex: '0',
       role: 'application',
-      'aria-label': 'Picture. Arrow keys orbit, W A S D Q E step, plus and minus zoom',
+      'aria-label': 'Image. Arrow keys orbit, W A S D Q E step, plus and minus zoom',
     },
     canvas,
     drawing,
@@ -98,7 +103,7 @@ export function createView(root, lab) {
     if (!state) return;
     const why = state.trouble
       ? [state.trouble.error, state.trouble.remedy].filter(Boolean).join(' – ')
-      : state.waiting || (lab.picture ? '' : 'The scene is being prepared …');
+      : state.waiting || (lab.picture ? '' : 'Loading the scene …');
     waiting.textContent = why || '';
     waiting.hidden = !why;
     waiting.classList.toggle('trouble', Boolean(state.trouble));

@@ -1,7 +1,7 @@
-/* What lies over the picture that is not the picture: a note of it at the upper edge, with a button that takes it away.
+/* Notes at the upper edge of the image that name what is drawn over it, each with a button that removes it.
  *
  * exports: createNotes() -> {node, note(name, text or null, onclose)}
- *   name: of the note, which a later one of that name takes the place of; null: it goes */
+ *   name: of the note; a later note of that name replaces it; null: removes it */
 
 import { button, element } from './ui.js';
 

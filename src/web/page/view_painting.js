@@ -1,6 +1,5 @@
-/* Fetches the newest pass and draws it. A picture that is older than what was asked for (lab.wanted), or than the one
- * that is shown, is never drawn;
- * serials say which is newer, also where a slime moves within one generation.
+/* Fetches the newest pass and draws it. An image older than lab.newestGeneration or than the displayed one is never
+ * drawn; serials order the images, also while a slime moves within one generation.
  * exports: createPainting(canvas, view, place, lab) -> {paint, pixel, show} */
 
 const newer = (a, b) => Boolean(a) && (!b || a.serial > b.serial);
@@ -8,20 +7,20 @@ const newer = (a, b) => Boolean(a) && (!b || a.serial > b.serial);
 export function createPainting(canvas, view, place, lab) {
   const context = canvas.getContext('2d', { alpha: true });
   const probe = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
-  const told = new Map();
+  const passes = new Map();
   let bitmap = null;
   let instead = null;
   let shown = null;
   let fetching = false;
   let frame = 0;
 
-  lab.on('afresh', () => {
+  lab.on('restarted', () => {
     shown = null;
-    told.clear();
+    passes.clear();
   });
-  lab.on('news', hear);
+  lab.on('pass', onPass);
   lab.on('state', (state) => {
-    if (state.picture) hear(state.picture);
+    if (state.picture) onPass(state.picture);
   });
   return {
     paint: () => {
@@ -32,23 +31,23 @@ export function createPainting(canvas, view, place, lab) {
   };
 
   function due() {
-    return newer(lab.news, shown) && lab.news.generation >= lab.wanted;
+    return newer(lab.newestPass, shown) && lab.newestPass.generation >= lab.newestGeneration;
   }
 
-  function hear(news) {
-    const before = told.get(news.serial);
-    told.set(news.serial, { ...before, ...news });
-    if (told.size > 12) told.delete(told.keys().next().value);
-    if (shown?.serial !== news.serial) load();
-    else if (!before && shown.generation >= lab.wanted) publish();
-    else if (lab.picture?.serial === news.serial) Object.assign(lab.picture, news);
+  function onPass(pass) {
+    const before = passes.get(pass.serial);
+    passes.set(pass.serial, { ...before, ...pass });
+    if (passes.size > 12) passes.delete(passes.keys().next().value);
+    if (shown?.serial !== pass.serial) load();
+    else if (!before && shown.generation >= lab.newestGeneration) publish();
+    else if (lab.picture?.serial === pass.serial) Object.assign(lab.picture, pass);
   }
 
   async function load() {
     if (fetching) return;
     fetching = true;
     let last = null;
-    while (due() && newer(lab.news, last)) {
+    while (due() && newer(lab.newestPass, last)) {
       try {
         const { blob, headers } = await lab.blob('/api/picture.png');
         const head = {
@@ -57,14 +56,14 @@ export function createPainting(canvas, view, place, lab) {
           pass: Number(headers.get('X-Cuvette-Pass')),
           final: headers.get('X-Cuvette-Final') === '1',
         };
-        if (head.generation >= lab.wanted && newer(head, shown)) {
+        if (head.generation >= lab.newestGeneration && newer(head, shown)) {
           const next = await createImageBitmap(blob, { colorSpaceConversion: 'none' });
-          if (head.generation >= lab.wanted) draw(next, head);
+          if (head.generation >= lab.newestGeneration) draw(next, head);
           else next.close();
         }
         last = head;
       } catch (error) {
-        last = lab.news;
+        last = lab.newestPass;
         if (error.status !== 404 && error.status !== 0 && error.status !== 401) lab.fail(error);
       }
     }
@@ -79,7 +78,7 @@ export function createPainting(canvas, view, place, lab) {
   }
 
   function publish() {
-    const about = told.get(shown.serial) || {};
+    const about = passes.get(shown.serial) || {};
     const width = about.full_width || (shown.final ? bitmap.width : view.width || bitmap.width);
     const height = about.full_height || (shown.final ? bitmap.height : view.height || bitmap.height);
     const resized = width !== view.width || height !== view.height;

@@ -1,11 +1,11 @@
-/* Where the picture lies on the stage: fitted, or zoomed about a point.
+/* The placement of the image on the stage: fitted, or zoomed about a point.
  * exports: createPlace(stage, view, changed) -> {scale, left, top, fitted, toScreen, fromScreen, zoom, fit, actual,
  * pan, size} */
 
 const MARGIN = 12;
 const LARGEST = 64;
 const SMALLEST = 0.05;
-const CRISP = 1.2; /* a picture that would be enlarged by less is shown pixel for pixel */
+const CRISP = 1.2; /* an image that would be enlarged by less is shown at actual pixels */
 
 const whole = (x) => Math.round(x * devicePixelRatio) / devicePixelRatio;
 
@@ -81,7 +81,7 @@ export function createPlace(stage, view, changed) {
     hold();
   }
 
-  /* A quarter of the stage at least keeps showing the picture. */
+  /* Keeps the image over at least a quarter of the stage. */
   function hold() {
     const keep = (start, length, room) => Math.min(room * 0.75, Math.max(room * 0.25 - length, start));
     place.left = keep(place.left, view.width * place.scale, place.width);

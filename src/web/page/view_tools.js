@@ -1,5 +1,5 @@
-/* The bar over the picture, and the pointer and keys on it: the chosen tool's, and panning, zooming and the readout,
- * which all tools share.
+/* The toolbar over the image, and its pointer and key events: those of the active tool, and panning, zooming and the
+ * pixel readout, which all tools share.
  * exports: createToolbar(view, lab, readout) -> {node, bar, options, tool, use, chosen} */
 
 import { button, element, icon, unique } from './ui.js';
@@ -11,12 +11,12 @@ const hex = (byte) => byte.toString(16).padStart(2, '0');
 
 export function createToolbar(view, lab, readout) {
   const tools = new Map();
-  const radios = element('div', { class: 'segments tools', role: 'radiogroup', 'aria-label': 'What the pointer does' });
+  const radios = element('div', { class: 'segments tools', role: 'radiogroup', 'aria-label': 'Pointer tool' });
   const options = element('div', { class: 'tool-options' });
   const level = element('button', {
     type: 'button',
     class: 'button quiet small level',
-    title: 'Picture pixels as they are (1)',
+    title: 'Actual pixels (1)',
     onclick: () => view.actual(),
   });
   const bar = element('div', { class: 'bar-end' });
@@ -48,7 +48,7 @@ export function createToolbar(view, lab, readout) {
         bare: true,
         kind: 'quiet',
         small: true,
-        title: 'The whole picture (0)',
+        title: 'Fit the image (0)',
       }),
       bar,
     ),

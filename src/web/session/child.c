@@ -12,58 +12,59 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { SAID_MAX = 16384, LOOK_MS = 100 };
+enum { OUTPUT_MAX = 16384, LOOK_MS = 100 };
 
 typedef struct child {
     pid_t pid;
-    int handle; /* of the process */
-    int out;    /* our end of what it writes; not blocking */
-    char *said;
+    int pidfd; /* of the process */
+    int out;   /* our end of the output pipe; non-blocking */
+    char *output;
     size_t length;
 } child;
 
 static int begin(child *c, char *const *arguments)
 {
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0)
+    int pipe_ends[2];
+    if (pipe2(pipe_ends, O_CLOEXEC) != 0)
         return errno;
-    int error = fcntl(ends[0], F_SETFL, O_NONBLOCK) == 0
-                    ? spawn_program(&c->pid, arguments[0], arguments, ends[1], ends[1], true)
+    int error = fcntl(pipe_ends[0], F_SETFL, O_NONBLOCK) == 0
+                    ? spawn_program(&c->pid, arguments[0], arguments, pipe_ends[1], pipe_ends[1], true)
                     : errno;
-    close(ends[1]);
+    close(pipe_ends[1]);
     if (error) {
-        close(ends[0]);
+        close(pipe_ends[0]);
         return error;
     }
-    c->out = ends[0];
-    c->handle = pidfd_open(c->pid, 0);
+    c->out = pipe_ends[0];
+    c->pidfd = pidfd_open(c->pid, 0);
     return 0;
 }
 
-/* All that is there now; what is over the limit is dropped, so that it never has to wait for us. False at the end. */
-static bool hear(child *c)
+/* Reads all that is available; drops bytes over the limit, so that the program never blocks on a full pipe. False at
+ * the end. */
+static bool read_output(child *c)
 {
     char bytes[4096];
     for (;;) {
         const ssize_t got = read(c->out, bytes, sizeof bytes);
         if (got <= 0)
             return got < 0 && (errno == EAGAIN || errno == EINTR);
-        const size_t room = SAID_MAX - c->length, kept = (size_t)got < room ? (size_t)got : room;
-        memcpy(c->said + c->length, bytes, kept);
+        const size_t room = OUTPUT_MAX - c->length, kept = (size_t)got < room ? (size_t)got : room;
+        memcpy(c->output + c->length, bytes, kept);
         c->length += kept;
     }
 }
 
-/* Until it has ended; false where that took too long. */
-static bool listen_to(child *c, double limit_s, const atomic_bool *stop)
+/* Waits until the program has ended; false after the time limit or stop. */
+static bool wait_child(child *c, double limit_s, const atomic_bool *stop)
 {
     const double deadline_s = clock_wall_s() + limit_s;
-    bool hears = true;
+    bool open = true;
     while (clock_wall_s() < deadline_s && !atomic_load(stop)) {
-        struct pollfd both[] = {{.fd = hears ? c->out : -1, .events = POLLIN}, {.fd = c->handle, .events = POLLIN}};
+        struct pollfd both[] = {{.fd = open ? c->out : -1, .events = POLLIN}, {.fd = c->pidfd, .events = POLLIN}};
         poll(both, 2, LOOK_MS);
         if (both[0].revents)
-            hears = hear(c);
+            open = read_output(c);
         siginfo_t ended = {.si_pid = 0};
         if (waitid(P_PID, (id_t)c->pid, &ended, WEXITED | WNOHANG | WNOWAIT) != 0 || ended.si_pid == c->pid)
             return true;
@@ -71,7 +72,7 @@ static bool listen_to(child *c, double limit_s, const atomic_bool *stop)
     return false;
 }
 
-/* Its number, and so its group's, cannot come to stand for others before it is waited for. */
+/* Kills the group, then reaps: the pid, and so the group's number, cannot be reused before waitpid. */
 static int end(child *c)
 {
     int state = -1;
@@ -79,30 +80,30 @@ static int end(child *c)
     while (waitpid(c->pid, &state, 0) < 0)
         if (errno != EINTR)
             return -1;
-    hear(c);
+    read_output(c);
     close(c->out);
-    if (c->handle >= 0)
-        close(c->handle);
+    if (c->pidfd >= 0)
+        close(c->pidfd);
     return WIFEXITED(state) ? WEXITSTATUS(state) : -1;
 }
 
-status child_run(char *const *arguments, double limit_s, const atomic_bool *stop, char **said, int *exit_code,
+status child_run(char *const *arguments, double limit_s, const atomic_bool *stop, char **output, int *exit_code,
                  diagnostic *why)
 {
-    child c = {.said = calloc(1, SAID_MAX + 1)};
-    *said = c.said;
+    child c = {.output = calloc(1, OUTPUT_MAX + 1)};
+    *output = c.output;
     *exit_code = -1;
-    if (!c.said)
+    if (!c.output)
         return out_of_memory(why);
     const int error = begin(&c, arguments);
     if (error) {
         const char *reason = strerrordesc_np(error);
-        return diagnose_at(why, arguments[0], STATUS_FAILURE, "", "it cannot be started: %s",
+        return diagnose_at(why, arguments[0], STATUS_FAILURE, "", "the program cannot be started: %s",
                            reason ? reason : "unknown error");
     }
-    const bool in_time = listen_to(&c, limit_s, stop);
+    const bool in_time = wait_child(&c, limit_s, stop);
     *exit_code = end(&c);
     return in_time ? STATUS_OK
-                   : diagnose(why, STATUS_INTERRUPTED, "draw fewer at a time, or from a terminal",
-                              "it took longer than %g s", limit_s);
+                   : diagnose(why, STATUS_INTERRUPTED, "draw fewer figures at a time, or run it in a terminal",
+                              "the program took longer than %g s", limit_s);
 }

@@ -13,7 +13,7 @@ static bool name_is_fit(const char *name)
     return length > 0 && length <= FIGURE_NAME_MAX && !name[length];
 }
 
-/* results/figures, as a name in the chosen folder; NULL where it is not in it. */
+/* results/figures relative to the chosen folder; NULL where it is outside. */
 static char *figures_folder(const lab *l)
 {
     char *path = text_format("%s/figures", l->settings.results), *name = path ? folder_name(l->files, path) : NULL;
@@ -21,13 +21,13 @@ static char *figures_folder(const lab *l)
     return name;
 }
 
-/* The path of a file in a folder that is named within the chosen one. */
+/* The path of a file in a subfolder of the chosen folder. */
 static status inner_path(const lab *l, const char *in, const char *name, const char *ending, char **path,
                          diagnostic *why)
 {
     char *inner = in ? text_format("%s/%s%s", in, name, ending) : NULL;
     const status code = inner ? folder_path(l->files, inner, true, path, why)
-                              : diagnose(why, STATUS_BAD_INPUT, "", "there is no such figure");
+                              : diagnose(why, STATUS_BAD_INPUT, "", "no figure has that name");
     free(inner);
     return code;
 }
@@ -36,17 +36,17 @@ status figure_read(const lab *l, const char *name, char **svg, size_t *size, dia
 {
     char *in = figures_folder(l), *path = NULL;
     status code = name_is_fit(name) ? inner_path(l, in, name, ".svg", &path, why)
-                                    : diagnose(why, STATUS_BAD_INPUT, "small letters, digits and - name a figure",
-                                               "this names no figure");
+                                    : diagnose(why, STATUS_BAD_INPUT, "use lower-case letters, digits and '-'",
+                                               "invalid name of a figure");
     THEN(code, file_read_below(path, folder_real(l->files), SVG_MAX, svg, size, why));
     free(path);
     free(in);
     return code;
 }
 
-/* --- which are a study's --- */
+/* --- the figures of a study --- */
 
-static bool needs_it(const char *need, size_t length, const char *of)
+static bool names_study_table(const char *need, size_t length, const char *of)
 {
     static const char tables[] = "tables/";
     const size_t name = strlen(of);
@@ -64,23 +64,24 @@ static bool needs_it(const char *need, size_t length, const char *of)
     return false;
 }
 
-/* Does the script's head say that it needs the study's rows? *says: it says what it needs. */
-static bool script_needs(const lab *l, const char *figure, const char *of, bool *says)
+/* Whether the `# needs:` lines in the script's head name the study's rows or tables. *has_needs: there are such
+ * lines. */
+static bool script_needs_study(const lab *l, const char *figure, const char *of, bool *has_needs)
 {
     char *path = NULL, *text = NULL;
     size_t size;
     bool needs = false;
-    *says = false;
+    *has_needs = false;
     if (inner_path(l, "plots", figure, ".gp", &path, NULL) == STATUS_OK &&
         file_read_below(path, folder_real(l->files), SCRIPT_MAX, &text, &size, NULL) == STATUS_OK) {
         static const char key[] = "# needs:";
         for (const char *line = text; line && *line == '#' && !needs; line = strchr(line, '\n'), line += line != NULL) {
             if (strncmp(line, key, sizeof key - 1) != 0)
                 continue;
-            *says = true;
+            *has_needs = true;
             for (const char *at = line + sizeof key - 1; *at == ' ' && !needs; at += strcspn(at, " \n")) {
                 at += strspn(at, " ");
-                needs = needs_it(at, strcspn(at, " \n"), of);
+                needs = names_study_table(at, strcspn(at, " \n"), of);
             }
         }
     }
@@ -89,18 +90,18 @@ static bool script_needs(const lab *l, const char *figure, const char *of, bool 
     return needs;
 }
 
-static bool is_of(const lab *l, const char *figure, const char *of)
+static bool belongs_to_study(const lab *l, const char *figure, const char *of)
 {
-    bool says;
+    bool has_needs;
     const size_t length = strlen(of);
-    if (script_needs(l, figure, of, &says))
+    if (script_needs_study(l, figure, of, &has_needs))
         return true;
-    return !says && strncmp(figure, of, length) == 0 && (!figure[length] || figure[length] == '-');
+    return !has_needs && strncmp(figure, of, length) == 0 && (!figure[length] || figure[length] == '-');
 }
 
-/* The names of a folder's files with that ending, which name figures, and for which wanted says so. */
-static json_t *names_in(const char *path, const char *ending, bool (*wanted)(const lab *, const char *, const char *),
-                        const lab *l, const char *of)
+/* The names of the files in a folder that have that ending, are valid figure names and pass accept. */
+static json_t *list_figures(const char *path, const char *ending,
+                            bool (*accept)(const lab *, const char *, const char *), const lab *l, const char *of)
 {
     struct dirent **entries = NULL;
     json_t *names = json_array();
@@ -111,7 +112,7 @@ static json_t *names_in(const char *path, const char *ending, bool (*wanted)(con
         if (ends)
             *dot = 0;
         if (ends && names && json_array_size(names) < FIGURES_MAX && name_is_fit(entries[i]->d_name) &&
-            wanted(l, entries[i]->d_name, of))
+            accept(l, entries[i]->d_name, of))
             json_array_append_new(names, json_string(entries[i]->d_name));
         free(entries[i]);
     }
@@ -122,7 +123,7 @@ static json_t *names_in(const char *path, const char *ending, bool (*wanted)(con
 json_t *figures_of(const lab *l, const char *of)
 {
     char *in = figures_folder(l), *path = in ? text_format("%s/figures", l->settings.results) : NULL;
-    json_t *names = names_in(path, ".svg", is_of, l, of);
+    json_t *names = list_figures(path, ".svg", belongs_to_study, l, of);
     free(path);
     free(in);
     return names;
@@ -130,8 +131,8 @@ json_t *figures_of(const lab *l, const char *of)
 
 static bool is_drawn_from(const lab *l, const char *figure, const char *of)
 {
-    bool says;
-    return script_needs(l, figure, of, &says);
+    bool has_needs;
+    return script_needs_study(l, figure, of, &has_needs);
 }
 
 json_t *figures_drawable(const lab *l, const char *of)
@@ -140,7 +141,7 @@ json_t *figures_drawable(const lab *l, const char *of)
     if (inner_path(l, "plots", "draw", ".sh", &script, NULL) != STATUS_OK)
         return json_array();
     *strrchr(script, '/') = 0;
-    json_t *names = names_in(script, ".gp", is_drawn_from, l, of);
+    json_t *names = list_figures(script, ".gp", is_drawn_from, l, of);
     free(script);
     return names;
 }

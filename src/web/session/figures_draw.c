@@ -13,7 +13,7 @@
 static const double draw_limit_s = 50;
 enum { PART_MAX = 64 << 20 };
 
-/* --- tables, as the Makefile's rules make them --- */
+/* --- tables, made as by the Makefile's rules --- */
 
 static status write_summary(const study *s, const char *results, const char *path, diagnostic *why)
 {
@@ -27,7 +27,7 @@ static char *part_path(const study *s, const char *results, size_t cell, const c
     return text_format("%s/%s/images/%04zu-%s.tsv", results, s->name, cell, kind);
 }
 
-/* What is kept of each cell, one below the other; the header of the first stands for all. */
+/* Appends the table of one cell; only the header of the first is kept. */
 static status append_part(FILE *out, const char *path, const char *root, bool *headed, diagnostic *why)
 {
     char *text = NULL;
@@ -80,7 +80,7 @@ static status write_tables(const study *s, const char *results, diagnostic *why)
 
 /* --- the script --- */
 
-static status run_script(const lab *l, const char *script, const json_t *figures, char **said, bool *whole,
+static status run_script(const lab *l, const char *script, const json_t *figures, char **output, bool *whole,
                          diagnostic *why)
 {
     enum { BEFORE = 6 };
@@ -93,29 +93,29 @@ static status run_script(const lab *l, const char *script, const json_t *figures
     for (size_t i = 0; i < count; i++)
         arguments[BEFORE + i] = json_string_value(json_array_get(figures, i));
     int exit_code;
-    status code =
-        child_run((char *const *)(uintptr_t)arguments, draw_limit_s, studies_ending(l->studies), said, &exit_code, why);
+    status code = child_run((char *const *)(uintptr_t)arguments, draw_limit_s, studies_ending(l->studies), output,
+                            &exit_code, why);
     free(arguments);
     *whole = exit_code == 0;
     return code;
 }
 
-status figures_draw(const lab *l, const study *s, char **said, bool *whole, diagnostic *why)
+status figures_draw(const lab *l, const study *s, char **output, bool *whole, diagnostic *why)
 {
     char *script = NULL;
-    *said = NULL;
+    *output = NULL;
     *whole = false;
     json_t *figures = figures_drawable(l, s->name);
     status code = figures ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && json_array_size(figures) == 0)
-        code = diagnose(why, STATUS_BAD_INPUT, "write a script in plots/ that says `# needs: tables/NAME.tsv`",
-                        "no figure is drawn from this study");
+        code = diagnose(why, STATUS_BAD_INPUT, "write a script in plots/ with the line `# needs: tables/NAME.tsv`",
+                        "no script draws a figure of this study");
     THEN(code, folder_path(l->files, "plots/draw.sh", true, &script, why));
     THEN(code, study_check_results(l, l->settings.results, "tables", why));
     THEN(code, study_check_results(l, l->settings.results, "figures", why));
     THEN(code, study_check_results(l, l->settings.results, s->name, why));
     THEN(code, write_tables(s, l->settings.results, why));
-    THEN(code, run_script(l, script, figures, said, whole, why));
+    THEN(code, run_script(l, script, figures, output, whole, why));
     free(script);
     json_decref(figures);
     return code;

@@ -1,4 +1,4 @@
-/* Names and paths. What is in the folder is listed in folder_list.c. */
+/* The names and paths of the folder. folder_list.c lists its files. */
 #include "web/session/folder.h"
 #include "base/text.h"
 #include "scene/file/write_parts.h"
@@ -11,8 +11,8 @@
 #include <sys/stat.h>
 
 struct folder {
-    char *given; /* in the program's own terms */
-    char *real;  /* from the root, without links and without a slash at its end: "" is the root itself */
+    char *given; /* relative to the working directory, as given */
+    char *real;  /* absolute, without links and trailing slash: "" is the root directory */
 };
 
 static void trim_slashes(char *path, size_t least)
@@ -32,7 +32,7 @@ status folder_open(const char *path, folder **out, diagnostic *why)
     }
     if (!f->real || stat(f->real, &about) != 0 || !S_ISDIR(about.st_mode)) {
         folder_close(f);
-        return diagnose(why, STATUS_BAD_INPUT, "name a folder that is there", "'%.300s' is no folder", path);
+        return diagnose(why, STATUS_BAD_INPUT, "give an existing folder", "'%.300s' is not a folder", path);
     }
     trim_slashes(f->given, 1);
     trim_slashes(f->real, 0);
@@ -65,21 +65,21 @@ const char *folder_title(const folder *f)
     return slash ? slash + 1 : "/";
 }
 
-/* What follows the folder and a slash in a path without links; NULL where it is elsewhere. */
+/* The part of a resolved path after the folder and a slash; NULL where the path is outside. */
 static const char *below(const folder *f, const char *real)
 {
     const size_t length = strlen(f->real);
     return strncmp(real, f->real, length) == 0 && real[length] == '/' && real[length + 1] ? real + length + 1 : NULL;
 }
 
-/* A last part that is not there yet can be made; a link that leads nowhere would decide where. */
+/* A missing last part can be created; a dangling link cannot, because it would decide the place. */
 static bool can_be_made(const char *path, const char *part)
 {
     struct stat about;
     return strcmp(part, ".") != 0 && strcmp(part, "..") != 0 && lstat(path, &about) != 0 && errno == ENOENT;
 }
 
-/* The path without links, as far as it is there; NULL where it cannot be told where it leads, or memory is out. */
+/* Resolves links in the existing part of the path; NULL if that fails or out of memory. */
 static char *resolve(const char *path)
 {
     char *real = realpath(path, NULL);
@@ -111,7 +111,7 @@ char *folder_name(const folder *f, const char *path)
     return copy;
 }
 
-/* Is each part between the slashes a name? */
+/* Whether each part between slashes is a valid name. */
 static bool is_name(const char *name)
 {
     if (strlen(name) >= PATH_MAX)
@@ -129,8 +129,8 @@ static bool is_name(const char *name)
     }
 }
 
-/* Of a folder that is the working one, names are paths already; but "-" and what begins with it would mean something
- * else to who takes it. */
+/* If the folder is the working directory, a name is a path already; but a leading "-" would look like an option to
+ * other programs. */
 static char *join(const folder *f, const char *name)
 {
     if (strcmp(f->given, ".") == 0 && name[0] != '-')
@@ -140,8 +140,8 @@ static char *join(const folder *f, const char *name)
 
 static status outside(const char *name, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "name a file in the folder with which the laboratory was started",
-                    "'%.300s' leads out of the folder", name);
+    return diagnose(why, STATUS_BAD_INPUT, "choose a file inside the laboratory's folder",
+                    "'%.300s' is outside of the folder", name);
 }
 
 static status check_file(const char *real, const char *name, bool must_exist, diagnostic *why)
@@ -150,9 +150,10 @@ static status check_file(const char *real, const char *name, bool must_exist, di
     if (stat(real, &about) == 0)
         return S_ISREG(about.st_mode)
                    ? STATUS_OK
-                   : diagnose(why, STATUS_BAD_INPUT, "name a file", "'%.300s' is not a regular file", name);
+                   : diagnose(why, STATUS_BAD_INPUT, "choose a regular file", "'%.300s' is not a regular file", name);
     if (must_exist)
-        return diagnose(why, STATUS_BAD_INPUT, "see which files there are", "there is no file '%.300s'", name);
+        return diagnose(why, STATUS_BAD_INPUT, "GET /api/files lists the files", "the file '%.300s' does not exist",
+                        name);
     char *parent = strdup(real), *slash = parent ? strrchr(parent, '/') : NULL;
     if (!slash) {
         free(parent);
@@ -161,17 +162,17 @@ static status check_file(const char *real, const char *name, bool must_exist, di
     slash[slash == parent] = 0;
     const bool is_there = stat(parent, &about) == 0 && S_ISDIR(about.st_mode);
     free(parent);
-    return is_there
-               ? STATUS_OK
-               : diagnose(why, STATUS_BAD_INPUT, "make its folder first", "the folder of '%.300s' is not there", name);
+    return is_there ? STATUS_OK
+                    : diagnose(why, STATUS_BAD_INPUT, "create the folder first",
+                               "the folder of '%.300s' does not exist", name);
 }
 
 status folder_path(const folder *f, const char *name, bool must_exist, char **path, diagnostic *why)
 {
     *path = NULL;
     if (!is_name(name))
-        return diagnose(why, STATUS_BAD_INPUT, "give its path from the folder on, without . and .. as parts",
-                        "'%.300s' is no name of a file", name);
+        return diagnose(why, STATUS_BAD_INPUT, "give a path relative to the folder, without '.' and '..'",
+                        "'%.300s' is not a valid file name", name);
     char *whole = join(f, name);
     if (!whole)
         return out_of_memory(why);
@@ -196,7 +197,7 @@ status folder_path_from(const folder *f, const char *name, const char *file, cha
     return code;
 }
 
-/* what: the object or parameter that names it. */
+/* what: the object or parameter that uses the file. */
 static status check_named(const folder *f, const scene *s, const char *what, const char *path, diagnostic *why)
 {
     if (!path || !path[0])
@@ -213,9 +214,9 @@ static status check_named(const folder *f, const scene *s, const char *what, con
     free(name);
     return is_in ? STATUS_OK
                  : diagnose(why, STATUS_BAD_INPUT,
-                            "put the file into the folder with which the laboratory was started, or start it with a "
-                            "folder that holds both",
-                            "%.80s: '%.200s' leads out of the folder", what, path);
+                            "move the file into the laboratory's folder, or start the laboratory with a "
+                            "folder that contains both",
+                            "%.80s: '%.200s' is outside of the folder", what, path);
 }
 
 status folder_check_scene(const folder *f, const scene *s, diagnostic *why)

@@ -1,5 +1,6 @@
-/* What is in the folder that the laboratory can open: told by endings, and scenes from scripts of hands by what they
- * say. Folders nearer to the top go first, so that a large one far down hides nothing above it. */
+/* Lists the files of the folder that the laboratory can open: classified by extension; scenes and hand scripts, both
+ * YAML, by their keys. Breadth-first, so that a large deep folder cannot hide the files above it when a limit is
+ * reached. */
 #include "web/session/folder.h"
 #include "base/grow.h"
 #include "base/text.h"
@@ -11,7 +12,7 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-enum { DEPTH_MAX = 3, LOOKED_AT_MAX = 50000, DOCUMENT_MAX = 1 << 20 };
+enum { DEPTH_MAX = 3, ENTRIES_MAX = 50000, DOCUMENT_MAX = 1 << 20 };
 
 typedef enum file_use { USE_SCENE, USE_MODEL, USE_IMAGE, USE_SCRIPT, USE_STUDY, USE_COUNT } file_use;
 static const char *const use_names[USE_COUNT] = {"scenes", "models", "pictures", "scripts", "studies"};
@@ -34,12 +35,12 @@ typedef struct names {
 typedef struct listing {
     const folder *of;
     names found[USE_COUNT], next; /* next: folders of the next level */
-    size_t files, looked_at;
+    size_t files, entries;
     bool out_of_memory;
 } listing;
 
-/* Takes the name. */
-static void keep(listing *l, names *list, char *name)
+/* Takes ownership of the name. */
+static void add_name(listing *l, names *list, char *name)
 {
     if (!name || !GROW(list->name, list->room, list->count + 1)) {
         free(name);
@@ -77,8 +78,8 @@ static file_use use_by_ending(const char *name)
     return USE_COUNT;
 }
 
-/* A YAML file is what its keys say; one that cannot be read is listed with the scenes, so that opening it says what is
- * wrong. */
+/* Classifies a YAML file by its keys; a file that cannot be parsed is listed as a scene, so that opening it shows
+ * the error. */
 static file_use use_by_keys(const folder *f, const char *path)
 {
     static const char *const of_scenes[] = {"solids",     "camera", "lights",    "render",
@@ -96,8 +97,8 @@ static file_use use_by_keys(const folder *f, const char *path)
     return use;
 }
 
-/* Takes the name. Links count where they lead to a file within the folder. */
-static void look_at_file(listing *l, char *name)
+/* Takes ownership of the name. A link counts if it leads to a file inside the folder. */
+static void classify_file(listing *l, char *name)
 {
     file_use use = use_by_ending(name);
     char *path = NULL;
@@ -114,7 +115,7 @@ static void look_at_file(listing *l, char *name)
         return;
     }
     l->files++;
-    keep(l, &l->found[use], name);
+    add_name(l, &l->found[use], name);
 }
 
 static bool is_text(const char *name)
@@ -124,14 +125,14 @@ static bool is_text(const char *name)
     return text != NULL;
 }
 
-/* Below the folder, whose name is "" for the chosen one itself. */
+/* Joins a folder's name, "" for the chosen folder, and a name in it. */
 static char *join(const char *folder_of_it, const char *name)
 {
     return text_format("%s%s%s", folder_of_it, *folder_of_it ? "/" : "", name);
 }
 
-/* Takes the name. Links to folders are not followed, so that nothing is listed twice. */
-static void look_at(listing *l, char *name)
+/* Takes ownership of the name. Links to folders are not followed, so that no file is listed twice. */
+static void visit_entry(listing *l, char *name)
 {
     struct stat about;
     char *path = join(folder_root(l->of), name);
@@ -139,29 +140,27 @@ static void look_at(listing *l, char *name)
     l->out_of_memory |= !path;
     free(path);
     if (is_folder)
-        keep(l, &l->next, name);
+        add_name(l, &l->next, name);
     else
-        look_at_file(l, name);
+        classify_file(l, name);
 }
 
-/* All names of a folder before any is looked at, so that what is left out does not depend on the order in which the
- * system tells them. */
-static void look_into(listing *l, const char *name)
+/* Reads all names of a folder before it visits any, so that the limit does not depend on the order of readdir. */
+static void visit_folder(listing *l, const char *name)
 {
     char *path = join(folder_root(l->of), name);
     DIR *d = path ? opendir(path) : NULL;
     l->out_of_memory |= !path;
     free(path);
     names here = {.name = NULL};
-    for (const struct dirent *e; d && !l->out_of_memory && l->looked_at < LOOKED_AT_MAX && (e = readdir(d));
-         l->looked_at++)
+    for (const struct dirent *e; d && !l->out_of_memory && l->entries < ENTRIES_MAX && (e = readdir(d)); l->entries++)
         if (e->d_name[0] != '.' && is_text(e->d_name))
-            keep(l, &here, join(name, e->d_name));
+            add_name(l, &here, join(name, e->d_name));
     if (d)
         closedir(d);
     sort(&here);
     for (size_t i = 0; i < here.count && l->files < FOLDER_FILES_MAX; i++) {
-        look_at(l, here.name[i]);
+        visit_entry(l, here.name[i]);
         here.name[i] = NULL;
     }
     forget(&here);
@@ -181,15 +180,15 @@ static json_t *tell(const listing *l)
     return all;
 }
 
-json_t *folder_tell(const folder *f)
+json_t *folder_json(const folder *f)
 {
     listing l = {.of = f};
-    look_into(&l, "");
+    visit_folder(&l, "");
     for (int depth = 1; depth <= DEPTH_MAX; depth++) {
         names level = l.next;
         l.next = (names){.name = NULL};
         for (size_t i = 0; i < level.count && l.files < FOLDER_FILES_MAX; i++)
-            look_into(&l, level.name[i]);
+            visit_folder(&l, level.name[i]);
         forget(&level);
     }
     json_t *all = l.out_of_memory ? NULL : tell(&l);

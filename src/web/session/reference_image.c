@@ -4,7 +4,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* Was it measured, or is it known why not? */
+/* A cached result or its error. */
 typedef struct measured {
     bool is;
     status code;
@@ -14,7 +14,7 @@ typedef struct measured {
 struct reference_pair {
     const shared_image *a, *b;
     atomic_int owners;
-    pthread_mutex_t lock; /* of what follows: who has it measures, others wait for that */
+    pthread_mutex_t lock; /* guards the fields below; its holder measures, others wait for the result */
     measured numbers, map;
     image_comparison found;
     unsigned char *map_bytes;
@@ -72,9 +72,9 @@ const shared_image *reference_image_take(reference_image *p)
 json_t *reference_image_json(reference_image *p)
 {
     const shared_image *a = reference_image_take(p);
-    json_t *told = a ? shared_image_json(a) : json_null();
+    json_t *json = a ? shared_image_json(a) : json_null();
     shared_image_release(a);
-    return told;
+    return json;
 }
 
 static reference_pair *pair_create(const shared_image *a, const shared_image *b)
@@ -102,7 +102,7 @@ void reference_pair_release(reference_pair *pair)
     free(pair);
 }
 
-/* Pairs are told apart by their pictures' addresses, which are theirs as long as the pair has its share of them. */
+/* Pairs are identified by the addresses of their images, which stay valid while the pair holds references. */
 reference_pair *reference_image_compare(reference_image *p, const shared_image *b)
 {
     reference_pair *old = NULL, *pair = NULL;
@@ -130,13 +130,13 @@ bool reference_pair_fits(const reference_pair *pair)
     return pair->a->width == pair->b->width && pair->a->height == pair->b->height;
 }
 
-/* With the lock held. */
+/* The lock is held. */
 static status measure_once(reference_pair *pair, measured *m, status (*measure)(reference_pair *pair, diagnostic *why),
                            diagnostic *why)
 {
     if (!m->is) {
         m->code = measure(pair, &m->why);
-        m->is = m->code != STATUS_FAILURE; /* memory may be there the next time */
+        m->is = m->code != STATUS_FAILURE; /* out of memory may be temporary, so try again next time */
     }
     if (why)
         *why = m->why;

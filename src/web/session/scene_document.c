@@ -7,27 +7,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A scene as it was opened, for all versions that came of it. With the desk's lock. */
+/* A scene as it was opened, shared by all versions derived from it. Guarded by the document's lock. */
 typedef struct origin {
     scene *s;
     uint64_t number; /* of its version */
     int owners;
 } origin;
 
-/* One state of the desk. Those that were keep nothing that was loaded: a hundred steps of undo must not hold a hundred
+/* One version of the document. Undo versions hold no loaded data: a hundred undo steps must not hold a hundred
  * meshes. */
 typedef struct version {
     scene *s;
-    char *file;      /* NULL: of none */
-    char *what;      /* was done to it, for undo; of one to redo: led to it */
-    uint64_t number; /* of the version, which undo brings back */
+    char *file;      /* NULL: no file */
+    char *what;      /* the change made to it, for undo; in the redo stack: the change that led to it */
+    uint64_t number; /* of the version; undo restores it */
     origin *from;
 } version;
 
-typedef struct pile {
+typedef struct version_stack {
     version item[DOCUMENT_UNDO_MAX];
     size_t count;
-} pile;
+} version_stack;
 
 struct scene_document {
     pthread_mutex_t lock;
@@ -37,7 +37,7 @@ struct scene_document {
     version now;
     uint64_t generation, numbers, saved_number;
     char gesture[80]; /* of the last change; "" for none */
-    pile undo, redo;
+    version_stack undo, redo;
 };
 
 static origin *origin_create(const scene *s, uint64_t number)
@@ -68,7 +68,7 @@ static void version_clear(version *v)
     *v = (version){0};
 }
 
-static void pile_clear(pile *p)
+static void pile_clear(version_stack *p)
 {
     while (p->count)
         version_clear(&p->item[--p->count]);
@@ -85,7 +85,7 @@ static void unload(scene *s)
     s->background.img = NULL;
 }
 
-static void pile_put(pile *p, version v)
+static void pile_put(version_stack *p, version v)
 {
     unload(v.s);
     if (p->count == DOCUMENT_UNDO_MAX) {
@@ -137,10 +137,11 @@ void scene_document_destroy(scene_document *d)
     free(d);
 }
 
-/* Puts next in place of the scene, which goes to the undo pile, or is forgotten where the same gesture made it. next is
- * the desk's from now on. from: the origin, which it takes, of a scene that is opened; NULL: the one that was. */
-static status replace(scene_document *d, scene *next, const char *file, origin *from, const char *what,
-                      const char *gesture, diagnostic *why)
+/* Replaces the scene by next, which the document owns from now on, and pushes the old one on the undo stack, or
+ * drops it where the same gesture made it. from: the new origin of an opened scene, owned from now on; NULL: the
+ * origin stays. */
+static status push_version(scene_document *d, scene *next, const char *file, origin *from, const char *what,
+                           const char *gesture, diagnostic *why)
 {
     char *name = copy_or_null(file), *words = strdup(what);
     if (!words || (file && !name)) {
@@ -168,7 +169,7 @@ static status replace(scene_document *d, scene *next, const char *file, origin *
     return STATUS_OK;
 }
 
-/* The end of every change: tells the caller its generation, unlocks, and says that there is something new. */
+/* Ends every change: returns the generation to the caller, unlocks and calls changed. */
 static status finish(scene_document *d, status code, uint64_t *generation)
 {
     if (code == STATUS_OK && generation)
@@ -186,7 +187,7 @@ status scene_document_apply(scene_document *d, const char *what, const char *ges
     scene *next = scene_clone(d->now.s);
     status code = next ? change(context, next, why) : out_of_memory(why);
     THEN(code, scene_document_check(next, d->files, why));
-    THEN(code, replace(d, next, d->now.file, NULL, what, gesture, why));
+    THEN(code, push_version(d, next, d->now.file, NULL, what, gesture, why));
     if (code != STATUS_OK)
         scene_destroy(next);
     return finish(d, code, generation);
@@ -204,7 +205,7 @@ status scene_document_open(scene_document *d, scene *s, const char *file, uint64
     char words[128];
     snprintf(words, sizeof words, "open %.100s", file ? file : "a new scene");
     pthread_mutex_lock(&d->lock);
-    code = replace(d, s, file, from, words, NULL, why);
+    code = push_version(d, s, file, from, words, NULL, why);
     if (code != STATUS_OK) {
         origin_release(from);
         scene_destroy(s);
@@ -217,11 +218,11 @@ status scene_document_open(scene_document *d, scene *s, const char *file, uint64
 status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, diagnostic *why)
 {
     pthread_mutex_lock(&d->lock);
-    pile *from = redo ? &d->redo : &d->undo, *to = redo ? &d->undo : &d->redo;
+    version_stack *from = redo ? &d->redo : &d->undo, *to = redo ? &d->undo : &d->redo;
     if (from->count == 0)
-        return finish(d, diagnose(why, STATUS_BAD_INPUT, "", "there is nothing to %s", redo ? "redo" : "undo"), NULL);
+        return finish(d, diagnose(why, STATUS_BAD_INPUT, "", "nothing to %s", redo ? "redo" : "undo"), NULL);
     version next = from->item[--from->count], before = d->now;
-    before.what = next.what; /* what lies between the two */
+    before.what = next.what; /* the change between the two versions */
     next.what = NULL;
     scene_borrow_meshes(next.s, before.s);
     pile_put(to, before);
@@ -254,7 +255,7 @@ status scene_document_reset(scene_document *d, const char *const *paths, size_t 
         scene_borrow_meshes(next, d->now.s);
         char words[128];
         snprintf(words, sizeof words, count == 1 ? "reset %.100s" : "reset", count == 1 ? paths[0] : "");
-        code = replace(d, next, d->now.file, NULL, words, NULL, why);
+        code = push_version(d, next, d->now.file, NULL, words, NULL, why);
         if (code == STATUS_OK && count == 0)
             d->now.number = from->number; /* it is that version again */
     }
@@ -289,8 +290,8 @@ uint64_t scene_document_generation(scene_document *d)
     return generation;
 }
 
-/* The two are copies of one: object for object the same. */
-static void lend(scene *s, const scene *loaded)
+/* Both are copies of one version, so their objects correspond. */
+static void share_loaded(scene *s, const scene *loaded)
 {
     for (size_t i = 0; i < s->texture_count; i++)
         if (!s->textures[i].data && loaded->textures[i].data) {
@@ -302,11 +303,11 @@ static void lend(scene *s, const scene *loaded)
     scene_borrow_meshes(s, loaded);
 }
 
-void scene_document_lend(scene_document *d, const scene *loaded, uint64_t generation)
+void scene_document_share_loaded(scene_document *d, const scene *loaded, uint64_t generation)
 {
     pthread_mutex_lock(&d->lock);
     if (generation == d->generation)
-        lend(d->now.s, loaded);
+        share_loaded(d->now.s, loaded);
     pthread_mutex_unlock(&d->lock);
 }
 
@@ -326,7 +327,7 @@ void scene_document_saved(scene_document *d, const char *file, uint64_t generati
         d->changed(d->context);
 }
 
-static json_t *top_of(const pile *p)
+static json_t *top_of(const version_stack *p)
 {
     return p->count ? json_of_text(p->item[p->count - 1].what) : json_null();
 }
@@ -334,10 +335,10 @@ static json_t *top_of(const pile *p)
 bool scene_document_json(scene_document *d, json_t *state)
 {
     pthread_mutex_lock(&d->lock);
-    json_t *told =
+    json_t *json =
         json_pack("{s:I, s:o, s:o, s:b, s:o, s:o}", "generation", (json_int_t)d->generation, "file",
                   d->now.file ? json_of_text(d->now.file) : json_null(), "title", json_of_text(d->now.s->title),
                   "saved", d->now.number == d->saved_number, "undo", top_of(&d->undo), "redo", top_of(&d->redo));
     pthread_mutex_unlock(&d->lock);
-    return json_object_update_new(state, told) == 0;
+    return json_object_update_new(state, json) == 0;
 }

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* As many as its parameters ask for; those of files are counted when they are loaded. */
+/* The triangles that its parameters imply; triangles of files are counted on loading. */
 static double triangles_of(const mesh_entry *m)
 {
     switch ((mesh_maker)m->source) {
@@ -29,16 +29,17 @@ static status check_bounds(const scene *s, diagnostic *why)
     for (size_t i = 0; i < s->mesh_count; i++)
         triangles += triangles_of(&s->meshes[i]);
     if (s->render.width * s->render.height > DOCUMENT_PIXELS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "render larger pictures by `cuvette render`",
-                        "%lld x %lld pixels are more than the %d of the laboratory", (long long)s->render.width,
+        return diagnose(why, STATUS_BAD_INPUT, "render larger images with `cuvette render`",
+                        "%lld x %lld pixels exceed the laboratory's limit of %d", (long long)s->render.width,
                         (long long)s->render.height, DOCUMENT_PIXELS_MAX);
     if (passes_work(&s->render, 1, false) > DOCUMENT_WORK_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use fewer pixels, samples, paths or wavelengths, or `cuvette render`",
-                        "%.3g camera rays are more than the %.0e of the laboratory", passes_work(&s->render, 1, false),
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "use fewer pixels, samples, paths or wavelengths, or run `cuvette render`",
+                        "%.3g camera rays exceed the laboratory's limit of %.0e", passes_work(&s->render, 1, false),
                         DOCUMENT_WORK_MAX);
     if (triangles > DOCUMENT_TRIANGLES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use smaller meshes, or `cuvette render`",
-                        "%.0f triangles are more than the %d of the laboratory", triangles, DOCUMENT_TRIANGLES_MAX);
+        return diagnose(why, STATUS_BAD_INPUT, "use smaller meshes, or run `cuvette render`",
+                        "%.0f triangles exceed the laboratory's limit of %d", triangles, DOCUMENT_TRIANGLES_MAX);
     return STATUS_OK;
 }
 

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 struct semaphore {
-    pthread_mutex_t lock; /* of what follows */
-    pthread_cond_t moved;
+    pthread_mutex_t lock; /* guards the fields below */
+    pthread_cond_t changed;
     int free_places;
     bool closed;
 };
@@ -17,7 +17,7 @@ semaphore *semaphore_create(int places)
     if (!g)
         return NULL;
     pthread_mutex_init(&g->lock, NULL);
-    pthread_cond_init(&g->moved, NULL);
+    pthread_cond_init(&g->changed, NULL);
     g->free_places = places;
     return g;
 }
@@ -26,7 +26,7 @@ void semaphore_destroy(semaphore *g)
 {
     if (!g)
         return;
-    pthread_cond_destroy(&g->moved);
+    pthread_cond_destroy(&g->changed);
     pthread_mutex_destroy(&g->lock);
     free(g);
 }
@@ -35,18 +35,19 @@ status semaphore_acquire(semaphore *g, diagnostic *why)
 {
     pthread_mutex_lock(&g->lock);
     while (!g->closed && g->free_places == 0)
-        pthread_cond_wait(&g->moved, &g->lock);
+        pthread_cond_wait(&g->changed, &g->lock);
     const bool in = !g->closed;
     g->free_places -= in;
     pthread_mutex_unlock(&g->lock);
-    return in ? STATUS_OK : diagnose(why, STATUS_INTERRUPTED, "start it again", "the laboratory is being closed");
+    return in ? STATUS_OK
+              : diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is being closed");
 }
 
 void semaphore_release(semaphore *g)
 {
     pthread_mutex_lock(&g->lock);
     g->free_places++;
-    pthread_cond_signal(&g->moved);
+    pthread_cond_signal(&g->changed);
     pthread_mutex_unlock(&g->lock);
 }
 
@@ -54,6 +55,6 @@ void semaphore_close(semaphore *g)
 {
     pthread_mutex_lock(&g->lock);
     g->closed = true;
-    pthread_cond_broadcast(&g->moved);
+    pthread_cond_broadcast(&g->changed);
     pthread_mutex_unlock(&g->lock);
 }

@@ -1,17 +1,17 @@
-/* Lets in a few at a time, for what takes much memory and time and cannot be ended on its way: pictures that are
- * encoded or compared, models that are read. For any number of threads. Ownership: semaphore_create gives,
- * semaphore_destroy releases, when nobody is in it or waits. */
+/* A counting semaphore that limits work with much memory and time that cannot be interrupted: encoding or comparing
+ * images, loading models. Thread-safe. Ownership: semaphore_create creates, semaphore_destroy releases when no
+ * thread holds it or waits. */
 #pragma once
 
 #include "base/status.h"
 
 typedef struct semaphore semaphore;
 
-semaphore *semaphore_create(int places); /* NULL when memory is out */
+semaphore *semaphore_create(int places); /* NULL when out of memory */
 void semaphore_destroy(semaphore *g);    /* NULL is allowed */
 
-/* Waits for a place. STATUS_INTERRUPTED, and no place, where the gate is closed before there is one. */
+/* Waits for a free place. STATUS_INTERRUPTED, without a place, if the semaphore is closed meanwhile. */
 status semaphore_acquire(semaphore *g, diagnostic *why);
 void semaphore_release(semaphore *g);
-/* For good: who waits is sent away, who is in goes on. */
+/* Closes it permanently: waiting threads return with an error; threads inside continue. */
 void semaphore_close(semaphore *g);

@@ -8,22 +8,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pages are told at most four times a second: telling takes time from what is measured. */
-static const double told_every_s = 0.25;
+/* At most four events per second: sending disturbs the measurement. */
+static const double publish_period_s = 0.25;
 
 struct studies {
     lab *l;
-    pthread_mutex_t life; /* held while a thread is begun or joined; goes before lock */
+    pthread_mutex_t life; /* held while a thread is started or joined; acquired before lock */
     pthread_t thread;
-    bool begun; /* there is a thread to be joined */
-    study *s;   /* the thread's while it runs */
+    bool begun; /* a thread must be joined */
+    study *s;   /* used by the thread while it runs */
     atomic_bool stop, ending, drawing;
 
-    pthread_mutex_t lock; /* of what follows */
+    pthread_mutex_t lock; /* guards the fields below */
     bool running;
-    char *name; /* of the one that runs or ran last; NULL before the first */
+    char *name; /* of the running or last study; NULL before the first */
     study_moment now;
-    double told_s;
+    double published_s;
     bool failed;
     diagnostic trouble;
 };
@@ -39,7 +39,7 @@ status studies_create(lab *l, studies **out, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Under life. */
+/* The life lock is held. */
 static void join(studies *st)
 {
     if (!st->begun)
@@ -70,14 +70,14 @@ void studies_destroy(studies *st)
     free(st);
 }
 
-/* --- what others hear of it --- */
+/* --- progress for pages --- */
 
-json_t *studies_tell(studies *st)
+json_t *studies_json(studies *st)
 {
     static const char *const stages[] = {"measuring", "moving", "pictures"};
     pthread_mutex_lock(&st->lock);
     const study_moment *now = &st->now;
-    json_t *told =
+    json_t *json =
         !st->name ? json_null()
                   : json_pack("{s:s, s:b, s:I, s:I, s:o, s:I, s:o, s:s, s:I, s:I, s:o}", "name", st->name, "running",
                               st->running, "frames_done", (json_int_t)now->frames_done, "frames_all",
@@ -86,23 +86,23 @@ json_t *studies_tell(studies *st)
                               "picture", (json_int_t)now->img, "pictures", (json_int_t)now->images, "error",
                               st->failed ? json_of_diagnostic(&st->trouble) : json_null());
     pthread_mutex_unlock(&st->lock);
-    return told;
+    return json;
 }
 
 static void publish(studies *st)
 {
-    lab_publish(st->l, "study", studies_tell(st));
+    lab_publish(st->l, "study", studies_json(st));
 }
 
-static void hear(void *context, const study_moment *now)
+static void on_progress(void *context, const study_moment *now)
 {
     studies *st = context;
     const double now_s = clock_wall_s();
     pthread_mutex_lock(&st->lock);
-    const bool due = now_s - st->told_s >= told_every_s;
+    const bool due = now_s - st->published_s >= publish_period_s;
     st->now = *now;
     if (due)
-        st->told_s = now_s;
+        st->published_s = now_s;
     pthread_mutex_unlock(&st->lock);
     if (due)
         publish(st);
@@ -120,12 +120,12 @@ static void *run(void *context)
 {
     studies *st = context;
     float_environment_set();
-    char *text = text_format("a study measures: %s", st->s->name);
-    render_worker_suspend(st->l->render_worker, text ? text : "a study measures");
+    char *text = text_format("a study is measuring: %s", st->s->name);
+    render_worker_suspend(st->l->render_worker, text ? text : "a study is measuring");
     free(text);
-    lab_tell_state(st->l);
+    lab_publish_state(st->l);
     const study_options options = {
-        .results = st->l->settings.results, .stop = should_stop, .progressed = hear, .context = st};
+        .results = st->l->settings.results, .stop = should_stop, .progressed = on_progress, .context = st};
     diagnostic why = {.what = ""};
     const status code = study_run(st->s, &options, NULL, &why);
     render_worker_suspend(st->l->render_worker, NULL);
@@ -135,11 +135,11 @@ static void *run(void *context)
     st->trouble = why;
     pthread_mutex_unlock(&st->lock);
     publish(st);
-    lab_tell_state(st->l);
+    lab_publish_state(st->l);
     return NULL;
 }
 
-/* Under life. Takes the place of what ran before; STATUS_INTERRUPTED while that still runs. */
+/* The life lock is held. Replaces the last study; STATUS_INTERRUPTED while it still runs. */
 static status take_place(studies *st, study *s, diagnostic *why)
 {
     char *name = strdup(s->name);
@@ -148,12 +148,12 @@ static status take_place(studies *st, study *s, diagnostic *why)
     pthread_mutex_lock(&st->lock);
     const bool busy = st->running;
     if (busy)
-        diagnose(why, STATUS_INTERRUPTED, "wait for it, or stop it first", "the study %s runs", st->name);
+        diagnose(why, STATUS_INTERRUPTED, "wait until it ends, or stop it", "the study %s is running", st->name);
     if (!busy) {
         free(st->name);
         st->name = name;
         st->now = (study_moment){.left_s = NAN};
-        st->told_s = 0;
+        st->published_s = 0;
         st->failed = false;
         st->running = true;
     }
@@ -166,7 +166,7 @@ static status take_place(studies *st, study *s, diagnostic *why)
 static status begin(studies *st, study *s, diagnostic *why)
 {
     if (atomic_load(&st->ending))
-        return diagnose(why, STATUS_INTERRUPTED, "start it again", "the laboratory is being closed");
+        return diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is being closed");
     TRY(take_place(st, s, why));
     join(st);
     st->s = s;
@@ -178,7 +178,7 @@ static status begin(studies *st, study *s, diagnostic *why)
     pthread_mutex_lock(&st->lock);
     st->running = false;
     pthread_mutex_unlock(&st->lock);
-    return diagnose(why, STATUS_FAILURE, "", "no thread can be started");
+    return diagnose(why, STATUS_FAILURE, "", "a thread cannot be started");
 }
 
 status studies_start(studies *st, study *s, diagnostic *why)
@@ -201,12 +201,13 @@ bool studies_runs(studies *st, const char *name)
 
 status studies_stop(studies *st, const char *name, diagnostic *why)
 {
-    pthread_mutex_lock(&st->life); /* else it might be the next one that is stopped */
+    pthread_mutex_lock(&st->life); /* otherwise the next study might be stopped */
     const bool runs = studies_runs(st, name);
     if (runs)
         atomic_store(&st->stop, true);
     pthread_mutex_unlock(&st->life);
-    return runs ? STATUS_OK : diagnose(why, STATUS_INTERRUPTED, "start it first", "the study %s does not run", name);
+    return runs ? STATUS_OK
+                : diagnose(why, STATUS_INTERRUPTED, "start the study first", "the study %s is not running", name);
 }
 
 const atomic_bool *studies_ending(const studies *st)

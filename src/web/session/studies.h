@@ -1,6 +1,6 @@
-/* The one study that runs in the laboratory, in a thread of its own; while it measures, the painter waits. How far it
- * is goes to all pages as event `study` and stands in the state. Ownership: studies_create gives, studies_destroy
- * releases. Errors: STATUS_INTERRUPTED for what does not go together with what is there now (409). */
+/* The study that runs in the laboratory, in a thread of its own; the render worker is suspended while it measures.
+ * Its progress goes to all pages as event `study` and is part of the state. Ownership: studies_create creates,
+ * studies_destroy releases. Errors: STATUS_INTERRUPTED for a conflict with the current state (409). */
 #pragma once
 
 #include "study/study.h"
@@ -8,22 +8,23 @@
 #include <stdatomic.h>
 
 status studies_create(lab *l, studies **out, diagnostic *why);
-/* Stops what runs, waits for it, and lets nothing begin any more. While server, painter and desk are still there;
- * handlers may come in until http_stop. */
+/* Stops the running study, waits for it, and lets no other start. Call it while the server, render worker and scene
+ * document still exist; handlers may run until http_stop. */
 void studies_end(studies *st);
-/* After http_stop. NULL is allowed; ends it too. */
+/* Call it after http_stop. NULL is allowed; includes studies_end. */
 void studies_destroy(studies *st);
 
-/* Takes s, also after an error. */
+/* Takes ownership of s, also after an error. */
 status studies_start(studies *st, study *s, diagnostic *why);
-/* The rows so far are kept. Returns at once. */
+/* Stops the study without waiting; the rows so far are kept. */
 status studies_stop(studies *st, const char *name, diagnostic *why);
-bool studies_runs(studies *st, const char *name); /* NULL: does any? */
+bool studies_runs(studies *st, const char *name); /* name NULL: whether any study runs */
 
-/* The state's part, null before the first study; NULL when memory is out. */
-json_t *studies_tell(studies *st);
+/* The study in the state JSON, null before the first study; NULL when out of memory. */
+json_t *studies_json(studies *st);
 
-/* Set when the laboratory ends: for what takes long. And one at a time may draw figures: false where another does. */
+/* The flag that is set when the laboratory ends, for long work. At most one thread draws figures:
+ * studies_begin_drawing returns false while another does. */
 const atomic_bool *studies_ending(const studies *st);
 bool studies_begin_drawing(studies *st);
 void studies_end_drawing(studies *st);

@@ -1,4 +1,4 @@
-/* Two runs of one study, cell by cell. */
+/* Compares two runs of one study, cell by cell. */
 #include "measure/statistics.h"
 #include "report/json.h"
 #include "study/row_files.h"
@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The rows of one run, those of a cell one after another. */
+/* The rows of one run, sorted by cell. */
 typedef struct sorted_rows {
     row_files *files;
-    size_t at; /* the first row of the cells to come */
+    size_t at; /* the first row of the next cell */
     double *values;
 } sorted_rows;
 
@@ -45,7 +45,7 @@ static void release(sorted_rows *rows)
     free(rows->values);
 }
 
-/* As in a summary: without warm-ups and marked rows. */
+/* As in a summary: without warm-up rows and marked rows. */
 static cell_times take_cell(sorted_rows *rows, size_t cell)
 {
     size_t count = 0;
@@ -69,17 +69,17 @@ static json_t *times_json(const cell_times *t)
 
 static json_t *cell_json(const study *s, size_t cell, const cell_times *a, const cell_times *b)
 {
-    json_t *told = json_pack("{s:I}", "cell", (json_int_t)cell);
+    json_t *json = json_pack("{s:I}", "cell", (json_int_t)cell);
     for (size_t axis = 0; axis < s->axis_count; axis++) {
         const study_point *point = &s->axes[axis].points[study_cell_point(s, cell, axis)];
         for (size_t i = 0; i < point->count; i++)
-            json_object_set_new(told, point->paths[i], json_of_text(point->values[i]));
+            json_object_set_new(json, point->paths[i], json_of_text(point->values[i]));
     }
-    json_object_update_new(told,
+    json_object_update_new(json,
                            json_pack("{s:o, s:o, s:o, s:o}", "a", times_json(a), "b", times_json(b), "ratio",
                                      json_of_real(b->wall.median / a->wall.median), "same_film",
                                      a->film && b->film ? json_boolean(strcmp(a->film, b->film) == 0) : json_null()));
-    return told;
+    return json;
 }
 
 static json_t *paths_json(const study *s)

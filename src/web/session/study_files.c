@@ -9,7 +9,7 @@
 
 /* --- files --- */
 
-/* The name that it gives itself, without looking at the rest of it; else the file's own. */
+/* The name in the file, found without parsing the rest; otherwise the file's own name. */
 static char *name_of(const lab *l, const char *file)
 {
     char *path = NULL, *name = NULL;
@@ -31,9 +31,9 @@ static char *name_of(const lab *l, const char *file)
 status study_each(const lab *l, bool (*visit)(void *context, const char *name, const char *file), void *context,
                   diagnostic *why)
 {
-    json_t *told = folder_tell(l->files);
-    status code = told ? STATUS_OK : out_of_memory(why);
-    const json_t *files = json_object_get(told, "studies");
+    json_t *json = folder_json(l->files);
+    status code = json ? STATUS_OK : out_of_memory(why);
+    const json_t *files = json_object_get(json, "studies");
     bool go_on = true;
     for (size_t i = 0; go_on && code == STATUS_OK && i < json_array_size(files); i++) {
         const char *file = json_string_value(json_array_get(files, i));
@@ -44,18 +44,18 @@ status study_each(const lab *l, bool (*visit)(void *context, const char *name, c
             code = out_of_memory(why);
         free(name);
     }
-    json_decref(told);
+    json_decref(json);
     return code;
 }
 
-typedef struct wanted {
+typedef struct name_search {
     const char *name;
     char *file;
-} wanted;
+} name_search;
 
 static bool is_wanted(void *context, const char *name, const char *file)
 {
-    wanted *w = context;
+    name_search *w = context;
     if (strcmp(name, w->name) != 0)
         return true;
     w->file = strdup(file);
@@ -64,13 +64,13 @@ static bool is_wanted(void *context, const char *name, const char *file)
 
 status study_find(const lab *l, const char *name, char **file, diagnostic *why)
 {
-    wanted w = {.name = name};
+    name_search w = {.name = name};
     const status code = study_each(l, is_wanted, &w, why);
     *file = w.file;
     return code;
 }
 
-/* --- what it may read --- */
+/* --- files that a study may read --- */
 
 static status may_open(void *context, const char *path, diagnostic *why)
 {
@@ -79,8 +79,8 @@ static status may_open(void *context, const char *path, diagnostic *why)
     const bool inside = name != NULL;
     free(name);
     return inside ? STATUS_OK
-                  : diagnose(why, STATUS_BAD_INPUT, "name a scene in the folder that the laboratory was started with",
-                             "the scene lies outside of the folder");
+                  : diagnose(why, STATUS_BAD_INPUT, "use a scene inside the laboratory's folder",
+                             "the scene is outside of the folder");
 }
 
 static status may_load(void *context, const scene *setting, diagnostic *why)
@@ -100,7 +100,7 @@ status study_open(const lab *l, const char *file, study **out, diagnostic *why)
     return code;
 }
 
-/* --- where its rows lie --- */
+/* --- the results --- */
 
 static status check_inside(const lab *l, const char *path, diagnostic *why)
 {
@@ -109,9 +109,8 @@ static status check_inside(const lab *l, const char *path, diagnostic *why)
         free(name);
         return STATUS_OK;
     }
-    return diagnose_at(why, path, STATUS_BAD_INPUT,
-                       "let the results lie in the folder that the laboratory was started with",
-                       "it lies outside of the folder");
+    return diagnose_at(why, path, STATUS_BAD_INPUT, "use a results folder inside the laboratory's folder",
+                       "the path is outside of the folder");
 }
 
 static status check_links(const lab *l, const char *path, diagnostic *why)
@@ -119,7 +118,7 @@ static status check_links(const lab *l, const char *path, diagnostic *why)
     DIR *open = opendir(path);
     if (!open)
         return errno == ENOENT ? STATUS_OK
-                               : check_inside(l, path, why); /* who wants to read or write there hears of the rest */
+                               : check_inside(l, path, why); /* other errors are reported by the later read or write */
     status code = STATUS_OK;
     for (struct dirent *entry; code == STATUS_OK && (entry = readdir(open));) {
         if (entry->d_type != DT_LNK && entry->d_type != DT_UNKNOWN)
@@ -157,7 +156,7 @@ static int is_shown_folder(const struct dirent *entry)
     return entry->d_type == DT_DIR && entry->d_name[0] != '.';
 }
 
-/* below: the folder's name in the chosen one, "" for that itself. */
+/* below: the folder's name relative to the chosen folder, "" for the chosen folder. */
 static void search_runs(run_search *search, const char *path, const char *below, int depth)
 {
     struct dirent **entries = NULL;
@@ -168,7 +167,7 @@ static void search_runs(run_search *search, const char *path, const char *below,
         char *rows = inner ? text_format("%s/%s/rows.csv", inner, search->name) : NULL;
         if (rows && name && search->looked++ < RUNS_LOOKED_MAX) {
             if (access(rows, R_OK) == 0 && json_array_size(search->found) < RUNS_MAX)
-                json_array_append_new(search->found, json_string(name)); /* none for a name that is not UTF-8 */
+                json_array_append_new(search->found, json_string(name)); /* skips names that are not UTF-8 */
             if (depth < RUNS_DEEP)
                 search_runs(search, inner, name, depth + 1);
         }

@@ -11,7 +11,7 @@ const shownFilm = (screen) => screen.page.evaluate(() => window.lab.picture.film
 async function change(screen, act) {
   const { generation } = await screen.lab.get('/api/state');
   await act();
-  await screen.until((g) => window.lab.wanted > g, generation);
+  await screen.until((g) => window.lab.newestGeneration > g, generation);
   await screen.settled(generation + 1);
 }
 
@@ -183,7 +183,7 @@ export const cases = {
     await screen.setNumber('render.depth', 3);
     await screen.showPanel('Objects');
     await save();
-    await question.getByText('Replace scenes/rod.yaml? It is written anew: comments are lost.').waitFor();
+    await question.getByText('Replace scenes/rod.yaml? The file is rewritten and its comments are lost.').waitFor();
     await t.axe(screen, 'the question');
     await answer(question, 'Cancel');
     await save();
@@ -288,16 +288,16 @@ export const cases = {
     const before = await shownFilm(screen);
     await screen.showPanel('Objects');
     await screen.button('Sky').click();
-    const dialog = screen.page.getByRole('dialog', { name: 'Picture of the sky' });
+    const dialog = screen.page.getByRole('dialog', { name: 'Sky image' });
     t.equal(
-      await dialog.getByRole('button', { name: 'No picture' }).count(),
+      await dialog.getByRole('button', { name: 'No image' }).count(),
       0,
       'a way to be rid of one that is not there',
     );
     await change(screen, () => dialog.getByRole('listitem').getByRole('button').first().click());
     t.check((await shownFilm(screen)) !== before, 'the sky is another');
     await screen.button('Sky').click();
-    await change(screen, () => dialog.getByRole('button', { name: 'No picture' }).click());
+    await change(screen, () => dialog.getByRole('button', { name: 'No image' }).click());
     t.equal(await shownFilm(screen), before, 'the film without it');
   },
 
@@ -310,7 +310,7 @@ export const cases = {
     const field = screen.page.getByRole('spinbutton', { name: 'render width, number', exact: true }).first();
     await field.fill('60000');
     await field.press('Enter');
-    await screen.page.getByText('pixels are more than').first().waitFor();
+    await screen.page.getByText('pixels exceed the laboratory').first().waitFor();
     t.equal(await slider.inputValue(), before, 'where its thumb stands');
     t.equal(await field.inputValue(), '800', 'the number');
   },
