@@ -1,5 +1,5 @@
-/* Scenes from text and pictures of them, for tests. Each call asserts that it worked. Ownership: scene_from and
- * render give; release with scene_destroy and render_result_destroy. */
+/* Test fixtures: scenes from text, and their images. Each call asserts that it succeeded. Ownership: release results of
+ * scene_from with scene_destroy and of render with render_result_destroy. */
 #pragma once
 
 #include "scene/model/scene.h"
@@ -11,7 +11,7 @@
 /* Tests run in the project's root. */
 #define ROD_SCENE "experiments/scenes/rod.yaml"
 
-/* What a build without counters cannot show. */
+/* Skips a test that needs counters in a build without them. */
 static inline void need_counters(void)
 {
     if (!CUVETTE_COUNTERS)
@@ -31,7 +31,7 @@ static inline void set(scene *s, const char *assignment)
     worked(scene_set_assignment(s, assignment, &why), &why);
 }
 
-/* Assignments one after another, separated by blanks. */
+/* Assignments, separated by blanks. */
 static inline void set_all(scene *s, const char *assignments)
 {
     char text[512];
@@ -74,7 +74,7 @@ static inline render_result *render(const scene *s)
     return render_at(s, isa_best(), NULL);
 }
 
-/* The radiance of a picture of one pixel, which looks exactly along the camera's axis. */
+/* The radiance of an image of one pixel, whose ray is exactly the camera's axis. */
 static inline vec3 look(const scene *s)
 {
     render_result *result = render(s);

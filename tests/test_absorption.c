@@ -1,3 +1,6 @@
+/* Tests of absorption by Beer and Lambert's law: the transmittance of a length d of a medium is exp(-a d) (Hecht,
+ * 4.8.1, eq. 4.79), wherever light passes through it: slabs with their reflections, solids without refraction, and
+ * straight shadow rays. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,10 +10,6 @@
 
 #include "probe_fixture.h"
 #include "scene/model/scene.h"
-
-/* Beer and Lambert: what is left behind a length d of a medium is exp(-a d) (Hecht, 4.8.1, eq. 4.79), at every place
- * where light goes through one: slabs with their reflections, bodies that bend nothing, and the straight way to a
- * light. */
 
 static const vec3 askew = {17.0, -33.0, 71.0};
 static const double a_per_m[3] = {0.7, 0.0, 2.5};
@@ -25,7 +24,7 @@ static stage slab(double n, double thickness, int depth, const char *assignments
     return stage_of(text.at, assignments);
 }
 
-/* Sum of what leaves on one side. */
+/* Sum of the light that leaves on one side. */
 static double leaving(const ray_tree *tree, vec3 side, int channel)
 {
     double sum = 0.0;
@@ -67,8 +66,8 @@ static void a_slab_transmits_the_series_cut_at_the_depth(void **state)
     }
 }
 
-/* The same as a picture, and in other units: a of 70 per metre and 1 unit = 1 cm is a of 0.7 and 1 unit = 1 m. */
-static void a_unit_is_as_long_as_the_scene_says(void **state)
+/* The same as an image, and in other units: a of 70 per metre with 1 unit = 1 cm is a of 0.7 with 1 unit = 1 m. */
+static void the_scene_sets_the_length_of_a_unit(void **state)
 {
     (void)state;
     static const char *const alike[] = {"", "render.unit_m=0.01 slab.absorb_per_m=70,0,250",
@@ -86,9 +85,9 @@ static void a_unit_is_as_long_as_the_scene_says(void **state)
     }
 }
 
-/* A ball in a block of liquid, both of index 1.33: no interface, but its own coefficient over its chord 2 sqrt(r^2 -
- * h^2); the liquid's over the rest. The path in metres and the transmittance are the hit's. */
-static void a_body_that_bends_nothing_absorbs_all_the_same(void **state)
+/* A ball in a block of liquid, both of index 1.33: no interface, but the ball's coefficient over its chord 2 sqrt(r^2 -
+ * h^2) and the liquid's over the rest. The hit contains the length in metres and the transmittance. */
+static void a_solid_without_refraction_still_absorbs(void **state)
 {
     (void)state;
     scene_text text = scene_begin(1.0, 8);
@@ -98,7 +97,7 @@ static void a_body_that_bends_nothing_absorbs_all_the_same(void **state)
               "shape: sphere, radius: 0.8, absorb_per_m: [2, 0.5, 0]");
     stage g = stage_of(text.at, "render.unit_m=0.5");
     const double R = reflectance_of_angles(0.0, 1.0, 1.33).mean, T2 = (1.0 - R) * (1.0 - R);
-    static const double liquid[3] = {0.15, 0.0, 0.05}, ball[3] = {1.0, 0.25, 0.0}; /* a scene unit */
+    static const double liquid[3] = {0.15, 0.0, 0.05}, ball[3] = {1.0, 0.25, 0.0}; /* per scene unit */
     for (double h = -1.0; h <= 1.0; h += 0.053) {
         const ray_tree *tree =
             stage_way(&g, turned(vec3_make(h, 3.0, 0.0), askew), turned(vec3_make(0.0, -1.0, 0.0), askew), -1);
@@ -114,9 +113,9 @@ static void a_body_that_bends_nothing_absorbs_all_the_same(void **state)
     stage_close(&g);
 }
 
-/* In the open, of the surroundings' index, and seen against the sky: no hit, and yet it dims; from inside, from there
- * on. */
-static void a_cloud_dims_the_sky_behind_it(void **state)
+/* In the open, with the surroundings' index, and seen against the sky: no hit, but absorption; from inside, only from
+ * there on. */
+static void a_cloud_attenuates_the_sky_behind_it(void **state)
 {
     (void)state;
     scene_text text = scene_begin(1.0, 4);
@@ -137,7 +136,7 @@ static void a_cloud_dims_the_sky_behind_it(void **state)
     stage_close(&g);
 }
 
-/* Nothing comes back from a medium without an end but by a channel that it lets through: R, and R + T = 1. */
+/* An infinite medium returns light only in a channel that it transmits: R, and R + T = 1. */
 static void a_bottomless_medium_is_black(void **state)
 {
     (void)state;
@@ -154,9 +153,9 @@ static void a_bottomless_medium_is_black(void **state)
     stage_close(&g);
 }
 
-/* A white ground under a lamp with a coloured pane between them: shadow rays go straight through, so that the ground
- * shows k_d (N.L) exp(-a d / cos) and, by the pane's clearness, 0.9 at each of its two faces. Phong, CACM 18(6), 1975,
- * for N.L. */
+/* A white ground under a lamp with a coloured pane between them: shadow rays are straight, so that the ground has k_d
+ * (N.L) exp(-a d / cos) times 0.9, the transmittance of each of the pane's two faces. Phong, CACM 18(6), 1975, for
+ * N.L. */
 static const char lit_ground[] = "background: {color: [0, 0, 0]}\n"
                                  "render: {width: 1, height: 1}\n"
                                  "lights: {lamp: {position: [0, 4, 0]}}\n"
@@ -165,7 +164,7 @@ static const char lit_ground[] = "background: {color: [0, 0, 0]}\n"
                                  "  pane: {shape: box, transparency: 0.9, ior: 1.5, position: [0, 2, 0], size: [50, "
                                  "0.5, 50], absorb_per_m: [0.7, 0, 2.5]}\n";
 
-/* The pane's thickness that lies on the light's way, its faces there, and the length of the eye's way through it. */
+/* The pane's thickness on the path of the light, its faces there, and the length of the view ray in it. */
 static void check_lit_ground(const char *assignments, double on_the_way, double faces, double eye_way)
 {
     stage g = stage_of(lit_ground, assignments);
@@ -189,23 +188,23 @@ static void check_lit_ground(const char *assignments, double on_the_way, double 
     stage_close(&g);
 }
 
-static void light_is_dimmed_along_its_straight_way(void **state)
+static void light_is_attenuated_along_its_straight_path(void **state)
 {
     (void)state;
     check_lit_ground("", 0.5, 2.0, 0.0);
     check_lit_ground("pane.transparency=1", 0.5, 0.0, 0.0);
-    check_lit_ground("pane.transparency=1 pane.ior=1", 0.5, 0.0, 0.0); /* absorbs and bends nothing */
+    check_lit_ground("pane.transparency=1 pane.ior=1", 0.5, 0.0, 0.0); /* absorbs without refraction */
     check_lit_ground("pane.ior=1", 0.5, 0.0, 0.0);                     /* there is no interface */
     check_lit_ground("lamp.position=0,2.1,0", 0.35, 1.0, 0.0);         /* a lamp in the pane */
     check_lit_ground("lamp.position=0,1.5,0", 0.0, 0.0, 0.0);          /* and one under it */
     check_lit_ground("render.unit_m=0.1 pane.absorb_per_m=7,0,25", 0.5, 2.0, 0.0);
-    /* eye and ground within it, which reaches into the ground and loses to it there; and light that leaves by it */
+    /* camera and ground in the medium, which overlaps the ground at lower priority; and light that leaves the medium */
     check_lit_ground("pane.position=0,1,0 pane.size=50,4,50 ground.priority=1", 3.0, 1.0, sqrt(2.0));
     check_lit_ground("pane.position=0,1,0 pane.size=50,8,50 ground.priority=1", 4.0, 0.0, sqrt(2.0));
 }
 
-/* Solids that cast shadows let nothing pass, clear or not; without shadows light comes undimmed. */
-static void other_rules_of_shadows_know_no_absorption(void **state)
+/* With opaque shadows solids transmit nothing, clear or not; without shadows light is not attenuated. */
+static void other_shadow_modes_have_no_absorption(void **state)
 {
     (void)state;
     stage g = stage_of(lit_ground, "render.shadows=opaque");
@@ -216,8 +215,9 @@ static void other_rules_of_shadows_know_no_absorption(void **state)
     stage_close(&g);
 }
 
-/* A table of wavelengths takes the place of the three: linear between, constant beyond, at the channels' wavelengths
- * (CHANNEL_LAMBDA_NM, the dominant wavelengths of the primaries of sRGB: 611.4, 549.1 and 464.3 nm). */
+/* A table of wavelengths replaces the three coefficients: linear between points, constant outside, evaluated at the
+ * channels' wavelengths (CHANNEL_LAMBDA_NM, the dominant wavelengths of the primaries of sRGB: 611.4, 549.1 and 464.3
+ * nm). */
 static void a_spectrum_of_absorption_is_read_at_the_channels_wavelengths(void **state)
 {
     (void)state;
@@ -239,12 +239,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_slab_transmits_the_series_cut_at_the_depth),
-        cmocka_unit_test(a_unit_is_as_long_as_the_scene_says),
-        cmocka_unit_test(a_body_that_bends_nothing_absorbs_all_the_same),
-        cmocka_unit_test(a_cloud_dims_the_sky_behind_it),
+        cmocka_unit_test(the_scene_sets_the_length_of_a_unit),
+        cmocka_unit_test(a_solid_without_refraction_still_absorbs),
+        cmocka_unit_test(a_cloud_attenuates_the_sky_behind_it),
         cmocka_unit_test(a_bottomless_medium_is_black),
-        cmocka_unit_test(light_is_dimmed_along_its_straight_way),
-        cmocka_unit_test(other_rules_of_shadows_know_no_absorption),
+        cmocka_unit_test(light_is_attenuated_along_its_straight_path),
+        cmocka_unit_test(other_shadow_modes_have_no_absorption),
         cmocka_unit_test(a_spectrum_of_absorption_is_read_at_the_channels_wavelengths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,3 +1,6 @@
+/* Tests of absorption along rays in random scenes against the integral of the absorption coefficient (Beer and Lambert;
+ * Born and Wolf, 7th ed., 4.11.4): the media along the ray are read from the solids' own shapes, at many points, and
+ * the boundaries found by bisection. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,10 +11,6 @@
 #include "random_scene.h"
 #include "scene/model/scene.h"
 
-/* What rays lose on their way in random scenes, against the integral of the absorption coefficient along it (Beer and
- * Lambert; Born and Wolf, 7th ed., 4.11.4): the media on the way are read from the solids' own shapes, at many points,
- * and the borders bisected. */
-
 enum { STEPS = 300 };
 
 static vec3 at_distance(vec3 origin, vec3 direction, double t)
@@ -19,7 +18,7 @@ static vec3 at_distance(vec3 origin, vec3 direction, double t)
     return vec3_add(origin, vec3_scale(direction, t));
 }
 
-/* Where the medium ceases to be that of the nearer distance; it is another one at the farther. */
+/* The end of the medium at the nearer distance; the farther distance is in another one. */
 static double border(const probe *p, vec3 origin, vec3 direction, int medium, double near, double far)
 {
     while (far - near > 1e-13) {
@@ -37,8 +36,8 @@ static void add_depth(const scene *s, int medium, double length, double depth[3]
     depth[0] += a.x * length, depth[1] += a.y * length, depth[2] += a.z * length;
 }
 
-/* The optical depth of a straight way. A medium with the same one on both sides that lies between two of the points
- * goes unseen. */
+/* The optical depth of a straight segment. A medium between two of the points, with equal media on both sides, is
+ * missed. */
 static void optical_depth(const probe *p, const scene *s, vec3 origin, vec3 direction, double length, double depth[3])
 {
     depth[0] = depth[1] = depth[2] = 0.0;
@@ -78,7 +77,7 @@ static void compare(tally *sum, const double depth[3], const double kept[3])
 static void check_node(const stage *g, const ray_node *node, tally *hits, tally *shadows)
 {
     double depth[3], kept[3];
-    /* what a shadow ray brings is in the film's units: enough of it, for nine digits */
+    /* a shadow ray's contribution is rounded to film units: make it large enough for nine digits */
     if (node->kind == RAY_SHADOW && node->end == RAY_END_LIT && fmin(node->throughput[0], node->throughput[2]) > 1e-3) {
         optical_depth(g->probe, g->setting, node->origin, node->direction, node->light_distance, depth);
         for (int c = 0; c < 3; c++)
@@ -91,7 +90,7 @@ static void check_node(const stage *g, const ray_node *node, tally *hits, tally 
     }
 }
 
-static void rays_and_shadow_rays_lose_what_the_media_on_their_way_take(void **state)
+static void rays_and_shadow_rays_are_absorbed_by_the_media_in_their_path(void **state)
 {
     (void)state;
     uint64_t seed = 8;
@@ -126,7 +125,7 @@ static void rays_and_shadow_rays_lose_what_the_media_on_their_way_take(void **st
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_and_shadow_rays_lose_what_the_media_on_their_way_take),
+        cmocka_unit_test(rays_and_shadow_rays_are_absorbed_by_the_media_in_their_path),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
-/* Named layers of the integrator aov against closed forms: planes at known distances, a sphere's normals, a checker's
- * cells, numbers in the scene's order, nothing behind a clear surface, zeros where nothing is; the same bits whoever
- * renders; and the files read back. */
+/* Tests of the named layers of the integrator aov against closed forms: planes at known distances, a sphere's normals,
+ * a checker's cells, numbers in the scene's order, nothing behind a clear surface, zeros for a miss; bit-identical for
+ * any number of threads and instruction set; and the files read back. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -34,7 +34,7 @@ static const char room[] = HEAD "  ground: {shape: plane, material: tiles}\n"
                                 "  glass: {shape: sphere, radius: 0.6, position: [1, 2, 4.5], transparency: 1, "
                                 "ior: 1.5, material: red}\n";
 
-/* The direction through the middle of a pixel, by the textbook: the camera looks along +z, pitched down. */
+/* The textbook direction through the middle of a pixel: the camera looks along +z, pitched down. */
 static vec3 direction(int x, int y)
 {
     const double half = tan(0.5 * FOV_DEG * DEGREE), u = (2.0 * (x + 0.5) / WIDTH - 1.0) * half * WIDTH / HEIGHT,
@@ -54,7 +54,7 @@ typedef struct ball {
     double solid, material, radius;
     vec3 center, color;
 } ball;
-/* Materials: tiles 1, red 2; a surface of its own is 2 and the solid's number. */
+/* Materials: tiles 1, red 2; a solid's own surface has 2 plus the solid's number. */
 static const ball balls[] = {{2, 2, 1.0, {-1.0, 1.0, 4.0}, {0.9, 0.1, 0.05}},
                              {3, 2 + 3, 0.5, {1.5, 0.5, 3.0}, {0.0, 1.0, 0.0}},
                              {4, 2, 0.6, {1.0, 2.0, 4.5}, {0.9, 0.1, 0.05}}};
@@ -78,7 +78,7 @@ static void near(vec3 a, vec3 b, double within)
     assert_true(vec3_length(vec3_sub(a, b)) <= within);
 }
 
-/* What is met first at a pixel: of the balls and the ground, the nearest. */
+/* The first hit at a pixel: the nearest of the balls and the ground. */
 static int check_pixel(const render_result *r, int x, int y)
 {
     const vec3 d = direction(x, y), eye = vec3_make(0.0, EYE, 0.0);
@@ -125,12 +125,12 @@ static void closed_forms(void **state)
                 seen |= check_pixel(r, x, y);
         assert_int_equal(seen, 1 << 2 | 1 << 3 | 1 << 4 | 1 << 10 | 1 << 11);
         render_result_destroy(r);
-        set(s, "render.layer=solid"); /* which one is shown makes no difference */
+        set(s, "render.layer=solid"); /* the shown layer makes no difference */
     }
     scene_destroy(s);
 }
 
-static void nothing_is_zero(void **state)
+static void misses_are_zero(void **state)
 {
     (void)state;
     scene *s = scene_from(HEAD "  ball: {shape: sphere, radius: 0.5, position: [0, 1, 3]}\n");
@@ -151,7 +151,7 @@ static void nothing_is_zero(void **state)
     scene_destroy(s);
 }
 
-/* The view of normals is what normal maps hold: (n + 1) / 2 as encoded numbers. */
+/* The view of normals has the format of normal maps: (n + 1) / 2 as encoded numbers. */
 static void normals_as_normal_maps(void **state)
 {
     (void)state;
@@ -224,8 +224,8 @@ static void files_read_back(void **state)
     scene_destroy(s);
 }
 
-/* Without the wish for layers there are none, nor under another integrator. */
-static void only_when_wanted(void **state)
+/* There are no layers unless requested, and none with another integrator. */
+static void layers_only_on_request(void **state)
 {
     (void)state;
     scene *s = scene_from(room);
@@ -242,9 +242,9 @@ static void only_when_wanted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_forms),           cmocka_unit_test(nothing_is_zero),
+        cmocka_unit_test(closed_forms),           cmocka_unit_test(misses_are_zero),
         cmocka_unit_test(normals_as_normal_maps), cmocka_unit_test(threads_and_instruction_sets),
-        cmocka_unit_test(files_read_back),        cmocka_unit_test(only_when_wanted),
+        cmocka_unit_test(files_read_back),        cmocka_unit_test(layers_only_on_request),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,5 @@
+/* Tests of render.beyond, the fallback for branches that the depth limit cuts off: nothing, the sky in their direction,
+ * or the sky's mean. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,12 +9,9 @@
 
 #include "path_fixture.h"
 
-/* What branches bring that the depth limit cuts off: nothing, the sky behind them, or the sky's mean (render.beyond).
- * */
-
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* An eye that looks down on a mirror, which shows it the zenith. */
+/* A camera that looks down on a mirror, which reflects the zenith. */
 static const char mirror[] = "render: {width: 1, height: 1, depth: 0, beyond: mean}\n"
                              "camera: {position: [0, 4, 0], pitch_deg: -90}\n"
                              "background: {kind: gradient, color: [0.9, 0.5, 0.1], horizon: [0.1, 0.3, 0.7]}\n"
@@ -27,7 +26,7 @@ static void expect_mean(const scene *s, double share, double tolerance)
     assert_near(seen.z, share * (0.25 * 0.1 + 0.75 * 0.7), tolerance);
 }
 
-static void a_cut_branch_brings_the_mean_of_the_sky(void **state)
+static void a_cut_branch_adds_the_mean_of_the_sky(void **state)
 {
     (void)state;
     scene *s = scene_from(mirror);
@@ -42,7 +41,7 @@ static void a_cut_branch_brings_the_mean_of_the_sky(void **state)
 }
 
 /* Both branches of a clear surface are cut: R + T = 1 of the mean, polarised or not. */
-static void both_branches_bring_it(void **state)
+static void both_branches_add_it(void **state)
 {
     (void)state;
     scene *s = scene_from(mirror);
@@ -53,20 +52,20 @@ static void both_branches_bring_it(void **state)
     scene_destroy(s);
 }
 
-static void random_paths_that_are_cut_bring_it(void **state)
+static void cut_random_paths_add_it(void **state)
 {
     (void)state;
     scene *s = scene_from(mirror);
     set_all(s, "render.integrator=path render.paths=16 render.roulette=off");
     expect_mean(s, 0.8, 1e-10);
-    set_all(s, "ground.reflectivity=0 ground.diffuse=0.5"); /* a matte ground sends paths to all sides: the mean needs
-                                                               no chance */
+    /* a matte ground scatters paths in all directions: the mean needs no random numbers */
+    set_all(s, "ground.reflectivity=0 ground.diffuse=0.5");
     expect_mean(s, 0.5, 1e-10);
     scene_destroy(s);
 }
 
-/* The colour of the spectral film's mean is the rgb film's, but for what 256 wavelengths leave open. */
-static void spectral_films_bring_it(void **state)
+/* The colour of the spectral film's mean is the rgb film's, up to the error of 256 wavelengths. */
+static void spectral_films_add_it(void **state)
 {
     (void)state;
     scene *s = scene_from(mirror);
@@ -102,10 +101,10 @@ static void it_changes_no_count(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cut_branch_brings_the_mean_of_the_sky),
-        cmocka_unit_test(both_branches_bring_it),
-        cmocka_unit_test(random_paths_that_are_cut_bring_it),
-        cmocka_unit_test(spectral_films_bring_it),
+        cmocka_unit_test(a_cut_branch_adds_the_mean_of_the_sky),
+        cmocka_unit_test(both_branches_add_it),
+        cmocka_unit_test(cut_random_paths_add_it),
+        cmocka_unit_test(spectral_films_add_it),
         cmocka_unit_test(it_changes_no_count),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

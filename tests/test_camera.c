@@ -1,3 +1,6 @@
+/* Tests of camera roll against closed forms: Rodrigues' formula for the frame, and the image rotated by quarter turns.
+ * The image of roll 90 has at column x, row y the pixel of the unrolled image at column side - 1 - y, row x: it is
+ * rotated counterclockwise. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,10 +14,6 @@
 #include "render_fixture.h"
 #include "scene/model/camera.h"
 #include "scene/model/scene.h"
-
-/* Camera roll against closed forms: Rodrigues' formula for the frame, and the image turned by quarters. The image of
- * roll 90 shows at column x, row y what the level one shows at column side - 1 - y, row x: it is turned counter-
- * clockwise. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { SIDE = 64 };
@@ -34,7 +33,7 @@ static const char room[] =
          "  crate: {shape: box, material: dull, position: [1.4, 0.6, 0], rotation: [0, 30, 0]}\n"
          "  mirror: {shape: sphere, reflectivity: 1, radius: 0.6, position: [0.6, 2, 1]}\n";
 
-/* Which pixel of the level image the pixel of the rolled one shows. */
+/* The pixel of the unrolled image for a pixel of the rolled one. */
 static void level_pixel(int quarters, int x, int y, int *to_x, int *to_y)
 {
     for (int k = 0; k < quarters; k++) {
@@ -44,7 +43,8 @@ static void level_pixel(int quarters, int x, int y, int *to_x, int *to_y)
     *to_x = x, *to_y = y;
 }
 
-/* How many pixels of the rolled image differ from the level one's by more than that. The scene is given back. */
+/* The number of pixels of the rolled image that differ from the unrolled one by more than a limit. Releases the
+ * scene. */
 static int pixels_of_scene_beyond(scene *s, int quarters, double much)
 {
     diagnostic why = {0};
@@ -76,9 +76,9 @@ static int pixels_beyond(const char *text, const char *settings, int quarters, d
     return pixels_of_scene_beyond(s, quarters, much);
 }
 
-/* The points of the film are turned up to rounding (1e-16 of its height). What stays is a pixel whose ray then falls
- * on the other side of an edge. */
-static void quarters_turn_the_image(void **state)
+/* The film's points are rotated up to rounding (1e-16 of its height). The remaining differences are pixels whose ray
+ * then hits the other side of an edge. */
+static void quarter_turns_rotate_the_image(void **state)
 {
     (void)state;
     static const char *const settings[] = {"", "camera.position=2,3,-5 camera.target=-0.3,1,0.4", "render.samples=4",
@@ -89,11 +89,11 @@ static void quarters_turn_the_image(void **state)
             if (beyond > 2)
                 fail_msg("%s, roll %d: %d pixels differ", settings[k], 90 * quarters, beyond);
         }
-    assert_true(pixels_beyond(room, "camera.roll_deg=0", 4, 0.0) == 0); /* a whole turn: the same bits */
+    assert_true(pixels_beyond(room, "camera.roll_deg=0", 4, 0.0) == 0); /* a full turn: bit-identical */
 }
 
-/* Paths along mirrors have nothing to choose; others agree but for their noise. */
-static void paths_turn_too(void **state)
+/* Paths along mirrors have no random choice; others agree up to noise. */
+static void paths_rotate_too(void **state)
 {
     (void)state;
     static const char mirrors[] =
@@ -104,9 +104,9 @@ static void paths_turn_too(void **state)
     assert_true(pixels_beyond(room, "render.integrator=path render.paths=400", 1, 0.15) < SIDE * SIDE / 50);
 }
 
-/* Triangles fill the film's grid; a point on an edge belongs to the triangle on its right or below, which is another
- * one when the film is turned. The chequered ground is textured in perspective, and straight across the image. */
-static void the_depth_buffer_turns_too(void **state)
+/* A point on a triangle's edge belongs to the triangle on its right or below, which is another one when the film is
+ * rotated. The checkered ground is textured both perspective-correct and affine. */
+static void the_depth_buffer_rotates_too(void **state)
 {
     (void)state;
     static const char *const settings[] = {"", "render.texturing=affine", "render.samples=9"};
@@ -129,9 +129,9 @@ static void assert_vectors_near(vec3 a, vec3 b, double most)
     assert_true(vec3_length(vec3_sub(a, b)) <= most);
 }
 
-/* Rodrigues: v cos a + (n x v) sin a for v across n. The roll turns right towards down, which in this left-handed
- * frame (right, up, forward) is the sense of -a. */
-static void the_frame_is_turned_about_the_view(void **state)
+/* Rodrigues: v cos a + (n x v) sin a for v perpendicular to n. The roll rotates right towards down, which in this
+ * left-handed frame (right, up, forward) is by -a. */
+static void the_frame_rotates_about_the_view(void **state)
 {
     (void)state;
     uint64_t seed = 8;
@@ -153,14 +153,14 @@ static void the_frame_is_turned_about_the_view(void **state)
         assert_memory_equal(&again, &level, sizeof level);
         assert_memory_equal(&rolled.forward, &level.forward, sizeof(vec3));
     }
-    s->camera.roll_deg = 90.0; /* leaning to its right: what was on the right is on top */
+    s->camera.roll_deg = 90.0; /* leaning to its right: what was on the right is at the top */
     const camera_frame level = camera_frame_level(s), rolled = camera_frame_of(s);
     assert_vectors_near(rolled.up, level.right, 0.0);
     assert_vectors_near(rolled.right, vec3_scale(level.up, -1.0), 0.0);
     scene_destroy(s);
 }
 
-/* trace: the ray of a pixel is the one that its frame says. */
+/* trace: the ray of a pixel follows the camera frame. */
 static void the_ray_of_a_pixel_rolls(void **state)
 {
     (void)state;
@@ -180,8 +180,8 @@ static void the_ray_of_a_pixel_rolls(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quarters_turn_the_image),    cmocka_unit_test(paths_turn_too),
-        cmocka_unit_test(the_depth_buffer_turns_too), cmocka_unit_test(the_frame_is_turned_about_the_view),
+        cmocka_unit_test(quarter_turns_rotate_the_image), cmocka_unit_test(paths_rotate_too),
+        cmocka_unit_test(the_depth_buffer_rotates_too),   cmocka_unit_test(the_frame_rotates_about_the_view),
         cmocka_unit_test(the_ray_of_a_pixel_rolls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,3 +1,4 @@
+/* Tests of the clocks: monotonic, per thread and per process. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -22,7 +23,7 @@ static void wall_never_goes_back(void **state)
     assert_true(before <= s + 1e-6 && s <= after + 1e-6); /* one clock in two units */
 }
 
-/* Runs until the clock has moved by 20 ms, so that it ends on any machine whose clock moves at all. */
+/* Runs until the clock has advanced by 20 ms, so that it ends on any machine whose clock runs. */
 static void burn(double (*clock_s)(void))
 {
     double end = clock_s() + 0.02;
@@ -47,7 +48,7 @@ static void thread_clock_counts_its_own_thread(void **state)
     mine = clock_thread_cpu_s() - mine;
     all = clock_process_cpu_s() - all;
     assert_true(mine >= 0.0);
-    assert_true(all - mine >= 0.019); /* what the other thread burnt is the process's, not mine */
+    assert_true(all - mine >= 0.019); /* the other thread's CPU time counts for the process, not for this thread */
 }
 
 static void sleep_costs_wall_not_cpu(void **state)

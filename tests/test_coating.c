@@ -1,3 +1,7 @@
+/* Tests of coatings: under Fresnel weights the reflectivity of a clear surface is a coating, which reflects that share
+ * of the light that would be transmitted. R' = R + (1 - R) reflectivity, T' = (1 - R) (1 - reflectivity), from both
+ * sides. Closed forms: Hecht, Optics, 5th ed., 4.6.2, and for sheets the series of reflections between two faces
+ * (9.6.1, of intensities). */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,10 +11,6 @@
 
 #include "optics/mueller.h"
 #include "probe_fixture.h"
-
-/* reflectivity of a clear surface under Fresnel's weights is a coating: of the light that would pass, that share comes
- * back. R' = R + (1 - R) reflectivity, T' = (1 - R) (1 - reflectivity), from both sides. Closed forms: Hecht, Optics,
- * 5th ed., 4.6.2, and for sheets the series of reflections between two faces (9.6.1, of intensities). */
 
 static const vec3 level = {0.0, 0.0, 0.0};
 
@@ -29,7 +29,7 @@ static double share_of(const ray_tree *tree, ray_kind kind)
     return child ? child->throughput[0] : 0.0;
 }
 
-static void a_coating_sends_back_a_share_of_what_would_pass(void **state)
+static void a_coating_reflects_a_share_of_the_transmitted_light(void **state)
 {
     (void)state;
     static const double coatings[] = {0.0, 0.1, 0.5, 0.99, 1.0};
@@ -41,7 +41,7 @@ static void a_coating_sends_back_a_share_of_what_would_pass(void **state)
             assert_true(fabs(share_of(tree, RAY_REFLECT) - wanted) <= 1e-13);
             assert_true(fabs(share_of(tree, RAY_REFRACT) - (1.0 - wanted)) <= 1e-13);
             assert_true(fabs(tree->node[0].hit.R - wanted) <= 1e-13);
-            tree = stage_ray(&g, vec3_make(0.0, -1.0, 0.0), vec3_make(sin(angle), cos(angle), 0.0)); /* from within */
+            tree = stage_ray(&g, vec3_make(0.0, -1.0, 0.0), vec3_make(sin(angle), cos(angle), 0.0)); /* from inside */
             const bool total = 1.5 * sin(angle) >= 1.0;
             const double inner = total ? 1.0 : reflectance_of_angles(angle, 1.5, 1.0).mean;
             assert_true(fabs(share_of(tree, RAY_REFLECT) - (inner + (1.0 - inner) * coatings[k])) <= 1e-12);
@@ -51,8 +51,8 @@ static void a_coating_sends_back_a_share_of_what_would_pass(void **state)
     }
 }
 
-/* A sheet of the index around it, coated on both faces: r + (1 - r)^2 r (1 + r^2 + ..) = 2 r / (1 + r) comes back, and
- * (1 - r) / (1 + r) passes. Without its coating it is no interface. */
+/* A sheet with the index of its surroundings, coated on both faces, reflects r + (1 - r)^2 r (1 + r^2 + ..) = 2 r / (1
+ * + r) and transmits (1 - r) / (1 + r). Without its coating it is no interface. */
 static void a_sheet_of_air_with_coated_faces_is_a_half_mirror(void **state)
 {
     (void)state;
@@ -71,8 +71,8 @@ static void a_sheet_of_air_with_coated_faces_is_a_half_mirror(void **state)
     }
 }
 
-/* R' + T' = 1, so that nothing is lost, whatever a ray's tree: a sphere in a sky of 1 is 1 but for what the depth cuts
- * off. */
+/* R' + T' = 1, so that no light is lost, whatever a ray's tree: a sphere under a sky of 1 is 1 except for what the
+ * depth limit cuts off. */
 static void coated_media_lose_nothing(void **state)
 {
     (void)state;
@@ -94,10 +94,10 @@ static void reflectances(double cosine, double n, double *s, double *p, double *
     *refracted = b;
 }
 
-/* Seen by way of a surface that polarises, all light coming from 1, a coating is off by c q (R_s - R_p) / 2: it sends
- * light back unpolarised, which no way back does. Both surfaces have one plane of incidence, the second stands upright.
- */
-static void a_polarised_view_of_a_coating_is_off_by_its_polarisation(void **state)
+/* Seen through a polarising surface, with all light equal to 1, a coating deviates by c q (R_s - R_p) / 2: it reflects
+ * unpolarised light, but is transmitted in polarised directions. Both surfaces have one plane of incidence; the second
+ * is vertical. */
+static void a_polarised_view_of_a_coating_deviates_by_its_polarisation(void **state)
 {
     (void)state;
     for (double angle = 20.0; angle < 80.0; angle += 7.0) {
@@ -121,7 +121,7 @@ static void a_polarised_view_of_a_coating_is_off_by_its_polarisation(void **stat
 }
 
 /* Where two solids are in contact, the surface is that of the higher priority, and so is its coating. */
-static void a_coating_is_the_surface_owners(void **state)
+static void a_coating_belongs_to_the_surface_owner(void **state)
 {
     (void)state;
     for (int above_wins = 0; above_wins < 2; above_wins++) {
@@ -137,7 +137,7 @@ static void a_coating_is_the_surface_owners(void **state)
     }
 }
 
-static void constant_shares_know_no_coating(void **state)
+static void constant_weights_have_no_coating(void **state)
 {
     (void)state;
     static const char *const rules[] = {"glass.transparency=0.5 render.weights=constant",
@@ -150,7 +150,7 @@ static void constant_shares_know_no_coating(void **state)
     }
 }
 
-/* A light's straight way keeps (1 - reflectivity) at each face, beside its transparency. */
+/* A shadow ray keeps (1 - reflectivity) at each face, in addition to the transparency. */
 static void a_coated_pane_shades(void **state)
 {
     (void)state;
@@ -171,9 +171,9 @@ static void a_coated_pane_shades(void **state)
     stage_close(&g);
 }
 
-/* A corner of two media that are black inside, so that light comes back by both faces alone: at an angle a from the
- * floor, at 90 - a from the wall. A coating makes light unpolarised: of s and p alike half of what it sends back. The
- * light goes from the sky to the one, then to the other, then to the eye. */
+/* A corner of two media that are black inside, so that only the two faces reflect light: at an angle a from the floor,
+ * at 90 - a from the wall. A coating makes light unpolarised: half of its reflected light is s, half p. Light goes from
+ * the sky to one face, then to the other, then to the camera. */
 static double floor_then_wall(reflectance first, double first_coating, reflectance second, double second_coating)
 {
     const double made = 0.5 * (1.0 - first.mean) * first_coating, s = 0.5 * first.s + made, p = 0.5 * first.p + made;
@@ -197,22 +197,22 @@ static void a_coating_reflects_unpolarised(void **state)
             const ray_tree *tree = stage_ray(&g, vec3_add(vec3_make(0.0, 0.0, 0.0), from), to);
             const reflectance floor = reflectance_of_angles(angle, 1.0, 1.5),
                               wall = reflectance_of_angles(0.5 * M_PI - angle, 1.0, 1.9);
-            /* The eye looks at the floor first, so the wall's light comes to it. */
+            /* The view ray hits the floor first, and then the wall. */
             assert_true(fabs(tree->radiance[0] - floor_then_wall(wall, on_wall, floor, on_floor)) <= 1e-12);
         }
         stage_close(&g);
     }
 }
 
-/* Random paths take the coated branches by chance: the mean over many is the tree's. */
+/* Random paths choose coated branches at random: the mean over many is the tree's. */
 static void random_paths_agree(void **state)
 {
     (void)state;
     stage g = coated("shape: box, size: [50, 0.1, 50]", 1.0, 0.5, 40, "render.integrator=path render.paths=65536");
-    set_all(g.setting,
-            "camera.position=0,3,0 camera.target=0,0,0 camera.fov_deg=0.001 background.kind=gradient "
-            "background.color=1,1,1 "
-            "background.horizon=0,0,0"); /* below the horizon the sky is black: what comes back alone is seen */
+    /* below the horizon the sky is black, so that only reflected light is visible */
+    set_all(g.setting, "camera.position=0,3,0 camera.target=0,0,0 camera.fov_deg=0.001 background.kind=gradient "
+                       "background.color=1,1,1 "
+                       "background.horizon=0,0,0");
     const double back = 2.0 * 0.5 / 1.5, sigma = sqrt(back * (1.0 - back) / 65536.0);
     assert_true(fabs(look(g.setting).x - back) <= 5.0 * sigma);
     stage_close(&g);
@@ -221,12 +221,12 @@ static void random_paths_agree(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_coating_sends_back_a_share_of_what_would_pass),
+        cmocka_unit_test(a_coating_reflects_a_share_of_the_transmitted_light),
         cmocka_unit_test(a_sheet_of_air_with_coated_faces_is_a_half_mirror),
         cmocka_unit_test(coated_media_lose_nothing),
-        cmocka_unit_test(a_polarised_view_of_a_coating_is_off_by_its_polarisation),
-        cmocka_unit_test(a_coating_is_the_surface_owners),
-        cmocka_unit_test(constant_shares_know_no_coating),
+        cmocka_unit_test(a_polarised_view_of_a_coating_deviates_by_its_polarisation),
+        cmocka_unit_test(a_coating_belongs_to_the_surface_owner),
+        cmocka_unit_test(constant_weights_have_no_coating),
         cmocka_unit_test(a_coated_pane_shades),
         cmocka_unit_test(a_coating_reflects_unpolarised),
         cmocka_unit_test(random_paths_agree),

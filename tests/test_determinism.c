@@ -1,3 +1,5 @@
+/* Tests that the film is bit-identical for any threads, schedules, tiles, pool and instruction sets, and so are the
+ * counters. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,8 +10,6 @@
 
 #include "render_fixture.h"
 #include "scene/model/scene.h"
-
-/* One picture, whatever made it: threads, schedules, tiles, pool, instruction sets. The counters too. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define SMALL "render.width=160 render.height=120 render.depth=4"
@@ -39,10 +39,10 @@ static void expect_same(const fingerprint *a, const fingerprint *b)
     assert_memory_equal(&a->counters, &b->counters, sizeof a->counters);
 }
 
-/* Golden: film_hash of the reference scene at 160x120, depth 4. When the picture changes on purpose, take its hash from
- *     build/cuvette render experiments/scenes/rod.yaml -o out.png --json --set render.width=160 --set render.height=120
- * or from this test's message, and say in the commit why the picture changed. */
-static void the_image_is_the_golden_one(void **state)
+/* The reference hash: film_hash of the reference scene at 160x120, depth 4. If the film changes on purpose, take its
+ * hash from build/cuvette render experiments/scenes/rod.yaml -o out.png --json --set render.width=160 --set
+ * render.height=120 or from this test's message, and explain in the commit why it changed. */
+static void the_film_has_the_reference_hash(void **state)
 {
     (void)state;
     FILE *file = fopen("tests/golden/rod-hash.txt", "r");
@@ -87,7 +87,7 @@ static void threads_schedules_tiles_and_pool(void **state)
         for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++)
             for (size_t k = 0; k < COUNT(tiles); k++) {
                 if (rule < SCHEDULE_TILES && k > 0)
-                    continue; /* they know no tiles */
+                    continue; /* they have no tiles */
                 s->render.threads = threads[t];
                 s->render.schedule = rule;
                 s->render.tile = tiles[k];
@@ -102,7 +102,7 @@ static void threads_schedules_tiles_and_pool(void **state)
     scene_destroy(s);
 }
 
-/* More threads than columns, rows or tiles, kept or fresh. */
+/* More threads than columns, rows or tiles, persistent or new. */
 static void a_thousand_threads(void **state)
 {
     (void)state;
@@ -118,8 +118,8 @@ static void a_thousand_threads(void **state)
     scene_destroy(s);
 }
 
-/* What is asked for beside the film changes nothing of it; rays by pixel add up to all rays. */
-static void side_pictures_change_nothing(void **state)
+/* Additional outputs do not change the film; rays by pixel add up to all rays. */
+static void additional_outputs_change_nothing(void **state)
 {
     (void)state;
     scene *s = rod_scene(SMALL " render.threads=3");
@@ -145,7 +145,7 @@ static void side_pictures_change_nothing(void **state)
     scene_destroy(s);
 }
 
-/* The counters agree with one another. */
+/* The counters are consistent. */
 static void counters_are_consistent(void **state)
 {
     (void)state;
@@ -160,7 +160,7 @@ static void counters_are_consistent(void **state)
         first += f.counters.first_hits[i];
         assert_true(f.counters.first_hits[i] <= f.counters.hits[i]);
     }
-    /* Clear solids take no light away: shadow rays are not tested against them. */
+    /* Clear solids do not block light: shadow rays are not tested against them. */
     const uint64_t all = ray_counters_total(&f.counters), nearest = by_depth;
     assert_int_equal(f.counters.tests[scene_find_solid(s, "ground")], all);
     assert_int_equal(f.counters.tests[scene_find_solid(s, "rod")], all);
@@ -179,9 +179,9 @@ static void counters_are_consistent(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_image_is_the_golden_one),      cmocka_unit_test(instruction_sets),
-        cmocka_unit_test(threads_schedules_tiles_and_pool), cmocka_unit_test(a_thousand_threads),
-        cmocka_unit_test(side_pictures_change_nothing),     cmocka_unit_test(counters_are_consistent),
+        cmocka_unit_test(the_film_has_the_reference_hash),   cmocka_unit_test(instruction_sets),
+        cmocka_unit_test(threads_schedules_tiles_and_pool),  cmocka_unit_test(a_thousand_threads),
+        cmocka_unit_test(additional_outputs_change_nothing), cmocka_unit_test(counters_are_consistent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests of emission: k_e times the surface's colour, with every integrator, and as light sources of random paths. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,9 +8,6 @@
 
 #include "path_fixture.h"
 #include "scene/model/scene.h"
-
-/* Surfaces that shine by themselves: k_e times their colour, whoever follows the light, and as lamps of random paths.
- * */
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
@@ -26,7 +24,7 @@ static void expect_color(const scene *s, double r, double g, double b, double to
     assert_near(seen.z, b, tolerance);
 }
 
-static void every_integrator_sees_it(void **state)
+static void every_integrator_shows_emission(void **state)
 {
     (void)state;
     static const char *const settings[] = {
@@ -42,8 +40,8 @@ static void every_integrator_sees_it(void **state)
     }
 }
 
-/* Beside the ambient term and the lamp's; random paths leave the ambient alone out. */
-static void it_adds_to_the_other_terms(void **state)
+/* Added to the ambient term and the lamp's; random paths have no ambient term. */
+static void emission_adds_to_the_other_terms(void **state)
 {
     (void)state;
     scene *s = scene_from(patch);
@@ -54,9 +52,8 @@ static void it_adds_to_the_other_terms(void **state)
     scene_destroy(s);
 }
 
-/* A clear solid of the surroundings' index, which has no surface otherwise: k_e C at the way in, and t k_e C at the way
- * out. */
-static void clear_solids_shine_whatever_their_index(void **state)
+/* A clear solid with the surroundings' index, which otherwise has no surface: k_e C on entry, and t k_e C on exit. */
+static void clear_solids_emit_whatever_their_index(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 3, beyond: black, paths: 64}\n"
@@ -73,8 +70,8 @@ static void clear_solids_shine_whatever_their_index(void **state)
     scene_destroy(s);
 }
 
-/* A mirror shows it, glass lets it through: R + T = 1 between two walls that shine alike. */
-static void mirrors_and_glass_hand_it_on(void **state)
+/* A mirror reflects it, glass transmits it: R + T = 1 between two equal emitting walls. */
+static void mirrors_and_glass_pass_emission_on(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 6, beyond: black, paths: 64}\n"
@@ -86,15 +83,15 @@ static void mirrors_and_glass_hand_it_on(void **state)
     set(s, "render.integrator=path");
     expect_color(s, 1.5, 1.5, 1.5, 1e-10);
     set_all(s, "render.integrator=whitted ground.reflectivity=0 ground.transparency=1 ground.ior=1.5 wall.priority=1");
-    expect_color(s, 3.0, 3.0, 3.0, 1e-12); /* the wall goes on below the water line */
-    set(s, "ground.emission=0.5");         /* a clear surface shines, too */
+    expect_color(s, 3.0, 3.0, 3.0, 1e-12); /* the wall continues below the water line */
+    set(s, "ground.emission=0.5");         /* a clear surface emits, too */
     expect_color(s, 3.5, 3.5, 3.5, 1e-12);
     set(s, "wall.visible=off");
     expect_color(s, 0.5, 0.5, 0.5, 1e-12);
     scene_destroy(s);
 }
 
-/* The furnace: walls of albedo a that send out e make e (1 + a + a^2 + ..) = e / (1 - a) everywhere within (Goral et
+/* The furnace: walls of albedo a that emit e produce e (1 + a + a^2 + ..) = e / (1 - a) everywhere inside (Goral et
  * al., SIGGRAPH 1984). */
 static const char box[] =
     "render: {width: 4, height: 3, depth: 7, beyond: black, integrator: path, paths: 32, roulette: off}\n"
@@ -114,7 +111,7 @@ static double geometric_sum(double first, double ratio, int terms)
     return first * (1.0 - pow(ratio, terms)) / (1.0 - ratio);
 }
 
-static void a_furnace_of_walls_that_shine(void **state)
+static void a_furnace_of_emitting_walls(void **state)
 {
     (void)state;
     static const double color[3] = {1.0, 0.5, 0.25};
@@ -146,8 +143,8 @@ static void a_furnace_at_each_wavelength(void **state)
 }
 
 /* Under a disc of radius r at the height h, on its axis, irradiance is pi L r^2 / (r^2 + h^2) (Lambert's cosine law
- * over the disc; Modest, Radiative Heat Transfer, appendix D): a matte floor of albedo a sends a L r^2 / (r^2 + h^2).
- * */
+ * over the disc; Modest, Radiative Heat Transfer, appendix D): a matte floor of albedo a reflects a L r^2 / (r^2 +
+ * h^2). */
 static void a_disc_lights_the_floor_below_it(void **state)
 {
     (void)state;
@@ -165,11 +162,11 @@ static void a_disc_lights_the_floor_below_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clear_solids_shine_whatever_their_index),
-        cmocka_unit_test(every_integrator_sees_it),
-        cmocka_unit_test(it_adds_to_the_other_terms),
-        cmocka_unit_test(mirrors_and_glass_hand_it_on),
-        cmocka_unit_test(a_furnace_of_walls_that_shine),
+        cmocka_unit_test(clear_solids_emit_whatever_their_index),
+        cmocka_unit_test(every_integrator_shows_emission),
+        cmocka_unit_test(emission_adds_to_the_other_terms),
+        cmocka_unit_test(mirrors_and_glass_pass_emission_on),
+        cmocka_unit_test(a_furnace_of_emitting_walls),
         cmocka_unit_test(a_furnace_at_each_wavelength),
         cmocka_unit_test(a_disc_lights_the_floor_below_it),
     };

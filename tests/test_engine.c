@@ -1,3 +1,5 @@
+/* Tests of the engine's interface, cuvette.h. Its films are compared with the renderer's, with reference film hashes,
+ * and with closed forms; tests/engine.sh tests its installation and linking. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -11,9 +13,6 @@
 #include "probe_fixture.h"
 #include <stdatomic.h>
 #include <unistd.h>
-
-/* The engine as cuvette.h promises it. What it renders is compared with the renderer behind it, with film hashes that
- * are pinned elsewhere, and with closed forms; how it is installed and linked is the business of tests/engine.sh. */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -59,7 +58,7 @@ static uint64_t hash_of(cuvette_engine *engine, const cuvette_scene *s)
     return hash;
 }
 
-static void the_library_says_the_headers_version(void **state)
+static void the_library_has_the_headers_version(void **state)
 {
     (void)state;
     char text[32];
@@ -67,7 +66,7 @@ static void the_library_says_the_headers_version(void **state)
     assert_string_equal(cuvette_version(), text);
 }
 
-static void what_is_missing_or_wrong_is_said_and_changes_nothing(void **state)
+static void errors_are_reported_and_change_nothing(void **state)
 {
     (void)state;
     cuvette_diagnostic why = {.what = ""};
@@ -93,7 +92,7 @@ static void what_is_missing_or_wrong_is_said_and_changes_nothing(void **state)
     assert_non_null(strstr(why.remedy, "render.depth"));
     assert_int_equal(cuvette_scene_add_solid(s, "ball", "spere", NULL, &why), CUVETTE_BAD_INPUT);
     assert_non_null(strstr(why.remedy, "sphere"));
-    /* No such material: no ball either. */
+    /* An unknown material: the solid is not added either. */
     assert_int_equal(cuvette_scene_add_solid(s, "ball", "sphere", "glass", &why), CUVETTE_BAD_INPUT);
     assert_int_equal((int)cuvette_scene_count(s, CUVETTE_SOLID), 0);
     assert_int_equal(cuvette_query_create(NULL, NULL, &query, &why), CUVETTE_BAD_INPUT);
@@ -238,7 +237,7 @@ static cuvette_scene *rod_by_calls(void)
     return s;
 }
 
-static void a_scene_from_calls_is_the_scene_from_its_file(void **state)
+static void a_scene_built_by_calls_equals_its_file(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -259,7 +258,7 @@ static void a_scene_from_calls_is_the_scene_from_its_file(void **state)
     cuvette_engine_destroy(engine);
 }
 
-static void objects_come_move_turn_and_go(void **state)
+static void objects_are_added_moved_turned_and_removed(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -300,8 +299,8 @@ static void objects_come_move_turn_and_go(void **state)
     cuvette_engine_destroy(engine);
 }
 
-/* Seen by ambient light alone, a white wall with a texture of one texel has that texel's light; a clone has it too. */
-static void a_texture_from_memory_is_seen(void **state)
+/* In ambient light only, a white wall with a texture of one texel shows that texel's light; so does a clone. */
+static void a_texture_from_memory_is_visible(void **state)
 {
     (void)state;
     static const char *const set[][2] = {
@@ -321,7 +320,7 @@ static void a_texture_from_memory_is_seen(void **state)
     for (size_t i = 0; i < COUNT(set); i++)
         turn(s, set[i][0], set[i][1]);
     char text[4096];
-    /* No file would hold its pixels. */
+    /* A file cannot contain its pixels. */
     assert_int_equal(cuvette_scene_write_text(s, text, sizeof text, NULL, &why), CUVETTE_BAD_INPUT);
     assert_non_null(strstr(why.what, "paint"));
     fine(cuvette_scene_clone(s, &clone, &why), &why);
@@ -335,7 +334,7 @@ static void a_texture_from_memory_is_seen(void **state)
     cuvette_engine_destroy(engine);
 }
 
-/* Pinned by the program: cuvette render experiments/scenes/rod.yaml --set render.depth=8. */
+/* Reference hash from the program: cuvette render experiments/scenes/rod.yaml --set render.depth=8. */
 static void the_film_is_the_programs(void **state)
 {
     (void)state;
@@ -376,7 +375,7 @@ static void counters_and_pixels_are_the_renderers(void **state)
             const float value = rgb[y * WIDE + x];
             const int byte = srgb[y * WIDE + x];
             if (x >= 3 * W) {
-                assert_true(value == -7.0F && byte == 77); /* beyond the row is not ours */
+                assert_true(value == -7.0F && byte == 77); /* memory after the row is the caller's */
                 continue;
             }
             const double truth = film_value(result->img, x / 3, y, x % 3);
@@ -408,7 +407,7 @@ static void counters_and_pixels_are_the_renderers(void **state)
     cuvette_engine_destroy(engine);
 }
 
-/* A program that was compiled when the struct ended earlier. */
+/* A program that was compiled with an earlier, shorter struct. */
 static void an_older_struct_is_filled_as_far_as_it_goes(void **state)
 {
     (void)state;
@@ -431,7 +430,7 @@ static void an_older_struct_is_filled_as_far_as_it_goes(void **state)
     fine(cuvette_frame_rgb(frame, 39, 29, 40, 30, rgb, 0, &why), &why);
     cuvette_request request = CUVETTE_REQUEST;
     request.rgb = rgb, request.width = 1, request.height = 1;
-    /* The picture is larger. */
+    /* The image is larger. */
     assert_int_equal(cuvette_engine_render(engine, s, &request, NULL, &why), CUVETTE_BAD_INPUT);
     request = CUVETTE_REQUEST;
     request.preview = 1;
@@ -441,7 +440,7 @@ static void an_older_struct_is_filled_as_far_as_it_goes(void **state)
     cuvette_engine_destroy(engine);
 }
 
-enum { WIDTH = 162, HEIGHT = 121 }; /* no multiples of tiles and previews */
+enum { WIDTH = 162, HEIGHT = 121 }; /* not multiples of tile and preview sizes */
 
 typedef struct audience {
     pthread_t thread;
@@ -449,7 +448,7 @@ typedef struct audience {
     cuvette_scene *scene;
     int previews, pieces, calls, covered[WIDTH * HEIGHT];
     double share, first;
-    double stop_at; /* share at which progress says no */
+    double stop_at; /* share at which progress returns false */
     float rgb[3 * WIDTH * HEIGHT], seen[3 * WIDTH * HEIGHT];
 } audience;
 
@@ -490,8 +489,8 @@ static cuvette_request request_for(audience *a)
     return request;
 }
 
-/* Whatever the schedule, and with the layers of random paths and of a spectrum too. */
-static void pieces_come_once_and_are_final(void **state)
+/* With every schedule, and with the shares of random paths and of a spectrum too. */
+static void each_piece_is_reported_once_and_final(void **state)
 {
     (void)state;
     static const char *const how[] = {"dynamic", "tiles", "rows", "columns", "path", "spectral"};
@@ -529,7 +528,7 @@ static void pieces_come_once_and_are_final(void **state)
     cuvette_engine_destroy(engine);
 }
 
-static void progress_can_say_no_before_the_first_ray(void **state)
+static void progress_can_cancel_before_the_first_ray(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -586,7 +585,7 @@ static void another_thread_cancels_and_the_next_frame_is_whole(void **state)
     fine(cuvette_frame_counters(frame, &counters, &why), &why);
     assert_true(counters.camera < 4000 * 3000);
     cuvette_frame_destroy(frame);
-    cuvette_engine_cancel(engine); /* of nothing: forgotten */
+    cuvette_engine_cancel(engine); /* without a render: no effect */
     assert_true(hash_of(engine, small) == hash);
     cuvette_scene_destroy(large);
     cuvette_scene_destroy(small);
@@ -603,7 +602,7 @@ static bool try_while_busy(void *context, double share)
         assert_int_equal(cuvette_scene_set(a->scene, "render.depth", "1", &why), CUVETTE_BUSY);
         assert_int_equal(cuvette_scene_remove(a->scene, "rod", &why), CUVETTE_BUSY);
         fine(cuvette_scene_get_int(a->scene, "render.depth", &depth, &why), &why);
-        cuvette_engine *second = make_engine(); /* another one may render the same scene meanwhile */
+        cuvette_engine *second = make_engine(); /* another engine may render the same scene at the same time */
         a->share = (double)(hash_of(second, a->scene) % 1000000);
         cuvette_engine_destroy(second);
         a->calls++;
@@ -649,7 +648,7 @@ static void *render_ten(void *context)
     return NULL;
 }
 
-static void two_engines_at_once_are_as_each_alone(void **state)
+static void two_engines_do_not_affect_each_other(void **state)
 {
     (void)state;
     worker both[2] = {{2, 0}, {5, 0}};
@@ -665,7 +664,7 @@ static void two_engines_at_once_are_as_each_alone(void **state)
     }
 }
 
-/* One scene of meshes that nobody has loaded yet, rendered, checked and written by both. */
+/* A scene with meshes that are not loaded yet, rendered, checked and written by both. */
 static void *render_shared(void *context)
 {
     const cuvette_scene *s = context;
@@ -703,21 +702,21 @@ static void two_engines_may_begin_with_one_scene(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_library_says_the_headers_version),
-        cmocka_unit_test(what_is_missing_or_wrong_is_said_and_changes_nothing),
+        cmocka_unit_test(the_library_has_the_headers_version),
+        cmocka_unit_test(errors_are_reported_and_change_nothing),
         cmocka_unit_test(parameters_are_set_and_read_by_name),
         cmocka_unit_test(all_parameters_together_make_the_scene),
-        cmocka_unit_test(a_scene_from_calls_is_the_scene_from_its_file),
-        cmocka_unit_test(objects_come_move_turn_and_go),
-        cmocka_unit_test(a_texture_from_memory_is_seen),
+        cmocka_unit_test(a_scene_built_by_calls_equals_its_file),
+        cmocka_unit_test(objects_are_added_moved_turned_and_removed),
+        cmocka_unit_test(a_texture_from_memory_is_visible),
         cmocka_unit_test(the_film_is_the_programs),
         cmocka_unit_test(counters_and_pixels_are_the_renderers),
         cmocka_unit_test(an_older_struct_is_filled_as_far_as_it_goes),
-        cmocka_unit_test(pieces_come_once_and_are_final),
-        cmocka_unit_test(progress_can_say_no_before_the_first_ray),
+        cmocka_unit_test(each_piece_is_reported_once_and_final),
+        cmocka_unit_test(progress_can_cancel_before_the_first_ray),
         cmocka_unit_test(another_thread_cancels_and_the_next_frame_is_whole),
         cmocka_unit_test(what_is_in_use_is_busy),
-        cmocka_unit_test(two_engines_at_once_are_as_each_alone),
+        cmocka_unit_test(two_engines_do_not_affect_each_other),
         cmocka_unit_test(two_engines_may_begin_with_one_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,3 +1,5 @@
+/* Tests of motions through cuvette.h: the film is that of the scene at the motion's time, hands act like those of a
+ * script, picks agree with the rays of a query. tests/test_softbody.c tests the simulation itself. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -12,9 +14,6 @@
 
 #include "cuvette.h"
 #include "engine/engine_private.h"
-
-/* Motions as cuvette.h promises them: what is rendered is the scene at its moment, what hands do is what a script says,
- * what is picked is what rays of a query meet. How bodies move is the business of tests/test_softbody.c. */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -142,14 +141,14 @@ static void expect_ended(cuvette_motion *m, const char *because)
     cuvette_motion_destroy(m);
 }
 
-static void a_film_is_that_of_the_scene_at_its_moment(void **state)
+static void a_film_is_that_of_the_scene_at_its_time(void **state)
 {
     (void)state;
     static const double moments[] = {0.0, 0.1, 0.15, 0.15, 0.5};
     cuvette_diagnostic why;
     cuvette_scene *s = scene_of(toys);
     double time_s;
-    film_of(s); /* the toy at 0.4 s, which it leaves */
+    film_of(s); /* the toy at 0.4 s, after which it moves on */
     cuvette_motion *m = begin(s);
     assert_int_equal((int)cuvette_motion_count(m), 2);
     assert_string_equal(cuvette_motion_name(m, 0), "toy");
@@ -163,12 +162,12 @@ static void a_film_is_that_of_the_scene_at_its_moment(void **state)
         assert_true(time_s == moments[i]);
     }
     cuvette_motion_destroy(m);
-    assert_true(film_of(s) == film_afresh(0.5, NULL)); /* as it lies */
+    assert_true(film_of(s) == film_afresh(0.5, NULL)); /* in its current shape */
     cuvette_scene_destroy(s);
 }
 
-/* Where the hand begins, where it goes, when: in a script, and by calls. */
-static void hands_do_what_a_script_says_to_the_bit(void **state)
+/* Start, target and times of the hand: in a script, and by calls. */
+static void hands_are_bit_identical_to_a_script(void **state)
 {
     (void)state;
     static const char text[] = "hands:\n  left:\n"
@@ -190,7 +189,7 @@ static void hands_do_what_a_script_says_to_the_bit(void **state)
     advance(m, 0.2);
     assert_true(film_of(s) == film_afresh(0.2, path));
     assert_true(film_of(s) != film_afresh(0.2, NULL));
-    fine(cuvette_motion_move(m, hand, (const double[]){7, 7, 7}, &why), &why); /* it thinks better of it */
+    fine(cuvette_motion_move(m, hand, (const double[]){7, 7, 7}, &why), &why); /* the hand changes its target */
     fine(cuvette_motion_move(m, hand, (const double[]){0.1, 0.5, 0.0}, &why), &why);
     advance(m, 0.3);
     assert_true(film_of(s) == film_afresh(0.3, path));
@@ -205,9 +204,8 @@ static void hands_do_what_a_script_says_to_the_bit(void **state)
     unlink(path);
 }
 
-/* What the camera sees of a solid that stands elsewhere, scaled unequally, turned and copied, is what a pick finds
- * there. */
-static void what_is_picked_is_what_rays_meet(void **state)
+/* A pick finds the same point as the camera on a solid that is translated, scaled unequally, rotated and copied. */
+static void picks_agree_with_ray_hits(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -248,7 +246,7 @@ static void what_is_picked_is_what_rays_meet(void **state)
     cuvette_scene_destroy(s);
 }
 
-static void a_meshs_name_is_the_nearest_of_its_solids(void **state)
+static void a_meshs_name_means_the_nearest_of_its_solids(void **state)
 {
     (void)state;
     cuvette_scene *s = scene_of(toys);
@@ -258,7 +256,7 @@ static void a_meshs_name_is_the_nearest_of_its_solids(void **state)
     assert_true(fabs(near - (9 - 1.5 - 0.5)) < 0.2);
     assert_true(distance_to(m, "drop", ray, NULL) == near);
     turn(s, "near.visible", "off");
-    assert_true(distance_to(m, "near", ray, NULL) == near); /* asked for by name */
+    assert_true(distance_to(m, "near", ray, NULL) == near); /* picked by name */
     assert_true(distance_to(m, "drop", ray, NULL) == distance_to(m, "far", ray, NULL));
     ray.reach = near * 0.999;
     assert_true(isinf(distance_to(m, "near", ray, NULL)));
@@ -268,7 +266,7 @@ static void a_meshs_name_is_the_nearest_of_its_solids(void **state)
     cuvette_scene_destroy(s);
 }
 
-static void a_miss_takes_hold_of_nothing(void **state)
+static void a_miss_grabs_nothing(void **state)
 {
     (void)state;
     cuvette_scene *s = scene_of(toys);
@@ -285,9 +283,9 @@ static void a_miss_takes_hold_of_nothing(void **state)
     cuvette_scene_destroy(s);
 }
 
-/* A body that is held whole goes where the hand goes: by R^T by / scale in its own frame. Half of a turn about y sends
- * x, y, z to -x, y, -z. */
-static void what_is_held_goes_with_the_hand(void **state)
+/* A body that is held completely follows the hand: by R^T by / scale in its own frame. Half a turn about y maps x, y, z
+ * to -x, y, -z. */
+static void held_masses_follow_the_hand(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -315,15 +313,16 @@ static void what_is_held_goes_with_the_hand(void **state)
     assert_true(fabs(half.center[0] - before.center[0] + 0.5) < 1e-9);
     assert_true(fabs(half.center[1] - before.center[1] - 0.125) < 1e-9);
     assert_true(fabs(half.center[2] - before.center[2] - 1.5) < 1e-9);
-    assert_true(fabs(half.speed_max - sqrt(0.25 + 0.125 * 0.125 + 2.25) / 0.25) < 1e-6); /* evenly, all the way */
-    advance(m, 0.5);                                                                     /* and stays */
+    /* uniformly, over the whole distance */
+    assert_true(fabs(half.speed_max - sqrt(0.25 + 0.125 * 0.125 + 2.25) / 0.25) < 1e-6);
+    advance(m, 0.5); /* and stays there */
     assert_true(state_of(m, "body").speed_max < 1e-9);
     assert_true(fabs(state_of(m, "body").center[2] - half.center[2]) < 1e-9);
     cuvette_motion_destroy(m);
     cuvette_scene_destroy(s);
 }
 
-static void hands_are_sixteen_a_slime(void **state)
+static void a_slime_has_at_most_sixteen_hands(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -347,7 +346,7 @@ static void hands_are_sixteen_a_slime(void **state)
     cuvette_scene_destroy(s);
 }
 
-static void what_is_missing_or_wrong_is_said(void **state)
+static void errors_are_reported(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -398,7 +397,7 @@ static void what_is_missing_or_wrong_is_said(void **state)
     fine(cuvette_motion_release(m, hand, &why), &why);
     advance(m, 0.1);
     assert_int_equal(cuvette_motion_advance(m, 0.09, &why), CUVETTE_BAD_INPUT);
-    assert_true(film_of(s) == film_afresh(0.1, NULL)); /* none of it left a trace */
+    assert_true(film_of(s) == film_afresh(0.1, NULL)); /* the refused calls had no effect */
     assert_true(cuvette_motion_count(NULL) == 0 && !cuvette_motion_name(NULL, 0));
     cuvette_motion_destroy(m);
     cuvette_motion_destroy(NULL);
@@ -406,13 +405,13 @@ static void what_is_missing_or_wrong_is_said(void **state)
     cuvette_scene_destroy(still);
 }
 
-static void a_motion_ends_when_its_slimes_are_others(void **state)
+static void a_motion_ends_when_its_slimes_change(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
     cuvette_scene *s = scene_of(toys);
     cuvette_motion *m = begin(s);
-    turn(s, "camera.position", "0,2,-4"); /* all else may change */
+    turn(s, "camera.position", "0,2,-4"); /* everything else may change */
     turn(s, "toy.time_s", "0.3");
     expect_ended(m, "out of date");
     m = begin(s);
@@ -426,7 +425,7 @@ static void a_motion_ends_when_its_slimes_are_others(void **state)
     assert_true(state_of(m, "goo").steps == 100);
     fine(cuvette_scene_remove(s, "needle", &why), &why);
     advance(m, 0.2);
-    fine(cuvette_scene_remove(s, "pin", &why), &why); /* those behind it move up */
+    fine(cuvette_scene_remove(s, "pin", &why), &why); /* the indices of later meshes change */
     expect_ended(m, "out of date");
     m = begin(s);
     turn(s, "more.generate", "slime");
@@ -442,7 +441,7 @@ static void a_motion_ends_when_its_slimes_are_others(void **state)
     cuvette_scene_destroy(s);
 }
 
-static void motion_and_scene_go_in_any_order(void **state)
+static void motion_and_scene_are_released_in_any_order(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -450,7 +449,7 @@ static void motion_and_scene_go_in_any_order(void **state)
     cuvette_motion *m = begin(s);
     advance(m, 0.1);
     fine(cuvette_scene_clone(s, &copy, &why), &why);
-    cuvette_motion *other = begin(copy); /* of the clone's own, from the beginning */
+    cuvette_motion *other = begin(copy); /* the clone's own slimes, from their initial state */
     advance(m, 0.2);
     assert_true(film_of(copy) == film_afresh(0.0, NULL));
     cuvette_scene_destroy(s);
@@ -461,7 +460,7 @@ static void motion_and_scene_go_in_any_order(void **state)
     cuvette_motion_destroy(other);
 }
 
-static void a_motion_ends_when_a_slime_blows_up(void **state)
+static void a_motion_ends_when_a_slime_is_unstable(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -472,7 +471,7 @@ static void a_motion_ends_when_a_slime_blows_up(void **state)
     assert_int_equal(cuvette_motion_advance(m, 10.0, &why), CUVETTE_BAD_INPUT);
     assert_non_null(strstr(why.what, "toy"));
     expect_ended(m, "failed");
-    m = begin(s); /* the same with a hand on its way */
+    m = begin(s); /* the same with a moving hand */
     const int hand = grab(m, "toy", ray_of(-0.6, 1.1, -6, 0, 0, 1), 0.1);
     fine(cuvette_motion_move(m, hand, (const double[]){0, 1, 0}, &why), &why);
     assert_int_equal(cuvette_motion_advance(m, 10.0, &why), CUVETTE_BAD_INPUT);
@@ -520,7 +519,7 @@ static void what_is_in_use_is_busy(void **state)
     cuvette_slime body = {.size = sizeof body};
     double distance;
     int hand;
-    assert_int_equal(engine_begin_advance(w.s, &why), CUVETTE_OK); /* as if another thread were within an advance */
+    assert_int_equal(engine_begin_advance(w.s, &why), CUVETTE_OK); /* as if another thread were in an advance */
     assert_int_equal(cuvette_engine_render(engine, w.s, NULL, NULL, &why), CUVETTE_BUSY);
     assert_int_equal(cuvette_scene_set(w.s, "render.depth", "1", &why), CUVETTE_BUSY);
     assert_int_equal(cuvette_motion_advance(w.m, 1.0, &why), CUVETTE_BUSY);
@@ -529,7 +528,7 @@ static void what_is_in_use_is_busy(void **state)
     assert_int_equal(cuvette_motion_grab(w.m, "toy", &ray, 1.0, &hand, NULL, &why), CUVETTE_BUSY);
     assert_int_equal(cuvette_motion_release(w.m, 0, &why), CUVETTE_BUSY);
     engine_end_advance(w.s);
-    fine(cuvette_engine_render(engine, w.s, NULL, NULL, &why), &why); /* neither is left held */
+    fine(cuvette_engine_render(engine, w.s, NULL, NULL, &why), &why); /* neither remains locked */
     fine(cuvette_motion_release(w.m, 0, &why), &why);
     advance(w.m, 0.1);
     assert_true(film_of(w.s) == film_afresh(0.1, NULL));
@@ -552,7 +551,7 @@ static void *move_one(void *context)
     return NULL;
 }
 
-static void two_motions_at_once_are_as_each_alone(void **state)
+static void two_motions_do_not_affect_each_other(void **state)
 {
     (void)state;
     uint64_t hashes[2][4];
@@ -568,19 +567,19 @@ static void two_motions_at_once_are_as_each_alone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_film_is_that_of_the_scene_at_its_moment),
-        cmocka_unit_test(hands_do_what_a_script_says_to_the_bit),
-        cmocka_unit_test(what_is_picked_is_what_rays_meet),
-        cmocka_unit_test(a_meshs_name_is_the_nearest_of_its_solids),
-        cmocka_unit_test(a_miss_takes_hold_of_nothing),
-        cmocka_unit_test(what_is_held_goes_with_the_hand),
-        cmocka_unit_test(hands_are_sixteen_a_slime),
-        cmocka_unit_test(what_is_missing_or_wrong_is_said),
-        cmocka_unit_test(a_motion_ends_when_its_slimes_are_others),
-        cmocka_unit_test(motion_and_scene_go_in_any_order),
-        cmocka_unit_test(a_motion_ends_when_a_slime_blows_up),
+        cmocka_unit_test(a_film_is_that_of_the_scene_at_its_time),
+        cmocka_unit_test(hands_are_bit_identical_to_a_script),
+        cmocka_unit_test(picks_agree_with_ray_hits),
+        cmocka_unit_test(a_meshs_name_means_the_nearest_of_its_solids),
+        cmocka_unit_test(a_miss_grabs_nothing),
+        cmocka_unit_test(held_masses_follow_the_hand),
+        cmocka_unit_test(a_slime_has_at_most_sixteen_hands),
+        cmocka_unit_test(errors_are_reported),
+        cmocka_unit_test(a_motion_ends_when_its_slimes_change),
+        cmocka_unit_test(motion_and_scene_are_released_in_any_order),
+        cmocka_unit_test(a_motion_ends_when_a_slime_is_unstable),
         cmocka_unit_test(what_is_in_use_is_busy),
-        cmocka_unit_test(two_motions_at_once_are_as_each_alone),
+        cmocka_unit_test(two_motions_do_not_affect_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests of mesh faces with their own transmittance and reflectivity, by their materials, under simple transmission. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +10,6 @@
 
 #include "path_fixture.h"
 #include "scene/model/hints.h"
-
-/* Faces of a mesh that let through and reflect what their own materials say, where light goes straight on. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -27,8 +26,8 @@ static void put(const char *name, const char *text)
     fclose(f);
 }
 
-/* A sheet of two triangles, the left one clear, and a cube whose front and back let half and a quarter through; the
- * rest of it is opaque. */
+/* A sheet of two triangles, the left one clear, and a cube whose front and back transmit a half and a quarter; the rest
+ * of it is opaque. */
 static int make_files(void **state)
 {
     (void)state;
@@ -55,7 +54,7 @@ static int remove_files(void **state)
     return rmdir(folder);
 }
 
-/* An eye that looks along +z at a wall that shines with 2, under a sky of 0.5. */
+/* A camera that looks along +z at a wall that emits 2, under a sky of 0.5. */
 static scene *view(const char *more, const char *assignments)
 {
     char text[2048];
@@ -80,7 +79,7 @@ static void expect_seen(scene *s, double wanted, double tolerance)
         fail_msg("%.12g instead of %.12g", seen, wanted);
 }
 
-static void each_face_lets_through_its_own_share(void **state)
+static void each_face_transmits_its_own_share(void **state)
 {
     (void)state;
     static const char *const integrators[] = {"render.integrator=whitted", "render.integrator=zbuffer",
@@ -89,8 +88,8 @@ static void each_face_lets_through_its_own_share(void **state)
         scene *s = view("solids:\n  pane: {shape: mesh, mesh: sheet}\n", integrators[k]);
         expect_seen(s, 0.75 * 2.0, 1e-9);
         set(s, "camera.position=0.4,-0.5,-4");
-        expect_seen(s, 0.5, 1e-9);       /* opaque, and shines */
-        set(s, "pane.transparency=0.5"); /* of faces that say nothing */
+        expect_seen(s, 0.5, 1e-9);       /* opaque, and emits */
+        set(s, "pane.transparency=0.5"); /* of faces without a value */
         expect_seen(s, 0.5 + 0.5 * 2.0, 1e-9);
         set_all(s, "camera.position=-0.4,0.5,-4 pane.transparency=0 render.transmission=refract");
         expect_seen(s, 0.0, 0.0);
@@ -104,7 +103,7 @@ static void each_face_lets_through_its_own_share(void **state)
     }
 }
 
-/* A material of the scene that has the slot's name says how much is reflected, too. */
+/* A scene material with the slot's name sets the reflectivity, too. */
 static void each_face_reflects_its_own_share(void **state)
 {
     (void)state;
@@ -122,14 +121,14 @@ static void each_face_reflects_its_own_share(void **state)
     assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "left"));
     set(s, "render.transmission=refract");
-    assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT); /* a clear sheet is open: nothing is in it */
+    assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT); /* a clear sheet is open: it contains nothing */
     set(s, "pane.transparency=0");
     assert_int_equal(scene_check(s, &why), STATUS_OK);
     scene_destroy(s);
 }
 
-/* Light falls through each face as one looks through it. */
-static void shadows_know_the_faces(void **state)
+/* Shadow rays and view rays have the same transmittance through each face. */
+static void shadows_depend_on_the_faces(void **state)
 {
     (void)state;
     static const char solids[] =
@@ -159,7 +158,7 @@ static void keep_last(void *context, const scene_note *note)
     snprintf(context, NOTE_LINE_MAX, "%s", note_line(note, line, sizeof line));
 }
 
-static void a_note_says_whose_they_are(void **state)
+static void a_note_names_the_owner(void **state)
 {
     (void)state;
     char said[NOTE_LINE_MAX] = "";
@@ -177,10 +176,10 @@ static void a_note_says_whose_they_are(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_face_lets_through_its_own_share),
+        cmocka_unit_test(each_face_transmits_its_own_share),
         cmocka_unit_test(each_face_reflects_its_own_share),
-        cmocka_unit_test(shadows_know_the_faces),
-        cmocka_unit_test(a_note_says_whose_they_are),
+        cmocka_unit_test(shadows_depend_on_the_faces),
+        cmocka_unit_test(a_note_names_the_owner),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);
 }

@@ -1,3 +1,4 @@
+/* Tests of pencils and fans against geometrical optics. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,8 +8,6 @@
 
 #include "render/inspect/fan.h"
 #include "render_fixture.h"
-
-/* Pencils and fans against geometrical optics. */
 
 static fan follow(const scene *s, const fan_rule *rule)
 {
@@ -49,8 +48,8 @@ static void a_thin_pencil_meets_in_a_balls_focus(void **state)
     scene_destroy(s);
 }
 
-/* Through a sphere a ray that falls in under angle i is turned by 2 (i - t), and sin i = h / R (Hecht 4.4, twice). */
-static void a_wide_pencil_is_turned_as_snell_says(void **state)
+/* A sphere deflects a ray with angle of incidence i by 2 (i - t), and sin i = h / R (Hecht 4.4, twice). */
+static void a_wide_pencil_obeys_snells_law(void **state)
 {
     (void)state;
     scene *s = scene_from(ball_text);
@@ -60,12 +59,12 @@ static void a_wide_pencil_is_turned_as_snell_says(void **state)
         const fan_ray *ray = &f.ray[k];
         const double i = asin(fabs(ray->offset)), t = asin(fabs(ray->offset) / 1.5);
         assert_true(fabs(ray->deviation_deg - 2.0 * (i - t) * 180.0 / 3.14159265358979323846) < 1e-9);
-        /* Spherical aberration: the exit ray, at distance R sin i from the centre, meets the axis at R sin i / sin(2 (i
-         * - t)). */
+        /* Spherical aberration: the exit ray, at distance R sin i from the centre, crosses the axis at R sin i / sin(2
+         * (i - t)). */
         if (k != 9)
             assert_true(fabs(ray->axis_at - 5.0 - sin(i) / sin(2.0 * (i - t))) < 1e-9);
     }
-    /* The caustic is symmetrical, and nowhere behind the paraxial focus. */
+    /* The caustic is symmetric, and nowhere behind the paraxial focus. */
     assert_int_equal(f.crossing_count, 18);
     for (int k = 0; k < 18; k++) {
         assert_true(fabs(f.crossing[k].at.x - f.crossing[17 - k].at.x) < 1e-12);
@@ -76,7 +75,7 @@ static void a_wide_pencil_is_turned_as_snell_says(void **state)
     scene_destroy(s);
 }
 
-/* From the focus in front of a ball, light leaves it parallel: there is then no focus, and nothing crosses. */
+/* Light from the focus in front of a ball leaves it parallel: there is then no focus and no crossing. */
 static void light_from_the_focus_leaves_parallel(void **state)
 {
     (void)state;
@@ -89,7 +88,7 @@ static void light_from_the_focus_leaves_parallel(void **state)
     scene_destroy(s);
 }
 
-/* A plane slab shows a point nearer: by d (1 - 1/n) for a slab of thickness d (Hecht 4.4, paraxial). Its image is
+/* A plane slab makes a point appear nearer by d (1 - 1/n) for a slab of thickness d (Hecht 4.4, paraxial). Its image is
  * virtual. */
 static void a_slab_shifts_a_point(void **state)
 {
@@ -105,16 +104,17 @@ static void a_slab_shifts_a_point(void **state)
     scene_destroy(s);
 }
 
-/* Outer rays that miss the ball are not of its focus. A ray that meets the axis at a = sin i / sin d, turned by d = 2
- * (i - t), is |x - a| sin d away from x there; the sum of the squares is least at sum a sin^2 d / sum sin^2 d. */
-static void the_focus_is_that_of_the_rays_that_were_bent(void **state)
+/* Outer rays that miss the ball do not count for its focus. A ray that crosses the axis at a = sin i / sin d, deflected
+ * by d = 2 (i - t), is at distance |x - a| sin d from x; the sum of the squares is least at sum a sin^2 d / sum sin^2
+ * d. */
+static void only_deflected_rays_count_for_the_focus(void **state)
 {
     (void)state;
     scene *s = scene_from(ball_text);
     const fan_rule rule = {.from = {-5, 0, 0}, .to = {5, 0, 0}, .rays = 9, .width = 3.6};
     fan f = follow(s, &rule);
     double weights = 0.0, moment = 0.0, squares = 0.0;
-    for (int k = 1; k <= 2; k++) { /* of each side; the middle one weighs nothing */
+    for (int k = 1; k <= 2; k++) { /* on each side; the middle ray has weight 0 */
         const double i = asin(0.45 * k), d = 2.0 * (i - asin(0.3 * k)), weight = 2.0 * sin(d) * sin(d),
                      at = sin(i) / sin(d);
         weights += weight, moment += weight * at, squares += weight * at * at;
@@ -125,10 +125,9 @@ static void the_focus_is_that_of_the_rays_that_were_bent(void **state)
     scene_destroy(s);
 }
 
-/* i = asin 0.9: the two rays meet at 0.9 / sin(2 (i - t)) = 1.104 on the axis, 0.204 behind the ball. A stone beside
- * the axis stands in the way of the second from 0.177 to 0.061 before that point, and in the first one's 0.020 behind
- * it. */
-static void rays_cross_where_both_get_to(void **state)
+/* i = asin 0.9: the two rays cross at 0.9 / sin(2 (i - t)) = 1.104 on the axis, 0.204 behind the ball. A stone next to
+ * the axis blocks the second from 0.177 to 0.061 before that point, and the first one 0.020 behind it. */
+static void rays_cross_only_where_both_arrive(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {depth: 6}\n"
@@ -151,7 +150,7 @@ static void rays_cross_where_both_get_to(void **state)
     scene_destroy(s);
 }
 
-static void planes_are_level_or_upright_or_as_told(void **state)
+static void planes_are_horizontal_vertical_or_given(void **state)
 {
     (void)state;
     scene *s = scene_from(ball_text);
@@ -204,14 +203,10 @@ static void bad_rules_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_thin_pencil_meets_in_a_balls_focus),
-        cmocka_unit_test(a_wide_pencil_is_turned_as_snell_says),
-        cmocka_unit_test(light_from_the_focus_leaves_parallel),
-        cmocka_unit_test(a_slab_shifts_a_point),
-        cmocka_unit_test(the_focus_is_that_of_the_rays_that_were_bent),
-        cmocka_unit_test(rays_cross_where_both_get_to),
-        cmocka_unit_test(planes_are_level_or_upright_or_as_told),
-        cmocka_unit_test(bad_rules_are_refused),
+        cmocka_unit_test(a_thin_pencil_meets_in_a_balls_focus),    cmocka_unit_test(a_wide_pencil_obeys_snells_law),
+        cmocka_unit_test(light_from_the_focus_leaves_parallel),    cmocka_unit_test(a_slab_shifts_a_point),
+        cmocka_unit_test(only_deflected_rays_count_for_the_focus), cmocka_unit_test(rays_cross_only_where_both_arrive),
+        cmocka_unit_test(planes_are_horizontal_vertical_or_given), cmocka_unit_test(bad_rules_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

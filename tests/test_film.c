@@ -1,3 +1,4 @@
+/* Tests of the film and of ray queues: fixed-point sums, the hash, images, batches. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,7 +29,7 @@ static void a_new_film_is_black(void **state)
     film_destroy(NULL);
 }
 
-/* One unit is 2^-44; rows from the top, channels side by side. */
+/* One unit is 2^-44; rows from the top, channels interleaved. */
 static void sums_are_fixed_point(void **state)
 {
     (void)state;
@@ -42,8 +43,8 @@ static void sums_are_fixed_point(void **state)
     film_destroy(f);
 }
 
-/* Any one bit of any sum, the size, and the order count. */
-static void the_hash_tells_films_apart(void **state)
+/* The hash depends on every bit of every sum, the size, and the order. */
+static void different_films_have_different_hashes(void **state)
 {
     (void)state;
     film *f = made(6, 4), *same = made(6, 4), *other = made(4, 6);
@@ -64,7 +65,7 @@ static void the_hash_tells_films_apart(void **state)
     film_destroy(other);
 }
 
-static void a_film_becomes_a_picture(void **state)
+static void a_film_becomes_an_image(void **state)
 {
     (void)state;
     film *f = made(2, 2);
@@ -78,8 +79,8 @@ static void a_film_becomes_a_picture(void **state)
     film_destroy(f);
 }
 
-/* What is taken off a queue is its end, at most a batch, and leaves whole vectors behind. */
-static void a_queue_gives_back_the_last_first(void **state)
+/* queue_take pops the end of the queue, at most a batch, and leaves whole vectors behind. */
+static void a_queue_is_last_in_first_out(void **state)
 {
     (void)state;
     ray_queue q;
@@ -109,9 +110,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_new_film_is_black),
         cmocka_unit_test(sums_are_fixed_point),
-        cmocka_unit_test(the_hash_tells_films_apart),
-        cmocka_unit_test(a_film_becomes_a_picture),
-        cmocka_unit_test(a_queue_gives_back_the_last_first),
+        cmocka_unit_test(different_films_have_different_hashes),
+        cmocka_unit_test(a_film_becomes_an_image),
+        cmocka_unit_test(a_queue_is_last_in_first_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,7 @@
+/* Tests of the white furnace: under a sky of 1, without opaque surfaces and absorption, every ray returns 1, whatever
+ * its path, because each interface has R + T = 1 (pbrt-v4's own furnace tests; Veach, Robust Monte Carlo Methods for
+ * Light Transport Simulation, 1997, 5.3.1: energy is conserved). Only what the depth limit cuts off is missing, to the
+ * last bit. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,12 +12,7 @@
 #include "base/counters.h"
 #include "probe_fixture.h"
 
-/* The white furnace: under a sky of 1, with nothing opaque and nothing that absorbs, every ray brings back 1, whatever
- * the media do to its way, because each interface hands on R + T = 1 (pbrt-v4's own furnace tests; Veach, Robust Monte
- * Carlo Methods for Light Transport Simulation, 1997, 5.3.1: energy is conserved). What the depth limit cuts off is
- * missing, to the last bit of it. */
-
-/* Seven media, one in another and askew; the vessel's hollow and the plane's upper side are open to the sky. */
+/* Seven media, nested and tilted; the vessel's hollow and the plane's upper side are open to the sky. */
 static const char furnace[] =
     "background: {color: [1, 1, 1]}\n"
     "camera: {position: [0.3, 1.9, -4.5], target: [0, 1, 0], fov_deg: 40}\n"
@@ -36,7 +35,7 @@ static const char furnace[] =
 
 enum { DEEPEST = 10 };
 
-/* A whole small picture, through the probe and by renders with and without what is cut off. */
+/* A whole small image, through the probe and by renders with and without the fallback of cut branches. */
 static void check_image(const char *assignments, int depth)
 {
     char depth_now[32];
@@ -74,22 +73,22 @@ static void check_image(const char *assignments, int depth)
     stage_close(&g);
 }
 
-static void fresnel_weights_lose_nothing(void **state)
+static void fresnel_weights_conserve_energy(void **state)
 {
     (void)state;
     for (int depth = 0; depth <= DEEPEST; depth++)
         check_image("", depth);
 }
 
-static void polarised_light_loses_nothing(void **state)
+static void polarised_light_conserves_energy(void **state)
 {
     (void)state;
     for (int depth = 0; depth <= DEEPEST; depth += depth < 4 ? 1 : 3)
         check_image("render.polarisation=on", depth);
 }
 
-/* Shares of 0.1 and 0.9 make 1 as well; under total reflection what cannot pass goes back. */
-static void constant_weights_lose_nothing(void **state)
+/* Weights of 0.1 and 0.9 add up to 1 as well; under total reflection the transmitted share is reflected. */
+static void constant_weights_conserve_energy(void **state)
 {
     (void)state;
     static const char *const solids[] = {"ground", "vessel", "liquid", "block", "core", "bead", "bubble", "slab"};
@@ -101,8 +100,8 @@ static void constant_weights_lose_nothing(void **state)
         check_image(shares, depth);
 }
 
-/* From within each medium, and in surroundings that are not a vacuum: the throughput is one of power, so no n^2 comes
- * in. */
+/* From inside each medium, and in surroundings that are not a vacuum: throughput is of power, so there is no factor
+ * n^2. */
 static void a_camera_in_any_medium_sees_the_furnace(void **state)
 {
     (void)state;
@@ -117,7 +116,7 @@ static void a_camera_in_any_medium_sees_the_furnace(void **state)
 }
 
 /* Faint branches that render.min_weight cuts off are missing in the same way. */
-static void what_is_too_faint_is_accounted_for(void **state)
+static void cut_faint_branches_are_accounted_for(void **state)
 {
     (void)state;
     stage g = stage_of(furnace, "render.depth=12 render.min_weight=0.001");
@@ -133,9 +132,11 @@ static void what_is_too_faint_is_accounted_for(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fresnel_weights_lose_nothing),       cmocka_unit_test(polarised_light_loses_nothing),
-        cmocka_unit_test(constant_weights_lose_nothing),      cmocka_unit_test(a_camera_in_any_medium_sees_the_furnace),
-        cmocka_unit_test(what_is_too_faint_is_accounted_for),
+        cmocka_unit_test(fresnel_weights_conserve_energy),
+        cmocka_unit_test(polarised_light_conserves_energy),
+        cmocka_unit_test(constant_weights_conserve_energy),
+        cmocka_unit_test(a_camera_in_any_medium_sees_the_furnace),
+        cmocka_unit_test(cut_faint_branches_are_accounted_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* The frame job: what ends it before, during and after a frame, what it refuses, what its accounts hold, and that all
- * who hold one make the same film. */
+/* Tests of the job: stopping before, during and after a frame, refused scenes, the content of accounts, and equal films
+ * from all users of a job. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -32,7 +32,7 @@ static job *job_with(job_settings settings)
 
 typedef struct caller {
     job *of;
-    int asked, limit; /* ends when it is asked that often */
+    int asked, limit; /* stops at this call */
     double share;
 } caller;
 
@@ -78,12 +78,12 @@ static void a_cancelled_job_begins_nothing(void **state)
     assert_int_equal(job_render(j, s, NULL, &made, &why), STATUS_OK);
     assert_true(made.whole);
     job_account_release(&made);
-    job_cancel(j); /* after it: nothing happens to what is there */
+    job_cancel(j); /* after it: the result does not change */
     job_destroy(j);
     scene_destroy(s);
 }
 
-/* Long enough that nobody is fast enough to end before the first look. */
+/* Long enough that no machine finishes it before the first check. */
 static scene *long_scene(void)
 {
     scene *s = small_scene();
@@ -118,7 +118,7 @@ static void a_frame_ends_when_it_is_cancelled(void **state)
     scene_destroy(s);
 }
 
-static void a_wish_to_stop_is_heard(void **state)
+static void a_stop_request_is_obeyed(void **state)
 {
     (void)state;
     scene *s = long_scene();
@@ -127,13 +127,13 @@ static void a_wish_to_stop_is_heard(void **state)
     const render_options options = {.progress_s = 0.001};
     job_account made;
     assert_int_equal(job_render(j, s, &options, &made, NULL), STATUS_INTERRUPTED);
-    assert_true(c.asked >= 3); /* workers may still be ending when it is asked once more */
+    assert_true(c.asked >= 3); /* workers may still be finishing at the next check */
     job_account_release(&made);
     job_destroy(j);
     scene_destroy(s);
 }
 
-/* Whole frames stay when a later one is broken off. */
+/* Complete frames are kept when a later one is interrupted. */
 static bool is_third(void *context, double share_done)
 {
     (void)context;
@@ -178,7 +178,7 @@ static void expect_refusal(job_settings settings, scene *s, const render_options
     scene_destroy(s);
 }
 
-static void wrong_scenes_are_refused(void **state)
+static void invalid_scenes_are_refused(void **state)
 {
     (void)state;
     scene *s = small_scene();
@@ -227,7 +227,7 @@ static void too_many_threads_are_an_error(void **state)
     assert_int_equal(WEXITSTATUS(ended), 0);
 }
 
-static void limits_hold(void **state)
+static void limits_are_enforced(void **state)
 {
     (void)state;
     const uint64_t sums = 32 * 24 * 3 * 8, map = 32 * 24 * 8;
@@ -243,7 +243,7 @@ static void limits_hold(void **state)
                    "not finished");
 }
 
-static void an_account_says_what_was_measured(void **state)
+static void an_account_has_what_was_measured(void **state)
 {
     (void)state;
     scene *s = small_scene();
@@ -266,7 +266,7 @@ static void an_account_says_what_was_measured(void **state)
     scene_destroy(s);
 }
 
-/* Threads are put in their places, and the machine is read for that alone. */
+/* Threads are pinned, and the machine's topology is read only for that. */
 static void pinned_scenes_have_the_same_film(void **state)
 {
     (void)state;
@@ -330,12 +330,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cancelled_job_begins_nothing),
         cmocka_unit_test(a_frame_ends_when_it_is_cancelled),
-        cmocka_unit_test(a_wish_to_stop_is_heard),
+        cmocka_unit_test(a_stop_request_is_obeyed),
         cmocka_unit_test(finished_frames_are_kept),
-        cmocka_unit_test(wrong_scenes_are_refused),
+        cmocka_unit_test(invalid_scenes_are_refused),
         cmocka_unit_test(too_many_threads_are_an_error),
-        cmocka_unit_test(limits_hold),
-        cmocka_unit_test(an_account_says_what_was_measured),
+        cmocka_unit_test(limits_are_enforced),
+        cmocka_unit_test(an_account_has_what_was_measured),
         cmocka_unit_test(pinned_scenes_have_the_same_film),
         cmocka_unit_test(all_callers_make_the_same_film),
     };

@@ -1,3 +1,5 @@
+/* Tests of the lighting models, each of which contains the one before, and of the falloff of lights; at a point
+ * computed by hand. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,13 +10,11 @@
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
-/* The lighting models, one within the next, and how a light falls off; at a point worked out by hand. */
-
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The eye sees the origin of a glazed floor at V = (0, 0.6, -0.8), the lamp stands at L = (0.6, 0.8, 0), five units
- * away: N.L = 0.8, R.V = 0.48. What the floor mirrors is white sky. */
+/* The camera sees the origin of a glazed floor at V = (0, 0.6, -0.8), the lamp is at L = (0.6, 0.8, 0), five units
+ * away: N.L = 0.8, R.V = 0.48. The floor reflects white sky. */
 static const char floor_scene[] =
     "render: {width: 1, height: 1, depth: 3}\n"
     "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
@@ -26,7 +26,7 @@ static const char floor_scene[] =
 static const double ambient = 0.1 * 0.5 * 0.9, diffuse = 0.7 * 2.0 * 0.9 * 0.8,
                     highlight = 0.5 * 2.0 * 0.48 * 0.48 * 0.48, mirrored = 0.25;
 
-static void each_lighting_adds_to_the_one_before(void **state)
+static void each_lighting_adds_to_the_previous_one(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -39,7 +39,7 @@ static void each_lighting_adds_to_the_one_before(void **state)
     scene_destroy(s);
 }
 
-/* Raycasting is what is there at depth 0, whatever the depth and the lighting; it has no branches to cut off. */
+/* Ray casting gives the image of depth 0, whatever the depth and the lighting; it has no branches to cut off. */
 static void raycasting_ends_at_the_first_surface(void **state)
 {
     (void)state;
@@ -79,7 +79,7 @@ static void only_whitteds_lighting_branches(void **state)
     }
     const ray_counters c = count("render.lighting=whitted");
     assert_true(c.reflect > 0 && c.refract > 0 && c.cut_depth > 0);
-    /* a lambertian picture has no highlights, so no shadow rays for clear solids, which have nothing else */
+    /* a lambertian image has no highlights, so no shadow rays for clear solids, which have nothing else */
     assert_true(count("render.lighting=lambert").shadow < count("render.lighting=phong").shadow);
 }
 
@@ -97,9 +97,8 @@ static void mirrors_and_glass_are_black_without_branches(void **state)
     scene_destroy(s);
 }
 
-/* The inverse square of the distance, 1 at the light's reach; without one, the same everywhere. The lamp moves away
- * along L. */
-static void light_falls_off_with_the_square_of_the_distance(void **state)
+/* The inverse square of the distance, 1 at the light's reach; constant without a reach. The lamp moves away along L. */
+static void light_falls_off_with_the_squared_distance(void **state)
 {
     (void)state;
     static const double distances[] = {0.1, 0.5, 1.0, 5.0, 20.0, 1e4}, reaches[] = {0.5, 5.0, 30.0};
@@ -113,7 +112,7 @@ static void light_falls_off_with_the_square_of_the_distance(void **state)
         for (size_t k = 0; k < COUNT(reaches); k++) {
             const double share = reaches[k] * reaches[k] / (d * d), wanted = (diffuse + highlight) * share;
             s->lights[0].reach = reaches[k];
-            for (int path = 0; path <= 1; path++) { /* a point light is the same to random paths, under a black sky */
+            for (int path = 0; path <= 1; path++) { /* a point light is the same with random paths, under a black sky */
                 s->render.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
                 s->render.beyond = DEPTH_LIMIT_BLACK;
                 s->background.color = vec3_make(0.0, 0.0, 0.0);
@@ -125,8 +124,8 @@ static void light_falls_off_with_the_square_of_the_distance(void **state)
     scene_destroy(s);
 }
 
-/* A sphere's radius is the path integrator's alone: to the others it is a point in the middle. */
-static void a_radius_changes_nothing_but_random_paths(void **state)
+/* Only the path integrator uses a sphere's radius: for the others it is a point in the middle. */
+static void a_radius_changes_only_random_paths(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -139,12 +138,12 @@ static void a_radius_changes_nothing_but_random_paths(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_lighting_adds_to_the_one_before),
+        cmocka_unit_test(each_lighting_adds_to_the_previous_one),
         cmocka_unit_test(raycasting_ends_at_the_first_surface),
         cmocka_unit_test(only_whitteds_lighting_branches),
         cmocka_unit_test(mirrors_and_glass_are_black_without_branches),
-        cmocka_unit_test(light_falls_off_with_the_square_of_the_distance),
-        cmocka_unit_test(a_radius_changes_nothing_but_random_paths),
+        cmocka_unit_test(light_falls_off_with_the_squared_distance),
+        cmocka_unit_test(a_radius_changes_only_random_paths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

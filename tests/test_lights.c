@@ -1,3 +1,5 @@
+/* Tests of spotlights: the falloff of a cone and a soft cone by the angle from their axis, with every integrator and
+ * film. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,13 +10,9 @@
 #include "probe_fixture.h"
 #include "scene/model/scene.h"
 
-/* Spotlights: what a cone and a soft cone leave of a light, by the angle from their axis, to every integrator and film.
- */
-
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The eye sees the origin of a matte floor, on which the lamp stands at L = (0.6, 0.8, 0), five units away: N.L = 0.8.
- */
+/* The camera sees the origin of a matte floor; the lamp is at L = (0.6, 0.8, 0), five units away: N.L = 0.8. */
 static const char floor_scene[] = "render: {width: 1, height: 1, depth: 0}\n"
                                   "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
                                   "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
@@ -22,7 +20,7 @@ static const char floor_scene[] = "render: {width: 1, height: 1, depth: 0}\n"
                                   "solids: {floor: {shape: plane, diffuse: 1}}\n";
 static const double irradiance = 0.8;
 
-/* Turns the lamp's axis so that the origin lies at an angle from it, in a plane through both that is turned too. */
+/* Rotates the lamp's axis so that the origin is at an angle from it, in a rotated plane through both. */
 static void aim(scene *s, double angle_deg, double turn_deg)
 {
     light *lamp = &s->lights[0];
@@ -33,7 +31,7 @@ static void aim(scene *s, double angle_deg, double turn_deg)
     lamp->target = vec3_add(lamp->position, vec3_scale(axis, 7.0));
 }
 
-static void a_cone_is_full_within_and_dark_beyond(void **state)
+static void a_cone_is_full_inside_and_dark_outside(void **state)
 {
     (void)state;
     static const double half_deg[] = {0.001, 0.5, 10.0, 30.0, 60.0, 90.0, 120.0, 179.0};
@@ -48,7 +46,7 @@ static void a_cone_is_full_within_and_dark_beyond(void **state)
             assert_true(look(s).x == 0.0);
         }
     aim(s, 180.0, 0.0);
-    s->lights[0].half_angle_deg = 180.0; /* all around */
+    s->lights[0].half_angle_deg = 180.0; /* in all directions */
     assert_near(look(s).x, irradiance, 1e-12);
     scene_destroy(s);
 }
@@ -80,8 +78,8 @@ static void a_soft_cone_falls_with_the_cosine(void **state)
     scene_destroy(s);
 }
 
-/* Colour, intensity and the square of the distance, five units from a light of full strength at ten, come on top. */
-static void a_cone_changes_neither_colour_nor_fall_off(void **state)
+/* Colour, intensity and squared distance also apply, five units from a light of full strength at ten. */
+static void a_cone_changes_neither_colour_nor_falloff(void **state)
 {
     (void)state;
     static const char *const kinds[] = {"lamp.kind=point", "lamp.kind=cone", "lamp.kind=soft_cone"};
@@ -99,7 +97,7 @@ static void a_cone_changes_neither_colour_nor_fall_off(void **state)
     scene_destroy(s);
 }
 
-/* The highlight of a light in a cone is dimmed like its diffuse light: the eye stands where the lamp is mirrored. */
+/* The falloff also applies to the highlight: the camera is at the lamp's mirror direction. */
 static void highlights_stay_in_the_cone(void **state)
 {
     (void)state;
@@ -112,7 +110,7 @@ static void highlights_stay_in_the_cone(void **state)
     scene_destroy(s);
 }
 
-static void where_a_cone_gives_nothing_no_shadow_ray_goes(void **state)
+static void no_shadow_rays_outside_a_cone(void **state)
 {
     (void)state;
     need_counters();
@@ -134,8 +132,8 @@ static void where_a_cone_gives_nothing_no_shadow_ray_goes(void **state)
     scene_destroy(s);
 }
 
-/* Every film and integrator, and the probe, sees the same share of what it sees of a point light. */
-static void all_integrators_see_the_same_cone(void **state)
+/* Every film and integrator, and the probe, gets the same share of a point light's value. */
+static void all_integrators_show_the_same_cone(void **state)
 {
     (void)state;
     static const char *const films[] = {"render.spectrum=spectral", "render.polarisation=on", "render.shadows=off",
@@ -165,8 +163,8 @@ static void all_integrators_see_the_same_cone(void **state)
     stage_close(&g);
 }
 
-/* Two spots in one place, of which one looks away: the probe's shadow ray goes to the other. */
-static void the_probe_names_the_spot_that_shines(void **state)
+/* Two spotlights in one place, one facing away: the probe's shadow ray belongs to the other. */
+static void the_probe_names_the_spotlight_that_contributes(void **state)
 {
     (void)state;
     stage g = stage_of("render: {width: 1, height: 1, depth: 0}\n"
@@ -182,8 +180,8 @@ static void the_probe_names_the_spot_that_shines(void **state)
     stage_close(&g);
 }
 
-/* A sphere that shines, seen itself: its radiance (reach / radius)^2 in the cone, black beyond it. */
-static void a_spheres_cone_is_seen_from_within_alone(void **state)
+/* A visible light sphere: its radiance is (reach / radius)^2 inside the cone, black outside. */
+static void a_spheres_cone_is_visible_only_from_inside(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -197,10 +195,10 @@ static void a_spheres_cone_is_seen_from_within_alone(void **state)
     scene_destroy(s);
 }
 
-/* Irradiance by a sphere seen over a cap of half-angle g about w, whose radiance (1 - (1 - o.u) / q) is linear in the
+/* Irradiance by a sphere that covers a cap of half-angle g about w, whose radiance (1 - (1 - o.u) / q) is linear in the
  * direction o towards it (u: against the axis, q = 1 - cos a). Over the cap the integral of o is pi sin^2 g w, that of
  * o o^T is A 1 + B w w^T with 3 A + B = 2 pi (1 - cos g) and A + B = 2 pi (1 - cos^3 g) / 3. */
-static void a_soft_sphere_lights_as_its_integral(void **state)
+static void a_soft_sphere_lights_like_its_integral(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -220,7 +218,7 @@ static void a_soft_sphere_lights_as_its_integral(void **state)
     scene_destroy(s);
 }
 
-static void a_cone_has_to_point_somewhere(void **state)
+static void a_cone_needs_a_direction(void **state)
 {
     (void)state;
     static const char *const kinds[] = {"cone", "soft_cone"};
@@ -244,16 +242,16 @@ static void a_cone_has_to_point_somewhere(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cone_is_full_within_and_dark_beyond),
+        cmocka_unit_test(a_cone_is_full_inside_and_dark_outside),
         cmocka_unit_test(a_soft_cone_falls_with_the_cosine),
-        cmocka_unit_test(a_cone_changes_neither_colour_nor_fall_off),
+        cmocka_unit_test(a_cone_changes_neither_colour_nor_falloff),
         cmocka_unit_test(highlights_stay_in_the_cone),
-        cmocka_unit_test(where_a_cone_gives_nothing_no_shadow_ray_goes),
-        cmocka_unit_test(all_integrators_see_the_same_cone),
-        cmocka_unit_test(the_probe_names_the_spot_that_shines),
-        cmocka_unit_test(a_spheres_cone_is_seen_from_within_alone),
-        cmocka_unit_test(a_soft_sphere_lights_as_its_integral),
-        cmocka_unit_test(a_cone_has_to_point_somewhere),
+        cmocka_unit_test(no_shadow_rays_outside_a_cone),
+        cmocka_unit_test(all_integrators_show_the_same_cone),
+        cmocka_unit_test(the_probe_names_the_spotlight_that_contributes),
+        cmocka_unit_test(a_spheres_cone_is_visible_only_from_inside),
+        cmocka_unit_test(a_soft_sphere_lights_like_its_integral),
+        cmocka_unit_test(a_cone_needs_a_direction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,5 @@
+/* Tests of random paths against Whitted's trees where both compute the same light, and elsewhere against closed
+ * forms. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,11 +10,9 @@
 #include "path_fixture.h"
 #include "scene/model/scene.h"
 
-/* Random paths against Whitted's trees where both see the same light, and against closed forms where only they do. */
-
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-/* --- the whole tree, by chance --- */
+/* --- the whole tree, sampled at random --- */
 
 static const char clear_scene[] =
     "render: {width: 32, height: 24, depth: 6, shadows: off}\n"
@@ -48,7 +48,7 @@ static agreement agree(scene *s, const char *settings, double unseen)
     return a;
 }
 
-/* A coin that falls rarely has an interval that holds less often than it says; hence 90 of 100, not 95. */
+/* For rare events the interval covers less often than its nominal probability; hence 90 of 100, not 95. */
 static void paths_through_clear_solids_have_the_trees_mean(void **state)
 {
     (void)state;
@@ -67,7 +67,7 @@ static void paths_through_clear_solids_have_the_trees_mean(void **state)
     scene_destroy(s);
 }
 
-/* Under a black sky a matte floor has no light but the lamp's, and a mirror leaves nothing to chance. */
+/* Under a black sky a matte floor is lit only by the lamp, and a mirror involves no random choice. */
 static const char certain_scene[] = "render: {width: 32, height: 24, depth: 5, integrator: path, paths: 16}\n"
                                     "camera: {position: [0.3, 2.5, -5], target: [0, 1, 0], fov_deg: 50}\n"
                                     "background: {color: [0, 0, 0]}\n"
@@ -76,7 +76,7 @@ static const char certain_scene[] = "render: {width: 32, height: 24, depth: 5, i
                                     "  floor: {shape: plane, color: [0.8, 0.5, 0.3], checker: 0.7, checker_color: "
                                     "[0.1, 0.2, 0.9], diffuse: 0.7, specular: 0.3}\n";
 
-static void what_is_not_left_to_chance_is_exact(void **state)
+static void deterministic_light_is_exact(void **state)
 {
     (void)state;
     scene *s = scene_from(certain_scene);
@@ -88,7 +88,7 @@ static void what_is_not_left_to_chance_is_exact(void **state)
     scene_destroy(s);
 }
 
-/* The rule of lighting is the tree's alone: paths are lit alike under each, highlights of points of light included. */
+/* render.lighting affects only trees: paths have the same light under each, including highlights of point lights. */
 static void paths_have_highlights_under_every_lighting(void **state)
 {
     (void)state;
@@ -102,7 +102,7 @@ static void paths_have_highlights_under_every_lighting(void **state)
         render_result_destroy(r);
     }
     render_result_destroy(wanted);
-    /* Head-on R.V is 1: k_s I C of the lamp behind the eye, and nothing else without k_d. */
+    /* At normal incidence R.V is 1: k_s I C of the lamp behind the camera, and nothing else without k_d. */
     set_all(
         s,
         "floor.diffuse=0 camera.position=0,2,0 camera.target=0,0,0 lamp.position=0,7,0 render.width=1 render.height=1");
@@ -123,8 +123,7 @@ static const char glossy_scene[] = "render: {width: 1, height: 1, depth: 1, inte
                                    "solids: {floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.5}}\n";
 
 /* A sky of h + (s - h) cos theta lights a floor like h + 2/3 (s - h), the mean of cos theta by the cosine law; at 45
- * degrees the mirror sees it at cos theta = 1 / sqrt 2. Which of the two a path takes tells nothing of where it goes.
- */
+ * degrees the mirror reflects it at cos theta = 1 / sqrt 2. The choice of lobe must be independent of the direction. */
 static void a_matte_mirror_has_both_shares_of_the_sky(void **state)
 {
     (void)state;
@@ -147,7 +146,7 @@ static void a_matte_mirror_has_both_shares_of_the_sky(void **state)
 
 /* --- a sphere's light --- */
 
-/* The eye is far away, and sees the middle of a floor past the lamp. */
+/* The camera is far away, and sees the middle of a floor past the lamp. */
 static const char lamp_scene[] =
     "render: {width: 1, height: 1, depth: 0, integrator: path, paths: 1024, beyond: black}\n"
     "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.01}\n"
@@ -155,9 +154,9 @@ static const char lamp_scene[] =
     "lights: {lamp: {position: [0, 4, 0], intensity: 3, reach: 2, radius: 1}}\n"
     "solids: {floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.7}}\n";
 
-/* E = pi L (r / d)^2 cos theta for a sphere that is wholly above the horizon, however large: Lambert's law of spheres
+/* E = pi L (r / d)^2 cos theta for a sphere that is entirely above the horizon, of any size: Lambert's law of spheres
  * (Howell, Siegel and Menguc, Thermal Radiation Heat Transfer, configuration B-24). L = intensity (reach / r)^2; a
- * matte surface sends k_d C E / pi. */
+ * matte surface reflects k_d C E / pi. */
 static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
 {
     (void)state;
@@ -186,7 +185,7 @@ static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
     scene_destroy(s);
 }
 
-/* Lamps in the direction (0, 0.6, 0.8), where the eye's ray is mirrored to: R.V is the cosine of the angle from the
+/* Lamps in the direction (0, 0.6, 0.8), into which the view ray is reflected: R.V is the cosine of the angle from the
  * lamp's middle, so that Phong's highlight is k_s times the light, 2 L times the integral of cos^n over the cosines of
  * the cone, from sqrt(1 - s^2) to 1. */
 static void a_sphere_has_a_highlight(void **state)
@@ -211,8 +210,8 @@ static void a_sphere_has_a_highlight(void **state)
     scene_destroy(s);
 }
 
-/* In the same place, of a floor that is a mirror too: the lamp itself, of radiance L, by the mirror's share; and by the
- * matte one what Lambert's law of spheres says, once, for the path that goes on by chance does not count the lamp
+/* In the same place, on a floor that is also a mirror: the lamp itself, of radiance L, with the mirror's share; and
+ * with the matte share Lambert's law of spheres, once, because the random continuation does not count the lamp
  * again. */
 static void a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once(void **state)
 {
@@ -232,9 +231,9 @@ static void a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once(void **stat
     scene_destroy(s);
 }
 
-/* Beside a sphere, whichever stands first, a clear pane takes a point's light; alone the point shines through by the
- * clearness of its two faces. */
-static void beside_a_sphere_clear_solids_block_points_of_light(void **state)
+/* In a scene with a light sphere, whatever their order, a clear pane blocks a point light; without one the point light
+ * passes with the transmittance of the pane's two faces. */
+static void with_a_light_sphere_clear_solids_block_point_lights(void **state)
 {
     (void)state;
     static const char *const radii[] = {"one.radius=0 two.radius=0", "one.radius=0.5 two.radius=0",
@@ -255,9 +254,10 @@ static void beside_a_sphere_clear_solids_block_points_of_light(void **state)
     }
 }
 
-/* A red and a green lamp in one place: had both drawn the same points, red and green would be one number. Drawn apart,
- * the variance of their difference is the sum of their variances; over 64 seeds it is between 0.5 and 1.5 of it. */
-static void lamps_are_looked_for_apart(void **state)
+/* A red and a green lamp in one place: if both used the same random points, red and green would be equal. With
+ * independent points the variance of their difference is the sum of their variances; over 64 seeds it is between 0.5
+ * and 1.5 of it. */
+static void lamps_are_sampled_independently(void **state)
 {
     (void)state;
     enum { DRAWS = 64 };
@@ -281,8 +281,8 @@ static void lamps_are_looked_for_apart(void **state)
     scene_destroy(s);
 }
 
-/* Of a lamp whose middle is on the horizon the upper half is left. B-24's other case, theta = 90 degrees:
- * E / (pi L) = (asin(s) - s sqrt(1 - s^2)) / pi with s = r / d. */
+/* Only the upper half of a lamp whose middle is on the horizon contributes. B-24's other case, theta = 90 degrees: E /
+ * (pi L) = (asin(s) - s sqrt(1 - s^2)) / pi with s = r / d. */
 static void the_horizon_cuts_a_lamp(void **state)
 {
     (void)state;
@@ -293,9 +293,9 @@ static void the_horizon_cuts_a_lamp(void **state)
     scene_destroy(s);
 }
 
-/* A thin screen over x < 0 at height 1, the lamp over its edge at height 5: the planes through the edge that touch the
- * lamp meet the floor at x = -+1 r / sqrt(4^2 - r^2), by similar triangles. Between them is the half-shadow. */
-static void a_half_shadow_is_as_wide_as_similar_triangles_say(void **state)
+/* A thin screen over x < 0 at height 1, the lamp above its edge at height 5: the planes through the edge that touch the
+ * lamp intersect the floor at x = -+1 r / sqrt(4^2 - r^2), by similar triangles. The penumbra is between them. */
+static void a_penumbra_is_as_wide_as_similar_triangles_require(void **state)
 {
     (void)state;
     const double r = 1.5, edge = r / sqrt(16.0 - r * r);
@@ -320,7 +320,7 @@ static void a_half_shadow_is_as_wide_as_similar_triangles_say(void **state)
         else if (places[k] > 1.0)
             expect_estimate(e, open);
         else if (places[k] == 0.0)
-            expect_estimate(e, 0.5 * open); /* left and right halves are alike */
+            expect_estimate(e, 0.5 * open); /* the halves are symmetric */
         else
             assert_true(e.value > 0.0 && e.value < open - T7_95 * e.standard_error && e.value > before);
         before = e.value;
@@ -328,7 +328,7 @@ static void a_half_shadow_is_as_wide_as_similar_triangles_say(void **state)
     scene_destroy(shaded);
 }
 
-/* --- caustics: the lamp is found through clear surfaces by rays that run into it --- */
+/* --- caustics: rays through clear surfaces hit the lamp --- */
 
 static const char slab_scene[] =
     "render: {width: 1, height: 1, depth: 24, integrator: path, paths: 262144, beyond: black}\n"
@@ -339,9 +339,9 @@ static const char slab_scene[] =
     "  floor: {shape: plane, diffuse: 0.01}\n"
     "  slab: {shape: box, position: [0, 1, 0], size: [100, 0.01, 100], transparency: 1, ior: 1.5}\n";
 
-/* All of a slab's inner reflections together let (1 - R) / (1 + R) pass (Born and Wolf, 7.6.1, without interference);
- * up to 17.5 degrees that changes by 2e-4. The slab lifts the lamp by t (1 - 1 / n). */
-static void a_slab_takes_its_reflections_from_the_lamps_light(void **state)
+/* All inner reflections of a slab together transmit (1 - R) / (1 + R) (Born and Wolf, 7.6.1, without interference); up
+ * to 17.5 degrees that changes by 2e-4. The slab moves the lamp's image by t (1 - 1 / n). */
+static void a_slab_reduces_the_lamps_light_by_its_reflections(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_scene);
@@ -355,18 +355,18 @@ static void a_slab_takes_its_reflections_from_the_lamps_light(void **state)
                       (1.0 - R) / (1.0 + R));
         assert_true(e.standard_error < 0.01 * E);
         expect_estimate(e, E * (1.0 - R) / (1.0 + R));
-        s->render.depth = 3; /* straight through alone */
+        s->render.depth = 3; /* direct transmission only */
         expect_estimate(look_by_chance(s, 0), E * (1.0 - R) * (1.0 - R));
         s->render.depth = 2;
-        assert_true(look_by_chance(s, 0).value < 1e-4 * E); /* what comes in beside the slab */
+        assert_true(look_by_chance(s, 0).value < 1e-4 * E); /* light that passes next to the slab */
     }
-    set(s, "slab.visible=off"); /* nothing bends: the floor looks for the lamp itself, and finds it once */
+    set(s, "slab.visible=off"); /* no refraction: the floor samples the lamp directly, and counts it once */
     expect_estimate(look_by_chance(s, 0), 0.01 * 3.0 * 4.0 / 25.0);
     scene_destroy(s);
 }
 
-/* L (1 - R) / (1 + R) along the axis of a ball; nothing but the lamp shines. */
-static void a_lamp_behind_a_ball_of_glass_is_as_bright_as_the_ball_lets_through(void **state)
+/* L (1 - R) / (1 + R) along the axis of a ball; only the lamp emits light. */
+static void a_lamp_behind_a_glass_ball_has_the_balls_transmittance(void **state)
 {
     (void)state;
     scene *s =
@@ -382,14 +382,14 @@ static void a_lamp_behind_a_ball_of_glass_is_as_bright_as_the_ball_lets_through(
     expect_estimate(look_by_chance(s, 0), L * (1.0 - R) * (1.0 - R));
     set(s, "ball.visible=off");
     expect_estimate(look_by_chance(s, 0), L);
-    set(s, "lamp.position=0,0,-9"); /* behind the eye */
+    set(s, "lamp.position=0,0,-9"); /* behind the camera */
     expect_estimate(look_by_chance(s, 0), 0.0);
     scene_destroy(s);
 }
 
 /* --- energy --- */
 
-/* In a white sky everything that takes no light is white: convex or not, matte, mirror, both, clear. */
+/* Under a white sky everything that absorbs nothing is white: convex or not, matte, mirror, both, clear. */
 static void every_pixel_of_a_white_furnace_is_white(void **state)
 {
     (void)state;
@@ -410,8 +410,7 @@ static void every_pixel_of_a_white_furnace_is_white(void **state)
     scene_destroy(s);
 }
 
-/* A ball that is hollow: in it everything looks alike everywhere, so that light is a geometric series of the
- * reflectance. */
+/* A hollow ball: radiance inside is the same everywhere, so that it is a geometric series of the reflectance. */
 static const char hollow_scene[] =
     "render: {width: 8, height: 6, depth: 60, integrator: path, paths: 64, beyond: black, shadows: opaque}\n"
     "camera: {position: [0.5, 0.4, -0.3], target: [0, 0, 5], fov_deg: 90}\n"
@@ -442,11 +441,11 @@ static void light_in_a_hollow_ball_is_a_geometric_series(void **state)
 {
     (void)state;
     check_hollow_series("");
-    check_hollow_series("hollow.ior=1.5"); /* full of glass: nothing stands between the lamp and the wall then either */
+    check_hollow_series("hollow.ior=1.5"); /* full of glass: nothing is between the lamp and the wall then either */
     check_hollow_series("hollow.ior=1.5 render.shadows=attenuated");
 }
 
-/* The same with a lamp that is a sphere in the middle, and with faint paths ended by chance. */
+/* The same with a sphere light in the middle, and with Russian roulette. */
 static agreement hollow_ball(scene *s)
 {
     agreement a = {0};
@@ -469,8 +468,8 @@ static uint64_t rays_of(const scene *s)
     return rays;
 }
 
-/* The wall is a mirror too, which the light from the middle does not show: of each channel goes on k_d C, and by the
- * mirror k_r. Whether a path ends does not hang on which of the two it takes. */
+/* The wall is also a mirror, which light from the middle does not show: of each channel k_d C continues, and by the
+ * mirror k_r. The end of a path must not depend on the choice between the two. */
 static void roulette_does_not_choose_between_matte_and_mirror(void **state)
 {
     (void)state;
@@ -508,7 +507,7 @@ static void roulette_keeps_the_mean_and_saves_rays(void **state)
     scene_destroy(s);
 }
 
-static void a_sphere_in_a_hollow_ball_is_the_same_light(void **state)
+static void a_light_sphere_in_a_hollow_ball_is_a_geometric_series(void **state)
 {
     (void)state;
     scene *s = scene_from(hollow_scene);
@@ -520,8 +519,8 @@ static void a_sphere_in_a_hollow_ball_is_the_same_light(void **state)
     scene_destroy(s);
 }
 
-/* What a ray goes through before it meets a lamp dims it by exp(-a d), and what is behind the lamp does not. */
-static void a_lamp_in_an_absorbing_medium_is_dimmed_up_to_itself(void **state)
+/* The medium before a lamp absorbs by exp(-a d), and the medium behind the lamp does not. */
+static void only_the_medium_before_a_lamp_absorbs(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -545,11 +544,11 @@ static void a_lamp_in_an_absorbing_medium_is_dimmed_up_to_itself(void **state)
     scene_destroy(s);
 }
 
-/* --- how sure the picture is --- */
+/* --- standard error of the image --- */
 
 enum { SEEDS = 40, PIXELS = 8 * 6 };
 
-/* Half-shadow, glass and matte floor under a sky. */
+/* A penumbra, glass and a matte floor under a sky. */
 static const char unsure_scene[] =
     "render: {width: 8, height: 6, depth: 6, integrator: path, paths: 64}\n"
     "camera: {position: [0, 2, -5], target: [0, 0.7, 0], fov_deg: 40}\n"
@@ -583,8 +582,8 @@ static void spread_over_seeds(scene *s, spread *out)
         out->own[i] = (squares[i] - sum[i] * sum[i] / SEEDS) / (SEEDS - 1);
 }
 
-/* 39 s^2 / sigma^2 is between 16.3 and 76.1 in 99.95 of 100 cases (chi-square, two-sided), were the values normal and
- * sigma known; a few heavier tails are allowed for. */
+/* 39 s^2 / sigma^2 is between 16.3 and 76.1 in 99.95 of 100 cases (chi-square, two-sided) for normal values and known
+ * sigma; a few outliers from heavier tails are allowed. */
 static void check_spread(const char *settings)
 {
     scene *s = scene_from(unsure_scene);
@@ -610,7 +609,7 @@ static void check_spread(const char *settings)
     scene_destroy(s);
 }
 
-static void the_reported_standard_error_is_what_seeds_differ_by(void **state)
+static void the_reported_standard_error_is_that_over_seeds(void **state)
 {
     (void)state;
     check_spread("render.paths=64");
@@ -618,7 +617,7 @@ static void the_reported_standard_error_is_what_seeds_differ_by(void **state)
     check_spread("render.paths=64 render.roulette=on");
 }
 
-/* Layers with wavelengths of their own differ by more than chance: then it is a bound from above. */
+/* Shares with their own wavelengths differ by more than random noise: the estimate is then an upper bound. */
 static void the_reported_standard_error_of_a_spectral_film_is_a_bound(void **state)
 {
     (void)state;
@@ -634,8 +633,8 @@ static void the_reported_standard_error_of_a_spectral_film_is_a_bound(void **sta
     scene_destroy(s);
 }
 
-/* As many layers as divide the paths, eight at most; none, no error. */
-static void any_number_of_paths_will_do(void **state)
+/* As many shares as divide the paths, at most eight; no error with one share. */
+static void any_number_of_paths_is_valid(void **state)
 {
     (void)state;
     static const struct {
@@ -661,9 +660,8 @@ static void any_number_of_paths_will_do(void **state)
     scene_destroy(s);
 }
 
-/* Layers are n values of a sum; worked out by hand: 1, 2 and 6 add up to 9, their variance is 7, and that of the sum 3
- * x 7. */
-static void layers_add_up(void **state)
+/* Shares are n values of a sum; by hand: 1, 2 and 6 add up to 9, their variance is 7, and that of the sum 3 x 7. */
+static void shares_add_up(void **state)
 {
     (void)state;
     film *f = NULL;
@@ -689,28 +687,28 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paths_through_clear_solids_have_the_trees_mean),
-        cmocka_unit_test(what_is_not_left_to_chance_is_exact),
+        cmocka_unit_test(deterministic_light_is_exact),
         cmocka_unit_test(paths_have_highlights_under_every_lighting),
         cmocka_unit_test(a_matte_mirror_has_both_shares_of_the_sky),
         cmocka_unit_test(a_sphere_lights_a_floor_by_lamberts_law),
         cmocka_unit_test(a_sphere_has_a_highlight),
         cmocka_unit_test(a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once),
-        cmocka_unit_test(beside_a_sphere_clear_solids_block_points_of_light),
-        cmocka_unit_test(lamps_are_looked_for_apart),
+        cmocka_unit_test(with_a_light_sphere_clear_solids_block_point_lights),
+        cmocka_unit_test(lamps_are_sampled_independently),
         cmocka_unit_test(the_horizon_cuts_a_lamp),
-        cmocka_unit_test(a_half_shadow_is_as_wide_as_similar_triangles_say),
-        cmocka_unit_test(a_slab_takes_its_reflections_from_the_lamps_light),
-        cmocka_unit_test(a_lamp_behind_a_ball_of_glass_is_as_bright_as_the_ball_lets_through),
+        cmocka_unit_test(a_penumbra_is_as_wide_as_similar_triangles_require),
+        cmocka_unit_test(a_slab_reduces_the_lamps_light_by_its_reflections),
+        cmocka_unit_test(a_lamp_behind_a_glass_ball_has_the_balls_transmittance),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(light_in_a_hollow_ball_is_a_geometric_series),
         cmocka_unit_test(roulette_keeps_the_mean_and_saves_rays),
         cmocka_unit_test(roulette_does_not_choose_between_matte_and_mirror),
-        cmocka_unit_test(a_sphere_in_a_hollow_ball_is_the_same_light),
-        cmocka_unit_test(a_lamp_in_an_absorbing_medium_is_dimmed_up_to_itself),
-        cmocka_unit_test(the_reported_standard_error_is_what_seeds_differ_by),
+        cmocka_unit_test(a_light_sphere_in_a_hollow_ball_is_a_geometric_series),
+        cmocka_unit_test(only_the_medium_before_a_lamp_absorbs),
+        cmocka_unit_test(the_reported_standard_error_is_that_over_seeds),
         cmocka_unit_test(the_reported_standard_error_of_a_spectral_film_is_a_bound),
-        cmocka_unit_test(any_number_of_paths_will_do),
-        cmocka_unit_test(layers_add_up),
+        cmocka_unit_test(any_number_of_paths_is_valid),
+        cmocka_unit_test(shares_add_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests that films of random paths, wavelengths and Stokes vectors are bit-identical for any threads and batches. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,8 +8,6 @@
 
 #include "render_fixture.h"
 #include "scene/model/scene.h"
-
-/* Random paths, wavelengths and Stokes vectors too make one picture, whoever traces them, and in whatever batches. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define SMALL "render.width=40 render.height=30 render.depth=4 lamp.radius=0.7 lamp.reach=10 vessel.absorb_per_m=1,2,3 "
@@ -86,8 +85,8 @@ static void threads_schedules_and_tiles(void **state)
     renderer_destroy(r);
 }
 
-/* Where nothing is drawn by chance the seed changes no bit. */
-static void the_seed_changes_what_is_drawn_and_only_that(void **state)
+/* Without random choices the seed does not change the film. */
+static void the_seed_changes_only_random_choices(void **state)
 {
     (void)state;
     for (size_t v = 0; v < COUNT(variants); v++) {
@@ -106,7 +105,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(instruction_sets),
         cmocka_unit_test(threads_schedules_and_tiles),
-        cmocka_unit_test(the_seed_changes_what_is_drawn_and_only_that),
+        cmocka_unit_test(the_seed_changes_only_random_choices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,5 @@
+/* Tests of local light at points computed by hand: Phong's model, shadows, checkers. One pixel, which looks along the
+ * camera's axis. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,12 +10,9 @@
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
-/* Local light at points worked out by hand: Phong's sum, shadows, checkers. One pixel, which looks along the
- * camera's axis. */
-
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The eye sees the origin of a plane at V = (0, 0.6, -0.8); the lamp stands at L = (0.6, 0.8, 0), so R = (-0.6, 0.8,
+/* The camera sees the origin of a plane at V = (0, 0.6, -0.8); the lamp is at L = (0.6, 0.8, 0), so R = (-0.6, 0.8,
  * 0). */
 static const char plane_scene[] = "render: {width: 1, height: 1, depth: 0}\n"
                                   "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
@@ -28,7 +27,7 @@ static void expect_color(vec3 seen, double r, double g, double b)
     assert_near(seen.z, b, 1e-12);
 }
 
-static void each_term_of_phongs_sum(void **state)
+static void each_term_of_phongs_model(void **state)
 {
     (void)state;
     scene *s = scene_from(plane_scene);
@@ -37,7 +36,7 @@ static void each_term_of_phongs_sum(void **state)
     expect_color(look(s), 0.1 * 0.5 * 0.9, 0.1 * 1.0 * 0.6, 0.1 * 2.0 * 0.3);
     set_all(s, "ground.ambient=0 ground.diffuse=0.7"); /* N.L = 0.8 */
     expect_color(look(s), 0.7 * 2.0 * 0.9 * 0.8, 0.7 * 1.0 * 0.6 * 0.8, 0.7 * 0.5 * 0.3 * 0.8);
-    set_all(s, "ground.diffuse=0 ground.specular=0.5 ground.shininess=3"); /* R.V = 0.48, and the lamp's colour alone */
+    set_all(s, "ground.diffuse=0 ground.specular=0.5 ground.shininess=3"); /* R.V = 0.48, and only the lamp's colour */
     const double cubed = 0.48 * 0.48 * 0.48;
     expect_color(look(s), 0.5 * 2.0 * cubed, 0.5 * 1.0 * cubed, 0.5 * 0.5 * cubed);
     set_all(s, "ground.ambient=0.1 ground.diffuse=0.7");
@@ -77,8 +76,8 @@ static void a_lamp_behind_the_surface_gives_nothing(void **state)
     scene_destroy(s);
 }
 
-/* A ball of radius 2, met at (0, 0, -2): N = V = (0, 0, -1), L = (0, 0.6, -0.8), R = (0, -0.6, -0.8). Several lamps
- * add up. */
+/* A ball of radius 2, hit at (0, 0, -2): N = V = (0, 0, -1), L = (0, 0.6, -0.8), R = (0, -0.6, -0.8). Several lamps add
+ * up. */
 static void light_on_a_ball(void **state)
 {
     (void)state;
@@ -96,7 +95,7 @@ static void light_on_a_ball(void **state)
     scene_destroy(s);
 }
 
-/* A clear surface shines on the side that the eye is on. */
+/* A clear surface has its highlight on the camera's side. */
 static void highlight_of_a_clear_surface(void **state)
 {
     (void)state;
@@ -106,7 +105,7 @@ static void highlight_of_a_clear_surface(void **state)
         "lights: {lamp: {position: [0, 3, -6]}}\n"
         "solids: {ball: {shape: sphere, radius: 2, transparency: 1, ior: 1.5, specular: 0.25, shininess: 4}}\n");
     expect_color(look(s), 0.25 * pow(0.8, 4.0), 0.25 * pow(0.8, 4.0), 0.25 * pow(0.8, 4.0));
-    /* from inside the far side is met, at (0, 0, 2), with N = (0, 0, -1), away from the lamp outside */
+    /* from inside the far side is hit, at (0, 0, 2), with N = (0, 0, -1), away from the lamp outside */
     set(s, "camera.position=0,0,0");
     s->lights[0].position = vec3_make(0.0, 0.0, 1.0);
     assert_near(look(s).x, 0.25, 1e-12);
@@ -115,9 +114,9 @@ static void highlight_of_a_clear_surface(void **state)
     scene_destroy(s);
 }
 
-/* Something stands half way to the lamp: off ignores it, opaque shadows ask only whether it is there, attenuated
- * ones what it lets through at each of its two surfaces. */
-static void shadows_by_rule(void **state)
+/* A solid is half way to the lamp: `off` ignores it, `opaque` tests only whether it exists, `attenuated` uses the
+ * transmittance of its two surfaces. */
+static void shadow_modes(void **state)
 {
     (void)state;
     scene *s =
@@ -136,10 +135,10 @@ static void shadows_by_rule(void **state)
                  {"render.shadows=attenuated", 0.64},
                  {"between.transparency=1", 1.0},
                  {"render.shadows=opaque", 0.0},
-                 {"between.ior=1", 1.0}, /* of index 1 there is nothing there */
+                 {"between.ior=1", 1.0}, /* with index 1 it has no surface */
                  {"render.shadows=attenuated between.transparency=0.5", 1.0},
                  {"between.ior=1.5", 0.25},
-                 {"render.weights=constant between.ior=1", 0.25}, /* constant weights: a surface for all that */
+                 {"render.weights=constant between.ior=1", 0.25}, /* constant weights: still a surface */
                  {"between.transparency=0", 0.0},
                  {"between.position=6,8,0", 1.0},     /* behind the lamp */
                  {"between.position=3,4,0", 0.0},     /* around the lamp */
@@ -152,7 +151,7 @@ static void shadows_by_rule(void **state)
     scene_destroy(s);
 }
 
-/* Straight down on points of a plane: cells of 0.5, even ones of the first colour, also left of and behind the
+/* Straight down at points of a plane: cells of 0.5, even ones with the first colour, also left of and behind the
  * origin. */
 static void checkers_of_a_plane(void **state)
 {
@@ -172,7 +171,7 @@ static void checkers_of_a_plane(void **state)
     scene_destroy(s);
 }
 
-/* The pattern turns and moves with its solid. */
+/* The pattern rotates and moves with its solid. */
 static void checkers_move_with_their_solid(void **state)
 {
     (void)state;
@@ -192,7 +191,7 @@ static void checkers_move_with_their_solid(void **state)
     scene_destroy(s);
 }
 
-/* On a turned flat face the coordinate across it is zero but for rounding, or on a border between cells: rounding must
+/* On a rotated flat face the coordinate across it is zero up to rounding, or on a border between cells: rounding must
  * not choose the cell. */
 static void checkers_on_turned_faces_are_whole(void **state)
 {
@@ -212,7 +211,7 @@ static void checkers_on_turned_faces_are_whole(void **state)
                 s->camera.target = mat3_apply(turn, vec3_make(x, y, z));
                 s->camera.position = mat3_apply(turn, vec3_make(x, y + 2.0, z));
                 s->camera.aimed = 1;
-                /* the block's face y = 0.5 shows the cells under it, 0 <= y < 0.5: as the plane */
+                /* the block's face y = 0.5 shows the cells below it, 0 <= y < 0.5: like the plane */
                 const int even = (i + k) % 2 == 0;
                 expect_color(look(s), even, !even, 0.0);
             }
@@ -221,8 +220,8 @@ static void checkers_on_turned_faces_are_whole(void **state)
     scene_destroy(s);
 }
 
-/* Each flat face lies on a border between cells of 0.5 and shows those behind it: of a box 0 under the upper faces and
- * -1 over the lower ones; of a cylinder 0 over its bottom and 1 under its top at 1. */
+/* Each flat face is on a border between cells of 0.5 and shows those behind it: for a box 0 under the upper faces and
+ * -1 over the lower ones; for a cylinder 0 over its bottom and 1 under its top at 1. */
 static void flat_faces_show_the_cells_behind_them(void **state)
 {
     (void)state;
@@ -259,7 +258,7 @@ static void flat_faces_show_the_cells_behind_them(void **state)
     scene_destroy(s);
 }
 
-/* Yaw turns the picture when the camera looks straight down, too. */
+/* Yaw rotates the image even when the camera looks straight down. */
 static void yaw_counts_looking_down(void **state)
 {
     (void)state;
@@ -283,7 +282,7 @@ static void yaw_counts_looking_down(void **state)
     scene_destroy(s);
 }
 
-/* An opaque mirror gives its reflectivity of what it sees, once for each bounce. */
+/* An opaque mirror reflects light times its reflectivity, once for each bounce. */
 static void mirrors_multiply(void **state)
 {
     (void)state;
@@ -292,7 +291,7 @@ static void mirrors_multiply(void **state)
                           "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
                           "solids:\n  ground: {shape: plane, reflectivity: 0.5}\n"
                           "  wall: {shape: plane, position: [0, 0, 4], rotation: [-90, 0, 0], reflectivity: 0.4}\n");
-    expect_color(look(s), 0.2, 0.2, 0.2); /* off the ground, off the wall, into the sky behind the eye */
+    expect_color(look(s), 0.2, 0.2, 0.2); /* off the ground, off the wall, into the sky behind the camera */
     set(s, "render.depth=1");
     expect_color(look(s), 0.0, 0.0, 0.0);
     set(s, "render.beyond=sky");
@@ -305,12 +304,12 @@ static void mirrors_multiply(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_term_of_phongs_sum),
+        cmocka_unit_test(each_term_of_phongs_model),
         cmocka_unit_test(highlight_is_a_power_of_the_cosine),
         cmocka_unit_test(a_lamp_behind_the_surface_gives_nothing),
         cmocka_unit_test(light_on_a_ball),
         cmocka_unit_test(highlight_of_a_clear_surface),
-        cmocka_unit_test(shadows_by_rule),
+        cmocka_unit_test(shadow_modes),
         cmocka_unit_test(checkers_of_a_plane),
         cmocka_unit_test(checkers_move_with_their_solid),
         cmocka_unit_test(checkers_on_turned_faces_are_whole),

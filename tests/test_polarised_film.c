@@ -1,3 +1,5 @@
+/* Tests of films whose rays carry Stokes vectors: Brewster, Malus, the pile of plates, chains of total reflections,
+ * energy. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +11,6 @@
 #include "render/inspect/probe.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
-
-/* Films of rays that carry Stokes vectors: Brewster, Malus, the pile of plates, chains of total reflections, energy. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -46,8 +46,7 @@ static const char surface_scene[] = "render: {width: 1, height: 1, depth: 1, bey
                                     "background: {kind: gradient, color: [1, 1, 1], horizon: [0, 0, 0]}\n"
                                     "solids: {water: {shape: plane, transparency: 1, ior: 1.5}}\n";
 
-/* Unpolarised light that meets one surface comes to an eye that does not mind how it is polarised: the mean of R_s and
- * R_p. */
+/* Unpolarised light reflected by one surface, seen without a polariser: the mean of R_s and R_p. */
 static void one_surface_reflects_the_mean(void **state)
 {
     (void)state;
@@ -68,9 +67,9 @@ static void one_surface_reflects_the_mean(void **state)
 
 /* --- two reflections --- */
 
-/* The eye sees a lake at Brewster's angle, and in it a ball of the same glass, again at Brewster's angle; a matte wall
- * that only shines of itself stands where that leads. The plane of the second reflection is turned by `turn` about the
- * ray between. */
+/* The camera sees a lake at Brewster's angle, and in it a ball of the same glass, again at Brewster's angle; a matte
+ * wall that only emits light is in the direction of the last ray. The plane of the second reflection is rotated by
+ * `turn` about the ray between. */
 static scene *two_mirrors(double turn, double n)
 {
     const double b = atan(n), at = 5.0, radius = 1.0;
@@ -96,7 +95,7 @@ static scene *two_mirrors(double turn, double n)
     return s;
 }
 
-/* The lake leaves R_s / 2 along s, of which the ball reflects R_s cos^2 (Malus); crossed, nothing. */
+/* The lake reflects R_s / 2 polarised along s, of which the ball reflects R_s cos^2 (Malus); nothing when crossed. */
 static void two_reflections_at_brewsters_angle_obey_malus(void **state)
 {
     (void)state;
@@ -115,7 +114,7 @@ static void two_reflections_at_brewsters_angle_obey_malus(void **state)
 
 /* --- the pile of plates --- */
 
-/* Two plates, inclined by 60 degrees, and a far wall that shines. */
+/* Two plates, inclined by 60 degrees, and a distant emitting wall. */
 static const char plates_scene[] =
     "render: {width: 1, height: 1, depth: 5, beyond: black, shadows: off}\n"
     "camera: {position: [0, 0, -50], target: [0, 0, 0], fov_deg: 0.0001}\n"
@@ -126,8 +125,8 @@ static const char plates_scene[] =
     "  two: {shape: box, material: glass, size: [60, 60, 0.01], rotation: [60, 0, 0], position: [0, 0, 0.1]}\n"
     "  wall: {shape: box, ambient: 1, size: [100, 100, 1], position: [0, 0, 60]}\n";
 
-/* Straight through four interfaces: each polarisation alone, and unpolarised at each. */
-static void straight_through_plates_each_polarisation_fares_alone(void **state)
+/* Direct transmission through four interfaces: each polarisation separately, and unpolarised at each. */
+static void direct_transmission_keeps_polarisations_separate(void **state)
 {
     (void)state;
     scene *s = scene_from(plates_scene);
@@ -148,7 +147,7 @@ static void straight_through_plates_each_polarisation_fares_alone(void **state)
         assert_near(tree.node[4].stokes[3], 0.0, 1e-12);
         ray_tree_release(&tree);
         probe_destroy(p);
-        s->render.depth = 4; /* the film: straight through, and nothing else yet but what two reflections bring later */
+        s->render.depth = 4; /* the film: direct transmission, plus what two reflections add later */
         assert_near(look_with(s, on).x, wanted, 1e-12);
         s->render.depth = 5;
     }
@@ -156,8 +155,8 @@ static void straight_through_plates_each_polarisation_fares_alone(void **state)
 }
 
 /* All reflections between m plates: (1 - R) / (1 + (2 m - 1) R) for each polarisation (Stokes, Proc. R. Soc. 11, 545,
- * 1862). What the depth and the weights cut off is counted, and bounds what is missing. */
-static void a_pile_of_plates_is_that_of_stokes(void **state)
+ * 1862). The counted weights that depth and weight limits cut off bound the missing light. */
+static void a_pile_of_plates_obeys_stokes_formula(void **state)
 {
     (void)state;
     need_counters();
@@ -178,11 +177,12 @@ static void a_pile_of_plates_is_that_of_stokes(void **state)
         assert_true(seen <= wanted + 1e-10 && seen + cut >= wanted - 1e-10);
         render_result_destroy(r);
     }
-    assert_true(fabs(0.5 * (by_s + by_p) - (1.0 - mean) / (1.0 + 3.0 * mean)) > 0.01); /* they can be told apart */
+    /* the values differ measurably */
+    assert_true(fabs(0.5 * (by_s + by_p) - (1.0 - mean) / (1.0 + 3.0 * mean)) > 0.01);
     scene_destroy(s);
 }
 
-/* --- any way through solids, against the field --- */
+/* --- any path through solids, against the field --- */
 
 static const char solids_scene[] =
     "render: {depth: 12, polarisation: on}\n"
@@ -194,7 +194,7 @@ static const char solids_scene[] =
     "rotation: [20, 0, 30], priority: 2}\n"
     "  mirror: {shape: sphere, reflectivity: 0.8, radius: 0.3, position: [-0.5, 0.4, -0.3], priority: 3}\n";
 
-/* Unpolarised light from the last ray's far end to the eye: half the powers of two fields across each other. */
+/* Unpolarised light from the last ray's far end to the camera: half the powers of two orthogonal fields. */
 static double share_by_fields(const ray_tree *tree, size_t last)
 {
     vec3 x, y;
@@ -215,7 +215,7 @@ static double share_by_fields(const ray_tree *tree, size_t last)
     return sum;
 }
 
-static void the_weight_of_any_way_is_that_of_its_fields(void **state)
+static void the_weight_of_any_path_is_that_of_its_fields(void **state)
 {
     (void)state;
     scene *s = scene_from(solids_scene);
@@ -248,8 +248,8 @@ static void the_weight_of_any_way_is_that_of_its_fields(void **state)
     scene_destroy(s);
 }
 
-/* From within a block, at 45 degrees between four faces, nothing gets out: each reflection is total, and keeps all. */
-static void total_reflections_keep_all_light(void **state)
+/* Inside a block, at 45 degrees to four faces, no light leaves: each reflection is total and loses nothing. */
+static void total_reflections_lose_no_light(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 30}\n"
@@ -267,7 +267,7 @@ static void total_reflections_keep_all_light(void **state)
     scene_destroy(s);
 }
 
-/* --- whole pictures --- */
+/* --- whole images --- */
 
 static const char furnace_scene[] =
     "render: {width: 24, height: 18, shadows: off, polarisation: on}\n"
@@ -282,8 +282,8 @@ static const char furnace_scene[] =
     "  ball: {shape: sphere, material: clear, ior: 2.4, position: [0.2, 1.2, 0.1], radius: 0.5, priority: 3}\n"
     "  mirror: {shape: sphere, reflectivity: 1, position: [1.5, 0.5, -1], radius: 0.4, priority: 6}\n";
 
-/* In a white sky all is white: what each interface takes from one branch it gives to the other, in each state of
- * polarisation. */
+/* Under a white sky everything is white: what each interface takes from one branch it adds to the other, for every
+ * state of polarisation. */
 static void every_pixel_of_a_white_furnace_is_white(void **state)
 {
     (void)state;
@@ -304,8 +304,8 @@ static void every_pixel_of_a_white_furnace_is_white(void **state)
     scene_destroy(s);
 }
 
-/* Solids of the index of what surrounds them, and a second liquid in the first, change no bit. */
-static void matched_media_are_not_there(void **state)
+/* Solids with the index of their surroundings, and a second liquid inside the first, leave the film bit-identical. */
+static void matched_media_are_invisible(void **state)
 {
     (void)state;
     scene *with = scene_from(furnace_scene);
@@ -327,7 +327,8 @@ static void matched_media_are_not_there(void **state)
     scene_destroy(without);
 }
 
-/* Head-on there is no plane of incidence, and both polarisations fare alike, however often. */
+/* At normal incidence there is no plane of incidence, and both polarisations behave alike, however many interfaces
+ * there are. */
 static void at_normal_incidence_polarisation_changes_nothing(void **state)
 {
     (void)state;
@@ -350,12 +351,12 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_surface_reflects_the_mean),
         cmocka_unit_test(two_reflections_at_brewsters_angle_obey_malus),
-        cmocka_unit_test(straight_through_plates_each_polarisation_fares_alone),
-        cmocka_unit_test(a_pile_of_plates_is_that_of_stokes),
-        cmocka_unit_test(the_weight_of_any_way_is_that_of_its_fields),
-        cmocka_unit_test(total_reflections_keep_all_light),
+        cmocka_unit_test(direct_transmission_keeps_polarisations_separate),
+        cmocka_unit_test(a_pile_of_plates_obeys_stokes_formula),
+        cmocka_unit_test(the_weight_of_any_path_is_that_of_its_fields),
+        cmocka_unit_test(total_reflections_lose_no_light),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
-        cmocka_unit_test(matched_media_are_not_there),
+        cmocka_unit_test(matched_media_are_invisible),
         cmocka_unit_test(at_normal_incidence_polarisation_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

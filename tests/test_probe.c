@@ -1,3 +1,4 @@
+/* Tests of the probe: a tree's radiance is the film's, to the bit, and the values of its hits obey the laws. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,9 +11,6 @@
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
-/* One ray taken apart: what the tree says is what the film holds, to the bit, and what it says of a hit is what the
- * laws say. */
-
 static probe *probe_of(const scene *s)
 {
     probe *p = NULL;
@@ -21,7 +19,7 @@ static probe *probe_of(const scene *s)
     return p;
 }
 
-/* 50 pixels, spread over the picture. */
+/* 50 pixels, spread over the image. */
 static void compare_pixels(scene *s)
 {
     render_result *frame = render(s);
@@ -64,7 +62,7 @@ static void a_tree_is_its_pixel_at_every_depth(void **state)
     compare_settings(settings, sizeof settings / sizeof *settings);
 }
 
-static void a_tree_is_its_pixel_under_every_rule(void **state)
+static void a_tree_is_its_pixel_with_all_settings(void **state)
 {
     (void)state;
     static const char *const settings[] = {
@@ -84,7 +82,7 @@ static void a_tree_is_its_pixel_under_every_rule(void **state)
     compare_settings(settings, sizeof settings / sizeof *settings);
 }
 
-/* Of the rod's pixels: parents and children fit together. */
+/* In the rod's pixels parents and children are consistent. */
 static void check_node(const ray_tree *tree, int at)
 {
     const ray_node *node = &tree->node[at];
@@ -137,8 +135,8 @@ static const char slab_text[] =
     "render: {depth: 3, shadows: off}\n"
     "solids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [9, 2, 9], absorb_per_m: [0.5, 0.1, 0]}}\n";
 
-/* R = ((n - 1) / (n + 1))^2 at normal incidence: Hecht 4.67; light falls by exp(-a d). */
-static void a_slab_met_head_on(void **state)
+/* R = ((n - 1) / (n + 1))^2 at normal incidence: Hecht 4.67; absorption by exp(-a d). */
+static void a_slab_at_normal_incidence(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_text);
@@ -163,7 +161,8 @@ static void a_slab_met_head_on(void **state)
     scene_destroy(s);
 }
 
-/* Unpolarised light off glass under Brewster's angle is all of one polarisation: Hecht 8.6. A cut ray says so too. */
+/* Unpolarised light reflected by glass at Brewster's angle is fully polarised: Hecht 8.6. A cut ray records that
+ * too. */
 static void a_cut_ray_keeps_its_polarisation(void **state)
 {
     (void)state;
@@ -184,7 +183,7 @@ static void a_cut_ray_keeps_its_polarisation(void **state)
     }
 }
 
-static void any_length_of_direction_will_do(void **state)
+static void a_direction_may_have_any_length(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_text);
@@ -209,7 +208,7 @@ static void any_length_of_direction_will_do(void **state)
     scene_destroy(s);
 }
 
-/* A direction read off one tree starts the same tree again. */
+/* A direction taken from one tree starts the same tree again. */
 static void a_ray_can_be_traced_again(void **state)
 {
     (void)state;
@@ -230,8 +229,9 @@ static void a_ray_can_be_traced_again(void **state)
     scene_destroy(s);
 }
 
-/* R, and T^2 and T^2 R of a channel that the slab lets pass: it alone is worth a ray, whichever it is. */
-static void a_ray_weighs_what_its_heaviest_channel_does(void **state)
+/* R, and T^2 and T^2 R of a channel that the slab transmits: that channel alone makes a ray worth tracing, whichever it
+ * is. */
+static void a_rays_weight_is_its_largest_channel(void **state)
 {
     (void)state;
     static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9",
@@ -254,7 +254,7 @@ static void a_ray_weighs_what_its_heaviest_channel_does(void **state)
 }
 
 /* A cup's hollow has a side and a floor of its own, numbered after those of its outside. */
-static void faces_of_a_cups_hollow_are_told_apart(void **state)
+static void faces_of_a_cups_hollow_have_their_own_numbers(void **state)
 {
     (void)state;
     static const struct {
@@ -277,8 +277,8 @@ static void faces_of_a_cups_hollow_are_told_apart(void **state)
     scene_destroy(s);
 }
 
-/* Shadow rays to two lamps in one place are one line, but each is one lamp's own, in their order. */
-static void lamps_in_one_place_are_told_apart(void **state)
+/* Shadow rays to two lamps in one place coincide, but each belongs to one lamp, in their order. */
+static void lamps_in_one_place_are_distinguished(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1}\n"
@@ -302,7 +302,7 @@ static void lamps_in_one_place_are_told_apart(void **state)
     scene_destroy(s);
 }
 
-static void a_way_goes_straight_on_or_turns_back_where_told(void **state)
+static void a_path_refracts_or_reflects_where_requested(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_text);
@@ -322,8 +322,8 @@ static void a_way_goes_straight_on_or_turns_back_where_told(void **state)
     scene_destroy(s);
 }
 
-/* At one wavelength absorption by wavelength is that wavelength's for all channels; at 450 nm half way between the
- * table's points. */
+/* At one wavelength, absorption by wavelength is equal for all channels; at 450 nm it is half way between the table's
+ * points. */
 static void absorption_of_a_spectral_scene_is_that_of_its_wavelength(void **state)
 {
     (void)state;
@@ -351,16 +351,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tree_is_its_pixel_at_every_depth),
-        cmocka_unit_test(a_tree_is_its_pixel_under_every_rule),
+        cmocka_unit_test(a_tree_is_its_pixel_with_all_settings),
         cmocka_unit_test(rays_fit_their_parents_and_the_laws),
-        cmocka_unit_test(a_slab_met_head_on),
+        cmocka_unit_test(a_slab_at_normal_incidence),
         cmocka_unit_test(a_cut_ray_keeps_its_polarisation),
-        cmocka_unit_test(any_length_of_direction_will_do),
+        cmocka_unit_test(a_direction_may_have_any_length),
         cmocka_unit_test(a_ray_can_be_traced_again),
-        cmocka_unit_test(a_ray_weighs_what_its_heaviest_channel_does),
-        cmocka_unit_test(faces_of_a_cups_hollow_are_told_apart),
-        cmocka_unit_test(lamps_in_one_place_are_told_apart),
-        cmocka_unit_test(a_way_goes_straight_on_or_turns_back_where_told),
+        cmocka_unit_test(a_rays_weight_is_its_largest_channel),
+        cmocka_unit_test(faces_of_a_cups_hollow_have_their_own_numbers),
+        cmocka_unit_test(lamps_in_one_place_are_distinguished),
+        cmocka_unit_test(a_path_refracts_or_reflects_where_requested),
         cmocka_unit_test(absorption_of_a_spectral_scene_is_that_of_its_wavelength),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

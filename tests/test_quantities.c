@@ -1,6 +1,6 @@
-/* The list of quantities: names, keys and columns are unique, rows and JSON tell the same of one frame, and the
- * dictionary in results/README.md and the manual's account are what the list says. With CUVETTE_RENEW=1 in the
- * environment these two are written anew first (make dictionary). */
+/* Tests of the list of quantities: names, keys and columns are unique, rows and JSON agree for one frame, and the
+ * dictionary in results/README.md and the manual's account agree with the list. With CUVETTE_RENEW=1 in the environment
+ * these two are rewritten first (make dictionary). */
 #include "base/file.h"
 #include "job/job.h"
 #include "scene/model/scene.h"
@@ -33,13 +33,13 @@ static void names_and_keys_are_unique(void **state)
     (void)state;
     expect_unique(frame_quantities, frame_quantity_count);
     expect_unique(worker_quantities, worker_quantity_count);
-    assert_string_equal(frame_quantities[0].name, "film_hash"); /* rows have what it must be right behind it */
+    assert_string_equal(frame_quantities[0].name, "film_hash"); /* in rows it must be the next column */
     assert_ptr_equal(frame_quantity("cpu_s")->name, frame_quantities[3].name);
     assert_null(frame_quantity("cpu"));
 }
 
-/* What a row has, the account has. */
-static void each_column_has_a_key(void **state)
+/* Every value of a row is in the account. */
+static void every_column_has_a_key(void **state)
 {
     (void)state;
     for (size_t i = 0; i < frame_quantity_count; i++)
@@ -59,7 +59,7 @@ static const json_t *find(const json_t *o, const char *key)
     return o;
 }
 
-/* As a row has it. */
+/* In the format of a row. */
 static void put_json(csv_line *line, const quantity *q, const json_t *value)
 {
     char text[2048] = "";
@@ -107,7 +107,7 @@ static int tell_apart(const quantity *list, size_t count, const job_account *a, 
     return compared;
 }
 
-/* With meshes, random paths and two threads, so that nothing is void. */
+/* With meshes, random paths and two threads, so that no value is missing. */
 static const char scene_text[] = "render: {width: 24, height: 16, integrator: path, paths: 8, samples: 1, threads: 2}\n"
                                  "camera: {position: [0, 2, -6], target: [0, 1, 0]}\n"
                                  "lights: {lamp: {position: [4, 7, -5]}}\n"
@@ -153,7 +153,7 @@ static void rows_and_account_agree(void **state)
     scene_destroy(s);
 }
 
-/* What each frame has the same, and what is of all of them. */
+/* Values that are equal in all frames, and values over all frames. */
 static void several_frames_merge(void **state)
 {
     (void)state;
@@ -183,7 +183,7 @@ static void several_frames_merge(void **state)
     scene_destroy(s);
 }
 
-/* --- what people read --- */
+/* --- documents --- */
 
 static char *content(const char *path)
 {
@@ -196,7 +196,7 @@ static char *content(const char *path)
     return text;
 }
 
-/* In path, between the first `begin` after `after` and the first `end` behind it, stands this. */
+/* Expects this text in the file between the first `begin` after `after` and the next `end`. */
 static void expect_part(const char *path, const char *after, const char *begin, const char *end, const char *part,
                         size_t size)
 {
@@ -246,7 +246,7 @@ static void the_dictionary_is_the_list(void **state)
     }
 }
 
-/* With what must not be read as roff. */
+/* Escapes characters that roff would interpret. */
 static void print_roff(FILE *out, const char *text)
 {
     for (const char *c = text; *c; c++)
@@ -289,7 +289,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_and_keys_are_unique),
-        cmocka_unit_test(each_column_has_a_key),
+        cmocka_unit_test(every_column_has_a_key),
         cmocka_unit_test_setup_teardown(rows_and_account_agree, fixture_setup, fixture_teardown),
         cmocka_unit_test(several_frames_merge),
         cmocka_unit_test(the_dictionary_is_the_list),

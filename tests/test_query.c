@@ -1,3 +1,5 @@
+/* Tests of ray queries: against closed forms of a sphere, against the trees of the probe, and single rays against
+ * batches. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -10,9 +12,6 @@
 #include "cuvette.h"
 #include "probe_fixture.h"
 #include "random_stream.h"
-
-/* Rays of the caller's through the engine: against closed forms of a sphere, against the trees of the probe, and alone
- * against together. */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -60,8 +59,8 @@ static double dot(const double *a, const double *b)
     "render: {width: 4, height: 4}\ncamera: {position: [0, 0, -9], target: [0, 0, 0]}\nsolids:\n" \
     "  ball: {shape: sphere, radius: 2, position: [1, 2, 3], transparency: 1, ior: 1.5}\n"
 
-/* A ray that passes a sphere's centre at distance b meets it sqrt(r^2 - b^2) before and behind its nearest point. */
-static void a_sphere_is_met_where_its_equation_says(void **state)
+/* A ray that passes a sphere's centre at distance b hits it sqrt(r^2 - b^2) before and behind its nearest point. */
+static void a_sphere_is_hit_where_its_equation_requires(void **state)
 {
     (void)state;
     const double centre[3] = {1.0, 2.0, 3.0}, r = 2.0;
@@ -74,7 +73,7 @@ static void a_sphere_is_met_where_its_equation_says(void **state)
         for (int k = 0; k < 3; k++) {
             ray.origin[k] = centre[k] + random_real(&random, -20.0, 20.0);
             towards[k] = centre[k] + random_real(&random, -2.2, 2.2);
-            ray.direction[k] = 3.0 * (towards[k] - ray.origin[k]); /* no unit vector */
+            ray.direction[k] = 3.0 * (towards[k] - ray.origin[k]); /* not a unit vector */
         }
         const double away[3] = {ray.origin[0] - centre[0], ray.origin[1] - centre[1], ray.origin[2] - centre[2]};
         const double length = sqrt(dot(ray.direction, ray.direction)), along = -dot(away, ray.direction) / length;
@@ -97,7 +96,8 @@ static void a_sphere_is_met_where_its_equation_says(void **state)
                     hit.n_after == 1.5);
         assert_true(hit.triangle == -1 && hit.face == 0 && hit.error >= 0.0 && hit.error < 1e-12);
 
-        /* On through the ball: the chord is 2 half; its end looks back, and behind it is the outside again. */
+        /* Continue through the ball: the chord is 2 half; the normal at its end faces the ray, and behind it is the
+         * outside again. */
         cuvette_ray on = {.start = hit.transmitted};
         memcpy(on.origin, hit.point, sizeof on.origin);
         memcpy(on.direction, ray.direction, sizeof on.direction);
@@ -105,7 +105,7 @@ static void a_sphere_is_met_where_its_equation_says(void **state)
         assert_true(fabs(end.distance - 2.0 * half) <= 30.0 * slack && end.before == 0 && end.after == CUVETTE_OUTSIDE);
         assert_true(dot(end.normal, ray.direction) < 0.0);
 
-        /* Straight back along the normal there is nothing, not even at distance 0. */
+        /* Back along the normal there is no hit, not even at distance 0. */
         cuvette_ray back = {.start = hit.reflected};
         memcpy(back.origin, hit.point, sizeof back.origin);
         memcpy(back.direction, hit.normal, sizeof back.direction);
@@ -120,7 +120,7 @@ static void a_sphere_is_met_where_its_equation_says(void **state)
     cuvette_query_destroy(q);
 }
 
-/* Rays into the rod's scene from all around, some inside its media. */
+/* Rays into the rod's scene from all sides, some from inside its media. */
 static void make_rays(cuvette_ray *rays, size_t count)
 {
     uint64_t random = 99;
@@ -139,7 +139,7 @@ static void make_rays(cuvette_ray *rays, size_t count)
 
 enum { MANY = 5000 };
 
-static void rays_together_are_rays_alone_on_every_instruction_set(void **state)
+static void batches_equal_single_rays_on_every_instruction_set(void **state)
 {
     (void)state;
     static cuvette_ray rays[MANY];
@@ -171,7 +171,7 @@ static void rays_together_are_rays_alone_on_every_instruction_set(void **state)
     cuvette_query_destroy(q);
 }
 
-static void camera_rays_meet_what_the_probe_meets(void **state)
+static void camera_rays_hit_what_the_probe_hits(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -206,7 +206,7 @@ static void camera_rays_meet_what_the_probe_meets(void **state)
     cuvette_query_destroy(q);
 }
 
-static void a_points_medium_is_the_winners(void **state)
+static void a_points_medium_has_the_highest_priority(void **state)
 {
     (void)state;
     static const struct {
@@ -235,8 +235,8 @@ static const uint32_t cube_corners[] = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1
                                         2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6};
 static const unsigned char cube_slots[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
 
-/* Faces look like the scene's materials of their slots' names. */
-static void slots_of_arrays_take_materials_by_name(void **state)
+/* Faces have the scene's materials with their slots' names. */
+static void slots_of_arrays_use_materials_by_name(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -302,8 +302,8 @@ static cuvette_query *query_of_cube(bool as_mesh)
     return q;
 }
 
-/* What is drawn needs no hierarchies, and rays do. */
-static void rays_through_a_scene_that_is_drawn_meet_its_meshes(void **state)
+/* A rasterised scene has no hierarchies, but rays need them. */
+static void rays_hit_the_meshes_of_a_rasterised_scene(void **state)
 {
     (void)state;
     cuvette_query *q =
@@ -317,8 +317,8 @@ static void rays_through_a_scene_that_is_drawn_meet_its_meshes(void **state)
     cuvette_query_destroy(q);
 }
 
-/* Positions agree to the errors that both tell, media and sides exactly; and so on behind the surface. */
-static void a_cube_of_triangles_is_met_as_a_box_is(void **state)
+/* Positions agree within both error bounds, media and sides exactly; then continue behind the surface. */
+static void a_cube_of_triangles_is_hit_like_a_box(void **state)
 {
     (void)state;
     cuvette_query *cube = query_of_cube(true), *box = query_of_cube(false);
@@ -355,8 +355,8 @@ static void a_cube_of_triangles_is_met_as_a_box_is(void **state)
     cuvette_query_destroy(box);
 }
 
-/* No triangles, but several copies of them: a program may begin so. */
-static void copies_of_no_triangles_are_never_met(void **state)
+/* No triangles, but several instances of them: a program may begin like this. */
+static void copies_of_empty_meshes_are_never_hit(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -448,7 +448,7 @@ static void *ask(void *context)
     return NULL;
 }
 
-static void threads_may_share_a_query(void **state)
+static void threads_can_share_a_query(void **state)
 {
     (void)state;
     static cuvette_ray rays[MANY];
@@ -471,17 +471,17 @@ static void threads_may_share_a_query(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sphere_is_met_where_its_equation_says),
-        cmocka_unit_test(rays_together_are_rays_alone_on_every_instruction_set),
-        cmocka_unit_test(camera_rays_meet_what_the_probe_meets),
-        cmocka_unit_test(a_points_medium_is_the_winners),
-        cmocka_unit_test(slots_of_arrays_take_materials_by_name),
-        cmocka_unit_test(a_cube_of_triangles_is_met_as_a_box_is),
-        cmocka_unit_test(rays_through_a_scene_that_is_drawn_meet_its_meshes),
-        cmocka_unit_test(copies_of_no_triangles_are_never_met),
+        cmocka_unit_test(a_sphere_is_hit_where_its_equation_requires),
+        cmocka_unit_test(batches_equal_single_rays_on_every_instruction_set),
+        cmocka_unit_test(camera_rays_hit_what_the_probe_hits),
+        cmocka_unit_test(a_points_medium_has_the_highest_priority),
+        cmocka_unit_test(slots_of_arrays_use_materials_by_name),
+        cmocka_unit_test(a_cube_of_triangles_is_hit_like_a_box),
+        cmocka_unit_test(rays_hit_the_meshes_of_a_rasterised_scene),
+        cmocka_unit_test(copies_of_empty_meshes_are_never_hit),
         cmocka_unit_test(wrong_triangles_are_refused_and_add_nothing),
         cmocka_unit_test(wrong_rays_are_named),
-        cmocka_unit_test(threads_may_share_a_query),
+        cmocka_unit_test(threads_can_share_a_query),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

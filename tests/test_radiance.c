@@ -1,3 +1,6 @@
+/* Tests of render.radiance: basic. L / n^2 is invariant along a ray, except for reflection and absorption: Nicodemus,
+ * "Radiance", American Journal of Physics 31 (1963); Veach, Robust Monte Carlo Methods for Light Transport Simulation
+ * (1997), 5.2. Reflectances are those of realism/theory.h, from sines and tangents of angles, not the tracer's. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,10 +13,6 @@
 #include "probe_fixture.h"
 #include "realism/theory.h"
 
-/* render.radiance: basic. L / n^2 is handed on along a ray, but for what is reflected and absorbed: Nicodemus,
- * "Radiance", American Journal of Physics 31 (1963); Veach, Robust Monte Carlo Methods for Light Transport Simulation
- * (1997), 5.2. Reflectances are those of realism/theory.h, sines and tangents of angles, not the tracer's. */
-
 #define NEAR 1e-10
 
 static double through(double angle, double n_from, double n_to)
@@ -21,7 +20,7 @@ static double through(double angle, double n_from, double n_to)
     return n_from == n_to ? 1.0 : 1.0 - theory_fresnel(angle, n_from, n_to);
 }
 
-/* The value of the one pixel, and that all channels have it. */
+/* The value of the single pixel; asserts that all channels are equal. */
 static double see(const scene *s)
 {
     const vec3 l = look(s);
@@ -76,9 +75,9 @@ static void random_paths_see_the_same_sky(void **state)
     }
 }
 
-/* Of a dispersive medium each wavelength has its own index: a film of X, Y and Z summed over them. Straight up R is
- * ((n - 1) / (n + 1))^2, and of a white sky, which has daylight's spectrum, the observer sees the sum of n^2 T D65 y
- * over the sum of D65 y in luminance. */
+/* In a dispersive medium each wavelength has its own index: the film sums X, Y and Z over them. Straight up R is ((n -
+ * 1) / (n + 1))^2, and of a white sky, which has daylight's spectrum, the observer sees the sum of n^2 T D65 y over the
+ * sum of D65 y in luminance. */
 static void each_wavelength_has_its_own_square(void **state)
 {
     (void)state;
@@ -117,9 +116,8 @@ static const char furnace[] =
     "size: [1.8, 1.1, 0.7], priority: 4}\n"
     "  bead: {shape: sphere, transparency: 1, ior: 2.42, position: [0.2, 0.9, 0], radius: 0.4, priority: 6}\n";
 
-/* Light of one L / n^2 everywhere shows nothing of what it goes through: n_eye^2 in every pixel, in units of the
- * surroundings'. */
-static void a_furnace_shows_nothing_but_the_eyes_own_medium(void **state)
+/* A uniform L / n^2 makes all media invisible: n_eye^2 in every pixel, in units of the surroundings'. */
+static void a_furnace_shows_only_the_cameras_own_medium(void **state)
 {
     (void)state;
     static const char *const ways[] = {"", "render.polarisation=on", "render.integrator=path render.paths=16",
@@ -152,8 +150,7 @@ static const char pond[] = "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\n
                            "  water: {shape: box, size: [1e4, 2, 1e4], transparency: 1, ior: 1.5}\n"
                            "  floor: {shape: plane, priority: 9}\n";
 
-/* From a place 2 above the floor, which is 1 under water, along a ray at that angle; *at: where on the floor that
- * leads. */
+/* From a point 2 above the floor, which is 1 under water, along a ray at that angle; *at: where it hits the floor. */
 static scene *pond_from_above(double degrees, double n, const char *settings, double *at)
 {
     char pose[256];
@@ -167,7 +164,7 @@ static scene *pond_from_above(double degrees, double n, const char *settings, do
     return s;
 }
 
-static void what_a_floor_sends_leaves_water_thinned_out(void **state)
+static void radiance_of_a_floor_decreases_on_leaving_water(void **state)
 {
     (void)state;
     static const char *const ways[] = {"", "render.polarisation=on", "render.spectrum=spectral render.wavelengths=64"};
@@ -184,7 +181,7 @@ static void what_a_floor_sends_leaves_water_thinned_out(void **state)
         }
 }
 
-/* An eye in the water sees the floor as it is, by raycast too. */
+/* A camera in the water sees the unchanged floor, with raycast too. */
 static void in_one_medium_nothing_changes(void **state)
 {
     (void)state;
@@ -225,7 +222,7 @@ static void a_lamp_lights_the_floor_through_the_surface(void **state)
 
 /* --- interfaces in a shadow ray's path */
 
-/* The eye looks straight down from between lamp and floor; what shades stands aside of its ray. */
+/* The camera looks straight down from between lamp and floor; the occluder is next to its ray. */
 static const char window[] = "background: {color: [0, 0, 0]}\n"
                              "render: {width: 1, height: 1, depth: 3, beyond: black, radiance: basic}\n"
                              "camera: {position: [0, 1, 0.01], target: [0, 0, 0], fov_deg: 0.0001}\n"
@@ -254,7 +251,7 @@ static void panes_shade_by_fresnel_on_both_faces(void **state)
         "pane: {shape: box, position: [9, 12, 0], rotation: [0, 0, -36.86989764584402], size: [4, 0.5, 4], "
         "transparency: 1, ior: 1.5}";
     assert_true(fabs(shaded(pane, "") - 0.8 * T * T) < 1e-9);
-    assert_true(fabs(shaded(leaning, "") - 0.8 * 0.96 * 0.96) < 1e-9); /* head-on */
+    assert_true(fabs(shaded(leaning, "") - 0.8 * 0.96 * 0.96) < 1e-9); /* normal incidence */
     assert_true(fabs(shaded(pane, "pane.transparency=0.7071067811865476") - 0.8 * half) < 1e-9);
     assert_true(fabs(shaded(pane, "pane.reflectivity=0.3") - 0.8 * T * T * 0.49) < 1e-9); /* a coating on both faces */
     assert_true(fabs(shaded(pane, "render.radiance=classic") - 0.8) < 1e-9);
@@ -265,8 +262,8 @@ static void panes_shade_by_fresnel_on_both_faces(void **state)
     assert_true(shaded(pane, "render.shadows=opaque") == 0.0);
 }
 
-/* Round surfaces: the ray meets a sphere of radius r at a distance b from its middle, at sin i = b / r, and leaves it
- * at the same angle. */
+/* Round surfaces: the ray hits a sphere of radius r at a distance b from its middle, at sin i = b / r, and leaves it at
+ * the same angle. */
 static void spheres_and_cylinders_shade_by_the_angle_of_the_straight_ray(void **state)
 {
     (void)state;
@@ -284,7 +281,8 @@ static void spheres_and_cylinders_shade_by_the_angle_of_the_straight_ray(void **
     }
 }
 
-/* A drop of water in a pane: each interface once, with the indices on both of its sides; of no interface, nothing. */
+/* A drop of water in a pane: each interface counts once, with the indices on both of its sides; matched media count
+ * nothing. */
 static void each_interface_counts_once_with_its_own_indices(void **state)
 {
     (void)state;
@@ -297,7 +295,7 @@ static void each_interface_counts_once_with_its_own_indices(void **state)
     assert_true(fabs(shaded(two, "drop.ior=1 pane.ior=1") - 0.8) < 1e-9);
 }
 
-/* A picture of the shadow of a box that stands askew, made of triangles or not. */
+/* An image of the shadow of a tilted box, made of triangles or not. */
 static render_result *askew(const char *shape)
 {
     char scene_part[512], text[2048], whole[4096];
@@ -316,7 +314,7 @@ static render_result *askew(const char *shape)
 }
 
 /* A box of triangles is the box. */
-static void meshes_shade_like_the_solids_that_they_are(void **state)
+static void meshes_cast_the_same_shadows_as_solids(void **state)
 {
     (void)state;
     render_result *solids = askew("shape: box, size: [2, 1, 1.5]");
@@ -333,10 +331,10 @@ static void meshes_shade_like_the_solids_that_they_are(void **state)
     render_result_destroy(triangles);
 }
 
-/* --- Whitted's rays beside random paths */
+/* --- Whitted's rays compared with random paths */
 
-/* A dark floor 1 under water, a lamp 500 above, which the water does not mirror into the eye. Whitted's lamp is its
- * point. */
+/* A dark floor 1 under water, a lamp 500 above, which the water does not reflect into the camera. For Whitted's rays
+ * the lamp is a point. */
 static const char dark_floor[] = "background: {color: [0, 0, 0]}\n"
                                  "render: {width: 16, height: 16, depth: 3, beyond: black, radiance: basic}\n"
                                  "camera: {position: [0, 200, 80], target: [0, 0, 0], fov_deg: 0.2}\n"
@@ -371,7 +369,7 @@ static void trees_and_paths_agree_on_a_dark_floor_under_water(void **state)
         set_all(s, "render.radiance=basic lamp.radius=150 render.integrator=path render.paths=6400");
         const double paths = mean_of(s);
         set_all(s, "render.radiance=classic");
-        assert_true(n == 1.0 || mean_of(s) == paths); /* eye and lamp are in one medium */
+        assert_true(n == 1.0 || mean_of(s) == paths); /* camera and lamp are in one medium */
         print_message("n %g: Whitted's over the paths' light %.4f with basic radiance, %.4f with classic\n", n,
                       tree / paths, classic / paths);
         assert_true(fabs(tree / wanted - 1.0) < 1e-3);
@@ -380,8 +378,8 @@ static void trees_and_paths_agree_on_a_dark_floor_under_water(void **state)
     }
 }
 
-/* A lamp under water is seen by a diver as it is, and from above as T / n^2 of it. */
-static void a_shining_sphere_counts_by_the_medium_that_it_shines_into(void **state)
+/* A lamp under water is unchanged for a diver, and has T / n^2 of its radiance from above. */
+static void a_light_sphere_counts_by_the_medium_that_it_emits_into(void **state)
 {
     (void)state;
     const char *const lamp = "render.integrator=path render.paths=4096 lamp.position=0,0.4,0 "
@@ -394,8 +392,8 @@ static void a_shining_sphere_counts_by_the_medium_that_it_shines_into(void **sta
     scene_destroy(s);
 }
 
-/* Direct light of a sphere on a floor in one medium, pi L (r / d)^2 cos theta, is sent out there: T / n^2 of it
- * reaches an eye in air. */
+/* Direct light of a sphere on a floor in one medium, pi L (r / d)^2 cos theta, is emitted there: T / n^2 of it reaches
+ * a camera in air. */
 static void a_sphere_lights_its_own_medium(void **state)
 {
     (void)state;
@@ -410,7 +408,7 @@ static void a_sphere_lights_its_own_medium(void **state)
     scene_destroy(s);
 }
 
-/* --- what stays as it is */
+/* --- invariants */
 
 static uint64_t hash_of(const char *settings)
 {
@@ -450,8 +448,7 @@ static void the_film_is_the_same_for_any_threads(void **state)
     }
 }
 
-/* Which rays are followed does not depend on what they carry: throughputs are shares of the camera ray, in any
- * medium. */
+/* The traced rays do not depend on the kind of radiance: throughputs are shares of the camera ray, in any medium. */
 static void the_same_rays_are_followed(void **state)
 {
     (void)state;
@@ -469,9 +466,9 @@ static void the_same_rays_are_followed(void **state)
     scene_destroy(s);
 }
 
-/* --- what a ray says of it */
+/* --- values in ray trees */
 
-static void a_tree_says_what_each_refraction_does_to_radiance(void **state)
+static void a_tree_contains_the_radiance_factor_of_each_refraction(void **state)
 {
     (void)state;
     stage g = stage_of(diver, "water.ior=1.5 water.transparency=0.9");
@@ -498,21 +495,21 @@ int main(void)
         cmocka_unit_test(the_sky_from_under_water_has_the_square_of_the_index),
         cmocka_unit_test(random_paths_see_the_same_sky),
         cmocka_unit_test(each_wavelength_has_its_own_square),
-        cmocka_unit_test(a_furnace_shows_nothing_but_the_eyes_own_medium),
-        cmocka_unit_test(what_a_floor_sends_leaves_water_thinned_out),
+        cmocka_unit_test(a_furnace_shows_only_the_cameras_own_medium),
+        cmocka_unit_test(radiance_of_a_floor_decreases_on_leaving_water),
         cmocka_unit_test(in_one_medium_nothing_changes),
         cmocka_unit_test(a_lamp_lights_the_floor_through_the_surface),
         cmocka_unit_test(panes_shade_by_fresnel_on_both_faces),
         cmocka_unit_test(spheres_and_cylinders_shade_by_the_angle_of_the_straight_ray),
         cmocka_unit_test(each_interface_counts_once_with_its_own_indices),
-        cmocka_unit_test(meshes_shade_like_the_solids_that_they_are),
+        cmocka_unit_test(meshes_cast_the_same_shadows_as_solids),
         cmocka_unit_test(trees_and_paths_agree_on_a_dark_floor_under_water),
-        cmocka_unit_test(a_shining_sphere_counts_by_the_medium_that_it_shines_into),
+        cmocka_unit_test(a_light_sphere_counts_by_the_medium_that_it_emits_into),
         cmocka_unit_test(a_sphere_lights_its_own_medium),
         cmocka_unit_test(without_refraction_the_film_is_the_classic_one),
         cmocka_unit_test(the_film_is_the_same_for_any_threads),
         cmocka_unit_test(the_same_rays_are_followed),
-        cmocka_unit_test(a_tree_says_what_each_refraction_does_to_radiance),
+        cmocka_unit_test(a_tree_contains_the_radiance_factor_of_each_refraction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

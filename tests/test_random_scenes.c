@@ -1,3 +1,4 @@
+/* Tests of a thousand random scenes: invariants for all solids and camera positions. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,11 +8,9 @@
 
 #include "random_scene.h"
 
-/* A thousand random scenes: what must hold whatever the solids are and wherever the camera stands. */
-
 enum { SCENES = 1000, WIDTH = 8, HEIGHT = 6 };
 
-/* The kinds of scenes: every one of these in turn. */
+/* The kinds of scenes, used in turn. */
 static const char *const ways_to_render[] = {
     "render.depth=5",
     "render.depth=5 render.beyond=black",
@@ -50,7 +49,7 @@ static bool is_point(vec3 p)
     return isfinite(p.x) && isfinite(p.y) && isfinite(p.z);
 }
 
-/* Numbers are numbers, shares are shares, unit vectors are unit vectors, and no child outweighs its parent. */
+/* No NaN, shares in 0..1, unit vectors of length 1, and no child with more weight than its parent. */
 static const char *fault_of(const ray_tree *tree, const ray_node *node)
 {
     const ray_hit *h = &node->hit;
@@ -79,9 +78,9 @@ static const char *fault_of(const ray_tree *tree, const ray_node *node)
     return NULL;
 }
 
-/* Which medium is a little along a direction from a point: by the solids' own shapes. false where another boundary lies
- * within the step, so that a near and a far step do not agree, and so far out that the nearest step is lost in
- * rounding. */
+/* The medium a small step along a direction from a point, by the solids' own shapes. Returns false if another boundary
+ * is within the step, so that a near and a far step disagree, or if the point is so far out that rounding loses the
+ * nearest step. */
 static bool medium_along(const probe *p, vec3 point, vec3 direction, int *medium)
 {
     *medium = probe_medium_at(p, vec3_add(point, vec3_scale(direction, 1e-8)));
@@ -170,22 +169,22 @@ static survey look_at_scenes(uint64_t seed, bool lit)
     return sum;
 }
 
-/* No interface hands on more than it gets, no opaque surface either: R + T <= 1, k_a + k_r <= 1. */
+/* No interface and no opaque surface creates light: R + T <= 1, k_a + k_r <= 1. */
 static void under_a_sky_of_one_nothing_is_brighter(void **state)
 {
     (void)state;
     assert_true(look_at_scenes(5, false).brightest <= 1.0 + 1e-12);
 }
 
-static void with_lights_the_probe_sees_what_the_picture_shows(void **state)
+static void with_lights_the_probe_equals_the_image(void **state)
 {
     (void)state;
     assert_true(look_at_scenes(6, true).brightest > 1.0);
 }
 
-/* Solids on a grid, and rays from its points along axes and diagonals: through corners, along edges, within faces.
- * Which of two media is there is then open; that numbers are numbers, and that no energy is lost or made, is not. */
-static void rays_through_corners_and_along_edges_are_sound(void **state)
+/* Solids on a grid, and rays from its points along axes and diagonals: through corners, along edges, inside faces. The
+ * medium is then ambiguous, but values must be numbers, and energy must be conserved. */
+static void rays_through_corners_and_along_edges_are_valid(void **state)
 {
     (void)state;
     uint64_t seed = 7;
@@ -219,8 +218,8 @@ static void rays_through_corners_and_along_edges_are_sound(void **state)
     assert_true(worst <= 1e-9 && rays > 150000);
 }
 
-/* A ray within the plane of a face that its origin lies on leaves the solid there, or on the way: never by the face
- * opposite. The sign of a zero component says which of the two half-spaces it counts to. */
+/* A ray in the plane of a face that contains its origin leaves the solid there, or later, but never through the
+ * opposite face. The sign of a zero component decides its half-space. */
 static void a_ray_within_a_face_does_not_leave_by_the_opposite_one(void **state)
 {
     (void)state;
@@ -246,9 +245,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(under_a_sky_of_one_nothing_is_brighter),
-        cmocka_unit_test(rays_through_corners_and_along_edges_are_sound),
+        cmocka_unit_test(rays_through_corners_and_along_edges_are_valid),
         cmocka_unit_test(a_ray_within_a_face_does_not_leave_by_the_opposite_one),
-        cmocka_unit_test(with_lights_the_probe_sees_what_the_picture_shows),
+        cmocka_unit_test(with_lights_the_probe_equals_the_image),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests of whole images against closed forms: slabs, furnaces, Phong's model at points computed by hand. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,12 +9,10 @@
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
-/* Whole pictures against closed forms: slabs, furnaces, Phong's sum at points worked out by hand. */
-
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* A slab seen head-on from below. What passes goes up, to a red zenith; what comes back goes down, to a green
- * horizon. */
+/* A slab at normal incidence from below. Transmitted light goes up, to a red zenith; reflected light goes down, to a
+ * green horizon. */
 static const char slab_scene[] = "render: {width: 1, height: 1, shadows: off}\n"
                                  "camera: {position: [0, -5, 0], pitch_deg: 90, fov_deg: 1}\n"
                                  "background: {kind: gradient, color: [1, 0, 0], horizon: [0, 1, 0]}\n"
@@ -24,8 +23,8 @@ typedef struct slab_light {
     double passed, back, inside_up, inside_down;
 } slab_light;
 
-/* All paths of at most depth interfaces, R and T at each; the light then still inside, by where it goes. Born and
- * Wolf, 7.6.1, without interference: R + T^2 R + T^2 R^3 + ... comes back, T^2 + T^2 R^2 + ... passes. */
+/* All paths of at most depth interfaces, R and T at each; then the light still inside, by direction. Born and Wolf,
+ * 7.6.1, without interference: R + T^2 R + T^2 R^3 + ... is reflected, T^2 + T^2 R^2 + ... transmitted. */
 static slab_light slab_series(double R, double T, int depth)
 {
     slab_light l = {0.0, 0.0, 0.0, 0.0};
@@ -43,7 +42,7 @@ static slab_light slab_series(double R, double T, int depth)
     return l;
 }
 
-/* Head-on there is one ray inside, and each interface makes two of it. */
+/* At normal incidence there is one ray inside, and each interface splits it in two. */
 static void check_slab_counters(const ray_counters *c, int depth, double cut)
 {
     assert_near((double)c->cut_depth_throughput[0] / COUNTERS_CUT_ONE, cut, 1e-10);
@@ -66,15 +65,14 @@ static void check_slab(scene *s, double R, double T, double lost_share)
         assert_near(film_value(result->img, 0, 0, 0), wanted.passed, 1e-12);
         assert_near(film_value(result->img, 0, 0, 1), wanted.back, 1e-12);
         assert_true(film_value(result->img, 0, 0, 2) == 0.0);
-        /* what is cut off is the light that the last ray inside carries to its interface, and what that interface
-         * makes of it */
+        /* the cut light is that which the last ray inside carries to its interface, split in two there */
         const double inside = wanted.inside_up + wanted.inside_down, cut = inside * (R + T);
         if (CUVETTE_COUNTERS)
             check_slab_counters(&result->counters, depth, cut);
         render_result_destroy(result);
         if (lost_share == 0.0)
             assert_near(wanted.passed + wanted.back + cut, 1.0, 1e-14);
-        /* beyond the last depth the sky: the two cut branches see it where they would have gone */
+        /* at the depth limit the sky: the two cut branches take it from their directions */
         s->render.beyond = DEPTH_LIMIT_SKY;
         const slab_light next = slab_series(R, T, depth + 1);
         vec3 seen = look(s);
@@ -91,7 +89,7 @@ static void slab_under_fresnel_weights(void **state)
     set(s, "slab.ior=2.42");
     const double r = 1.42 / 3.42;
     check_slab(s, r * r, 1.0 - r * r, 0.0);
-    set(s, "slab.transparency=0.8"); /* each interface keeps a fifth of what it refracts */
+    set(s, "slab.transparency=0.8"); /* each interface transmits a fifth of what it refracts */
     check_slab(s, r * r, 0.8 * (1.0 - r * r), 0.2);
     scene_destroy(s);
 }
@@ -107,7 +105,7 @@ static void slab_under_constant_weights(void **state)
     scene_destroy(s);
 }
 
-static void branches_that_weigh_too_little_are_cut(void **state)
+static void branches_below_the_minimum_weight_are_cut(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_scene);
@@ -124,9 +122,9 @@ static void branches_that_weigh_too_little_are_cut(void **state)
     scene_destroy(s);
 }
 
-/* In a slab that lets one channel pass alone: a branch goes on for as long as that one weighs enough, whichever it is.
- * R comes back, and T^2 and T^2 R of the clear channel; its next branch weighs 0.96 R^2. */
-static void a_branch_weighs_what_its_heaviest_channel_does(void **state)
+/* In a slab that transmits one channel only: a branch continues as long as that channel has enough weight, whichever it
+ * is. R is reflected, and T^2 and T^2 R of the clear channel; its next branch has weight 0.96 R^2. */
+static void a_branchs_weight_is_its_largest_channel(void **state)
 {
     (void)state;
     static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9",
@@ -145,10 +143,10 @@ static void a_branch_weighs_what_its_heaviest_channel_does(void **state)
     }
 }
 
-/* In a slab of unit thickness that lets exp(-a) of each channel pass. The first branches weigh R and T; the one inside
- * makes T exp(-a) (R + T) of itself at the other side, all of which depth 1 cuts off, and a least weight of 0.5 the
+/* In a slab of unit thickness that transmits exp(-a) of each channel. The first branches have weights R and T; the one
+ * inside yields T exp(-a) (R + T) at the other side, all of which depth 1 cuts off; a min_weight of 0.5 cuts the
  * smaller of each pair. */
-static void what_is_cut_off_is_counted_by_channel(void **state)
+static void cut_throughput_is_counted_by_channel(void **state)
 {
     (void)state;
     need_counters();
@@ -169,7 +167,7 @@ static void what_is_cut_off_is_counted_by_channel(void **state)
     scene_destroy(s);
 }
 
-/* Clear solids in one another, a mirror, and the camera among them. */
+/* Nested clear solids, a mirror, and the camera inside them. */
 static const char furnace_scene[] =
     "render: {width: 24, height: 18, shadows: off}\n"
     "camera: {position: [0.3, 2.5, -5], target: [0, 1, 0], fov_deg: 40}\n"
@@ -215,15 +213,15 @@ static void every_pixel_of_a_white_furnace_is_white(void **state)
     check_furnace("");
 }
 
-/* With shares that add up to 1; what total internal reflection does not let pass goes back too. */
+/* With weights that add up to 1; under total internal reflection the transmitted share is reflected too. */
 static void a_furnace_under_constant_weights_is_white(void **state)
 {
     (void)state;
     check_furnace("render.weights=constant clear.reflectivity=0.1 clear.transparency=0.9");
 }
 
-/* What the film lacks of white was cut off, by depth or by weight, and is counted. */
-static void light_that_is_cut_off_is_accounted_for(void **state)
+/* The difference from white was cut off, by depth or by weight, and is counted. */
+static void cut_light_is_accounted_for(void **state)
 {
     (void)state;
     need_counters();
@@ -250,7 +248,7 @@ static void light_that_is_cut_off_is_accounted_for(void **state)
     scene_destroy(s);
 }
 
-/* The 2 x 2 samples of a pixel are the centres of the pixels of a picture twice as fine. */
+/* The 2 x 2 samples of a pixel are the pixel centres of an image with twice the resolution. */
 static void four_samples_are_the_mean_of_four_pixels(void **state)
 {
     (void)state;
@@ -272,9 +270,9 @@ static void four_samples_are_the_mean_of_four_pixels(void **state)
     scene_destroy(fine);
 }
 
-/* Yaw turns the camera from z towards x, so that right is (cos yaw, 0, -sin yaw); pitch lifts it. A ball there is in
+/* Yaw rotates the camera from z towards x, so that right is (cos yaw, 0, -sin yaw); pitch raises it. A ball there is in
  * the middle of the right one of two pixels, at tan 30 degrees. */
-static void what_is_to_the_right_is_seen_to_the_right(void **state)
+static void objects_on_the_right_are_on_the_right_of_the_image(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 2, height: 1, shadows: off}\n"
@@ -298,7 +296,7 @@ static void what_is_to_the_right_is_seen_to_the_right(void **state)
 }
 
 /* A crossing between equal indices is no interface: no highlight, no depth, no ray. */
-static void solids_of_index_one_are_not_there(void **state)
+static void solids_of_index_one_are_invisible(void **state)
 {
     (void)state;
     for (int depth = 0; depth <= 4; depth += 2) {
@@ -319,7 +317,7 @@ static void solids_of_index_one_are_not_there(void **state)
     }
 }
 
-/* As POV-Ray and a third program count them for this scene. */
+/* The counts of POV-Ray and a third program for this scene. */
 static void first_hits_of_the_rod_scene(void **state)
 {
     (void)state;
@@ -334,9 +332,9 @@ static void first_hits_of_the_rod_scene(void **state)
     scene_destroy(s);
 }
 
-/* Neighbours leave one slab through one face, some into an opaque box, some into the open: the surface is not the same
- * body's. */
-static void neighbours_may_meet_different_bodies_on_one_face(void **state)
+/* Neighbouring rays leave a slab through one face, some into an opaque box, some into the open: the surface belongs to
+ * different regions. */
+static void neighbours_may_hit_different_regions_on_one_face(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -364,17 +362,17 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slab_under_fresnel_weights),
         cmocka_unit_test(slab_under_constant_weights),
-        cmocka_unit_test(branches_that_weigh_too_little_are_cut),
-        cmocka_unit_test(a_branch_weighs_what_its_heaviest_channel_does),
-        cmocka_unit_test(what_is_cut_off_is_counted_by_channel),
+        cmocka_unit_test(branches_below_the_minimum_weight_are_cut),
+        cmocka_unit_test(a_branchs_weight_is_its_largest_channel),
+        cmocka_unit_test(cut_throughput_is_counted_by_channel),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(a_furnace_under_constant_weights_is_white),
-        cmocka_unit_test(light_that_is_cut_off_is_accounted_for),
+        cmocka_unit_test(cut_light_is_accounted_for),
         cmocka_unit_test(four_samples_are_the_mean_of_four_pixels),
-        cmocka_unit_test(what_is_to_the_right_is_seen_to_the_right),
-        cmocka_unit_test(solids_of_index_one_are_not_there),
+        cmocka_unit_test(objects_on_the_right_are_on_the_right_of_the_image),
+        cmocka_unit_test(solids_of_index_one_are_invisible),
         cmocka_unit_test(first_hits_of_the_rod_scene),
-        cmocka_unit_test(neighbours_may_meet_different_bodies_on_one_face),
+        cmocka_unit_test(neighbours_may_hit_different_regions_on_one_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

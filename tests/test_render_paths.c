@@ -1,3 +1,5 @@
+/* Tests of the paths of single rays, interface by interface, against closed forms: position, direction, angles,
+ * weight. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -6,8 +8,6 @@
 #include <cmocka.h>
 
 #include "layers_fixture.h"
-
-/* Ways of single rays, interface by interface, against closed forms: position, direction, angles, weight. */
 
 static const double BOUND = 1e-10; /* relative, whatever the number of interfaces */
 static const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {-8.0, 112.0, 203.0}};
@@ -39,7 +39,7 @@ static void snell_holds_from_either_side(void **state)
     }
 }
 
-/* How slabs are modelled: each by itself; each reaching up to the top, those above it winning there. */
+/* How slabs are modelled: each separately; or each extending to the top, with higher priority above. */
 typedef enum piling { SINGLY, OVERLAPPING } piling;
 
 static stage pile(const layers *l, piling how, vec3 position, vec3 rotation_deg)
@@ -59,8 +59,8 @@ static stage pile(const layers *l, piling how, vec3 position, vec3 rotation_deg)
     return stage_of(text.at, "");
 }
 
-/* A pile of plane parallel slabs: it leaves as it came, shifted by the sum of d (tan i - tan t) (Hecht, 4.4.1), and
- * keeps the product of Fresnel's transmittances. */
+/* A pile of plane parallel slabs: the ray leaves in its original direction, shifted by the sum of d (tan i - tan t)
+ * (Hecht, 4.4.1), with the product of Fresnel's transmittances. */
 static void check_pile(const layers *l, piling how)
 {
     double deep = 0.0;
@@ -73,7 +73,7 @@ static void check_pile(const layers *l, piling how)
             const ray_tree *tree = stage_way(&g, w.origin, w.direction, -1);
             assert_true(way_error(tree, &w, deep) <= BOUND);
             assert_true(apart(tree->node[w.count].direction, tree->node[0].direction) <= BOUND);
-            double shift = 0.0; /* along the slabs, against the ray that nothing bends */
+            double shift = 0.0; /* along the slabs, relative to the undeflected ray */
             for (int k = 0; k < l->count; k++)
                 shift += l->thickness[k] * (tan(angle) - tan(asin(l->outside * sin(angle) / l->n[k])));
             const vec3 unbent = vec3_add(places[turn], turned(vec3_make(deep * tan(angle), -deep, 0.0), turns[turn]));
@@ -101,7 +101,7 @@ static void slabs_in_contact_shift_a_ray(void **state)
                            {1.5, 1.33, 1.7, 1.2, 2.42, 1.1, 1.45, 1.6, 1.36, 1.9, 1.3, 1.52},
                            {0.3, 0.2, 0.5, 0.1, 0.25, 0.4, 0.2, 0.15, 0.3, 0.1, 0.35, 0.2}};
     check_pile(&twelve, OVERLAPPING); /* 13 interfaces */
-    check_pile(&twelve, SINGLY);      /* faces that coincide but for a rounding */
+    check_pile(&twelve, SINGLY);      /* faces that coincide up to rounding */
 }
 
 static stage nest(const shells *s, bool round, double height, vec3 position, vec3 rotation_deg)
@@ -119,7 +119,8 @@ static stage nest(const shells *s, bool round, double height, vec3 position, vec
     return stage_of(text.at, "");
 }
 
-/* Turned by twice the sum of (i - t) in all (Born and Wolf, 3.2.1): heading starts at 0 and is held in the frame. */
+/* The total deflection is twice the sum of (i - t) (Born and Wolf, 3.2.1): heading starts at 0 and is measured in the
+ * frame. */
 static double deviation_of(const shells *s, double offset)
 {
     double sum = 0.0;
@@ -135,7 +136,7 @@ static const shells in_water = {6, {1.1, 1.0, 0.9, 0.8, 0.7, 0.6}, {1.33, 1.5, 1
 static const shells *const nests[] = {&seven_shells, &in_water};
 enum { NESTS = 2 };
 
-/* The largest offset at which all shells are reached, whatever the rise. */
+/* The largest offset at which the ray hits all shells, whatever the rise. */
 static double widest(const shells *s, double d_y)
 {
     double least = s->radius[0];
@@ -183,7 +184,7 @@ static void skew_rays_through_coaxial_cylinders_follow_bravais(void **state)
     }
 }
 
-/* In any plane through the centre; n times the distance of the ray's line from the centre stays. */
+/* In any plane through the centre; n times the distance of the ray's line from the centre is invariant. */
 static void nested_spheres_keep_the_impact_parameter(void **state)
 {
     (void)state;
@@ -232,10 +233,10 @@ static void a_vessel_with_its_liquid_refracts_like_shells_and_layers(void **stat
     }
 }
 
-/* Rainbows: behind k reflections inside a drop light is turned by D = 2 (i - r) + k (pi - 2 r) (Hecht, problem 4.32;
- * van de Hulst, Light Scattering by Small Particles, 12.31), and meets the surface every pi - 2 r; T R^k T of it
+/* Rainbows: k reflections inside a drop deflect light by D = 2 (i - r) + k (pi - 2 r) (Hecht, problem 4.32; van de
+ * Hulst, Light Scattering by Small Particles, 12.31), with a hit on the surface every pi - 2 r; T R^k T of it
  * leaves. */
-static void reflections_inside_a_drop_turn_light_like_rainbows(void **state)
+static void reflections_inside_a_drop_deflect_light_like_rainbows(void **state)
 {
     (void)state;
     static const double pairs[][2] = {{1.0, 1.333}, {1.0, 1.5}, {1.0, 2.42}, {1.33, 1.5}};
@@ -268,7 +269,8 @@ static void reflections_inside_a_drop_turn_light_like_rainbows(void **state)
     }
 }
 
-/* A prism of apex angle A, which points along +y: a box of glass, clipped by two half-spaces of what surrounds it. */
+/* A prism of apex angle A, which points along +y: a box of glass, clipped by two half-spaces of the surrounding
+ * medium. */
 static stage prism(double apex, double n, double outside)
 {
     const double lean_deg = 90.0 + 0.5 * apex / DEGREE;
@@ -284,7 +286,7 @@ static stage prism(double apex, double n, double outside)
 static double deviation_through(stage *g, double apex, double angle_i)
 {
     const vec3 entry = vec3_make(-sin(0.5 * apex), -cos(0.5 * apex), 0.0);
-    /* the face's inward normal stands at -A/2 from +x; the ray comes from below it */
+    /* the face's inward normal is at -A/2 from +x; the ray comes from below it */
     const double heading = -0.5 * apex + angle_i;
     const vec3 d = vec3_make(cos(heading), sin(heading), 0.0);
     const ray_tree *tree = stage_way(g, vec3_sub(entry, d), d, -1);
@@ -295,9 +297,9 @@ static double deviation_through(stage *g, double apex, double angle_i)
     return atan2(d.y, d.x) - atan2(out.y, out.x); /* towards the base */
 }
 
-/* D = i + t2 - A with r + r2 = A (Hecht, 5.5.1, eqs. 5.52 to 5.54), least where both sides are alike: n = sin((A +
- * D)/2) / sin(A/2). */
-static void a_prism_deviates_least_where_both_sides_are_alike(void **state)
+/* D = i + t2 - A with r + r2 = A (Hecht, 5.5.1, eqs. 5.52 to 5.54), least in the symmetric case: n = sin((A + D)/2) /
+ * sin(A/2). */
+static void a_prism_deviates_least_in_the_symmetric_case(void **state)
 {
     (void)state;
     static const double apexes[] = {20.0 * DEGREE, 45.0 * DEGREE, 60.0 * DEGREE},
@@ -331,8 +333,8 @@ int main(void)
         cmocka_unit_test(skew_rays_through_coaxial_cylinders_follow_bravais),
         cmocka_unit_test(nested_spheres_keep_the_impact_parameter),
         cmocka_unit_test(a_vessel_with_its_liquid_refracts_like_shells_and_layers),
-        cmocka_unit_test(reflections_inside_a_drop_turn_light_like_rainbows),
-        cmocka_unit_test(a_prism_deviates_least_where_both_sides_are_alike),
+        cmocka_unit_test(reflections_inside_a_drop_deflect_light_like_rainbows),
+        cmocka_unit_test(a_prism_deviates_least_in_the_symmetric_case),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

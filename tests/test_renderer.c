@@ -1,3 +1,4 @@
+/* Tests of the renderer besides its images: errors by value, interruption, no state shared between two renderers. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -8,8 +9,6 @@
 
 #include "render_fixture.h"
 #include "scene/model/scene.h"
-
-/* What a renderer promises beside its picture: errors by value, interruption, no state shared between two of them. */
 
 static status try_to_render(const scene *s, diagnostic *why)
 {
@@ -31,7 +30,7 @@ static void light_beyond_the_films_range_is_an_error(void **state)
     assert_int_equal(scene_set(s, "lamp.intensity", "1e9", &why), STATUS_BAD_INPUT); /* the table's own range */
     s->lights[0].intensity = 1e9;
     assert_int_equal(try_to_render(s, &why), STATUS_BAD_INPUT);
-    set_all(s, "lamp.intensity=10000 lamp.color=10000,1,1"); /* each allowed, both together not */
+    set_all(s, "lamp.intensity=10000 lamp.color=10000,1,1"); /* each is valid, but not both together */
     assert_int_equal(try_to_render(s, &why), STATUS_BAD_INPUT);
     assert_true(why.what[0] && why.remedy[0]);
     set(s, "lamp.color=20,1,1");
@@ -39,7 +38,7 @@ static void light_beyond_the_films_range_is_an_error(void **state)
     scene_destroy(s);
 }
 
-/* As render/core/tracer.c says of contributions that are not numbers; with shadow rays and without. */
+/* Contributions that are not numbers are detected; with shadow rays and without. */
 static void light_that_is_not_a_number_is_an_error(void **state)
 {
     (void)state;
@@ -71,7 +70,7 @@ static void a_sum_beyond_the_films_range_is_an_error(void **state)
     scene_destroy(s);
 }
 
-static void a_scene_that_is_wrong_is_refused(void **state)
+static void an_invalid_scene_is_refused(void **state)
 {
     (void)state;
     diagnostic why = {0};
@@ -103,7 +102,7 @@ static bool go_on(void *context, double share)
     return true;
 }
 
-/* Stops a large frame, then renders a small one, which must be as if nothing had been. */
+/* Stops a large frame, then renders a small one, which must not be affected. */
 static void stop_and_go_on(renderer *r, const scene *large, const scene *small, const render_result *undisturbed)
 {
     render_result *part = NULL, *after = NULL;
@@ -136,7 +135,7 @@ static void stop_some_frames(scene *large, scene *small, int count)
     scene_destroy(small);
 }
 
-/* A frame that would take minutes ends when it is told to; what was done is there, and the next frame is right. */
+/* A frame that would take minutes ends on request; the finished part is kept, and the next frame is correct. */
 static void an_interrupted_frame_ends_and_leaves_no_trace(void **state)
 {
     (void)state;
@@ -144,8 +143,8 @@ static void an_interrupted_frame_ends_and_leaves_no_trace(void **state)
                      rod_scene("render.width=64 render.height=48 render.threads=3"), 2);
 }
 
-/* More workers than processors: those that come late must not go on where the stopped ones left off. */
-static void a_stopped_crowd_leaves_nothing_behind(void **state)
+/* More workers than processors: workers that start late must not continue the work of stopped ones. */
+static void many_stopped_workers_leave_no_trace(void **state)
 {
     (void)state;
     stop_some_frames(rod_scene("render.width=1024 render.height=1024 render.depth=30 render.threads=512 "
@@ -239,9 +238,9 @@ int main(void)
         cmocka_unit_test(light_beyond_the_films_range_is_an_error),
         cmocka_unit_test(light_that_is_not_a_number_is_an_error),
         cmocka_unit_test(a_sum_beyond_the_films_range_is_an_error),
-        cmocka_unit_test(a_scene_that_is_wrong_is_refused),
+        cmocka_unit_test(an_invalid_scene_is_refused),
         cmocka_unit_test(an_interrupted_frame_ends_and_leaves_no_trace),
-        cmocka_unit_test(a_stopped_crowd_leaves_nothing_behind),
+        cmocka_unit_test(many_stopped_workers_leave_no_trace),
         cmocka_unit_test(progress_changes_nothing),
         cmocka_unit_test(two_renderers_at_once),
         cmocka_unit_test(a_renderer_serves_one_scene_after_another),

@@ -1,3 +1,4 @@
+/* Tests that rays and their reversals have the same points, throughput and absorption, in random scenes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -45,7 +46,7 @@ static tally many_ways(uint64_t seed, bool absorbing)
     return sum;
 }
 
-static void a_way_back_meets_the_same_points_with_the_same_throughput(void **state)
+static void a_reversed_path_has_the_same_points_and_throughput(void **state)
 {
     (void)state;
     const tally sum = many_ways(1, false);
@@ -53,7 +54,7 @@ static void a_way_back_meets_the_same_points_with_the_same_throughput(void **sta
     assert_true(sum.ways > 2000 && sum.crossings > 6000 && sum.other_media > 500 && sum.reflected > 500);
 }
 
-static void media_that_absorb_take_the_same_both_ways(void **state)
+static void absorption_is_equal_in_both_directions(void **state)
 {
     (void)state;
     const tally sum = many_ways(2, true);
@@ -64,8 +65,8 @@ static void media_that_absorb_take_the_same_both_ways(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_way_back_meets_the_same_points_with_the_same_throughput),
-        cmocka_unit_test(media_that_absorb_take_the_same_both_ways),
+        cmocka_unit_test(a_reversed_path_has_the_same_points_and_throughput),
+        cmocka_unit_test(absorption_is_equal_in_both_directions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

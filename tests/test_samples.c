@@ -1,3 +1,5 @@
+/* Tests of pixel samples: the middles of k x k cells. One pixel covers, at z = 1, the square from -1 to 1, with a white
+ * wall that ends at an edge: the wall's share is that of the cells whose middle it covers. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,9 +11,6 @@
 #include "render_fixture.h"
 #include "scene/model/scene.h"
 
-/* Samples of a pixel: the middles of k x k cells. One pixel sees, at z = 1, the square from -1 to 1, and in it a white
- * wall that ends at an edge: its share is that of the cells whose middle it covers. */
-
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static const char wall[] = "render: {width: 1, height: 1, depth: 0}\n"
@@ -19,7 +18,7 @@ static const char wall[] = "render: {width: 1, height: 1, depth: 0}\n"
                            "background: {color: [0, 0, 0], ambient: [1, 1, 1]}\n"
                            "solids: {wall: {shape: box, size: [20, 20, 1e-6], ambient: 1}}\n";
 
-/* Of k cells from -1 to 1, those whose middle lies below the edge. */
+/* The number of k cells from -1 to 1 whose middle is below the edge. */
 static int covered(int k, double edge)
 {
     int count = 0;
@@ -46,7 +45,7 @@ static void an_edge_covers_the_cells_whose_middle_it_covers(void **state)
     scene_destroy(s);
 }
 
-/* A corner: the cells are told apart in both directions at once. */
+/* A corner distinguishes the cells in both directions at once. */
 static void a_corner_covers_a_rectangle_of_cells(void **state)
 {
     (void)state;
@@ -59,8 +58,8 @@ static void a_corner_covers_a_rectangle_of_cells(void **state)
     scene_destroy(s);
 }
 
-/* Wavelengths and random paths go through the same points; sixteen paths are too few for 64 points, and take 16. */
-static void other_films_take_the_same_points(void **state)
+/* Wavelengths and random paths use the same points; sixteen paths are too few for 64 points, and use 16. */
+static void other_films_use_the_same_points(void **state)
 {
     (void)state;
     scene *s = scene_from(wall);
@@ -69,7 +68,7 @@ static void other_films_take_the_same_points(void **state)
     assert_near(look(s).y, 4.0 / 8.0, 1e-9);
     s->solids[0].shape.position = vec3_make(0.2 - 10.0, 0.0, 1.0); /* the fifth column's middle is 0.125 */
     assert_near(look(s).y, 5.0 / 8.0, 1e-9);
-    /* here the wall is black before a white sky */
+    /* here the wall is black in front of a white sky */
     set_all(s, "render.spectrum=rgb render.integrator=path render.paths=64 background.color=1,1,1");
     assert_near(look(s).y, 3.0 / 8.0, 1e-9);
     s->render.paths = 16; /* middles -0.75, -0.25, 0.25, 0.75 */
@@ -77,7 +76,7 @@ static void other_films_take_the_same_points(void **state)
     scene_destroy(s);
 }
 
-/* The most samples with the most wavelengths fit beside the largest pixel and wavelength. */
+/* The largest number of samples and wavelengths fits with the largest pixel and wavelength. */
 static void a_sample_key_holds_the_last_sample_of_the_last_pixel(void **state)
 {
     (void)state;
@@ -94,7 +93,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_edge_covers_the_cells_whose_middle_it_covers),
         cmocka_unit_test(a_corner_covers_a_rectangle_of_cells),
-        cmocka_unit_test(other_films_take_the_same_points),
+        cmocka_unit_test(other_films_use_the_same_points),
         cmocka_unit_test(a_sample_key_holds_the_last_sample_of_the_last_pixel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,3 +1,4 @@
+/* Tests of the schedule: every pixel goes to exactly one worker. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -16,7 +17,7 @@ static render_settings settings_of(schedule_rule rule, int width, int height, in
     return (render_settings){.width = width, .height = height, .schedule = rule, .tile = tile, .threads = workers};
 }
 
-/* Marks a piece, which must lie in the picture and be new. */
+/* Marks a piece, which must be inside the image and not marked yet. */
 static void mark(unsigned char *seen, int width, int height, const span *s)
 {
     assert_true(s->x0 >= 0 && s->x0 < s->x1 && s->x1 <= width);
@@ -52,8 +53,8 @@ static void every_pixel_goes_to_exactly_one_worker(void **state)
                 }
 }
 
-/* As the report deals them out: ceil(width / threads) columns each, the last ones what is left. */
-static void columns_and_rows_are_one_block_a_worker(void **state)
+/* As in the report: ceil(width / threads) columns each, the last block gets the rest. */
+static void columns_and_rows_are_one_block_per_worker(void **state)
 {
     (void)state;
     const render_settings columns = settings_of(SCHEDULE_COLUMNS, 800, 600, 32, 7),
@@ -87,7 +88,7 @@ static void workers_without_a_share_get_none(void **state)
         assert_true(schedule_next(&s, w, 0, &piece) == (w < 10));
 }
 
-/* Tiles are dealt out in turn, in reading order. */
+/* Tiles are assigned in turn, in reading order. */
 static void static_tiles_go_round(void **state)
 {
     (void)state;
@@ -112,7 +113,7 @@ typedef struct asker {
     unsigned char *seen;
 } asker;
 
-/* Each pixel is marked by one thread alone if the schedule is right; ThreadSanitizer sees it if not. */
+/* With a correct schedule each pixel is marked by one thread only; otherwise ThreadSanitizer reports it. */
 static void *ask(void *argument)
 {
     const asker *a = argument;
@@ -124,7 +125,7 @@ static void *ask(void *argument)
     return NULL;
 }
 
-static void threads_that_ask_at_once_share_all_tiles(void **state)
+static void concurrent_threads_share_all_tiles(void **state)
 {
     (void)state;
     const render_settings settings = settings_of(SCHEDULE_DYNAMIC, WIDTH, HEIGHT, 2, ASKERS);
@@ -147,10 +148,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_pixel_goes_to_exactly_one_worker),
-        cmocka_unit_test(columns_and_rows_are_one_block_a_worker),
+        cmocka_unit_test(columns_and_rows_are_one_block_per_worker),
         cmocka_unit_test(workers_without_a_share_get_none),
         cmocka_unit_test(static_tiles_go_round),
-        cmocka_unit_test(threads_that_ask_at_once_share_all_tiles),
+        cmocka_unit_test(concurrent_threads_share_all_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

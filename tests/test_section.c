@@ -1,3 +1,4 @@
+/* Tests of sections against plane geometry: circles, rectangles, walls. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,8 +8,6 @@
 
 #include "render/inspect/section.h"
 #include "render_fixture.h"
-
-/* Sections against plane geometry: circles, rectangles, walls. */
 
 #define PI 3.14159265358979323846
 
@@ -48,8 +47,8 @@ static double length_between(const section *s, int a, int b)
     return length;
 }
 
-/* Shoelace formula over the rings of a medium's area; rings of holes must run the other way for their sum, so the parts
- * are added by the even-odd rule: largest less those within it. */
+/* Shoelace formula over the rings of a medium's area; rings of holes would have to be reversed for a plain sum, so the
+ * parts are added by the even-odd rule: the largest minus those inside it. */
 static double area_of(const section *s, int medium)
 {
     section_step step[256];
@@ -113,7 +112,7 @@ static void a_spheres_section_is_a_circle(void **state)
     scene_destroy(s);
 }
 
-/* Corners are where they are, whatever the grid and however the box is turned. */
+/* Corners are exact, whatever the grid and the box's rotation. */
 static void a_boxs_section_has_corners(void **state)
 {
     (void)state;
@@ -131,8 +130,8 @@ static void a_boxs_section_has_corners(void **state)
     }
 }
 
-/* rod.yaml upright through the vessel's axis: the liquid, 1.8 wide inside, from the floor at y = 0.101 to 2.001, its
- * wall of 0.1; the rod, 0.25 wide, stands in it from 0.601 on. */
+/* rod.yaml in a vertical plane through the vessel's axis: the liquid, 1.8 wide, from the floor at y = 0.101 to 2.001,
+ * the vessel's wall of 0.1; the rod, 0.25 wide, is in it from 0.601 up. */
 static void a_vessels_section_shows_wall_and_floor(void **state)
 {
     (void)state;
@@ -160,7 +159,7 @@ static void a_vessels_section_shows_wall_and_floor(void **state)
     scene_destroy(s);
 }
 
-/* Two halves of one glass: no light is bent there, but a section says where one ends. */
+/* Two halves of one glass: light is not refracted there, but a section shows the boundary. */
 static void equal_solids_have_a_boundary(void **state)
 {
     (void)state;
@@ -192,7 +191,7 @@ static void a_window_without_extent_is_refused(void **state)
     scene_destroy(s);
 }
 
-/* A coat far thinner than a cell: all four sides are drawn along the same face of it, not two along the one and two
+/* A coat far thinner than a cell: all four sides are drawn along the same face of it, not two along one face and two
  * along the other. */
 static void a_thin_coat_is_drawn_along_one_face(void **state)
 {
@@ -224,7 +223,7 @@ static void a_thin_coat_is_drawn_along_one_face(void **state)
     scene_destroy(s);
 }
 
-/* A box of triangles as one of six faces: corners (0.65, 0.35). */
+/* A box of triangles is drawn like one of six faces: corners (0.65, 0.35). */
 static void a_mesh_has_a_section_too(void **state)
 {
     (void)state;

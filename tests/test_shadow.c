@@ -1,3 +1,4 @@
+/* Tests of shadow rays against marching from interface to interface. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,10 +8,8 @@
 
 #include "room_fixture.h"
 
-/* Shadow rays against marching from interface to interface. */
-
-/* From 0 to 1: the product of what each interface lets through, by the body of the higher rank; opaque matter lets
- * nothing. */
+/* The product of the transmittances of the interfaces, 0 to 1, each of the region with the higher priority; opaque
+ * regions transmit nothing. */
 static double light_by_marching(const room *m, const reference_line *line, int solid_shadows)
 {
     change met[SOLIDS_MAX * REFERENCE_CROSSINGS_MAX];
@@ -35,7 +34,7 @@ static void shadows_agree_with_marching(void **state)
         for (int k = 0; k < 12; k++) {
             vec3 from = random_point(&seed, 3.0), to = random_point(&seed, 5.0);
             if (winner(&m, from) >= 0 && m.opaque[winner(&m, from)])
-                continue; /* no light falls on a point within opaque matter */
+                continue; /* no light reaches a point inside an opaque solid */
             one_ray r = {from, vec3_sub(to, from), FACE_NONE, scene_geometry_inside(m.solids, from)};
             const reference_line line = {quad3_from(r.o), quad3_from(r.d)};
             const double wanted = light_by_marching(&m, &line, k % 2), got = light_through(m.solids, r, k % 2);
@@ -51,7 +50,7 @@ static void shadows_agree_with_marching(void **state)
     assert_true(partly > 300 && dark > 600 && lit > 600);
 }
 
-/* An opaque cup: light comes in by its open top and through nothing else. */
+/* An opaque cup: light enters only through its open top. */
 static void light_enters_an_opaque_cup_from_above(void **state)
 {
     (void)state;
@@ -63,7 +62,7 @@ static void light_enters_an_opaque_cup_from_above(void **state)
     const uint64_t inside = scene_geometry_inside(m.solids, vec3_make(0.0, 0.2, 0.0));
     const int64_t floor_face = FACES_MAX + 1;
     for (int k = 0; k <= 100; k++) {
-        const double slope = k * 0.01; /* the lamp is 29 high above the floor; the rim stands 2.9 high at 0.9 */
+        const double slope = k * 0.01; /* the lamp is 29 above the floor; the rim is 2.9 above it at 0.9 */
         one_ray r = {floor_point, vec3_make(29.0 * slope, 29.0, 0.0), floor_face, inside};
         if (fabs(slope - 0.9 / 2.9) > 1e-9)
             assert_true(light_through(m.solids, r, 0) == (slope < 0.9 / 2.9 ? 1.0 : 0.0));

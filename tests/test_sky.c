@@ -1,3 +1,4 @@
+/* Tests of the sky: gradient, equirectangular image, and the mean over all directions. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -36,7 +37,7 @@ static void a_uniform_sky_is_the_same_everywhere(void **state)
         expect_radiance(sky_radiance(&sky, random_direction(&seed)), 0.1, 0.2, 0.3);
 }
 
-/* Linear in the direction's height, and the horizon's colour below it. */
+/* Linear in the direction's height, and the horizon's colour below the horizon. */
 static void a_gradient_rises_with_the_sine_of_the_height(void **state)
 {
     (void)state;
@@ -65,7 +66,7 @@ static image *numbered(void)
     return img;
 }
 
-static void a_picture_is_met_texel_by_texel(void **state)
+static void an_image_is_read_texel_by_texel(void **state)
 {
     (void)state;
     image *img = numbered();
@@ -82,7 +83,7 @@ static void a_picture_is_met_texel_by_texel(void **state)
     image_destroy(img);
 }
 
-static void a_picture_closes_behind_and_ends_at_the_poles(void **state)
+static void an_image_wraps_around_and_ends_at_the_poles(void **state)
 {
     (void)state;
     image *img = numbered();
@@ -115,7 +116,7 @@ static vec3 mean_by_quadrature(const background *sky, int parts)
     return vec3_scale(sum, 1.0 / weights);
 }
 
-static void the_mean_weighs_solid_angles_alike(void **state)
+static void the_mean_is_by_solid_angle(void **state)
 {
     (void)state;
     const background plain = {.kind = BACKGROUND_UNIFORM, .color = {0.1, 0.2, 0.3}, .horizon = {1.0, 1.0, 1.0}};
@@ -128,18 +129,18 @@ static void the_mean_weighs_solid_angles_alike(void **state)
     const background panorama = {.kind = BACKGROUND_IMAGE, .img = img};
     const vec3 mean = sky_mean(&panorama), close = mean_by_quadrature(&panorama, 400);
     assert_near(mean.x, 3.5, 1e-12);
-    assert_near(mean.y, 1.5, 1e-12); /* rows alike above and below */
+    assert_near(mean.y, 1.5, 1e-12); /* symmetric rows */
     assert_near(mean.z, 0.5, 1e-12);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
-            img->pixel[(y * WIDTH + x) * 3 + 1] = (float)(y * y); /* and now not */
+            img->pixel[(y * WIDTH + x) * 3 + 1] = (float)(y * y); /* asymmetric rows */
     assert_near(sky_mean(&panorama).y, mean_by_quadrature(&panorama, 400).y, 2e-5);
     assert_near(close.x, 3.5, 1e-9);
     image_destroy(img);
 }
 
-/* One row is the same all over; of two, each has a half. */
-static void pictures_of_few_rows_have_a_mean(void **state)
+/* One row is constant over the sphere; of two rows, each covers one half. */
+static void images_of_few_rows_have_a_mean(void **state)
 {
     (void)state;
     for (int height = 1; height <= 3; height++) {
@@ -159,10 +160,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_uniform_sky_is_the_same_everywhere),
         cmocka_unit_test(a_gradient_rises_with_the_sine_of_the_height),
-        cmocka_unit_test(a_picture_is_met_texel_by_texel),
-        cmocka_unit_test(a_picture_closes_behind_and_ends_at_the_poles),
-        cmocka_unit_test(the_mean_weighs_solid_angles_alike),
-        cmocka_unit_test(pictures_of_few_rows_have_a_mean),
+        cmocka_unit_test(an_image_is_read_texel_by_texel),
+        cmocka_unit_test(an_image_wraps_around_and_ends_at_the_poles),
+        cmocka_unit_test(the_mean_is_by_solid_angle),
+        cmocka_unit_test(images_of_few_rows_have_a_mean),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

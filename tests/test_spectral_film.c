@@ -1,3 +1,5 @@
+/* Tests of spectral films: the colours of white skies, matte patches, absorbers and image skies, by their colour
+ * difference (CIEDE2000) from the expected ones, and a prism's edges by Snell's law at each wavelength. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,9 +11,6 @@
 #include "color_difference.h"
 #include "render_fixture.h"
 #include "scene/model/scene.h"
-
-/* Films traced wavelength by wavelength: the colours of white skies, matte patches, absorbers and picture skies, by how
- * different they look from what they should (CIEDE2000), and a prism's edges by Snell's law at each wavelength. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -30,7 +29,7 @@ static double difference_of(const double xyz[3], const double wanted_xyz[3])
     return color_difference_2000(lab, wanted_lab);
 }
 
-/* Of all pixels: how different each looks from its counterpart, at most and for the picture's mean. */
+/* The colour differences of all pixels: the largest, and that of the image's mean. */
 typedef struct looks {
     double largest, of_mean;
 } looks;
@@ -97,7 +96,7 @@ static vec3 patch_color(size_t k)
                      srgb_decode(patches[k][2] / 255.0));
 }
 
-/* Lit by ambient light alone, shining by itself, then lit by a white lamp. */
+/* Lit by ambient light only, then emitting, then lit by a white lamp. */
 static void check_color_checker(const char *lit_by, int wavelengths, double limit)
 {
     scene *s = scene_from("render: {width: 12, height: 12, depth: 0}\n"
@@ -119,7 +118,7 @@ static void check_color_checker(const char *lit_by, int wavelengths, double limi
     scene_destroy(s);
 }
 
-static void the_color_checker_looks_as_in_rgb(void **state)
+static void the_color_checker_looks_like_in_rgb(void **state)
 {
     (void)state;
     check_color_checker("patch.ambient=1", 32, 1.0);
@@ -128,8 +127,8 @@ static void the_color_checker_looks_as_in_rgb(void **state)
     check_color_checker("patch.diffuse=0.8 lamp.intensity=0.7", 256, 0.05);
 }
 
-/* A checker's second colour is its own. */
-static void both_colours_of_a_checker_look_as_in_rgb(void **state)
+/* A checker's second colour has its own spectrum. */
+static void both_colours_of_a_checker_look_like_in_rgb(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 16, height: 16, depth: 0}\n"
@@ -144,7 +143,7 @@ static void both_colours_of_a_checker_look_as_in_rgb(void **state)
 
 /* --- skies --- */
 
-static void gradient_and_coloured_skies_look_as_in_rgb(void **state)
+static void gradient_and_coloured_skies_look_like_in_rgb(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 24, height: 24}\n"
@@ -159,9 +158,9 @@ static void gradient_and_coloured_skies_look_as_in_rgb(void **state)
     scene_destroy(s);
 }
 
-/* White, grey, each primary and secondary, and two mixtures (a sum of spectra is seen as the sum of what each is seen
- * as), side by side around the horizon, each 3 texels wide. */
-static void a_picture_sky_looks_as_in_rgb(void **state)
+/* White, grey, each primary and secondary, and two mixtures (a sum of spectra has the sum of their colours), next to
+ * each other around the horizon, each 3 texels wide. */
+static void an_image_sky_looks_like_in_rgb(void **state)
 {
     (void)state;
     static const float texels[][3] = {{1, 1, 1}, {0.3F, 0.3F, 0.3F}, {1, 0, 0}, {0, 1, 0},          {0, 0, 1},
@@ -189,7 +188,7 @@ static void a_picture_sky_looks_as_in_rgb(void **state)
 
 /* --- glass --- */
 
-/* Under grey light and grey walls each wavelength sees what rgb sees. */
+/* With grey light and grey walls each wavelength has the rgb values. */
 static void glass_of_one_index_is_as_bright_as_in_rgb(void **state)
 {
     (void)state;
@@ -210,8 +209,9 @@ static double index_of_bk7(double lambda_nm)
                 1.01046945 * L2 / (L2 - 103.560653));
 }
 
-/* A block whose back is cut off by air at 30 degrees, thicker above, is a prism; far away it is black up to some
- * height. */
+/* A block whose back is cut off by air at 30 degrees, thicker at the top, is a prism; the distant background is black
+ * up to some height. */
+/* otherwise the first face reflects the sky */
 static const char prism_scene[] =
     "render: {width: 1, height: 240, depth: 2, beyond: black}\n"
     "camera: {position: [0, 0, -3], target: [0, 0, 0], fov_deg: 3}\n"
@@ -221,11 +221,11 @@ static const char prism_scene[] =
     "  cut: {shape: box, size: [8, 8, 4], position: [0, -1, 2.2320508075688772], rotation: [30, 0, 0], transparency: "
     "1, medium: air, priority: 1}\n"
     "  black: {shape: box, size: [1000000, 1000000, 1000], position: [0, -500000, 1000000]}\n"
-    "  behind: {shape: box, size: [10, 10, 1], position: [0, 0, -10]}\n"; /* else the first face mirrors the sky */
+    "  behind: {shape: box, size: [10, 10, 1], position: [0, 0, -10]}\n";
 
 enum { ROWS = 240 };
 
-/* Elevation behind the prism of an eye ray of that elevation: Snell's law at both faces. */
+/* Elevation behind the prism of a view ray of that elevation: Snell's law at both faces. */
 static double elevation_behind(double elevation_deg, double n, double tilt_deg)
 {
     const double degree = acos(-1.0) / 180.0, inside = asin(sin(elevation_deg * degree) / n);
@@ -233,7 +233,7 @@ static double elevation_behind(double elevation_deg, double n, double tilt_deg)
     return tilt_deg + asin(n * sin(incidence)) / degree;
 }
 
-/* The row of the picture in which the elevation behind the prism is the black edge's. */
+/* The row of the image in which the elevation behind the prism is the black edge's. */
 static double edge_row(double n, double tilt_deg, double edge_deg)
 {
     double low = -1.5, high = 1.5;
@@ -254,9 +254,9 @@ static double seen_edge(const film *f, int channel)
     return ROWS;
 }
 
-/* Glass of one index grows the same tree at each wavelength, so that as many branches are too faint at each. 64: a
- * power of two divides weights and threshold without rounding. */
-static void what_is_too_faint_does_not_depend_on_the_number_of_wavelengths(void **state)
+/* Glass of constant index has the same tree at each wavelength, so the same branches are too faint at each. 64: a power
+ * of two divides weights and threshold without rounding. */
+static void the_weight_limit_does_not_depend_on_the_number_of_wavelengths(void **state)
 {
     (void)state;
     need_counters();
@@ -273,8 +273,8 @@ static void what_is_too_faint_does_not_depend_on_the_number_of_wavelengths(void 
     scene_destroy(s);
 }
 
-/* A white furnace is white at every pixel: what comes in is what goes out, and no pixel gets more. Dispersing glass in
- * dispersing water, for as many wavelengths as divide the table evenly and not, and for random paths. */
+/* A white furnace is white at every pixel, and no pixel gets more. Dispersing glass in dispersing water, for numbers of
+ * wavelengths that divide the table evenly or not, and for random paths. */
 static void a_spectral_furnace_is_white_in_every_pixel(void **state)
 {
     (void)state;
@@ -297,7 +297,7 @@ static void a_spectral_furnace_is_white_in_every_pixel(void **state)
     }
 }
 
-static void a_prism_shows_red_and_blue_apart(void **state)
+static void a_prism_separates_red_and_blue(void **state)
 {
     (void)state;
     scene *s = scene_from(prism_scene);
@@ -323,7 +323,7 @@ static void a_prism_shows_red_and_blue_apart(void **state)
         render_result_destroy(r);
     }
     assert_true(fabs(rows[0] - rows[1]) > 20.0);
-    /* all wavelengths: colour between the edges, none beside them; one index: no colour anywhere */
+    /* all wavelengths: colour between the edges, none outside them; constant index: no colour anywhere */
     set(s, "prism.absorb_spectrum=[]");
     render_result *all = render(s);
     const int between = (int)(0.5 * (rows[0] + rows[1]));
@@ -342,9 +342,9 @@ static void a_prism_shows_red_and_blue_apart(void **state)
     scene_destroy(s);
 }
 
-/* A pane of index 1 in white light, 0.1 m thick, that absorbs 500 to 600 nm: the light outside the band is left, as the
- * observer's weights and daylight say, summed by the midpoint rule at every 0.05 nm. */
-static void a_band_that_is_absorbed_is_missing(void **state)
+/* A pane of index 1 in white light, 0.1 m thick, that absorbs 500 to 600 nm: the light outside the band remains, by the
+ * observer's weights and daylight, summed by the midpoint rule at every 0.05 nm. */
+static void an_absorbed_band_is_missing(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 16, height: 16, spectrum: spectral, wavelengths: 1024}\n"
@@ -368,7 +368,7 @@ static void a_band_that_is_absorbed_is_missing(void **state)
     }
     print_message("band: CIEDE2000 %.3g, luminance %.4f of white\n", difference_of(mean, wanted), mean[1]);
     assert_true(difference_of(mean, wanted) < 0.05 && mean[1] < 0.35);
-    /* unit_m scales lengths: a tenth of a thousandth absorbs but little */
+    /* unit_m scales lengths: at 0.0001 it absorbs very little */
     set_all(s, "render.unit_m=1e-6 pane.absorb_spectrum=[499.999,0,500,1e6,600,1e6,600.001,0]"); /* optical depth 0.1 */
     render_result_destroy(r);
     r = render(s);
@@ -382,7 +382,7 @@ static void a_band_that_is_absorbed_is_missing(void **state)
     scene_destroy(s);
 }
 
-/* Random paths draw wavelengths too: the same colours, within what their own number leaves. */
+/* Random paths sample wavelengths too: the same colours, within their noise. */
 static void random_paths_have_the_same_colours(void **state)
 {
     (void)state;
@@ -396,8 +396,8 @@ static void random_paths_have_the_same_colours(void **state)
     scene_destroy(s);
 }
 
-/* A lamp of an orange light is orange itself, and lights a floor so: the first for certain, the second by chance. */
-static void lamps_that_are_spheres_have_their_colour(void **state)
+/* An orange lamp is orange itself, and gives orange light on a floor: the first exactly, the second at random. */
+static void sphere_lights_have_their_colour(void **state)
 {
     (void)state;
     scene *s =
@@ -415,10 +415,11 @@ static void lamps_that_are_spheres_have_their_colour(void **state)
     scene_destroy(s);
 }
 
-/* A slab whose index is the surroundings' at render.lambda_nm, 1.4375 + 0.015625 um^2 / 0.25 um^2 = 1.5, and lower at
- * longer wavelengths, is one medium with them for no other. At 85 degrees it reflects all beyond 525 nm, where sin 85 >
- * n / 1.5: red sees the sky, sin 5 of its brightness up there, and blue the black below. */
-static void media_alike_at_one_wavelength_are_two(void **state)
+/* A slab whose index equals the surroundings' at render.lambda_nm, 1.4375 + 0.015625 um^2 / 0.25 um^2 = 1.5, and is
+ * lower at longer wavelengths, is one medium with them only at that wavelength. At 85 degrees it reflects everything
+ * above 525 nm, where sin 85 > n / 1.5: red sees the sky, sin 5 of its brightness up there, and blue the black
+ * below. */
+static void media_with_equal_index_at_one_wavelength_are_two(void **state)
 {
     (void)state;
     scene *s =
@@ -438,18 +439,18 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_white_sky_is_white),
-        cmocka_unit_test(the_color_checker_looks_as_in_rgb),
-        cmocka_unit_test(both_colours_of_a_checker_look_as_in_rgb),
-        cmocka_unit_test(gradient_and_coloured_skies_look_as_in_rgb),
-        cmocka_unit_test(a_picture_sky_looks_as_in_rgb),
+        cmocka_unit_test(the_color_checker_looks_like_in_rgb),
+        cmocka_unit_test(both_colours_of_a_checker_look_like_in_rgb),
+        cmocka_unit_test(gradient_and_coloured_skies_look_like_in_rgb),
+        cmocka_unit_test(an_image_sky_looks_like_in_rgb),
         cmocka_unit_test(glass_of_one_index_is_as_bright_as_in_rgb),
-        cmocka_unit_test(what_is_too_faint_does_not_depend_on_the_number_of_wavelengths),
+        cmocka_unit_test(the_weight_limit_does_not_depend_on_the_number_of_wavelengths),
         cmocka_unit_test(a_spectral_furnace_is_white_in_every_pixel),
-        cmocka_unit_test(a_prism_shows_red_and_blue_apart),
-        cmocka_unit_test(a_band_that_is_absorbed_is_missing),
+        cmocka_unit_test(a_prism_separates_red_and_blue),
+        cmocka_unit_test(an_absorbed_band_is_missing),
         cmocka_unit_test(random_paths_have_the_same_colours),
-        cmocka_unit_test(lamps_that_are_spheres_have_their_colour),
-        cmocka_unit_test(media_alike_at_one_wavelength_are_two),
+        cmocka_unit_test(sphere_lights_have_their_colour),
+        cmocka_unit_test(media_with_equal_index_at_one_wavelength_are_two),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

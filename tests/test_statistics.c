@@ -1,3 +1,4 @@
+/* Tests of the statistics against published tables and closed forms. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

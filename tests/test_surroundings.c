@@ -1,3 +1,5 @@
+/* Tests of absorbing surroundings (Beer and Lambert: Hecht, 4.8.1, eq. 4.79): exp(-a d) over the whole path from the
+ * camera, through mirrors, to the light source, as far as it is outside all solids; but not on a path to the sky. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,13 +10,10 @@
 #include "probe_fixture.h"
 #include "scene/model/scene.h"
 
-/* Surroundings that absorb (Beer and Lambert: Hecht, 4.8.1, eq. 4.79): exp(-a d) over the whole way from the eye, by
- * mirrors, to what sends the light, as long as it lies outside all solids; and nothing on a way to the sky. */
-
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The eye is 5 units from the origin of a matte floor, and so is the lamp; N.L = 0.8. What hangs over the floor is on
- * either way. */
+/* The camera is 5 units from the origin of a matte floor, and so is the lamp; N.L = 0.8. Solids above the floor are in
+ * one of the two paths. */
 static const char floor_scene[] =
     "render: {width: 1, height: 1, depth: 4}\n"
     "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
@@ -32,7 +31,7 @@ static void expect(vec3 seen, double full, double way)
     assert_near(seen.z, full * exp(-a_per_m[2] * way), 1e-12);
 }
 
-static void the_way_to_the_eye_and_the_way_to_the_light_both_count(void **state)
+static void paths_to_the_camera_and_to_the_light_both_count(void **state)
 {
     (void)state;
     static const double distances[] = {0.5, 1.0, 5.0, 20.0, 100.0};
@@ -51,7 +50,7 @@ static void the_way_to_the_eye_and_the_way_to_the_light_both_count(void **state)
     scene_destroy(s);
 }
 
-static void a_unit_is_as_long_as_the_scene_says(void **state)
+static void the_scene_sets_the_length_of_a_unit(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -60,8 +59,8 @@ static void a_unit_is_as_long_as_the_scene_says(void **state)
     scene_destroy(s);
 }
 
-/* Other rules of shadows: no shadow ray, no way to the light; solid shadows, all of it. */
-static void without_shadow_rays_the_way_to_the_light_is_free(void **state)
+/* Other shadow modes: without shadow rays no path to the light; opaque shadows, all of it. */
+static void without_shadow_rays_the_path_to_the_light_is_not_absorbed(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -72,9 +71,9 @@ static void without_shadow_rays_the_way_to_the_light_is_free(void **state)
     scene_destroy(s);
 }
 
-/* A clear slab, 0.6 thick, is not of the surroundings: 0.6 / 0.6 = 1 unit of the eye's way, 0.6 / 0.8 = 0.75 of the
- * lamp's. Of index 1 it bends nothing, and what it absorbs itself is its own. */
-static void what_lies_in_solids_is_not_of_the_surroundings(void **state)
+/* A clear slab, 0.6 thick, is not part of the surroundings: 0.6 / 0.6 = 1 unit of the view path, 0.6 / 0.8 = 0.75 of
+ * the lamp's. With index 1 it does not refract, and has its own absorption. */
+static void the_inside_of_solids_is_not_part_of_the_surroundings(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -88,16 +87,16 @@ static void what_lies_in_solids_is_not_of_the_surroundings(void **state)
     set_all(s, "render.spectrum=rgb background.absorb_per_m=0.1,0,0.3 slab.absorb_per_m=0,2,0");
     assert_near(look(s).x, 0.8 * exp(-0.1 * 8.25), 1e-12);
     assert_near(look(s).y, 0.8 * exp(-2.0 * 1.75), 1e-12);
-    set(s, "slab.transparency=0"); /* opaque: seen itself, and black */
+    set(s, "slab.transparency=0"); /* opaque: visible itself, and black */
     assert_true(look(s).x == 0.0);
-    set_all(s, "slab.size=2,0.6,90 slab.position=2,1.2,0"); /* in the lamp's way alone */
+    set_all(s, "slab.size=2,0.6,90 slab.position=2,1.2,0"); /* only in the lamp's path */
     assert_true(look(s).x == 0.0);
     scene_destroy(s);
 }
 
-/* Between the channels' wavelengths (611.4, 549.1 and 464.3 nm) the coefficient is linear, as of absorb_per_m of a
- * material: a slab of matter around everything gives the same film. */
-static void a_spectral_film_sees_the_coefficient_by_wavelength(void **state)
+/* Between the channels' wavelengths (611.4, 549.1 and 464.3 nm) the coefficient is linear, like a material's
+ * absorb_per_m: a slab of that medium around everything gives the same film. */
+static void a_spectral_film_uses_the_coefficient_by_wavelength(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -119,19 +118,19 @@ static void the_sky_is_as_bright_as_given(void **state)
     scene *s = scene_from(floor_scene);
     set_all(s, "background.color=1,1,1 floor.diffuse=0 floor.visible=off");
     expect(look(s), 1.0, 0.0);
-    /* The way to the mirror counts, that from it to the sky does not. */
+    /* The path to the mirror counts, but not the path from it to the sky. */
     set_all(s, "floor.visible=on floor.reflectivity=0.5");
     expect(look(s), 0.5, 5.0);
-    set(s, "render.depth=0"); /* nor beyond the last depth */
+    set(s, "render.depth=0"); /* nor at the depth limit */
     expect(look(s), 0.5, 5.0);
-    /* The slab of index 1 is left twice: no interface, no light lost to it. */
+    /* The slab of index 1 is left twice: no interface, no loss of light at it. */
     set_all(s, "render.depth=4 slab.visible=on");
     expect(look(s), 0.5, 4.0);
     scene_destroy(s);
 }
 
-/* From the eye by the floor, a mirror, to a matte wall and to the lamp: exp(-a R) along the reflected way. */
-static void the_reflected_way_is_dimmed_too(void **state)
+/* From the camera by the floor, a mirror, to a matte wall and to the lamp: exp(-a R) along the reflected path. */
+static void the_reflected_path_is_attenuated_too(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 1}\n"
@@ -140,7 +139,7 @@ static void the_reflected_way_is_dimmed_too(void **state)
                           "lights: {lamp: {position: [0, 6, 2]}}\n"
                           "solids:\n  floor: {shape: plane, reflectivity: 0.5}\n"
                           "  wall: {shape: plane, position: [0, 0, 8], rotation: [-90, 0, 0], diffuse: 1}\n");
-    expect(look(s), 0.5, 5.0 + 10.0 + 6.0); /* the wall is met at (0, 6, 8), straight before the lamp */
+    expect(look(s), 0.5, 5.0 + 10.0 + 6.0); /* the wall is hit at (0, 6, 8), straight in front of the lamp */
     set(s, "wall.diffuse=0");
     set(s, "wall.ambient=1");
     set(s, "background.ambient=1,1,1");
@@ -148,8 +147,8 @@ static void the_reflected_way_is_dimmed_too(void **state)
     scene_destroy(s);
 }
 
-/* Through a clear slab across the way: before it, and behind it to a glowing wall. */
-static void the_refracted_way_is_dimmed_too(void **state)
+/* Through a clear slab across the path: before it, and behind it to an emitting wall. */
+static void the_refracted_path_is_attenuated_too(void **state)
 {
     (void)state;
     stage g = stage_of("render: {width: 1, height: 1, depth: 2, beyond: black}\n"
@@ -169,8 +168,8 @@ static void the_refracted_way_is_dimmed_too(void **state)
     stage_close(&g);
 }
 
-/* A sphere that shines, seen by random paths: 5 units away less its radius. */
-static void the_way_to_a_light_that_is_seen_is_dimmed(void **state)
+/* A light sphere seen by random paths: 5 units away minus its radius. */
+static void the_path_to_a_visible_light_is_attenuated(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -180,8 +179,8 @@ static void the_way_to_a_light_that_is_seen_is_dimmed(void **state)
     scene_destroy(s);
 }
 
-/* The probe at one wavelength: that of the surroundings' coefficient there. */
-static void the_probe_takes_the_coefficient_at_its_wavelength(void **state)
+/* The probe at one wavelength uses the surroundings' coefficient at that wavelength. */
+static void the_probe_uses_the_coefficient_at_its_wavelength(void **state)
 {
     (void)state;
     stage g =
@@ -195,16 +194,16 @@ static void the_probe_takes_the_coefficient_at_its_wavelength(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_way_to_the_eye_and_the_way_to_the_light_both_count),
-        cmocka_unit_test(a_unit_is_as_long_as_the_scene_says),
-        cmocka_unit_test(without_shadow_rays_the_way_to_the_light_is_free),
-        cmocka_unit_test(what_lies_in_solids_is_not_of_the_surroundings),
-        cmocka_unit_test(a_spectral_film_sees_the_coefficient_by_wavelength),
+        cmocka_unit_test(paths_to_the_camera_and_to_the_light_both_count),
+        cmocka_unit_test(the_scene_sets_the_length_of_a_unit),
+        cmocka_unit_test(without_shadow_rays_the_path_to_the_light_is_not_absorbed),
+        cmocka_unit_test(the_inside_of_solids_is_not_part_of_the_surroundings),
+        cmocka_unit_test(a_spectral_film_uses_the_coefficient_by_wavelength),
         cmocka_unit_test(the_sky_is_as_bright_as_given),
-        cmocka_unit_test(the_reflected_way_is_dimmed_too),
-        cmocka_unit_test(the_refracted_way_is_dimmed_too),
-        cmocka_unit_test(the_way_to_a_light_that_is_seen_is_dimmed),
-        cmocka_unit_test(the_probe_takes_the_coefficient_at_its_wavelength),
+        cmocka_unit_test(the_reflected_path_is_attenuated_too),
+        cmocka_unit_test(the_refracted_path_is_attenuated_too),
+        cmocka_unit_test(the_path_to_a_visible_light_is_attenuated),
+        cmocka_unit_test(the_probe_uses_the_coefficient_at_its_wavelength),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

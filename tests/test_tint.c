@@ -1,3 +1,6 @@
+/* Tests of tint: inside a clear solid light has the solid's colour after tint_distance, and by Beer and Lambert's law
+ * color^(d / tint_distance) after d (Hecht, Optics, 5th ed., eq. 4.79, with -ln(color) / tint_distance as the
+ * coefficient). */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,12 +10,9 @@
 
 #include "probe_fixture.h"
 
-/* Inside a clear solid light has the solid's colour after tint_distance, and by Beer and Lambert's law color^(d /
- * tint_distance) after d (Hecht, Optics, 5th ed., eq. 4.79, with -ln(color) / tint_distance as the coefficient). */
-
 static const double color[3] = {0.8, 1.0, 0.1};
 
-/* A pane across y = 0 that bends nothing, and the way straight down through it. */
+/* A pane across y = 0 without refraction, and the path straight down through it. */
 static stage pane(double thickness, const char *assignments)
 {
     char more[128];
@@ -46,8 +46,8 @@ static void a_tint_is_the_color_after_its_distance(void **state)
     }
 }
 
-/* Over a slanted way the tint is that of the way, not of the pane. */
-static void a_slanted_way_is_tinted_more(void **state)
+/* On a slanted path the tint is that of the path's length, not of the pane's thickness. */
+static void a_slanted_path_is_tinted_more(void **state)
 {
     (void)state;
     stage g = pane(0.5, "");
@@ -59,7 +59,7 @@ static void a_slanted_way_is_tinted_more(void **state)
     stage_close(&g);
 }
 
-/* In metres the one, in scene units the other. */
+/* Absorption is per metre, tint per scene unit. */
 static void absorption_and_tint_add_up(void **state)
 {
     (void)state;
@@ -71,7 +71,7 @@ static void absorption_and_tint_add_up(void **state)
     stage_close(&g);
 }
 
-static void black_lets_nothing_pass_and_white_all(void **state)
+static void black_transmits_nothing_and_white_all(void **state)
 {
     (void)state;
     stage g = pane(0.001, "pane.color=0,1,0");
@@ -80,7 +80,7 @@ static void black_lets_nothing_pass_and_white_all(void **state)
     stage_close(&g);
 }
 
-/* A body that nothing passes has no inside. */
+/* An opaque solid has no inside. */
 static void opaque_solids_tint_nothing(void **state)
 {
     (void)state;
@@ -90,7 +90,7 @@ static void opaque_solids_tint_nothing(void **state)
     stage_close(&g);
 }
 
-/* Every way to follow light and to share it out. */
+/* Every integrator and kind of weights. */
 static void every_film_is_tinted(void **state)
 {
     (void)state;
@@ -105,8 +105,7 @@ static void every_film_is_tinted(void **state)
     }
 }
 
-/* A grey has one share at all wavelengths, so that its film is grey, too; of a colour the spectrum that it is lifted to
- * counts. */
+/* A grey has equal transmittance at all wavelengths, so its film is grey too; a colour uses its upsampled spectrum. */
 static void a_spectral_film_is_tinted_by_the_upsampled_color(void **state)
 {
     (void)state;
@@ -145,9 +144,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_tint_is_the_color_after_its_distance),
-        cmocka_unit_test(a_slanted_way_is_tinted_more),
+        cmocka_unit_test(a_slanted_path_is_tinted_more),
         cmocka_unit_test(absorption_and_tint_add_up),
-        cmocka_unit_test(black_lets_nothing_pass_and_white_all),
+        cmocka_unit_test(black_transmits_nothing_and_white_all),
         cmocka_unit_test(opaque_solids_tint_nothing),
         cmocka_unit_test(every_film_is_tinted),
         cmocka_unit_test(a_spectral_film_is_tinted_by_the_upsampled_color),

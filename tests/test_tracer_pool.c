@@ -1,3 +1,4 @@
+/* Tests of the tracer pool: reuse, counters per frame, lending between threads. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -40,7 +41,7 @@ static void close_stage(stage *st)
     scene_destroy(st->s);
 }
 
-static void the_last_one_back_goes_out_first(void **state)
+static void the_last_returned_is_taken_first(void **state)
 {
     (void)state;
     stage st;
@@ -113,8 +114,8 @@ static void *work(void *context)
     return NULL;
 }
 
-/* ThreadSanitizer sees it if two of them ever hold one. */
-static void workers_pass_them_on(void **state)
+/* ThreadSanitizer reports it if two workers ever hold the same tracer. */
+static void workers_share_tracers(void **state)
 {
     (void)state;
     need_counters();
@@ -135,9 +136,9 @@ static void workers_pass_them_on(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_last_one_back_goes_out_first),
+        cmocka_unit_test(the_last_returned_is_taken_first),
         cmocka_unit_test(counts_last_for_one_frame),
-        cmocka_unit_test(workers_pass_them_on),
+        cmocka_unit_test(workers_share_tracers),
     };
     return cmocka_run_group_tests_name("tracer_set", tests, NULL, NULL);
 }

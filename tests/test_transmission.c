@@ -1,3 +1,5 @@
+/* Tests of transmission through clear surfaces: Whitted's model term by term, simple transmission (undeflected, with
+ * the material's constants), and indices so high that a surface is a mirror. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,15 +9,12 @@
 
 #include "probe_fixture.h"
 
-/* How light passes clear surfaces: Whitted's sum term by term, simple transmission (straight on, the material's
- * constants), and indices so high that a surface is a mirror. */
-
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 /* Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980, with all five coefficients at one
- * point of a clear pane: I = k_a I_a C + k_d I_d C + k_s I_s + k_r I_r + k_t I_t. The eye sees the origin at V = (0,
- * 0.6, -0.8); the lamp stands at L = (0.6, 0.8, 0), so N.L = 0.8 and R.V = 0.48. Reflected is the sky; behind the pane,
- * 10 units on, lies a mirror that glows, seen through its tint. */
+ * point of a clear pane: I = k_a I_a C + k_d I_d C + k_s I_s + k_r I_r + k_t I_t. The camera sees the origin at V = (0,
+ * 0.6, -0.8); the lamp is at L = (0.6, 0.8, 0), so N.L = 0.8 and R.V = 0.48. The sky is reflected; behind the pane, at
+ * a distance of 10, is an emitting mirror, seen through the tint. */
 static const char pane_scene[] =
     "render: {width: 1, height: 1, depth: 1, weights: constant}\n"
     "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
@@ -30,7 +29,7 @@ static const char pane_scene[] =
 static const double sky[3] = {0.1, 0.2, 0.3}, around[3] = {0.5, 1.0, 2.0}, lamp[3] = {2.0, 1.0, 0.5},
                     color[3] = {0.9, 0.6, 0.3};
 
-/* eye, way and behind: what is left over the ways from the eye, to the lamp, and through the pane's medium. */
+/* eye, way and behind: transmittances of the paths from the camera, to the lamp, and through the pane's medium. */
 static void expect_whitteds_sum(const scene *s, const double *eye, const double *way, const double *behind)
 {
     const vec3 seen = look(s);
@@ -43,7 +42,7 @@ static void expect_whitteds_sum(const scene *s, const double *eye, const double 
     }
 }
 
-static void whitteds_sum_has_its_five_terms(void **state)
+static void whitteds_model_has_its_five_terms(void **state)
 {
     (void)state;
     static const double all[3] = {1.0, 1.0, 1.0};
@@ -56,8 +55,8 @@ static void whitteds_sum_has_its_five_terms(void **state)
     scene_destroy(s);
 }
 
-/* exp(-a R) along each way: five units from the eye, five to the lamp; ten in the pane. */
-static void whitteds_sum_is_dimmed_by_its_ways(void **state)
+/* exp(-a R) along each path: five units from the camera, five to the lamp; ten in the pane. */
+static void whitteds_model_is_attenuated_along_its_paths(void **state)
 {
     (void)state;
     const double air[3] = {exp(-0.5), 1.0, exp(-1.0)}, glass[3] = {exp(-0.2), exp(-0.5), 1.0};
@@ -69,9 +68,9 @@ static void whitteds_sum_is_dimmed_by_its_ways(void **state)
     scene_destroy(s);
 }
 
-/* A block of glass before a wall: under simple transmission every ray ends where it would without the block, to the bit
- * of its direction; with Snell's law somewhere else. */
-static void simple_transmission_goes_straight_on(void **state)
+/* A block of glass in front of a wall: under simple transmission every ray ends where it would without the block, with
+ * a bit-identical direction; with Snell's law it ends elsewhere. */
+static void simple_transmission_is_not_refracted(void **state)
 {
     (void)state;
     static const char block[] =
@@ -102,15 +101,15 @@ static void simple_transmission_goes_straight_on(void **state)
         }
 }
 
-/* From within, far beyond the critical angle. */
-static void simple_transmission_knows_no_total_reflection(void **state)
+/* From inside, far beyond the critical angle. */
+static void simple_transmission_has_no_total_reflection(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 1, transmission: simple, beyond: black}\n"
                           "camera: {position: [0, -1, 0], pitch_deg: 10}\n"
                           "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
                           "solids: {sea: {shape: plane, transparency: 0.7, reflectivity: 0.2, ior: 1.33}}\n");
-    render_result *r = render(s); /* what goes back down sees the sky below: the sea has no floor */
+    render_result *r = render(s); /* light reflected down sees the sky below: the sea has no floor */
     assert_near(film_value(r->img, 0, 0, 0), 0.7 + 0.2, 1e-12);
     assert_int_equal(r->counters.total_internal, 0);
     assert_int_equal(r->counters.refract, CUVETTE_COUNTERS);
@@ -123,7 +122,7 @@ static void simple_transmission_knows_no_total_reflection(void **state)
     scene_destroy(s);
 }
 
-/* Two media of one index are two surfaces: with k_r = 0.1 and k_t = 0.9 the first of three surfaces sends 0.1 back, the
+/* Two media of equal index are two surfaces: with k_r = 0.1 and k_t = 0.9 the first of three surfaces reflects 0.1, the
  * next 0.9 0.1 0.9 ... A depth of 2 has the rays of up to two surfaces. */
 static void under_simple_transmission_equal_indices_are_two_surfaces(void **state)
 {
@@ -135,14 +134,14 @@ static void under_simple_transmission_equal_indices_are_two_surfaces(void **stat
                        "  lower: {shape: box, material: clear, size: [9, 1, 9], position: [0, -0.5, 0]}\n",
                        "");
     const ray_tree *tree = stage_ray(&g, vec3_make(0.1, 5.0, 0.2), vec3_make(0.0, -1.0, 0.0));
-    /* straight through three surfaces; back from the first; back from the second through the first */
+    /* through three surfaces; back from the first; back from the second through the first */
     assert_near(tree->radiance[0], 0.9 * 0.9 * 0.9 + 0.1 + 0.9 * 0.1 * 0.9, 1e-12);
     stage_close(&g);
 }
 
-/* Every integrator that branches: the sky through a ball, r and t of constants at two surfaces, to 1e-9 of the whole
+/* Every integrator with branches: the sky through a ball, constant r and t at two surfaces, to 1e-9 of the whole
  * series. */
-static void simple_transmission_to_spectra_and_random_paths(void **state)
+static void simple_transmission_with_spectra_and_random_paths(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 60, transmission: simple, beyond: black}\n"
@@ -158,7 +157,7 @@ static void simple_transmission_to_spectra_and_random_paths(void **state)
     scene_destroy(s);
 }
 
-static void shares_above_one_and_polarisation_are_refused(void **state)
+static void weights_above_one_and_polarisation_are_refused(void **state)
 {
     (void)state;
     diagnostic why = {0};
@@ -176,7 +175,7 @@ static void shares_above_one_and_polarisation_are_refused(void **state)
     scene_destroy(s);
 }
 
-/* The eye sees the sky in a pane. */
+/* The camera sees the sky in a pane. */
 static const char mirror_scene[] = "render: {width: 1, height: 1, depth: 2, beyond: black}\n"
                                    "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
                                    "background: {color: [1, 1, 1], ambient: [0, 0, 0]}\n"
@@ -212,8 +211,8 @@ static void an_index_above_ten_thousand_is_a_mirror(void **state)
     scene_destroy(s);
 }
 
-/* At 10000 itself Fresnel still lets some through. */
-static void an_index_of_ten_thousand_is_none_yet(void **state)
+/* At 10000 itself Fresnel still transmits some light. */
+static void an_index_of_ten_thousand_is_not_a_mirror_yet(void **state)
 {
     (void)state;
     stage g = stage_of(mirror_scene, "pane.ior=10000 pane.reflectivity=0");
@@ -228,8 +227,7 @@ static void an_index_of_ten_thousand_is_none_yet(void **state)
     stage_close(&g);
 }
 
-/* It is one wherever it stands in the order of priorities: under glass that reaches into it all light comes back; and
- * it casts a shadow. */
+/* It is a mirror at any priority: under glass that overlaps it all light is reflected; and it casts a shadow. */
 static void a_mirror_by_index_is_opaque_to_glass_and_light(void **state)
 {
     (void)state;
@@ -259,15 +257,15 @@ static void a_mirror_by_index_is_opaque_to_glass_and_light(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whitteds_sum_has_its_five_terms),
-        cmocka_unit_test(whitteds_sum_is_dimmed_by_its_ways),
-        cmocka_unit_test(simple_transmission_goes_straight_on),
-        cmocka_unit_test(simple_transmission_knows_no_total_reflection),
+        cmocka_unit_test(whitteds_model_has_its_five_terms),
+        cmocka_unit_test(whitteds_model_is_attenuated_along_its_paths),
+        cmocka_unit_test(simple_transmission_is_not_refracted),
+        cmocka_unit_test(simple_transmission_has_no_total_reflection),
         cmocka_unit_test(under_simple_transmission_equal_indices_are_two_surfaces),
-        cmocka_unit_test(simple_transmission_to_spectra_and_random_paths),
-        cmocka_unit_test(shares_above_one_and_polarisation_are_refused),
+        cmocka_unit_test(simple_transmission_with_spectra_and_random_paths),
+        cmocka_unit_test(weights_above_one_and_polarisation_are_refused),
         cmocka_unit_test(an_index_above_ten_thousand_is_a_mirror),
-        cmocka_unit_test(an_index_of_ten_thousand_is_none_yet),
+        cmocka_unit_test(an_index_of_ten_thousand_is_not_a_mirror_yet),
         cmocka_unit_test(a_mirror_by_index_is_opaque_to_glass_and_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

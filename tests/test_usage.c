@@ -1,3 +1,4 @@
+/* Tests of resource usage, hardware counters and disturbances, on recorded files and on this machine. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -78,7 +79,7 @@ static void fields_are_found(void **state)
 static void share_of_others(void **state)
 {
     (void)state;
-    /* 2 s on 4 units are 8 s; 3 of the 5 busy seconds were others' */
+    /* 2 s on 4 units are 8 s; 3 of the 5 busy seconds belong to other processes */
     usage d = {.wall_s = 2.0, .cpu_s = 2.0, .machine_busy_s = 5.0, .machine_units = 4.0};
     assert_near(usage_others_share(&d), 0.375, 1e-15);
     d.machine_busy_s = 1.99;
@@ -145,7 +146,7 @@ static void peak_memory_is_remembered(void **state)
     free(block);
     usage later = usage_now();
     assert_true(later.peak_rss_bytes >= BYTES && later.peak_rss_bytes >= before);
-    assert_int_equal(usage_since(&later).peak_rss_bytes >= later.peak_rss_bytes, 1); /* no difference is taken */
+    assert_int_equal(usage_since(&later).peak_rss_bytes >= later.peak_rss_bytes, 1); /* not a difference */
 }
 
 static void assert_grows(int64_t first, int64_t second)
@@ -237,7 +238,7 @@ static void a_disturbed_machine_is_described(void **state)
     assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
 }
 
-static void a_quiet_machine_says_nothing(void **state)
+static void a_quiet_machine_reports_nothing(void **state)
 {
     (void)state;
     char root[256], said[2048] = "";
@@ -257,7 +258,7 @@ static void a_quiet_machine_says_nothing(void **state)
     assert_string_equal(said, "");
 }
 
-static void this_machine_is_looked_at(void **state)
+static void this_machine_is_examined(void **state)
 {
     (void)state;
     char said[4096] = "";
@@ -277,8 +278,8 @@ int main(void)
         cmocka_unit_test(peak_memory_is_remembered),
         cmocka_unit_test(hardware_counts_grow_or_are_absent),
         cmocka_unit_test(a_disturbed_machine_is_described),
-        cmocka_unit_test(a_quiet_machine_says_nothing),
-        cmocka_unit_test(this_machine_is_looked_at),
+        cmocka_unit_test(a_quiet_machine_reports_nothing),
+        cmocka_unit_test(this_machine_is_examined),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

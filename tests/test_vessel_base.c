@@ -1,11 +1,9 @@
-/* What one sees through the vessel's base, by one ray that can be followed with pencil and paper.
- *
- * POV-Ray 3.7 shows the ground there, dark; Cuvette shows the sky. In the plane x = 0 the vessel is a stack of
- * flat layers: a ray that comes down through the upright walls at elevation -e keeps sin e' = sin e / n in every layer,
- * so on the horizontal base it meets n cos e' = sqrt(n^2 - sin^2 e) > 1: total reflection, whatever e, for every n >
- * sqrt 2 (and through the liquid, n = 1.33, the floor of glass below it included, since n cos e' is the same in all
- * layers, sqrt(1.33^2 - sin^2 e) = 1.266 for the ray below). It goes back up at +e', leaves through the far wall at +e,
- * and ends in the sky. */
+/* Test of the view through the vessel's base, along one ray that can be computed by hand. POV-Ray 3.7 shows the ground
+ * there, dark; Cuvette shows the sky. In the plane x = 0 the vessel is a stack of flat layers: a ray that comes down
+ * through the vertical walls at elevation -e keeps sin e' = sin e / n in every layer, so on the horizontal base it has
+ * n cos e' = sqrt(n^2 - sin^2 e) > 1: total reflection, whatever e, for every n > sqrt 2 (and through the liquid, n =
+ * 1.33, including the floor of glass below it, since n cos e' is the same in all layers, sqrt(1.33^2 - sin^2 e) = 1.266
+ * for the ray below). It returns upwards at +e', leaves through the far wall at +e, and ends in the sky. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -41,8 +39,8 @@ static point to_height(point p, double e, double y)
     return (point){y, p.z + (y - p.y) / tan(e)};
 }
 
-/* The share of light on the way eye, wall, liquid, floor, base (total), floor, liquid, wall, sky. Asserts on the way
- * that the ray does go there. */
+/* The throughput of the path camera, wall, liquid, floor, base (total), floor, liquid, wall, sky. Asserts that the ray
+ * takes this path. */
 static double share_by_hand(double entry_y)
 {
     const double e = atan2(2.75 - entry_y, 6.0 - 1.0);
@@ -50,7 +48,7 @@ static double share_by_hand(double entry_y)
     point p = to_wall((point){entry_y, -1.0}, -in_glass, -0.9);
     p = to_height(p, -in_liquid, 0.101);
     assert_true(p.z > -0.9 && p.z < 0.9);
-    /* Angles of incidence on horizontal faces are from the vertical; across the floor n sin is kept. */
+    /* Angles of incidence on horizontal faces are from the vertical; across the floor n sin is invariant. */
     const double from_vertical = M_PI / 2 - in_liquid, floor_angle = asin(LIQUID * sin(from_vertical) / GLASS);
     assert_true(GLASS * sin(floor_angle) > 1.0); /* total reflection at the base */
     p = to_height(p, -(M_PI / 2 - floor_angle), 0.001);
@@ -96,7 +94,7 @@ static void the_base_shows_the_sky(void **state)
         double share = share_by_hand(entry_y);
         assert_true(share > 0.6);
         double with = radiance("render.depth=7", entry_y), without = radiance("render.depth=6", entry_y);
-        /* The seventh branch is the one that reaches the sky; all other ways together have no more than is left. */
+        /* The seventh branch reaches the sky; all other paths together carry at most the rest. */
         assert_true(with - without >= share - 1e-12);
         assert_true(with - without <= share + (1 - share) + 1e-12);
         assert_true(without <= 1 - share + 1e-12);

@@ -1,3 +1,4 @@
+/* Tests of the worker pool: every worker runs once, persistent and new threads, the watcher. */
 #include <math.h>
 #include <pthread.h>
 #include <setjmp.h>
@@ -15,7 +16,7 @@ enum { WORKERS_MAX = 300 };
 
 typedef struct job {
     atomic_int runs[WORKERS_MAX];
-    pthread_t thread[WORKERS_MAX]; /* who ran it */
+    pthread_t thread[WORKERS_MAX]; /* the thread that ran the task */
     atomic_int total;
     int watched;
     atomic_bool go_on; /* set by the watcher */
@@ -58,7 +59,7 @@ static void every_worker_runs_once(void **state)
     }
 }
 
-static void kept_threads_are_the_same_from_run_to_run(void **state)
+static void persistent_threads_are_reused(void **state)
 {
     (void)state;
     static job first, second;
@@ -90,7 +91,7 @@ static void many_runs_in_a_row(void **state)
     worker_pool_destroy(p);
 }
 
-static void kept_and_fresh_runs_may_alternate(void **state)
+static void persistent_and_new_threads_may_alternate(void **state)
 {
     (void)state;
     static job j;
@@ -117,7 +118,7 @@ static void watch(void *context)
         atomic_store(&j->go_on, true);
 }
 
-/* The workers wait until the watcher has been called twice: it is called while they run, on the thread that called. */
+/* The workers wait until the watcher has been called twice: it is called while they run, on the calling thread. */
 static void the_watcher_is_called_while_workers_run(void **state)
 {
     (void)state;
@@ -133,7 +134,7 @@ static void the_watcher_is_called_while_workers_run(void **state)
     }
 }
 
-static void an_idle_pool_goes_away(void **state)
+static void an_idle_pool_can_be_destroyed(void **state)
 {
     (void)state;
     worker_pool_destroy(NULL);
@@ -149,11 +150,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_worker_runs_once),
-        cmocka_unit_test(kept_threads_are_the_same_from_run_to_run),
+        cmocka_unit_test(persistent_threads_are_reused),
         cmocka_unit_test(many_runs_in_a_row),
-        cmocka_unit_test(kept_and_fresh_runs_may_alternate),
+        cmocka_unit_test(persistent_and_new_threads_may_alternate),
         cmocka_unit_test(the_watcher_is_called_while_workers_run),
-        cmocka_unit_test(an_idle_pool_goes_away),
+        cmocka_unit_test(an_idle_pool_can_be_destroyed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

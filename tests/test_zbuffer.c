@@ -1,3 +1,5 @@
+/* Tests of the depth buffer against the ray caster, which finds surfaces independently, and against closed forms:
+ * affine and perspective-correct interpolation on a tilted square, and the coverage count of each point. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,9 +13,6 @@
 #include "random_stream.h"
 #include "zbuffer_fixture.h"
 #include "scene/model/scene.h"
-
-/* The depth buffer against the ray caster, which finds surfaces in another way, and against closed forms: what
- * interpolating straight and in perspective gives on a tilted square, and how often each point is covered. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -59,7 +58,7 @@ static double difference_at(const film *a, const film *b, int x, int y)
     return most;
 }
 
-/* The share of pixels that differ by more than that much between drawing and casting. */
+/* The share of pixels that differ by more than a limit between rasterisation and ray casting. */
 static double share_beyond(const char *text, const char *assignments, double much)
 {
     scene *s = scene_loaded(text, assignments);
@@ -78,7 +77,7 @@ static double share_beyond(const char *text, const char *assignments, double muc
     return share;
 }
 
-static void flat_solids_look_as_cast_but_at_edges(void **state)
+static void flat_solids_match_ray_casting_except_at_edges(void **state)
 {
     (void)state;
     static const char *const variants[] = {"",
@@ -99,10 +98,10 @@ static void flat_solids_look_as_cast_but_at_edges(void **state)
     }
 }
 
-/* Light falls on the solid itself: what is left is where the chord is seen before the arc, and outlines. A chord's
- * height is under 2e-4 of the radius; it moves a point along the surface by that over the cosine of incidence, and
- * light by about as much. */
-static void round_solids_look_as_cast_but_at_outlines(void **state)
+/* Shading uses the solid itself: the remaining differences are where the chord is hit instead of the arc, and outlines.
+ * A chord's height is under 2e-4 of the radius; it moves a point along the surface by that over the cosine of
+ * incidence, and changes light by about as much. */
+static void round_solids_match_ray_casting_except_at_outlines(void **state)
 {
     (void)state;
     static const char *const variants[] = {"",
@@ -119,8 +118,8 @@ static void round_solids_look_as_cast_but_at_outlines(void **state)
     }
 }
 
-/* As where bodies overlap: the one with the higher priority is there. */
-static void of_two_in_one_place_the_higher_priority_is_seen(void **state)
+/* As for overlapping solids: the one with the higher priority is visible. */
+static void the_higher_priority_is_visible_where_solids_coincide(void **state)
 {
     (void)state;
     static const char text[] = HEAD "meshes: {one: {generate: box}}\n"
@@ -133,7 +132,7 @@ static void of_two_in_one_place_the_higher_priority_is_seen(void **state)
     assert_true(share_beyond(text, "red.priority=2 blue.priority=5", 1e-6) < 0.0001);
 }
 
-/* What scene_load would have loaded. */
+/* Stands in for what scene_load would load. */
 static void give_mesh(scene *s, mesh *m)
 {
     diagnostic why = {0};
@@ -142,7 +141,7 @@ static void give_mesh(scene *s, mesh *m)
     s->meshes[0].data = m;
 }
 
-/* White where anything is, black elsewhere; looks along z, and half the picture's height is as far as the depth. */
+/* White on any surface, black elsewhere; the camera looks along z, and half the image at depth z is z high. */
 #define WHITE(size, extra)                                                                                         \
     "render: {width: " #size ", height: " #size ", depth: 0, integrator: zbuffer}\n"                               \
     "camera: {position: [0, 0, 0], yaw_deg: 0, fov_deg: 90}\nbackground: {color: [0, 0, 0], ambient: [1, 1, 1]}\n" \
@@ -152,7 +151,7 @@ static void give_mesh(scene *s, mesh *m)
 enum { WEB = 64 };
 static const char web_scene[] = WHITE(64, "") "}}\n";
 
-/* How often each pixel is drawn when triangles are drawn one at a time. */
+/* How often each pixel is covered when triangles are drawn one at a time. */
 static void count_cover(const vec3 *vertices, size_t vertex_count, const mesh_triangle *triangles, size_t count,
                         int cover[WEB][WEB])
 {
@@ -168,15 +167,15 @@ static void count_cover(const vec3 *vertices, size_t vertex_count, const mesh_tr
     }
 }
 
-/* The point at depth 1 that is seen at (x, y) of the picture, in pixels. */
+/* The point at depth 1 that is visible at (x, y) of the image, in pixels. */
 static vec3 seen_at(double x, double y)
 {
     return vec3_make(2.0 * x / WEB - 1.0, 1.0 - 2.0 * y / WEB, 1.0);
 }
 
-/* Its middle and all but one of its rim's corners are middles of pixels, and eleven of its sixteen spokes lead over
- * more of them. The rim is a square of 40 by 40 pixels: 41 x 41 middles, less those on the two sides that belong to
- * neighbours. */
+/* A fan whose middle and all but one of its rim's corners are middles of pixels, and eleven of whose sixteen spokes
+ * cross more of them. The rim is a square of 40 by 40 pixels: 41 x 41 middles, minus those on the two sides that belong
+ * to neighbours. */
 static void a_fan_covers_each_pixel_once(void **state)
 {
     (void)state;
@@ -205,8 +204,8 @@ static void a_fan_covers_each_pixel_once(void **state)
     assert_int_equal(all, 1600);
 }
 
-/* Of any depths, some of them behind the eye's neighbourhood: the web reaches beyond the picture. */
-static void a_crooked_web_covers_each_pixel_once(void **state)
+/* Corners of random depths, some of them behind the camera; the web extends beyond the image. */
+static void an_irregular_web_covers_each_pixel_once(void **state)
 {
     (void)state;
     enum { N = 8 };
@@ -237,9 +236,9 @@ static void a_crooked_web_covers_each_pixel_once(void **state)
                 fail_msg("pixel %d, %d is drawn %d times", x, y, cover[y][x]);
 }
 
-/* A floor from far behind the eye to z = 10, one unit under it, is seen where a ray (x, y, 1) goes down to it before
+/* A floor from far behind the camera to z = 10, one unit below it, is visible where a ray (x, y, 1) reaches it before
  * that: y < -1/10, and |x / y| < 50. */
-static void triangles_that_reach_behind_the_eye_are_cut(void **state)
+static void triangles_behind_the_camera_are_clipped(void **state)
 {
     (void)state;
     const vec3 corner[4] = {{-50, -1, -1000}, {50, -1, -1000}, {50, -1, 10}, {-50, -1, 10}};
@@ -310,7 +309,7 @@ static bool in_perspective(double x, double y, double uv[2])
     return z > 0.0 && uv[0] > 0.0 && uv[0] < 1.0 && uv[1] > 0.0 && uv[1] < 1.0;
 }
 
-/* By the areas that the point makes with the sides of the half that it is in, in the picture. */
+/* Affine: by the areas between the point and the sides of its triangle, in the image. */
 static bool straight(double x, double y, double uv[2])
 {
     for (int t = 0; t < 2; t++) {
@@ -331,7 +330,7 @@ static bool straight(double x, double y, double uv[2])
     return false;
 }
 
-/* Returns how far v is from what the other way of texturing has, at most. */
+/* Returns the largest difference of v from the other texture interpolation. */
 static double expect_texture(const char *texturing, bool (*wanted)(double, double, double[2]),
                              bool (*other)(double, double, double[2]))
 {
@@ -345,7 +344,7 @@ static double expect_texture(const char *texturing, bool (*wanted)(double, doubl
             double uv[2], not [2];
             if (!wanted(x, y, uv) || !other(x, y, not ) || uv[0] < edge || uv[0] > 1.0 - edge || uv[1] < edge ||
                 uv[1] > 1.0 - edge)
-                continue; /* the ramp is level beyond its last texels' middles */
+                continue; /* the ramp is constant outside its last texels' middles */
             assert_true(fabs(film_value(r->img, i, j, 0) - uv[0]) < 1e-6);
             assert_true(fabs(film_value(r->img, i, j, 1) - uv[1]) < 1e-6);
             apart = fmax(apart, fabs(uv[1] - not [1]));
@@ -358,22 +357,23 @@ static double expect_texture(const char *texturing, bool (*wanted)(double, doubl
     return apart;
 }
 
-/* Half way up the left side in the picture, v is 1/2 straight and 1/4 in space: 1/z is the mean there. */
-static void textures_run_in_perspective(void **state)
+/* Half way up the left side in the image, v is 1/2 with affine and 1/4 with perspective-correct interpolation: 1/z is
+ * the mean there. */
+static void texture_interpolation_is_perspective_correct(void **state)
 {
     (void)state;
     assert_true(expect_texture("render.texturing=perspective", in_perspective, straight) > 0.2);
 }
 
-static void textures_run_straight_across_the_picture(void **state)
+static void affine_texture_interpolation(void **state)
 {
     (void)state;
     assert_true(expect_texture("render.texturing=affine", straight, in_perspective) > 0.2);
 }
 
-/* Where all corners are equally far both are right; elsewhere analytic solids show the difference too, and the ray
- * caster has the right ones. */
-static void boxes_have_textures_of_either_kind(void **state)
+/* Where all corners are equally far both are correct; elsewhere analytic solids show the difference too, and the ray
+ * caster is correct. */
+static void boxes_have_both_texture_interpolations(void **state)
 {
     (void)state;
     static const char text[] = "render: {width: 60, height: 60, depth: 0, integrator: zbuffer, shadows: off}\n"
@@ -404,8 +404,8 @@ static void boxes_have_textures_of_either_kind(void **state)
     }
 }
 
-/* The last one is a texture that runs straight over triangles that the nearest depth cuts. */
-static void the_film_depends_on_no_order(void **state)
+/* The last scene has an affine texture on triangles that the near plane clips. */
+static void the_film_does_not_depend_on_order(void **state)
 {
     (void)state;
     one_film_only(scene_loaded(flat_scene, "render.integrator=zbuffer"));
@@ -438,7 +438,7 @@ static void points_are_counted_and_no_rays_are_tested(void **state)
     scene_destroy(s);
 }
 
-static void it_knows_no_spectrum_and_no_polarisation(void **state)
+static void it_refuses_spectral_films_and_polarisation(void **state)
 {
     (void)state;
     static const char *const wrong[] = {"render.spectrum=spectral", "render.polarisation=on"};
@@ -457,18 +457,18 @@ static void it_knows_no_spectrum_and_no_polarisation(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(flat_solids_look_as_cast_but_at_edges),
-        cmocka_unit_test(round_solids_look_as_cast_but_at_outlines),
-        cmocka_unit_test(of_two_in_one_place_the_higher_priority_is_seen),
+        cmocka_unit_test(flat_solids_match_ray_casting_except_at_edges),
+        cmocka_unit_test(round_solids_match_ray_casting_except_at_outlines),
+        cmocka_unit_test(the_higher_priority_is_visible_where_solids_coincide),
         cmocka_unit_test(a_fan_covers_each_pixel_once),
-        cmocka_unit_test(a_crooked_web_covers_each_pixel_once),
-        cmocka_unit_test(triangles_that_reach_behind_the_eye_are_cut),
-        cmocka_unit_test(textures_run_in_perspective),
-        cmocka_unit_test(textures_run_straight_across_the_picture),
-        cmocka_unit_test(boxes_have_textures_of_either_kind),
-        cmocka_unit_test(the_film_depends_on_no_order),
+        cmocka_unit_test(an_irregular_web_covers_each_pixel_once),
+        cmocka_unit_test(triangles_behind_the_camera_are_clipped),
+        cmocka_unit_test(texture_interpolation_is_perspective_correct),
+        cmocka_unit_test(affine_texture_interpolation),
+        cmocka_unit_test(boxes_have_both_texture_interpolations),
+        cmocka_unit_test(the_film_does_not_depend_on_order),
         cmocka_unit_test(points_are_counted_and_no_rays_are_tested),
-        cmocka_unit_test(it_knows_no_spectrum_and_no_polarisation),
+        cmocka_unit_test(it_refuses_spectral_films_and_polarisation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,5 @@
+/* Tests of the depth buffer's layers of clear solids: against Fresnel's and Beer's formulas along one view, against
+ * Whitted's rays where nothing is refracted, and the white furnace. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,15 +11,12 @@
 #include "zbuffer_fixture.h"
 #include "scene/model/scene.h"
 
-/* What the depth buffer shows behind clear solids: against Fresnel's and Beer's formulas along one view, against
- * Whitted's rays where nothing bends them, and the furnace. */
-
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
 static const double sky = 0.7, wall = 3.0;
 
-/* An eye that looks along +z, at a wall that shines. */
+/* A camera that looks along +z, at an emitting wall. */
 #define VIEW                                                           \
     "render: {width: 1, height: 1, depth: 16, integrator: zbuffer}\n"  \
     "camera: {position: [0, 0, -10], target: [0, 0, 0], fov_deg: 1}\n" \
@@ -66,7 +65,7 @@ static void a_slab_reflects_and_absorbs(void **state)
                 r * sky + 0.5 * (1.0 - r) * left * (r * sky + 0.5 * (1.0 - r) * wall), 1e-9);
     assert_near(seen_in(slab, "slab.emission=0.25"), 0.25 + r * sky + (1.0 - r) * left * (0.25 + behind(r, wall)),
                 1e-9);
-    /* turned by 30 degrees: the same angle at both faces, and a straight way through */
+    /* rotated by 30 degrees: equal angles at both faces, and a straight path */
     const double c = sqrt(0.75), turned = oblique(c, 1.0, 1.5), longer = exp(-0.3 * 2.0 / c);
     assert_near(seen_in(slab, "slab.rotation=0,30,0"), behind(turned, longer * behind(turned, wall)), 1e-9);
     assert_near(
@@ -76,7 +75,7 @@ static void a_slab_reflects_and_absorbs(void **state)
                 0.1 * sky + 0.6 * left * (0.1 * sky + 0.6 * wall), 1e-9);
 }
 
-/* A ball, a can and a mesh on their axis are slabs, too. */
+/* A ball, a cylinder and a mesh are slabs on their axis, too. */
 static void curved_solids_are_slabs_on_their_axis(void **state)
 {
     (void)state;
@@ -89,8 +88,8 @@ static void curved_solids_are_slabs_on_their_axis(void **state)
                 expected, 1e-3);
 }
 
-/* The wall's index wins where both are; nothing is between them; equal ones are one. */
-static void the_higher_priority_is_seen_where_solids_overlap(void **state)
+/* The wall's index applies in the overlap; nothing is between them; equal ones are one medium. */
+static void the_higher_priority_is_visible_where_solids_overlap(void **state)
 {
     (void)state;
     static const char both[] =
@@ -115,7 +114,8 @@ static void the_higher_priority_is_seen_where_solids_overlap(void **state)
     assert_near(seen_in(vessel, "water.visible=off"), air, 1e-3);
 }
 
-/* An opaque solid shows before, within and behind a clear one, and not where a clear one of higher priority is. */
+/* An opaque solid is visible in front of, inside and behind a clear one, but not where a clear one has higher
+ * priority. */
 static void opaque_solids_among_clear_ones(void **state)
 {
     (void)state;
@@ -130,9 +130,9 @@ static void opaque_solids_among_clear_ones(void **state)
     assert_near(seen_in(block, "brick.position=0,0,-3"), 1.0, 1e-9);
 }
 
-/* From within: the way to the surface absorbs; beyond the critical angle, asin(1 / 1.5) = 41.8 degrees, the sky is
- * mirrored. */
-static void the_eye_in_a_clear_solid(void **state)
+/* From inside: the path to the surface absorbs; beyond the critical angle, asin(1 / 1.5) = 41.8 degrees, the sky is
+ * reflected. */
+static void the_camera_in_a_clear_solid(void **state)
 {
     (void)state;
     static const char around[] =
@@ -155,7 +155,7 @@ static void the_depth_limit_ends_the_view(void **state)
     assert_near(seen_in(slab, "render.depth=0 render.beyond=black"), 0.0, 0.0);
     assert_near(seen_in(slab, "render.depth=1 render.beyond=black"), a * sky, 1e-9);
     assert_near(seen_in(slab, "render.depth=2 render.beyond=black"), behind(a, behind(a, wall)), 1e-9);
-    assert_near(seen_in(slab, "render.lighting=phong"), 0.0, 0.0); /* no branches: its surface */
+    assert_near(seen_in(slab, "render.lighting=phong"), 0.0, 0.0); /* no branches: only its surface */
 }
 
 static const char clear_scene[] =
@@ -185,8 +185,8 @@ static const char clear_scene[] =
     "  crate: {shape: box, material: tiles, size: [1, 1, 1], position: [2.3, 0.2, 0.9], rotation: [10, 40, 5], "
     "priority: -1}\n";
 
-/* Where light goes straight on and surfaces reflect nothing, rays see the same, but for outlines. */
-static void what_goes_straight_is_seen_as_traced(void **state)
+/* Where light is not refracted and surfaces do not reflect, rays give the same image, except at outlines. */
+static void undeflected_views_match_rays(void **state)
 {
     (void)state;
     static const char *const variants[] = {"",
@@ -219,10 +219,10 @@ static void what_goes_straight_is_seen_as_traced(void **state)
     }
 }
 
-/* R + T = 1 at every layer: under a sky of 1 clear solids of any index are not seen. */
-/* Of two opaque walls, one a hair behind the other, the nearer is seen, whatever clear solid makes layers of them: from
- * outside, and by an eye in both. */
-static void a_clear_solid_nobody_sees_changes_no_order(void **state)
+/* R + T = 1 at every layer: under a sky of 1, clear solids of any index are invisible. */
+/* Of two opaque walls, one slightly behind the other, the nearer is visible, whatever clear solid turns them into
+ * layers: from outside, and from inside both. */
+static void an_invisible_clear_solid_does_not_change_the_order(void **state)
 {
     (void)state;
     static const char walls[] = "render: {width: 8, height: 8, integrator: zbuffer}\n"
@@ -245,7 +245,7 @@ static void a_clear_solid_nobody_sees_changes_no_order(void **state)
     }
 }
 
-/* A rod that no view meets makes layers of the solid whose bounds its own reach, and the picture stays. */
+/* A rod that no view ray hits makes layers of the solid whose bounds overlap its own, and the image does not change. */
 static bool stays_with_a_rod(const char *text, const char *rod, const char *assignments)
 {
     char with[2048];
@@ -259,9 +259,9 @@ static bool stays_with_a_rod(const char *text, const char *rod, const char *assi
     return same;
 }
 
-/* An opaque ball in water shines where the bent view says; out of it, it shines alike to the last bit; of two faces in
- * one plane the higher rank's is seen. */
-static void a_clear_solid_nobody_sees_changes_no_opaque_one(void **state)
+/* An opaque ball in water has its highlight where the refracted view requires; out of the water its shading is
+ * bit-identical; of two faces in one plane the one of higher priority is visible. */
+static void an_invisible_clear_solid_does_not_change_opaque_ones(void **state)
 {
     (void)state;
     static const char ball[] =
@@ -287,7 +287,7 @@ static void a_clear_solid_nobody_sees_changes_no_opaque_one(void **state)
     assert_true(stays_with_a_rod(boards, "position: [1.99, 2.4, 1], rotation: [-45, 0, 0]", ""));
 }
 
-static void nothing_is_lost_between_layers(void **state)
+static void no_light_is_lost_between_layers(void **state)
 {
     (void)state;
     scene *s = scene_loaded(
@@ -306,8 +306,8 @@ static void nothing_is_lost_between_layers(void **state)
     scene_destroy(s);
 }
 
-/* How far the preview of the rod lies from Whitted's picture: black glass was at 0.2. */
-static void the_rod_is_close_to_what_rays_show(void **state)
+/* The difference between the preview of the rod and Whitted's image: black glass was at 0.2. */
+static void the_rod_is_close_to_the_traced_image(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=400 render.height=300 render.depth=4");
@@ -328,7 +328,7 @@ static void the_rod_is_close_to_what_rays_show(void **state)
     scene_destroy(s);
 }
 
-static void layers_depend_on_no_order(void **state)
+static void layers_do_not_depend_on_order(void **state)
 {
     (void)state;
     one_film_only(scene_loaded(clear_scene, "render.integrator=zbuffer"));
@@ -339,16 +339,16 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_slab_reflects_and_absorbs),
         cmocka_unit_test(curved_solids_are_slabs_on_their_axis),
-        cmocka_unit_test(the_higher_priority_is_seen_where_solids_overlap),
+        cmocka_unit_test(the_higher_priority_is_visible_where_solids_overlap),
         cmocka_unit_test(opaque_solids_among_clear_ones),
-        cmocka_unit_test(the_eye_in_a_clear_solid),
+        cmocka_unit_test(the_camera_in_a_clear_solid),
         cmocka_unit_test(the_depth_limit_ends_the_view),
-        cmocka_unit_test(what_goes_straight_is_seen_as_traced),
-        cmocka_unit_test(a_clear_solid_nobody_sees_changes_no_order),
-        cmocka_unit_test(a_clear_solid_nobody_sees_changes_no_opaque_one),
-        cmocka_unit_test(nothing_is_lost_between_layers),
-        cmocka_unit_test(the_rod_is_close_to_what_rays_show),
-        cmocka_unit_test(layers_depend_on_no_order),
+        cmocka_unit_test(undeflected_views_match_rays),
+        cmocka_unit_test(an_invisible_clear_solid_does_not_change_the_order),
+        cmocka_unit_test(an_invisible_clear_solid_does_not_change_opaque_ones),
+        cmocka_unit_test(no_light_is_lost_between_layers),
+        cmocka_unit_test(the_rod_is_close_to_the_traced_image),
+        cmocka_unit_test(layers_do_not_depend_on_order),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

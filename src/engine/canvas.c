@@ -1,3 +1,4 @@
+/* Filling the caller's buffers, and passing finished pieces to the caller. */
 #include "engine/canvas.h"
 #include "base/grow.h"
 

@@ -1,3 +1,4 @@
+/* Errors of the public interface: statuses, diagnostics, NULL arguments, sizes of structs. */
 #include "engine/engine_private.h"
 
 #include <stdio.h>
@@ -70,7 +71,7 @@ cuvette_status engine_copy_struct(const void *content, size_t known, void *out, 
     memcpy(&size, out, sizeof size);
     if (size <= sizeof size || size > 65536)
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT,
-                                      "set its field size to the sizeof of its type before the call",
+                                      "set the struct's size field to its sizeof before the call",
                                       "the output struct has the invalid size %zu", size),
                              &inner, why);
     memset((char *)out + sizeof size, 0, size - sizeof size);

@@ -1,3 +1,4 @@
+/* Memory, hash and medians of a job's account. */
 #include "job/account.h"
 
 #include "measure/statistics.h"

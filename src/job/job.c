@@ -1,3 +1,4 @@
+/* Loading and rendering frames under supervision: stop requests, limits, measurements. */
 #include "job/job.h"
 
 #include "job/shelf.h"

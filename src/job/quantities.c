@@ -1,3 +1,4 @@
+/* The table of quantities and the functions that read them from an account. */
 #include "job/quantities.h"
 #include "scene/model/scene.h"
 

@@ -1,3 +1,4 @@
+/* The cache of meshes of recently loaded scenes. */
 #include "job/shelf.h"
 #include "scene/model/scene.h"
 

@@ -1,3 +1,4 @@
+/* Clocks on clock_gettime, and measurements of their resolution. */
 #include "measure/clock.h"
 
 #include <time.h>

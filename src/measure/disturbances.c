@@ -1,3 +1,4 @@
+/* Checks of the machine's settings and load for disturbances. */
 #include "measure/disturbances.h"
 
 #include "measure/small_file.h"

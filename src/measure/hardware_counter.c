@@ -1,3 +1,4 @@
+/* Hardware counters through perf_event_open(2). */
 #include "measure/usage.h"
 
 #include <linux/perf_event.h>

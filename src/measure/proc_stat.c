@@ -1,3 +1,4 @@
+/* The parser of /proc/stat. */
 #include "measure/proc_stat.h"
 
 #include <stdlib.h>

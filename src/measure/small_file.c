@@ -1,3 +1,4 @@
+/* Readers of small files in /proc and /sys. */
 #include "measure/small_file.h"
 
 #include <fcntl.h>

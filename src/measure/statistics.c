@@ -1,3 +1,4 @@
+/* Summaries, Student's t quantiles and order-statistic intervals. */
 #include "measure/statistics.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Placement of threads on processing units through hwloc. */
 #include "measure/topology.h"
 
 #include "base/grow.h"

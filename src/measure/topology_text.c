@@ -1,3 +1,4 @@
+/* Texts of a topology: a one-line summary and hwloc XML. */
 #include "measure/topology.h"
 #include "measure/topology_private.h"
 

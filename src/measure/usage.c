@@ -1,3 +1,4 @@
+/* Readings of resource usage from getrusage, /proc and clocks. */
 #include "measure/usage.h"
 
 #include "measure/clock.h"

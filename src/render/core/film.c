@@ -1,3 +1,4 @@
+/* The film's fixed-point sums: allocation, merging of shares, conversion to linear sRGB, hash. */
 #include "render/core/film.h"
 
 #include "base/hash.h"

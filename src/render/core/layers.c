@@ -1,3 +1,4 @@
+/* Allocation of named layers. */
 #include "render/core/layers.h"
 
 #include <stdlib.h>

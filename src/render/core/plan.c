@@ -1,3 +1,4 @@
+/* Building a render plan: media, hierarchies, materials and light cones from the scene. */
 #include "render/core/plan.h"
 #include "geometry/shapes/shape.h"
 

@@ -1,3 +1,4 @@
+/* Memory and batches of a ray queue. */
 #include "render/core/queue.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* Writers of a frame's files: images, maps, named layers, the timeline. */
 #include "render/core/record.h"
 
 #include "base/file.h"

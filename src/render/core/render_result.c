@@ -1,3 +1,4 @@
+/* Noise and release of a render result. */
 #include "render/core/renderer.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The frame loop of the renderer: workers take pieces, their accounts are collected into a result. */
 #include "render/core/renderer.h"
 
 #include "base/grow.h"

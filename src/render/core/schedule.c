@@ -1,3 +1,4 @@
+/* Assignment of pieces of the image to workers. */
 #include "render/core/schedule.h"
 
 void schedule_start(schedule *s, const render_settings *settings)

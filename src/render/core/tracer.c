@@ -1,3 +1,4 @@
+/* The batch loop of a tracer: which queue is traced next, sorting of hits, shadow rays. */
 #include "render/core/tracer.h"
 
 #include "measure/clock.h"

@@ -1,3 +1,4 @@
+/* Lending of tracers to workers. */
 #include "render/core/tracer_pool.h"
 
 #include "render/core/tracer_private.h"

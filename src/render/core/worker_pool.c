@@ -1,3 +1,4 @@
+/* Starting, waking and joining of worker threads. */
 #include "render/core/worker_pool.h"
 
 #include "base/float_environment.h"

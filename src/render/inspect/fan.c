@@ -1,3 +1,4 @@
+/* Following the rays of a fan; crossings by plane geometry, the focus by least squares. */
 #include "render/inspect/fan.h"
 
 #include "base/elementary.h"

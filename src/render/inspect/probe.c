@@ -1,3 +1,4 @@
+/* The probe's interface: pixels, free rays, paths, media and names. */
 #include "render/inspect/probe.h"
 #include "geometry/shapes/shape.h"
 

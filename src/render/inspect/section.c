@@ -1,3 +1,4 @@
+/* The grid of a section: sampling of media and crossings on grid edges. */
 #include "base/grow.h"
 #include "render/inspect/section_private.h"
 

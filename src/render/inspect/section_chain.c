@@ -1,3 +1,4 @@
+/* Lines from pieces of boundary, and areas from lines. */
 #include "base/grow.h"
 #include "render/inspect/section_private.h"
 

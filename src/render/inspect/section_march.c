@@ -1,3 +1,4 @@
+/* Marching squares with junctions: the pieces of boundary within one cell. */
 #include "base/grow.h"
 #include "render/inspect/section_private.h"
 

@@ -1,3 +1,4 @@
+/* The table of integrators, from INTEGRATORS (scene/model/integrators.h). */
 #include "render/integrators/integrator.h"
 
 #define DECLARE(name, word, ...) extern const integrator integrator_of_##word;

@@ -1,3 +1,4 @@
+/* Gathering the rays that hit one surface into a group. */
 #include "render/shade/shade.h"
 
 #include <string.h>

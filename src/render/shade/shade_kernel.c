@@ -1,3 +1,4 @@
+/* The shading kernels, compiled once for each instruction set. */
 #include "render/shade/shade.h"
 
 #include "base/counters.h"

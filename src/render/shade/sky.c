@@ -1,3 +1,4 @@
+/* Radiance and mean of the background's three kinds. */
 #include "render/shade/sky.h"
 
 #include "base/elementary.h"

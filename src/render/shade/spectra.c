@@ -1,3 +1,4 @@
+/* Tables of the scene's spectra, and the choice of a ray's wavelength. */
 #include "render/shade/spectra.h"
 
 #include "base/random.h"

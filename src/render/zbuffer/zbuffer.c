@@ -1,3 +1,4 @@
+/* The steps of a z-buffer frame: chunks of triangles, the grid, sorting triangles into squares. */
 #include "render/zbuffer/zbuffer_private.h"
 
 #include <limits.h>
