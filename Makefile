@@ -58,7 +58,8 @@ pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs
 import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson) -lm)$(import_libs)
 # For src/web alone.
 web_libs = $(eval web_libs := $$(shell pkg-config --libs libmicrohttpd))$(web_libs)
-CFLAGS ?= -g
+# Valgrind of Debian 12 cannot read the DWARF 5 that clang writes.
+CFLAGS ?= -g$(if $(clang),dwarf-4)
 # One set of objects for the program and both libraries: on the machines that run it, position-independent code whose names are hidden
 # is as fast. Of a shared library only what cuvette.h marks is seen.
 linkage := -fPIC -fvisibility=hidden
