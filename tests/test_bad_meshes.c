@@ -345,17 +345,17 @@ static void an_importer_that_goes_wrong_is_survived(void **state)
     (void)state;
     with_importer("#!/bin/sh\nkill -SEGV $$\n", "stopped by signal 11", STATUS_BAD_INPUT);
     with_importer("#!/bin/sh\nkill -KILL $$\n", "", STATUS_BAD_INPUT);
-    with_importer("#!/bin/sh\nkill -XCPU $$\n", "processor time", STATUS_BAD_INPUT);
+    with_importer("#!/bin/sh\nkill -XCPU $$\n", "CPU time", STATUS_BAD_INPUT);
     with_importer("#!/bin/sh\nkill -INT $$\n", "interrupted", STATUS_INTERRUPTED);
     with_importer("#!/bin/sh\nexec sleep 100\n", "longer than the limit", STATUS_BAD_INPUT);
     with_importer("#!/bin/sh\nexec sleep 100 >&- 2>&-\n", "",
                   STATUS_BAD_INPUT); /* both pipes closed, but still running */
     with_importer("#!/bin/sh\nexec 2>&-\nexec sleep 100\n", "longer than the limit", STATUS_BAD_INPUT);
-    with_importer("#!/bin/sh\nexit 0\n", "ends early", STATUS_BAD_INPUT);
+    with_importer("#!/bin/sh\nexit 0\n", "truncated", STATUS_BAD_INPUT);
     with_importer("#!/bin/sh\nexit 3\n", "exit code 3", STATUS_FAILURE);
     with_importer("#!/bin/sh\nexec cat /dev/zero\n", "damaged", STATUS_BAD_INPUT);
     with_importer("#!/bin/sh\nexec cat /dev/zero >&2\n", "longer than the limit", STATUS_BAD_INPUT);
-    with_importer("#!/bin/sh\nprintf 'CUVMESH\\n\\001'\n", "ends early", STATUS_BAD_INPUT);
+    with_importer("#!/bin/sh\nprintf 'CUVMESH\\n\\001'\n", "truncated", STATUS_BAD_INPUT);
     with_importer("#!/bin/sh\nhead -c 100 /dev/urandom\n", "damaged", STATUS_BAD_INPUT);
     with_importer("this is no program", "cannot start", STATUS_BAD_INPUT);
     char *old = strdup(getenv("CUVETTE_IMPORT"));

@@ -337,7 +337,7 @@ check "wrong radii are refused with the remedy" matches "$code $(<err)" \
     "^2 cuvette: --generate: invalid torus radii 1 and 2; use radii"
 run mesh --generate lathe --profile 0,0,1
 check "a profile needs pairs" matches "$code $(<err)" \
-    "^2 cuvette: --generate: body: the profile has an odd number of numbers; "
+    "^2 cuvette: --generate: body: the profile has an odd number of values; "
 run mesh --generate box -f obj -o nowhere/box.obj
 check "a missing folder is refused" matches "$code $(<err)" "^[12] cuvette: .*nowhere/box.obj"
 run mesh torus.obj
@@ -829,12 +829,12 @@ refused() { # WHAT ERROR ARGUMENT...: exit 2, one line, nothing written
         "2 1 0 cuvette: $error"
 }
 refused "to delete a material in use" \
-    "--delete clear: clear is the material of vessel and 1 more; give those another material first, or remove them" \
+    "--delete clear: clear is the material of vessel and 1 more; assign another material to them first, or remove them" \
     built.yaml --delete clear
-refused "an unknown name" "--move rood=1,2,3: nothing in the scene is named 'rood'; did you mean 'rod'?" \
+refused "an unknown name" "--move rood=1,2,3: the scene has no object 'rood'; did you mean 'rod'?" \
     built.yaml --move rood=1,2,3
 refused "to scale the camera" \
-    "--scale camera=2: camera has no size of its own; scale a solid, a light, or all, solids, lights" built.yaml \
+    "--scale camera=2: camera cannot be scaled; scale a solid, a light, or all, solids, lights" built.yaml \
     --scale camera=2
 refused "a factor of zero" "--scale all=0: all cannot be scaled by 0; give a factor above 0, at most 1e9" \
     built.yaml --scale all=0

@@ -34,26 +34,31 @@ static void expect_hints(const char *file, const char *hints)
 static void what_is_forgotten_is_hinted_at(void **state)
 {
     (void)state;
-    static const char none[] = "solids: no visible solids: the picture shows the background alone; add solids:\n";
+    static const char none[] = "solids: no visible solids: the image shows only the background; add solids:\n";
     expect_hints("{}", none);
     expect_hints("solids: {ball: {shape: sphere, visible: no}}", none);
     expect_hints("solids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, specular: 1, radius: 2}}",
-                 "lights: no lights: opaque surfaces are dark but for their ambient and emitted light; add lights:\n");
+                 "lights: no lights: opaque surfaces show only ambient and emitted light; add lights:\n");
     expect_hints(LIT "solids: {ball: {shape: sphere}}",
-                 "ball.diffuse: ball is neither transparent, nor diffuse, nor lit: it is black; set its diffuse\n");
+                 "ball.diffuse: ball is black: it is neither transparent, nor diffuse, nor ambient, nor "
+                 "emitting; set its diffuse\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, emission: 0.5}}", "");
     expect_hints("render: {integrator: path}\nsolids: {ball: {shape: sphere, diffuse: 1}, egg: {shape: sphere, "
                  "emission: 1, radius: 2}}",
                  "");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1}}",
-                 "ball.ior: ball is transparent with the index of what is around it: it is invisible; set its ior\n");
+                 "ball.ior: ball is transparent with the refractive index of the surrounding medium: it is "
+                 "invisible; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, specular: 0.5}}",
-                 "ball.ior: ball is transparent with the index of what is around it: it is invisible; set its ior\n");
+                 "ball.ior: ball is transparent with the refractive index of the surrounding medium: it is "
+                 "invisible; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 0.5}}",
-                 "ball.ior: ball is transparent with the index of what is around it: it is invisible; set its ior\n");
+                 "ball.ior: ball is transparent with the refractive index of the surrounding medium: it is "
+                 "invisible; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, emission: 0.5}}", "");
     expect_hints(LIT "solids: {ball: {shape: sphere, transparency: 1, absorb_per_m: [1, 0, 0]}}",
-                 "ball.ior: ball is transparent with the index of what is around it: it bends no light; set its ior\n");
+                 "ball.ior: ball is transparent with the refractive index of the surrounding medium: it "
+                 "refracts no light; set its ior\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, ior: 1.5}, egg: {shape: sphere, diffuse: 1, ior: 0.9, radius: 2}}",
                  "ball.ior: ball has a refractive index but is opaque; set its transparency\n"
                  "egg.ior: egg has a refractive index but is opaque; set its transparency\n");
@@ -64,18 +69,19 @@ static void a_law_beyond_its_measurements_is_hinted_at(void **state)
     (void)state;
     expect_hints("solids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}", "");
     expect_hints("render: {lambda_nm: 450}\nsolids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}",
-                 "drop.medium: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond; keep to "
-                 "these wavelengths, or give coefficients that reach further\n");
+                 "drop.medium: ethanol was measured only from 476.5 to 830 nm and is extrapolated outside; "
+                 "use wavelengths in this range, or coefficients with a wider range\n");
     expect_hints("render: {spectrum: spectral}\nsolids: {drop: {shape: sphere, transparency: 1, medium: water}}", "");
     expect_hints("render: {spectrum: spectral}\nsolids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}",
-                 "drop.medium: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond; keep to "
-                 "these wavelengths, or give coefficients that reach further\n");
+                 "drop.medium: ethanol was measured only from 476.5 to 830 nm and is extrapolated outside; "
+                 "use wavelengths in this range, or coefficients with a wider range\n");
     expect_hints("render: {lambda_nm: 450}\nbackground: {medium: ethanol}\nsolids: {drop: {shape: sphere, "
                  "transparency: 1, ior: 1.5}}",
-                 "background.medium: ethanol was measured from 476.5 to 830 nm only, and is extrapolated beyond; keep "
-                 "to these wavelengths, or give coefficients that reach further\n");
+                 "background.medium: ethanol was measured only from 476.5 to 830 nm and is extrapolated "
+                 "outside; use wavelengths in this range, or coefficients with a wider range\n");
     expect_hints("background: {medium: water}\nsolids: {drop: {shape: sphere, transparency: 1, medium: water}}",
-                 "drop.ior: drop is transparent with the index of what is around it: it is invisible; set its ior\n");
+                 "drop.ior: drop is transparent with the refractive index of the surrounding medium: it is "
+                 "invisible; set its ior\n");
 }
 
 static void what_has_no_effect_is_hinted_at(void **state)
@@ -83,22 +89,23 @@ static void what_has_no_effect_is_hinted_at(void **state)
     (void)state;
     expect_hints("render: {lambda_nm: 700}\nsolids: {drop: {shape: sphere, transparency: 1, medium: table, "
                  "coefficients: [450, 1.34, 650, 1.33]}}",
-                 "drop.coefficients: its table of indices reaches from 450 to 650 nm only, and keeps its ends' indices "
-                 "beyond; keep to these wavelengths, or give coefficients that reach further\n");
-    expect_hints(
-        "solids: {drop: {shape: sphere, transparency: 1, ior: 1.3, coefficients: [1.5, 0.004]}}",
-        "drop.coefficients: drop has coefficients but no law for them; set its medium to cauchy, sellmeier or table\n");
+                 "drop.coefficients: its table of indices covers only 450 to 650 nm and is constant "
+                 "outside; use wavelengths in this range, or coefficients with a wider range\n");
+    expect_hints("solids: {drop: {shape: sphere, transparency: 1, ior: 1.3, coefficients: [1.5, 0.004]}}",
+                 "drop.coefficients: drop has coefficients but no dispersion law; set its medium to cauchy, "
+                 "sellmeier or table\n");
     expect_hints(LIT "solids: {ball: {shape: sphere, diffuse: 1, absorb_per_m: [1, 0, 0]}}",
                  "ball.absorb_per_m: ball absorbs but is opaque; set its transparency\n");
     static const char lit[] = "lights: {lamp: {radius: 1, reach: 5}}\nsolids: {ball: {shape: sphere, diffuse: 1}}";
-    expect_hints(lit, "lamp.radius: lamp is lit as a point; set render.integrator=path, where its radius shows\n");
+    expect_hints(lit, "lamp.radius: lamp acts as a point light; set render.integrator=path, which samples its "
+                      "radius\n");
     expect_hints("render: {integrator: path}\nlights: {lamp: {radius: 1, reach: 5}}\nsolids: {ball: {shape: sphere, "
                  "diffuse: 1}}",
                  "");
     expect_hints(
         "render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5}}",
-        "lamp.radius: lamp is a point, which random paths cannot find through clear solids: no caustics; give it a "
-        "radius and a reach\n");
+        "lamp.radius: lamp is a point light, which random paths cannot hit through transparent "
+        "solids: no caustics; set its radius and its reach\n");
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
 }
 
@@ -110,9 +117,8 @@ static void what_a_depth_buffer_cannot_show_is_hinted_at(void **state)
         "");
     expect_hints(LIT "render: {integrator: zbuffer, lighting: phong}\nsolids: {ball: {shape: sphere, transparency: 1, "
                      "ior: 1.5, specular: 1}}",
-                 "render.lighting: ball is transparent, and without reflected and refracted light its surface is black "
-                 "but for highlights; set "
-                 "render.lighting to whitted\n");
+                 "render.lighting: ball is transparent: without reflected and refracted rays its surface is "
+                 "black except for highlights; set render.lighting to whitted\n");
     expect_hints(
         LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, transparency: 1, ior: 1.5, diffuse: 0.2}}",
         "");
@@ -145,11 +151,11 @@ static void what_is_hidden_is_hinted_at(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char file[300];
         snprintf(file, sizeof file, "%s%s", shell, cases[i].solid);
-        expect_hints(
-            file,
-            cases[i].hidden
-                ? "x.priority: x lies wholly inside shell, which wins there and hides it; give x the higher priority\n"
-                : "");
+        expect_hints(file,
+                     cases[i].hidden
+                         ? "x.priority: x is entirely inside shell, which has precedence there and hides it; give x "
+                           "the higher priority\n"
+                         : "");
     }
 }
 

@@ -230,7 +230,7 @@ static void a_cone_needs_a_direction(void **state)
     for (int k = 0; k < 2; k++) {
         s->lights[0].kind = k + 1;
         assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
-        assert_non_null(strstr(diagnostic_text(&why, text, sizeof text), "lamp: the light stands at its own target"));
+        assert_non_null(strstr(diagnostic_text(&why, text, sizeof text), "lamp: the light is at its own target"));
         char line[200];
         snprintf(line, sizeof line, "lights: {spot: {kind: %s, position: [0, 0, 0]}}\n", kinds[k]);
         scene *none = NULL;

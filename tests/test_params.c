@@ -319,12 +319,12 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
     static const struct {
         const char *assignment, *text;
     } cases[] = {
-        {"vesel.ior=1", "nothing in the scene is named 'vesel'; did you mean 'vessel.ior'?"},
-        {"rendr.depth=1", "nothing in the scene is named 'rendr'; did you mean 'render.depth'?"},
+        {"vesel.ior=1", "the scene has no object 'vesel'; did you mean 'vessel.ior'?"},
+        {"rendr.depth=1", "the scene has no object 'rendr'; did you mean 'render.depth'?"},
         {"vessel.iro=1", "vessel has no parameter 'iro'; did you mean 'vessel.ior'?"},
         {"render.dpeth=1", "render has no parameter 'dpeth'; did you mean 'render.depth'?"},
-        {"depth=1", "nothing in the scene is named 'depth'; did you mean 'render.depth'?"},
-        {"fov_dge=1", "nothing in the scene is named 'fov_dge'; did you mean 'camera.fov_deg'?"},
+        {"depth=1", "the scene has no object 'depth'; did you mean 'render.depth'?"},
+        {"fov_dge=1", "the scene has no object 'fov_dge'; did you mean 'camera.fov_deg'?"},
         {"lens.height=2",
          "lens is a sphere, which has no height; a sphere has position, rotation, radius, priority, visible, "
          "and the parameters of a material"},
@@ -338,7 +338,7 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"camera.fov=45", "camera has no parameter 'fov'; did you mean 'camera.fov_deg'?"},
         {"camera.5=1",
          "camera has no parameter '5'; camera has position, target, yaw_deg, pitch_deg, roll_deg, fov_deg"},
-        {"fov=45", "nothing in the scene is named 'fov'; did you mean 'camera.fov_deg'?"},
+        {"fov=45", "the scene has no object 'fov'; did you mean 'camera.fov_deg'?"},
         {"lens.visible=of", "lens.visible: no choice 'of'; give one of: off, on"},
         {"lens.visible=noo", "lens.visible: no choice 'noo'; give one of: off, on"},
         {"render.shadows=no", "render.shadows: no choice 'no'; give one of: off, opaque, attenuated"},
@@ -351,7 +351,7 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"lamp.color.x=2", "lamp.color has no element 'x'; the elements are .r, .g and .b"},
         {"lamp.position.xy=2", "lamp.position has no element 'xy'; the elements are .x, .y and .z"},
         {"lamp.position.=2", "lamp.position has no element ''; the elements are .x, .y and .z"},
-        {"render.depth.x=2", "render.depth has no elements; leave out what follows the second dot"},
+        {"render.depth.x=2", "render.depth has no elements; remove the part after the second dot"},
         {"render.depth", "'render.depth' has no '='; write path=value, such as render.depth=8"},
         {"render.depth=", "render.depth has no value; give an integer 0..64"},
         {"render.depth=65", "render.depth: 65 is out of range; give an integer 0..64"},
@@ -363,12 +363,12 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
         {"render.pin=", "render.pin has no value; give one of: none, compact, scatter"},
         {"camera.fov_deg=0", "camera.fov_deg: 0 is out of range; give a number > 0, at most 179"},
         {"camera.fov_deg=nan", "camera.fov_deg: 'nan' is not a finite number; give a number > 0, at most 179"},
-        {"camera.position=1,2", "camera.position: 2 values where 3 belong; give 3 numbers, each -1000000..1000000"},
+        {"camera.position=1,2", "camera.position: 2 values instead of 3; give 3 numbers, each -1000000..1000000"},
         {"camera.position=1,inf,2", "camera.position.y: 'inf' is not a finite number; give a number -1000000..1000000"},
         {"lamp.color=0,-1,0", "lamp.color.g: -1 is out of range; give a number 0..10000"},
         {"block.size.x=0", "block.size.x: 0 is out of range; give a number > 0, at most 1000000"},
         {"vessel.ior=0x1p3", "vessel.ior: '0x1p3' is not a finite number; give a number 0.1..1000000000"},
-        {"background.picture=a\nb", "background.picture: the path holds a control character; give a path of a file"},
+        {"background.picture=a\nb", "background.picture: the path contains a control character; give a path of a file"},
     };
     scene *s = make(), *untouched = make();
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -126,7 +126,7 @@ static void the_reports_settings_are_overrides(void **state)
     assert_int_equal(scene_set_assignment(s, "clear.reflectivity=0.1", NULL), STATUS_OK);
     diagnostic why = {.what = ""};
     assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "vessel: under constant weights reflectivity 0.1 + transparency 1 is more than 1");
+    assert_string_equal(why.what, "vessel: with constant weights, reflectivity 0.1 + transparency 1 exceeds 1");
     assert_int_equal(scene_set_assignment(s, "clear.transparency=0.9", NULL), STATUS_OK);
     assert_int_equal(scene_check(s, NULL), STATUS_OK);
     scene_destroy(s);
@@ -262,13 +262,13 @@ static void check_finds_what_single_ranges_cannot(void **state)
     assert_check_finds(s, "vessel.inner_radius=1", "inner_radius");
     assert_check_finds(s, "vessel.floor=5", "floor");
     assert_check_finds(s, "camera.target=0,2.75,-6", "target");
-    assert_check_finds(s, "background.kind=picture", "picture");
+    assert_check_finds(s, "background.kind=picture", "image");
     assert_int_equal(scene_set(s, "render.width", "65536", NULL), STATUS_OK);
     assert_check_finds(s, "render.height=4097", "too large");
     assert_int_equal(scene_set(s, "render.width", "8", NULL), STATUS_OK);
     free(s->solids[3].name);
     s->solids[3].name = strdup("lamp");
-    assert_check_finds(s, "render.depth=1", "taken");
+    assert_check_finds(s, "render.depth=1", "already in use");
     s->solids[3].name[0] = '.';
     assert_check_finds(s, "render.depth=1", "name");
     scene_destroy(s);

@@ -88,15 +88,15 @@ static void wrong_names_are_refused(void **state)
 {
     (void)state;
     scene *s = scene_from(small_scene);
-    assert_refused(s, scene_add(s, PARAM_LIGHT, "lamp", NULL, &why), "the name 'lamp' is taken");
-    assert_refused(s, scene_add(s, PARAM_MATERIAL, "a", NULL, &why), "the name 'a' is taken");
+    assert_refused(s, scene_add(s, PARAM_LIGHT, "lamp", NULL, &why), "the name 'lamp' is already in use");
+    assert_refused(s, scene_add(s, PARAM_MATERIAL, "a", NULL, &why), "the name 'a' is already in use");
     assert_refused(s, scene_add_solid(s, "camera", SHAPE_BOX, NULL, &why),
-                   "the name 'camera' is a word of scene files");
-    assert_refused(s, scene_add_solid(s, "two words", SHAPE_BOX, NULL, &why), "'two words' cannot be a name");
-    assert_refused(s, scene_remove(s, "lump", &why), "nothing in the scene is named 'lump'");
-    assert_refused(s, scene_rename(s, "lamp", "other", &why), "the name 'other' is taken");
-    assert_refused(s, scene_rename(s, "camera", "eye", &why), "the camera has no name of its own");
-    assert_refused(s, scene_rename(s, "a", "9", &why), "'9' cannot be a name");
+                   "the name 'camera' is a reserved word of scene files");
+    assert_refused(s, scene_add_solid(s, "two words", SHAPE_BOX, NULL, &why), "'two words' is not a valid name");
+    assert_refused(s, scene_remove(s, "lump", &why), "the scene has no object 'lump'");
+    assert_refused(s, scene_rename(s, "lamp", "other", &why), "the name 'other' is already in use");
+    assert_refused(s, scene_rename(s, "camera", "eye", &why), "the camera has no name");
+    assert_refused(s, scene_rename(s, "a", "9", &why), "'9' is not a valid name");
     assert_refused(s, scene_give_material(s, "a", "glas", &why), "no material 'glas'");
     assert_refused(s, scene_give_material(s, "lamp", "glass", &why), "lamp is a light, which has no material");
     assert_refused(s, scene_move(s, "glass", vec3_make(1, 0, 0), &why), "glass is a material, which has no place");
@@ -251,7 +251,8 @@ static void what_would_leave_the_scene_stays(void **state)
     assert_refused(s, scene_move(s, "lamp", vec3_make(0, (double)NAN, 0), &why),
                    "lamp.position.y: 'nan' is not a finite number");
     assert_refused(s, scene_move(s, "camera", vec3_make(0, 0, 2), &why), "camera.target.z: 1000001 is out of range");
-    assert_refused(s, scene_turn(s, "c", vec3_make(0, (double)INFINITY, 0), &why), "c cannot be turned so far");
+    assert_refused(s, scene_turn(s, "c", vec3_make(0, (double)INFINITY, 0), &why),
+                   "c cannot be rotated by these angles");
     assert_refused(s, scene_look_at(s, vec3_make(0, 2e6, 0), &why), "camera.target.y: 2000000 is out of range");
     scene_destroy(s);
 }

@@ -107,11 +107,11 @@ static void what_makes_no_medium_is_refused_where_it_stands(void **state)
 {
     (void)state;
     expect_error("solids:\n  a: {shape: sphere, ior: 1.5, medium: water}\n",
-                 "test.yaml:2:27: there is an ior and a medium too; keep the ior, or the medium");
+                 "test.yaml:2:27: both an ior and a medium are given; keep either the ior or the medium");
     expect_error("materials:\n  a: {medium: water, ior: 1.5}\n",
-                 "test.yaml:2:27: there is an ior and a medium too; keep the ior, or the medium");
+                 "test.yaml:2:27: both an ior and a medium are given; keep either the ior or the medium");
     expect_error("background: {medium: water, ior: 1.5}\n",
-                 "test.yaml:1:34: there is an ior and a medium too; keep the ior, or the medium");
+                 "test.yaml:1:34: both an ior and a medium are given; keep either the ior or the medium");
     expect_error("solids:\n  a: {shape: sphere, medium: cauchy}\n",
                  "test.yaml:2:3: a: medium cauchy has no coefficients; give A, B in um^2, .., as 'coefficients: "
                  "[1.5046, 0.0042]'");
@@ -121,22 +121,20 @@ static void what_makes_no_medium_is_refused_where_it_stands(void **state)
         "table, air, "
         "water, ethanol, glycerol, toluene, olive-oil, bk7-liquid, fused-silica, bk7, sf11, n-sf11, soda-lime, pmma, "
         "sapphire, diamond");
-    expect_error(
-        "solids:\n  a: {shape: sphere, absorb_spectrum: [400, 1, 500]}\n",
-        "test.yaml:2:3: a: absorb_spectrum is not a list of wavelengths and coefficients; write nm,1/m,nm,1/m.. with "
-        "ascending wavelengths, as [400, 0.1, 700, 2]");
+    expect_error("solids:\n  a: {shape: sphere, absorb_spectrum: [400, 1, 500]}\n",
+                 "test.yaml:2:3: a: absorb_spectrum is not a list of pairs of wavelength and coefficient; "
+                 "write nm,1/m,nm,1/m.. with ascending wavelengths, as [400, 0.1, 700, 2]");
     expect_error("solids:\n  a: {shape: sphere, coefficients: [1, x]}\n",
                  "test.yaml:2:36: a.coefficients: 'x' is not a finite number; give a number -1000000..1000000");
     expect_error("render: {integrator: path}\nlights:\n  l: {radius: 1}\n",
-                 "test.yaml:3:3: l: a sphere's light falls off with distance, and no reach says from where; give the "
-                 "distance at "
-                 "which it has its intensity, as 'reach: 8', or radius 0");
+                 "test.yaml:3:3: l: a spherical light falls off with distance, and its reach is 0; set "
+                 "'reach', the distance at which the intensity applies, or set radius to 0");
     expect_error("render: {integrator: path, polarisation: on}\n",
-                 "test.yaml:1:9: the path integrator does not follow polarisation; set render.polarisation to off, or "
-                 "render.integrator to whitted");
+                 "test.yaml:1:9: the path integrator does not support polarisation; set render.polarisation "
+                 "to off, or render.integrator to whitted");
     expect_error("render: {weights: constant, polarisation: on}\n",
-                 "test.yaml:1:9: constant weights know no polarisation, which Fresnel's equations give; set "
-                 "render.weights to fresnel");
+                 "test.yaml:1:9: constant weights do not support polarisation, which requires the Fresnel "
+                 "equations; set render.weights to fresnel");
 }
 
 int main(void)

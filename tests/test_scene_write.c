@@ -340,7 +340,7 @@ static void a_mesh_has_one_source(void **state)
     char *text;
     diagnostic why = {0};
     assert_int_equal(scene_write_text(s, "", false, &text, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "the mesh body was given as arrays, which a scene file does not hold");
+    assert_string_equal(why.what, "the mesh body was given as arrays, which cannot be stored in a scene file");
     scene_destroy(s);
 }
 
@@ -416,7 +416,7 @@ static void text_that_is_not_utf8_is_refused(void **state)
         assert_int_equal(scene_set_title(s, wrong[i], NULL), STATUS_OK);
         assert_int_equal(scene_write_text(s, "", false, &text, &why), STATUS_BAD_INPUT);
         assert_null(text);
-        assert_string_equal(why.what, "title is not UTF-8, and a scene file is");
+        assert_string_equal(why.what, "title is not UTF-8, which a scene file requires");
         scene_destroy(s);
     }
 }

@@ -179,7 +179,7 @@ static void settings_that_make_no_body_are_refused(void **state)
     refused_to_read("meshes: {toy: {generate: slime, time_s: -1}}\n", "toy.time_s");
     refused_to_read("meshes: {toy: {generate: slime, time_s: 1000, dt_s: 1e-7}}\n", "steps");
     refused_to_read("meshes: {toy: {generate: slime, time_s: 0, dt_s: 9e-10}}\n", "toy.dt_s");
-    refused_to_read("meshes: {toy: {generate: slime, file: a.obj}}\n", "generated too");
+    refused_to_read("meshes: {toy: {generate: slime, file: a.obj}}\n", "both a file and a generator");
     scene *s = NULL;
     const char sphere[] = "meshes: {ball: {generate: icosphere, level: 8}}\n"; /* of which there may be more */
     assert_int_equal(scene_read_text("ball.yaml", sphere, strlen(sphere), &s, NULL), STATUS_OK);

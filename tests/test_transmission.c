@@ -166,7 +166,7 @@ static void weights_above_one_and_polarisation_are_refused(void **state)
     set(s, "render.transmission=simple");
     assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(diagnostic_text(&why, text, sizeof text),
-                           "pane: under simple transmission reflectivity 0.5 + transparency 0.7 is more than 1"));
+                           "pane: with simple transmission, reflectivity 0.5 + transparency 0.7 exceeds 1"));
     set_all(s, "pane.reflectivity=0.3 render.polarisation=on");
     assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(diagnostic_text(&why, text, sizeof text), "set render.transmission to refract"));

@@ -49,7 +49,7 @@ status files_check(const request *asked, diagnostic *why)
                         reason ? reason : "unknown error");
     int first = fgetc(stream);
     fclose(stream);
-    return first == EOF ? diagnose(why, STATUS_BAD_INPUT, "name a mesh file", "the file is empty") : STATUS_OK;
+    return first == EOF ? diagnose(why, STATUS_BAD_INPUT, "give a mesh file", "the file is empty") : STATUS_OK;
 }
 
 /* ---- what assimp calls ---- */

@@ -67,7 +67,7 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
     for (unsigned i = 0; i < mesh->mNumFaces; i++)
         w->triangles += mesh->mFaces[i].mNumIndices == 3;
     if (w->triangles > w->asked->triangles)
-        return diagnose(w->why, STATUS_BAD_INPUT, "take a mesh of less detail", "more triangles than the limit of %llu",
+        return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail", "more triangles than the limit of %llu",
                         (unsigned long long)w->asked->triangles);
     if (w->triangles == before)
         return STATUS_OK;
@@ -178,7 +178,7 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
         case JOINED: break;
         case JOIN_NO_MEMORY: return no_memory_for(w->asked, w->why);
         case JOIN_TOO_MANY:
-            return diagnose(w->why, STATUS_BAD_INPUT, "take a mesh of less detail",
+            return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail",
                             "more vertices than the limit of %llu", (unsigned long long)w->asked->vertices);
         }
     }

@@ -8,7 +8,7 @@
 
 status no_memory_for(const request *asked, diagnostic *why)
 {
-    return diagnose_at(why, asked->path, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
+    return diagnose_at(why, asked->path, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
                        "the file asks for more memory than the limit of %llu MiB",
                        (unsigned long long)asked->memory_mib);
 }
@@ -38,9 +38,9 @@ static status explain(const request *asked, const file_access *access, const cha
         return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, "needs the file '%s', which %s", access->missing,
                         access->reason);
     if (access->missing[0])
-        return diagnose(why, STATUS_BAD_INPUT, "put it where the mesh file says, or take the line that names it out",
-                        "needs the file '%s': %s", access->missing,
-                        access->reason ? access->reason : "cannot be opened");
+        return diagnose(
+            why, STATUS_BAD_INPUT, "put the image where the mesh file expects it, or remove the line that names it",
+            "needs the file '%s': %s", access->missing, access->reason ? access->reason : "cannot be opened");
     if (strstr(said, "bad_alloc") || strstr(said, "length_error") || strstr(said, "bad_array_new_length") ||
         strstr(said, "_M_") || strstr(said, "max_size"))
         return no_memory_for(asked, why);

@@ -31,7 +31,7 @@ void lint_camera(const lint_room *room)
     const bool opaque = room->made->geometry->regions[priority_index].opaque;
     if (opaque && shape_of(&around->shape)->unbounded)
         note_give(room->taker, "camera", "position", "move the camera to the other side of the plane",
-                  "the camera is under the surface of %s, which is opaque", around->name);
+                  "the camera is below the surface of %s, which is opaque", around->name);
     else if (opaque)
         note_give(room->taker, "camera", "position", "move the camera out of it",
                   "the camera is inside %s, which is opaque", around->name);

@@ -192,10 +192,10 @@ static void note_overlap(const pair *p)
 {
     const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said,
                 *second = first == p->a->said ? p->b->said : p->a->said;
-    note_give(
-        p->room->taker, second->name, "priority", "give the one that displaces the other the higher priority",
-        "%s and %s overlap with equal priority and different media: %s wins there only because it is listed first",
-        first->name, second->name, first->name);
+    note_give(p->room->taker, second->name, "priority", "give a higher priority to the solid that displaces the other",
+              "%s and %s overlap with equal priority and different media: the medium there is that of %s "
+              "only because it is listed first",
+              first->name, second->name, first->name);
 }
 
 static void note_gap(const pair *p, double gap)
@@ -203,12 +203,11 @@ static void note_gap(const pair *p, double gap)
     const neighbour *thin = p->a->thickness <= p->b->thickness ? p->a : p->b;
     const solid *first = p->a->said < p->b->said ? p->a->said : p->b->said,
                 *second = first == p->a->said ? p->b->said : p->a->said;
-    note_give(
-        p->room->taker, second->name, NULL,
-        "let them touch exactly, or overlap, where the higher priority wins; or set them further apart",
-        "between %s and %s is a gap of about %.2g, less than a thousandth of the thickness of %s (%.3g): light sees "
-        "a film there",
-        first->name, second->name, gap, thin->said->name, thin->thickness);
+    note_give(p->room->taker, second->name, NULL,
+              "make them touch exactly or overlap (the higher priority then decides), or move them apart",
+              "the gap between %s and %s is about %.2g, less than a thousandth of the thickness of %s "
+              "(%.3g): it acts as a thin film",
+              first->name, second->name, gap, thin->said->name, thin->thickness);
 }
 
 /* Two half-spaces share a region unless they face away from each other. */

@@ -81,7 +81,8 @@ static status check_order(const char *hand, const hand_track *track, const hand_
 static status check_hand(const hand_script *s, const char *hand, const hand_track *track, diagnostic *why)
 {
     if (!hand[0] || strlen(hand) > HAND_NAME_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a name has 1 to 63 bytes", "'%.80s' cannot be a hand's name", hand);
+        return diagnose(why, STATUS_BAD_INPUT, "a name has 1 to 63 bytes", "'%.80s' is not a valid name of a hand",
+                        hand);
     if (!track && s->track_count == SOFTBODY_HANDS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a script has 16; one that has let go can grab again",
                         "%s is one hand too many", hand);

@@ -127,7 +127,7 @@ static status check_motion(void *context, const study *s, size_t cell, scene *se
     (void)context;
     if (scene_moves(setting))
         return STATUS_OK;
-    return diagnose_at(why, s->path, STATUS_BAD_INPUT, "give a mesh 'generate: slime'",
+    return diagnose_at(why, s->path, STATUS_BAD_INPUT, "add a mesh with 'generate: slime'",
                        "motion cannot be kept of cell %zu: nothing moves in it", cell);
 }
 

@@ -82,9 +82,9 @@ static status check_sky(const image *sky, const char *path, diagnostic *bad)
             const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
             for (int channel = 0; channel < 3; channel++) {
                 if (!(pixel[channel] >= 0.0F && pixel[channel] <= SCENE_SKY_MAX))
-                    return diagnose_at(bad, path, STATUS_BAD_INPUT, "scale the picture to 0..65536",
-                                       "pixel %d,%d is %g in channel %d, and a sky's light is from 0 to 65536", x, y,
-                                       (double)pixel[channel], channel);
+                    return diagnose_at(bad, path, STATUS_BAD_INPUT, "scale the image to 0..65536",
+                                       "pixel %d,%d is %g in channel %d; the radiance of the sky must be in 0..65536",
+                                       x, y, (double)pixel[channel], channel);
             }
         }
     }
@@ -186,8 +186,8 @@ static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
         return STATUS_OK;
     diagnostic bad = {.what = ""};
     const status code =
-        diagnose(&bad, STATUS_BAD_INPUT, "use smaller meshes, or fewer",
-                 "%zu triangles in all meshes are more than the limit of %zu", all, s->limits.triangles);
+        diagnose(&bad, STATUS_BAD_INPUT, "use smaller or fewer meshes",
+                 "the meshes have %zu triangles together, more than the limit of %zu", all, s->limits.triangles);
     mesh_entry_unload(m);
     return asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
 }

@@ -92,7 +92,7 @@ status mesh_child_read(void *context, void *bytes, size_t size, diagnostic *why)
     for (size_t done = 0; done < size;) {
         size_t got = take(context, (char *)bytes + done, size - done);
         if (got == 0)
-            return diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer ends early");
+            return diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer is truncated");
         done += got;
     }
     return STATUS_OK;
@@ -103,7 +103,7 @@ status mesh_child_end(void *context, diagnostic *why)
     char more;
     return take(context, &more, 1) == 0
                ? STATUS_OK
-               : diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer goes on after its end");
+               : diagnose(why, STATUS_BAD_INPUT, NULL, "the importer's answer has data after its end");
 }
 
 /* ---- end ---- */
@@ -172,28 +172,28 @@ status mesh_child_close(mesh_child *child, const char *path, const mesh_limits *
     int state = reap(child, code == STATUS_OK || child->out < 0);
     diagnostic_locate(why, path, 0, 0);
     if (child->late)
-        return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
-                        "reading it took longer than the limit of %g s", limits->wall_s);
+        return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
+                        "reading the file took longer than the limit of %g s", limits->wall_s);
     if (state == -1)
         return code != STATUS_OK && repeat(child, path, why) ? STATUS_BAD_INPUT : code;
     if (WIFSIGNALED(state)) {
         int signal = WTERMSIG(state);
         const char *name = sigdescr_np(signal);
         if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP)
-            return diagnose(why, STATUS_INTERRUPTED, NULL, "reading it was interrupted");
+            return diagnose(why, STATUS_INTERRUPTED, NULL, "reading the file was interrupted");
         if (signal == SIGXCPU)
-            return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail, if the file is whole",
-                            "reading it took more processor time than the limit of %g s", limits->wall_s);
+            return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
+                            "reading the file took more CPU time than the limit of %g s", limits->wall_s);
         if (signal == SIGKILL && code != STATUS_OK)
             return code;
-        return diagnose(why, STATUS_BAD_INPUT, "check that the file is whole, and export it again",
+        return diagnose(why, STATUS_BAD_INPUT, "check that the file is complete, or export it again",
                         "the importer was stopped by signal %d (%s)", signal, name ? name : "unknown");
     }
     int exit_code = WEXITSTATUS(state);
     if (exit_code == 0)
         return code;
     if (!repeat(child, path, why)) {
-        diagnose(why, STATUS_FAILURE, NULL, "the importer ended with exit code %d and did not say why", exit_code);
+        diagnose(why, STATUS_FAILURE, NULL, "the importer ended with exit code %d without a message", exit_code);
         return STATUS_FAILURE;
     }
     return exit_code == STATUS_BAD_INPUT ? STATUS_BAD_INPUT : STATUS_FAILURE;

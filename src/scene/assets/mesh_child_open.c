@@ -86,11 +86,11 @@ status mesh_child_open(mesh_child *child, const char *path, const mesh_limits *l
     if (error == ENOENT || error == EACCES || error == ENOEXEC || error == ENOTDIR) {
         const char *reason = strerrordesc_np(error);
         code = diagnose_at(why, program, STATUS_BAD_INPUT,
-                           "install cuvette with its importer, or name that in CUVETTE_IMPORT",
-                           "cannot start the program that reads meshes: %s", reason ? reason : "unknown error");
+                           "install cuvette with its importer, or set CUVETTE_IMPORT to its path",
+                           "cannot start the mesh importer: %s", reason ? reason : "unknown error");
     } else if (error) {
         diagnostic_locate(why, program, 0, 0);
-        code = machine_error(why, "cannot start the program that reads meshes", error);
+        code = machine_error(why, "cannot start the mesh importer", error);
     }
     free(program);
     free(name);

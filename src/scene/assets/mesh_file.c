@@ -48,8 +48,9 @@ static status resolve_texture(const char *path, imported_material *m, diagnostic
     if (!found)
         return out_of_memory(why);
     if (!is_file(found)) {
-        diagnose(why, STATUS_BAD_INPUT, "put it where the mesh file says, or take the line that names it out",
-                 "the picture '%.200s' of material '%.100s' is not there", m->texture, m->name ? m->name : "");
+        diagnose(why, STATUS_BAD_INPUT,
+                 "put the image where the mesh file expects it, or remove the line that names it",
+                 "the image '%.200s' of material '%.100s' does not exist", m->texture, m->name ? m->name : "");
         free(found);
         return STATUS_BAD_INPUT;
     }
@@ -65,7 +66,7 @@ status mesh_read_file(const char *path, const mesh_limits *limits, mesh_import *
     diagnostic said = {.what = ""};
     *out = NULL;
     if (!*path)
-        return diagnose(why, STATUS_BAD_INPUT, "name a mesh file", "the name of the mesh file is empty");
+        return diagnose(why, STATUS_BAD_INPUT, "give a mesh file", "the name of the mesh file is empty");
     status code = mesh_child_open(&child, path, &all, &said);
     mesh_import *fresh = NULL;
     if (code == STATUS_OK) {

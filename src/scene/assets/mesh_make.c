@@ -68,7 +68,7 @@ static status make(const mesh_entry *m, mesh **out, diagnostic *why)
     case MESH_SLIME:
     case MESH_ARRAYS: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "give its triangles, or another source", "%.80s has no triangles", m->name);
+    return diagnose(why, STATUS_BAD_INPUT, "set its triangles, or another source", "%.80s has no triangles", m->name);
 }
 
 status mesh_make(mesh_entry *m, diagnostic *why)

@@ -39,7 +39,7 @@ void mesh_import_destroy(mesh_import *imported)
 
 static status damaged(diagnostic *why, const char *what)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "check that cuvette-import is of this version",
+    return diagnose(why, STATUS_BAD_INPUT, "check that cuvette-import has the same version",
                     "the importer's answer is damaged: %s", what);
 }
 
@@ -53,7 +53,7 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
 {
     TRY(source->read(source->context, header, sizeof *header, why));
     if (memcmp(header->magic, MESH_WIRE_MAGIC, sizeof header->magic) != 0 || header->version != MESH_WIRE_VERSION)
-        return damaged(why, "its first bytes are not those of a mesh of this version");
+        return damaged(why, "it does not begin with the header of this version");
     if (header->flags & ~(uint32_t)(MESH_WIRE_NORMALS | MESH_WIRE_UVS) || header->reserved)
         return damaged(why, "unknown flags");
     if (header->material_count < 1 || header->material_count > MESH_SLOTS_MAX)
@@ -61,13 +61,13 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
     if (!header->triangle_count || !header->vertex_count)
         return damaged(why, "no triangles");
     if (header->triangle_count > limits->triangles)
-        return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail",
-                        "%llu triangles are more than the limit of %zu", (unsigned long long)header->triangle_count,
-                        limits->triangles);
+        return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail",
+                        "the mesh has %llu triangles, more than the limit of %zu",
+                        (unsigned long long)header->triangle_count, limits->triangles);
     if (header->vertex_count > limits->vertices)
-        return diagnose(why, STATUS_BAD_INPUT, "take a mesh of less detail",
-                        "%llu vertices are more than the limit of %zu", (unsigned long long)header->vertex_count,
-                        limits->vertices);
+        return diagnose(why, STATUS_BAD_INPUT, "use a mesh of less detail",
+                        "the mesh has %llu vertices, more than the limit of %zu",
+                        (unsigned long long)header->vertex_count, limits->vertices);
     return STATUS_OK;
 }
 
@@ -89,8 +89,8 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
             TRY(source->read(source->context, arrays[i].bytes, arrays[i].size, why));
     for (size_t i = 0; m->uvs && i < m->vertex_count; i++) {
         if (!isfinite(m->uvs[i].u) || !isfinite(m->uvs[i].v))
-            return diagnose(why, STATUS_BAD_INPUT, "texture coordinates are finite",
-                            "vertex %zu has a texture coordinate that is no number", i);
+            return diagnose(why, STATUS_BAD_INPUT, "use finite texture coordinates",
+                            "a texture coordinate of vertex %zu is not a number", i);
     }
     for (size_t t = 0; t < m->triangle_count; t++)
         if (m->slots[t] >= m->slot_count)
@@ -115,7 +115,7 @@ static status read_text(const mesh_source *source, uint32_t length, char **text,
     for (uint32_t i = 0; i < length && code == STATUS_OK; i++) {
         if ((unsigned char)fresh[i] < 0x20 || fresh[i] == 0x7f)
             code = diagnose(why, STATUS_BAD_INPUT, "rename it",
-                            "the name of a material or of its picture holds a control character");
+                            "the name of a material or of its image contains a control character");
     }
     if (code != STATUS_OK) {
         free(fresh);
@@ -179,7 +179,7 @@ static status read_materials(const mesh_source *source, mesh_import *into, diagn
     char end[sizeof MESH_WIRE_END - 1];
     TRY(source->read(source->context, end, sizeof end, why));
     return memcmp(end, MESH_WIRE_END, sizeof end) == 0 ? source->end(source->context, why)
-                                                       : damaged(why, "its end is not where it should be");
+                                                       : damaged(why, "it has the wrong length");
 }
 
 static status read_all(const mesh_source *source, const mesh_limits *limits, mesh_import *into, diagnostic *why)

@@ -32,7 +32,7 @@ static void node_destroy(node *n)
 static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, node **out)
 {
     if (++r->node_count > NODE_LIMIT)
-        return events_error(r, mark, "make the file smaller", "more than 65536 values in one file");
+        return events_error(r, mark, "make the file smaller", "the file has more than 65536 values");
     node *n = calloc(1, sizeof *n);
     if (!n)
         return out_of_memory(r->why);
@@ -62,7 +62,7 @@ static status read_scalar(event_reader *r, const yaml_event_t *event, node **out
     const char *value = (const char *)event->data.scalar.value;
     size_t length = event->data.scalar.length;
     if (memchr(value, 0, length))
-        return events_error(r, event->start_mark, "remove it", "a text holds a NUL character");
+        return events_error(r, event->start_mark, "remove it", "a text contains a NUL character");
     node *n = NULL;
     TRY(node_create(r, NODE_SCALAR, event->start_mark, &n));
     n->quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
@@ -98,8 +98,8 @@ static status check_unique_keys(event_reader *r, const node *map)
     for (size_t i = 1; i < map->count && code == STATUS_OK; i++) {
         if (strcmp(sorted[i - 1]->text, sorted[i]->text) == 0) {
             diagnostic_locate(r->why, r->name, sorted[i]->line, sorted[i]->column);
-            code = diagnose(r->why, STATUS_BAD_INPUT, "keep one of the two", "key '%.80s' stands here and on line %ld",
-                            sorted[i]->text, sorted[i - 1]->line);
+            code = diagnose(r->why, STATUS_BAD_INPUT, "keep one of the two",
+                            "duplicate key '%.80s', first used on line %ld", sorted[i]->text, sorted[i - 1]->line);
         }
     }
     free(sorted);
@@ -111,7 +111,8 @@ static status read_node(event_reader *r, yaml_event_t *event, int depth, node **
 static status read_key(event_reader *r, yaml_event_t *event, node **key)
 {
     if (event->type != YAML_SCALAR_EVENT || event->data.scalar.length == 0)
-        return events_error(r, event->start_mark, "begin the entry with a name and a colon", "a key is not a word");
+        return events_error(r, event->start_mark, "begin the entry with a name and a colon",
+                            "a key is not a plain word");
     return read_scalar(r, event, key);
 }
 
@@ -151,8 +152,7 @@ static status read_node(event_reader *r, yaml_event_t *event, int depth, node **
     if (event->type == YAML_SCALAR_EVENT)
         return read_scalar(r, event, out);
     if (depth > DEPTH_LIMIT)
-        return events_error(r, event->start_mark, "a scene or study needs four levels at most",
-                            "nested deeper than 16 levels");
+        return events_error(r, event->start_mark, "use at most four levels", "nested deeper than 16 levels");
     bool map = event->type == YAML_MAPPING_START_EVENT;
     node *n = NULL;
     TRY(node_create(r, map ? NODE_MAP : NODE_LIST, event->start_mark, &n));
@@ -174,7 +174,7 @@ static status read_stream(event_reader *r, node **root)
         status code = STATUS_OK;
         yaml_event_type_t type = event.type;
         if (type == YAML_DOCUMENT_START_EVENT && *root) {
-            code = events_error(r, event.start_mark, "put it into a file of its own", "a second document begins here");
+            code = events_error(r, event.start_mark, "put it into a separate file", "a second document begins here");
         } else if (type == YAML_STREAM_END_EVENT && !*root) {
             code = events_error(
                 r, (yaml_mark_t){0},
@@ -224,7 +224,8 @@ status document_parse(const char *name, const char *text, size_t size, document 
         return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 1 MiB");
     }
     if (is_image(text, size))
-        return events_error(&r, (yaml_mark_t){0}, "give the file that describes it", "this is a picture, not a scene");
+        return events_error(&r, (yaml_mark_t){0}, "give the file that describes it",
+                            "this is an image file, not a scene");
     if (!yaml_parser_initialize(&r.parser))
         return out_of_memory(r.why);
     yaml_parser_set_encoding(&r.parser, YAML_UTF8_ENCODING);

@@ -53,11 +53,11 @@ static status syntax_error(event_reader *r)
     case YAML_WRITER_ERROR:
     case YAML_EMITTER_ERROR: break;
     }
-    const char *remedy = tab_stands_at(r, p->problem_mark) ? "indent with spaces, a tab cannot"
+    const char *remedy = tab_stands_at(r, p->problem_mark) ? "indent with spaces instead of tabs"
                                                            : "check the indentation, colons, brackets and quotes here";
     diagnostic_locate(r->why, r->name, (long)p->problem_mark.line + 1, (long)p->problem_mark.column + 1);
     return diagnose(r->why, STATUS_BAD_INPUT, remedy, "%s%s%s", p->context ? p->context : "", p->context ? ", " : "",
-                    p->problem ? p->problem : "the YAML is damaged");
+                    p->problem ? p->problem : "invalid YAML");
 }
 
 /* The next event; what the grammar of scene and study files leaves out (aliases, anchors, tags) ends here. */
@@ -76,7 +76,7 @@ status events_next(event_reader *r, yaml_event_t *event)
         anchor = event->data.mapping_start.anchor, tag = event->data.mapping_start.tag;
     if (!anchor && !tag)
         return STATUS_OK;
-    status code = events_error(r, event->start_mark, "write the value itself where it is needed",
+    status code = events_error(r, event->start_mark, "write the value where it is used",
                                anchor ? "anchors and aliases (& and *) are not allowed" : "tags (!) are not allowed");
     yaml_event_delete(event);
     return code;

@@ -33,8 +33,8 @@ static status check_sky(const scene_reader *r, const node *map)
         r->scene->background.image_column = img->column;
     }
     if (code == STATUS_OK && shown && kind && strcmp(kind->text, "picture") != 0)
-        return node_error(r->file, kind, r->why, "set it to picture, or take the picture away",
-                          "background.kind is %s, and there is a picture", kind->text);
+        return node_error(r->file, kind, r->why, "set it to picture, or remove the picture",
+                          "background.kind is %s, but a picture is given", kind->text);
     return code;
 }
 
@@ -53,8 +53,8 @@ static status read_camera(const scene_reader *r, const char *name, param_group g
 {
     const node *target = node_get(map, "target"), *yaw = node_get(map, "yaw_deg"), *pitch = node_get(map, "pitch_deg");
     if (target && (yaw || pitch))
-        return node_error(r->file, yaw ? yaw : pitch, r->why, "keep the target, or the angles",
-                          "the camera has a target and %s too", yaw ? "yaw_deg" : "pitch_deg");
+        return node_error(r->file, yaw ? yaw : pitch, r->why, "keep either the target or the angles",
+                          "the camera has both a target and %s", yaw ? "yaw_deg" : "pitch_deg");
     if (yaw || pitch) /* the angle left out is 0, not the default target's */
         r->scene->camera.aimed = 0;
     return read_settings(r, name, group, map);

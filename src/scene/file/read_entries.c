@@ -22,7 +22,7 @@ status read_expect_map(const scene_reader *r, const node *n, const char *name)
 {
     if (n->kind == NODE_MAP || is_empty(n))
         return STATUS_OK;
-    return node_error(r->file, n, r->why, "write key: value lines, indented, below it",
+    return node_error(r->file, n, r->why, "write indented lines 'key: value' below it",
                       "%.80s is not a map of keys and values", name);
 }
 
@@ -43,8 +43,7 @@ static status check_value_kind(const scene_reader *r, const param *row, const ch
         return node_error(r->file, value, r->why, remedy, "%.150s is a %s", path,
                           value->kind == NODE_MAP ? "map" : "list");
     if (value->quoted && number)
-        return node_error(r->file, value, r->why, "take the quotes away", "%.150s is a text, where a number belongs",
-                          path);
+        return node_error(r->file, value, r->why, "remove the quotes", "%.150s is a text, but must be a number", path);
     return STATUS_OK;
 }
 
@@ -56,7 +55,7 @@ static status read_value(const scene_reader *r, const char *path, const param *r
         return out_of_memory(r->why);
     if (!text)
         return node_error(r->file, value, r->why, row->type == PARAM_LIST ? "give plain numbers" : "give 3 numbers",
-                          "%.150s holds more than plain numbers", path);
+                          "%.150s contains something other than plain numbers", path);
     status code = read_located(r, value, scene_set(r->scene, path, text, r->why));
     free(text);
     return code;
@@ -82,7 +81,8 @@ status read_one_medium(const scene_reader *r, const node *map)
 {
     const node *ior = node_get(map, "ior"), *medium = node_get(map, "medium");
     if (ior && medium && strcmp(medium->text ? medium->text : "", "ior") != 0)
-        return node_error(r->file, ior, r->why, "keep the ior, or the medium", "there is an ior and a medium too");
+        return node_error(r->file, ior, r->why, "keep either the ior or the medium",
+                          "both an ior and a medium are given");
     return STATUS_OK;
 }
 

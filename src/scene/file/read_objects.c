@@ -50,7 +50,7 @@ static status begin_object(const scene_reader *r, param_group group, const node 
         code = read_one_medium(r, map);
     const node *generate = node_get(map, "generate");
     if (code == STATUS_OK && group == PARAM_MESH && generate && node_get(map, "file"))
-        return node_error(r->file, generate, r->why, "keep one of them", "%.80s has a file, and is generated too",
+        return node_error(r->file, generate, r->why, "keep one of them", "%.80s has both a file and a generator",
                           key->text);
     return code;
 }

@@ -136,13 +136,14 @@ static status check_sources(const scene *s, diagnostic *why)
 {
     for (size_t i = 0; i < s->mesh_count; i++) {
         if (s->meshes[i].source == MESH_ARRAYS)
-            return diagnose(why, STATUS_BAD_INPUT, "write the mesh to a file of its own, and name that",
-                            "the mesh %.80s was given as arrays, which a scene file does not hold", s->meshes[i].name);
+            return diagnose(why, STATUS_BAD_INPUT, "write the mesh to a file, and give its name",
+                            "the mesh %.80s was given as arrays, which cannot be stored in a scene file",
+                            s->meshes[i].name);
     }
     for (size_t i = 0; i < s->texture_count; i++) {
         if (s->textures[i].data && !s->textures[i].path[0])
-            return diagnose(why, STATUS_BAD_INPUT, "write the picture to a file of its own, and name that",
-                            "the texture %.80s was given as pixels, which a scene file does not hold",
+            return diagnose(why, STATUS_BAD_INPUT, "write the image to a file, and give its name",
+                            "the texture %.80s was given as pixels, which cannot be stored in a scene file",
                             s->textures[i].name);
     }
     return STATUS_OK;

@@ -28,7 +28,8 @@ status write_check_text(const char *label, const char *text, diagnostic *why)
     for (size_t length; *text; text += length) {
         length = decode(text, &c);
         if (!length)
-            return diagnose(why, STATUS_BAD_INPUT, "rename it", "%.150s is not UTF-8, and a scene file is", label);
+            return diagnose(why, STATUS_BAD_INPUT, "rename it", "%.150s is not UTF-8, which a scene file requires",
+                            label);
     }
     return STATUS_OK;
 }

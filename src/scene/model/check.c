@@ -39,11 +39,11 @@ status check_name(const char *name, diagnostic *why)
     for (const char *c = name; right && *c; c++)
         right = is_letter(*c) || (*c >= '0' && *c <= '9') || *c == '-';
     if (!right)
-        return diagnose(why, STATUS_BAD_INPUT,
-                        "a name is letters, digits, _ and -, begins with a letter or _, and has at most 63 of them",
-                        "'%.80s' cannot be a name", name);
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 63 letters, digits, _ and -, beginning with a letter or _",
+                        "'%.80s' is not a valid name", name);
     if (is_reserved(name))
-        return diagnose(why, STATUS_BAD_INPUT, "choose another one", "the name '%s' is a word of scene files", name);
+        return diagnose(why, STATUS_BAD_INPUT, "choose another name", "the name '%s' is a reserved word of scene files",
+                        name);
     return STATUS_OK;
 }
 
@@ -60,7 +60,7 @@ static status name_taken(const char *name, diagnostic *why)
 {
     return diagnose(why, STATUS_BAD_INPUT,
                     "meshes, textures, lights, materials and solids need different names, because paths use them",
-                    "the name '%s' is taken", name);
+                    "the name '%s' is already in use", name);
 }
 
 status check_name_is_free(const scene *s, const char *name, diagnostic *why)
@@ -78,25 +78,25 @@ static status check_render(const scene *s, diagnostic *why)
 {
     if (s->render.width > SCENE_PIXELS_MAX / s->render.height)
         return diagnose(why, STATUS_BAD_INPUT, "keep width times height within 268435456",
-                        "a picture of %lld x %lld pixels is too large", (long long)s->render.width,
+                        "an image of %lld x %lld pixels is too large", (long long)s->render.width,
                         (long long)s->render.height);
     if (s->render.polarisation && integrator_traits_of(&s->render)->by_chance)
         return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
-                        "the path integrator does not follow polarisation");
+                        "the path integrator does not support polarisation");
     if (integrator_traits_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
-                        "the depth buffer draws red, green and blue: it knows no %s",
+                        "the depth buffer renders RGB only: it does not support %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
     if (integrator_traits_of(&s->render)->layers && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
-                        "layers are of no light: they know no %s",
+                        "layers contain no light: they do not support %s",
                         s->render.polarisation ? "polarisation" : "spectrum");
     if (s->render.polarisation && s->render.weights == WEIGHTS_CONSTANT)
         return diagnose(why, STATUS_BAD_INPUT, "set render.weights to fresnel",
-                        "constant weights know no polarisation, which Fresnel's equations give");
+                        "constant weights do not support polarisation, which requires the Fresnel equations");
     if (s->render.polarisation && s->render.transmission == TRANSMISSION_SIMPLE)
         return diagnose(why, STATUS_BAD_INPUT, "set render.transmission to refract",
-                        "simple transmission knows no polarisation, which Fresnel's equations give");
+                        "simple transmission does not support polarisation, which requires the Fresnel equations");
     return STATUS_OK;
 }
 
@@ -104,12 +104,12 @@ static status check_light(const scene *s, const light *lamp, diagnostic *why)
 {
     if (integrator_traits_of(&s->render)->by_chance && lamp->radius > 0.0 && lamp->reach == 0.0)
         return diagnose(why, STATUS_BAD_INPUT,
-                        "give the distance at which it has its intensity, as 'reach: 8', or radius 0",
-                        "%.80s: a sphere's light falls off with distance, and no reach says from where", lamp->name);
+                        "set 'reach', the distance at which the intensity applies, or set radius to 0",
+                        "%.80s: a spherical light falls off with distance, and its reach is 0", lamp->name);
     const vec3 axis = vec3_sub(lamp->target, lamp->position);
     if (lamp->kind != LIGHT_POINT && !(vec3_dot(axis, axis) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move its position or its target",
-                        "%.80s: the light stands at its own target", lamp->name);
+                        "%.80s: the light is at its own target", lamp->name);
     return STATUS_OK;
 }
 
@@ -118,7 +118,7 @@ static status check_camera(const scene *s, diagnostic *why)
     vec3 d = vec3_sub(s->camera.target, s->camera.position);
     if (s->camera.aimed && !(vec3_dot(d, d) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move camera.position or camera.target",
-                        "the camera stands at its own target");
+                        "the camera is at its own target");
     return STATUS_OK;
 }
 
@@ -126,7 +126,7 @@ static status check_background(const scene *s, diagnostic *why)
 {
     if (s->background.kind == BACKGROUND_IMAGE && !s->background.image_path[0])
         return diagnose(why, STATUS_BAD_INPUT, "set background.picture to a PNG, JPEG, PFM or 24-bit BMP file",
-                        "the background is a picture, but which one is not said");
+                        "the background is an image, but no file is given");
     return STATUS_OK;
 }
 
@@ -134,19 +134,19 @@ static status check_mesh(const mesh_entry *m, diagnostic *why)
 {
     if (m->source == MESH_FILE && !m->path[0])
         return diagnose(why, STATUS_BAD_INPUT,
-                        "give it a file, as 'file: teapot.obj', or 'generate: icosphere' and the like",
-                        "%.80s: where the mesh comes from is not said", m->name);
+                        "set a file, such as 'file: teapot.obj', or a generator, such as 'generate: icosphere'",
+                        "%.80s: the mesh has neither a file nor a generator", m->name);
     if (m->source == MESH_LATHE && m->profile.count % 2 != 0)
-        return diagnose(why, STATUS_BAD_INPUT, "give radius, height, radius, height ..",
-                        "%.80s: the profile has an odd number of numbers", m->name);
+        return diagnose(why, STATUS_BAD_INPUT, "write radius, height, radius, height, ...",
+                        "%.80s: the profile has an odd number of values", m->name);
     return m->source == MESH_SLIME ? slime_check(m, why) : STATUS_OK;
 }
 
 static status check_texture(const texture_entry *t, diagnostic *why)
 {
     if (!t->path[0] && !t->data)
-        return diagnose(why, STATUS_BAD_INPUT, "give it a file, as 'file: wood.png'",
-                        "%.80s: the texture has no picture", t->name);
+        return diagnose(why, STATUS_BAD_INPUT, "set a file, such as 'file: wood.png'",
+                        "%.80s: the texture has no image file", t->name);
     return STATUS_OK;
 }
 
@@ -167,9 +167,8 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
         return STATUS_OK;
     const vec3 a = data->vertices[data->hole.from], b = data->vertices[data->hole.to];
     return diagnose(why, STATUS_BAD_INPUT, "close the mesh, or make the solid opaque (transparency 0)",
-                    "%.80s is clear, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, %g) of "
-                    "triangle %zu is an edge of %d "
-                    "triangles, and not of 2",
+                    "%.80s is transparent, but its mesh %.80s is open: the edge from (%g, %g, %g) to (%g, %g, "
+                    "%g) of triangle %zu belongs to %d triangles instead of 2",
                     owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
 }
 
@@ -182,7 +181,8 @@ static status check_colors(const scene *s, const solid *owner, const mesh_entry 
         return STATUS_OK;
     return diagnose(why, STATUS_BAD_INPUT,
                     by_face ? "set render.spectrum to rgb, or give the solid a material" : "set render.spectrum to rgb",
-                    "%.80s: %s have no spectra", owner->name, by_face ? "materials by face" : "textures");
+                    "%.80s: %s cannot be rendered with a spectrum", owner->name,
+                    by_face ? "materials by face" : "textures");
 }
 
 /* What the solid names is there. */
@@ -194,8 +194,8 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     if (!shape_of(&owner->shape)->triangles)
         return check_colors(s, owner, NULL, why);
     if (!owner->mesh[0])
-        return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', of one in meshes",
-                        "%.80s: which mesh it is is not said", owner->name);
+        return diagnose(why, STATUS_BAD_INPUT, "add 'mesh: NAME', the name of one of the meshes",
+                        "%.80s: no mesh is given", owner->name);
     if (!m)
         return unknown(s, PARAM_MESH, owner->name, owner->mesh, why);
     TRY(check_colors(s, owner, m, why));
@@ -211,8 +211,8 @@ static status check_faces(const scene *s, const solid *owner, diagnostic *why)
         const char *name = scene_find_mesh(s, owner->mesh)->data->slot_names[slot];
         if (m.reflectivity + m.transparency > 1.0 + 1e-12)
             return diagnose(why, STATUS_BAD_INPUT, "lower one of them, or set render.transmission to refract",
-                            "%.80s: under simple transmission its faces of %.80s have reflectivity %g + transparency "
-                            "%g, more than 1",
+                            "%.80s: with simple transmission, its faces of %.80s have reflectivity %g + transparency "
+                            "%g, which exceeds 1",
                             owner->name, name && name[0] ? name : "no material", m.reflectivity, m.transparency);
     }
     return STATUS_OK;
@@ -236,7 +236,7 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT,
                         simple ? "lower one of them, or set render.transmission to refract"
                                : "lower one of them, or set render.weights to fresnel",
-                        "%.80s: under %s reflectivity %g + transparency %g is more than 1", owner->name,
+                        "%.80s: with %s, reflectivity %g + transparency %g exceeds 1", owner->name,
                         simple ? "simple transmission" : "constant weights", owner->surface.reflectivity,
                         owner->surface.transparency);
     }
@@ -249,15 +249,15 @@ status check_limits(const scene *s, diagnostic *why)
     for (size_t i = 0; i < s->solid_count; i++)
         primitives += (size_t)shape_places(&s->solids[i].shape);
     if (primitives > SCENE_PRIMITIVES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64; a cup and a torus count as two",
+        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64; a cup and a torus count as two",
                         "more than 64 solids");
     if (s->light_count > SCENE_LIGHTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64", "more than 64 lights");
+        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64", "more than 64 lights");
     if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 64 of each", "more than 64 %s",
+        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64 of each", "more than 64 %s",
                         s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");
     if (s->material_count > SCENE_MATERIALS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene holds 256", "more than 256 materials");
+        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 256", "more than 256 materials");
     return STATUS_OK;
 }
 

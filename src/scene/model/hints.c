@@ -43,15 +43,15 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
     const material *m = &owner->surface;
     if (integrator_traits_of(&s->render)->drawn && s->render.lighting != LIGHTING_WHITTED) {
         if (m->ambient == 0.0 && m->diffuse == 0.0 && m->emission == 0.0)
-            note_give(
-                taker, "render", "lighting", "set render.lighting to whitted",
-                "%s is transparent, and without reflected and refracted light its surface is black but for highlights",
-                owner->name);
+            note_give(taker, "render", "lighting", "set render.lighting to whitted",
+                      "%s is transparent: without reflected and refracted rays its surface is black except for "
+                      "highlights",
+                      owner->name);
     } else if (!scene_has_constant_shares(&s->render) && material_matches_surroundings(s, m) && !material_tints(m) &&
                m->reflectivity == 0.0 && m->emission == 0.0 && !is_inside_medium(s, owner) && !cuts_another(s, owner)) {
         note_give(taker, owner->name, "ior", "set its ior",
-                  "%s is transparent with the index of what is around it: it %s", owner->name,
-                  material_absorbs(m) ? "bends no light" : "is invisible");
+                  "%s is transparent with the refractive index of the surrounding medium: it %s", owner->name,
+                  material_absorbs(m) ? "refracts no light" : "is invisible");
     }
 }
 
@@ -73,8 +73,9 @@ static bool hint_at_index(const scene *s, const solid *owner, const note_taker *
               m->transparency > 0.0
                   ? "set its ior between 1 and 5; for a mirror set its reflectivity, and its transparency to 0"
                   : "for a mirror set its reflectivity; the index of an opaque solid has no effect",
-              "%s has a refractive index of %.4g, which no clear matter has, and a reflectivity of 0", owner->name,
-              index);
+              "%s has a refractive index of %.4g, higher than any transparent material, and a "
+              "reflectivity of 0",
+              owner->name, index);
     return true;
 }
 
@@ -93,7 +94,7 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
                !has_face_materials(s, owner) &&
                !scene_is_behind_camera(s, owner)) { /* a black board behind the eye keeps reflections dark */
         note_give(taker, owner->name, "diffuse", "set its diffuse",
-                  "%s is neither transparent, nor diffuse, nor lit: it is black", owner->name);
+                  "%s is black: it is neither transparent, nor diffuse, nor ambient, nor emitting", owner->name);
     }
 }
 
@@ -103,8 +104,8 @@ static void hint_at_cover(const scene *s, const solid *hidden, const note_taker 
     char remedy[NOTE_TEXT_MAX];
     if (cover) {
         snprintf(remedy, sizeof remedy, "give %s the higher priority", hidden->name);
-        note_give(taker, hidden->name, "priority", remedy, "%s lies wholly inside %s, which wins there and hides it",
-                  hidden->name, cover->name);
+        note_give(taker, hidden->name, "priority", remedy,
+                  "%s is entirely inside %s, which has precedence there and hides it", hidden->name, cover->name);
     }
 }
 
@@ -112,7 +113,7 @@ static void hint_at_cover(const scene *s, const solid *hidden, const note_taker 
 static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law,
                           const note_taker *taker)
 {
-    static const char remedy[] = "keep to these wavelengths, or give coefficients that reach further";
+    static const char remedy[] = "use wavelengths in this range, or coefficients with a wider range";
     const bool spectral = s->render.spectrum == SPECTRUM_SPECTRAL;
     const double low_nm = spectral ? VISIBLE_LOW_NM : s->render.lambda_nm,
                  high_nm = spectral ? VISIBLE_HIGH_NM : s->render.lambda_nm;
@@ -120,10 +121,10 @@ static void hint_at_range(const scene *s, const char *where, const char *name, c
         return;
     if (law->law.kind == DISPERSION_TABLE)
         note_give(taker, where, "coefficients", remedy,
-                  "its table of indices reaches from %g to %g nm only, and keeps its ends' indices beyond",
-                  law->law.coefficient[0], law->law.coefficient[law->law.count - 2]);
+                  "its table of indices covers only %g to %g nm and is constant outside", law->law.coefficient[0],
+                  law->law.coefficient[law->law.count - 2]);
     else
-        note_give(taker, where, "medium", remedy, "%s was measured from %g to %g nm only, and is extrapolated beyond",
+        note_give(taker, where, "medium", remedy, "%s was measured only from %g to %g nm and is extrapolated outside",
                   name, law->law.low_nm, law->law.high_nm);
 }
 
@@ -136,12 +137,12 @@ static void hint_at_idle(const scene *s, const solid *owner, const note_taker *t
                   "set its transparency", "%s absorbs but is opaque", owner->name);
     if (m->coefficients.count > 0 && (m->medium == MEDIUM_IOR || m->medium >= MEDIUM_CATALOGUE))
         note_give(taker, owner->name, "coefficients", "set its medium to cauchy, sellmeier or table",
-                  "%s has coefficients but no law for them", owner->name);
+                  "%s has coefficients but no dispersion law", owner->name);
     if (ignores_face_transparency(s, owner))
         note_give(taker, owner->name, "transparency",
                   "set it for the whole solid, or set render.transmission to simple",
-                  "the transparency and reflectivity of the faces of %s have no effect: where light is bent they "
-                  "belong to the solid",
+                  "the transparency and reflectivity of the faces of %s have no effect: with refraction they "
+                  "are properties of the solid",
                   owner->name);
 }
 
@@ -154,11 +155,12 @@ static void hint_at_lights(const scene *s, const note_taker *taker)
     for (size_t i = 0; i < s->light_count; i++) {
         const light *lamp = &s->lights[i];
         if (lamp->radius > 0.0 && !path)
-            note_give(taker, lamp->name, "radius", "set render.integrator=path, where its radius shows",
-                      "%s is lit as a point", lamp->name);
+            note_give(taker, lamp->name, "radius", "set render.integrator=path, which samples its radius",
+                      "%s acts as a point light", lamp->name);
         else if (lamp->radius == 0.0 && path && clear && lamp->intensity > 0.0)
-            note_give(taker, lamp->name, "radius", "give it a radius and a reach",
-                      "%s is a point, which random paths cannot find through clear solids: no caustics", lamp->name);
+            note_give(taker, lamp->name, "radius", "set its radius and its reach",
+                      "%s is a point light, which random paths cannot hit through transparent solids: no caustics",
+                      lamp->name);
     }
 }
 
@@ -183,11 +185,11 @@ void scene_hints(const scene *s, const note_taker *taker)
         shining += s->solids[i].visible && s->solids[i].surface.emission > 0.0;
     }
     if (visible == 0)
-        note_give(taker, "solids", NULL, "add solids:", "no visible solids: the picture shows the background alone");
+        note_give(taker, "solids", NULL, "add solids:", "no visible solids: the image shows only the background");
     const bool emitters_light = shining > 0 && integrator_traits_of(&s->render)->by_chance;
     if (lit > 0 && s->light_count == 0 && !emitters_light)
         note_give(taker, "lights", NULL,
-                  "add lights:", "no lights: opaque surfaces are dark but for their ambient and emitted light");
+                  "add lights:", "no lights: opaque surfaces show only ambient and emitted light");
     hint_at_lights(s, taker);
     for (size_t i = 0; i < s->solid_count; i++) {
         if (s->solids[i].visible) {

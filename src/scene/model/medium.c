@@ -200,5 +200,5 @@ status material_absorption_check(const material *m, const char *label, diagnosti
     return right ? STATUS_OK
                  : diagnose(why, STATUS_BAD_INPUT,
                             "write nm,1/m,nm,1/m.. with ascending wavelengths, as [400, 0.1, 700, 2]",
-                            "%.80s: absorb_spectrum is not a list of wavelengths and coefficients", label);
+                            "%.80s: absorb_spectrum is not a list of pairs of wavelength and coefficient", label);
 }

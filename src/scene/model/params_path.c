@@ -116,7 +116,7 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
     else if (setting)
         snprintf(remedy, sizeof remedy, "did you mean '%s.%s'?", param_group_name(setting->group), setting->name);
     free(words);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "nothing in the scene is named '%.80s'", path->group);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "the scene has no object '%.80s'", path->group);
 }
 
 static status wrong_shape(const scene *s, const param_place *at, const path_words *path, diagnostic *why)
@@ -141,7 +141,7 @@ static status unknown_name(const scene *s, const param_place *at, const path_wor
     char remedy[400], prefix[140];
     if (!path->name || !*path->name) {
         suggest_list("add a dot and one of: ", words, count, remedy, sizeof remedy);
-        return diagnose(why, STATUS_BAD_INPUT, remedy, "'%s' alone is no parameter", path->group);
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "'%s' is not a parameter", path->group);
     }
     const char *nearest = suggest_word(path->name, words, count);
     if (at->object_group == PARAM_SOLID && (strcmp(path->name, "material") == 0 || strcmp(path->name, "shape") == 0)) {
@@ -165,7 +165,7 @@ static status find_element(const path_words *path, param_place *out, diagnostic 
         return STATUS_OK;
     bool color = out->row->type == PARAM_COLOR;
     if (!color && out->row->type != PARAM_VECTOR)
-        return diagnose(why, STATUS_BAD_INPUT, "leave out what follows the second dot", "%.80s.%.80s has no elements",
+        return diagnose(why, STATUS_BAD_INPUT, "remove the part after the second dot", "%.80s.%.80s has no elements",
                         path->group, path->name);
     const char *letters = color ? "rgb" : "xyz", *letter = strchr(letters, path->element[0]);
     if (!path->element[0] || path->element[1] || !letter)
@@ -204,5 +204,5 @@ status param_place_find_object(const scene *s, const char *name, param_place *ou
     if (nearest)
         snprintf(remedy, sizeof remedy, "did you mean '%s'?", nearest);
     free(words);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "nothing in the scene is named '%.80s'", name);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "the scene has no object '%.80s'", name);
 }

@@ -201,7 +201,7 @@ static const param table[] = {
     INTEGER(PARAM_MESH, mesh_entry, tube, "", 3, 16384, "32",
             "torus: segments around the tube; terrain: cells along z"),
     LIST(PARAM_MESH, mesh_entry, profile, "scene units", FAR, "[0,0,1,0,1,1,0,1]",
-         "lathe: the profile as radius, height, radius, height, ..."),
+         "lathe: the profile as radius, height, radius, height and so on"),
     REAL(PARAM_MESH, mesh_entry, crease_deg, "deg", 0, 180, "30",
          "lathe: crease angle; the profile has a sharp edge where it turns by more"),
     {PARAM_MESH, "size", PARAM_VECTOR, "scene units", 0, FAR, true, "1,1,1",

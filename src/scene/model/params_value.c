@@ -163,7 +163,7 @@ static status parse_vector(const param *row, const char *label, char *text, vec3
     double values[3];
     size_t count = split_numbers(text, parts, 3);
     if (count != 3)
-        return wrong(row, false, why, "%s: %zu value%s where 3 belong", label, count, count == 1 ? "" : "s");
+        return wrong(row, false, why, "%s: %zu value%s instead of 3", label, count, count == 1 ? "" : "s");
     for (int i = 0; i < 3; i++) {
         char element[160];
         snprintf(element, sizeof element, "%s.%c", label, (row->type == PARAM_COLOR ? "rgb" : "xyz")[i]);
@@ -194,7 +194,7 @@ static status parse_path(const param *row, const char *label, char *text, char *
         return wrong(row, false, why, "%s: the path is longer than %d bytes", label, PATH_LIMIT);
     for (const char *c = text; *c; c++)
         if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            return wrong(row, false, why, "%s: the path holds a control character", label);
+            return wrong(row, false, why, "%s: the path contains a control character", label);
     *out = strdup(text);
     return *out ? STATUS_OK : out_of_memory(why);
 }

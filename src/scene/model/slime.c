@@ -16,7 +16,7 @@ softbody_settings slime_settings(const mesh_entry *m)
 static status check_steps(const mesh_entry *m, double time_s, const char *remedy, diagnostic *why)
 {
     if (time_s / m->slime.dt_s > SLIME_STEPS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: %g s in steps of %g s are more than %g steps", m->name,
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s: %g s with time steps of %g s exceed %g steps", m->name,
                         time_s, m->slime.dt_s, SLIME_STEPS_MAX);
     return STATUS_OK;
 }
@@ -115,8 +115,7 @@ static status advance_watched(slime *x, const scene *s, const mesh_entry *m, dou
         if (!watch->go_on(watch->context, (x->steps + 1.0 - first) / (last - first))) {
             x->steps += 1.0;
             return diagnose_at(bad, scene_path(s), STATUS_INTERRUPTED, "",
-                               "interrupted at %.6g s of the %.6g s that the slime moves", x->steps * m->slime.dt_s,
-                               time_s);
+                               "interrupted at %.6g s of %.6g s of simulated time", x->steps * m->slime.dt_s, time_s);
         }
     }
     return STATUS_OK;

@@ -90,7 +90,7 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
     *out = NULL;
     const size_t count = motion_count_slimes(s);
     if (count == 0)
-        return diagnose(why, STATUS_BAD_INPUT, "give a mesh 'generate: slime'", "nothing moves in this scene");
+        return diagnose(why, STATUS_BAD_INPUT, "add a mesh with 'generate: slime'", "nothing moves in this scene");
     scene_motion *m = calloc(1, sizeof *m);
     moving_slime *slimes = calloc(count, sizeof *slimes);
     if (!m || !slimes) {

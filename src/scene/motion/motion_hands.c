@@ -114,8 +114,8 @@ status scene_motion_grab(scene_motion *m, size_t i, const motion_place *place, d
     if (taken == HAND_NO_MEMORY)
         return out_of_memory(why);
     if (taken < 0)
-        return diagnose(why, STATUS_BAD_INPUT, "let one release what it holds",
-                        "no hand is free, or others hold all of it");
+        return diagnose(why, STATUS_BAD_INPUT, "release one of them first",
+                        "all hands are in use, or they hold all masses");
     hands[taken] = (motion_hand){.holds = true,
                                  .rotation = rotation_from_deg(shape->rotation_deg),
                                  .scale = shape->scale,

@@ -38,7 +38,7 @@ static status read_number(const script_reader *r, const char *label, const node 
         return node_error(r->file, n, r->why, strchr(n->text, ',') ? "a decimal comma? write 1.5" : remedy,
                           "%s: '%.80s' is not a finite number", label, n->text);
     if (n->quoted)
-        return node_error(r->file, n, r->why, "take the quotes away", "%s is a text, where a number belongs", label);
+        return node_error(r->file, n, r->why, "remove the quotes", "%s is a text, but must be a number", label);
     if (*out < low || *out > high)
         return node_error(r->file, n, r->why, remedy, "%s: %.80s is out of range", label, n->text);
     return STATUS_OK;
@@ -50,7 +50,7 @@ static status read_vector(const script_reader *r, const char *label, const node 
     if (n->kind != NODE_LIST)
         return node_error(r->file, n, r->why, remedy, "%s is %s", label, kind_name(n));
     if (n->count != 3)
-        return node_error(r->file, n, r->why, remedy, "%s: %zu value%s where 3 belong", label, n->count,
+        return node_error(r->file, n, r->why, remedy, "%s: %zu value%s instead of 3", label, n->count,
                           n->count == 1 ? "" : "s");
     double value[3];
     for (int i = 0; i < 3; i++) {
@@ -68,19 +68,17 @@ static status read_grab(const script_reader *r, const node *entry, hand_key *key
                *reach = node_get(entry, "reach");
     status code = read_vector(r, "grab", grab, &key->origin);
     if (code == STATUS_OK && !towards)
-        return node_error(r->file, entry, r->why,
-                          "add the direction in which the hand reaches, as 'towards: [0, 0, 1]'",
-                          "a grab from a point, but towards what is not said");
+        return node_error(r->file, entry, r->why, "add the direction of the grab ray, such as 'towards: [0, 0, 1]'",
+                          "the grab has a starting point but no direction");
     if (code == STATUS_OK && !reach)
-        return node_error(r->file, entry, r->why, "add how near the masses are that it takes, as 'reach: 0.3'",
-                          "a grab, but how far the hand reaches is not said");
+        return node_error(r->file, entry, r->why, "add the radius of the grab, such as 'reach: 0.3'",
+                          "the grab has no reach");
     THEN(code, read_vector(r, "towards", towards, &key->direction));
     if (code == STATUS_OK && !(vec3_dot(key->direction, key->direction) > 0.0))
-        return node_error(r->file, towards, r->why, "give three numbers that are not all 0",
-                          "towards: it has no direction");
+        return node_error(r->file, towards, r->why, "give three numbers, not all 0", "towards: the direction is zero");
     THEN(code, read_number(r, "reach", reach, 0.0, FAR, &key->reach));
     if (code == STATUS_OK && !(key->reach > 0.0))
-        return node_error(r->file, reach, r->why, "give a length greater than 0", "reach: a hand that reaches nothing");
+        return node_error(r->file, reach, r->why, "give a length greater than 0", "reach: must be above 0");
     return code;
 }
 
@@ -90,7 +88,8 @@ static status read_release(const script_reader *r, const node *value)
     bool is_on = false;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         is_on |= value->kind == NODE_SCALAR && strcmp(value->text, words[i]) == 0;
-    return is_on ? STATUS_OK : node_error(r->file, value, r->why, "write release: on", "release says nothing but on");
+    return is_on ? STATUS_OK
+                 : node_error(r->file, value, r->why, "write 'release: on'", "the only value of release is on");
 }
 
 /* The one act of an entry. */
@@ -100,18 +99,18 @@ static status find_act(const script_reader *r, const node *entry, hand_act *out)
     for (int i = 0; i < ACT_COUNT; i++) {
         const node *act = node_get(entry, acts[i]);
         if (act && found >= 0)
-            return node_error(r->file, act, r->why, "give each an entry of its own, with the same time_s",
-                              "%s and %s in one entry", acts[found], acts[i]);
+            return node_error(r->file, act, r->why, "write one entry for each, with the same time_s",
+                              "one entry has both %s and %s", acts[found], acts[i]);
         found = act ? i : found;
     }
     if (found < 0)
         return node_error(r->file, entry, r->why, "add one of grab, move and release",
-                          "the entry does not say what the hand does");
+                          "the entry has no grab, move or release");
     static const char *const of_grabs[] = {"towards", "reach"};
     for (size_t i = 0; i < 2 && found != HAND_GRAB; i++) {
         const node *stray = node_get(entry, of_grabs[i]);
         if (stray)
-            return node_error(r->file, stray, r->why, "take it away", "%s belongs to a grab, not to a %s", of_grabs[i],
+            return node_error(r->file, stray, r->why, "remove it", "%s is part of a grab, not of a %s", of_grabs[i],
                               acts[found]);
     }
     *out = (hand_act)found;
@@ -132,14 +131,14 @@ static status read_key(const script_reader *r, const char *hand, const node *ent
 {
     static const char *const keys[] = {"time_s", "grab", "towards", "reach", "move", "release"};
     if (entry->kind != NODE_MAP)
-        return node_error(r->file, entry, r->why, "write '- {time_s: 1.5, move: [0, 1, 0]}' and the like",
-                          "an entry of %.80s is no map", hand);
+        return node_error(r->file, entry, r->why, "write entries such as '- {time_s: 1.5, move: [0, 1, 0]}'",
+                          "an entry of %.80s is not a map", hand);
     TRY(node_check_keys(r->file, entry, keys, sizeof keys / sizeof *keys, r->why));
     hand_key key = {.line = entry->line, .column = entry->column};
     const node *time = node_get(entry, "time_s");
     if (!time)
-        return node_error(r->file, entry, r->why, "add the time in seconds, as 'time_s: 0.5'",
-                          "the entry does not say when");
+        return node_error(r->file, entry, r->why, "add the time in seconds, such as 'time_s: 0.5'",
+                          "the entry has no time_s");
     TRY(read_number(r, "time_s", time, 0.0, TIME_S_MAX, &key.time_s));
     TRY(find_act(r, entry, &key.act));
     TRY(read_act(r, entry, &key));
@@ -153,10 +152,10 @@ static status read_hand(const script_reader *r, const node *name, const node *tr
 {
     if (track->kind != NODE_LIST || track->count == 0)
         return node_error(r->file, track->kind == NODE_LIST ? track : name, r->why,
-                          "give a list of entries, as '- {time_s: 0.5, grab: ..}' below it",
-                          "what %.80s does is no list of entries", name->text);
+                          "write a list of entries such as '- {time_s: 0.5, grab: ..}' below it",
+                          "%.80s is not a list of entries", name->text);
     if (strlen(name->text) > HAND_NAME_MAX)
-        return node_error(r->file, name, r->why, "a name has 63 bytes at most", "'%.80s' cannot be a hand's name",
+        return node_error(r->file, name, r->why, "use at most 63 bytes", "'%.80s' is not a valid name of a hand",
                           name->text);
     for (size_t i = 0; i < track->count; i++)
         TRY(read_key(r, name->text, track->items[i]));
@@ -168,16 +167,16 @@ static status read_script(const script_reader *r)
     static const char *const keys[] = {"title", "hands"};
     const node *root = document_root(r->file);
     if (root->kind != NODE_MAP)
-        return node_error(r->file, root, r->why, "begin with hands:, and the name of one below it",
+        return node_error(r->file, root, r->why, "begin with hands: and the name of a hand below it",
                           "this is not a script");
     TRY(node_check_keys(r->file, root, keys, sizeof keys / sizeof *keys, r->why));
     const node *title = node_get(root, "title"), *hands = node_get(root, "hands");
     if (title && (title->kind != NODE_SCALAR || !title->text[0]))
-        return node_error(r->file, title, r->why, "give some words, or leave it out", "title is %s",
+        return node_error(r->file, title, r->why, "write some words, or omit it", "title is %s",
                           title->kind == NODE_SCALAR ? "empty" : kind_name(title));
     if (!hands || hands->kind != NODE_MAP || hands->count == 0)
         return node_error(r->file, hands ? hands : root, r->why,
-                          "write hands:, and below it a name with a list of entries", "the script has no hands");
+                          "write hands: and below it a name with a list of entries", "the script has no hands");
     for (size_t i = 0; i < hands->count; i++)
         TRY(read_hand(r, hands->keys[i], hands->items[i]));
     return STATUS_OK;

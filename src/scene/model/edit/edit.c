@@ -25,7 +25,7 @@ static status remove_material(scene *s, size_t index, diagnostic *why)
         char others[48] = "";
         if (users > 1)
             snprintf(others, sizeof others, " and %zu more", users - 1);
-        return diagnose(why, STATUS_BAD_INPUT, "give those another material first, or remove them",
+        return diagnose(why, STATUS_BAD_INPUT, "assign another material to them first, or remove them",
                         "%.80s is the material of %.80s%s", s->materials[index].name, user, others);
     }
     object_remove(s, PARAM_MATERIAL, index);
@@ -36,7 +36,7 @@ static status remove_material(scene *s, size_t index, diagnostic *why)
 
 static status in_use(const char *what, const char *name, const char *user, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "give that another one first, or remove it", "%.80s is the %s of %.80s",
+    return diagnose(why, STATUS_BAD_INPUT, "assign another one to it first, or remove it", "%.80s is the %s of %.80s",
                     name, what, user);
 }
 
@@ -107,7 +107,7 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     char *copy = NULL;
     if (!group_has_names(at.object_group))
         return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid",
-                        "the %s has no name of its own", name);
+                        "the %s has no name", name);
     if (strcmp(name, new_name) == 0)
         return STATUS_OK;
     TRY(check_name(new_name, why));

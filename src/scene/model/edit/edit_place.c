@@ -173,7 +173,7 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
         TRY(edit_find(s, name, &at, why));
     if (!is_angle(degrees.x) || !is_angle(degrees.y) || !is_angle(degrees.z))
         return diagnose(why, STATUS_BAD_INPUT, "give 3 angles, each -1000000..1000000 degrees",
-                        "%.80s cannot be turned so far", name);
+                        "%.80s cannot be rotated by these angles", name);
     if (is_many)
         return scene_turn_parts(s, parts, degrees, why);
     if (at.object_group == PARAM_CAMERA)
@@ -182,7 +182,7 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
         return turn_light(s, &s->lights[at.index], degrees, why);
     if (at.object_group == PARAM_SOLID)
         return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
-    return has_no(name, at.object_group, "direction", "turn a solid, a cone of light or the camera", why);
+    return has_no(name, at.object_group, "direction", "rotate a solid, a spotlight or the camera", why);
 }
 
 status scene_look_at(scene *s, vec3 target, diagnostic *why)

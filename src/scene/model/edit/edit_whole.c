@@ -256,7 +256,7 @@ status scene_scale(scene *s, const char *name, double factor, diagnostic *why)
     TRY(edit_find(s, name, &at, why));
     if (at.object_group != PARAM_SOLID && at.object_group != PARAM_LIGHT)
         return diagnose(why, STATUS_BAD_INPUT, "scale a solid, a light, or all, solids, lights",
-                        "%.80s has no size of its own", name);
+                        "%.80s cannot be scaled", name);
     e.only = name;
     return apply(&e);
 }

@@ -50,8 +50,10 @@ static bool inert_on_slot(const inert_case *c, int slot)
 
 static bool say_by_face(const inert_case *c)
 {
-    return inert_say(c, "by-face", "give the solid a material, or name one of the scene's as the faces' is named",
-                     "the mesh's file says how the faces of %s look", c->owner->name);
+    return inert_say(c, "by-face",
+                     "assign a material to the solid, or give a material of the scene the name of the faces' "
+                     "material",
+                     "the materials of the faces of %s come from the mesh file", c->owner->name);
 }
 
 /* Before the mesh is there, nobody knows. */
@@ -93,7 +95,7 @@ static bool is_named_ones(const inert_case *c)
 static bool say_of_solid(const inert_case *c)
 {
     const inert_remedy remedy = inert_set("%s.%s", c->owner->name, c->at.row->name);
-    return inert_say(c, "of-solid", remedy.text, "a face takes it from its solid, %s", c->owner->name);
+    return inert_say(c, "of-solid", remedy.text, "the face uses the value of its solid, %s", c->owner->name);
 }
 
 bool inert_named_faces(const inert_case *c)

@@ -37,30 +37,31 @@ bool say_no_tree(const inert_case *c)
 {
     const bool whitted = integrator_traits_of(&c->s->render)->tree;
     return inert_say(c, "no-tree", whitted ? "set render.lighting=whitted" : "set render.integrator=whitted",
-                     "no ray goes on from a surface under this render.%s", whitted ? "lighting" : "integrator");
+                     "no secondary rays are traced with this render.%s", whitted ? "lighting" : "integrator");
 }
 
 bool no_lamp(const inert_case *c)
 {
-    return shining_lights(c->s) == 0 && inert_say(c, "no-lamp", lamp_remedy(c->s).text, "no light shines");
+    return shining_lights(c->s) == 0 &&
+           inert_say(c, "no-lamp", lamp_remedy(c->s).text, "every light has intensity 0 or a black color");
 }
 
 bool no_ambient_on_paths(const inert_case *c)
 {
-    return is_path(c->s) &&
-           inert_say(c, "path-ambient", "set render.integrator=whitted", "the path integrator has no ambient light");
+    return is_path(c->s) && inert_say(c, "path-ambient", "set render.integrator=whitted",
+                                      "the path integrator does not use ambient light");
 }
 
 bool goes_straight(const inert_case *c)
 {
     return c->s->render.transmission == TRANSMISSION_SIMPLE &&
-           inert_say(c, "straight", "set render.transmission=refract", "simple transmission bends no light");
+           inert_say(c, "straight", "set render.transmission=refract", "simple transmission does not refract");
 }
 
 bool say_not_bent(const inert_case *c)
 {
     return inert_say(c, "not-bent", "set render.integrator=whitted and render.lighting=whitted",
-                     "no ray goes on through a surface: all that counts is which indices are equal");
+                     "no ray is transmitted: only the equality of indices has an effect");
 }
 
 bool is_dark_at_depth_limit(const scene *s)

@@ -37,9 +37,9 @@ bool inert_layers(const inert_case *c)
     if (!given)
         return c->at.object_group == PARAM_RENDER && strcmp(c->at.row->name, "layer") == 0 && word &&
                inert_say(c, "layers-only", inert_set("render.integrator=%s", word).text,
-                         "this render.integrator gives no layers");
+                         "this render.integrator writes no layers");
     return is_of_light(c) && inert_say(c, "no-light", "set render.integrator=whitted",
-                                       "the image shows a layer of what camera rays meet: no light is followed");
+                                       "the image shows a layer of the first hits: light is not traced");
 }
 
 /* Does the film stay as it is with the parameter that many times as large? */
@@ -78,8 +78,8 @@ bool inert_unmet(const inert_case *c, const char *path)
         bool same = rows[i].values[0] || (same_times(c, path, 0.5) && same_times(c, path, 1.05));
         for (size_t k = 0; k < 3 && rows[i].values[k] && same; k++)
             same = inert_same(c, "%s=%s", path, rows[i].values[k]);
-        return same && inert_say(c, "met-first", "set render.integrator=whitted",
-                                 "what the camera rays of this image meet first stays as it is");
+        return same &&
+               inert_say(c, "met-first", "set render.integrator=whitted", "the first hits of this image do not change");
     }
     return false;
 }

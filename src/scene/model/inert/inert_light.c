@@ -17,7 +17,7 @@ static bool lights_nothing(const inert_case *c, const light *l)
     lit.lights = &white, lit.light_count = 1;
     const inert_remedy remedy = inert_set_on(first_visible(s, NULL), "diffuse=0.7");
     return !first_visible(&lit, shows_lamps) &&
-           inert_say(c, "lights-nothing", remedy.text, "no visible surface shows a lamp's light");
+           inert_say(c, "lights-nothing", remedy.text, "no visible surface is lit by lights");
 }
 
 bool inert_light(const inert_case *c)
@@ -31,11 +31,11 @@ bool inert_light(const inert_case *c)
         return inert_say(c, "dark-lamp", inert_set("%s.color=1,1,1", c->name).text, "the light's color is black");
     if ((strcmp(name, "target") == 0 || strcmp(name, "half_angle_deg") == 0) && l->kind == LIGHT_POINT)
         return inert_say(c, "point-lamp", inert_set("%s.kind=cone", c->name).text,
-                         "a point of light shines all around");
+                         "a point light emits in all directions");
     if (strcmp(name, "radius") == 0 && !is_path(c->s)) {
         const inert_remedy far = inert_set("render.integrator=path and %s.reach=8", c->name);
         return inert_say(c, "sphere-lamp", l->reach > 0.0 ? "set render.integrator=path" : far.text,
-                         "the path integrator alone knows a light's size");
+                         "only the path integrator uses the size of a light");
     }
     return lights_nothing(c, l);
 }
@@ -43,13 +43,13 @@ bool inert_light(const inert_case *c)
 static bool background_color(const inert_case *c)
 {
     return c->s->background.kind == BACKGROUND_IMAGE &&
-           inert_say(c, "picture-sky", "set background.kind=uniform", "the sky is a picture");
+           inert_say(c, "picture-sky", "set background.kind=uniform", "the background is an image");
 }
 
 static bool horizon(const inert_case *c)
 {
     return c->s->background.kind != BACKGROUND_GRADIENT &&
-           inert_say(c, "no-gradient", "set background.kind=gradient", "the background is no gradient");
+           inert_say(c, "no-gradient", "set background.kind=gradient", "the background is not a gradient");
 }
 
 /* A gradient between equal colours is uniform; a picture must be named. */
@@ -59,7 +59,7 @@ static bool kind(const inert_case *c)
     const bool flat = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
     return flat && b->kind != BACKGROUND_IMAGE && !b->image_path[0] &&
            inert_say(c, "flat-gradient", "set background.horizon=0.5,0.4,0.3",
-                     "horizon is the color, too: a gradient between them is uniform");
+                     "horizon equals color: the gradient is uniform");
 }
 
 static bool has_ambient(const scene *s, const solid *one)
@@ -89,7 +89,7 @@ static bool surrounding_index(const inert_case *c)
     const scene *s = c->s;
     if (!first_visible(s, is_clear))
         return inert_say(c, "no-clear", inert_set_clear(first_visible(s, NULL)).text,
-                         "no visible solid is transparent: no light is bent");
+                         "no visible solid is transparent: nothing refracts");
     return goes_straight(c) || (!follows_rays(s) && !draws_through(s) && !s->render.radiance &&
                                 !first_visible(s, matches_surroundings) && say_not_bent(c));
 }
@@ -98,7 +98,7 @@ static bool surrounding_absorption(const inert_case *c)
 {
     return integrator_traits_of(&c->s->render)->drawn &&
            inert_say(c, "drawn-surroundings", "set render.integrator=whitted",
-                     "the depth buffer leaves out what the surroundings absorb");
+                     "the depth buffer ignores absorption by the surrounding medium");
 }
 
 bool inert_background(const inert_case *c)

@@ -23,7 +23,7 @@ static bool opaque_rule(const inert_case *c)
     if (c->m->transparency > 0.0)
         return false;
     const inert_remedy remedy =
-        is_open(c) ? (inert_remedy){"give it a closed mesh and a transparency"} : set_on(c, "transparency=0.9");
+        is_open(c) ? (inert_remedy){"use a closed mesh and set its transparency"} : set_on(c, "transparency=0.9");
     return inert_say(c, "opaque", remedy.text, "the solid is opaque");
 }
 
@@ -65,14 +65,13 @@ static bool absorption_rule(const inert_case *c)
 {
     return opaque_rule(c) || unpassed(c) ||
            (material_is_mirror(c->m) &&
-            inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its index makes it a mirror that no light passes"));
+            inert_say(c, "mirror", set_on(c, "ior=1.5").text, "its refractive index makes it a perfect mirror"));
 }
 
 static bool no_color(const inert_case *c)
 {
-    const char *text = integrator_traits_of(&c->s->render)->layers
-                           ? "the layer that the image shows has no colours"
-                           : "no ambient or diffuse light shows this surface's colour";
+    const char *text = integrator_traits_of(&c->s->render)->layers ? "the shown layer has no colours"
+                                                                   : "no ambient or diffuse light reaches this surface";
     return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text, "%s", text);
 }
 
@@ -88,7 +87,7 @@ static bool tint_distance_rule(const inert_case *c)
     const vec3 white = c->m->color;
     return absorption_rule(c) ||
            (white.x == 1.0 && white.y == 1.0 && white.z == 1.0 &&
-            inert_say(c, "no-tint", set_on(c, "color=0.9,0.7,0.5").text, "color is white, which tints nothing"));
+            inert_say(c, "no-tint", set_on(c, "color=0.9,0.7,0.5").text, "color is white: nothing is tinted"));
 }
 
 static bool is_black_surface(const inert_case *c)
@@ -114,10 +113,10 @@ static bool specular_rule(const inert_case *c)
 {
     const scene *s = c->s;
     if (!is_path(s) && s->render.lighting == LIGHTING_LAMBERT)
-        return inert_say(c, "lambert", "set render.lighting=phong", "Lambert's lighting has no highlights");
+        return inert_say(c, "lambert", "set render.lighting=phong", "Lambert shading has no highlights");
     return no_lamp(c) || (only_spheres_shine(s) && !material_is_opaque(c->m) &&
                           inert_say(c, "sphere-highlight", "set render.integrator=whitted",
-                                    "the light itself is what a clear surface reflects"));
+                                    "a transparent surface reflects the lights themselves"));
 }
 
 static bool shininess_rule(const inert_case *c)
@@ -137,13 +136,13 @@ static bool mirrors_black(const inert_case *c)
     return dark && c->m->reflectivity < 1.0 && !(clear && shining_lights(c->s) > 0) &&
            inert_same(c, "%s.reflectivity=1", c->name) && (!clear || inert_same(c, "%s.reflectivity=0.5", c->name)) &&
            inert_say(c, "mirrors-black", "set background.color=0.5,0.5,0.5",
-                     "all that it could mirror in this image is black");
+                     "everything that it could reflect in this image is black");
 }
 
 static bool say_unseen(const inert_case *c)
 {
     if (integrator_traits_of(&c->s->render)->layers)
-        return inert_say(c, "unseen", "set render.integrator=whitted", "no camera ray of this image meets %s first",
+        return inert_say(c, "unseen", "set render.integrator=whitted", "no camera ray of this image hits %s first",
                          c->owner->name);
     int64_t highest = c->owner->priority;
     for (size_t i = 0; i < c->s->solid_count; i++) {
@@ -153,7 +152,7 @@ static bool say_unseen(const inert_case *c)
     const inert_remedy higher =
         inert_set("%s.priority=%lld, or move it or the camera", c->owner->name, (long long)highest + 1);
     return inert_say(c, "unseen", highest > c->owner->priority ? higher.text : "move it, or the camera",
-                     "no ray of this image meets a surface of %s", c->owner->name);
+                     "no ray of this image hits a surface of %s", c->owner->name);
 }
 
 static bool reflectivity_rule(const inert_case *c)
@@ -168,9 +167,11 @@ static bool reflectivity_rule(const inert_case *c)
     if (!follows_rays(s))
         return say_no_tree(c);
     if (s->render.depth == 0 && is_dark_at_depth_limit(s))
-        return inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0, and what lies beyond it is black");
+        return inert_say(c, "depth-0", "set render.depth=4",
+                         "render.depth is 0, and the radiance beyond the depth limit is black");
     if (material_is_mirror(c->m) && !scene_has_constant_shares(&s->render))
-        return inert_say(c, "mirror", set_on(c, "transparency=0").text, "its index makes it a mirror already");
+        return inert_say(c, "mirror", set_on(c, "transparency=0").text,
+                         "its refractive index already makes it a mirror");
     return mirrors_black(c);
 }
 
@@ -180,7 +181,7 @@ static bool coefficients_rule(const inert_case *c)
     if (law == MEDIUM_IOR || law >= MEDIUM_CATALOGUE)
         return inert_say(c, "no-law",
                          inert_set("%s.coefficients=1.5,0.004 and %s.medium=cauchy", c->name, c->name).text,
-                         "medium %s takes no coefficients", medium_words[law]);
+                         "medium %s has no coefficients", medium_words[law]);
     return index_rule(c);
 }
 
@@ -188,7 +189,7 @@ static bool absorb_per_m_rule(const inert_case *c)
 {
     return absorption_rule(c) ||
            (c->m->absorb_spectrum.count > 0 &&
-            inert_say(c, "by-spectrum", set_on(c, "absorb_spectrum=[]").text, "absorb_spectrum takes its place"));
+            inert_say(c, "by-spectrum", set_on(c, "absorb_spectrum=[]").text, "absorb_spectrum replaces it"));
 }
 
 static bool texture_rule(const inert_case *c)
@@ -201,8 +202,8 @@ static bool texture_rule(const inert_case *c)
 static bool texture_size_rule(const inert_case *c)
 {
     if (shape_of(&c->owner->shape)->triangles)
-        return inert_say(c, "mesh-texture", "set it on a solid that is no mesh",
-                         "a mesh has texture coordinates of its own");
+        return inert_say(c, "mesh-texture", "set it on a solid other than a mesh",
+                         "a mesh has its own texture coordinates");
     if (!c->m->texture[0]) {
         const inert_remedy remedy = c->s->texture_count > 0
                                         ? inert_set("%s.texture=%s", c->name, c->s->textures[0].name)
@@ -221,13 +222,13 @@ static bool checker_rule(const inert_case *c)
 {
     return no_color(c) ||
            (same_vector(c->m->color, c->m->checker_color) &&
-            inert_say(c, "one-color", set_on(c, "checker_color=0.2,0.4,0.6").text, "checker_color is the color, too"));
+            inert_say(c, "one-color", set_on(c, "checker_color=0.2,0.4,0.6").text, "checker_color equals color"));
 }
 
 static bool checker_color_rule(const inert_case *c)
 {
     return (c->m->checker == 0.0 &&
-            inert_say(c, "no-checker", set_on(c, "checker=0.2").text, "checker is 0: there are no cells")) ||
+            inert_say(c, "no-checker", set_on(c, "checker=0.2").text, "checker is 0: there is no checker pattern")) ||
            no_color(c);
 }
 
@@ -264,8 +265,9 @@ static bool no_interface(const inert_case *c)
         if (one->visible && ((!material_is_opaque(m) && !plain) || may_have_face_materials(s, one)))
             return false;
     }
-    return !material_is_opaque(c->m) && inert_say(c, "no-interface", set_on(c, "ior=1.5").text,
-                                                  "its index is that of what is around it: it has no surface");
+    return !material_is_opaque(c->m) &&
+           inert_say(c, "no-interface", set_on(c, "ior=1.5").text,
+                     "its refractive index equals that of the surrounding medium: it has no visible surface");
 }
 
 /* Wholly inside a solid that wins there: nothing of it is met. */
@@ -274,7 +276,7 @@ static bool covered(const inert_case *c)
     const solid *cover = scene_cover(c->s, c->owner);
     return cover &&
            inert_say(c, "covered", inert_set("%s.priority=%lld", c->owner->name, (long long)cover->priority + 1).text,
-                     "%s lies wholly inside %s, which wins there", c->owner->name, cover->name);
+                     "%s is entirely inside %s, which has precedence there", c->owner->name, cover->name);
 }
 
 bool inert_appearance(const inert_case *c)
@@ -310,8 +312,8 @@ bool inert_surface(const inert_case *c)
 static bool unused(const inert_case *c, const solid *hidden)
 {
     const inert_remedy remedy =
-        hidden ? inert_set("%s.visible=on", hidden->name) : (inert_remedy){"give it to a visible solid"};
-    return inert_say(c, "unused-material", remedy.text, "no visible solid is of this material");
+        hidden ? inert_set("%s.visible=on", hidden->name) : (inert_remedy){"assign it to a visible solid"};
+    return inert_say(c, "unused-material", remedy.text, "no visible solid has this material");
 }
 
 /* On each visible solid that refers to it, and each face that is named so; the answer is the first one's. */

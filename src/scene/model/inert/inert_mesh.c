@@ -60,8 +60,8 @@ static bool unused_mesh(const inert_case *c)
     }
     const inert_remedy remedy = hidden  ? inert_set("%s.visible=on", hidden->name)
                                 : other ? inert_set("%s.mesh=%s", other->name, c->name)
-                                        : (inert_remedy){"add a solid of it"};
-    return inert_say(c, "unused-mesh", remedy.text, "no visible solid shows this mesh");
+                                        : (inert_remedy){"add a solid with it"};
+    return inert_say(c, "unused-mesh", remedy.text, "no visible solid uses this mesh");
 }
 
 /* How a slime moves does not matter where it has not begun to. */
@@ -112,7 +112,7 @@ static bool unused_texture(const inert_case *c)
     }
     if (dull)
         return inert_say(c, "unused-texture", color_remedy(s, &dull->surface, dull->name).text,
-                         "no light shows the colour of what has it");
+                         "no light reaches the surfaces that have it");
     const inert_remedy remedy = bare ? inert_set("%s.texture=%s", bare->name, c->name) : inert_set_on(NULL, "");
     return inert_say(c, "unused-texture", remedy.text, "no visible solid has this texture");
 }
@@ -122,7 +122,7 @@ static bool of_floats(const inert_case *c)
 {
     const char *path = c->s->textures[c->at.index].path, *dot = strrchr(path, '.');
     return strcmp(c->at.row->name, "space") == 0 && dot && strcasecmp(dot, ".pfm") == 0 &&
-           inert_say(c, "float-texture", "give it a PNG or JPEG file", "a PFM file's numbers are linear light");
+           inert_say(c, "float-texture", "use a PNG or JPEG file", "the values of a PFM file are linear");
 }
 
 bool inert_texture(const inert_case *c)

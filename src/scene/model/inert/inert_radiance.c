@@ -46,15 +46,16 @@ bool inert_radiance(const inert_case *c)
     const scene *s = c->s;
     if (integrator_traits_of(&s->render)->drawn)
         return inert_say(c, "zbuffer-radiance", "set render.integrator=whitted",
-                         "the depth buffer follows no light through a surface");
+                         "the depth buffer does not trace light through surfaces");
     if (goes_straight(c))
         return true;
     if (!is_bare(&s->background))
         return false;
     const solid *dense = first_visible(s, is_dense), *last = s->solid_count > 0 ? &s->solids[s->solid_count - 1] : NULL;
     if (!dense)
-        return inert_say(c, "no-dense", inert_set_clear(last).text, "no visible clear solid has an index of its own");
+        return inert_say(c, "no-dense", inert_set_clear(last).text,
+                         "no visible transparent solid has a different refractive index");
     return shining_lights(s) == 0 && !first_visible(s, may_hold_eye) && !first_visible(s, glows_in_dense) &&
            inert_say(c, "light-outside", inert_set("%s.emission=0.5", dense->name).text,
-                     "all light begins and ends outside of clear solids");
+                     "all light paths begin and end outside transparent solids");
 }

@@ -9,7 +9,7 @@ static const char *const WHITTED = "set render.integrator=whitted";
 static bool path_only(const inert_case *c)
 {
     return !is_path(c->s) &&
-           inert_say(c, "path-only", "set render.integrator=path", "only the path integrator draws by chance");
+           inert_say(c, "path-only", "set render.integrator=path", "only the path integrator uses random numbers");
 }
 
 /* The spectral film's wavelengths are drawn, too: render/shade/spectra.c. */
@@ -26,7 +26,7 @@ static bool roulette(const inert_case *c)
         return true;
     return c->s->render.depth <= ROULETTE_DEPTH &&
            inert_say(c, "roulette-depth", "set render.depth=8",
-                     "paths may end by chance from depth %d on, and render.depth is %lld", ROULETTE_DEPTH + 1,
+                     "Russian roulette starts at depth %d, and render.depth is %lld", ROULETTE_DEPTH + 1,
                      (long long)c->s->render.depth);
 }
 
@@ -49,7 +49,7 @@ static bool no_tree(const inert_case *c)
     if (!follows_rays(s))
         return say_no_tree(c);
     return nothing_goes_on(s) &&
-           inert_say(c, "no-branches", mirror_remedy(s).text, "nothing visible reflects or refracts");
+           inert_say(c, "no-branches", mirror_remedy(s).text, "no visible surface reflects or refracts");
 }
 
 static bool beyond(const inert_case *c)
@@ -60,14 +60,14 @@ static bool beyond(const inert_case *c)
     scene sky = *s; /* borrows what s owns */
     sky.render.beyond = DEPTH_LIMIT_SKY;
     if (is_dark_at_depth_limit(&sky))
-        return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black, too");
+        return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black as well");
     /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both
      * has no cut ray. */
     const bool nothing_cut = s->render.beyond != DEPTH_LIMIT_BLACK
                                  ? inert_same(c, "render.beyond=black")
                                  : inert_same(c, "render.beyond=sky") && inert_same(c, "render.beyond=mean");
     return nothing_cut && inert_say(c, "nothing-cut", s->render.depth > 1 ? "set render.depth=1" : "set render.depth=0",
-                                    "no ray that render.depth cuts off carries light that the film resolves");
+                                    "no ray beyond render.depth carries more light than the film resolves");
 }
 
 /* Highlights and branches are all that the lighting model chooses. */
@@ -87,9 +87,10 @@ static bool lighting(const inert_case *c)
         return false;
     if (!integrator_traits_of(&s->render)->tree)
         return inert_say(c, "no-highlight", WHITTED,
-                         "no lamp makes a highlight, and no ray goes on under this render.integrator");
+                         "no light produces a highlight, and this render.integrator traces no secondary rays");
     return (nothing_goes_on(s) || (s->render.depth == 0 && is_dark_at_depth_limit(s))) &&
-           inert_say(c, "no-highlight", mirror_remedy(s).text, "nothing visible has a highlight, reflects or refracts");
+           inert_say(c, "no-highlight", mirror_remedy(s).text,
+                     "no visible surface has a highlight, reflects or refracts");
 }
 
 /* A plane alone shows little of what a clear solid does. */
@@ -127,7 +128,7 @@ static bool weights(const inert_case *c)
     return no_clear(c) || same_but_for(c, "fresnel", "constant", c->s->render.weights == WEIGHTS_FRESNEL) ||
            (c->s->render.transmission == TRANSMISSION_SIMPLE &&
             inert_say(c, "simple", "set render.transmission=refract",
-                      "simple transmission takes the materials' constants"));
+                      "simple transmission uses the materials' constants"));
 }
 
 static bool polarisation(const inert_case *c)
@@ -140,31 +141,31 @@ static bool nothing_lit(const inert_case *c)
     const scene *s = c->s;
     return no_lamp(c) || (!first_visible(s, shows_lamps) &&
                           inert_say(c, "nothing-lit", inert_set_on(first_visible(s, NULL), "diffuse=0.7").text,
-                                    "no lamp's light shows on anything visible"));
+                                    "no visible surface is lit by lights"));
 }
 
 static bool shadows(const inert_case *c)
 {
     const scene *s = c->s;
     if (integrator_traits_of(&s->render)->drawn)
-        return inert_say(c, "no-shadows", WHITTED, "the depth buffer draws no shadows");
+        return inert_say(c, "no-shadows", WHITTED, "the depth buffer has no shadows");
     return nothing_lit(c) ||
-           (only_spheres_shine(s) &&
-            inert_say(c, "spheres", WHITTED, "lights that are spheres are looked for along random paths"));
+           (only_spheres_shine(s) && inert_say(c, "spheres", WHITTED, "spherical lights are hit by random paths"));
 }
 
 static bool min_weight(const inert_case *c)
 {
     if (is_path(c->s))
-        return inert_say(c, "whitted-only", WHITTED, "random paths are no tree: render.roulette ends faint ones");
-    return no_tree(c) || (c->s->render.depth == 0 &&
-                          inert_say(c, "depth-0", "set render.depth=4", "render.depth is 0: no branch is followed"));
+        return inert_say(c, "whitted-only", WHITTED,
+                         "the path integrator has no ray tree: render.roulette ends faint paths");
+    return no_tree(c) || (c->s->render.depth == 0 && inert_say(c, "depth-0", "set render.depth=4",
+                                                               "render.depth is 0: no secondary rays are traced"));
 }
 
 static bool wavelengths(const inert_case *c)
 {
     return c->s->render.spectrum != SPECTRUM_SPECTRAL &&
-           inert_say(c, "spectral-only", "set render.spectrum=spectral", "the film is rgb");
+           inert_say(c, "spectral-only", "set render.spectrum=spectral", "the film is RGB");
 }
 
 static bool is_dispersive(const index_law *law)
@@ -185,11 +186,11 @@ static bool lambda(const inert_case *c)
     const scene *s = c->s;
     if (s->render.spectrum == SPECTRUM_SPECTRAL)
         return inert_say(c, "rgb-only", "set render.spectrum=rgb",
-                         "the spectral film takes each wavelength's own index");
+                         "the spectral film uses the index of each wavelength");
     const index_law around = surrounding_index_law(&s->background);
     return no_clear(c) || (!is_dispersive(&around) && !first_visible(s, has_dispersion) &&
                            inert_say(c, "no-dispersion", inert_set_on(first_visible(s, is_clear), "medium=bk7").text,
-                                     "no clear medium's index depends on the wavelength"));
+                                     "the index of every transparent medium is constant"));
 }
 
 static bool absorbs(const scene *s, const solid *one)
@@ -205,7 +206,7 @@ static bool unit(const inert_case *c)
     const inert_remedy remedy = clear ? inert_set("%s.absorb_per_m=0.2,0.4,0.8", clear->name)
                                       : inert_set("background.absorb_per_m=0.01,0.02,0.04");
     return !surroundings_absorb(&s->background) && !first_visible(s, absorbs) &&
-           inert_say(c, "no-absorption", remedy.text, "nothing that light passes absorbs");
+           inert_say(c, "no-absorption", remedy.text, "no medium that light passes absorbs");
 }
 
 static bool shows_texture(const scene *s, const solid *one)
@@ -217,13 +218,13 @@ static bool texturing(const inert_case *c)
 {
     if (!integrator_traits_of(&c->s->render)->drawn)
         return inert_say(c, "zbuffer-only", "set render.integrator=zbuffer",
-                         "rays always meet a texture in perspective");
+                         "ray tracing is always perspective-correct");
     const solid *first = first_visible(c->s, NULL);
     const inert_remedy remedy = first && c->s->texture_count > 0
                                     ? inert_set("%s.texture=%s", first->name, c->s->textures[0].name)
                                     : (inert_remedy){"give a visible solid a texture"};
     return !first_visible(c->s, shows_texture) &&
-           inert_say(c, "untextured", remedy.text, "nothing visible has a texture");
+           inert_say(c, "untextured", remedy.text, "no visible surface has a texture");
 }
 
 bool inert_render(const inert_case *c)

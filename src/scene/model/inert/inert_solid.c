@@ -35,7 +35,7 @@ static bool priority_rule(const inert_case *c)
     if (hidden)
         return inert_say(c, "both-opaque",
                          inert_set("%s.transparency=0.9 and %s.ior=1.3", hidden->name, hidden->name).text,
-                         "%s overlaps %s, but both are opaque: nothing sees into them", c->name, hidden->name);
+                         "%s overlaps %s, but both are opaque: the overlap is invisible", c->name, hidden->name);
     return inert_say(c, "apart", "move it into another solid", "no other visible solid overlaps %s", c->name);
 }
 
@@ -55,7 +55,7 @@ static bool rotation_rule(const inert_case *c)
     const inert_remedy remedy = shows_color(c->s, c->m)
                                     ? inert_set("%s.checker=0.2 and %s.checker_color=0.3,0.5,0.7", c->name, c->name)
                                     : inert_set("%s.checker=0.2 and %s", c->name, color.text + strlen("set "));
-    return inert_say(c, "round", remedy.text, "a %s without checker or texture looks the same from all sides",
+    return inert_say(c, "round", remedy.text, "a %s without checker or texture looks the same after this rotation",
                      shape_of(&c->owner->shape)->word);
 }
 
@@ -63,7 +63,7 @@ static bool spacing_rule(const inert_case *c)
 {
     const vec3 n = c->owner->shape.copies;
     return n.x == 1.0 && n.y == 1.0 && n.z == 1.0 &&
-           inert_say(c, "one-copy", inert_set("%s.copies=2,1,1", c->name).text, "the mesh stands there once");
+           inert_say(c, "one-copy", inert_set("%s.copies=2,1,1", c->name).text, "the mesh has a single copy");
 }
 
 static bool mesh_shading(const inert_case *c)
@@ -75,9 +75,9 @@ static bool mesh_shading(const inert_case *c)
         return false;
     if (integrator_traits_of(&s->render)->layers)
         return s->render.layer != LAYER_NORMAL &&
-               inert_say(c, "no-normals", "set render.layer=normal", "the layer that the image shows has no normals");
+               inert_say(c, "no-normals", "set render.layer=normal", "the shown layer has no normals");
     const inert_remedy remedy = shining_lights(s) > 0 ? inert_set("%s.diffuse=0.7", c->name) : lamp_remedy(s);
-    return inert_say(c, "unshaded", remedy.text, "no lamp's light shows on it, and it sends no ray on");
+    return inert_say(c, "unshaded", remedy.text, "it is not lit by lights and has no secondary rays");
 }
 
 static bool mesh_name(const inert_case *c)

@@ -24,7 +24,7 @@ status new_name(const scene *s, const char *base, object_name name, diagnostic *
         if (check_name(name, NULL) == STATUS_OK && check_name_is_free(s, name, NULL) == STATUS_OK)
             return STATUS_OK;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "name it yourself", "there is no free name like %.60s", base);
+    return diagnose(why, STATUS_BAD_INPUT, "choose a name", "all names like %.60s are in use", base);
 }
 
 static status name_for(const scene *s, const char *wanted, const char *base, object_name name, diagnostic *why)
