@@ -458,7 +458,7 @@ run render "$scene" -o drawn.png "${small[@]}" --set render.integrator=zbuffer -
 check "but not a spectral one" matches "$code $(<err)" '^2 cuvette: .*depth buffer.*; set render.integrator'
 run trace "$scene" --pixel 40,30 --lambda 1200 --set liquid.medium=water "${small[@]}"
 check "a medium that was not measured there is noted" matches "$(<err)" \
-    '^cuvette: note: liquid\.medium: water was measured from 182 to 1129 nm only'
+    '^cuvette: note: liquid\.medium: water was measured only from 182 to 1129 nm'
 run trace "$scene" --pixel 40,30 -o tree.json "${small[@]}"
 check "-o tree.json writes JSON, and nothing else" is "$(./json_get tree.json schema) $(cat out err)" "1 "
 run trace "$scene" --pixel 40,30 -o tree.svg "${small[@]}"

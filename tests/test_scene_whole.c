@@ -222,7 +222,7 @@ static void what_cannot_be_changes_nothing(void **state)
     expect_refused(s, scene_scale(s, "glass", 2.0, &why), &why, "cannot be scaled");
     static const char *const names[] = {"", "+", "all+", "+all", "all+foo", "All", "all++lights", "everything"};
     for (size_t k = 0; k < COUNT(names); k++)
-        expect_refused(s, scene_move(s, names[k], vec3_make(1, 0, 0), &why), &why, "named");
+        expect_refused(s, scene_move(s, names[k], vec3_make(1, 0, 0), &why), &why, "no object");
     scene_destroy(s);
 }
 
