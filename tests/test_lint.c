@@ -130,7 +130,7 @@ static void overlaps_of_equal_priority(void **state)
 static void narrow_gaps(void **state)
 {
     (void)state;
-    static const char note[] = "is a gap of about";
+    static const char note[] = "is about";
     static const lint_case cases[] = {
         {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1.0001, 0, 0]}}", "b",
          note},
@@ -174,7 +174,7 @@ static void narrow_gaps(void **state)
 static void indices_of_mirrors(void **state)
 {
     (void)state;
-    static const char note[] = "which no clear matter has";
+    static const char note[] = "higher than any transparent material";
     static const lint_case cases[] = {
         {"solids: {a: {shape: sphere, material: glass, ior: 5.1}}", "a.ior", note},
         {"solids: {a: {shape: sphere, material: glass, ior: 4.9}}", NULL, ""},
@@ -201,7 +201,7 @@ static void cameras_that_see_nothing(void **state)
          "a: {shape: box, material: clay, size: [4, 4, 4]}, b: {shape: sphere, material: glass, radius: 1.5, "
          "priority: 1}",
          NULL},
-        {"0, -1, -3", "a: {shape: plane, material: clay}", "is under the surface of a"},
+        {"0, -1, -3", "a: {shape: plane, material: clay}", "is below the surface of a"},
         {"0, 0, -3", "a: {shape: plane, material: clay}, b: {shape: sphere, material: clay, position: [0, 1, 0]}",
          NULL}, /* on it */
         {"0, -1, -3", "a: {shape: plane, material: water}", NULL},
@@ -287,7 +287,7 @@ static void what_sticks_out_by_a_hair_is_not_hidden(void **state)
                  cases[i].solid);
         const note_list all = lint_text(text);
         const bool noted = all.count == 1 && strcmp(all.note[0].place, "x.priority") == 0 &&
-                           strstr(all.note[0].text, "wholly inside ground");
+                           strstr(all.note[0].text, "entirely inside ground");
         if (noted != cases[i].hidden || all.count > 1)
             fail_msg("%s: %d notes", cases[i].solid, all.count);
     }
@@ -413,7 +413,7 @@ static bool camera_is_lost(const oracle *o, const char *text)
         return false;
     if (sscanf(text, "the camera is inside the wall of %63s", name) == 1)
         return winner == named(o->s, name) && winner->shape.kind == SHAPE_CUP && winner->surface.transparency > 0.0;
-    const bool under = sscanf(text, "the camera is under the surface of %63[^,]", name) == 1;
+    const bool under = sscanf(text, "the camera is below the surface of %63[^,]", name) == 1;
     if (!under && sscanf(text, "the camera is inside %63[^,]", name) != 1)
         return false;
     return winner == named(o->s, name) && winner->surface.transparency == 0.0 &&
@@ -429,11 +429,11 @@ static bool is_true(oracle *o, judge *j, scene *s, const scene_note *n, tallies 
         const solid *one = named(s, a), *two = named(s, b);
         return one->priority == two->priority && oracle_overlap(o, one, two, ORACLE_LINES, 0.0);
     }
-    if (sscanf(n->text, "between %63s and %63s is a gap", a, b) == 2) {
+    if (sscanf(n->text, "the gap between %63s and %63s is about", a, b) == 2) {
         t->gaps++;
         return oracle_gap(o, named(s, a), named(s, b));
     }
-    if (sscanf(n->text, "%63s lies wholly inside %63[^,]", a, b) == 2) {
+    if (sscanf(n->text, "%63s is entirely inside %63[^,]", a, b) == 2) {
         t->covers++;
         return oracle_covers(o, named(s, b), named(s, a));
     }
@@ -445,7 +445,7 @@ static bool is_true(oracle *o, judge *j, scene *s, const scene_note *n, tallies 
         t->depths++;
         return sscanf(n->remedy, "set render.depth=%d", &depth) == 1 && depth_shows(j, s, depth + 4);
     }
-    if (strstr(n->text, "is transparent with the index") && sscanf(n->text, "%63s", a) == 1) {
+    if (strstr(n->text, "is transparent with the refractive index") && sscanf(n->text, "%63s", a) == 1) {
         t->indices++;
         return oracle_bends_nothing(o, named(s, a));
     }
@@ -458,7 +458,7 @@ static bool is_noted(const note_list *all, const char *a, const char *b)
     for (int i = 0; i < all->count; i++) {
         char one[SCENE_NAME_MAX + 1], two[SCENE_NAME_MAX + 1];
         if ((strstr(all->note[i].text, "overlap with") && sscanf(all->note[i].text, "%63s and %63s", one, two) == 2) ||
-            sscanf(all->note[i].text, "%63s lies wholly inside %63[^,]", one, two) == 2)
+            sscanf(all->note[i].text, "%63s is entirely inside %63[^,]", one, two) == 2)
             if ((!strcmp(one, a) && !strcmp(two, b)) || (!strcmp(one, b) && !strcmp(two, a)))
                 return true;
     }
