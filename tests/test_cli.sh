@@ -829,7 +829,7 @@ refused() { # WHAT ERROR ARGUMENT...: exit 2, one line, nothing written
         "2 1 0 cuvette: $error"
 }
 refused "to delete a material in use" \
-    "--delete clear: clear is the material of vessel and 1 more; assign another material to them first, or remove them" \
+    "--delete clear: clear is the material of vessel and 1 more; assign another material to them first, "'or remove them' \
     built.yaml --delete clear
 refused "an unknown name" "--move rood=1,2,3: the scene has no object 'rood'; did you mean 'rod'?" \
     built.yaml --move rood=1,2,3
