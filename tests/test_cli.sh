@@ -828,8 +828,8 @@ refused() { # WHAT ERROR ARGUMENT...: exit 2, one line, nothing written
     check "scene refuses $what" is "$code $(wc -l <err) $(cat out refused.yaml 2>/dev/null | wc -c) $(<err)" \
         "2 1 0 cuvette: $error"
 }
-refused "to delete a material in use" \
-    "--delete clear: clear is the material of vessel and 1 more; assign another material to them first, "'or remove them' \
+in_use="clear is the material of vessel and 1 more; assign another material to them first, or remove them"
+refused "to delete a material in use" "--delete clear: $in_use" \
     built.yaml --delete clear
 refused "an unknown name" "--move rood=1,2,3: the scene has no object 'rood'; did you mean 'rod'?" \
     built.yaml --move rood=1,2,3
