@@ -145,10 +145,10 @@ static void hands_are_few_and_have_names(void **state)
     (void)state;
     hand_script *s = create();
     char name[HAND_NAME_MAX + 2];
-    refuse(s, "", grab(0.0), "cannot be a hand's name");
+    refuse(s, "", grab(0.0), "is not a valid name of a hand");
     memset(name, 'a', sizeof name);
     name[HAND_NAME_MAX + 1] = 0;
-    refuse(s, name, grab(0.0), "cannot be a hand's name");
+    refuse(s, name, grab(0.0), "is not a valid name of a hand");
     name[HAND_NAME_MAX] = 0;
     add(s, name, grab(0.0));
     for (int i = 1; i < SOFTBODY_HANDS_MAX; i++) {
