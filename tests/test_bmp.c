@@ -138,7 +138,7 @@ static void other_kinds_are_refused_with_the_remedy(void **state)
     for (size_t k = 0; k < COUNT(kinds); k++) {
         bmp_file f = make_bmp(4, 3, 40, 100, false);
         put_number(f.bytes + kinds[k].at, kinds[k].value, kinds[k].bytes);
-        refused(f.bytes, f.size, kinds[k].word, "save it as an uncompressed 24-bit BMP, or as PNG");
+        refused(f.bytes, f.size, kinds[k].word, "save the file as an uncompressed 24-bit BMP, or as PNG");
         free(f.bytes);
     }
 }

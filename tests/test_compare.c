@@ -246,7 +246,7 @@ static void sizes_that_differ_are_refused(void **state)
     image_comparison c;
     diagnostic why = {0};
     assert_int_equal(image_compare(a, b, &c, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "a picture of 16 x 12 pixels cannot be compared with one of 12 x 16");
+    assert_string_equal(why.what, "an image of 16 x 12 pixels cannot be compared with one of 12 x 16");
     assert_int_equal(image_compare_map(a, b, &map, NULL), STATUS_BAD_INPUT);
     assert_null(map);
     image_destroy(a);

@@ -69,7 +69,7 @@ static void a_scene_without_metrics_is_refused(void **state)
     fixture_path(f, "bad.study", path);
     assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
     diagnostic_text(&why, said, sizeof said);
-    assert_non_null(strstr(said, "bad.study: metrics cannot be kept of cell 0: "));
+    assert_non_null(strstr(said, "bad.study: metrics cannot be kept for cell 0: "));
     assert_non_null(strstr(said, "vessel"));
     assert_false(fixture_has(f, "results"));
 }
@@ -125,7 +125,7 @@ static void a_scene_where_nothing_moves_is_refused(void **state)
     fixture_path(f, "bad.study", path);
     assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
     diagnostic_text(&why, said, sizeof said);
-    assert_non_null(strstr(said, "bad.study: motion cannot be kept of cell 0: "));
+    assert_non_null(strstr(said, "bad.study: motion cannot be kept for cell 0: "));
 }
 
 int main(void)

@@ -18,8 +18,8 @@ enum {
 };
 enum { UNCOMPRESSED, RLE8, RLE4 }; /* the header's compression */
 
-#define REMEDY "save it as an uncompressed 24-bit BMP, or as PNG"
-#define DAMAGED "copy it again, or save it again as PNG"
+#define REMEDY "save the file as an uncompressed 24-bit BMP, or as PNG"
+#define DAMAGED "copy the file again, or save it as PNG"
 
 static uint32_t number_at(const unsigned char *b, int bytes)
 {
@@ -47,21 +47,21 @@ static status check_kind(const unsigned char *bytes, size_t size, diagnostic *wh
 {
     const uint32_t header = size >= FILE_HEADER + 4 ? number_at(bytes + FILE_HEADER, 4) : 0;
     if (header == OS2_HEADER || header == OS2_HEADER_2 || header == OS2_HEADER_2_SHORT)
-        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is one of OS/2, which is not read");
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has the unsupported OS/2 header");
     if (size < FILE_HEADER + INFO_HEADER || (header <= V5_HEADER && header > size - FILE_HEADER))
-        return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is truncated: %zu bytes have no whole header",
+        return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is truncated: %zu bytes are less than a header",
                         size);
     if (header < INFO_HEADER || header > V5_HEADER)
-        return diagnose(why, STATUS_BAD_INPUT, REMEDY,
-                        "the header of the BMP file is damaged: it claims to have %lu bytes", (unsigned long)header);
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the header of the BMP file is damaged: its size is %lu bytes",
+                        (unsigned long)header);
     const uint32_t bits = number_at(bytes + 28, 2), compression = number_at(bytes + 30, 4);
     if (compression == RLE8 || compression == RLE4)
-        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file is compressed by run lengths, which is not read");
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has the unsupported run-length compression");
     if (bits != 24)
-        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has %lu bits a pixel; only 24 are read",
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has %lu bits per pixel; only 24 are supported",
                         (unsigned long)bits);
     if (compression != UNCOMPRESSED)
-        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has a compression of kind %lu, which is not read",
+        return diagnose(why, STATUS_BAD_INPUT, REMEDY, "the BMP file has the unsupported compression %lu",
                         (unsigned long)compression);
     return STATUS_OK;
 }
@@ -77,14 +77,13 @@ static status read_header(const unsigned char *bytes, size_t size, bmp_header *o
     TRY(codec_check_size(out->width, out->height, size, why));
     out->row_bytes = ((size_t)out->width * 3 + 3) / 4 * 4;
     if (out->offset < FILE_HEADER + number_at(bytes + FILE_HEADER, 4) || out->offset > size)
-        return diagnose(why, STATUS_BAD_INPUT, DAMAGED,
-                        "the BMP file is damaged: its pixels are said to begin at byte %zu of %zu", out->offset, size);
+        return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is damaged: its pixels begin at byte %zu of %zu",
+                        out->offset, size);
     /* sides are at most 65536: no overflow; the last row need not be padded */
     const size_t needed = out->row_bytes * (size_t)(out->height - 1) + (size_t)out->width * 3;
     if (size - out->offset < needed)
-        return diagnose(why, STATUS_BAD_INPUT, DAMAGED,
-                        "the BMP file is truncated: %zu bytes of pixels where %zu should be", size - out->offset,
-                        needed);
+        return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is truncated: %zu bytes of pixels instead of %zu",
+                        size - out->offset, needed);
     return STATUS_OK;
 }
 

@@ -16,7 +16,7 @@ static status check_numbers(const image *img, const char *which, diagnostic *why
     for (size_t i = 0; i < 3 * pixels_of(img); i++) {
         if (isnan(img->pixel[i])) {
             size_t pixel = i / 3, width = (size_t)img->width;
-            return diagnose(why, STATUS_BAD_INPUT, "give pictures of numbers",
+            return diagnose(why, STATUS_BAD_INPUT, "use images with finite values",
                             "pixel %zu,%zu of the %s picture is not a number", pixel % width, pixel / width, which);
         }
     }
@@ -26,8 +26,8 @@ static status check_numbers(const image *img, const char *which, diagnostic *why
 status compare_check(const image *a, const image *b, diagnostic *why)
 {
     if (a->width != b->width || a->height != b->height)
-        return diagnose(why, STATUS_BAD_INPUT, "give two pictures of one size",
-                        "a picture of %d x %d pixels cannot be compared with one of %d x %d", a->width, a->height,
+        return diagnose(why, STATUS_BAD_INPUT, "use two images of the same size",
+                        "an image of %d x %d pixels cannot be compared with one of %d x %d", a->width, a->height,
                         b->width, b->height);
     TRY(check_numbers(a, "first", why));
     return check_numbers(b, "second", why);

@@ -165,8 +165,8 @@ static status inspect(const double *values, size_t count, double *largest, bool 
     *whole = true;
     for (size_t i = 0; i < count; i++) {
         if (!(values[i] >= 0.0) || isinf(values[i]))
-            return diagnose(why, STATUS_BAD_INPUT, "values are finite and not negative",
-                            "value %zu of the heat map cannot be drawn", i);
+            return diagnose(why, STATUS_BAD_INPUT, "use finite values of at least 0",
+                            "value %zu of the heat map is negative or not finite", i);
         *largest = values[i] > *largest ? values[i] : *largest;
         *whole = *whole && values[i] == floor(values[i]);
     }
@@ -232,8 +232,8 @@ status heatmap_create(const double *values, int width, int height, const char *t
     key_scale scale;
     *out = NULL;
     if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
-                        "a heat map of %d x %d values is not possible", width, height);
+        return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
+                        "a heat map cannot have %d x %d values", width, height);
     TRY(find_scale(values, (size_t)width * (size_t)height, &scale, why));
     int image_width = width < WIDTH_MIN ? WIDTH_MIN : width;
     key_layout key = lay_out_key(image_width);

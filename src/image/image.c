@@ -16,14 +16,14 @@ status image_create(int width, int height, image **out, diagnostic *why)
 {
     *out = NULL;
     if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
-                        "a picture of %d x %d pixels is not possible", width, height);
+        return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
+                        "an image cannot have %d x %d pixels", width, height);
     image *img = malloc(sizeof *img);
     float *pixel = calloc((size_t)width * (size_t)height * 3, sizeof *pixel);
     if (!img || !pixel) {
         free(img);
         free(pixel);
-        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a picture of %d x %d pixels", width, height);
+        return diagnose(why, STATUS_FAILURE, NULL, "out of memory for an image of %d x %d pixels", width, height);
     }
     *img = (image){.width = width, .height = height, .pixel = pixel, .owners = 1};
     *out = img;
@@ -70,11 +70,11 @@ status codec_check_size(long long width, long long height, size_t file_bytes, di
 {
     bool sides = width >= 1 && height >= 1 && width <= IMAGE_SIDE_MAX && height <= IMAGE_SIDE_MAX;
     if (!sides || width * height > CODEC_PIXELS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "sides are 1 to 65536 and at most 2^28 pixels in all",
-                        "the picture claims to have %lld x %lld pixels", width, height);
+        return diagnose(why, STATUS_BAD_INPUT, "use sides of 1 to 65536 and at most 2^28 pixels in total",
+                        "the image has %lld x %lld pixels", width, height);
     if (width * height > CODEC_PIXELS_FREE && width * height / CODEC_PIXELS_A_BYTE > (long long)file_bytes)
-        return diagnose(why, STATUS_BAD_INPUT, "a picture of a few colours needs no such size; save a smaller one",
-                        "the picture claims to have %lld x %lld pixels in %zu bytes", width, height, file_bytes);
+        return diagnose(why, STATUS_BAD_INPUT, "save a smaller image: its size does not match its contents",
+                        "the image has %lld x %lld pixels in only %zu bytes", width, height, file_bytes);
     return STATUS_OK;
 }
 
@@ -97,7 +97,7 @@ static status write_as(const image *img, image_format format, FILE *stream, int 
     case IMAGE_BMP:
     case IMAGE_UNKNOWN: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "PNG, JPEG or PFM", "unknown kind of picture");
+    return diagnose(why, STATUS_BAD_INPUT, "PNG, JPEG or PFM", "unknown image format");
 }
 
 status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
@@ -118,9 +118,9 @@ status image_write(const image *img, const char *path, int bits, diagnostic *why
     image_format format = image_format_of(path);
     if (format == IMAGE_UNKNOWN)
         return diagnose_at(why, path, STATUS_BAD_INPUT, "end the name in .png, .jpg, .jpeg or .pfm",
-                           "unknown kind of picture");
+                           "unknown image format");
     if (format == IMAGE_PNG && bits != 8 && bits != 16)
-        return diagnose_at(why, path, STATUS_BAD_INPUT, "8 or 16", "a PNG picture cannot have %d bits", bits);
+        return diagnose_at(why, path, STATUS_BAD_INPUT, "8 or 16", "a PNG image cannot have %d bits per channel", bits);
     file_writer writer;
     TRY(file_writer_open(&writer, path, why));
     status code = write_as(img, format, writer.stream, bits, false, why);
@@ -155,7 +155,7 @@ static status decode(const unsigned char *bytes, size_t size, image **out, int *
     case IMAGE_UNKNOWN: break;
     }
     return diagnose(why, STATUS_BAD_INPUT, "give a PNG, JPEG, PFM or 24-bit BMP file", "%s",
-                    size == 0 ? "the file is empty" : "this is not a picture of a known kind");
+                    size == 0 ? "the file is empty" : "unknown image format");
 }
 
 status image_read(const char *path, image **out, int *file_bits, diagnostic *why)

@@ -91,7 +91,7 @@ static bool write_guarded(jpeg_job *job, struct jpeg_compress_struct *cinfo, con
 status codec_jpeg_write(const image *img, FILE *stream, diagnostic *why)
 {
     if (img->width > JPEG_MAX_DIMENSION || img->height > JPEG_MAX_DIMENSION)
-        return diagnose(why, STATUS_BAD_INPUT, "write a PNG instead", "a JPEG picture has at most %ld pixels a side",
+        return diagnose(why, STATUS_BAD_INPUT, "write a PNG instead", "a JPEG image has at most %ld pixels per side",
                         JPEG_MAX_DIMENSION);
     struct jpeg_compress_struct cinfo = {0};
     jpeg_job job = {0};

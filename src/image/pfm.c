@@ -90,14 +90,14 @@ status codec_pfm_read(const unsigned char *bytes, size_t size, image **out, diag
     if (!read_word(&c, width_text) || !read_word(&c, height_text) || !read_word(&c, scale_text) ||
         !number_parse_int(width_text, &width) || !number_parse_int(height_text, &height) ||
         !number_parse_real(scale_text, &scale) || !(fabs(scale) > 0)) {
-        return diagnose(why, STATUS_BAD_INPUT, "it gives width, height and a scale that is not zero",
+        return diagnose(why, STATUS_BAD_INPUT, "the header has width, height and a non-zero scale",
                         "the header of the PFM file is damaged");
     }
     c.at++;
     TRY(codec_check_size(width, height, size, why));
     size_t expected = (size_t)width * (size_t)height * (size_t)channels * 4, got = (size_t)(c.end - c.at);
     if (got != expected)
-        return diagnose(why, STATUS_BAD_INPUT, NULL, "the PFM file is %s: %zu bytes of pixels where %zu should be",
+        return diagnose(why, STATUS_BAD_INPUT, NULL, "the PFM file is %s: %zu bytes of pixels instead of %zu",
                         got < expected ? "truncated" : "too long", got, expected);
     image *img;
     TRY(image_create((int)width, (int)height, &img, why));

@@ -9,8 +9,8 @@
 static status check(const image *img, diagnostic *why)
 {
     if (img->width < 1 || img->height < 1 || img->width > IMAGE_SIDE_MAX || img->height > IMAGE_SIDE_MAX) {
-        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
-                        "a texture of %d x %d texels is not possible", img->width, img->height);
+        return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
+                        "a texture cannot have %d x %d texels", img->width, img->height);
     }
     const size_t width = (size_t)img->width, count = width * (size_t)img->height;
     for (size_t i = 0; i < 3 * count; i++) {

@@ -82,10 +82,10 @@ static void convert(const planes *p, const image *img)
 status y4m_begin(FILE *stream, int width, int height, int64_t fps_num, int64_t fps_den, diagnostic *why)
 {
     if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "width and height are 1 to 65536",
-                        "a film of %d x %d pixels is not possible", width, height);
+        return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
+                        "a video cannot have %d x %d pixels", width, height);
     if (fps_num < 1 || fps_den < 1)
-        return diagnose(why, STATUS_BAD_INPUT, "both parts are 1 or more",
+        return diagnose(why, STATUS_BAD_INPUT, "both parts must be at least 1",
                         "%" PRId64 "/%" PRId64 " frames a second are not possible", fps_num, fps_den);
     fprintf(stream, "YUV4MPEG2 W%d H%d F%" PRId64 ":%" PRId64 " Ip A1:1 C420jpeg XCOLORRANGE=LIMITED\n", width, height,
             fps_num, fps_den);

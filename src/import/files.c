@@ -45,7 +45,7 @@ status files_check(const request *asked, diagnostic *why)
     if (outside)
         return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
     if (!stream)
-        return diagnose(why, STATUS_BAD_INPUT, "name a mesh file that can be read", "cannot open: %s",
+        return diagnose(why, STATUS_BAD_INPUT, "give a readable mesh file", "cannot open: %s",
                         reason ? reason : "unknown error");
     int first = fgetc(stream);
     fclose(stream);
@@ -99,7 +99,7 @@ static void on_flush(struct aiFile *file)
 static struct aiFile *on_open(struct aiFileIO *io, const char *path, const char *mode)
 {
     file_access *access = (file_access *)(void *)io->UserData;
-    const char *reason = "is not for writing";
+    const char *reason = "is not writable";
     struct aiFile *file = NULL;
     bool outside = false;
     FILE *stream = strpbrk(mode, "wa+") ? NULL : open_regular(path, access->root, &reason, &outside);

@@ -41,8 +41,8 @@ static affine compose(const affine *a, const struct aiMatrix4x4 *b)
 static status visit_node(walk *w, const struct aiNode *node, const affine *parent, int depth)
 {
     if (depth > DEPTH_MAX)
-        return diagnose(w->why, STATUS_BAD_INPUT, "flatten it where it was made",
-                        "nodes lie more than %d deep within each other", DEPTH_MAX);
+        return diagnose(w->why, STATUS_BAD_INPUT, "flatten the hierarchy in the program that made the file",
+                        "nodes are nested more than %d deep", DEPTH_MAX);
     affine place = compose(parent, &node->mTransformation);
     for (unsigned i = 0; i < node->mNumMeshes; i++)
         TRY(w->visit(w, w->scene->mMeshes[node->mMeshes[i]], &place));
@@ -74,7 +74,7 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
     if (mesh->mMaterialIndex >= w->scene->mNumMaterials ||
         mesh->mMaterialIndex >= sizeof w->slot_of / sizeof *w->slot_of) {
         return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again",
-                        "a part names a material that is not there");
+                        "a part refers to a missing material");
     }
     w->slot_of[mesh->mMaterialIndex] = 1;
     /* An STL file's normals are the facets' own, which the triangles have already; with them no two facets would share
@@ -89,7 +89,7 @@ static status number_slots(walk *w)
     for (unsigned i = 0; i < sizeof w->slot_of / sizeof *w->slot_of; i++) {
         if (w->slot_of[i]) {
             if (w->flat->material_count == 256)
-                return diagnose(w->why, STATUS_BAD_INPUT, "join materials that are equal",
+                return diagnose(w->why, STATUS_BAD_INPUT, "merge equal materials",
                                 "more than 256 materials are in use");
             w->flat->materials[w->flat->material_count++] = i;
             w->slot_of[i] = (uint16_t)w->flat->material_count;
@@ -165,7 +165,7 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
         for (unsigned k = 0; face->mNumIndices == 3 && k < 3; k++) {
             if (face->mIndices[k] >= mesh->mNumVertices)
                 return diagnose(w->why, STATUS_BAD_INPUT, "repair the file or export it again",
-                                "a triangle names vertex %u of %u", face->mIndices[k], mesh->mNumVertices);
+                                "a triangle refers to vertex %u of %u", face->mIndices[k], mesh->mNumVertices);
             index[face->mIndices[k]] = USED;
         }
     }
@@ -214,8 +214,8 @@ status flatten(const request *asked, const struct aiScene *scene, flat_mesh *fla
     diagnostic_locate(why, asked->path, 0, 0);
     status code = scene->mRootNode ? visit_all(&w, count_mesh) : STATUS_OK;
     if (code == STATUS_OK && w.triangles == 0)
-        code = diagnose(why, STATUS_BAD_INPUT, "points and lines are not drawn; give it faces",
-                        "there are no triangles in this file");
+        code = diagnose(why, STATUS_BAD_INPUT, "points and lines are ignored; use a file with faces",
+                        "the file has no triangles");
     THEN(code, number_slots(&w));
     if (code != STATUS_OK)
         return code;

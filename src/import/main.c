@@ -43,10 +43,10 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
         return 0;
     case ARGP_KEY_ARG:
         if (asked->path)
-            argp_error(state, "'%s' is one file too many", value);
+            argp_error(state, "unexpected argument '%s'", value);
         asked->path = value;
         return 0;
-    case ARGP_KEY_NO_ARGS: argp_error(state, "no file is named"); return 0;
+    case ARGP_KEY_NO_ARGS: argp_error(state, "no file is given"); return 0;
     default: return ARGP_ERR_UNKNOWN;
     }
 }

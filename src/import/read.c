@@ -47,8 +47,8 @@ static status explain(const request *asked, const file_access *access, const cha
     if (asked->kind == FILE_GLTF && locate_json(asked, why))
         return STATUS_BAD_INPUT;
     if (!*said || strstr(said, "No suitable reader"))
-        return diagnose(why, STATUS_BAD_INPUT, "check that it is whole and what its name says",
-                        "this is not a file of the kind %s", names[asked->kind]);
+        return diagnose(why, STATUS_BAD_INPUT, "check that the file is complete and has the right ending",
+                        "this is not a file of format %s", names[asked->kind]);
     return diagnose(why, STATUS_BAD_INPUT, "repair the file or export it again", "cannot read: %.300s", said);
 }
 
@@ -58,8 +58,8 @@ status read_scene(const request *asked, const struct aiScene **out, diagnostic *
     diagnostic_locate(why, asked->path, 0, 0);
     TRY(files_check(asked, why));
     if (asked->kind == FILE_UNKNOWN)
-        return diagnose(why, STATUS_BAD_INPUT, "name a file that ends in .obj, .ply, .stl, .gltf or .glb",
-                        "unknown kind of mesh");
+        return diagnose(why, STATUS_BAD_INPUT, "use a file that ends in .obj, .ply, .stl, .gltf or .glb",
+                        "unknown mesh format");
     TRY(check_whole(asked, why));
     files_prepare(&access, asked);
     /* Equal vertices are joined in join.c: assimp's own step moves those together that lie within 1e-5. */

@@ -36,7 +36,8 @@ typedef struct ply {
 static status truncated(diagnostic *why, const char *what, uint64_t index, uint64_t count)
 {
     return diagnose(why, STATUS_BAD_INPUT, "the file is truncated, or its header is wrong; export it again",
-                    "the file ends in %s %llu of %llu", what, (unsigned long long)index + 1, (unsigned long long)count);
+                    "the file ends within %s %llu of %llu", what, (unsigned long long)index + 1,
+                    (unsigned long long)count);
 }
 
 /* ---- header ---- */
@@ -66,7 +67,7 @@ static status bad_header(ply *p, const char *what)
 static status take_property(ply *p, char words[6][WORD_MAX + 1], int count)
 {
     if (p->element_count == 0)
-        return bad_header(p, "a property of no element");
+        return bad_header(p, "a property without an element");
     struct element *e = &p->elements[p->element_count - 1];
     bool list = count >= 5 && strcmp(words[1], "list") == 0;
     property got = {.count_bytes = list ? type_bytes(words[2]) : 0, .bytes = type_bytes(words[list ? 3 : 1])};
@@ -85,7 +86,7 @@ static status take_element(ply *p, const char *name, const char *number)
     char *end = NULL;
     uint64_t count = isdigit((unsigned char)*number) && strlen(number) < 19 ? strtoull(number, &end, 10) : 0;
     if (!end || *end)
-        return bad_header(p, "the number of an element is no number that can be");
+        return bad_header(p, "the count of an element is invalid");
     struct element *e = &p->elements[p->element_count++];
     e->count = count;
     strcpy(e->name, name);
@@ -231,8 +232,8 @@ static status check_stl(const char *bytes, size_t size, diagnostic *why)
                         "the text does not end in 'endsolid'");
     }
     if (size < 84)
-        return diagnose(why, STATUS_BAD_INPUT, "check that it is whole and what its name says",
-                        "this is not a file of the kind STL");
+        return diagnose(why, STATUS_BAD_INPUT, "check that the file is complete and has the right ending",
+                        "this is not a file of format STL");
     return size > needed ? STATUS_OK : truncated(why, "facet", (size - 84) / 50, count);
 }
 

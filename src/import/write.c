@@ -98,7 +98,7 @@ status write_mesh(const request *asked, const struct aiScene *scene, const flat_
     fwrite(MESH_WIRE_END, 1, sizeof MESH_WIRE_END - 1, to);
     if (fflush(to) != 0 || ferror(to)) {
         const char *reason = strerrordesc_np(errno);
-        return diagnose_at(why, NULL, STATUS_FAILURE, "give it a pipe", "cannot write to standard output: %s",
+        return diagnose_at(why, NULL, STATUS_FAILURE, "write to a pipe", "cannot write to standard output: %s",
                            reason ? reason : "unknown error");
     }
     return STATUS_OK;

@@ -48,14 +48,13 @@ static bool is_point(vec3 v)
 static status check_numbers(const char *hand, const hand_key *key, diagnostic *why)
 {
     if (!(key->time_s >= 0.0 && isfinite(key->time_s)))
-        return diagnose(why, STATUS_BAD_INPUT, "give a time from 0 on", "%s: %g is no time in seconds", hand,
-                        key->time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "give a time from 0 on", "%s: invalid time %g s", hand, key->time_s);
     if (key->act == HAND_MOVE && !is_point(key->by))
-        return diagnose(why, STATUS_BAD_INPUT, "give three finite numbers", "%s: it moves to nowhere", hand);
+        return diagnose(why, STATUS_BAD_INPUT, "give three finite numbers", "%s: the displacement is not finite", hand);
     if (key->act != HAND_GRAB)
         return STATUS_OK;
     if (!is_point(key->origin) || !is_point(key->direction) || !(vec3_dot(key->direction, key->direction) > 0.0))
-        return diagnose(why, STATUS_BAD_INPUT, "give a direction that is not zero", "%s: it grabs along no ray", hand);
+        return diagnose(why, STATUS_BAD_INPUT, "give a non-zero direction", "%s: the grab ray is not finite", hand);
     if (!(key->reach > 0.0 && isfinite(key->reach)))
         return diagnose(why, STATUS_BAD_INPUT, "give a length greater than 0", "%s: a reach of %g", hand, key->reach);
     return STATUS_OK;
@@ -67,25 +66,24 @@ static status check_order(const char *hand, const hand_track *track, const hand_
     const hand_key *last = track && track->key_count ? &track->keys[track->key_count - 1] : NULL;
     const bool holds = last && last->act != HAND_RELEASE;
     if (last && key->time_s < last->time_s)
-        return diagnose(why, STATUS_BAD_INPUT, "put what a hand does in the order of time", "%s: %g s comes after %g s",
-                        hand, key->time_s, last->time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "write the entries of a hand in the order of time",
+                        "%s: %g s comes after %g s", hand, key->time_s, last->time_s);
     if (key->act == HAND_GRAB && holds)
-        return diagnose(why, STATUS_BAD_INPUT, "let it release first, or give the second grab to another hand",
-                        "%s: it holds something already", hand);
+        return diagnose(why, STATUS_BAD_INPUT, "release first, or use another hand for the second grab",
+                        "%s: it already holds something", hand);
     if (key->act != HAND_GRAB && !holds)
-        return diagnose(why, STATUS_BAD_INPUT, "let it grab first", "%s: it %s what it does not hold", hand,
-                        key->act == HAND_MOVE ? "moves" : "releases");
+        return diagnose(why, STATUS_BAD_INPUT, "add a grab before it", "%s: it cannot %s without a grab", hand,
+                        key->act == HAND_MOVE ? "move" : "release");
     return STATUS_OK;
 }
 
 static status check_hand(const hand_script *s, const char *hand, const hand_track *track, diagnostic *why)
 {
     if (!hand[0] || strlen(hand) > HAND_NAME_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a name has 1 to 63 bytes", "'%.80s' is not a valid name of a hand",
-                        hand);
+        return diagnose(why, STATUS_BAD_INPUT, "use 1 to 63 bytes", "'%.80s' is not a valid name of a hand", hand);
     if (!track && s->track_count == SOFTBODY_HANDS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a script has 16; one that has let go can grab again",
-                        "%s is one hand too many", hand);
+        return diagnose(why, STATUS_BAD_INPUT, "a script can have 16 hands; a hand can grab again after its release",
+                        "too many hands: %s", hand);
     return STATUS_OK;
 }
 

@@ -99,18 +99,16 @@ static status take_hold(softbody *b, const hand_track *track, const hand_key *ke
     vec3 where;
     if (!softbody_pick(b, key->origin, key->direction, &where)) {
         diagnostic_locate(why, b->script->path, key->line, key->column);
-        return diagnose(why, STATUS_BAD_INPUT, "aim the ray at the slime as it lies at that time",
-                        "the hand %.80s takes hold of nothing at %g s: its ray misses the slime", track->name,
-                        key->time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "aim the ray at the position of the slime at that time",
+                        "the hand %.80s grabs nothing at %g s: its ray misses the slime", track->name, key->time_s);
     }
     play->hand = softbody_grab(b, where, key->reach);
     if (play->hand == HAND_NO_MEMORY)
         return diagnose(why, STATUS_FAILURE, "", "out of memory for a hand");
     if (play->hand == HAND_NONE) {
         diagnostic_locate(why, b->script->path, key->line, key->column);
-        return diagnose(why, STATUS_BAD_INPUT, "let the others go before, or give them less reach",
-                        "the hand %.80s takes hold of nothing at %g s: other hands hold all of it", track->name,
-                        key->time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "release the other hands first, or reduce their reach",
+                        "the hand %.80s grabs nothing at %g s: other hands hold all masses", track->name, key->time_s);
     }
     play->where = where;
     play->from = vec3_make(0.0, 0.0, 0.0);

@@ -82,7 +82,7 @@ static status add_diameters(const softbody_settings *s, const vec3 *unit, toy_ne
         const spot wanted = {vec3_add(vec3_scale(unit[i], -1.0), vec3_make(0.0, 0.0, 0.0)), 0};
         const spot *found = bsearch(&wanted, spots, n->mass_count, sizeof *spots, by_place);
         if (!found)
-            code = diagnose(why, STATUS_FAILURE, "report this as a bug", "mass %zu has none across from it", i);
+            code = diagnose(why, STATUS_FAILURE, "report this as a bug", "mass %zu has no opposite mass", i);
         else if (found->mass > i)
             add_spring(s, n, (uint32_t)i, found->mass, share);
     }

@@ -17,7 +17,7 @@ static status check_shape(const softbody_settings *s, diagnostic *why)
     for (size_t i = 0; i < sizeof above / sizeof above[0]; i++)
         if (!(above[i].value >= lowest[i] && above[i].value <= 1e6))
             return refuse(why, above[i].name, above[i].value,
-                          i == 2 ? "a number from 1e-9 on" : "a number from 1e-6 on");
+                          i == 2 ? "a number of at least 1e-9" : "a number of at least 1e-6");
     const bounded least[] = {{"stiffness", s->stiffness}, {"bending", s->bending},   {"through", s->through},
                              {"damping", s->damping},     {"pressure", s->pressure}, {"friction", s->friction}};
     for (size_t i = 0; i < sizeof least / sizeof least[0]; i++)
@@ -41,7 +41,7 @@ status softbody_check(const softbody_settings *s, diagnostic *why)
     if (s->threads < 1 || s->threads > 1024)
         return diagnose(why, STATUS_BAD_INPUT, "1 to 1024", "%ld threads", (long)s->threads);
     if (s->integrator < SOFTBODY_EULER || s->integrator > SOFTBODY_IMPLICIT)
-        return diagnose(why, STATUS_BAD_INPUT, "euler, verlet or implicit", "there is no integrator %ld",
+        return diagnose(why, STATUS_BAD_INPUT, "euler, verlet or implicit", "unknown integrator %ld",
                         (long)s->integrator);
     return check_shape(s, why);
 }

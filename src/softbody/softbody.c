@@ -142,11 +142,12 @@ static status fill(softbody *b, const softbody_net *net, diagnostic *why)
     b->size = extent_of(net);
     if (b->set.ground && softbody_measure(b).low < b->set.ground_y - 1e-9 * b->set.radius)
         return diagnose(why, STATUS_BAD_INPUT, "raise its position, or lower ground_y",
-                        "the slime begins at %g, under its floor at %g", softbody_measure(b).low, b->set.ground_y);
+                        "the slime starts at height %g, below its floor at %g", softbody_measure(b).low,
+                        b->set.ground_y);
     softbody_find_forces(b, &b->velocity);
     b->volume_at_rest = b->face_count > 0 ? softbody_volume_of_gradient(b) : 0.0;
     if (b->face_count > 0 && !(b->volume_at_rest > 0.0))
-        return diagnose(why, STATUS_BAD_INPUT, "turn the faces round", "the faces enclose no volume");
+        return diagnose(why, STATUS_BAD_INPUT, "reverse the orientation of the faces", "the faces enclose no volume");
     find_stable_dt(b);
     return STATUS_OK;
 }
@@ -157,7 +158,7 @@ static status check_net(const softbody_net *net, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "1 to 33554431", "a net of %zu masses", net->mass_count);
     for (size_t i = 0; i < net->mass_count; i++)
         if (!(net->mass_kg[i] > 0.0 && net->mass_kg[i] < INFINITY))
-            return diagnose(why, STATUS_BAD_INPUT, "masses are above 0", "mass %zu has %g kg", i, net->mass_kg[i]);
+            return diagnose(why, STATUS_BAD_INPUT, "use masses above 0", "mass %zu has %g kg", i, net->mass_kg[i]);
     for (size_t i = 0; i < net->spring_count; i++) {
         const softbody_spring *s = &net->springs[i];
         if (s->end[0] >= net->mass_count || s->end[1] >= net->mass_count || s->end[0] == s->end[1])
@@ -165,13 +166,12 @@ static status check_net(const softbody_net *net, diagnostic *why)
                             "spring %zu joins masses %lu and %lu of %zu", i, (unsigned long)s->end[0],
                             (unsigned long)s->end[1], net->mass_count);
         if (!(s->rest >= 0.0 && s->stiffness >= 0.0 && s->damping >= 0.0))
-            return diagnose(why, STATUS_BAD_INPUT, "they are 0 or more",
+            return diagnose(why, STATUS_BAD_INPUT, "use values of at least 0",
                             "spring %zu has length %g, stiffness %g, damping %g", i, s->rest, s->stiffness, s->damping);
     }
     for (size_t i = 0; i < 3 * net->face_count; i++)
         if (net->faces[i / 3].corner[i % 3] >= net->mass_count)
-            return diagnose(why, STATUS_BAD_INPUT, "masses are counted from 0", "face %zu has a corner that is no mass",
-                            i / 3);
+            return diagnose(why, STATUS_BAD_INPUT, "the first mass is 0", "a corner of face %zu is not a mass", i / 3);
     return STATUS_OK;
 }
 

@@ -228,15 +228,15 @@ static status blown(const softbody *b, diagnostic *why)
     const size_t i = find_blown(b, &speed);
     char remedy[200], what[120];
     snprintf(remedy, sizeof remedy,
-             "dt_s of at most %.3g is stable at rest; or 'adaptive: on', 'integrator: implicit', softer springs, a "
-             "slower hand",
+             "use dt_s of at most %.3g (stable at rest), 'adaptive: on', 'integrator: implicit', softer "
+             "springs or a slower hand",
              b->stable_dt_s);
     if (isfinite(speed))
         snprintf(what, sizeof what,
                  "the speed of mass %zu against the others is %.3g, over its own size in one substep", i, speed);
     else
-        snprintf(what, sizeof what, "the speed of mass %zu is no number", i < b->net.count ? i : 0);
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "the slime blew up in step %llu, at %.6g s: %s",
+        snprintf(what, sizeof what, "the speed of mass %zu is not a number", i < b->net.count ? i : 0);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "the simulation diverged in step %llu, at %.6g s: %s",
                     (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s, what);
 }
 
@@ -248,13 +248,13 @@ status softbody_step(softbody *b, diagnostic *why)
     softbody_aim_hands(b, b->set.dt_s);
     const double count = substeps_wanted(b);
     if (!(count <= SUBSTEPS_MAX))
-        return diagnose(why, STATUS_BAD_INPUT, "a smaller dt_s, or softer springs",
-                        "step %llu, at %.6g s, would have to be split into %.3g", (unsigned long long)b->steps + 1,
+        return diagnose(why, STATUS_BAD_INPUT, "use a smaller dt_s, or softer springs",
+                        "step %llu, at %.6g s, would need %.3g substeps", (unsigned long long)b->steps + 1,
                         (double)(b->steps + 1) * b->set.dt_s, count);
     for (double i = 0.0; i < count; i += 1.0) {
         if (!substep(b, b->set.dt_s / count))
-            return diagnose(why, STATUS_BAD_INPUT, "a smaller dt_s, or softer springs",
-                            "step %llu of the slime, at %.6g s, has no solution: its solver does not come to an end",
+            return diagnose(why, STATUS_BAD_INPUT, "use a smaller dt_s, or softer springs",
+                            "the solver of step %llu of the slime, at %.6g s, does not converge",
                             (unsigned long long)b->steps + 1, (double)(b->steps + 1) * b->set.dt_s);
         if (has_blown(b))
             return blown(b, why);

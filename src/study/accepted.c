@@ -76,8 +76,9 @@ static bool files_are_the_same(accepted *a, const manifest_study *recorded)
     if (now == HASH_START || (recorded->has_files && recorded->files == now))
         return true;
     snprintf(a->why_not, sizeof a->why_not, "%s",
-             recorded->has_files ? "a mesh, texture, sky or script that the scene names holds something else now"
-                                 : "the manifest does not say what the scene's meshes, textures, sky and scripts held");
+             recorded->has_files
+                 ? "the contents of a mesh, texture, sky or script of the scene have changed"
+                 : "the manifest does not record the contents of the scene's meshes, textures, sky and scripts");
     return false;
 }
 
@@ -86,7 +87,7 @@ static void look_into_manifest(accepted *a, const char *path)
     manifest_study recorded;
     diagnostic why = {.what = ""};
     if (access(path, F_OK) != 0) {
-        snprintf(a->why_not, sizeof a->why_not, "no manifest.json beside them says what they mean");
+        snprintf(a->why_not, sizeof a->why_not, "there is no manifest.json next to them that defines them");
         return;
     }
     if (manifest_read(path, scene_root(a->s->base), &recorded, &why) != STATUS_OK) {
@@ -95,7 +96,8 @@ static void look_into_manifest(accepted *a, const char *path)
     }
     if (means_the_same(a, &recorded) && files_are_the_same(a, &recorded)) {
         accept(a, recorded.definition);
-        snprintf(a->why_not, sizeof a->why_not, "they carry another than the manifest.json beside them records");
+        snprintf(a->why_not, sizeof a->why_not,
+                 "their fingerprint differs from that in the manifest.json next to them");
     }
     manifest_study_free(&recorded);
 }

@@ -41,10 +41,10 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
     X("film_hash", "", "fingerprint of the cell's film", csv_hash(line, r->film_hash))                                 \
     X("mse", "", "mean squared difference of the sRGB-encoded channels, values clamped to 0..1",                       \
       csv_real(line, r->lies.mse))                                                                                     \
-    X("psnr_db", "dB", "10 log10(1 / mse); NA where mse is 0 and it has no end",                                       \
+    X("psnr_db", "dB", "10 log10(1 / mse); NA where mse is 0",                                                         \
       csv_real(line, isfinite(r->lies.psnr_db) ? r->lies.psnr_db : NAN))                                               \
-    X("ssim", "", "mean structural similarity of the luma, 1 for equal pictures", csv_real(line, r->lies.ssim))        \
-    X("flip", "", "mean FLIP error at 67 pixels a degree, 0 for equal pictures", csv_real(line, r->lies.flip))         \
+    X("ssim", "", "mean structural similarity of the luma, 1 for equal images", csv_real(line, r->lies.ssim))          \
+    X("flip", "", "mean FLIP error at 67 pixels per degree, 0 for equal images", csv_real(line, r->lies.flip))         \
     X("largest", "", "largest difference of an encoded channel, 0..1", csv_real(line, r->lies.largest))                \
     X("differing_share", "", "share of the pixels whose 8-bit encodings differ, 0..1",                                 \
       csv_real(line, r->lies.differing_share))                                                                         \

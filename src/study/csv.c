@@ -119,7 +119,7 @@ size_t csv_split(char *text, char **fields)
 static status damaged(const char *path, long line, diagnostic *why)
 {
     diagnostic_locate(why, path, line, 1);
-    return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy", "the row is damaged");
+    return diagnose(why, STATUS_BAD_INPUT, "move the file away, or use a copy without this line", "the row is damaged");
 }
 
 /* Finds where rows start, and cuts them apart. */

@@ -123,8 +123,8 @@ status grid_check_kept(const study *s, const study_point *point, const scene *se
         TRY(scene_get(setting, point->paths[i], &value, why));
         status code = STATUS_OK;
         if (strcmp(value, point->values[i]) != 0) {
-            code = diagnose(why, STATUS_BAD_INPUT, "set one of the two alone, or the wider one before the narrower",
-                            "%s is set to %s here, and a later parameter makes it %s", point->paths[i],
+            code = diagnose(why, STATUS_BAD_INPUT, "set only one of them, or set the more general one first",
+                            "%s is set to %s here, but a later parameter changes it to %s", point->paths[i],
                             point->values[i], value);
             diagnostic_locate(why, s->path, point->line, point->column);
         }

@@ -138,7 +138,7 @@ static status load(const study *s, const char *path, const topology *machine, js
         TRY(facts_read(path, scene_root(s->base), out, why));
         if (!json_is_array(json_object_get(*out, "runs"))) {
             json_decref(*out);
-            return diagnose_at(why, path, STATUS_BAD_INPUT, "move it away: a new one is written",
+            return diagnose_at(why, path, STATUS_BAD_INPUT, "move it away: a new one will be written",
                                "the manifest is damaged");
         }
         return STATUS_OK;

@@ -61,7 +61,7 @@ status manifest_read(const char *path, const char *root, manifest_study *out, di
     if (out->text && out->scene_text && has_definition)
         return STATUS_OK;
     manifest_study_free(out);
-    return diagnose(why, STATUS_BAD_INPUT, "", "the manifest.json beside them does not say what they mean");
+    return diagnose(why, STATUS_BAD_INPUT, "", "the manifest.json next to them does not define them");
 }
 
 void manifest_study_free(manifest_study *m)

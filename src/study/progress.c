@@ -61,7 +61,7 @@ static void write_line(const progress_line *line, const char *more)
     const study_moment *now = &line->now;
     FILE *terminal = line->options->progress;
     if (now->images) {
-        fprintf(terminal, "\r%s: pictures: %zu of %zu%s", line->s->name, now->img, now->images, more);
+        fprintf(terminal, "\r%s: images: %zu of %zu%s", line->s->name, now->img, now->images, more);
         return;
     }
     double share = now->stage == STUDY_MEASURING ? now->share : 0;

@@ -71,7 +71,7 @@ static status read_switch(const document *d, const node *n, const char *key, boo
             *out = i & 1;
             return STATUS_OK;
         }
-    return node_error(d, n, why, "write on or off", "%s is not a switch", key);
+    return node_error(d, n, why, "write on or off", "%s is neither on nor off", key);
 }
 
 /* A file name that needs no quoting anywhere, and that is none of the folders beside the studies'. */
@@ -92,7 +92,7 @@ static status read_names(study *s, const document *d, const node *root, diagnost
         return node_error(d, root, why, "add a line study: NAME", "the study has no name");
     if (name->kind != NODE_SCALAR || !name_is_fit(name->text))
         return node_error(d, name, why, "use 1 to 64 letters, digits, - and _; not figures, tables or reference",
-                          "this cannot name a study");
+                          "invalid name of a study");
     if (title &&
         (title->kind != NODE_SCALAR || strlen(title->text) > TITLE_MAX_LENGTH || !read_grid_plain(title->text)))
         return node_error(d, title, why, "write one line of at most 200 characters", "this is not a title");
@@ -120,7 +120,7 @@ static status read_interval_rule(study *s, const document *d, const node *n, dia
                           (long long)least);
     for (size_t i = 0; i < COUNT(keys); i++)
         if (!node_get(n, keys[i]))
-            return node_error(d, n, why, "write {min: 6, max: 20, relative_width: 0.02}, or one number alone",
+            return node_error(d, n, why, "write {min: 6, max: 20, relative_width: 0.02}, or a single number",
                               "repetitions has no %s", keys[i]);
     double share;
     if (width->kind != NODE_SCALAR || !number_parse_real(width->text, &share))
@@ -206,8 +206,8 @@ static status read_scene(study *s, const document *d, const node *root, const st
     }
     struct stat found;
     if (stat(s->scene_path, &found) != 0 || !S_ISREG(found.st_mode) || access(s->scene_path, R_OK) != 0)
-        return node_error(d, n, why, "name a scene file that is there, relative to this file",
-                          "scene %s cannot be read", s->scene_path);
+        return node_error(d, n, why, "give an existing scene file, relative to this file", "scene %s cannot be read",
+                          s->scene_path);
     size_t size;
     const char *below = guard ? guard->root : NULL;
     TRY(file_read_below(s->scene_path, below, FILE_BYTES_MAX, &s->scene_text, &size, why));

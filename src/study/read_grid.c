@@ -85,7 +85,7 @@ static status align_point(study_point *point, const study_point *first, const do
         while (found < point->count && strcmp(point->paths[found], first->paths[i]) != 0)
             found++;
         if (found >= point->count)
-            return node_error(d, at, why, "let every point of an axis set the same parameters",
+            return node_error(d, at, why, "set the same parameters in every point of an axis",
                               "this point does not set %s", first->paths[i]);
         char *path = point->paths[found], *value = point->values[found];
         point->paths[found] = point->paths[i];
@@ -94,7 +94,7 @@ static status align_point(study_point *point, const study_point *first, const do
         point->values[i] = value;
     }
     if (point->count > first->count)
-        return node_error(d, at, why, "let every point of an axis set the same parameters",
+        return node_error(d, at, why, "set the same parameters in every point of an axis",
                           "the axis' first point does not set %s", point->paths[first->count]);
     return STATUS_OK;
 }
@@ -150,7 +150,7 @@ static status read_range(study_axis *axis, scene *on, const document *d, const n
             code = node_error(d, n, why, "write a number", "%s is not a number", keys[i]);
     }
     if (code == STATUS_OK && !(end[0] < end[1]) && !(end[0] > end[1]))
-        code = node_error(d, range, why, "let them differ", "from and to are the same");
+        code = node_error(d, range, why, "use different values", "from and to are equal");
     if (code != STATUS_OK)
         return code;
     axis->points = calloc((size_t)steps, sizeof *axis->points);
@@ -193,8 +193,8 @@ static status check_distinct(const study_axis *axis, const document *d, const no
     for (size_t i = 1; i < axis->count; i++)
         for (size_t k = 0; k < i; k++)
             if (points_equal(&axis->points[i], &axis->points[k]))
-                return node_error(d, at->kind == NODE_LIST ? at->items[i] : at, why, "name each value once",
-                                  "value %zu is the same as value %zu", i + 1, k + 1);
+                return node_error(d, at->kind == NODE_LIST ? at->items[i] : at, why, "list each value once",
+                                  "value %zu equals value %zu", i + 1, k + 1);
     return STATUS_OK;
 }
 
@@ -233,13 +233,13 @@ static status check_once(const study *s, size_t axis, const document *d, const n
     for (size_t i = 0; i < point->count; i++) {
         for (size_t k = 0; k < s->fixed.count; k++)
             if (strcmp(point->paths[i], s->fixed.paths[k]) == 0)
-                return node_error(d, at, why, "take it out of set or out of the grid",
-                                  "%s is set for all cells already", point->paths[i]);
+                return node_error(d, at, why, "remove it from set or from the grid", "%s is already set for all cells",
+                                  point->paths[i]);
         for (size_t other = 0; other < axis; other++)
             for (size_t k = 0; k < s->axes[other].points[0].count; k++)
                 if (strcmp(point->paths[i], s->axes[other].points[0].paths[k]) == 0)
-                    return node_error(d, at, why, "let one axis set it", "%s is on axis %zu already", point->paths[i],
-                                      other + 1);
+                    return node_error(d, at, why, "set it on one axis only", "%s is already on axis %zu",
+                                      point->paths[i], other + 1);
     }
     return STATUS_OK;
 }

@@ -32,7 +32,7 @@ static status check_cell(void *context, const study *s, size_t cell, scene *own,
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
     if (code == STATUS_OK && (own->render.width != other->render.width || own->render.height != other->render.height)) {
         code =
-            diagnose(why, STATUS_BAD_INPUT, "let them have one size",
+            diagnose(why, STATUS_BAD_INPUT, "give them the same size",
                      "the reference has %" PRId64 "x%" PRId64 " pixels, the picture of cell %zu %" PRId64 "x%" PRId64,
                      other->render.width, other->render.height, cell, own->render.width, own->render.height);
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
@@ -75,7 +75,8 @@ static uint64_t pixel_hash(const image *img)
 
 static status damaged(const char *path, diagnostic *why)
 {
-    return diagnose_at(why, path, STATUS_BAD_INPUT, "move it away: it is rendered again", "the reference is damaged");
+    return diagnose_at(why, path, STATUS_BAD_INPUT, "move it away: it will be rendered again",
+                       "the reference is damaged");
 }
 
 static status load_facts(const char *path, const char *root, reference *out, uint64_t *pixels, diagnostic *why)

@@ -90,7 +90,7 @@ status row_check_drop_twins(row_files *files, diagnostic *why)
                 if (files->tables[f] == b->table)
                     diagnostic_locate(why, files->paths[f], (long)b->row + 2, 1);
             code = diagnose(why, STATUS_BAD_INPUT, "two processes ran the same cells: move one of the files away",
-                            "cell %zu repetition %ld stands twice, with different values", b->cell, b->repetition);
+                            "duplicate row: cell %zu, repetition %ld, with different values", b->cell, b->repetition);
         }
     }
     free(sorted);
@@ -116,7 +116,7 @@ status row_check_columns(const csv *table, const char *path, row_kind kind, diag
             continue;
         diagnostic_locate(why, path, 1, 1);
         return diagnose(why, STATUS_BAD_INPUT, "move the file away, or choose another folder with --results",
-                        "the rows have no column %s, without which nobody knows what they are of", needed[kind][i]);
+                        "the rows lack the column %s, which identifies them", needed[kind][i]);
     }
     return STATUS_OK;
 }

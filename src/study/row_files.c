@@ -73,7 +73,7 @@ static status list_shards(const char *folder, row_kind kind, shard_name **list, 
     if (!*list)
         return out_of_memory(why);
     if (found < 0 && errno != ENOENT)
-        return diagnose_at(why, folder, STATUS_FAILURE, "make the folder readable", "it cannot be read: %s",
+        return diagnose_at(why, folder, STATUS_FAILURE, "make the folder readable", "cannot be read: %s",
                            strerror(errno));
     qsort(*list, *count, sizeof **list, compare_shards);
     return STATUS_OK;
@@ -116,9 +116,9 @@ static status another_definition(const char *path, long line, row_kind kind, con
     diagnostic_locate(why, path, line, 1);
     return diagnose(why, STATUS_BAD_INPUT,
                     kind == COMPARE_ROWS
-                        ? "move this file away: pictures are compared anew, and nothing is measured again"
+                        ? "move this file away: the images will be compared again; nothing is measured again"
                         : "move this folder away, choose another with --results, or give the study another name",
-                    "these rows are of another definition%s%s", reason[0] ? ": " : "", reason);
+                    "these rows have another definition%s%s", reason[0] ? ": " : "", reason);
 }
 
 const char *row_field(const row_ref *ref, const char *name)
@@ -142,7 +142,7 @@ static status read_row(const study *s, row_ref *ref, const char *path, row_kind 
     const long line = (long)ref->row + 2;
     const char *definition = row_field(ref, "definition");
     if (strcmp(row_field(ref, "study"), s->name) != 0)
-        return another_definition(path, line, kind, "they are of another study", why);
+        return another_definition(path, line, kind, "they belong to another study", why);
     if (!accepted_has(known, definition, kind == COMPARE_ROWS))
         return another_definition(path, line, kind, accepted_why_not(known), why);
     int64_t cell, repetition = 0, warmup = 0, worker = 0;
@@ -151,7 +151,7 @@ static status read_row(const study *s, row_ref *ref, const char *path, row_kind 
          (!field_integer(ref, "repetition", INT32_MAX, &repetition) || !field_integer(ref, "warmup", 1, &warmup))) ||
         (kind == WORKER_ROWS && !field_integer(ref, "worker", INT32_MAX, &worker))) {
         diagnostic_locate(why, path, line, 1);
-        return diagnose(why, STATUS_BAD_INPUT, "move the file away, or take this line out of a copy",
+        return diagnose(why, STATUS_BAD_INPUT, "move the file away, or use a copy without this line",
                         "the row is damaged");
     }
     ref->cell = (size_t)cell;

@@ -93,7 +93,7 @@ static void put_time(csv_line *line, const study_row *r)
       "film_hash of the first row of all cells that must have one film: they differ only in how it is made (threads, " \
       "pool, schedule, tile, pin, hierarchies)",                                                                       \
       csv_hash(line, r->film_expected))                                                                                \
-    X("marked", "", "1: film_hash is not film_expected, do not trust this row",                                        \
+    X("marked", "", "1: film_hash differs from film_expected; do not use this row",                                    \
       csv_count(line, job_account_hash(r->made) != r->film_expected))
 
 #define DESCRIBE(name, unit, meaning, put) take(context, &(row_column){name, unit, meaning});

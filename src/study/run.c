@@ -62,7 +62,7 @@ static status say_interrupted(status code, diagnostic *why)
 {
     return code != STATUS_INTERRUPTED
                ? code
-               : diagnose(why, code, "run it again: it goes on from here", "stopped; all rows so far are kept");
+               : diagnose(why, code, "run the command again to resume", "interrupted; all completed rows are kept");
 }
 
 status run_load(run *r, scene *setting, diagnostic *why)

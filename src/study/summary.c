@@ -155,7 +155,7 @@ status study_summary(const study *s, const char *results, FILE *out, diagnostic 
     if (code == STATUS_OK && files->row_count == 0) {
         char remedy[256];
         snprintf(remedy, sizeof remedy,
-                 "run cuvette study run %.128s first, or name the folder of its results with --results", s->path);
+                 "run cuvette study run %.128s first, or give the folder of its results with --results", s->path);
         code = diagnose_at(why, s->path, STATUS_FAILURE, remedy, "no rows in %s/%s", results, s->name);
     }
     if (code == STATUS_OK && s->reference.count)

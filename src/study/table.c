@@ -21,8 +21,8 @@ static status failed(const char *path, const char *doing, int error, diagnostic 
 {
     diagnostic_locate(why, path, 0, 0);
     const char *remedy = error == ENOSPC || error == EDQUOT || error == EFBIG
-                             ? "make room and run it again: it goes on where it stopped"
-                             : "make the folder writable and run it again: it goes on where it stopped";
+                             ? "free disk space and run the command again to resume"
+                             : "make the folder writable and run the command again to resume";
     return diagnose(why, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerror(error));
 }
 
@@ -62,12 +62,12 @@ static status keep_torn(const char *path, const char *bytes, size_t size, diagno
 {
     char *torn = torn_path(path);
     if (!torn)
-        return failed(path, "setting a torn row aside", ENOMEM, why);
+        return failed(path, "moving an incomplete row away", ENOMEM, why);
     status code = STATUS_OK;
     int fd = open(torn, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
     /* A torn end gets a newline of its own, so that the next one starts a line. */
     if (fd < 0 || append_all(fd, bytes, size) != 0 || (bytes[size - 1] != '\n' && append_all(fd, "\n", 1) != 0))
-        code = failed(torn, "setting a torn row aside", errno, why);
+        code = failed(torn, "moving an incomplete row away", errno, why);
     if (fd >= 0)
         close(fd);
     file_flush_folder(torn);
@@ -79,19 +79,19 @@ status table_set_aside(table *t, size_t offset, diagnostic *why)
 {
     struct stat now;
     if (fstat(t->fd, &now) != 0)
-        return failed(t->path, "looking at the file", errno, why);
+        return failed(t->path, "examining the file", errno, why);
     if ((size_t)now.st_size <= offset)
         return STATUS_OK;
     size_t size = (size_t)now.st_size - offset;
     char *bytes = malloc(size);
     if (!bytes)
-        return failed(t->path, "setting a torn row aside", ENOMEM, why);
+        return failed(t->path, "moving an incomplete row away", ENOMEM, why);
     status code = STATUS_OK;
     if (pread(t->fd, bytes, size, (off_t)offset) != (ssize_t)size)
-        code = failed(t->path, "reading the torn row", errno, why);
+        code = failed(t->path, "reading an incomplete row", errno, why);
     THEN(code, keep_torn(t->path, bytes, size, why));
     if (code == STATUS_OK && (ftruncate(t->fd, (off_t)offset) != 0 || fsync(t->fd) != 0))
-        code = failed(t->path, "cutting the torn row off", errno, why);
+        code = failed(t->path, "truncating an incomplete row", errno, why);
     free(bytes);
     return code;
 }
@@ -101,7 +101,7 @@ static status whole_lines(table *t, size_t *end, diagnostic *why)
 {
     struct stat now;
     if (fstat(t->fd, &now) != 0)
-        return failed(t->path, "looking at the file", errno, why);
+        return failed(t->path, "examining the file", errno, why);
     char block[4096];
     off_t from = now.st_size;
     *end = 0;
@@ -129,7 +129,7 @@ static status lock(table *t, diagnostic *why)
             if (errno != EWOULDBLOCK)
                 return failed(t->path, "locking", errno, why);
             return diagnose_at(why, t->path, STATUS_BAD_INPUT,
-                               "wait for it to end, or give each process its own --shard i/N",
+                               "wait for it to finish, or give each process its own --shard i/N",
                                "another process is writing these rows");
         }
         struct stat named, opened;
