@@ -133,8 +133,9 @@ static void note_depth(const lint_room *room, const depth_probe *p, int depth, i
     snprintf(remedy, sizeof remedy, "set render.depth=%d%s", depth + enough,
              settled || enough < last ? "" : " or more");
     note_give(room->taker, "render", "depth", remedy,
-              "a depth of %d is too small: more changes about %.0f %% of the pixels by more than 5 %%", depth,
-              100.0 * share);
+              "a depth of %d is too small: a greater depth changes about %.0f %% of the pixels by more "
+              "than 5 %%",
+              depth, 100.0 * share);
 }
 
 status lint_depth(const lint_room *room, diagnostic *why)

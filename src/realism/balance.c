@@ -51,8 +51,10 @@ status realism_balance(const metrics *m, diagnostic *why)
             worst_take(&worst, seen_and_cut(&t.tree, c), 1.0);
     }
     trial_end(&t);
-    metrics_add(m, (realism_value){"balance.furnace",
-                                   "radiance and what the depth cut off, in a sky of 1; of 300 rays the worst", "",
-                                   worst.measured, worst.theory, BALANCE_TOLERANCE});
+    metrics_add(
+        m, (realism_value){"balance.furnace",
+                           "radiance plus the weight cut off at the depth limit, under a sky of radiance 1; worst of "
+                           "300 rays",
+                           "", worst.measured, worst.theory, BALANCE_TOLERANCE});
     return code;
 }

@@ -59,10 +59,10 @@ static const char *theory_edges(const scene *s, const setup *at, image_line *out
     theory_line filled_line = {&c, out->py}, bare_line = {&bare, out->py};
     if (!find_edges(theory_sees, &filled_line, out->range[0], out->range[1], SCAN_STEPS, out->filled) ||
         !find_edges(theory_sees, &bare_line, out->range[0], out->range[1], SCAN_STEPS, out->bare))
-        return "both edges of the rod are not in sight through the vessel";
+        return "the edges of the rod are not visible through the vessel";
     for (int i = 0; i < 2; i++)
         if (!level_section_stays(&c, out->filled[i], out->py, low, high))
-            return "the view is too steep: no ray through the filled wall meets the rod below the surface";
+            return "the view is too steep: no ray through the filled wall hits the rod below the surface";
     return NULL;
 }
 
@@ -103,18 +103,21 @@ static status add_edges(const metrics *m, diagnostic *why)
     const double nothing = none ? NAN : 0.0; /* what was found on the way does not count then */
     const double tolerance = EDGE_TOLERANCE_PX;
     metrics_add(m, (realism_value){"edges.left",
-                                   none ? none : "the rod's left edge in the picture, through the filled vessel", "px",
+                                   none ? none : "left edge of the rod in the image, through the filled vessel", "px",
                                    filled[0], l.filled[0] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.right", none ? none : "the rod's right edge", "px", filled[1],
+    metrics_add(m, (realism_value){"edges.right", none ? none : "right edge of the rod in the image", "px", filled[1],
                                    l.filled[1] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.left_shift", none ? none : "how far vessel and liquid move the left edge",
-                                   "px", filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.right_shift", none ? none : "how far vessel and liquid move the right edge",
-                                   "px", filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.magnification",
-                                   none ? none : "the rod's width in the picture, by that without vessel and liquid",
-                                   "", (filled[1] - filled[0]) / (bare[1] - bare[0]),
-                                   (l.filled[1] - l.filled[0]) / (l.bare[1] - l.bare[0]) + nothing, RATIO_TOLERANCE});
+    metrics_add(m,
+                (realism_value){"edges.left_shift", none ? none : "displacement of the left edge by vessel and liquid",
+                                "px", filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, tolerance});
+    metrics_add(m, (realism_value){"edges.right_shift",
+                                   none ? none : "displacement of the right edge by vessel and liquid", "px",
+                                   filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, tolerance});
+    metrics_add(m,
+                (realism_value){"edges.magnification",
+                                none ? none : "width of the rod in the image over its width without vessel and liquid",
+                                "", (filled[1] - filled[0]) / (bare[1] - bare[0]),
+                                (l.filled[1] - l.filled[0]) / (l.bare[1] - l.bare[0]) + nothing, RATIO_TOLERANCE});
     return code;
 }
 
@@ -153,10 +156,11 @@ static status add_round(const metrics *m, diagnostic *why)
         scene_destroy(s);
         theory = NAN;
     }
-    metrics_add(m, (realism_value){"edges.round_magnification",
-                                   visible ? "of a thin round rod on the axis: the liquid's index"
-                                           : "the wall keeps its edges out of sight",
-                                   "", (edge[1] - edge[0]) / (2.0 * radius), theory, RATIO_TOLERANCE});
+    metrics_add(m, (realism_value){
+                       "edges.round_magnification",
+                       visible ? "magnification of a thin round rod on the axis; theory the liquid's refractive index"
+                               : "its edges are hidden by the wall",
+                       "", (edge[1] - edge[0]) / (2.0 * radius), theory, RATIO_TOLERANCE});
     return code;
 }
 

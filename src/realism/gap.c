@@ -53,8 +53,9 @@ static status measure(const metrics *m, double gap, bool far_solid, worst_pair *
 status realism_gap(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"gap.empty", "gap.far_solid"};
-    static const char *const what[] = {"radiance through an empty gap of 1e-7; of the angles 0 to 85 degrees the worst",
-                                       "through a gap of 0.001, with a solid 100000 away that no ray meets"};
+    static const char *const what[] = {
+        "radiance through an empty gap of 1e-7; worst of the angles 0 to 85 degrees",
+        "radiance through a gap of 0.001, with a solid at distance 100000 that no ray hits"};
     const bool fresnel =
         !scene_has_constant_shares(&m->traced->render) && m->traced->render.transmission == TRANSMISSION_REFRACT;
     status code = STATUS_OK;
@@ -63,7 +64,7 @@ status realism_gap(const metrics *m, diagnostic *why)
         worst_pair worst = {NAN, NAN, false};
         if (fresnel && third)
             code = measure(m, far_solid ? wide : narrow, far_solid, &worst, why);
-        const char *line = !fresnel ? "constant shares know no critical angle"
+        const char *line = !fresnel ? "constant weights have no critical angle"
                            : !third ? "an empty vessel's scene has no third solid"
                                     : what[far_solid];
         metrics_add(m, (realism_value){names[far_solid], line, "", worst.measured, worst.theory, GAP_TOLERANCE});

@@ -36,8 +36,9 @@ static const crossing crossings[] = {
     {"critical.liquid", "fresnel.liquid.s", "fresnel.liquid.p", "fresnel.liquid", SETUP_OUTSIDE, SETUP_LIQUID},
     {"critical.wall", "fresnel.wall.s", "fresnel.wall.p", "fresnel.wall", SETUP_VESSEL, SETUP_LIQUID},
 };
-static const char *const critical_what[] = {"angle of incidence where total reflection begins, vessel and surroundings",
-                                            "the same, liquid and surroundings", "the same, vessel and liquid"};
+static const char *const critical_what[] = {"critical angle, vessel to surroundings",
+                                            "critical angle, liquid to surroundings",
+                                            "critical angle, vessel to liquid"};
 
 static status bisect_critical(trial *t, double start_y, double *angle, diagnostic *why)
 {
@@ -72,7 +73,8 @@ static status add_critical(const metrics *m, int which, diagnostic *why)
     const bool filled = has_media(m, &crossings[which]);
     const double theory = filled ? theory_critical_angle(n[from], n[to]) : NAN;
     const bool exists = !isnan(theory);
-    const char *const none = filled ? "the media refract alike, so that none reflects totally" : "there is no liquid";
+    const char *const none =
+        filled ? "the media have equal refractive indices: there is no total reflection" : "there is no liquid";
     double measured = NAN, start_y;
     status code = STATUS_OK;
     if (exists) {
@@ -113,12 +115,11 @@ static status add_fresnel(const metrics *m, int which, diagnostic *why)
     worst_pair worst[3] = {{NAN, NAN, false}, {NAN, NAN, false}, {NAN, NAN, false}};
     const status code = exists ? compare_shares(m, at, worst, why) : STATUS_OK;
     const char *const none = exists ? NULL : "there is no liquid";
-    metrics_add(m, (realism_value){
-                       at->s, none ? none : "reflectance across the plane of incidence; of 0 to 89.9 degrees the worst",
-                       "", worst[0].measured, worst[0].theory, SHARE_TOLERANCE});
-    metrics_add(m, (realism_value){at->p, none ? none : "reflectance in the plane of incidence", "", worst[1].measured,
+    metrics_add(m, (realism_value){at->s, none ? none : "reflectance, s-polarised; worst of 0 to 89.9 degrees", "",
+                                   worst[0].measured, worst[0].theory, SHARE_TOLERANCE});
+    metrics_add(m, (realism_value){at->p, none ? none : "reflectance, p-polarised", "", worst[1].measured,
                                    worst[1].theory, SHARE_TOLERANCE});
-    metrics_add(m, (realism_value){at->mean, none ? none : "share of a ray that is reflected", "", worst[2].measured,
+    metrics_add(m, (realism_value){at->mean, none ? none : "reflected share of a ray", "", worst[2].measured,
                                    worst[2].theory, SHARE_TOLERANCE});
     return code;
 }

@@ -39,8 +39,8 @@ static status add_deviation(const metrics *m, trial *t, diagnostic *why)
         worst_take(&worst, measured, theory_shells_deviation(&c, offset));
     }
     metrics_add(m, (realism_value){"lens.deviation",
-                                   "how far the filled vessel turns a ray; of 64 offsets from its axis the worst",
-                                   "rad", worst.measured, worst.theory, ANGLE_TOLERANCE});
+                                   "deviation of a ray by the filled vessel; worst of 64 offsets from its axis", "rad",
+                                   worst.measured, worst.theory, ANGLE_TOLERANCE});
     return code;
 }
 
@@ -72,10 +72,11 @@ static status add_power(const metrics *m, trial *t, diagnostic *why)
     /* An error of the power is one of f, f^2 times as large. */
     const double size = fabs(theory) * c.outer;
     const bool focuses = size > 1e-4;
-    metrics_add(m, (realism_value){"lens.power", "of the filled vessel, near its axis", "1/scene unit", measured,
-                                   theory, tolerance});
+    metrics_add(m, (realism_value){"lens.power", "optical power of the filled vessel, near its axis", "1/scene unit",
+                                   measured, theory, tolerance});
     metrics_add(m, (realism_value){"lens.focal_length",
-                                   focuses ? "from the vessel's axis, for rays near it" : "the vessel does not focus",
+                                   focuses ? "focal length, from the vessel's axis, for paraxial rays"
+                                           : "the vessel does not focus",
                                    "scene units", focuses ? 1.0 / measured : NAN, focuses ? 1.0 / theory : NAN,
                                    tolerance / (theory * theory)});
     return code;
@@ -114,12 +115,14 @@ static status add_dispersion(const metrics *m, diagnostic *why)
     double measured[3], theory[3];
     for (int i = 0; i < 3; i++)
         TRY(deviation_at_line(m, lines[i], &measured[i], &theory[i], why));
-    const char *none = isnan(theory[0] + theory[1] + theory[2]) ? "the ray does not get into the core" : NULL;
+    const char *none = isnan(theory[0] + theory[1] + theory[2]) ? "the ray does not enter the core" : NULL;
     metrics_add(m, (realism_value){"dispersion.d",
                                    none ? none : "deviation half way to the rim, water in BK7, at the d line", "rad",
                                    measured[1], theory[1], ANGLE_TOLERANCE});
-    metrics_add(m, (realism_value){"dispersion.F-C", none ? none : "the same at the F line less that at the C line",
-                                   "rad", measured[0] - measured[2], theory[0] - theory[2], ANGLE_TOLERANCE});
+    metrics_add(m,
+                (realism_value){"dispersion.F-C",
+                                none ? none : "chromatic difference: deviation at the F line minus that at the C line",
+                                "rad", measured[0] - measured[2], theory[0] - theory[2], ANGLE_TOLERANCE});
     return STATUS_OK;
 }
 

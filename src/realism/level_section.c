@@ -7,7 +7,7 @@ const char *level_section_read(const scene *s, const setup *at, level_section *o
 {
     const solid_shape *rod = &s->solids[at->rod].shape;
     if (rod->rotation_deg.x != 0.0 || rod->rotation_deg.z != 0.0)
-        return "the rod leans: this wants an upright one";
+        return "the rod leans: this requires an upright one";
     *out = (level_section){.eye = view_of(s), .shells = setup_shells(at), .x = at->x, .z = at->z};
     out->eye.roll = 0.0; /* as in arrange_empty */
     const double turn = rod->rotation_deg.y * M_PI / 180.0;
@@ -19,7 +19,7 @@ const char *level_section_read(const scene *s, const setup *at, level_section *o
             return "the rod reaches into the vessel's wall";
     }
     if (hypot(out->eye.x - at->x, out->eye.z - at->z) <= at->outer)
-        return "the camera stands within the vessel's circle";
+        return "the camera is within the vessel's circle";
     return NULL;
 }
 

@@ -101,12 +101,13 @@ status realism_prism(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"prism.F", "prism.d", "prism.C", "prism.own"};
     static const char *const what[] = {
-        "least deviation at the F line, 486.1 nm", "least deviation at the d line, 587.6 nm",
-        "least deviation at the C line, 656.3 nm", "least deviation at render.lambda_nm"};
+        "minimum deviation at the F line, 486.1 nm", "minimum deviation at the d line, 587.6 nm",
+        "minimum deviation at the C line, 656.3 nm", "minimum deviation at render.lambda_nm"};
     double off[2];
     const status code = metrics_at_lines(m, names, what, NULL, at_line, ANGLE_TOLERANCE, off, why);
     if (code == STATUS_OK)
-        metrics_add(m, (realism_value){"prism.F-C", "that at the F line less that at the C line", "rad", off[0], off[1],
-                                       2.0 * ANGLE_TOLERANCE});
+        metrics_add(m, (realism_value){"prism.F-C",
+                                       "angular dispersion: minimum deviation at the F line minus that at the C line",
+                                       "rad", off[0], off[1], 2.0 * ANGLE_TOLERANCE});
     return code;
 }

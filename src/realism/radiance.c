@@ -109,8 +109,10 @@ status realism_radiance(const metrics *m, diagnostic *why)
     static const char *const names[] = {"radiance.sky_under_water", "radiance.floor_under_water",
                                         "radiance.lamp_under_water"};
     static const char *const what[] = {
-        "a sky of 1 from within the liquid, with render.radiance basic; of the angles 0 to 85 degrees the worst",
-        "a floor of radiance 1 in the liquid, from above it", "the same floor, matte, by a lamp above it"};
+        "radiance of a sky of 1 seen from within the liquid, with render.radiance=basic; worst of "
+        "the angles 0 to 85 degrees",
+        "radiance of a floor of radiance 1 below the liquid, seen from above",
+        "radiance of a diffuse floor below the liquid, lit by a light above it"};
     const bool fresnel = !scene_has_constant_shares(&m->traced->render);
     status code = STATUS_OK;
     for (int k = 0; k < LOOKS && code == STATUS_OK; k++) {
@@ -119,7 +121,7 @@ status realism_radiance(const metrics *m, diagnostic *why)
         if (defined)
             code = measure(m, (look)k, &worst, why);
         const char *line = m->at.liquid < 0 ? "there is no liquid"
-                           : !fresnel       ? "constant shares know no angle"
+                           : !fresnel       ? "constant weights do not depend on the angle"
                                             : what[k];
         metrics_add(m, (realism_value){names[k], line, "", worst.measured, worst.theory, RADIANCE_TOLERANCE});
     }

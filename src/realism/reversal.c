@@ -101,9 +101,9 @@ status realism_reversal(const metrics *m, diagnostic *why)
     trial_end(&forth);
     trial_end(&back);
     metrics_add(m, (realism_value){"reversal.throughput",
-                                   "of ways traced back, by that of the way there; of some 1000 the worst", "",
+                                   "throughput of a reversed path over that of the path; worst of about 1000", "",
                                    ratio.measured, ratio.theory, REVERSAL_TOLERANCE});
-    metrics_add(m, (realism_value){"reversal.way", "how far the way back passes from where the way began",
+    metrics_add(m, (realism_value){"reversal.way", "distance of the reversed path from the origin of the path",
                                    "scene units", miss.measured, miss.theory, REVERSAL_TOLERANCE * m->at.outer});
     return code;
 }

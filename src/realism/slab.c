@@ -49,8 +49,10 @@ double slab_theory(const metrics *m, int depth, bool polarised)
 status realism_slab(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"slab.depth", "slab.depth_polarised"};
-    static const char *const what[] = {"radiance behind a slab at 40 degrees; of the depths 0 to 12 the worst",
-                                       "the same with render.polarisation on"};
+    static const char *const what[] = {
+        "radiance behind a slab at 40 degrees; worst of the depths 0 to 12",
+        "radiance behind a slab at 40 degrees with render.polarisation=on; worst of the depths 0 "
+        "to 12"};
     status code = STATUS_OK;
     for (int polarised = 0; polarised < 2 && code == STATUS_OK; polarised++) {
         const bool exists = !polarised || !scene_has_constant_shares(&m->traced->render);
@@ -60,9 +62,9 @@ status realism_slab(const metrics *m, diagnostic *why)
             code = slab_measure(m, depth, polarised, &measured, why);
             worst_take(&worst, measured, slab_theory(m, depth, polarised));
         }
-        metrics_add(m,
-                    (realism_value){names[polarised], exists ? what[polarised] : "constant shares know no polarisation",
-                                    "", worst.measured, worst.theory, SLAB_TOLERANCE});
+        metrics_add(m, (realism_value){names[polarised],
+                                       exists ? what[polarised] : "constant weights have no polarisation", "",
+                                       worst.measured, worst.theory, SLAB_TOLERANCE});
     }
     return code;
 }

@@ -98,14 +98,14 @@ status realism_stack(const metrics *m, diagnostic *why)
 {
     stack supposed;
     if (!stack_read(m->supposed, &supposed))
-        return diagnose(why, STATUS_BAD_INPUT, "make both plates clear: transparency 1",
-                        "the plates of the stack are not clear");
+        return diagnose(why, STATUS_BAD_INPUT, "make both plates transparent: transparency 1",
+                        "the plates of the stack are not transparent");
     double straight, whole, cut;
     TRY(look_through(m, &straight, &whole, &cut, why));
-    metrics_add(m, (realism_value){"stack.straight", "what comes straight through four interfaces", "", straight,
-                                   of_both(&supposed, straight_through), WEIGHT_TOLERANCE});
+    metrics_add(m, (realism_value){"stack.straight", "transmittance of four interfaces without reflections", "",
+                                   straight, of_both(&supposed, straight_through), WEIGHT_TOLERANCE});
     metrics_add(m, (realism_value){"stack.whole",
-                                   "what comes through with all reflections; the tolerance is what depth 16 cuts off",
-                                   "", whole, of_both(&supposed, through_two_plates), cut + WEIGHT_TOLERANCE});
+                                   "transmittance with all reflections; the tolerance is what depth 16 cuts off", "",
+                                   whole, of_both(&supposed, through_two_plates), cut + WEIGHT_TOLERANCE});
     return STATUS_OK;
 }

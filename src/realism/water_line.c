@@ -124,7 +124,7 @@ static status measure_break(const metrics *m, scene *arranged, double *degrees, 
 
 status realism_water_line(const metrics *m, diagnostic *why)
 {
-    const char *what = "the leaning rod's left edge in the picture breaks at the liquid's surface by";
+    const char *what = "kink of the leaning rod's left edge in the image at the liquid's surface";
     double measured = NAN, theory = NAN;
     status code = STATUS_OK;
     scene *supposed = leaning_rod(m->supposed, &m->theory_at);
@@ -133,7 +133,7 @@ status realism_water_line(const metrics *m, diagnostic *why)
     if (m->theory_at.liquid < 0)
         what = "there is no liquid";
     else if (isnan(theory = theory_break(supposed, &m->theory_at)))
-        what = "the rod below the surface is not in sight there";
+        what = "the rod below the surface is not visible there";
     else
         code = measure_break(m, leaning_rod(m->traced, &m->at), &measured, why);
     scene_destroy(supposed);

@@ -48,9 +48,9 @@ static bool is_point(vec3 v)
 static status check_numbers(const char *hand, const hand_key *key, diagnostic *why)
 {
     if (!(key->time_s >= 0.0 && isfinite(key->time_s)))
-        return diagnose(why, STATUS_BAD_INPUT, "give a time from 0 on", "%s: invalid time %g s", hand, key->time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "use a time of at least 0", "%s: invalid time %g s", hand, key->time_s);
     if (key->act == HAND_MOVE && !is_point(key->by))
-        return diagnose(why, STATUS_BAD_INPUT, "give three finite numbers", "%s: the displacement is not finite", hand);
+        return diagnose(why, STATUS_BAD_INPUT, "use three finite numbers", "%s: the displacement is not finite", hand);
     if (key->act != HAND_GRAB)
         return STATUS_OK;
     if (!is_point(key->origin) || !is_point(key->direction) || !(vec3_dot(key->direction, key->direction) > 0.0))

@@ -162,8 +162,8 @@ static status check_net(const softbody_net *net, diagnostic *why)
     for (size_t i = 0; i < net->spring_count; i++) {
         const softbody_spring *s = &net->springs[i];
         if (s->end[0] >= net->mass_count || s->end[1] >= net->mass_count || s->end[0] == s->end[1])
-            return diagnose(why, STATUS_BAD_INPUT, "join two of its masses",
-                            "spring %zu joins masses %lu and %lu of %zu", i, (unsigned long)s->end[0],
+            return diagnose(why, STATUS_BAD_INPUT, "connect two of its masses",
+                            "spring %zu connects masses %lu and %lu of %zu", i, (unsigned long)s->end[0],
                             (unsigned long)s->end[1], net->mass_count);
         if (!(s->rest >= 0.0 && s->stiffness >= 0.0 && s->damping >= 0.0))
             return diagnose(why, STATUS_BAD_INPUT, "use values of at least 0",

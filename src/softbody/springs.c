@@ -74,7 +74,7 @@ static status find_rings(springs *s, const softbody_net *net, rings *out, diagno
     }
     for (size_t i = 0; i < s->count; i++)
         if (!chain(out->wedges + i * (size_t)s->ring_slots, out->used[i]))
-            return diagnose(why, STATUS_BAD_INPUT, "give a closed surface, or no faces",
+            return diagnose(why, STATUS_BAD_INPUT, "use a closed surface, or no faces",
                             "the faces around mass %zu are not closed", i);
     return STATUS_OK;
 }

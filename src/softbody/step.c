@@ -233,7 +233,9 @@ static status blown(const softbody *b, diagnostic *why)
              b->stable_dt_s);
     if (isfinite(speed))
         snprintf(what, sizeof what,
-                 "the speed of mass %zu against the others is %.3g, over its own size in one substep", i, speed);
+                 "the speed of mass %zu relative to the others is %.3g: more than its own size in one "
+                 "substep",
+                 i, speed);
     else
         snprintf(what, sizeof what, "the speed of mass %zu is not a number", i < b->net.count ? i : 0);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "the simulation diverged in step %llu, at %.6g s: %s",

@@ -41,7 +41,7 @@ status softbody_surface(const softbody *b, mesh **out, diagnostic *why)
 {
     *out = NULL;
     if (b->skin_level < 0)
-        return diagnose(why, STATUS_BAD_INPUT, "use the toy", "a net of masses and springs has no surface");
+        return diagnose(why, STATUS_BAD_INPUT, "use a slime toy", "a net of masses and springs has no surface");
     mesh *skin;
     status code = generate_icosphere(b->skin_level, &skin, why);
     if (code == STATUS_OK && (code = softbody_move_surface(b, skin, why)) != STATUS_OK)
