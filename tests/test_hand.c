@@ -99,17 +99,17 @@ static void what_a_hand_cannot_do_is_refused(void **state)
 {
     (void)state;
     hand_script *s = create();
-    refuse(s, "left", move(0.0, 1.0), "moves what it does not hold");
-    refuse(s, "left", release(0.0), "releases what it does not hold");
+    refuse(s, "left", move(0.0, 1.0), "cannot move without a grab");
+    refuse(s, "left", release(0.0), "cannot release without a grab");
     add(s, "left", grab(1.0));
-    refuse(s, "left", grab(2.0), "holds something already");
+    refuse(s, "left", grab(2.0), "already holds something");
     refuse(s, "left", move(0.999, 1.0), "comes after");
-    refuse(s, "right", move(2.0, 1.0), "moves what it does not hold");
+    refuse(s, "right", move(2.0, 1.0), "cannot move without a grab");
     add(s, "left", move(1.0, 1.0));
-    refuse(s, "left", grab(2.0), "holds something already");
+    refuse(s, "left", grab(2.0), "already holds something");
     add(s, "left", release(1.5));
-    refuse(s, "left", move(2.0, 1.0), "moves what it does not hold");
-    refuse(s, "left", release(2.0), "releases what it does not hold");
+    refuse(s, "left", move(2.0, 1.0), "cannot move without a grab");
+    refuse(s, "left", release(2.0), "cannot release without a grab");
     refuse(s, "left", grab(1.25), "comes after");
     hand_script_destroy(s);
 }
@@ -119,24 +119,24 @@ static void numbers_that_mean_nothing_are_refused(void **state)
     (void)state;
     hand_script *s = create();
     hand_key key = grab(-1.0);
-    refuse(s, "left", key, "no time");
+    refuse(s, "left", key, "invalid time");
     key = grab((double)NAN);
-    refuse(s, "left", key, "no time");
+    refuse(s, "left", key, "invalid time");
     key = grab((double)INFINITY);
-    refuse(s, "left", key, "no time");
+    refuse(s, "left", key, "invalid time");
     key = grab(0.0);
     key.direction = (vec3){0.0, 0.0, 0.0};
-    refuse(s, "left", key, "along no ray");
+    refuse(s, "left", key, "the grab ray is not finite");
     key = grab(0.0);
     key.origin.y = (double)NAN;
-    refuse(s, "left", key, "along no ray");
+    refuse(s, "left", key, "the grab ray is not finite");
     key = grab(0.0);
     key.reach = 0.0;
     refuse(s, "left", key, "reach");
     key.reach = (double)NAN;
     refuse(s, "left", key, "reach");
     add(s, "left", grab(0.0));
-    refuse(s, "left", move(1.0, (double)INFINITY), "nowhere");
+    refuse(s, "left", move(1.0, (double)INFINITY), "the displacement is not finite");
     hand_script_destroy(s);
 }
 
@@ -155,7 +155,7 @@ static void hands_are_few_and_have_names(void **state)
         snprintf(name, sizeof name, "hand%d", i);
         add(s, name, grab(0.0));
     }
-    refuse(s, "another", grab(0.0), "one hand too many");
+    refuse(s, "another", grab(0.0), "too many hands");
     add(s, "hand3", release(0.0));
     add(s, "hand3", grab(0.0));
     assert_int_equal(s->track_count, SOFTBODY_HANDS_MAX);

@@ -419,7 +419,7 @@ static void bad_pfm_is_refused(void **state)
         bad("Pf\n1 1\n-1\n\0\0\x80\x7f"),
         bad("PX\n1 1\n-1\n\0\0\0\0"),
         bad("Pf\n1 1111111111111111111111111111111111111111\n-1\n\0\0\0\0"),
-        bad("not a picture"),
+        bad("unknown image format"),
     };
 #undef bad
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -113,7 +113,7 @@ static void it_begins_at_time_0_with_all_else_loaded(void **state)
     assert_non_null(s->meshes[0].data);
     assert_true(film_of(s) == film_afresh("render.threads=1", 0.0));
     scene_motion_destroy(m);
-    assert_non_null(s->meshes[1].data); /* as it lies */
+    assert_non_null(s->meshes[1].data); /* position of the slime */
     scene_destroy(s);
 }
 

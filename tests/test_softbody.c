@@ -332,7 +332,7 @@ static void no_body_begins_under_its_floor(void **state)
     diagnostic why = {.what = ""};
     s.ground_y = 1.0;
     assert_int_equal(softbody_create(&s, isa_best(), &b, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "under its floor"));
+    assert_non_null(strstr(why.what, "below its floor"));
     s.ground_y = NAN;
     assert_int_equal(softbody_create(&s, isa_best(), &b, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "ground_y"));
