@@ -202,7 +202,7 @@ printf '%s\n' 'render: {width: 8, height: 6}' 'meshes:' \
 refused "a script that is not there" "^cuvette: slimes/toy.yaml:3:58: toy: slimes/tug.yaml" render slimes/toy.yaml \
     --json
 printf '%s\n' 'hands:' '  left:' '    - {time_s: 0, move: [0, 0, 0]}' >slimes/tug.yaml
-refused "a wrong script" "^cuvette: slimes/tug.yaml:3:7: left: .*grab first" render slimes/toy.yaml --json
+refused "a wrong script" "^cuvette: slimes/tug.yaml:3:7: left: .*add a grab" render slimes/toy.yaml --json
 refused "a wrong script, checked" "^cuvette: slimes/tug.yaml:3:7: " scene slimes/toy.yaml --check
 printf '%s\n' 'hands:' '  left:' '    - {time_s: 0.01, grab: [9, 9, 9], towards: [0, 1, 0], reach: 1}' >slimes/tug.yaml
 refused "a hand that misses" "^cuvette: slimes/tug.yaml:3:7: .*nothing" render slimes/toy.yaml --json
@@ -222,7 +222,7 @@ refused "compare of a missing image" "nowhere.png" compare good.png nowhere.png
 refused "compare of a folder" "folder.png" compare folder.png good.png
 refused "compare of a scene" "unknown image format" compare "$scene" good.png
 "$program" render "$scene" -o other.png --set render.width=20 --set render.height=40 >/dev/null
-refused "compare of two sizes" "40 x 20 .* 20 x 40.*one size" compare good.png other.png
+refused "compare of two sizes" "40 x 20 .* 20 x 40.*same size" compare good.png other.png
 head -c $(($(wc -c <good.png) / 2)) good.png >half.png
 refused "compare of a truncated PNG" "half.png" compare good.png half.png
 {

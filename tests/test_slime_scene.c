@@ -152,7 +152,7 @@ static void what_is_wrong_is_located_where_it_is_written(void **state)
     const fixture *f = *state;
     refused_at(f, toy, "toy.yaml", 6, 13, "scripts/tug.yaml");
     write_scripts(f, "hands:\n  left:\n    - {time_s: 1, move: [1, 0, 0]}\n");
-    refused_at(f, toy, "scripts/tug.yaml", 3, 7, "does not hold");
+    refused_at(f, toy, "scripts/tug.yaml", 3, 7, "without a grab");
     write_scripts(f, "");
     refused_at(f, toy, "scripts/tug.yaml", 1, 1, "empty");
     write_scripts(f, "hands:\n  left:\n    - {time_s: 0.02, grab: [9, 9, 9], towards: [0, 1, 0], reach: 1}\n");

@@ -349,7 +349,7 @@ static void a_hand_that_holds_nothing_is_named(void **state)
     assert_int_equal(softbody_follow(b, script, NULL), STATUS_OK);
     diagnostic why = {.what = ""};
     assert_int_equal(softbody_advance(b, 0.01, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "the hand late takes hold of nothing"));
+    assert_non_null(strstr(why.what, "the hand late grabs nothing"));
     assert_string_equal(why.file, "two.yaml");
     assert_int_equal(why.line, 7);
     hand_script_destroy(script);
@@ -411,11 +411,11 @@ static void bad_nets_are_refused(void **state)
     diagnostic why = {.what = ""};
     net.face_count = 3;
     assert_int_equal(softbody_create_net(&net, &s, isa_best(), &b, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "do not close"));
+    assert_non_null(strstr(why.what, "are not closed"));
     net.face_count = 4;
     net.spring_count = 2;
     assert_int_equal(softbody_create_net(&net, &s, isa_best(), &b, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "spring 1 joins"));
+    assert_non_null(strstr(why.what, "spring 1 connects"));
 }
 
 int main(void)

@@ -393,7 +393,7 @@ static void columns_that_a_row_needs_are_named(void **state)
     fixture_run(f, s);
     rearrange(f, rows_name, "repetition", NULL);
     diagnostic why = refusal_of(f, s);
-    assert_non_null(strstr(why.what, "no column repetition"));
+    assert_non_null(strstr(why.what, "lack the column repetition"));
     assert_non_null(strstr(why.remedy, "--results"));
     assert_int_equal(why.line, 1);
     study_destroy(s);
