@@ -1,4 +1,4 @@
-/* Which scene a motion is in: what that had before, what it gets back, and whether another one has the same slimes. */
+/* Attachment of a simulation to a scene: saving and restoring its data, and comparing the slimes of another scene. */
 #include "scene/motion/motion_private.h"
 
 #include "base/text_writer.h"
@@ -14,8 +14,7 @@ static bool is_of_the_body(const param *row)
     return row->group == PARAM_MESH && row->offset != offsetof(mesh_entry, time_s);
 }
 
-/* What it is made of, as one text: its parameters but for time_s, and where its script lies. NULL when memory is out.
- */
+/* All its parameters except time_s as one text, and the path of its script. NULL if memory runs out. */
 static char *motion_parameters(const scene *s, const mesh_entry *entry)
 {
     char *text = NULL, *script = scene_file_path(s, entry->script_path);
@@ -92,7 +91,7 @@ void scene_motion_end(scene_motion *m)
     }
 }
 
-/* Index of the mesh of the same name and parameters. */
+/* Index of the mesh with the same name and parameters. */
 static status find_same(const scene *s, const moving_slime *one, size_t *mesh_index, bool *found, diagnostic *why)
 {
     *found = false;
