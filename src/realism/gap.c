@@ -1,10 +1,10 @@
 /* An empty gap between the vessel's medium and an opaque surface of radiance 1, seen from within the medium: the
- * radiance is 1 - R below the critical angle and 0 beyond it, however narrow the gap (in contact it would be 1). A far
- * solid that no ray meets changes neither.
+ * radiance is 1 - R below the critical angle and 0 above it, however narrow the gap (in contact it would be 1). A
+ * distant solid that no ray hits changes neither.
  *
- * Depth 1, so that nothing comes back from the medium's other face. Tolerance: some film units, 5.7e-14 each, and near
- * the critical angle, where R has an infinite slope, the root of a rounding times the angle's distance from it, a
- * degree at the least. */
+ * Depth 1, so that nothing returns from the medium's other face. Tolerance: some film units, 5.7e-14 each, and near the
+ * critical angle, where R has an infinite slope, the square root of a rounding error times the distance from that
+ * angle, at least one degree. */
 #include "realism/metrics.h"
 #include "scene/model/scene.h"
 
@@ -29,7 +29,7 @@ static scene *gap_scene(const scene *s, const setup *at, double gap, bool far_so
     return copy;
 }
 
-/* With basic radiance the eye, in the vessel's medium, has the square of the index too. */
+/* With basic radiance the camera, inside the vessel's medium, also sees a factor of the square of the index. */
 static double gap_theory(const metrics *m, double angle)
 {
     const double n_from = m->theory_at.n[SETUP_VESSEL], n_to = m->theory_at.n[SETUP_OUTSIDE], ratio = n_from / n_to;

@@ -1,8 +1,8 @@
-/* Single interfaces between the scene's media: where total reflection begins, and how much is reflected.
+/* Single interfaces between the scene's media: critical angles and reflectances.
  *
- * Tolerances: the cosine of an angle near the critical one is good to 2e-16 over its slope. Reflectances are a few
- * roundings off, but rise with an infinite slope to the critical angle, before which 1e-16 in the squared cosine of
- * refraction can be 1e-10. */
+ * Tolerances: the cosine near the critical angle is good to 2e-16 divided by its slope. Reflectances have a few
+ * rounding errors, but rise with infinite slope towards the critical angle, where 1e-16 in the squared cosine of
+ * refraction can become 1e-10. */
 #include "realism/metrics.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ status interface_measure(probe *p, ray_tree *tree, double start_y, double angle,
     const status code = probe_path(p, vec3_make(0.0, start_y, 0.0), down, 0, tree, why);
     const ray_hit *hit = &tree->node[0].hit;
     *out = (interface_shares){0.0, 0.0, 0.0};
-    /* Between media that refract alike there is no interface: the ray goes on to what lies further off. */
+    /* Between media with equal indices there is no interface: the ray continues to the next surface. */
     if (code != STATUS_OK || tree->node[0].end != RAY_END_HIT || fabs(hit->point.y) > 0.5)
         return code;
     const bool reflected = tree->count > 1 && tree->node[1].kind == RAY_REFLECT;
@@ -61,7 +61,7 @@ static bool has_media(const metrics *m, const crossing *at)
     return at->to != SETUP_LIQUID || (m->theory_at.liquid >= 0 && m->at.liquid >= 0);
 }
 
-/* From the denser side. */
+/* From the optically denser side. */
 static status add_critical(const metrics *m, int which, diagnostic *why)
 {
     setup_medium from = crossings[which].from, to = crossings[which].to;

@@ -30,7 +30,7 @@ level_section level_section_bare(const level_section *c)
     return bare;
 }
 
-/* A ray from above: where it passes the axis, which way it goes, and the shells' indices for it. */
+/* A ray seen from above: its offset from the axis, its heading, and the effective indices of the shells. */
 typedef struct flat_ray {
     double heading, offset, steepness;
     theory_shells shells;
@@ -57,7 +57,7 @@ bool level_section_sees_rod(const level_section *c, double px, double py)
     const flat_ray r = flatten(c, px, py);
     if (!(fabs(r.offset) < theory_shells_reach(&r.shells)))
         return false;
-    /* An offset to the left of the ray has the axis on its right, where it turns to: the heading falls. */
+    /* A ray with an offset to the left has the axis on its right, and turns towards it: the heading decreases. */
     const double heading = r.heading - theory_shells_turn(&r.shells, r.offset);
     const double offset = r.offset * r.shells.n_around / r.shells.n_core;
     double least = INFINITY, most = -INFINITY;

@@ -1,7 +1,7 @@
-/* A prism's least deviation at the F, d and C lines. The scene has solids named prism, and left and right, the
+/* Minimum deviation of a prism at the F, d and C lines. The scene has solids named prism, and left and right, the
  * half-spaces that cut its two faces (experiments/scenes/prism.yaml).
  *
- * Least deviation is flat in the angle of incidence, so that its value is good to rounding however it is found. */
+ * The deviation is stationary in the angle of incidence at its minimum, so its value is good to rounding. */
 #include "realism/metrics.h"
 
 #include "scene/model/scene.h"
@@ -20,8 +20,7 @@ bool prism_is_there(const scene *s)
     return scene_find_solid(s, "prism") >= 0 && scene_find_solid(s, "left") >= 0 && scene_find_solid(s, "right") >= 0;
 }
 
-/* A half-space's matter lies under its local y; what it cuts off the prism has that as its outward normal, turned
- * round. */
+/* A half-space is below its local y = 0; the face that it cuts has the negative of its normal as outward normal. */
 static vec3 outward(const solid *cut)
 {
     return vec3_scale(mat3_apply(rotation_from_deg(cut->shape.rotation_deg), vec3_make(0.0, 1.0, 0.0)), -1.0);
@@ -45,8 +44,8 @@ typedef struct search {
     diagnostic *why;
 } search;
 
-/* Deviation of a ray that meets the middle of the left face at an angle of incidence; NaN if it does not come through
- * both. */
+/* Deviation of a ray that hits the middle of the left face at an angle of incidence; NaN unless it passes both faces.
+ * */
 static double deviation(void *context, double incidence)
 {
     search *s = context;
@@ -64,7 +63,7 @@ static double deviation(void *context, double incidence)
     return atan2(vec3_length(across), vec3_dot(in, out));
 }
 
-/* Between the first and the last angle where a way leads through. */
+/* Between the first and the last angle of transmitted rays. */
 static double least_deviation(search *s)
 {
     double low = NAN, high = NAN;

@@ -1,10 +1,10 @@
-/* Reversed ways: light goes back the way that it came, and an interface shares it out alike from either side (Stokes's
- * relations; Hecht, Optics, 5th ed., 4.10). Random ways through the vessel, refracted or once reflected, are traced to
- * their end and back. The way back ends on the ray that the way began with, and has the same throughput. (Radiance
- * takes on a factor n^2 in a medium; both ends lie outside, where it has gone again, and the tracer's throughput leaves
- * it out.) Ways that graze a surface are left out: errors grow there as 1 / cos.
+/* Reversed paths: light returns along the path that it came, and an interface has the same transmittance from both
+ * sides (Stokes relations; Hecht, Optics, 5th ed., 4.10). Random paths through the vessel, refracted or reflected once,
+ * are traced to their end and back. The reversed path ends on the origin ray of the path, and has the same throughput.
+ * (Radiance has an additional factor n^2 in a medium; both ends are outside, where it cancels, and the tracer's
+ * throughput omits it.) Paths near grazing incidence are excluded: errors grow there as 1 / cos.
  *
- * Tolerance: 1e-16 a surface, over the cosines of up to 16 surfaces, of 0.1 at least. */
+ * Tolerance: 1e-16 per surface, divided by the cosines of up to 16 surfaces, of at least 0.1. */
 #include "realism/metrics.h"
 
 #include "base/random.h"
@@ -33,8 +33,8 @@ static way random_path(const setup *at, uint32_t number)
     return w;
 }
 
-/* The way's number of surfaces; -1 when it does not leave or grazes one. Media that refract alike have none between
- * them. */
+/* The number of surfaces of the path; -1 if it does not leave the vessel or grazes a surface. There are no surfaces
+ * between media with equal indices. */
 static int surfaces(const ray_tree *tree)
 {
     const int hits = (int)tree->count - 1;
@@ -48,13 +48,13 @@ static int surfaces(const ray_tree *tree)
     return hits;
 }
 
-/* A reflection that was asked for where the way had none left to follow is one at another surface backwards. */
+/* A reflection requested after the last surface of the path would be at another surface on the reversed path. */
 static int reflected_at(const ray_tree *tree, int asked)
 {
     return asked >= 0 && asked + 1 < (int)tree->count && tree->node[asked + 1].kind == RAY_REFLECT ? asked : -1;
 }
 
-/* Of the way back: its throughput, and how far it passes from where the way began. */
+/* Of the reversed path: its throughput, and its distance from the origin of the path. */
 typedef struct round_trip {
     double forth, back, miss;
     bool done;
@@ -78,7 +78,7 @@ static status trace_back(trial *forth, trial *back, const setup *at, uint32_t nu
     out->done = true;
     out->forth = last->throughput[0];
     if ((int)back->tree.count - 1 != hits || home->end != RAY_END_SKY)
-        return STATUS_OK; /* another way: nothing agrees */
+        return STATUS_OK; /* another path: nothing agrees */
     out->back = home->throughput[0];
     out->miss = vec3_length(vec3_cross(away, home->direction));
     return STATUS_OK;

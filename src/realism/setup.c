@@ -55,7 +55,7 @@ static status read_vessel(const scene *s, setup *out, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Does the vessel's glass win where both are? */
+/* Whether the vessel has precedence where both are. */
 static bool glass_wins(const scene *s, const setup *at)
 {
     const int64_t vessel = s->solids[at->vessel].priority, liquid = s->solids[at->liquid].priority;
@@ -138,8 +138,8 @@ scene *arrange_empty(const scene *s)
     r->samples = 1;
     r->min_weight = 0.0;
     r->depth = 16;
-    copy->camera.roll_deg = 0.0; /* edges of upright things are looked for along the image's lines */
-    copy->background.absorb_per_m = vec3_make(0.0, 0.0, 0.0); /* the closed forms know no way to the vessel */
+    copy->camera.roll_deg = 0.0; /* vertical edges are searched along the lines of the image */
+    copy->background.absorb_per_m = vec3_make(0.0, 0.0, 0.0); /* the closed forms do not cover the path to the vessel */
     return copy;
 }
 

@@ -1,9 +1,9 @@
-/* Convergence with depth: a slab of the vessel's medium before a surface that shines with radiance 1. A ray at 40
- * degrees sees (1 - R)^2 (1 + R^2 + R^4 + ...), and a depth of recursion cuts that series off after a term: the first
- * needs depth 2, each further one two more. Of unpolarised light that is the series of the mean R when each interface
- * takes the mean, and the mean of the two series when rays carry their polarisation, as light does.
+/* Convergence with depth: a slab of the vessel's medium in front of a surface that emits radiance 1. A ray at 40
+ * degrees sees (1 - R)^2 (1 + R^2 + R^4 + ...), and a recursion depth truncates that series: the first term needs depth
+ * 2, each further one two more. For unpolarised light this is the series of the mean R if each interface uses the mean,
+ * and the mean of the two series if rays carry their polarisation, which is physically correct.
  *
- * Tolerance: some film units, 5.7e-14 each, and a few roundings. */
+ * Tolerance: some film units, 5.7e-14 each, and a few rounding errors. */
 #include "realism/metrics.h"
 #include "scene/model/scene.h"
 

@@ -1,10 +1,10 @@
-/* The toy's skin as a mesh, and where a ray meets it. */
+/* The toy's surface as a mesh, and ray intersection with it. */
 #include "geometry/mesh_generators.h"
 #include "softbody/softbody_private.h"
 
 #include <stdlib.h>
 
-/* The sum of the area vectors of the faces around each mass, doubled: weights by area, which cost no angles. */
+/* The doubled sum of the area vectors of the faces around each mass: area weighting needs no angles. */
 static void sum_areas(const softbody *b, vec3 *area)
 {
     for (size_t i = 0; i < b->face_count; i++) {
@@ -50,8 +50,8 @@ status softbody_surface(const softbody *b, mesh **out, diagnostic *why)
     return code;
 }
 
-/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997; fronts alone. slack: how far
- * beyond an edge, as a share of the face, still counts. */
+/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997; front faces only. slack:
+ * tolerance beyond an edge, as a fraction of the face. */
 static bool meets(const softbody *b, const mesh_triangle *face, double slack, vec3 origin, vec3 direction, double *t)
 {
     const vec3 a = vectors_at(b->at, face->corner[0]);
@@ -81,7 +81,7 @@ static double nearest_front(const softbody *b, double slack, vec3 origin, vec3 d
 bool softbody_pick(const softbody *b, vec3 origin, vec3 direction, vec3 *where)
 {
     double nearest = nearest_front(b, 0.0, origin, direction);
-    if (!(nearest < INFINITY)) /* along an edge rounding can lose both of its faces */
+    if (!(nearest < INFINITY)) /* along an edge rounding can miss both faces */
         nearest = nearest_front(b, 1e-9, origin, direction);
     if (nearest < INFINITY)
         *where = vec3_add(origin, vec3_scale(direction, nearest));
