@@ -63,10 +63,10 @@ static scene_motion *begin(scene *s)
     return m;
 }
 
-static void advance(scene_motion *m, double time_s, bool skins)
+static void advance(scene_motion *m, double time_s, bool surfaces)
 {
     diagnostic why = {0};
-    worked(scene_motion_advance(m, time_s, skins, &why), &why);
+    worked(scene_motion_advance(m, time_s, surfaces, &why), &why);
 }
 
 static void expect_films(const char *assignments)
@@ -155,7 +155,7 @@ static void the_latest_advance_is_accounted_for(void **state)
     scene_destroy(s);
 }
 
-/* A clone holds the skins too: they stay where they were for it, and the scene gets others. */
+/* A clone holds the surfaces too: they stay where they were for it, and the scene gets others. */
 static void a_clone_does_not_move(void **state)
 {
     (void)state;
@@ -189,13 +189,13 @@ static void it_goes_over_to_another_scene(void **state)
     const mesh *own = s->meshes[1].data;
     scene_motion *m = begin(s);
     advance(m, 0.1, true);
-    const mesh *skin = s->meshes[1].data;
+    const mesh *surface = s->meshes[1].data;
     bool joined = false;
     worked(scene_motion_join(m, other, &joined, &why), &why);
     assert_true(joined);
     assert_ptr_equal(s->meshes[1].data, own);
     assert_true(s->meshes[1].time_s == 0.4 && s->meshes[1].account.steps == 400);
-    assert_ptr_equal(other->meshes[1].data, skin);
+    assert_ptr_equal(other->meshes[1].data, surface);
     assert_true(other->meshes[1].time_s == 0.1 && other->meshes[2].time_s == 0.1);
     worked(scene_load(other, &why), &why);
     advance(m, 0.3, true);
@@ -258,16 +258,16 @@ static void a_way_that_is_stopped_goes_on(void **state)
     const double far_s = 40.0;
     scene *s = toys_with(""), *straight = toys_with("");
     scene_motion *m = begin(s), *way = begin(straight);
-    const mesh *skin = s->meshes[1].data;
-    const vec3 first = skin->vertices[0];
+    const mesh *surface = s->meshes[1].data;
+    const vec3 first = surface->vertices[0];
     for (int i = 0; i < 2; i++) {
         double share = -1.0;
         diagnostic why = {0};
         assert_int_equal(scene_motion_advance_until(m, 4000.0, true, &(load_watch){leave, &share}, &why),
                          STATUS_INTERRUPTED);
         assert_true(share > 0.0 && share < 0.5); /* of two, on the way of the first */
-        assert_true(s->meshes[1].data == skin && s->meshes[1].time_s == 0.0 && s->meshes[1].account.steps == 0);
-        assert_memory_equal(&skin->vertices[0], &first, sizeof first);
+        assert_true(s->meshes[1].data == surface && s->meshes[1].time_s == 0.0 && s->meshes[1].account.steps == 0);
+        assert_memory_equal(&surface->vertices[0], &first, sizeof first);
     }
     advance(m, far_s, true);
     advance(way, far_s, true);

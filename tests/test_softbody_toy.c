@@ -210,26 +210,26 @@ static void no_ray_falls_between_faces(void **state)
     s.level = 3;
     softbody *b = toy_of(&s);
     steps_of(b, 50);
-    mesh *skin = NULL;
+    mesh *surface = NULL;
     diagnostic why = {.what = ""};
-    assert_int_equal(softbody_surface(b, &skin, &why), STATUS_OK);
+    assert_int_equal(softbody_surface(b, &surface, &why), STATUS_OK);
     size_t reached = 0;
     for (size_t e = 0; e < sizeof eyes / sizeof *eyes; e++)
-        for (size_t i = 0; i < 3 * skin->triangle_count; i++) {
-            const mesh_triangle *face = &skin->triangles[i / 3];
-            const vec3 from = skin->vertices[face->corner[i % 3]], to = skin->vertices[face->corner[(i + 1) % 3]];
+        for (size_t i = 0; i < 3 * surface->triangle_count; i++) {
+            const mesh_triangle *face = &surface->triangles[i / 3];
+            const vec3 from = surface->vertices[face->corner[i % 3]], to = surface->vertices[face->corner[(i + 1) % 3]];
             const vec3 ends[] = {from, vec3_scale(vec3_add(from, to), 0.5)};
             for (size_t k = 0; k < 2; k++) {
                 const vec3 direction = vec3_sub(ends[k], eyes[e]);
                 vec3 where;
-                if (vec3_dot(skin->normals[face->corner[i % 3]], direction) > -0.2 * vec3_length(direction))
+                if (vec3_dot(surface->normals[face->corner[i % 3]], direction) > -0.2 * vec3_length(direction))
                     continue; /* not towards the eye */
                 assert_true(softbody_pick(b, eyes[e], direction, &where));
                 reached++;
             }
         }
     assert_true(reached > 1000);
-    mesh_release(skin);
+    mesh_release(surface);
     softbody_destroy(b);
 }
 
@@ -287,7 +287,7 @@ static vec3 held_at(const softbody *b, const vec3 *first, size_t count)
     softbody_positions(b, at);
     for (size_t i = 0; i < count; i++)
         if (vec3_length(vec3_sub(first[i], vec3_make(0.0, 1.0, -1.0))) <
-            0.15) { /* well within reach of where the ray meets the skin */
+            0.15) { /* well within reach of where the ray meets the surface */
             sum = vec3_add(sum, vec3_sub(at[i], first[i]));
             held++;
         }

@@ -90,13 +90,13 @@ bool level_section_stays(const level_section *c, double px, double py, double lo
     const theory_shells *n = &r.shells;
     const double b[3] = {r.offset, r.offset * n->n_around / n->n_wall, r.offset * n->n_around / n->n_core};
     const double distance = hypot(c->eye.x - c->x, c->eye.z - c->z);
-    const double way[3] = {sqrt(distance * distance - b[0] * b[0]) - sqrt(n->outer * n->outer - b[0] * b[0]),
+    const double run[3] = {sqrt(distance * distance - b[0] * b[0]) - sqrt(n->outer * n->outer - b[0] * b[0]),
                            sqrt(n->outer * n->outer - b[1] * b[1]) - sqrt(n->inner * n->inner - b[1] * b[1]),
                            sqrt(n->inner * n->inner - b[2] * b[2]) + hypot(c->corner_x[0], c->corner_z[0])};
     const double index[3] = {n->n_around, n->n_wall, n->n_core};
     double y = c->eye.y;
     for (int i = 0; i < 3; i++) {
-        y += way[i] * r.steepness / index[i];
+        y += run[i] * r.steepness / index[i];
         if (!(y > low && y < high))
             return false;
     }

@@ -54,11 +54,11 @@ static double deviation(void *context, double incidence)
         s->code = probe_path(s->t->p, vec3_sub(s->at.point, vec3_scale(in, 3.0)), in, -1, &s->t->tree, s->why);
     if (s->code != STATUS_OK)
         return NAN;
-    const ray_tree *way = &s->t->tree;
-    if (way->count < 3 || way->node[2].kind != RAY_REFRACT || way->node[0].hit.to != s->at.region ||
-        way->node[1].hit.from != s->at.region)
+    const ray_tree *tree = &s->t->tree;
+    if (tree->count < 3 || tree->node[2].kind != RAY_REFRACT || tree->node[0].hit.to != s->at.region ||
+        tree->node[1].hit.from != s->at.region)
         return NAN;
-    const vec3 out = way->node[2].direction;
+    const vec3 out = tree->node[2].direction;
     const vec3 across = vec3_cross(in, out);
     return atan2(vec3_length(across), vec3_dot(in, out));
 }

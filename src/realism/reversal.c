@@ -14,12 +14,12 @@
 #define LEAST_COSINE 0.1
 enum { WAYS = 2000, HITS_MAX = 12 };
 
-typedef struct way {
+typedef struct test_path {
     vec3 from, along;
     int reflect_at;
-} way;
+} test_path;
 
-static way random_path(const setup *at, uint32_t number)
+static test_path random_path(const setup *at, uint32_t number)
 {
     const random_words a = random_at(10, number, 0, 0, 0), b = random_at(10, number, 1, 0, 0);
     const double turn = 2.0 * M_PI * random_unit(a.word[0]), middle = (at->low + at->high) / 2.0;
@@ -29,7 +29,7 @@ static way random_path(const setup *at, uint32_t number)
     const double aside = at->outer * (2.0 * random_unit(a.word[2]) - 1.0);
     const vec3 to = vec3_make(at->x - aside * sin(turn), at->low + (at->high - at->low) * random_unit(a.word[3]),
                               at->z + aside * cos(turn));
-    const way w = {from, vec3_normalize(vec3_sub(to, from)), (int)(b.word[0] % 4) - 1};
+    const test_path w = {from, vec3_normalize(vec3_sub(to, from)), (int)(b.word[0] % 4) - 1};
     return w;
 }
 
@@ -62,7 +62,7 @@ typedef struct round_trip {
 
 static status trace_back(trial *forth, trial *back, const setup *at, uint32_t number, round_trip *out, diagnostic *why)
 {
-    const way w = random_path(at, number);
+    const test_path w = random_path(at, number);
     *out = (round_trip){NAN, NAN, NAN, false};
     status code = probe_path(forth->p, w.from, w.along, w.reflect_at, &forth->tree, why);
     const int hits = code == STATUS_OK ? surfaces(&forth->tree) : -1;

@@ -62,8 +62,8 @@ void softbody_aim_hands(softbody *b, double dt_s)
         const grip *h = &b->hands[i];
         for (size_t k = 0; h->busy && k < h->count; k++) {
             const uint32_t mass = h->masses[k].mass;
-            const vec3 way = vec3_sub(vec3_add(h->target, h->masses[k].offset), vectors_at(b->at, mass));
-            vectors_put(b->velocity, mass, vec3_scale(way, 1.0 / dt_s));
+            const vec3 displacement = vec3_sub(vec3_add(h->target, h->masses[k].offset), vectors_at(b->at, mass));
+            vectors_put(b->velocity, mass, vec3_scale(displacement, 1.0 / dt_s));
         }
     }
 }

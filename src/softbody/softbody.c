@@ -187,7 +187,7 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
     if (!b)
         return out_of_memory(why);
     b->set = *s;
-    b->skin_level = -1;
+    b->surface_level = -1;
     b->kernels = kernels[level];
     status code = fill(b, net, why);
     if (code != STATUS_OK) {
@@ -217,7 +217,7 @@ status softbody_create(const softbody_settings *s, isa level, softbody **out, di
     status code = mass_kg ? softbody_create_net(&net, s, level, out, why) : out_of_memory(why);
     if (code == STATUS_OK) {
         (*out)->mass_of = toy.mass_of;
-        (*out)->skin_level = (int)s->level;
+        (*out)->surface_level = (int)s->level;
         toy.mass_of = NULL;
     }
     free(mass_kg);

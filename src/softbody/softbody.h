@@ -145,4 +145,4 @@ double softbody_stable_dt_s(const softbody *b);
 status softbody_surface(const softbody *b, mesh **out, diagnostic *why);
 /* Updates a mesh made by softbody_surface for this body to the current state; it must not be in use meanwhile
  * (mesh_move). */
-status softbody_move_surface(const softbody *b, mesh *skin, diagnostic *why);
+status softbody_move_surface(const softbody *b, mesh *surface, diagnostic *why);

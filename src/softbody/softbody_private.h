@@ -115,7 +115,7 @@ struct softbody {
     const softbody_kernels *kernels;
     thread_team *workers;
     uint32_t *mass_of; /* for the toy: by vertex of its surface */
-    int skin_level;    /* -1: none */
+    int surface_level; /* -1: none */
     push pushing;      /* of the current substep */
     double solver_dt_s, factor,
         pressing; /* for implicit: its step, the current multiple, and the product of the pressure's stiffness with a

@@ -16,18 +16,18 @@ static void sum_areas(const softbody *b, vec3 *area)
     }
 }
 
-status softbody_move_surface(const softbody *b, mesh *skin, diagnostic *why)
+status softbody_move_surface(const softbody *b, mesh *surface, diagnostic *why)
 {
-    vec3 *area = calloc(b->net.count, sizeof *area), *vertices = malloc(skin->vertex_count * sizeof *vertices);
-    vec3 *normals = malloc(skin->vertex_count * sizeof *normals);
+    vec3 *area = calloc(b->net.count, sizeof *area), *vertices = malloc(surface->vertex_count * sizeof *vertices);
+    vec3 *normals = malloc(surface->vertex_count * sizeof *normals);
     status code = STATUS_FAILURE;
     if (area && vertices && normals) {
         sum_areas(b, area);
-        for (size_t v = 0; v < skin->vertex_count; v++) {
+        for (size_t v = 0; v < surface->vertex_count; v++) {
             vertices[v] = vectors_at(b->at, b->mass_of[v]);
             normals[v] = area[b->mass_of[v]];
         }
-        code = mesh_move(skin, vertices, normals, why);
+        code = mesh_move(surface, vertices, normals, why);
     } else {
         diagnose(why, code, "use a lower level", "out of memory for a slime's surface");
     }
@@ -40,13 +40,13 @@ status softbody_move_surface(const softbody *b, mesh *skin, diagnostic *why)
 status softbody_surface(const softbody *b, mesh **out, diagnostic *why)
 {
     *out = NULL;
-    if (b->skin_level < 0)
+    if (b->surface_level < 0)
         return diagnose(why, STATUS_BAD_INPUT, "use a slime toy", "a net of masses and springs has no surface");
-    mesh *skin;
-    status code = generate_icosphere(b->skin_level, &skin, why);
-    if (code == STATUS_OK && (code = softbody_move_surface(b, skin, why)) != STATUS_OK)
-        mesh_release(skin);
-    *out = code == STATUS_OK ? skin : NULL;
+    mesh *surface;
+    status code = generate_icosphere(b->surface_level, &surface, why);
+    if (code == STATUS_OK && (code = softbody_move_surface(b, surface, why)) != STATUS_OK)
+        mesh_release(surface);
+    *out = code == STATUS_OK ? surface : NULL;
     return code;
 }
 

@@ -21,7 +21,7 @@ typedef struct compare_row {
     const reference *against;
     uint64_t film_hash;
     double noise_rms; /* the account of the cell's frame */
-    image_comparison lies;
+    image_comparison difference;
     double error_rms;
 } compare_row;
 

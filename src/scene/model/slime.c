@@ -140,11 +140,11 @@ status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_
 static status make_surface_mesh(const slime *x, const scene *s, mesh_entry *m, diagnostic *why)
 {
     diagnostic bad = {.what = ""};
-    mesh *skin = NULL;
-    const status code = softbody_surface(x->body, &skin, &bad);
+    mesh *surface = NULL;
+    const status code = softbody_surface(x->body, &surface, &bad);
     if (code != STATUS_OK)
         return body_error(s, m, &bad, code, why);
-    m->data = skin;
+    m->data = surface;
     m->account = softbody_measure(x->body);
     m->motion_s = x->motion_s;
     return STATUS_OK;

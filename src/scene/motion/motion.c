@@ -21,10 +21,10 @@ bool scene_moves(const scene *s)
 status motion_give_surface(const scene_motion *m, const moving_slime *one, diagnostic *why)
 {
     mesh_entry *entry = motion_entry(m, one);
-    mesh *skin = NULL;
-    TRY(softbody_surface(one->x.body, &skin, why));
+    mesh *surface = NULL;
+    TRY(softbody_surface(one->x.body, &surface, why));
     mesh_entry_unload(entry);
-    entry->data = skin;
+    entry->data = surface;
     return STATUS_OK;
 }
 
@@ -142,11 +142,11 @@ static status advance_one(scene_motion *m, size_t i, double time_s, const load_w
     return code;
 }
 
-static status show_one(scene_motion *m, moving_slime *one, double time_s, bool skins, diagnostic *why)
+static status show_one(scene_motion *m, moving_slime *one, double time_s, bool surfaces, diagnostic *why)
 {
     const mesh_entry *entry = motion_entry(m, one);
     status code = STATUS_OK;
-    if (skins) {
+    if (surfaces) {
         const double begun_s = clock_wall_s();
         code = move_surface(m, one, why);
         m->last.skin_s += clock_wall_s() - begun_s;
@@ -159,19 +159,20 @@ static status show_one(scene_motion *m, moving_slime *one, double time_s, bool s
     return code;
 }
 
-status scene_motion_advance_until(scene_motion *m, double time_s, bool skins, const load_watch *watch, diagnostic *why)
+status scene_motion_advance_until(scene_motion *m, double time_s, bool surfaces, const load_watch *watch,
+                                  diagnostic *why)
 {
     m->last = (scene_motion_report){.steps = 0};
     for (size_t i = 0; i < m->count; i++)
         TRY(advance_one(m, i, time_s, watch, why));
     for (size_t i = 0; i < m->count; i++)
-        TRY(show_one(m, &m->slimes[i], time_s, skins, why));
+        TRY(show_one(m, &m->slimes[i], time_s, surfaces, why));
     return STATUS_OK;
 }
 
-status scene_motion_advance(scene_motion *m, double time_s, bool skins, diagnostic *why)
+status scene_motion_advance(scene_motion *m, double time_s, bool surfaces, diagnostic *why)
 {
-    return scene_motion_advance_until(m, time_s, skins, NULL, why);
+    return scene_motion_advance_until(m, time_s, surfaces, NULL, why);
 }
 
 scene_motion_report scene_motion_last(const scene_motion *m)

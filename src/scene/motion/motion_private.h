@@ -20,7 +20,7 @@ typedef struct moving_slime {
     double time_s;           /* the entry's step */
     char *name, *parameters; /* parameters of its entry, for other scenes */
     given_slime given;
-    const struct mesh *skin; /* while detached: one reference; NULL for none */
+    const struct mesh *surface; /* while detached: one reference; NULL for none */
 } moving_slime;
 
 struct scene_motion {

@@ -66,7 +66,7 @@ void motion_forget(moving_slime *one)
 {
     slime_destroy(&one->x);
     mesh_release(one->given.data);
-    mesh_release(one->skin);
+    mesh_release(one->surface);
     free(one->name);
     free(one->parameters);
 }
@@ -76,7 +76,7 @@ void scene_motion_leave(scene_motion *m)
     for (size_t i = 0; m->s && i < m->count; i++) {
         moving_slime *one = &m->slimes[i];
         mesh_entry *entry = motion_entry(m, one);
-        one->skin = entry->data;
+        one->surface = entry->data;
         entry->data = NULL;
         give_back(entry, &one->given);
     }
@@ -115,8 +115,8 @@ static void put_into(scene_motion *m, moving_slime *one)
     mesh_entry *entry = motion_entry(m, one);
     take_given(&one->given, entry);
     mesh_entry_unload(entry);
-    entry->data = one->skin;
-    one->skin = NULL;
+    entry->data = one->surface;
+    one->surface = NULL;
     motion_take_account(m, one, one->time_s);
 }
 
@@ -135,7 +135,7 @@ status scene_motion_join(scene_motion *m, scene *s, bool *joined, diagnostic *wh
     m->s = s;
     for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
         moving_slime *one = &m->slimes[i];
-        const bool had_surface = one->skin != NULL;
+        const bool had_surface = one->surface != NULL;
         one->entry = places[i];
         put_into(m, one);
         code = had_surface ? STATUS_OK : motion_give_surface(m, one, why);

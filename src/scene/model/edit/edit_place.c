@@ -160,8 +160,8 @@ static bool is_angle(double degrees)
 /* A spotlight's target rotates about its position. */
 static status turn_light(scene *s, const light *l, vec3 degrees, diagnostic *why)
 {
-    const vec3 way = mat3_apply(rotation_from_deg(degrees), vec3_sub(l->target, l->position));
-    return edit_set_vector(s, l->name, "target", vec3_add(l->position, way), why);
+    const vec3 direction = mat3_apply(rotation_from_deg(degrees), vec3_sub(l->target, l->position));
+    return edit_set_vector(s, l->name, "target", vec3_add(l->position, direction), why);
 }
 
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
