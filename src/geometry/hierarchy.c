@@ -125,8 +125,9 @@ status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_move
         __atomic_store_n(&m->share->hierarchies[kind], stored, __ATOMIC_RELEASE);
     }
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT && s != STATUS_OK; kind++)
-        hierarchy_destroy(__atomic_exchange_n(&m->share->hierarchies[kind], NULL,
-                                              __ATOMIC_ACQ_REL)); /* the other hierarchies are for the vertices before the move */
+        hierarchy_destroy(
+            __atomic_exchange_n(&m->share->hierarchies[kind], NULL,
+                                __ATOMIC_ACQ_REL)); /* the other hierarchies are for the vertices before the move */
     pthread_mutex_unlock(&m->share->mutex);
     if (out)
         *out = moves;

@@ -23,7 +23,7 @@ enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL, QUERY_BOXES };
  * across the plane by no more than PARALLEL_MARGIN. */
 #define PARALLEL 1e-30
 #define PARALLEL_MARGIN 1e-20
-#define ORIGIN_FAR 1e18   /* rays from beyond it hit nothing; far from overflow in single precision */
+#define ORIGIN_FAR 1e18    /* rays from beyond it hit nothing; far from overflow in single precision */
 #define BOX_MARGIN 0x1p-40 /* relative; far wider than the rounding error of a box distance */
 
 /* t is measured along a direction whose largest component is scaled into 1..2 by a power of two: exact, and far from

@@ -141,7 +141,7 @@ static status find_hand(live *l, int id, live_hand **out, diagnostic *why)
             *out = &l->held[i];
             return STATUS_OK;
         }
-    return diagnose(why, STATUS_BAD_INPUT, "grab again: the slime may have restarted", "hand %d holds nothing", id);
+    return diagnose(why, STATUS_BAD_INPUT, "grab again: the slime may have restarted", "no hand has the number %d", id);
 }
 
 status live_where(live *l, int hand, vec3 *where, diagnostic *why)
