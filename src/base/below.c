@@ -28,7 +28,7 @@ static bool lies_below(const char *name, const char *root)
     char real[PATH_MAX];
     const size_t length = strlen(root);
     const ssize_t size = readlink(name, real, sizeof real);
-    /* A name as long as the buffer may have been truncated. */
+    /* A name that fills the buffer may be truncated. */
     return size > 0 && (size_t)size < sizeof real && (size_t)size > length + 1 && memcmp(real, root, length) == 0 &&
            real[length] == '/';
 }

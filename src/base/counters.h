@@ -1,8 +1,8 @@
 /* The ray counters of the tracer: plain integers, one set per worker, summed after the join, so that counting costs no
- * synchronisation and the totals do not depend on the number of threads. A ray is a straight piece between two events.
- * Camera and shadow rays, and rays by depth, count when they are traced; reflected and refracted ones when they are put
- * into a queue. Of a frame that was not interrupted both agree: every queued ray is traced. A build with
- * -DCUVETTE_COUNTERS=0 leaves the per-ray counters at zero. Ownership: values. */
+ * synchronisation and the totals do not depend on the number of threads. A ray is a straight segment between two
+ * interactions. Camera and shadow rays, and rays by depth, are counted when they are traced, reflected and refracted
+ * rays when they are enqueued. Without an interruption both counts agree, because every queued ray is traced. A build
+ * with -DCUVETTE_COUNTERS=0 leaves the per-ray counters at zero. Ownership: values. */
 #pragma once
 
 #include "base/lanes.h"
@@ -17,7 +17,7 @@ enum {
     COUNTERS_SOLID_MAX = 64  /* solids of a scene */
 };
 
-/* Throughput is summed in fixed point, CUT_ONE = 1.0, so that its sum has no order. */
+/* Throughput is summed in fixed point, CUT_ONE = 1.0, so that the order of summation does not matter. */
 #define COUNTERS_CUT_ONE 68719476736.0 /* 2^36 */
 
 typedef struct ray_counters {
@@ -27,10 +27,9 @@ typedef struct ray_counters {
     uint64_t cut_depth, cut_weight;            /* rays not traced: beyond the last depth; under min_weight */
     int64_t cut_depth_throughput[3];           /* their throughput, RGB, in units of 1/COUNTERS_CUT_ONE */
     int64_t cut_weight_throughput[3];
-    uint64_t tests[COUNTERS_SOLID_MAX]; /* rays tested against the solid: all but shadow rays, and of these those of
-                                         * solids that can take light away by themselves (the further look at the few
-                                         * undecided shadow rays is not counted again) */
-    uint64_t hits[COUNTERS_SOLID_MAX];  /* interfaces met on the solid, not by shadow rays */
+    uint64_t tests
+        [COUNTERS_SOLID_MAX]; /* rays tested against the solid. Shadow rays count only for solids that can reduce light by themselves, and only once, without the second test of the few undecided ones */
+    uint64_t hits[COUNTERS_SOLID_MAX];       /* hits on the solid's interfaces, without shadow rays */
     uint64_t first_hits[COUNTERS_SOLID_MAX]; /* camera rays whose first interface is on the solid */
 } ray_counters;
 

@@ -1,5 +1,5 @@
 /* Powers and angles with identical bits on every C library, compiler and processor: libm may differ in the last place
- * between platforms, while the image must be a function of the scene alone (decision 5 of the design). Only + - * / and
+ * between platforms, while the image must be a function of the scene alone. Only + - * / and
  * sqrt are used, which IEEE 754 specifies exactly. Pure; cannot fail. The stated errors are tested against libm in long
  * double. */
 #pragma once

@@ -1,5 +1,5 @@
 /* The floating-point environment of all computations: C's default, which rounds to nearest, keeps subnormal numbers,
- * and traps nothing. A calling thread may have another one: the caller set a rounding mode, unmasked exceptions,
+ * and enables no traps. A calling thread may have another one: the caller set a rounding mode, unmasked exceptions,
  * reduced the x87 precision, or loaded a library linked with -ffast-math, whose start-up code flushes subnormal numbers
  * to zero (gcc's crtfastmath.o). The image must not depend on it. Environments belong to threads; a new thread inherits
  * its creator's. gcc and clang do not support FENV_ACCESS and may move arithmetic on local variables across these

@@ -76,8 +76,8 @@ status animate_index_begin(const animate_names *names, const animate_definition 
 int64_t animate_index_count(const char *path);
 
 /* STATUS_BAD_INPUT for files that have a frame's name but are not among the first `known` frames (known < 0: there is
- * no index, so no frame is known), and where the index of another animation covers names of this one's first frames,
- * the larger of known and wanted. */
+ * no index, so no frame is known), and where the index of another animation covers frame names of this animation, of
+ * which the larger of known and wanted frames are checked. */
 status animate_folder_check(const animate_names *names, int64_t known, int64_t wanted, diagnostic *why);
 /* Removes all frames. */
 status animate_folder_clear(const animate_names *names, diagnostic *why);

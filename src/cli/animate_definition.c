@@ -1,4 +1,4 @@
-/* The definition of an animation, by which its frames are told from those of another. */
+/* The definition of an animation, which distinguishes its frames from those of other animations. */
 #include "cli/animate.h"
 #include "base/hash.h"
 #include "base/number.h"

@@ -61,7 +61,8 @@ static status check_frame(const animate_names *names, DIR *in, const char *name,
                : refuse(names, name, "remove it yourself, or write to another folder", what, why);
 }
 
-/* Returns whether that is the index of another animation with a frame named like one of this one's first count. */
+/* Returns whether progress_index is the index of another animation that has a frame with the name of one of this
+ * animation's first `count` frames. */
 static bool overlaps(const animate_names *names, const char *progress_index, int64_t count)
 {
     animate_names other = {.digits = 0};

@@ -80,16 +80,16 @@ static status check_output(const animate_request *request, diagnostic *why)
 {
     if (!request->output)
         return options_wrong("animate", NULL, why,
-                             "add -o frames/%05d.png for images, or -o NAME.y4m for one film file",
+                             "add -o frames/%05d.png for images, or -o NAME.y4m for one video file",
                              "no output is given");
     const bool to_stdout = strcmp(request->output, "-") == 0;
     if (to_stdout && request->json)
         return options_wrong("--json", "", why, "give a file with -o",
-                             "standard output cannot take both the film and the account");
+                             "standard output cannot carry both the video and the account");
     if (to_stdout && isatty(STDOUT_FILENO))
-        return options_wrong("-o", "-", why, "redirect it into a file or a pipe", "the terminal cannot show a film");
+        return options_wrong("-o", "-", why, "redirect it into a file or a pipe", "a terminal cannot show a video");
     if (request->restart && animate_is_stream(request))
-        return options_wrong("--restart", "", why, "remove it", "one film file is always written from the start");
+        return options_wrong("--restart", "", why, "remove it", "a video file is always written from the start");
     return STATUS_OK;
 }
 

@@ -4,15 +4,14 @@
 #include "report/svg.h"
 #include "scene/model/scene.h"
 
-/* LIGHTEST: with whole trees, branches with a smaller weight are not drawn. FAR_OFF: the window is not enlarged for
- * points that lie farther outside than this fraction of its diagonal. */
+/* LIGHTEST: with whole trees, branches with a smaller weight are not drawn. FAR_OFF: points farther outside the window
+ * than this fraction of its diagonal do not enlarge it. */
 #define LIGHTEST 0.004
 #define FAR_OFF 0.6
 
 static const double outer_width = 960.0, least_height = 260.0, most_height = 760.0;
 
-/* A horizontal plane has the axis to the right; any other has up upwards, and the direction of the rays to the
- * right. */
+/* A horizontal plane has the axis to the right; in any other, up is upwards and the rays run to the right. */
 static section_plane plane_of(const fan *f)
 {
     const vec3 up = vec3_sub(vec3_make(0, 1, 0), vec3_scale(f->normal, f->normal.y));

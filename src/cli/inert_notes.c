@@ -72,7 +72,8 @@ static scene *in_motion(const scene *s)
     return moved;
 }
 
-/* Notes the changes of the command line that have no effect; with a witness, only those that need it. */
+/* Notes the changes of the command line that have no effect; with a witness (a rendered frame), only the changes that
+ * are checked by it. */
 static void note_changes(const scene *s, const scene_input *input, const inert_witness *witness)
 {
     for (size_t i = 0; i < input->count; i++) {

@@ -1,5 +1,5 @@
 /* Notes on parameters that are set but have no effect (scene/model/inert/inert.h), one line each on standard error.
- * Places with a note of the linter get no second one. Ownership: everything is borrowed. */
+ * A place that already has a note of the linter gets no second one. Ownership: everything is borrowed. */
 #pragma once
 
 #include "cli/scene_input.h"

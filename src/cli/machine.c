@@ -33,10 +33,10 @@ static void print_text(const machine_account *a)
     wrap_row(stdout, columns, "instructions    ", "%s in use, %s is the best that this processor has",
              isa_name(a->chosen), isa_name(a->best));
     wrap_row(stdout, columns, "kernel          ", "%s %s %s", a->kernel.sysname, a->kernel.release, a->kernel.machine);
-    wrap_row(stdout, columns, "wall clock      ", "resolution %.0f ns, overhead %.0f ns a reading",
+    wrap_row(stdout, columns, "wall clock      ", "resolution %.0f ns, overhead %.0f ns per reading",
              a->wall.tick_s * 1e9, a->wall.overhead_s * 1e9);
-    wrap_row(stdout, columns, "thread clock    ", "resolution %.0f ns, overhead %.0f ns a reading", a->cpu.tick_s * 1e9,
-             a->cpu.overhead_s * 1e9);
+    wrap_row(stdout, columns, "thread clock    ", "resolution %.0f ns, overhead %.0f ns per reading",
+             a->cpu.tick_s * 1e9, a->cpu.overhead_s * 1e9);
     wrap_row(stdout, columns, "hw counters     ", "%s", a->has_hardware_counters ? "available" : "not available");
     wrap_row(stdout, columns, "build           ", "cuvette %s, compiler %s, %s", CUVETTE_VERSION, __VERSION__,
              CUVETTE_COMPILER_FLAGS);

@@ -43,7 +43,7 @@ static status take_parameter(const command_option *o, void *context, const char 
 }
 
 static const command_option options[] = {
-    {"generate", 0, "BODY", "generate sparse, dense, sphere, icosphere, torus, lathe, terrain or box",
+    {"generate", 0, "KIND", "generate sparse, dense, sphere, icosphere, torus, lathe, terrain or box",
      .take = take_parameter},
     {"count", 0, "N", "number of triangles of sparse and dense, approximate for sphere; default 10000",
      .take = take_parameter},
@@ -71,7 +71,7 @@ static const command_option options[] = {
 
 static const command_form form = {
     .options = options,
-    .synopsis = "FILE\n--generate BODY",
+    .synopsis = "FILE\n--generate KIND",
     .arguments_at = offsetof(mesh_request, file),
     .argument_limit = 1,
     .about = "Read a triangle mesh (OBJ, PLY, STL, glTF) or generate one, and describe it: triangle and vertex counts, "

@@ -165,7 +165,7 @@ const scene_edit scene_edits[] = {
      apply_turn},
     {"--scale", 0, true, "NAME=FACTOR",
      "scale a solid or a light about its position, or a group about the origin; scaling all solids adapts "
-     "render.unit_m, so that lengths in metres stay",
+     "render.unit_m, so that lengths in metres do not change",
      apply_scale},
     {"--rename", 0, true, "OLD=NEW", "rename an object", apply_rename},
     {"--delete", 0, false, "NAME", "delete an object; camera, background and render return to their defaults",

@@ -2,12 +2,12 @@
  *
  * Two boundaries that a ray crosses at t1 and t2 are in contact if these distances are equal within the boundaries' own
  * error bounds at these crossings: |t1 - t2| <= e1 / cos1 + e2 / cos2. e bounds a point's error across its surface
- * (primitives/kind.h); the cosine converts it into one along the ray. Nothing else matters: no other solid, and not the
- * extent of the scene. The narrowest gap that is resolved is therefore e1 + e2, the sum of both surfaces' 16
- * DBL_EPSILON (|start| + |path| + extent): 2e-14 to 1.4e-13 scene units in the scene of the rod.
+ * (primitives/kind.h); the cosine converts it into one along the ray. Neither other solids nor the extent of the scene
+ * have an effect. The narrowest gap that is resolved is therefore e1 + e2, the sum of both surfaces' 16 DBL_EPSILON
+ * (|start| + |path| + extent): 2e-14 to 1.4e-13 scene units in the scene of the rod.
  *
  * Crossings in contact are one crossing: the sets before and after it are those before the first and after the last of
- * them. Faces that coincide by their numbers, up to rounding, enclose no film of another medium. */
+ * them. Faces whose coordinates coincide up to rounding enclose no film of another medium. */
 #include "geometry/kernels.h"
 
 #include "base/lanes.h"

@@ -30,7 +30,7 @@ static status check(const field *f, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Slope of the surface along one axis at point k, from its existing neighbours: it is number `at` of count points,
+/* Slope of the surface along one axis at point k, from the neighbours that exist: k is number `at` of count points,
  * which are stride apart in memory. */
 static double slope(const field *f, size_t k, size_t at, size_t count, size_t stride, double spacing)
 {

@@ -104,7 +104,7 @@ static status follow_by_build(hierarchy **stored, int threads, hierarchy_moves *
     const mesh *m = (*stored)->of;
     const hierarchy_kind kind = (*stored)->kind;
     const double begun = now_s();
-    hierarchy_destroy(*stored); /* first, so that memory for two is never needed */
+    hierarchy_destroy(*stored); /* before the build, so that only one hierarchy is in memory at a time */
     *stored = NULL;
     const status s = hierarchy_build(m, kind, threads, stored, why);
     moves->rebuilt += s == STATUS_OK;
@@ -125,8 +125,9 @@ status hierarchy_follow(const mesh *m, double ratio, int threads, hierarchy_move
         __atomic_store_n(&m->share->hierarchies[kind], stored, __ATOMIC_RELEASE);
     }
     for (int kind = 0; kind < HIERARCHY_KIND_COUNT && s != STATUS_OK; kind++)
-        hierarchy_destroy(__atomic_exchange_n(&m->share->hierarchies[kind], NULL,
-                                              __ATOMIC_ACQ_REL)); /* the others would not fit the mesh */
+        hierarchy_destroy(
+            __atomic_exchange_n(&m->share->hierarchies[kind], NULL,
+                                __ATOMIC_ACQ_REL)); /* the other hierarchies are for the vertices before the move */
     pthread_mutex_unlock(&m->share->mutex);
     if (out)
         *out = moves;

@@ -16,9 +16,9 @@ typedef struct box_ray {
 } box_ray;
 
 enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH }; /* children that wait during the traversal */
-#define BOX_SLACK 0x1p-21f                            /* 2^-24 per rounding, of which there are three */
-#define FLOAT_STEP 0x1p-22f                           /* more than the distance to the next float but one */
-#define FLOAT_TINY 1e-37f
+#define BOX_SLACK 0x1p-21f                            /* more than three roundings of 2^-24 each */
+#define FLOAT_STEP 0x1p-22f                           /* relative; more than two steps between floats */
+#define FLOAT_TINY 1e-37f /* absolute, for values near 0: several times the smallest normal float */
 
 ALWAYS_INLINE float float_above(double v)
 {
@@ -37,6 +37,7 @@ ALWAYS_INLINE void box_ray_start(box_ray *b, const ray_query *q)
         const bool parallel = magnitude(q->direction[k]) < PARALLEL, down = q->direction[k] < 0.0;
         const double margin = parallel ? 2.0 * PARALLEL_MARGIN : 0.0;
         const float above = float_above(q->origin[k] + margin), below = float_below(q->origin[k] - margin);
+        /* For a parallel component, a finite number near FLT_MAX: an infinite one would make NaN of a distance of 0. */
         const float inverse = parallel ? (down ? -1e38f : 1e38f) : (float)q->inverse[k];
         b->near_origin[k] = down ? below : above;
         b->far_origin[k] = down ? above : below;

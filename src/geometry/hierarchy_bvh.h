@@ -95,7 +95,7 @@ static inline float bvh_cut_above(double v)
     return bvh_cut_float(v, 1 - bvh_sign(v));
 }
 
-/* The same for any v. */
+/* The same for any v, by nextafterf below the smallest normal float. */
 static inline float bvh_float_below(double v)
 {
     if (fabs(v) < BVH_CUT_LEAST)

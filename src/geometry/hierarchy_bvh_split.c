@@ -1,6 +1,8 @@
 /* One split of the bvh builder: bins, the cheapest split plane, the partition, and the median split. */
 #include "geometry/hierarchy_bvh.h"
 
+/* Just below 1, so that the last centre is in the last bin and not beyond it, whatever the rounding. */
+#define BELOW_ONE 0.99999f
 #define FLAT 1e-30f /* centres within this distance coincide: the width of a bin could not be inverted */
 
 static bvh_range empty_range(uint32_t first)
@@ -9,7 +11,7 @@ static bvh_range empty_range(uint32_t first)
     return r;
 }
 
-/* There are never more bins than references: they would give no information. */
+/* Uses fewer bins for few references: more bins than references would distinguish nothing. */
 void bvh_bins_begin(bvh_bins *s, const bvh_range *range)
 {
     uint32_t wanted = 4 + range->count / 8;
@@ -17,7 +19,7 @@ void bvh_bins_begin(bvh_bins *s, const bvh_range *range)
     for (int axis = 0; axis < 3; axis++) {
         float extent = range->centers.high[axis] - range->centers.low[axis];
         s->base[axis] = range->centers.low[axis];
-        s->scale[axis] = extent > FLAT ? 0.99999f * (float)s->count / extent : 0.0f;
+        s->scale[axis] = extent > FLAT ? BELOW_ONE * (float)s->count / extent : 0.0f;
         for (int i = 0; i < s->count; i++) {
             s->box[axis][i] = bvh_box_empty();
             s->members[axis][i] = 0;

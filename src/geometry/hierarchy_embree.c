@@ -31,8 +31,9 @@ static int facing_of(const mesh *m, const mesh_ray *ray, uint32_t triangle)
     return vec3_dot(normal, ray->direction) < 0.0 ? FACING_FRONT : FACING_BACK;
 }
 
-/* Rejects hits that the ray does not look for. For QUERY_ALL it reports each hit and rejects it too, so that the search
- * continues. Only single rays are traced, so that Embree passes one ray and one hit. */
+/* Rejects hits on the ray's own triangle and on sides that the query excludes. For QUERY_ALL it reports each hit and
+ * rejects it too, so that the search continues. Only single rays are traced, so that Embree passes one ray and one
+ * hit. */
 static void filter(const struct RTCFilterFunctionNArguments *p)
 {
     const query *q = (const query *)p->context;

@@ -7,7 +7,8 @@
  * the hits are bit-identical. */
 #include "geometry/hierarchy_boxes.h"
 
-enum { LANES = 8, GROUPS = TOGETHER / LANES, ALONE = 6 };
+enum { LANES = 8, GROUPS = TOGETHER / LANES };
+enum { ALONE = 6 /* at most this many rays continue one by one: they would fill less than one group */ };
 
 typedef double double8 __attribute__((vector_size(64)));
 typedef int64_t int8x64 __attribute__((vector_size(64)));
@@ -168,8 +169,8 @@ static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, con
     return count;
 }
 
-/* Updates t_farthest, the largest distance that any ray still looks for; it only decreases. Non-negative floats sort by
- * their bits, and the maximum of integers is independent of the order. */
+/* Updates t_farthest, the largest distance at which a hit of any ray could still be nearer than its best one; it only
+ * decreases. Non-negative floats sort by their bits, and the maximum of integers is independent of the order. */
 static void update_farthest(packet *p)
 {
     int32_t bits[TOGETHER], farthest = 0;
@@ -287,7 +288,8 @@ ALWAYS_INLINE int8x64 consider_together(packet *p, int i, int8x64 mask, const pa
     return better;
 }
 
-/* Updates the float limits of eight rays from the exact ones; a finished ray gets a limit that nothing is below. */
+/* Updates the float limits of eight rays from the exact ones; a finished ray gets the limit 0, which no box or triangle
+ * is below. */
 ALWAYS_INLINE void update_limits(packet *p, int group)
 {
     for (int k = 0; k < LANES; k++) {
@@ -454,7 +456,7 @@ static int ray_class(const ray_query *q)
 
 void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int count, enum query_mode mode)
 {
-    enum { KINDS = 24, FEW = 12 };
+    enum { FEW = 12 /* fewer coherent rays than this are traversed one by one */ };
     packet p;
     ray_query *coherent[TOGETHER];
     bool taken[TOGETHER] = {false};

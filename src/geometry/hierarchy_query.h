@@ -18,12 +18,13 @@
 
 enum query_mode { QUERY_NEAREST, QUERY_ANY, QUERY_ALL, QUERY_BOXES };
 
-/* A direction is scaled so that its largest component is 1..2. A component smaller than PARALLEL counts as parallel to
- * its plane: within the reach of coordinates such a ray moves across the plane by less than PARALLEL_MARGIN. */
+/* A direction is scaled so that its largest component is 1..2. A ray with a component smaller than PARALLEL counts as
+ * parallel to the plane across that axis: over a length of 1e10, ten times the largest coordinate (MESH_FAR), it moves
+ * across the plane by no more than PARALLEL_MARGIN. */
 #define PARALLEL 1e-30
 #define PARALLEL_MARGIN 1e-20
-#define ORIGIN_FAR 1e18
-#define BOX_MARGIN 0x1p-40
+#define ORIGIN_FAR 1e18    /* rays from beyond it hit nothing; far from overflow in single precision */
+#define BOX_MARGIN 0x1p-40 /* relative; far wider than the rounding error of a box distance */
 
 /* t is measured along a direction whose largest component is scaled into 1..2 by a power of two: exact, and far from
  * overflow. */

@@ -2,7 +2,7 @@
  * the rounding error, and part of its inside is between t_min and the best hit. */
 #include "geometry/hierarchy_query.h"
 
-#define SPHERE_MARGIN 0x1p-20
+#define SPHERE_MARGIN 0x1p-20 /* relative; wider than the rounding of centre and radius to floats */
 
 /* The spheres on the stack: per level at most all children of one node. */
 typedef struct sphere_pending {

@@ -181,8 +181,9 @@ void instance_set_destroy(instance_set *f)
     free(f);
 }
 
-/* Is the point inside the mesh: is the first hit a back and not a front, along a direction that is not an axis or a
- * diagonal? Where a back and a front coincide (copies that touch, or an edge), the hits after them decide. */
+/* True if the point is inside the mesh: the first hit along a fixed direction is a back and not a front. The direction
+ * is neither an axis nor a diagonal, so that a ray seldom hits an edge of a regular mesh. Where a back and a front
+ * coincide (copies that touch, or an edge), up to the share of mesh_changes_kernel.c, the hits after them decide. */
 static bool is_inside(const instance_set *f, uint64_t bit, double reach, vec3 point)
 {
     instance_ray ray = {.origin = point,

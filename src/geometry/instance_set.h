@@ -29,8 +29,8 @@ typedef struct instance_set {
     size_t instance_count;
     mesh *proxies;                  /* one triangle spanning the bounds of each instance; NULL for a single instance */
     hierarchy *top;                 /* over the proxies */
-    uint64_t primitives;            /* sets: of all meshes ... */
-    uint64_t closed, open_surfaces; /* ... and of either kind */
+    uint64_t primitives;            /* sets of primitives: all meshes ... */
+    uint64_t closed, open_surfaces; /* ... and separately the closed meshes and the open surfaces */
     int lowest;                     /* the lowest priority index of a mesh */
     uint64_t closed_under[PRIMITIVES_MAX + 1]; /* by priority index: the closed meshes below it */
     int lowest_closed;                         /* the lowest priority index of a closed mesh; INT_MAX for none */
@@ -123,7 +123,8 @@ typedef struct instance_kernels {
     /* The set of primitives after all crossings of wanted meshes in t_min < t <= t_max; the bits of crossed open
      * surfaces are set. */
     uint64_t (*cross)(const instance_set *f, const instance_ray *ray);
-    /* Calls found for every crossing of wanted meshes in t_min < t <= t_max, hidden or not, in no particular order. */
+    /* Calls `found` for every crossing of wanted meshes in t_min < t <= t_max, hidden or not, in no particular
+     * order. */
     void (*each)(const instance_set *f, const instance_ray *ray, instance_found *found, void *context);
 } instance_kernels;
 

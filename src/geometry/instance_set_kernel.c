@@ -33,7 +33,8 @@ static vec3 direction_in(const instanced_mesh *p, vec3 d)
     return p->scaled ? vec3_make(turned.x / p->scale.x, turned.y / p->scale.y, turned.z / p->scale.z) : turned;
 }
 
-/* Converts an error bound across a face's triangle into one along the ray. */
+/* Converts an error bound across a face's triangle into one along the ray: divides it by the cosine of incidence, of
+ * which the minimum keeps the bound finite at grazing incidence. */
 static double along_ray(const instance_set *f, const instance_ray *ray, int64_t face, double error)
 {
     const instanced_mesh *p = &f->parts[f->by_primitive[mesh_face_primitive(face)]];
@@ -43,7 +44,7 @@ static double along_ray(const instance_set *f, const instance_ray *ray, int64_t 
                b = instance_set_vertex_point(p, copy, tri.corner[1]),
                c = instance_set_vertex_point(p, copy, tri.corner[2]);
     const vec3 n = vec3_cross(vec3_sub(b, a), vec3_sub(c, a)), d = ray->direction;
-    const double length = vec3_length(n), least = 1e-6 * length * vec3_length(d);
+    const double least_cosine = 1e-6, length = vec3_length(n), least = least_cosine * length * vec3_length(d);
     return error * length / greater(fabs(vec3_dot(n, d)), least);
 }
 
@@ -68,6 +69,7 @@ static double beyond_start(const instance_set *f, const instance_ray *ray)
 static double at_start(const instance_set *f, const instance_ray *ray, const instance_hit *hit)
 {
     const instanced_mesh *p = &f->parts[f->by_primitive[mesh_face_primitive(hit->face)]];
+    /* First a quick test for crossings far from the start, by a share that exceeds every error bound. */
     const double reach = p->reach + sum_of_magnitudes(ray->origin);
     if (ray->start == FACE_NONE || ray->t_min > 0.0 || hit->t * sum_of_magnitudes(ray->direction) > 0x1p-20 * reach)
         return 0.0;

@@ -23,7 +23,7 @@ static vec3 mix(vec3 a, vec3 b, vec3 c, double u, double v)
  * al., "The Iray light transport simulation and rendering system", 2017, A.3). All are unit vectors; d . g < 0. */
 static vec3 bent_normal(vec3 n, vec3 g, vec3 d)
 {
-    const double least = 0.01;
+    const double least = 0.01; /* sine of the least angle of a reflected ray with the triangle, 0.6 degrees */
     const vec3 mirrored = vec3_sub(d, vec3_scale(n, 2.0 * vec3_dot(d, n)));
     const double above = vec3_dot(mirrored, g);
     if (above >= least)
@@ -40,6 +40,7 @@ static vec3 smooth_normal(const instanced_mesh *p, mesh_triangle tri, double u, 
                c = instance_set_vertex_normal(p, tri.corner[2]);
     vec3 n = mix(a, b, c, u, v);
     const double length = vec3_length(n), side = vec3_dot(n, g);
+    /* Unit normals at the corners that cancel give no direction. */
     if (!(length > 1e-12) || side == 0.0)
         return g;
     n = vec3_scale(n, (side < 0.0 ? -1.0 : 1.0) / length); /* on the ray's side, like the geometric normal */
@@ -91,7 +92,7 @@ static void surface_at(const instance_set *f, const ray_batch *rays, const insta
     const vec3 n = smooth && p->triangles->normals ? smooth_normal(p, tri, hit->u, hit->v, g, d) : g;
     s->px[i] = at.x, s->py[i] = at.y, s->pz[i] = at.z;
     s->nx[i] = n.x, s->ny[i] = n.y, s->nz[i] = n.z;
-    s->cos_i[i] = greater(-vec3_dot(d, n), 1e-12);
+    s->cos_i[i] = greater(-vec3_dot(d, n), 1e-12); /* above 0, also if rounding reverses its sign */
     s->error[i] = POINT_ERROR * (fabs(o.x) + fabs(o.y) + fabs(o.z) + p->reach);
     s->face[i] = hit->face;
     if (!more)

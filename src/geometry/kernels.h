@@ -47,7 +47,7 @@ void KERNEL(mesh_sets_closely)(const scene_geometry *a, const ray_batch *rays, i
                                int64_t priority_index, uint64_t wanted, double low, double high, uint64_t *before,
                                uint64_t *after);
 
-/* Calls found for the crossings of mesh p that are close to t on column k (BOUNDARY_CLOSE), hidden or not. */
+/* Calls `found` for the crossings of mesh p that are close to t on column k (BOUNDARY_CLOSE), hidden or not. */
 void KERNEL(mesh_each_near)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, int p,
                             double t, instance_found *found, void *context);
 

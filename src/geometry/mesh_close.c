@@ -38,7 +38,7 @@ static int compare(const void *a, const void *b)
 
 static void sort(half_edge *edges, size_t count)
 {
-    enum { SHORT = 24 };
+    enum { SHORT = 24 }; /* up to this length insertion sort; a vertex usually has about six edges */
     if (count > SHORT) {
         qsort(edges, count, sizeof *edges, compare);
         return;

@@ -15,8 +15,8 @@ status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why);
 status mesh_close(mesh *m, diagnostic *why);
 
 /* Triangles of a mesh without a hole. Half-edge 3 t + k runs from corner k of triangle t to the next corner; mates[] is
- * the half-edge on its other side, UINT32_MAX in triangles that join nothing. queue and turned have room for each
- * triangle. */
+ * the half-edge on its other side, UINT32_MAX in a triangle with two equal corners, which has no neighbours. queue and
+ * turned have room for each triangle. */
 typedef struct mesh_neighbours {
     const uint32_t *same, *mates;
     uint32_t *queue;

@@ -74,8 +74,8 @@ static void next_of_hollow(int n, int64_t priority_index, int64_t outside, int64
     }
 }
 
-/* Adds `many` primitives, from number `first` on, to the sets just before and just after t, and to the set of those
- * whose interval overlaps the range in between; the first call initialises the sets. */
+/* Adds `many` primitives, from number `first` on, to the sets just before and just after t, and to the set of
+ * primitives whose interval overlaps the range in between; the first call initialises the sets. */
 ALWAYS_INLINE void sets_around(int n, int first, int many, ray_scratch *restrict s, hit_batch *restrict c)
 {
     /* VECTORISE */
@@ -164,7 +164,7 @@ static void mark_attention(const scene_geometry *a, int n, const ray_scratch *re
     for (int i = 0; i < n; i++) {
         const int64_t hit = -(int64_t)(c->hit_primitive[i] >= 0);
         const uint64_t changed = c->inside_before[i] ^ c->inside_after[i];
-        /* 0 if all of these are only the crossed bit; gcc vectorises variable shifts to the right only */
+        /* 0 if the sets differ only in the crossed primitive's bit; gcc vectorises variable shifts to the right only */
         const uint64_t shifted = changed >> (uint64_t)(c->hit_primitive[i] & hit);
         const uint64_t others = (s->near[i] ^ changed) | (changed & (changed - 1)) | (shifted ^ 1);
         attention[i] = (~mask_same((int64_t)others, 0) | mask_same(c->before[i], c->after[i]) | doubt) & hit;

@@ -32,7 +32,8 @@ static size_t flat_count(const solid_shape *s)
     return count;
 }
 
-/* Are the planes equal up to rounding? A sliver without a normal counts as equal. */
+/* True if the planes are equal up to rounding: the normals within 1.4e-6 rad (a cosine of 1 - 1e-12), the distances
+ * from the origin within a share of 1e-9. A sliver without a normal (NaN) counts as equal. */
 static bool is_same_plane(flat a, flat b)
 {
     const double same = vec3_dot(a.n, b.n), slack = 1e-9 * (1.0 + fabs(a.at));

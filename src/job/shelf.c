@@ -16,7 +16,7 @@ static size_t triangles_of(const scene *s)
     return sum;
 }
 
-/* True if the scene has all meshes that the shelf could share. */
+/* True if the scene already has all meshes that the cache could provide. */
 static bool is_whole(const scene *s)
 {
     bool whole = true;
@@ -25,7 +25,7 @@ static bool is_whole(const scene *s)
     return whole;
 }
 
-/* A full shelf is cleared: the cells of a study repeat in cycles, so no replacement order is better than another. */
+/* A full cache is cleared: the cells of a study repeat in cycles, for which no replacement order is better. */
 static void keep(shelf *s, const scene *setting)
 {
     size_t triangles = triangles_of(setting);

@@ -1,5 +1,5 @@
 /* The mesh cache: meshes of recently loaded scenes, so that a scene that is loaded again need not rebuild its triangles
- * and hierarchies. Ownership: a shelf owns copies of scenes, which share their meshes; shelf_clear releases them. */
+ * and hierarchies. Ownership: the cache owns copies of scenes, which share their meshes; shelf_clear releases them. */
 #pragma once
 
 #include "scene/model/open.h"
@@ -12,6 +12,6 @@ typedef struct shelf {
     size_t count;
 } shelf;
 
-/* scene_load_until that takes available meshes from the shelf and adds newly built ones to it. */
+/* scene_load_until that uses the meshes of the cache and adds newly built ones to it. */
 status shelf_load(shelf *s, scene *setting, const load_watch *watch, diagnostic *why);
 void shelf_clear(shelf *s);

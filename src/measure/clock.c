@@ -3,7 +3,7 @@
 
 #include <time.h>
 
-enum { QUALITY_STEPS = 200 };
+enum { QUALITY_STEPS = 200 };                     /* steps of a clock, of which the smallest is reported */
 static const int64_t quality_limit_ns = 20000000; /* time limit for one clock: a coarse one may tick only every 10 ms */
 
 static int64_t read_ns(clockid_t clock)

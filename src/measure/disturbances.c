@@ -153,6 +153,7 @@ void usage_disturbances(double sample_s, void (*line)(void *context, const char 
     nanosleep(&pause, NULL);
     usage passed = usage_since(&before);
     double share = usage_others_share(&passed);
+    /* Less is within one tick of /proc/stat: 10 ms of half a second on one unit. */
     if (!isnan(share) && share >= 0.02)
         say(&to, "others use %ld%% of the machine", lround(100.0 * share));
 }

@@ -33,6 +33,8 @@ static double student_expanded(double v)
 
 double student_t_975(size_t degrees_of_freedom)
 {
+    /* From 200 degrees of freedom on the omitted terms are of the order of 200^-5 = 3e-12; 60 halvings of 0 .. pi/2
+     * reach a double's last place. */
     enum { EXPANDED_FROM = 200, BISECTIONS = 60 };
     if (degrees_of_freedom == 0)
         return NAN;

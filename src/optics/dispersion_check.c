@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
+/* Beyond every real medium at visible wavelengths: an index outside is a mistake in the coefficients. */
 static const double index_low = 0.1, index_high = 100.0;
 
 /* The valid numbers of coefficients: from `first` in steps of `step`, up to `most`. */

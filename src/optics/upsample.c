@@ -12,7 +12,7 @@ enum {
 };
 
 static const double SATURATED = 0x1p60;   /* sigmoid(+-SATURATED) is 1 and 0 exactly */
-static const double CLOSE_ENOUGH = 1e-20; /* square of a distance in CIELAB */
+static const double CLOSE_ENOUGH = 1e-20; /* square of a distance in CIELAB: 1e-10, far below a visible difference */
 
 /* The contribution of each wavelength to X/Xn, Y/Yn, Z/Zn of a surface under D65; each row of weights sums to 1. */
 typedef struct daylight {
@@ -102,7 +102,8 @@ static void evaluate(const daylight *d, const double target_f[3], trial *at)
     }
 }
 
-/* Solves (J'J + damping diag(J'J)) step = -J' distance by a Cholesky factorisation. */
+/* Solves (J'J + damping diag(J'J)) step = -J' distance by the Cholesky factorisation L D L'; a tiny addend keeps the
+ * pivots above 0. */
 static void damped_step(const trial *at, double damping, double step[3])
 {
     double a[3][3], b[3];
@@ -118,7 +119,7 @@ static void damped_step(const trial *at, double damping, double step[3])
     }
     for (int i = 0; i < 3; i++)
         a[i][i] += damping * a[i][i] + 1e-300;
-    for (int j = 0; j < 3; j++) { /* a = L D L' */
+    for (int j = 0; j < 3; j++) { /* the factorisation */
         for (int i = j + 1; i < 3; i++) {
             double factor = a[i][j] / a[j][j];
             for (int k = j + 1; k <= i; k++)
@@ -138,7 +139,7 @@ static void damped_step(const trial *at, double damping, double step[3])
  * a step that does not reduce the distance (or is NaN) is rejected. */
 static void fit(const daylight *d, const double target_f[3], trial *best)
 {
-    double damping = 1e-3;
+    double damping = 1e-3; /* Marquardt's start, less after a success and more after a rejection */
     evaluate(d, target_f, best);
     for (int n = 0; n < STEPS_MAX && best->square > CLOSE_ENOUGH; n++) {
         double step[3];

@@ -1,4 +1,4 @@
-/* The JSON writer, and jansson values of reals, texts and diagnostics. */
+/* The JSON writer, and the conversion of reals, texts and diagnostics to jansson values. */
 #include "report/json.h"
 #include "base/number.h"
 #include <math.h>

@@ -162,20 +162,20 @@ static void write_roff(FILE *stream, const char *text)
 }
 
 static const char *const group_titles[PARAM_GROUP_COUNT] = {
-    [PARAM_RENDER] = "How it is rendered",
+    [PARAM_RENDER] = "Rendering",
     [PARAM_CAMERA] = "Camera",
     [PARAM_BACKGROUND] = "Background",
-    [PARAM_MESH] = "A mesh, by its name",
-    [PARAM_TEXTURE] = "A texture, by its name",
-    [PARAM_LIGHT] = "A light, by its name",
-    [PARAM_MATERIAL] = "A material, by its name, or that of one solid, by the solid's",
-    [PARAM_SOLID] = "A solid, by its name",
+    [PARAM_MESH] = "Meshes, by name",
+    [PARAM_TEXTURE] = "Textures, by name",
+    [PARAM_LIGHT] = "Lights, by name",
+    [PARAM_MATERIAL] = "Materials, by name; or by a solid's name, for that solid only",
+    [PARAM_SOLID] = "Solids, by name",
 };
 
 static void write_shapes(FILE *stream)
 {
     const shape_rule *rule;
-    fprintf(stream, ".SS The shape of a solid, in its own frame\n");
+    fprintf(stream, ".SS Shapes of solids, in the solid's frame\n");
     for (int k = 0; (rule = shape_of_kind((shape_kind)k)); k++) {
         fprintf(stream, ".TP\n.B %s\n", rule->word);
         write_roff(stream, rule->meaning);

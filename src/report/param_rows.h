@@ -1,17 +1,17 @@
-/* The parameter table as text, one line a parameter; as JSON, which the page and `cuvette params --json` read; and as
- * roff for the manual page. The lines are collected in param_lines.c. */
+/* The parameter table as text, one line per parameter; as JSON, for the page and `cuvette params --json`; and as roff
+ * for the manual page. param_lines.c collects the lines. */
 #pragma once
 
 #include "scene/model/params.h"
 #include <jansson.h>
 #include <stdio.h>
 
-/* The parameters that a table shows: all there are, or those of a scene with their values, or the few that a word fits.
- * param_lines_release releases what param_lines_collect filled, also after an error. */
+/* The lines of a table: all parameters, or those of a scene with their values, or those that match a filter. Ownership:
+ * param_lines_release frees the lines that param_lines_collect allocated, also after an error. */
 enum { PARAM_PATH_MAX = 400 };
 
 typedef struct param_line {
-    char *path, *value; /* the value is the default where there is no scene */
+    char *path, *value; /* without a scene the value is the default */
     const param *row;
 } param_line;
 
@@ -20,20 +20,21 @@ typedef struct param_lines {
     size_t count;
 } param_lines;
 
-/* filter as below; s and filter may be NULL. */
+/* filter: as for param_rows_print; s and filter may be NULL. */
 status param_lines_collect(const scene *s, const char *filter, param_lines *out, diagnostic *why);
 void param_lines_release(param_lines *all);
 
-/* "render.depth"; "LIGHT.intensity" where the scene gives the name. */
+/* The path of a row, such as "render.depth"; "LIGHT.intensity" for objects, whose names the scene defines. Returns
+ * text. */
 char *param_lines_path(const param *row, char *text, size_t size);
 
-/* The table; with a scene, each of its parameters and the value. filter, unless NULL: only the parameters of that path,
- * group or name, or else those that have the word in their path or meaning; STATUS_BAD_INPUT when there are none.
- * columns: of the terminal, to which meanings are wrapped; 0 leaves them alone. */
+/* Prints the table; with a scene, all its parameters with their values. filter: NULL, or a path, group or name of
+ * parameters, or a word in their path or meaning; STATUS_BAD_INPUT if it matches none. columns: width of the terminal
+ * to which meanings are wrapped; 0: no wrapping. */
 status param_rows_print(FILE *stream, const scene *s, const char *filter, int columns, diagnostic *why);
 
-/* The same as JSON; the caller's. */
+/* The same as JSON; the caller owns *out. */
 status param_rows_json(const scene *s, const char *filter, json_t **out, diagnostic *why);
 
-/* The parameter part of cuvette.1. */
+/* Prints the parameters' section of cuvette.1. */
 void param_rows_manual(FILE *stream);

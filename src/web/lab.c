@@ -1,3 +1,4 @@
+/* The laboratory: start and stop, the contexts of its routes, and the state that it sends to pages. */
 #include "web/lab_private.h"
 #include "base/text.h"
 #include "scene/model/camera.h"

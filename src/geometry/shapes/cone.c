@@ -80,8 +80,8 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
 
 const shape_rule shape_cone = {
     .word = "cone",
-    .meaning = "x^2 + z^2 <= w^2, 0 <= y <= height, where w goes from radius at the base to top_radius, 0 for a point; "
-               "its position is the centre of its base",
+    .meaning = "x^2 + z^2 <= w^2, 0 <= y <= height, where w changes linearly from radius at the base to top_radius, 0 "
+               "for a point; its position is the centre of its base",
     .parameters = WORDS("radius", "top_radius", "height"),
     .curved = true,
     .check = check,

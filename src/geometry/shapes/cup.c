@@ -14,7 +14,7 @@ static status check(const solid_shape *shape, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "make inner_radius smaller than radius, or the cup has no wall",
                         "inner_radius %g is not smaller than radius %g", shape->inner_radius, shape->radius);
     if (shape->floor >= shape->height)
-        return diagnose(why, STATUS_BAD_INPUT, "make floor smaller than height, or the cup holds nothing",
+        return diagnose(why, STATUS_BAD_INPUT, "make floor smaller than height, or the cup has no hollow",
                         "floor %g is not smaller than height %g", shape->floor, shape->height);
     return STATUS_OK;
 }

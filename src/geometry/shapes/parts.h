@@ -9,7 +9,8 @@
 /* A NULL-terminated list of words. */
 #define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* Segments of a round edge: the polygon stays within 8e-5 of its radius of the circle (1 - cos(180 deg / 256)). */
+/* The number of segments of a round edge: the polygon stays within 8e-5 of its radius of the circle (1 - cos(180 deg /
+ * 256)). */
 enum { ROUND_SEGMENTS = 256 };
 
 /* STATUS_BAD_INPUT unless it is finite and above 0. */

@@ -1,5 +1,5 @@
 /* Random draws: a pure function of the seed, pixel, sample, depth and purpose, so that an image does not depend on
- * which worker draws when (design, decision 5). */
+ * which worker draws when. */
 #pragma once
 
 #include "base/random.h"

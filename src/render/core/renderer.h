@@ -1,7 +1,7 @@
 /* The renderer: traces the frames of a scene on a pool of workers. The film depends only on the scene and its
- * parameters (design, decision 5): not on threads, schedule, tile, pinning, batch or instruction set. Ownership: a
- * renderer owns its pool, and may serve many frames and scenes, one at a time; the caller owns a result and releases it
- * with render_result_destroy. No global state: several renderers may run in one process. */
+ * parameters, and not on threads, schedule, tile, pinning, batch or instruction set. Ownership: a renderer owns its
+ * pool, and may serve many frames and scenes, one at a time; the caller owns a result and releases it with
+ * render_result_destroy. No global state: several renderers may run in one process. */
 #pragma once
 
 #include "base/counters.h"

@@ -26,8 +26,8 @@ typedef struct tracer_account {
 /* A batch of rays and its hits. */
 typedef struct tracer_batch {
     ray_scratch scratch;
-    /* hit_primitive is -1 for rays that hit nothing, and less than -1 for rays that ended in a way that only the
-     * integrator knows */
+    /* hit_primitive is -1 for rays that hit nothing, and less than -1 for rays with an end that only the integrator
+     * defines (path.c: a light's sphere) */
     _Alignas(64) hit_batch hits;
     _Alignas(64) double transmitted[ROW];                          /* of shadow rays */
     int list[PRIMITIVES_MAX + 2][ROW], listed[PRIMITIVES_MAX + 2]; /* see sort_by_primitive */

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { STACK_BYTES = 512 * 1024 };
+enum { STACK_BYTES = 512 * 1024 }; /* not the usual 8 MiB: a pool may have a thousand threads */
 
 typedef struct worker {
     worker_pool *owner;

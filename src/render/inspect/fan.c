@@ -69,6 +69,7 @@ static void cross_axis(const fan *f, fan_ray *ray)
 {
     const vec3 from_axis = vec3_sub(ray->exit_point, f->from);
     const double off = vec3_dot(from_axis, f->across), slope = vec3_dot(ray->exit_direction, f->across);
+    /* A smaller slope is rounding noise of a ray parallel to the axis. */
     const double t = fabs(slope) > 1e-12 ? -off / slope : -1.0;
     ray->meets_axis = t > 0.0 && t <= ray->reach;
     ray->axis_point = vec3_add(ray->exit_point, vec3_scale(ray->exit_direction, t));
@@ -112,7 +113,7 @@ static bool cross(const fan *f, const fan_ray *a, const fan_ray *b, vec3 *at)
     const double dx = vec3_dot(a->exit_direction, f->axis), dy = vec3_dot(a->exit_direction, f->across);
     const double ex = vec3_dot(b->exit_direction, f->axis), ey = vec3_dot(b->exit_direction, f->across);
     const double turn = dx * ey - dy * ex;
-    if (fabs(turn) < 1e-12)
+    if (fabs(turn) < 1e-12) /* parallel up to rounding */
         return false;
     const double t = (wx * ey - wy * ex) / turn, s = (wx * dy - wy * dx) / turn;
     *at = vec3_add(a->exit_point, vec3_scale(a->exit_direction, t));
@@ -152,6 +153,7 @@ static void find_focus(fan *f)
         right = vec3_add(right, vec3_sub(p, vec3_scale(d, vec3_dot(d, p))));
     }
     const double size = (double)count * count * count, det = vec3_dot(row[0], vec3_cross(row[1], row[2]));
+    /* det / count^3 is of the order of the squared angle between the rays, here 1e-8 rad. */
     if (count < 2 || det < 1e-16 * size)
         return;
     const vec3 x = vec3_scale(vec3_add(vec3_scale(vec3_cross(row[1], row[2]), right.x),

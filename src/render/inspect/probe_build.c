@@ -65,7 +65,7 @@ static void put(ray_queue *q, const ray_record *r)
     q->start[0] = r->start, q->inside[0] = r->inside, q->sample_key[0] = 0;
 }
 
-/* Traces a batch of one ray; brought is the radiance that it added to the film. */
+/* Traces a batch of one ray; brought: the radiance that the ray added to the film. */
 static void run_one(probe *p, int depth, double brought[3])
 {
     int64_t before[3];

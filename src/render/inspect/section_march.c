@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 /* Largest number of halvings of a piece of boundary; a piece that deviates from a straight line by less than STRAIGHT
- * (share of a cell) is not halved. */
+ * (share of a cell) is not halved. A junction is enclosed to 2^-JUNCTION_STEPS of a cell. */
 enum { HALVINGS = 9, JUNCTION_STEPS = 12 };
 #define STRAIGHT 1e-4
 
@@ -18,6 +18,7 @@ static void refine(cutter *c, section_point from, section_point to, int a, int b
     if (halvings == 0 || length2 < STRAIGHT * STRAIGHT * cell * cell)
         return;
     const section_point middle = between(from, to, 0.5);
+    /* A boundary that bulges by up to a semicircle (half of its chord) is between these two points. */
     const section_point left = {middle.u - 0.7 * dv, middle.v + 0.7 * du},
                         right = {middle.u + 0.7 * dv, middle.v - 0.7 * du};
     if (medium_at(c, left) != a || medium_at(c, right) != b)

@@ -10,7 +10,7 @@
  *
  * Order of calls in a frame: prepare; each step, by all workers and then by one; on each worker that gets a piece
  * begin, then for its pieces piece, and for its batches intersect, background, place and shade; finish; release. The
- * image must not depend on the order or thread of these calls (design, decision 5). Ownership: what prepare returns
+ * image must not depend on the order or thread of these calls. Ownership: what prepare returns
  * belongs to the frame until release; what begin stores in t->own belongs to the worker, is kept for later frames of
  * the same integrator, and is released by end. */
 #pragma once

@@ -77,7 +77,7 @@ static raster_hit hit_triangle(const rasterised_part *p, const screen_triangle *
     const vec3 h = vec3_cross(d, ac), q = vec3_cross(ab, a);
     const double size = vec3_dot(ab, h);
     double u = -vec3_dot(a, h) / size, v = vec3_dot(d, q) / size;
-    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen edge-on */
+    if (!(fabs(u) < 1e6 && fabs(v) < 1e6)) /* seen edge-on: the weights are rounding noise, so take the centre */
         u = v = 1.0 / 3.0;
     if (u < 0.0 || v < 0.0 || u + v > 1.0) {
         const double w = greater(1.0 - u - v, 0.0);
@@ -194,7 +194,7 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     }
     w->number[i] = l->number - 1;
     if (l->number == 0) {
-        const double infinite_length = 1e100;
+        const double infinite_length = 1e100; /* finite, so that a coefficient of 0 gives 0 and not NaN */
         note_nothing(t, i);
         dim(p, q, at, l->before, infinite_length);
         return;

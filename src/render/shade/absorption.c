@@ -41,7 +41,7 @@ static void add_depths(tracer *t)
 static void make_room(void *context)
 {
     tracer *t = context;
-    const double infinite_length = 1e100;
+    const double infinite_length = 1e100; /* paths that leave the scene have 1e120 (medium_segment) */
     for (int k = 0; k < t->batch.scratch.segments->count; k++)
         if (t->batch.scratch.segments->segment[k].priority_index == 0 &&
             t->batch.scratch.segments->segment[k].length > infinite_length)

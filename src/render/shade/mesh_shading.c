@@ -105,6 +105,7 @@ static void move_to_corner(tracer *t, int corner, const instanced_mesh *part)
         const vec3 d = length > 0.0 ? vec3_scale(to_corner, 1.0 / length) : vec3_make(g->dx[k], g->dy[k], g->dz[k]);
         c->points.px[k] = at.x, c->points.py[k] = at.y, c->points.pz[k] = at.z;
         c->points.nx[k] = n.x, c->points.ny[k] = n.y, c->points.nz[k] = n.z;
+        /* above 0, also at a corner that is seen from behind */
         c->points.cos_i[k] = -vec3_dot(d, n) > 1e-12 ? -vec3_dot(d, n) : 1e-12;
         c->dx[k] = d.x, c->dy[k] = d.y, c->dz[k] = d.z;
     }

@@ -8,7 +8,7 @@
 #include "optics/interface.h"
 #include "render/core/film.h"
 
-/* Largest integer exponent that is computed by repeated squaring. */
+/* Largest integer exponent that is computed by repeated squaring, with a relative error below 4.6e-13. */
 enum { SHININESS_SQUARED_MAX = 4096 };
 
 /* Computes base[i]^exponent in place. Integer exponents by repeated squaring (relative error below exponent half-ulps);

@@ -22,6 +22,7 @@ void texture_colors(tracer *t, const primitive *surface)
                                                    t->meshes->points.uv_per_length[k]}
                                : primitive_mapping(surface, g->points.face[k],
                                                    t->surface.texture_at ? t->surface.texture_at[k] : point, size);
+        /* An isotropic filter: at grazing incidence the footprint is limited to 20 pixel widths, or all would blur. */
         const double cosine = g->points.cos_i[k] > 0.05 ? g->points.cos_i[k] : 0.05;
         const vec3 c = texture_sample(t->surface.mat->img, m.u, m.v, pixel_width(p, point) / cosine * m.per_length);
         g->cr[k] *= c.x, g->cg[k] *= c.y, g->cb[k] *= c.z;

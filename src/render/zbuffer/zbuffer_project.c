@@ -84,7 +84,7 @@ static bool is_curved(const zbuffer *z, const rasterised_part *p, uint32_t trian
         return false;
     const mesh_triangle tri = m->triangles[triangle];
     const vec3 n = m->normals[tri.corner[0]];
-    const double least = 1.0 - 1e-9;
+    const double least = 1.0 - 1e-9; /* the cosine of 4.5e-5 rad: equal up to the rounding of stored normals */
     return !(vec3_dot(n, m->normals[tri.corner[1]]) > least && vec3_dot(n, m->normals[tri.corner[2]]) > least);
 }
 

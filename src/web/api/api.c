@@ -1,3 +1,4 @@
+/* Helpers of the API's handlers: replies, values of a request's body and query, and the current image. */
 #include "web/api/api.h"
 #include "report/json.h"
 

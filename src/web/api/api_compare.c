@@ -86,7 +86,7 @@ static status take_pair(call *c, reference_pair **pair, const shared_image **b)
 {
     c->refused = 409;
     const shared_image *a =
-        reference_image_take(c->l->reference_image); /* fails early: without A there is no point in waiting for B */
+        reference_image_take(c->l->reference_image); /* fail early: without A the newest image is not needed */
     shared_image_release(a);
     if (!a)
         return refuse_without_reference(c, 409);

@@ -93,7 +93,7 @@ status api_grab(call *c)
         return out_of_memory(&c->why);
     lab_camera_ray(current, x, y, &origin, &direction);
     scene_destroy(current);
-    c->refused = 409; /* a conflict with the current state is not a bad request */
+    c->refused = 409; /* a conflict with the current state is 409, not 400 */
     const status code =
         live_grab(render_worker_live(c->l->render_worker), origin, direction, reach, &hand, &where, &c->why);
     if (code == STATUS_OK && hand == LIVE_MISSED)

@@ -56,7 +56,7 @@ static bool list_one(void *context, const char *name, const char *file)
         study_destroy(s);
         s = NULL;
     } else {
-        json_object_set_new(list->names, name, json_string(file)); /* a name that is not UTF-8 names no study */
+        json_object_set_new(list->names, name, json_string(file)); /* skip names that are not UTF-8 */
     }
     json_array_append_new(list->studies, study_json(list->l, name, file, s, &why));
     study_destroy(s);

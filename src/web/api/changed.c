@@ -1,3 +1,4 @@
+/* The parameters in which two scenes differ, as JSON. */
 #include "web/api/api.h"
 
 #include "base/text.h"

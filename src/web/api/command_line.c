@@ -1,3 +1,4 @@
+/* The command line that renders the film of the scene document. */
 #include "web/api/api.h"
 #include "base/text.h"
 #include "base/text_writer.h"

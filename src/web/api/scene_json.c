@@ -1,3 +1,4 @@
+/* The JSON of GET /api/scene: objects, outlines of solids, shapes, and rows of parameters. */
 #include "web/api/api.h"
 #include "geometry/shapes/shape.h"
 #include "report/json.h"
@@ -57,7 +58,7 @@ static json_t *outline_json(const solid_shape *shape)
     return parts;
 }
 
-/* {name of a solid: outline} of those that have one and can be seen. */
+/* {name of a solid: outline}, for visible solids whose shape has one. */
 static json_t *outlines_json(const scene *s)
 {
     json_t *all = json_object();
@@ -67,7 +68,7 @@ static json_t *outlines_json(const scene *s)
     return all;
 }
 
-/* Every shape that there is. */
+/* All shapes. */
 static json_t *shapes_json(void)
 {
     json_t *list = json_array();

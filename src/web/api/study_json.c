@@ -1,3 +1,4 @@
+/* Studies as JSON: axes of the grid, summaries, rows, and wall times of two runs. */
 #include "web/api/study_json.h"
 #include "base/text_writer.h"
 #include "report/json.h"

@@ -85,9 +85,8 @@ status http_start(const http_settings *settings, http_server **out, diagnostic *
 void http_stop(http_server *server);
 
 int http_port(const http_server *server);
-const char *http_token(const http_server *server); /* 128 random bits as 32 hexadecimal digits */
-const char *
-http_address(const http_server *server); /* "http://127.0.0.1:PORT/?token=TOKEN": grants access to whoever reads it */
+const char *http_token(const http_server *server);   /* 128 random bits as 32 hexadecimal digits */
+const char *http_address(const http_server *server); /* "http://127.0.0.1:PORT/?token=TOKEN": a secret: grants access */
 
 /* --- a request --- */
 

@@ -54,7 +54,7 @@ static bool is_json(const char *type)
 static void too_large(http_request *q)
 {
     if (!q->reply.response)
-        http_reply_error(&q->reply, 413, "the request's body is too large", "send less at once");
+        http_reply_error(&q->reply, 413, "the request's body is too large", "send a smaller body");
 }
 
 /* Runs before the body, so that the body of a refused request is not stored. */

@@ -1,3 +1,4 @@
+/* The steps of the adaptive resolution, with hysteresis. */
 #include "web/live/adaptive_resolution.h"
 
 static const int shrinks[] = {1, 2, 3, 4, 6, 8, 12, 16};

@@ -85,7 +85,7 @@ static void withdraw(live *l, const grab_request *q)
         *link = q->next;
 }
 
-/* The lock is held, except while waiting. */
+/* The caller holds the lock, except while waiting. */
 static status wait_for(live *l, grab_request *q, diagnostic *why)
 {
     const struct timespec until = clock_after(LIVE_WAIT_S);
@@ -99,7 +99,7 @@ static status wait_for(live *l, grab_request *q, diagnostic *why)
                     l->stopped ? "the laboratory is closing" : "the slime is not being simulated");
 }
 
-/* Checks that the slime can be grabbed. The lock is held. */
+/* Checks that the slime can be grabbed. The caller holds the lock. */
 static status check_on(const live *l, diagnostic *why)
 {
     if (l->mode == LIVE_IS_OFF || !l->account.has_slime)
@@ -133,7 +133,7 @@ status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, 
     return code;
 }
 
-/* The lock is held. */
+/* The caller holds the lock. */
 static status find_hand(live *l, int id, live_hand **out, diagnostic *why)
 {
     for (int i = 0; i < LIVE_HANDS_MAX; i++)
@@ -141,7 +141,7 @@ static status find_hand(live *l, int id, live_hand **out, diagnostic *why)
             *out = &l->held[i];
             return STATUS_OK;
         }
-    return diagnose(why, STATUS_BAD_INPUT, "grab again: the slime may have restarted", "hand %d holds nothing", id);
+    return diagnose(why, STATUS_BAD_INPUT, "grab again: the slime may have restarted", "no hand has the number %d", id);
 }
 
 status live_where(live *l, int hand, vec3 *where, diagnostic *why)
@@ -192,7 +192,7 @@ bool live_is_on(live *l)
     return on;
 }
 
-/* The lock is held. */
+/* The caller holds the lock. */
 static bool is_moving(const live *l)
 {
     const live_account *a = &l->account;

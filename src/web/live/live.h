@@ -1,11 +1,11 @@
-/* The live slime: it moves in the render worker's thread, while hands drag it from other threads. It is off, paused
- * or playing; while it is on, the displayed scene is the scene document with the slime in its live state.
+/* The live slime: it moves in the render worker's thread, while hands drag it from other threads. It is off, paused or
+ * playing; while it is on, the displayed scene is the scene document with the slime in its live state.
  *
  * Threads: functions marked "render worker" are called by the render worker's thread alone, with the snapshot (the
- * render worker's own copy of the scene), which no other thread reads meanwhile; all others are thread-safe.
- * Ownership: live_create creates, live_destroy releases, after live_detach and when no other thread calls any more.
- * Errors: STATUS_BAD_INPUT for invalid requests, and for a body whose simulation diverged: it stays still and
- * reports the error until it is restarted. */
+ * render worker's own copy of the scene), which no other thread reads meanwhile; all others are thread-safe. Ownership:
+ * live_create creates, live_destroy releases, after live_detach and when no other thread calls any more. Errors:
+ * STATUS_BAD_INPUT for invalid requests, and for a body whose simulation diverged: it stops and reports the error until
+ * it is restarted. */
 #pragma once
 
 #include "base/vec3.h"
@@ -73,5 +73,5 @@ status live_advance(live *l, double most_s, bool *state_changed, diagnostic *why
 /* Whether the snapshot's appearance changed since the last call. */
 bool live_take_moved(live *l);
 
-/* Do not pass a snapshot with a live slime to scene_document_share_loaded: its slimes are shaped by hands, not by
- * their time_s. */
+/* A snapshot with a live slime must not be passed to scene_document_share_loaded: its slimes are shaped by hands, not
+ * by their time_s. */

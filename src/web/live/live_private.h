@@ -69,8 +69,8 @@ struct live {
 
 /* --- live_move.c --- */
 
-/* Simulates the wall time since the last call, with at most about most_s of computation. The lock is not held.
- * STATUS_BAD_INPUT: the body diverged. */
+/* Simulates the wall time since the last call, with at most about most_s of computation. The caller does not hold the
+ * lock. STATUS_BAD_INPUT: the body diverged. */
 status live_move_on(live *l, double most_s, diagnostic *why);
 /* Resets the motion's clock and rates. */
 void live_stand_still(live *l);

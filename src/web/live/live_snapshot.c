@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Releases all hands. The lock is held. */
+/* Releases all hands. The caller holds the lock. */
 static void forget_hands(live *l)
 {
     for (int i = 0; i < LIVE_HANDS_MAX; i++)
@@ -120,7 +120,7 @@ void live_detach(live *l)
     l->snapshot = NULL;
 }
 
-/* --- hands; the lock is held --- */
+/* --- hands; the caller holds the lock --- */
 
 static status pick(const live *l, const grab_request *q, size_t *index, motion_place *best, diagnostic *why)
 {
@@ -219,7 +219,8 @@ static status apply_commands(live *l, live_mode *mode, diagnostic *why)
     return must_begin && scene_moves(l->snapshot) ? begin(l, why) : STATUS_OK;
 }
 
-/* Serves grabs and releases; measures afterwards, so that a caller who is answered finds the result in the account. */
+/* Serves grabs and releases; measures afterwards, so that the account already includes the grab when the caller
+ * returns. */
 static void serve_hands(live *l)
 {
     pthread_mutex_lock(&l->lock);

@@ -1,3 +1,4 @@
+/* The choice of the render passes from the measured speed. */
 #include "web/live/passes.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The interface of the render worker for other threads: requests, newest image, state. */
 #include "web/live/render_worker_private.h"
 #include "measure/clock.h"
 #include "scene/model/camera.h"
@@ -51,7 +52,7 @@ const shared_image *render_worker_take(render_worker *p)
     return newest;
 }
 
-/* Waits for the next change; an error where none can come. The lock is held. */
+/* Waits for the next change; an error where none can come. The caller holds the lock. */
 static status wait_for_change(render_worker *p, const struct timespec *until, const char *reason,
                               const char *timeout_text, diagnostic *why)
 {
@@ -88,7 +89,7 @@ live *render_worker_live(render_worker *p)
     return p->live_slime;
 }
 
-/* Whether that generation, or a newer one, is loaded or has failed. The lock is held. */
+/* Whether that generation, or a newer one, is loaded or has failed. The caller holds the lock. */
 static bool is_settled(const render_worker *p, uint64_t min_generation)
 {
     return p->snapshot_generation >= min_generation && (p->snapshot_ready || p->trouble_code != STATUS_OK);
@@ -110,7 +111,7 @@ static status wait_for_scene(render_worker *p, diagnostic *why)
     return code;
 }
 
-/* The snapshot lock is held. */
+/* The caller holds the snapshot lock. */
 static bool snapshot_is_ready(render_worker *p)
 {
     pthread_mutex_lock(&p->lock);

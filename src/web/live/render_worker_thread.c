@@ -9,7 +9,7 @@ void render_worker_notify(render_worker *p)
     p->listener.state_changed(p->listener.context);
 }
 
-/* The lock is held; true if the listener must be called. */
+/* The caller holds the lock; true if the listener must be called. */
 bool render_worker_take_error(render_worker *p, status code, const diagnostic *why)
 {
     const bool differs = code != p->trouble_code || (code != STATUS_OK && strcmp(why->what, p->trouble.what) != 0);

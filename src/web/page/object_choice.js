@@ -1,8 +1,6 @@
 /* The selected object, shared by the list, its details and the image, and the changes to it.
  * exports: createChoice(lab) -> choice
- *   choice.name, choice.object          '' and undefined for none; an object that was just added may not be in the
- *   scene
- *                                       yet
+ *   choice.name, choice.object          '' and undefined for none; a newly added object may not be in the scene yet
  *   choice.choose(name)                 '' clears the selection
  *   choice.on(f)                        f() after another object is selected or the selected one has vanished
  *   choice.add(body)                    POST /api/objects; selects the new object

@@ -137,7 +137,7 @@ function summary(tree) {
   ]);
 }
 
-/* The table shows a Whitted ray tree, which for other rendering methods is not the sum that makes the pixel. */
+/* The table shows a Whitted ray tree, whose sum is not the pixel's value for other rendering methods. */
 function otherwise(lab) {
   const how = lab.param('render.integrator')?.value;
   if (how === 'path')

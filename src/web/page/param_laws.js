@@ -1,9 +1,9 @@
 /* A medium takes its refractive index from `ior`, from a dispersion law with coefficients, or from the catalogue:
- * which rows are in use, and the initial coefficients of a law.
+ * this file decides which rows are in use, and the initial coefficients of a law.
  *
  * exports:
  *   hasLaw(lab, object)                 whether its medium is given by coefficients
- *   whyUnused(lab, object, name)        why that parameter has no effect now; '' if it has
+ *   whyUnused(lab, object, name)        why that parameter has no effect now; '' if it has one
  *   withMedium(lab, object, medium)     {path: value} to set for that medium: a law requires coefficients */
 
 const ABBE_NM = [486.1, 587.6, 656.3];

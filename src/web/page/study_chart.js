@@ -54,7 +54,7 @@ export function createChart({ caption, id }) {
     draw();
   }
 
-  /* The controls are rebuilt only when their choices change: an open list must not close when rows arrive. */
+  /* Rebuilds the controls only when their choices change: an open list must not close when rows arrive. */
   function choices(quantity, x, axes, log) {
     const now = JSON.stringify([what.quantities.map(({ key }) => key), axes, quantity.key, x, log]);
     if (now === barOf) return;

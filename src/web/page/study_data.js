@@ -96,7 +96,7 @@ export function axesFor(cells, paths) {
   return [...some.filter(numeric), ...some.filter((one) => !numeric(one))];
 }
 
-/* Whether the value of one parameter determines that of the other; then it does not distinguish lines. */
+/* Whether the value of one parameter determines that of the other; the other then does not distinguish lines. */
 function follows(cells, path, from) {
   const seen = new Map();
   return cells.every((cell) => {

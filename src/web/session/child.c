@@ -1,3 +1,4 @@
+/* Running another program: collects its output and kills its process group. */
 #include "web/session/child.h"
 #include "base/spawn.h"
 #include "measure/clock.h"

@@ -1,3 +1,4 @@
+/* Figures of a study: their names, scripts and SVG files. */
 #include "web/session/figures.h"
 #include "base/file.h"
 #include "base/text.h"

@@ -1,3 +1,4 @@
+/* Drawing of a study's figures: writes its tables, then runs plots/draw.sh. */
 #include "base/file.h"
 #include "base/text.h"
 #include "study/summary.h"

@@ -72,7 +72,7 @@ static const char *below(const folder *f, const char *real)
     return strncmp(real, f->real, length) == 0 && real[length] == '/' && real[length + 1] ? real + length + 1 : NULL;
 }
 
-/* A missing last part can be created; a dangling link cannot, because it would decide the place. */
+/* A missing last part can be created; a dangling link cannot, because its target would become the file. */
 static bool can_be_made(const char *path, const char *part)
 {
     struct stat about;

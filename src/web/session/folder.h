@@ -26,7 +26,7 @@ status folder_path(const folder *f, const char *name, bool must_exist, char **pa
 char *folder_name(const folder *f, const char *path);
 
 /* A name as the scene in `file` refers to it: relative to the file's folder, absolute where they have no common
- * folder. file: "" stands for a scene in the working directory. */
+ * folder. file: "" is a scene in the working directory. */
 status folder_path_from(const folder *f, const char *name, const char *file, char **path, diagnostic *why);
 
 /* Checks that all files of the scene (textures, environment maps, meshes, scripts) are inside the folder. For files

@@ -1,3 +1,4 @@
+/* The reference image A, and the cached differences between it and other images. */
 #include "web/session/reference_image.h"
 
 #include <pthread.h>
@@ -130,7 +131,7 @@ bool reference_pair_fits(const reference_pair *pair)
     return pair->a->width == pair->b->width && pair->a->height == pair->b->height;
 }
 
-/* The lock is held. */
+/* The caller holds the lock. */
 static status measure_once(reference_pair *pair, measured *m, status (*measure)(reference_pair *pair, diagnostic *why),
                            diagnostic *why)
 {

@@ -1,7 +1,7 @@
 /* The reference image A that pages compare with, kept until it is replaced or cleared, and the differences between A
  * and other images, measured once per pair. Thread-safe; only a caller that needs a measurement waits for it.
- * Ownership: reference_image_create creates, reference_image_destroy releases; images and pairs are
- * reference-counted and released by whoever took them. Errors: STATUS_BAD_INPUT for images that cannot be compared,
+ * Ownership: reference_image_create creates, reference_image_destroy releases; images and pairs are reference-counted
+ * and released by the thread that took them. Errors: STATUS_BAD_INPUT for images that cannot be compared,
  * STATUS_FAILURE for memory. */
 #pragma once
 

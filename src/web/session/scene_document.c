@@ -1,3 +1,4 @@
+/* The scene document: versions, undo and redo stacks, and sharing of loaded data. */
 #include "web/session/scene_document.h"
 #include "scene/model/params.h"
 #include "report/json.h"

@@ -10,13 +10,14 @@
 
 typedef struct scene_document scene_document;
 
-/* Limits of the scene document, so that every render is bounded in memory and time. */
+/* Limits of the scene document, so that every render is bounded in memory and time; 4096 x 4096 pixels. */
 enum { DOCUMENT_PIXELS_MAX = 16777216, DOCUMENT_TRIANGLES_MAX = 4000000, DOCUMENT_UNDO_MAX = 200 };
 #define DOCUMENT_WORK_MAX 1e12 /* pixels * (samples or paths) * wavelengths */
 
 /* Whether a scene is valid, refers to no file outside the folder, and requires a bounded amount of memory and work.
- * scene_document_check inspects the scene itself; scene_document_limit sets limits that hold while it is loaded, for
- * files that its files refer to, and for triangles, which only the files know. files: NULL for no confinement. */
+ * scene_document_check inspects the scene itself; scene_document_limit sets limits for the time of loading: for files
+ * that the scene's files refer to, and for triangles, whose number only the files determine. files: NULL for no
+ * confinement. */
 status scene_document_check(const scene *s, const folder *files, diagnostic *why);
 status scene_document_limit(scene *s, const folder *files, diagnostic *why);
 

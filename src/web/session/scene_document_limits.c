@@ -1,3 +1,4 @@
+/* The limits of the scene document: pixels, work and triangles. */
 #include "web/session/scene_document.h"
 #include "web/live/passes.h"
 #include "scene/model/scene.h"

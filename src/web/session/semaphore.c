@@ -1,3 +1,4 @@
+/* A counting semaphore that can be closed, on a mutex and a condition variable. */
 #include "web/session/semaphore.h"
 
 #include <pthread.h>

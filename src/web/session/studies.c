@@ -1,3 +1,4 @@
+/* The thread that runs a study, and its progress for pages. */
 #include "web/session/studies.h"
 #include "base/float_environment.h"
 #include "base/text.h"
@@ -39,7 +40,7 @@ status studies_create(lab *l, studies **out, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The life lock is held. */
+/* The caller holds the life lock. */
 static void join_thread(studies *st)
 {
     if (!st->started)
@@ -139,7 +140,7 @@ static void *run(void *context)
     return NULL;
 }
 
-/* The life lock is held. Replaces the last study; STATUS_INTERRUPTED while it still runs. */
+/* The caller holds the life lock. Replaces the last study; STATUS_INTERRUPTED while it still runs. */
 static status claim_run(studies *st, study *s, diagnostic *why)
 {
     char *name = strdup(s->name);

@@ -1,3 +1,4 @@
+/* Search for study files and for the folders of their rows. */
 #include "web/session/study_files.h"
 #include "base/text.h"
 #include "scene/file/document.h"
