@@ -1,4 +1,4 @@
-/* Recorded hands: what a script keeps, and what it refuses without being changed. */
+/* Tests of recorded hands: the keys of a script, and the keys that it refuses without being changed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -54,7 +54,7 @@ static void refuse(hand_script *s, const char *hand, hand_key key, const char *w
     assert_int_equal(hand_script_add(s, hand, &key, NULL), STATUS_BAD_INPUT);
 }
 
-static void an_empty_script_ends_at_once(void **state)
+static void an_empty_script_ends_at_time_0(void **state)
 {
     (void)state;
     char path[] = "tug.yaml";
@@ -68,7 +68,7 @@ static void an_empty_script_ends_at_once(void **state)
     hand_script_destroy(NULL);
 }
 
-static void keys_stand_in_their_hands_in_the_order_in_which_they_came(void **state)
+static void keys_are_kept_per_hand_in_the_order_added(void **state)
 {
     (void)state;
     hand_script *s = create();
@@ -95,7 +95,7 @@ static void keys_stand_in_their_hands_in_the_order_in_which_they_came(void **sta
     hand_script_destroy(s);
 }
 
-static void what_a_hand_cannot_do_is_refused(void **state)
+static void impossible_key_sequences_are_refused(void **state)
 {
     (void)state;
     hand_script *s = create();
@@ -114,7 +114,7 @@ static void what_a_hand_cannot_do_is_refused(void **state)
     hand_script_destroy(s);
 }
 
-static void numbers_that_mean_nothing_are_refused(void **state)
+static void invalid_numbers_are_refused(void **state)
 {
     (void)state;
     hand_script *s = create();
@@ -140,7 +140,7 @@ static void numbers_that_mean_nothing_are_refused(void **state)
     hand_script_destroy(s);
 }
 
-static void hands_are_few_and_have_names(void **state)
+static void hands_are_limited_in_number_and_have_valid_names(void **state)
 {
     (void)state;
     hand_script *s = create();
@@ -165,11 +165,11 @@ static void hands_are_few_and_have_names(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_empty_script_ends_at_once),
-        cmocka_unit_test(keys_stand_in_their_hands_in_the_order_in_which_they_came),
-        cmocka_unit_test(what_a_hand_cannot_do_is_refused),
-        cmocka_unit_test(numbers_that_mean_nothing_are_refused),
-        cmocka_unit_test(hands_are_few_and_have_names),
+        cmocka_unit_test(an_empty_script_ends_at_time_0),
+        cmocka_unit_test(keys_are_kept_per_hand_in_the_order_added),
+        cmocka_unit_test(impossible_key_sequences_are_refused),
+        cmocka_unit_test(invalid_numbers_are_refused),
+        cmocka_unit_test(hands_are_limited_in_number_and_have_valid_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
