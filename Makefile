@@ -1,5 +1,5 @@
 # Cuvette. `make help` lists the targets.
-#   make config=debug|release|sanitize|tsan|nocounters [CC=clang] [target]    each has a build folder of its own
+#   make config=debug|release|sanitize|tsan|coverage|nocounters [CC=clang] [target]    each has a build folder of its own
 MAKEFLAGS += --no-builtin-rules
 SHELL := /bin/bash
 config ?= release
@@ -45,9 +45,11 @@ optimize_nocounters := -O3 -DCUVETTE_COUNTERS=0
 optimize_debug      := -O0
 optimize_sanitize   := -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 optimize_tsan       := -O1 -fsanitize=thread
+# Threads share the counters of lines.
+optimize_coverage   := -O1 --coverage -fprofile-update=atomic
 optimize_fuzz       := -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 optimize := $(optimize_$(config))
-$(if $(optimize),,$(error config=$(config) is not one of debug, release, sanitize, tsan, fuzz, nocounters))
+$(if $(optimize),,$(error config=$(config) is not one of debug, release, sanitize, tsan, fuzz, coverage, nocounters))
 
 # The library says which version it is in its header.
 version := $(shell awk '/^.define CUVETTE_VERSION_/ {printf "%s%s", dot, $$3; dot = "."}' src/cuvette.h)
@@ -220,7 +222,8 @@ setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install what the benches compa
 # --- tests ---
 
 # Checks that read the sources; one run of them is enough, whatever the configuration.
-source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh
+source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
+  tests/compile_commands.sh
 scripts := $(filter-out $(source_checks),$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
@@ -232,7 +235,7 @@ selected_scripts := $(if $(only),,$(scripts))
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
 # Random scenes of tests/test_laws.c; fewer under instruments.
-test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER),20,$(if $(filter release,$(config)),10000,500)))
+test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverage,$(config)),20,$(if $(filter release,$(config)),10000,500)))
 
 .PHONY: test
 # What scripts of tests run.
@@ -287,6 +290,20 @@ laws: $(build)/tests/test_laws ## try the laws that every scene keeps on a milli
 	  LAWS_SCENES=10000 xargs -P "$$(nproc)" -I SEED tests/faults/run_seed.sh $(build)/tests/test_laws SEED
 law-faults: ## put known faults into the sources, one after the other: the laws must catch each
 	@tests/faults/laws.sh
+
+# Lines of src that the tests run; made by gcc. The counts of an earlier run are dropped. The report is written after tests
+# that fail, too.
+GCOV ?= $(subst gcc,gcov,$(lastword $(CC)))
+.PHONY: coverage run_coverage
+coverage: ## report which lines of src the tests run, in build/coverage/report; only=NAME as for test (needs gcovr)
+	@$(if $(clang),echo 'coverage: only gcc is supported; leave CC=$(CC) out' >&2; exit 1)
+	@command -v gcovr >/dev/null || { echo 'coverage: gcovr is not installed; install it with: apt-get install gcovr' >&2; exit 1; }
+	@$(MAKE) STRICT=1 config=coverage build=$(build)/coverage TEST_LIMIT_S=3600 run_coverage
+run_coverage:
+	@mkdir -p $(build)/report && find $(build) -name '*.gcda' -delete
+	@code=0; $(MAKE) --no-print-directory build=$(build) test || code=$$?; \
+	  gcovr --gcov-executable '$(GCOV)' --root . --filter src/ --exclude-throw-branches --html-details $(build)/report/index.html \
+	    --print-summary $(build) && echo 'report: $(build)/report/index.html' && exit $$code
 
 .PHONY: fuzz run_fuzzers
 fuzz: ## feed the readers with libFuzzer (clang), FUZZ_SECONDS=60 each
@@ -381,6 +398,17 @@ uninstall: ## remove what install put there
 	rm -f $(libraries)/libcuvette.a $(libraries)/libcuvette.so $(libraries)/$(soname) $(libraries)/libcuvette.so.$(version) $(description)
 	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette
 
+# For clangd and other tools that parse C. Everything that is compiled anywhere, with the flags of this configuration.
+.PHONY: compiled compile_commands.json
+by_scripts := tests/fail_allocation.c tests/json_get.c $(wildcard experiments/engine/*.c)
+compiled: all peers $(test_programs) $(benches) $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
+$(build)/by-scripts/%.o: %.c $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -c -o $@ $<
+compile_commands.json: ## write the compilation database for clangd
+	@MAKE='$(MAKE)' .ci/compile_commands $@ build=$(build) compiled
+
 .PHONY: format format-check clean distclean help
 format: ## lay out the sources: clang-format, shfmt and, once setup-web has fetched it, prettier
 	@tests/format.sh --write $(build)/web-tests
@@ -392,4 +420,4 @@ distclean: clean ## also remove tables and figures; measured rows stay in result
 	rm -rf build $(RESULTS)/tables $(RESULTS)/figures
 	@test ! -f paper/Makefile || $(MAKE) -C paper clean
 help: ## list the targets
-	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
+	@sed -n 's/^\([a-z_.-]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 30

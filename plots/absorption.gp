@@ -1,4 +1,4 @@
-# A liquid in five concentrations, and the light that passes a slab of one beside the law of Beer and Lambert.
+# A liquid of five concentrations, and the transmittance of a slab compared with the Beer-Lambert law.
 # needs: tables/absorption.tsv absorption/images/*.png tables/absorber.tsv absorber/images/*.pfm
 width = 1000; height = 640
 load "plots/style.gp"
@@ -7,7 +7,7 @@ rows = table("absorption")
 slab = table("absorber")
 set multiplot
 set xlabel "thickness d of the slab / mm"
-set ylabel "transmitted share of the light"
+set ylabel "transmittance"
 set lmargin at screen 0.075
 set rmargin at screen 0.74
 set bmargin at screen 0.085
@@ -19,7 +19,7 @@ set key at screen 0.765,0.5 left top Left reverse samplen 2 spacing 1.25
 # thickness, red, green, blue of the pixel in the middle.
 measured = "< awk -f plots/select.awk -v columns='cell liquid.size.z' '".slab."' | while read -r cell d; do " \
     ."printf '%s\t' $d; plots/pixel.sh $(printf '".results."/absorber/images/%04d.pfm' $cell); done"
-# Power that a face reflects at normal incidence (Fresnel); the slab with all that goes to and fro inside, intensities.
+# Reflectance of a face at normal incidence (Fresnel), and the transmittance of a slab with all its inner reflections.
 R = (0.33/2.33)**2
 through(a, d) = (1 - R)**2*exp(-a*d*1e-3)/(1 - R**2*exp(-2*a*d*1e-3))
 worst = number(system(measured[3:*].sprintf(" | awk -f plots/slab.awk -v R=%.17g -v absorb='200 60 10'", R)))
@@ -34,7 +34,7 @@ plot through(200, x) with lines lt 2 notitle, through(60, x) with lines lt 3 not
 unset xlabel; unset ylabel; unset label 1
 set xrange [*:*]
 set yrange [*:*]
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 do for [i=0:4] {
     file = image("absorption", i)
     set lmargin at screen 0.005 + i*0.199

@@ -1,4 +1,4 @@
-# What hierarchies take to build, with one thread and with two, their memory, and the rays that they give a second.
+# Build time of the hierarchies with one thread and with two, their memory, and the rays traced per second.
 # needs: tables/build.tsv
 width = 1000; height = 700
 load "plots/style.gp"
@@ -8,7 +8,7 @@ hierarchies = "none sphere octant bvh"
 names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'boxes'"
 sets = "sparse dense sphere sparse dense sphere"
 counts = "50000 50000 50000 500000 500000 500000"
-# What a bar stands for; NaN where there is no such cell.
+# The value of a bar; NaN if there is no such cell.
 bar(i, set, threads, column) = first(rows, sprintf("render.accel=%s soup.generate=%s soup.count=%s render.build_threads=%d", \
     word(hierarchies, i), word(sets, int(set)), word(counts, int(set)), threads), column)
 half = 0.09
@@ -36,7 +36,7 @@ do for [threads=1:2] {
 unset logscale y
 set format y "%h"
 set title "Memory"
-set ylabel "bytes a triangle"
+set ylabel "bytes / triangle"
 set yrange [0:*]
 plot for [i=1:4] [1:6] '+' using (place(i, $1)):(bar(i, $1, 1, "accel_bytes")/bar(i, $1, 1, "triangles")) with boxes lt i notitle
 set logscale y

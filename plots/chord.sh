@@ -1,7 +1,7 @@
 #!/bin/sh
-# The middle row of a PFM picture of a ball of radius 1, seen from a distance towards its middle: for each pixel that
+# The middle row of a PFM image of a ball of radius 1, seen from a distance towards its center: for each pixel that
 # the ball covers the length
-# of the straight way through the ball, 2 sqrt(1 - b^2) with b the way's distance from the middle; then red, green and
+# of the chord, 2 sqrt(1 - b^2) with b the distance of the chord from the center; then red, green and
 # blue, linear; tab separated.
 #   plots/chord.sh PICTURE.pfm DISTANCE FOV_DEG        fov: vertical
 export LC_ALL=C

@@ -1,4 +1,4 @@
-# Time by the area that a model covers, with straight lines fitted (areas.gp), beside the published times and their line.
+# Time by the area that a model covers, with fitted lines (areas.gp), and the published times with their line.
 # needs: tables/coverage.tsv
 width = 1000; height = 470
 load "plots/style.gp"
@@ -15,7 +15,7 @@ set title "A ball of 40500 triangles, 800 by 600 pixels"
 set key top left spacing 2.3
 set offsets graph 0, graph 0, graph 0.25, graph 0
 plot for [i=1:2] areas(i) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i + 2 \
-         title sprintf("%s:\n%.0f ms + %.2f ms a 1000 pixels, off by %.1f %%", word(names, i), line_a[i]*1e3, line_b[i]*10, line_off[i]*100), \
+         title sprintf("%s:\n%.0f ms + %.2f ms / 1000 pixels, rms deviation %.1f %%", word(names, i), line_a[i]*1e3, line_b[i]*10, line_off[i]*100), \
      for [i=1:2] line(x*1e3, line_a[i], line_b[i])*1e3 with lines lt i + 2 notitle
 unset label 100
 
@@ -24,10 +24,10 @@ set title "Published: 40000 triangles, 800 by 600 pixels"
 set ylabel "time / s"
 set yrange [0:8]
 set label 1 "0: nothing covered (our reading)" at 12, line_a[3] - 0.35 left font ",8" textcolor rgb grey
-set label 2 "480: all of the picture " \
+set label 2 "480: the whole image " \
     at 480, line(480e3, line_a[3], line_b[3]) + 0.4 right font ",8" textcolor rgb grey
 plot areas(3) using ($1/1e3):2 with points lt 7 \
-         title sprintf("published:\n%.2f s + %.2f ms a 1000 pixels, off by %.1f %%", \
+         title sprintf("published:\n%.2f s + %.2f ms / 1000 pixels, rms deviation %.1f %%", \
              line_a[3], line_b[3]*10, line_off[3]*100), \
      line(x*1e3, line_a[3], line_b[3]) with lines lt 7 notitle
 unset multiplot

@@ -1,4 +1,5 @@
-# Time by the number of triangles that crowd, for each hierarchy, and the growth since 10000 beside the published one.
+# Time by the number of triangles in a cube of fixed size, for each hierarchy, and the growth since 10000 compared
+# with the published one.
 # needs: tables/crowding.tsv
 width = 1000; height = 450
 load "plots/style.gp"
@@ -26,7 +27,7 @@ set format y "%h"
 set title "Growth since 10000"
 set ylabel "relative to 10000 triangles"
 set yrange [0:6]
-plot x/10 with lines lt 8 title "in proportion to n", \
+plot x/10 with lines lt 8 title "proportional to n", \
      for [i=1:4] times(i) using ($1/1e3):($2/first_of(i)):($3/first_of(i)):($4/first_of(i)) with yerrorlines lt i title word(names, i), \
      select(published."crowding.csv", "", "triangles time_s")." | awk '$1 > 0'" using ($1/1e3):($2/published_first) \
          with linespoints lt 7 title "published, the octant tree"

@@ -1,9 +1,9 @@
-# The picture by recursion depth.
+# The image by recursion depth.
 # needs: depth/images/*.png tables/depth.tsv
 width = 1000; height = 790
 load "plots/style.gp"
 
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 rows = table("depth")
 set multiplot layout 3,3 margins 0.005,0.995,0.005,0.97 spacing 0.008,0.035
 do for [i=0:8] {

@@ -1,4 +1,5 @@
-# Time by recursion depth with 95% intervals, rays on the second axis; beside it the growth since depth 0 and the published one.
+# Time by recursion depth with 95% intervals, and rays on the second axis; growth since depth 0 compared with the
+# published one.
 # needs: tables/depth.tsv
 width = 1000; height = 430
 load "plots/style.gp"
@@ -38,5 +39,5 @@ set yrange [0.9:*]
 plot times("cpu_s") using 1:($2/cpu_0):($3/cpu_0):($4/cpu_0) with yerrorlines lt 2 title "CPU time", \
      select(rows, "", "render.depth rays_total") using 1:($2/rays_0) with linespoints lt 3 title "rays", \
      select(published."depth.csv", "", "depth cpu_s") using 1:($2/published_0) with linespoints lt 7 \
-         title "CPU time, published (threads not said)"
+         title "CPU time, published (thread count not given)"
 unset multiplot

@@ -1,8 +1,9 @@
 #!/bin/sh
-# Luminance of one PFM less that of another, a line a pixel: x, y from the bottom, difference; then that of red, green
+# Luminance of one PFM minus that of another, one line per pixel: x, y from the bottom, difference; then that of red,
+# green
 # and blue.
 #   plots/difference.sh PICTURE FROM
-# Luminance: Y = 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of linear light as PFM holds it.
+# Luminance: Y = 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of the linear values of PFM.
 export LC_ALL=C
 set -eu
 

@@ -1,4 +1,5 @@
-# Colours by refraction: a prism's least deviation and the first rainbow by wavelength on their closed forms, and the pictures.
+# Dispersion: minimum deviation of a prism and angle of the first rainbow by wavelength, with their closed forms, and
+# images.
 # needs: tables/dispersion-metrics.tsv tables/rainbow-metrics.tsv prism-portrait/images/0000.png rainbow-portrait/images/0000.png
 width = 1000; height = 860
 load "plots/style.gp"
@@ -27,7 +28,7 @@ set lmargin at screen 0.07
 set rmargin at screen 0.49
 set tmargin at screen 0.945
 set bmargin at screen 0.56
-set title "Least deviation of a prism of 60°" offset 0,0.4
+set title "Minimum deviation of a prism of 60°" offset 0,0.4
 set ylabel "deviation / deg"
 set yrange [30:80]
 set key at graph 0.99,0.66 right top Left reverse
@@ -45,7 +46,7 @@ set rmargin at screen 0.49
 set tmargin at screen 0.445
 set bmargin at screen 0.065
 set title "Angle of the first rainbow"
-set ylabel "angle from the point opposite the lamp / deg"
+set ylabel "angle from the antisolar point / deg"
 set yrange [36:43]
 set key at graph 0.99,0.64 right top
 set label 1 sprintf("largest error %.0e deg", worst(bow, "rainbow.own"))
@@ -58,10 +59,10 @@ plot rainbow(n_water(x)) with lines lt 1 notitle, \
 
 unset arrow; unset label; unset xlabel; unset ylabel
 set xtics autofreq
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 
-# Of the prism's picture the part where something is; by pixels from the left and from the bottom.
-picture = image("prism-portrait", 0)
+# The non-empty part of the prism's image, in pixels from the left and from the bottom.
+rendered = image("prism-portrait", 0)
 set lmargin at screen 0.525
 set rmargin at screen 0.995
 set tmargin at screen 0.945
@@ -71,32 +72,33 @@ set xrange [110:530]
 set yrange [0:300]
 set label 1 "a second slit,\nwithout the prism" at 312,275 left font ",9" textcolor rgb "white" front
 set label 2 "seen through\nthe prism" at 208,100 right font ",9" textcolor rgb "white" front
-set label 3 "mirrored by\nthe base" at 449,185 left font ",9" textcolor rgb "white" front
-plot picture binary filetype=png with rgbimage notitle
+set label 3 "reflected by\nthe base" at 449,185 left font ",9" textcolor rgb "white" front
+plot rendered binary filetype=png with rgbimage notitle
 unset label
 
-# The drops: a pixel's height in the picture is its angle above the point opposite the lamp.
-picture = image("rainbow-portrait", 0)
+# The drops: the height of a pixel in the image is its angle above the antisolar point.
+rendered = image("rainbow-portrait", 0)
 centre = 41.4; field = 2.9
-angle(row) = centre + atan((2.0*row/png_height(picture) - 1)*tan(field/2*pi/180))*180/pi
-row(angle) = (1 + tan((angle - centre)*pi/180)/tan(field/2*pi/180))*png_height(picture)/2
+angle(row) = centre + atan((2.0*row/png_height(rendered) - 1)*tan(field/2*pi/180))*180/pi
+row(angle) = (1 + tan((angle - centre)*pi/180)/tan(field/2*pi/180))*png_height(rendered)/2
 set lmargin at screen 0.6
 set rmargin at screen 0.763
 set tmargin at screen 0.445
 set bmargin at screen 0.065
 set title ""
 set label 30 "Nine drops of water, and their glints enlarged" at screen 0.77,0.463 center font ",11"
-set xrange [0:png_width(picture)]
-set yrange [0:png_height(picture)]
+set xrange [0:png_width(rendered)]
+set yrange [0:png_height(rendered)]
 set border 2 lc rgb ink
 set ytics nomirror out scale 0.6 font ",9" textcolor rgb ink
 set ytics ("40.5°" row(40.5), "41.0°" row(41.0), "41.5°" row(41.5), "42.0°" row(42.0), "42.5°" row(42.5))
-plot picture binary filetype=png with rgbimage notitle
+plot rendered binary filetype=png with rgbimage notitle
 unset border; unset ytics
 unset label 30
 
-# The glint of each enlarged, from the uppermost drop down. Drops stand 0.3 deg apart; a glint is at the lower edge, 0.866 of the
-# radius under the middle and a little less.
+# The glint of each drop enlarged, from the top drop down. The drops are 0.3 deg apart; a glint is near the lower
+# edge, 0.866 of
+# the radius below the center, or slightly less.
 first_drop = 42.6; step = 0.3; below = 0.127
 half_width = 14; half_height = 4.5
 centre_of(i) = i % 3 == 0 ? 221 : i % 3 == 1 ? 150 : 79
@@ -110,6 +112,6 @@ do for [i=0:8] {
     set label 1 sprintf("%.1f°", seen) at screen 0.838, 0.445 - i*0.0425 - 0.02 right font ",9"
     set xrange [centre_of(i) - half_width:centre_of(i) + half_width]
     set yrange [row(seen) + 0.7 - half_height:row(seen) + 0.7 + half_height]
-    plot picture binary filetype=png with rgbimage notitle
+    plot rendered binary filetype=png with rgbimage notitle
 }
 unset multiplot

@@ -1,10 +1,11 @@
 #!/bin/bash
 # Draws the figures whose rows exist and are newer than the figure, as PNG and SVG.
 #   plots/draw.sh [--results DIR] [--out DIR] [--format png,svg] [FIGURE...]
-# DIR is results unless told; figures go to DIR/figures. A figure named on the command line is always drawn.
-# A figure says in its head what it needs (`# needs:`, paths below DIR, * allowed); without that it is skipped with one
+# DIR defaults to results; figures go to DIR/figures. A figure named on the command line is always drawn.
+# The head of a figure lists its inputs (`# needs:`, paths below DIR, * allowed); if one is missing, the figure is
+# skipped with one
 # line.
-# The same rows give the same bytes: no figure holds a time or a name of the machine.
+# The same rows give the same bytes: no figure contains a time or a name of the machine.
 set -euo pipefail
 export LC_ALL=C.UTF-8
 
@@ -46,17 +47,17 @@ command -v gnuplot >/dev/null || fail "gnuplot is missing; apt-get install --no-
 gnuplot -e 'set terminal pngcairo' 2>/dev/null || fail \
     "this gnuplot has no pngcairo; apt-get install --no-install-recommends gnuplot-nox"
 
-# Does a table hold a measured cell? One without counts, of metrics or curves, needs a line.
+# Whether a table has a measured cell. A table without counts, of metrics or curves, needs a line.
 has_rows() {
     awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i }
         NR > 1 && (!n || $n > 0) { found = 1 } END { exit !found }' "$1"
 }
 
-# Sets `missing` to the first thing that a figure lacks, or to nothing, and `inputs` to the files that it is drawn from.
+# Sets `missing` to the first missing input of a figure, or to nothing, and `inputs` to the files that it is drawn from.
 look_for_inputs() {
     local pattern found needs
     missing=
-    inputs=("plots/$1.gp" plots/{style,rows,picture,laws,media}.gp plots/*.awk plots/*.sh experiments/published/*.csv)
+    inputs=("plots/$1.gp" plots/{style,rows,image_panels,laws,media}.gp plots/*.awk plots/*.sh experiments/published/*.csv)
     read -r -a needs <<<"$(sed -n 's/^# needs: *//p' "plots/$1.gp")"
     for pattern in "${needs[@]}"; do
         mapfile -t found < <(compgen -G "$results/$pattern")
@@ -79,7 +80,7 @@ is_fresh() {
     done
 }
 
-# The processing units of the machine that measured, 0 if no manifest tells.
+# The number of processing units of the machine that measured, 0 if no manifest has it.
 units() {
     { cat "$results"/{threads,profile,depth,pool}/manifest.json 2>/dev/null || true; } |
         sed -n 's/.*"processing_units": *\([0-9][0-9]*\).*/\1/p' | sed -n 1p

@@ -1,14 +1,14 @@
-# Pictures over the grid of the vessel's and the liquid's refractive index; each shows the vessel alone.
+# Images over the grid of the refractive indices of vessel and liquid, cropped to the vessel.
 # needs: tables/ior-grid.tsv ior-grid/images/*.png
 width = 800; height = 1150
 load "plots/style.gp"
 
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 rows = table("ior-grid")
 vessel = system(select(rows, "", "vessel.ior")[3:*]." | sort -gu | tr '\\n' ' '")
 liquid = system(select(rows, "", "liquid.ior")[3:*]." | sort -gu | tr '\\n' ' '")
 set multiplot layout words(vessel),words(liquid) margins 0.085,0.995,0.005,0.953 spacing 0.006,0.004
-# Shown of each picture: the vessel, by shares of the width from the left and of the height from the bottom.
+# Crop of each image, the vessel: fractions of the width from the left and of the height from the bottom.
 set label 1 "refractive index of the liquid" at screen 0.54,0.983 center font ",12"
 set label 2 "refractive index of the vessel" at screen 0.018,0.48 center rotate font ",12"
 do for [i=1:words(vessel)] {

@@ -1,13 +1,14 @@
-# One scene under three models of light and by random paths, where table 2 of the rod's report has words (Gouraud's model is in shading.gp); under each picture its time and its distance from the last.
+# One scene with three lighting models and by path tracing, for table 2 of the rod's report (Gouraud shading is in
+# shading.gp); each image with its time and its error against the last.
 # needs: tables/lighting.tsv lighting/images/*.png lighting/references/*.png
 width = 1000; height = 880
 load "plots/style.gp"
 
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 rows = table("lighting")
 names = "'Lambert: diffuse light' 'Phong: highlights too' 'Whitted: reflection and refraction too' 'random paths: the reference'"
 set title offset 0,-0.7
-about(i) = sprintf("%.3f s a frame, FLIP %.3f, PSNR %.1f dB", cell_value(rows, i, "wall_s_median"), \
+about(i) = sprintf("%.3f s / frame, FLIP %.3f, PSNR %.1f dB", cell_value(rows, i, "wall_s_median"), \
     cell_value(rows, i, "flip"), cell_value(rows, i, "psnr_db"))
 set multiplot layout 2,2 margins 0.01,0.99,0.045,0.965 spacing 0.015,0.085
 do for [i=0:3] {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# One pixel of a PFM picture, the one in its middle unless told: red, green and blue, linear, tab separated.
+# One pixel of a PFM image, by default the middle one: red, green and blue, linear, tab separated.
 #   plots/pixel.sh PICTURE.pfm [X Y]        X from the left, Y from the bottom, both from 0
 export LC_ALL=C
 set -eu

@@ -1,4 +1,4 @@
-# What fresh threads for every frame cost against a pool that was started beforehand.
+# Cost of starting threads for every frame compared with a persistent pool.
 # needs: tables/pool.tsv
 width = 1000; height = 430
 load "plots/style.gp"
@@ -18,11 +18,11 @@ set yrange [0:*]
 set title "Wall time of a frame"
 set ylabel "wall time / ms"
 set key bottom left
-plot times("off") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 2 title "fresh threads", \
-     times("on") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 1 title "pool"
+plot times("off") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 2 title "new threads", \
+     times("on") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 1 title "persistent pool"
 unset label 100
-set title "What fresh threads add to a frame"
-set ylabel "fresh less pool / ms"
+set title "Cost of new threads for each frame"
+set ylabel "difference / ms"
 set autoscale y
 set xzeroaxis lc rgb ink lw 0.8
 unset key

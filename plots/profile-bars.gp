@@ -1,4 +1,4 @@
-# Busy and waiting time of each worker, means over the repetitions, for every schedule and pinning.
+# Busy and idle time of each worker, means over the repetitions, for every schedule and pinning.
 # needs: profile/workers.csv
 width = 1000; height = 430
 load "plots/style.gp"
@@ -6,7 +6,7 @@ load "plots/style.gp"
 bars = sprintf("< awk -f plots/workers.awk '%s/profile/workers.csv'", results)
 schedules = "columns rows tiles dynamic"
 pins = "none compact scatter"
-# Which words they are, and where a worker's bar lies: schedules from the top, workers within.
+# Index of the words, and position of a worker's bar: schedules from the top, workers within each.
 place(schedule) = schedule eq "columns" ? 0 : schedule eq "rows" ? 1 : schedule eq "tiles" ? 2 : schedule eq "dynamic" ? 3 : NaN
 middle(schedule, worker, workers) = place(schedule) + 0.1 + 0.8*(worker + 0.5)/workers
 half(workers) = 0.36/workers
@@ -34,7 +34,7 @@ do for [i=1:3] {
     }
     plot bars using ($5*500*of(pin)):(middle(strcol(1), $3, $4)):($5*500):(half($4)) with boxxyerror lc rgb blue title "busy", \
          bars using (($5 + $6/2)*1e3*of(pin)):(middle(strcol(1), $3, $4)):($6*500):(half($4)) with boxxyerror lc rgb 0xF3D9A0 \
-            title "waiting", \
+            title "idle", \
          bars using ($7*1e3*of(pin)):(middle(strcol(1), $3, $4)):(0):(half($4)*1.15) with vectors nohead lc rgb ink lw 2 notitle, \
          bars using ($7*1e3*of(pin)):(middle(strcol(1), $3, $4)):(0):(-half($4)*1.15) with vectors nohead lc rgb ink lw 2 title "CPU time"
     unset label 100

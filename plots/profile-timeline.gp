@@ -1,4 +1,4 @@
-# Which worker took which piece of the picture when, for each schedule without pinning.
+# Which worker rendered which tile of the image when, for each schedule without pinning.
 # needs: tables/profile.tsv profile/images/*-timeline.json
 width = 1000; height = 560
 load "plots/style.gp"
@@ -23,7 +23,7 @@ do for [i=1:4] {
 set palette defined @viridis
 set cbrange [0:1]
 set cbtics ("first" 0, "last" 1) scale 0
-set cblabel "piece of the picture, in reading order" offset -2.5,0
+set cblabel "position of the tile, in reading order" offset -2.5,0
 unset key
 unset grid
 set border 1

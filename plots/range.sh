@@ -1,7 +1,6 @@
 #!/bin/sh
-# The values between which all but 1 in 100 pixels of a PFM map lie at either end, to 2%: "low high". A pixel during
-# which the
-# thread was put aside by the system is none of the map's business. Values of 0 or less are left out.
+# The range of a PFM map without 1 % of its pixels at either end, to 2%: "low high". Preempted
+# threads make a few pixels much too slow, which must not set the scale. Values of 0 or less are ignored.
 #   plots/range.sh MAP.pfm
 export LC_ALL=C
 set -eu

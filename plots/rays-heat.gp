@@ -1,10 +1,10 @@
-# Where the work lies: rays of all kinds and time by pixel, of one frame.
-# The colours end where all but 1 in 100 pixels lie, at either end.
+# Distribution of the work: rays of all kinds and time per pixel of one frame.
+# The color scale excludes 1 % of the pixels at either end.
 # needs: maps/images/0000-rays.pfm maps/images/0000-ns.pfm
 width = 1000; height = 338
 load "plots/style.gp"
 
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 values(kind) = sprintf("%s/maps/images/0000-%s.pfm", results, kind)
 set palette defined @viridis
 set logscale cb 10
@@ -13,7 +13,7 @@ set cbtics ("1" 1, "2" 2, "5" 5, "10" 10, "20" 20, "50" 50, "100" 100, "200" 200
 set border 15 lc rgb pale
 set multiplot layout 1,2 margins 0.01,0.92,0.02,0.93 spacing 0.1,0
 do for [kind in "rays ns"] {
-    set title kind eq "rays" ? "rays by pixel" : "time by pixel / ns"
+    set title kind eq "rays" ? "rays / pixel" : "time per pixel / ns"
     set colorbox user origin (kind eq "rays" ? 0.425 : 0.93),0.03 size 0.013,0.87
     ends = system("plots/range.sh '".values(kind)."'")
     set cbrange [real(word(ends, 1)):real(word(ends, 2))]

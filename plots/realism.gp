@@ -1,4 +1,4 @@
-# What is traced on what theory says, for a vessel of index 1.5 with a liquid of 1.33: lines are theory, points are traced.
+# Traced values and theory for a vessel of index 1.5 with a liquid of 1.33: lines are theory, points are traced.
 # needs: tables/realism-curves.tsv tables/realism-metrics.tsv
 width = 1000; height = 660
 load "plots/style.gp"
@@ -26,9 +26,9 @@ worst = worst > residual("fresnel") ? worst : residual("fresnel")
 set label 1 sprintf("largest error %.0e", worst) at graph 0.04,0.66 left
 set arrow 1 from atan(vessel)*180/pi, first 0.30 to atan(vessel)*180/pi, first 0.015 head size 1.5,25 filled lc rgb grey
 set label 2 "Brewster" at atan(vessel)*180/pi, first 0.335 center font ",9" textcolor rgb grey
-plot curve("fresnel-s") using 1:2 with lines lt 1 notitle, "" using 1:3 every 10 with points lt 1 title "across the plane, R_s", \
+plot curve("fresnel-s") using 1:2 with lines lt 1 notitle, "" using 1:3 every 10 with points lt 1 title "s-polarised, R_s", \
      curve("fresnel") using 1:2 with lines lt 3 notitle, "" using 1:3 every 10 with points lt 3 title "unpolarised, R", \
-     curve("fresnel-p") using 1:2 with lines lt 2 notitle, "" using 1:3 every 10 with points lt 2 title "in the plane, R_p"
+     curve("fresnel-p") using 1:2 with lines lt 2 notitle, "" using 1:3 every 10 with points lt 2 title "p-polarised, R_p"
 unset arrow 1; unset label 2
 
 set title "The filled vessel as a lens"
@@ -49,9 +49,9 @@ set yrange [0:*]
 set label 1 said("edges", " px")
 plot curve("edges") using 1:2 with lines lt 1 title "theory", "" using 1:3 every 3 with points lt 1 title "traced"
 
-set title "A slab's series, cut at a depth"
+set title "Series of a slab, cut at a depth"
 set xlabel "recursion depth"
-set ylabel "share of the light still missing" offset 0.8,0
+set ylabel "light cut off, fraction" offset 0.8,0
 set xrange [-0.5:10.5]; set xtics 2
 set logscale y
 set yrange [1e-15:30]
@@ -68,14 +68,14 @@ set ytics autofreq
 
 set title "Absorption in the liquid"
 set xlabel "length / m"
-set ylabel "transmitted share, red"
+set ylabel "transmittance, red"
 set xrange [0:0.92]; set xtics 0.2
 set yrange [0:1.03]
 set label 1 said("absorption", "")
 plot curve("absorption") using 1:2 with lines lt 2 title "theory, exp(-ad)", "" using 1:3 every 6 with points lt 2 title "traced"
 
-set title "What is left: |traced − theory|"
-set xlabel "share of the curve's length"
+set title "Residuals: |traced − theory|"
+set xlabel "fraction of the x range"
 set ylabel "error, in the curve's unit" offset 0.8,0
 set xrange [0:1]; set xtics 0.2
 set logscale y
@@ -84,7 +84,7 @@ set format y "10^{%T}"
 set ytics 1e2
 set label 1 "where it is not 0" at graph 0.97,0.62 right
 set key top left maxrows 3 samplen 1 width 1
-# Share of the way along x, and the error where there is one.
+# Fraction of the x range, and the error where it is not 0.
 left = "{ x[NR] = $1; e[NR] = $3 < $2 ? $2 - $3 : $3 - $2 } " \
     ."END { for (i = 1; i <= NR; i++) if (e[i]) print (x[i] - x[1])/(x[NR] - x[1]) \"\t\" e[i] }"
 error(name) = sprintf("%s | awk '%s'", curve(name), left)

@@ -1,8 +1,8 @@
-# The rod in the vessel: the picture of the portrait as it is.
+# The rod in the vessel: the unchanged image of the portrait study.
 # needs: portrait/images/0000.png
 width = 800; height = 600
 load "plots/style.gp"
 
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 set margins 0,0,0,0
 plot image("portrait", 0) binary filetype=png with rgbimage

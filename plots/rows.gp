@@ -1,4 +1,4 @@
-# How figures and the paper reach what was measured. Given: results, a folder laid out as results/README.md says.
+# Access of figures and paper to the measured rows. Input: results, a folder as described in results/README.md.
 set datafile missing "NA"
 set datafile separator tab
 set fit quiet nolog errorvariables
@@ -14,9 +14,10 @@ text(file, where, column) = system(select(file, where, column)[3:*]." | head -n 
 largest(file, column) = number(system(select(file, "", column)[3:*]." | sort -g | tail -n 1"))
 number(text) = text eq "" ? NaN : real(text)
 first(file, where, column) = number(text(file, where, column))
-# The share of the machine that other processes used meanwhile, mean over the cells; a disturbed run says so in its figures.
+# Fraction of the machine that other processes used during the measurement, mean over the cells; figures of a
+# disturbed run show it.
 others(study) = number(system(select(table(study), "", "others_share")[3:*]." | awk '{ sum += $1 } END { if (NR) print sum/NR }'"))
-disturbed(study) = others(study) > 0.05 ? sprintf("other processes used %.0f %% of the machine meanwhile", others(study)*100) : ""
+disturbed(study) = others(study) > 0.05 ? sprintf("other processes used %.0f %% of the machine during this run", others(study)*100) : ""
 
 # PFM: three lines of text, then little-endian floats from the bottom row up.
 pfm_start(path) = int(system("head -n 3 '".path."' | wc -c"))

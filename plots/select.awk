@@ -1,4 +1,4 @@
-# Columns by name from a table with a header line (tab separated .tsv, or .csv after RFC 4180, one line a row), for the
+# Columns by name from a table with a header line (tab separated .tsv, or .csv after RFC 4180, one line per row), for the
 # lines where other columns have given values; tab separated, lines with NA are left out.
 #   awk -f select.awk -v where='render.schedule=rows warmup=0' -v columns='render.threads wall_s_median' FILE
 # A column that the table lacks counts as NA. Values that are numbers are compared as numbers.

@@ -1,4 +1,5 @@
-# How long a frame of the slime finds out what rays meet, and which share of the frame that is, by level and hierarchy, as a ball and drawn out.
+# Time of visibility queries in a frame of the slime, and its share of the frame, by level and hierarchy, for a ball
+# and a stretched slime.
 # needs: tables/slime-frame.tsv
 width = 1000; height = 430
 load "plots/style.gp"
@@ -16,15 +17,15 @@ set xlabel "triangles n"
 set format x "10^{%T}"
 set xrange [15:5e5]
 set grid xtics ytics lc rgb pale lw 0.5 dt solid
-set title "Finding out what rays meet"
-set ylabel "time a ray / ns"
+set title "Visibility queries"
+set ylabel "time per ray / ns"
 set logscale y
 set format y "10^{%T}"
 set yrange [50:2e4]
 set key top left
 plot for [i=1:4] frames(i, 1) using 1:($2/$4*1e9) with linespoints lt i title word(names, i), \
      for [i=1:4] frames(i, 2) using 1:($2/$4*1e9) with linespoints lt i dt (6,3) notitle, \
-     NaN with lines lc rgb ink lw 1.6 title "a ball", NaN with lines lc rgb ink lw 1.6 dt (6,3) title "drawn out"
+     NaN with lines lc rgb ink lw 1.6 title "a ball", NaN with lines lc rgb ink lw 1.6 dt (6,3) title "stretched"
 unset label 100
 unset logscale y
 set format y "%h"

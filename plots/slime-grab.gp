@@ -3,7 +3,7 @@
 width = 1000; height = 425
 load "plots/style.gp"
 
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 rows = table("slime-grab")
 said = "'at rest' 'drawn out' 'drawn out' 'held' 'held' 'let go' 'back' 'at rest again'"
 set title offset 0,-0.7

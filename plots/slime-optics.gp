@@ -3,7 +3,7 @@
 width = 1000; height = 800
 load "plots/style.gp"
 
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 rows = table("slime-optics")
 shares = system(select(rows, "", "jelly.transparency")[3:*]." | sort -gu | tr '\\n' ' '")
 absorbs = system(select(rows, "", "jelly.absorb_per_m")[3:*]." | awk '!seen[$0]++' | tr '\\n' ' '")

@@ -1,4 +1,5 @@
-# A slime's motion beside mechanics: energy and momentum that a free one loses, orders, the fall, and the longest stable step.
+# Motion of a slime compared with mechanics: loss of energy and momentum of a free slime, orders, the fall, and the
+# longest stable step.
 # needs: tables/slime-physics-motion.tsv
 width = 1000; height = 760
 load "plots/style.gp"
@@ -33,10 +34,10 @@ plot for [i=1:3] by_step(i, "angular_momentum.drift") using ($1*1e3):2 with line
      for [i=1:3] by_step(i, "momentum.drift") using ($1*1e3):2 with points lt i pt 4+2*i title word(names, i)
 
 set title "Fall of 1 s against g t^2 / 2, and a spring's period"
-set ylabel "size of the error, m and s"
+set ylabel "absolute error, m and s"
 set yrange [1e-15:10]
 set key at graph 0.98,0.5 top right Right noreverse
-plot by_step(1, "fall.depth") using ($1*1e3):4 with linespoints lt 1 title "fall, both kinds of Euler", \
+plot by_step(1, "fall.depth") using ($1*1e3):4 with linespoints lt 1 title "fall, semi-implicit and backward Euler", \
      9.81*x*1e-3/2 with lines lt 8 title "g t dt / 2", \
      by_step(2, "fall.depth") using ($1*1e3):4 with linespoints lt 2 title "fall, Verlet", \
      by_step(1, "spring.period_s") using ($1*1e3):4 with linespoints lt 4 title "period, semi-implicit and Verlet", \
@@ -57,5 +58,5 @@ plot by_stiffness(1, "stable_dt.spring_s") using 1:($2*1e3) with points lt 3 tit
      by_stiffness(1, "stable_dt.toy_s") using 1:($2*1e3) with linespoints lt 1 title "the toy, semi-implicit Euler", \
      by_stiffness(2, "stable_dt.toy_s") using 1:($2*1e3) with linespoints lt 2 title "the toy, Verlet", \
      for [i=1:2] by_stiffness(i, "stable_dt.toy_s") using 1:($3*1e3) with lines lt i dt (2,3) notitle, \
-     NaN with lines lc rgb ink dt (2,3) title "Gershgorin's bounds from below"
+     NaN with lines lc rgb ink dt (2,3) title "lower bounds (Gershgorin)"
 unset multiplot

@@ -1,8 +1,9 @@
-# The look that all figures share. A figure sets `width` and `height` (CSS pixels)
-# and loads this. draw.sh gives: results, output (a path without its ending), format (png or svg), units.
+# Common style of all figures. A figure sets `width` and `height` (CSS pixels)
+# and loads this file. draw.sh sets: results, output (a path without its ending), format (png or svg), units.
 #
-# Colours: Okabe and Ito's eight, told apart with any kind of colour vision; a second sign (point, dash) goes with each.
-# Heat maps: viridis (van der Walt and Smith 2015), even in lightness. Signed maps: blue, white, vermillion.
+# Colors: the eight of Okabe and Ito, distinguishable with any color vision; each has its own point type or dash as
+# well.
+# Heat maps: viridis (van der Walt and Smith 2015), perceptually uniform. Signed maps: blue, white, vermillion.
 
 if (format eq "png") {
     set terminal pngcairo size 2*width,2*height font "DejaVu Sans,10" fontscale 2 linewidth 2 pointscale 1.6

@@ -1,10 +1,11 @@
-# A ground of two triangles, read straight across the picture and with perspective, under each filter, beside 64 samples a pixel; with
-# the time of a frame and the distance from the last.
+# A ground of two triangles with affine and perspective-correct interpolation and each filter, compared with 64
+# samples per pixel; with
+# the time of a frame and the error against the last.
 # needs: tables/texture.tsv texture/images/*.png texture/references/*.png
 width = 1000; height = 625
 load "plots/style.gp"
 
-load "plots/picture.gp"
+load "plots/image_panels.gp"
 rows = table("texture")
 about(i) = sprintf("%.0f ms, FLIP %.3f, PSNR %.1f dB", cell_value(rows, i, "cpu_s_median")*1e3, cell_value(rows, i, "flip"), \
     cell_value(rows, i, "psnr_db"))

@@ -1,4 +1,5 @@
-# Time by the number of triangles for each hierarchy, the law a + b ln n fitted (polygons.gp), the published times, and the time of a ray.
+# Time by the number of triangles for each hierarchy, the fitted law a + b ln n (polygons.gp), the published times,
+# and the time of a ray.
 # needs: tables/triangles.tsv
 width = 1000; height = 790
 load "plots/style.gp"
@@ -38,13 +39,13 @@ set y2range [0:10]
 set y2tics
 set border 11
 set key top left Left reverse font ",9"
-about(i) = log_fits[i] ? sprintf("%s: %.0f + %.0f ln(n / 10000) ms, off by %.1f %%", \
+about(i) = log_fits[i] ? sprintf("%s: %.0f + %.0f ln(n / 10000) ms, rms deviation %.1f %%", \
     i == 3 ? "octants" : "boxes", log_a[i]*1e3, log_b[i]*1e3, log_off[i]*100) : word(names, i)
 fitted(i, n) = log_fits[i] && n >= 7 ? log_law(n*1e3, log_a[i], log_b[i]) : NaN
 plot for [i=3:4] few(i) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i title about(i), \
      for [i=3:4] '+' using 1:(fitted(i, $1)*1e3) with lines lt i notitle, \
      measured_times(5) using ($1/1e3):2 axes x1y2 with points lt 7 \
-         title sprintf("published: %.2f + %.2f ln(n / 10000) s, off by %.1f %%", log_a[5], log_b[5], log_off[5]*100), \
+         title sprintf("published: %.2f + %.2f ln(n / 10000) s, rms deviation %.1f %%", log_a[5], log_b[5], log_off[5]*100), \
      '+' using 1:(fitted(5, $1)) axes x1y2 with lines lt 7 notitle
 unset y2tics; unset y2label; unset offsets
 set border 3
@@ -59,12 +60,12 @@ set yrange [0:*]
 set offsets graph 0, graph 0, graph 0.35, graph 0
 plot for [i=3:4] wide(i) using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i title word(names, i), \
      for [i=3:4] wide(i) using 1:(wide_fits[i] ? log_law($1, wide_a[i], wide_b[i])*1e3 : NaN) with lines lt i dt (6,3) \
-         title sprintf("a + b ln n, off by %.0f %%", wide_off[i]*100), \
+         title sprintf("a + b ln n, rms deviation %.0f %%", wide_off[i]*100), \
      for [i=3:4] wide(i) using 1:(wide_fits[i] ? power_law($1, wide_c[i], wide_p[i])*1e3 : NaN) with lines lt i \
-         title sprintf("n^{%.2f}, off by %.0f %%", wide_p[i], wide_power_off[i]*100)
+         title sprintf("n^{%.2f}, rms deviation %.0f %%", wide_p[i], wide_power_off[i]*100)
 unset offsets
 
-set title "Time of a ray, less the empty scene's frame"
+set title "Time per ray, without the frame of the empty scene"
 set ylabel "ns / ray"
 set logscale xy
 set format y "10^{%T}"

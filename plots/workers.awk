@@ -1,5 +1,5 @@
 # Means over the repetitions, by schedule, pinning and worker, from a study's workers.csv; warm-ups are left out. Means, not
-# medians, because busy and waiting time are to add up to the frame's: now one worker waits, now the other.
+# medians, because busy and idle time must add up to the wall time of the frame.
 # Prints, tab separated: schedule, pinning, worker, workers, busy_s, waiting_s, cpu_s.
 BEGIN { FS = ","; OFS = "\t" }
 { gsub(/[\r"]/, "") }

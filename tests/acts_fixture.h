@@ -1,5 +1,5 @@
-/* Shipped scenes, made small, and films of them with one parameter changed. Errors are told in the outcome, so that
- * threads may use it. Ownership: acts_open gives, acts_close releases. */
+/* Shipped scenes at reduced size, and films of them with one parameter changed. Errors are returned in the outcome, so
+ * that several threads may run it. Ownership: acts_open creates, acts_close releases. */
 #pragma once
 
 #include "acts_values.h"
@@ -9,7 +9,7 @@
 #include "scene/model/params_path.h"
 #include "scene/model/scene.h"
 
-/* Bodies of fewer triangles, fewer wavelengths: what is tried stays what it is. */
+/* Reductions: meshes of fewer triangles, fewer wavelengths. The features of each scene remain. */
 typedef struct acts_small {
     const char *scene, *assignments;
 } acts_small;
@@ -24,17 +24,17 @@ static const acts_small acts_smaller[] = {
     {"solids", "render.samples=1"},
 };
 
-/* Heights of the films, tried one after another until a value shows: a slit may lie between the rays of a small film.
- */
+/* Heights of the films, tried in this order until a value has an effect: a slit may lie between the rays of a small
+ * film. */
 enum { ACTS_SIZES = 3 };
 static const int acts_heights[ACTS_SIZES] = {48, 120, 240};
 
 typedef struct acts {
-    scene *s; /* as shipped, but for acts_smaller */
+    scene *s; /* as shipped, except for acts_smaller */
     renderer *r;
     uint64_t base[ACTS_SIZES];
     bool has_base[ACTS_SIZES];
-    ray_counters counters; /* of the largest film, once it is there */
+    ray_counters counters; /* of the largest film, once it is rendered */
 } acts;
 
 static inline bool acts_set_all(scene *s, const char *assignments, diagnostic *why)
@@ -82,7 +82,7 @@ static inline void acts_close(acts *a)
     *a = (acts){.s = NULL};
 }
 
-/* Of a scene that is at hand; takes it over. */
+/* For a scene that is already loaded; takes ownership of it. */
 static inline bool acts_of(scene *s, acts *out, diagnostic *why)
 {
     *out = (acts){.s = s};
@@ -117,8 +117,8 @@ static inline bool acts_open(const char *path, acts *out, diagnostic *why)
     return acts_of(s, out, why);
 }
 
-/* How many other values were legal, and how many of them changed the film; why says what was wrong with the last one
- * that was refused. */
+/* The number of other legal values, and the number of those that changed the film; why holds the error of the last
+ * value that was refused. */
 typedef struct acts_outcome {
     int legal, changed;
     diagnostic why;
@@ -134,7 +134,7 @@ static inline bool acts_base(acts *a, int size)
     return a->has_base[size];
 }
 
-/* Until `enough` values have changed the film of that size. */
+/* Tries values until `enough` of them have changed the film of that size. */
 static inline acts_outcome acts_try(acts *a, const char *path, const acts_values *v, int size, int enough)
 {
     acts_outcome o = {.legal = 0};
@@ -149,7 +149,7 @@ static inline acts_outcome acts_try(acts *a, const char *path, const acts_values
     return o;
 }
 
-/* What a renderer tells inert_ask of the largest film. */
+/* The renderer's answer to inert_ask, for the largest film. */
 static inline bool acts_same(void *context, const char *assignment)
 {
     acts *a = context;
@@ -169,7 +169,7 @@ static inline bool acts_ask(acts *a, const char *path, inert_answer *out)
     return inert_ask(a->s, path, &renderer_says, out);
 }
 
-/* The same at one size after another, until a value changes the film. */
+/* acts_try at one size after another, until a value changes the film. */
 static inline acts_outcome acts_try_sizes(acts *a, const char *path, const acts_values *v, int enough)
 {
     acts_outcome o = {.legal = 0};

@@ -1,6 +1,6 @@
-/* Other legal values of a parameter, chosen by its row alone (type, range, unit): a few that lie near the value of now,
- * and a few far away, so that a parameter that acts at all shows it. A new parameter needs no line here. Ownership:
- * acts_values fills an array of the caller's. */
+/* Other legal values of a parameter, chosen from its table row alone (type, range, unit): a few near the current value
+ * and a few far from it, so that a parameter with any effect shows it. A new parameter needs no line here. Ownership:
+ * acts_values_of fills the caller's array. */
 #pragma once
 
 #include "scene/model/params.h"
@@ -82,8 +82,8 @@ static inline void acts_triples(const param *row, const char *now, acts_values *
     }
 }
 
-/* A list as it is, every number times a factor; and for an empty one lists that suit what lists are used for: pairs by
- * wavelength. */
+/* The current list with every number multiplied by a factor; for an empty list, lists that suit the uses of lists:
+ * pairs by wavelength. */
 static inline void acts_lists(const char *now, acts_values *v)
 {
     static const char *const pairs[] = {"400,1.3,550,1.6,700,1.7", "400,0.6,550,0.2,700,0.1", "1.5,0.01", "1.4,0.006",
@@ -113,7 +113,7 @@ static inline void acts_words(const char *const *words, const char *now, acts_va
         acts_add(v, now, words[i]);
 }
 
-/* Names that a word may be: of meshes and textures; files of the folder experiments/scenes. */
+/* Names that are legal for a word: of meshes and textures, and files of the folder experiments/scenes. */
 static inline void acts_names(const scene *s, const param *row, const char *now, acts_values *v)
 {
     static const char *const files[] = {"chequer.png",       "models.jpg",         "slime.jpg",

@@ -271,11 +271,11 @@ stopped() {
 heard() { ((code == 130)) && [[ $(wc -l <err) == 1 && ! -s out ]] && grep -q -- "$1" err; } # PATTERN
 animate -o short/%d.png --duration 0.04 --set toy.time_s=86400 --set toy.dt_s=1e-5
 check "time_s of the slime is ignored" done_well
-refused "too many steps to the end of the animation" 'toy: 2 s in steps of 1e-09 s' -o steps/%d.png --set \
+refused "too many steps to the end of the animation" 'toy: 2 s with time steps of 1e-09 s' -o steps/%d.png --set \
     toy.dt_s=1e-9 --duration 2
-refused "too many steps to a late start" 'toy: 2000 s in steps' -o steps/%d.png --set toy.dt_s=1e-6 \
+refused "too many steps to a late start" 'toy: 2000 s with time steps' -o steps/%d.png --set toy.dt_s=1e-6 \
     --start 1999.96 --duration 0.04
-refused "too many steps to the end of the script" 'toy: 2.4 s in steps' -o steps/%d.png \
+refused "too many steps to the end of the script" 'toy: 2.4 s with time steps' -o steps/%d.png \
     --set toy.dt_s=1e-9 --script tug.yaml
 refused "a tiny time step" 'toy.dt_s' -o steps/%d.png --set toy.dt_s=1e-300
 stopped 0.5 animate slime.yaml -o steps/%d.png --set toy.time_s=0 --set toy.dt_s=1e-9 --duration 0.1
@@ -311,7 +311,7 @@ check "a closed pipe ends it without a message" eval '[[ ${PIPESTATUS[0]} != 0 |
 animate -o one/%05d.png --duration 0.6 --json
 check "--json is one object" eval '[[ $(./json_get out @type) == object && ! -s err ]]'
 check "with frames, kept and rate" is "$(./json_get out frames kept rendered 'fps[]' | tr '\n' ' ')" "15 15 0 25 1 "
-check "0.56 s in steps of 1 ms" is "$(./json_get out steps simulated_s wall_s_mean | tr '\n' ' ')" "560 0.56 null "
+check "0.56 s with time steps of 1 ms" is "$(./json_get out steps simulated_s wall_s_mean | tr '\n' ' ')" "560 0.56 null "
 check "and the definition of the rows" is "$(./json_get out definition)" "$(sed -n 2p late.csv | cut -d, -f1)"
 
 # --- invalid command lines

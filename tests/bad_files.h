@@ -1,4 +1,4 @@
-/* A folder of files that are wrong, and expected.txt with the one line that each is refused with: "NAME:LINE:COLUMN:
+/* Checks a folder of faulty files against expected.txt, which has the one line of error for each: "NAME:LINE:COLUMN:
  * what; remedy". */
 #pragma once
 
@@ -12,7 +12,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-/* Reads a file that is wrong; asserts that nothing came of it. */
+/* Reads a faulty file; asserts that nothing was created. */
 typedef status read_bad_file(const char *path, diagnostic *why);
 
 static inline void compare_bad_file(const char *folder, const char *expected, read_bad_file *read)
@@ -43,7 +43,8 @@ static inline size_t count_bad_files(const char *folder)
     return count;
 }
 
-/* Every .yaml of the folder (with a slash at its end) has its line; there are at least so many. */
+/* Asserts that every .yaml file of the folder (whose name ends in a slash) has its line, and that there are at least
+ * `least` files. */
 static inline void assert_bad_files(const char *folder, read_bad_file *read, size_t least)
 {
     char path[256], line[DIAGNOSTIC_TEXT_MAX];

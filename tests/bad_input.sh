@@ -202,7 +202,7 @@ printf '%s\n' 'render: {width: 8, height: 6}' 'meshes:' \
 refused "a script that is not there" "^cuvette: slimes/toy.yaml:3:58: toy: slimes/tug.yaml" render slimes/toy.yaml \
     --json
 printf '%s\n' 'hands:' '  left:' '    - {time_s: 0, move: [0, 0, 0]}' >slimes/tug.yaml
-refused "a wrong script" "^cuvette: slimes/tug.yaml:3:7: left: .*grab first" render slimes/toy.yaml --json
+refused "a wrong script" "^cuvette: slimes/tug.yaml:3:7: left: .*add a grab" render slimes/toy.yaml --json
 refused "a wrong script, checked" "^cuvette: slimes/tug.yaml:3:7: " scene slimes/toy.yaml --check
 printf '%s\n' 'hands:' '  left:' '    - {time_s: 0.01, grab: [9, 9, 9], towards: [0, 1, 0], reach: 1}' >slimes/tug.yaml
 refused "a hand that misses" "^cuvette: slimes/tug.yaml:3:7: .*nothing" render slimes/toy.yaml --json
@@ -220,9 +220,9 @@ refused "compare of one image" "only one image" compare good.png
 refused "compare of three images" "unexpected argument 'good.pfm'" compare good.png good.jpg good.pfm
 refused "compare of a missing image" "nowhere.png" compare good.png nowhere.png
 refused "compare of a folder" "folder.png" compare folder.png good.png
-refused "compare of a scene" "not a picture" compare "$scene" good.png
+refused "compare of a scene" "unknown image format" compare "$scene" good.png
 "$program" render "$scene" -o other.png --set render.width=20 --set render.height=40 >/dev/null
-refused "compare of two sizes" "40 x 20 .* 20 x 40.*one size" compare good.png other.png
+refused "compare of two sizes" "40 x 20 .* 20 x 40.*same size" compare good.png other.png
 head -c $(($(wc -c <good.png) / 2)) good.png >half.png
 refused "compare of a truncated PNG" "half.png" compare good.png half.png
 {
@@ -305,7 +305,7 @@ bad_scene "binary" "" '\x00\x01\x02\xff'
 bad_scene "not closed" ":" 'render: {width: 8\n'
 bad_scene "a key twice" ":1:" 'render: {width: 8, width: 9}\n'
 bad_scene "unknown shape" ":2:" 'solids:\n  a: {shape: moebius}\n'
-bad_scene "a material that is not there" ":2:" 'solids:\n  a: {shape: box, material: gold}\n'
+bad_scene "a missing material" ":2:" 'solids:\n  a: {shape: box, material: gold}\n'
 bad_scene "a list instead of a map" ":1:" '- a\n- b\n'
 bad_study() { # WHAT PATTERN TEXT
     printf '%b' "$3" >bad.study

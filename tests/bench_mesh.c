@@ -25,7 +25,7 @@ typedef struct tally {
     double total_t;
 } tally;
 
-/* CPU time: other processes on the machine do not count. */
+/* CPU time, so that other processes on the machine do not count. */
 static double now_s(void)
 {
     struct timespec t;

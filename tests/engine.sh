@@ -6,7 +6,7 @@ set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 build=${BUILD:-build} config=${CONFIG:-release} cc=${CC:-gcc}
 case $cc in *clang*) cxx=${CXX:-clang++} ;; *) cxx=${CXX:-g++} ;; esac
-case $config in sanitize | tsan | fuzz)
+case $config in sanitize | tsan | fuzz | coverage)
     echo "# instrumented libraries are not for other programs"
     exit 77
     ;;

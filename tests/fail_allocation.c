@@ -1,6 +1,7 @@
-/* A library to preload: one allocation of a program fails, as when memory is out. FAIL_AT=N fails the Nth, counted
- * from 1 (0: none) among those whose letters FAIL_KINDS names: m malloc and its like, c calloc, g a growing
- * realloc, s a shrinking one, p a realpath. FAIL_COUNT names a file that gets their number when the program ends. */
+/* A library for LD_PRELOAD: one allocation of a program fails, as if memory were exhausted. FAIL_AT=N makes the Nth
+ * fail, counted from 1 (0: none), among the kinds whose letters are in FAIL_KINDS: m malloc and aligned_alloc, c
+ * calloc, g a growing realloc, s a shrinking one, p a realpath. FAIL_COUNT names a file to which their number is
+ * written when the program ends. */
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -19,7 +20,7 @@ static const char *kinds, *count_path;
 static long fail_at;
 static atomic_long seen;
 
-/* What dlsym itself allocates; never released. */
+/* Memory that dlsym itself allocates; never released. */
 static char early[16384];
 static size_t early_used;
 static bool is_resolving;

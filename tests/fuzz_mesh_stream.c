@@ -1,6 +1,6 @@
-/* The libFuzzer entry for the importer's answers: any bytes are an answer. A mesh that is accepted must be sound:
- * finite, and every index in range.
- *  clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz_mesh_stream.c; ./fuzz_mesh_stream CORPUS */
+/* The libFuzzer entry for the importer's reply: any bytes are a reply. A mesh that is accepted must be valid: all
+ * values finite, and every index in range.
+ *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz_mesh_stream.c; ./fuzz_mesh_stream CORPUS */
 #include "scene/assets/mesh_stream.h"
 
 #include <math.h>

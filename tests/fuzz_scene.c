@@ -1,5 +1,5 @@
-/* libFuzzer entry: any bytes are a scene file. A scene that is accepted must also survive what is done with every
- * scene: each parameter visited, set again to its own text, and the whole checked, copied and released.
+/* The libFuzzer entry for the scene reader: any bytes are a scene file. An accepted scene must also survive the usual
+ * operations: each parameter is visited and set again to its own text, and the scene is checked, copied and released.
  *   clang -g -O1 -fsanitize=fuzzer,address,undefined ... tests/fuzz_scene.c; ./fuzz_scene CORPUS tests/bad/scenes */
 #include "scene/model/params.h"
 

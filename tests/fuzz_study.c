@@ -1,6 +1,6 @@
-/* libFuzzer on the study reader. Whatever the bytes are, they are a study or one located error; a study that was
- * read gives every cell's scene. The scenes that it may name are those of experiments/scenes. `make fuzz` builds
- * and runs it; seeds are experiments/ and tests/bad-studies/. */
+/* The libFuzzer entry for the study reader: any bytes give a study or one located error; an accepted study provides the
+ * scene of every cell. The scenes that it may name are those of experiments/scenes. `make fuzz` builds and runs it;
+ * seeds are experiments/ and tests/bad-studies/. */
 #include "study/study.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -46,7 +46,7 @@ static inline void fixture_build(fixture *f, int threads)
     assert_int_equal(hierarchy_build_bvh(&f->h, threads, &why), STATUS_OK);
 }
 
-static inline void fixture_fell(fixture *f)
+static inline void fixture_free_hierarchy(fixture *f)
 {
     free(f->h.nodes);
     free(f->h.blocks);
@@ -55,7 +55,7 @@ static inline void fixture_fell(fixture *f)
 
 static inline void fixture_free(fixture *f)
 {
-    fixture_fell(f);
+    fixture_free_hierarchy(f);
     free(f->m.vertices);
     free(f->m.triangles);
 }

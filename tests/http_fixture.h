@@ -1,5 +1,5 @@
-/* A client over plain sockets for tests of web/http/http.h. Ownership: texts are fresh memory; sockets are the
- * caller's. A server that never answers shows as a reply of "" after READ_LIMIT_S, not as a test that hangs. */
+/* A client over plain sockets for tests of web/http/http.h. Ownership: the caller frees returned strings and closes
+ * sockets. A server that never answers gives the reply "" after READ_LIMIT_S instead of a test that hangs. */
 #pragma once
 
 #include "base/text.h"
@@ -30,7 +30,7 @@ static inline int client_connect(int port)
     return fd;
 }
 
-/* Stops quietly where the server has closed. */
+/* Sends until done or until the server closes, which is no error. */
 static inline bool client_send(int fd, const void *bytes, size_t size)
 {
     for (const char *at = bytes; size;) {
@@ -43,7 +43,7 @@ static inline bool client_send(int fd, const void *bytes, size_t size)
     return true;
 }
 
-/* Until the server closes. */
+/* Reads until the server closes. */
 static inline char *client_read_all(int fd)
 {
     char *text = NULL;
@@ -53,8 +53,7 @@ static inline char *client_read_all(int fd)
             text = realloc(text, room = 2 * room + 8192);
         const ssize_t got = recv(fd, text + size, room - size - 1, 0);
         if (got < 0 &&
-            errno ==
-                EINTR) /* a child of the server's ended: the limit on the time keeps the call from going on by itself */
+            errno == EINTR) /* a child of the server ended; with a receive timeout, recv is not restarted (signal(7)) */
             continue;
         if (got <= 0)
             break;
@@ -73,7 +72,7 @@ static inline char *client_raw(int port, const void *bytes, size_t size)
     return reply;
 }
 
-/* heads: further lines, each ended by \r\n; body may be NULL. */
+/* heads: further header lines, each ended by \r\n; body may be NULL. */
 static inline char *client_ask_as(int port, const char *method, const char *target, const char *heads, const char *body)
 {
     char *request = body ? text_format("%s %s HTTP/1.1\r\nConnection: close\r\nContent-Length: %zu\r\n%s\r\n%s", method,
@@ -84,7 +83,7 @@ static inline char *client_ask_as(int port, const char *method, const char *targ
     return reply;
 }
 
-/* With Host and token. */
+/* Sends the request with the Host header and the token. */
 static inline char *client_ask(const http_server *s, const char *method, const char *target, const char *heads,
                                const char *body)
 {
@@ -105,7 +104,7 @@ static inline const char *reply_body(const char *reply)
     return end ? end + 4 : "";
 }
 
-/* Is there that line among its headers? */
+/* Do the reply's headers contain that line? */
 static inline bool reply_has(const char *reply, const char *line)
 {
     char *whole = text_format("\r\n%s\r\n", line);

@@ -68,7 +68,7 @@ static bool fits(const json_t *element, const char *condition, size_t size)
 
 static bool get(json_t *value, const char *path);
 
-/* Behind a bracket. */
+/* The part of a path after its '['. */
 static bool get_element(json_t *value, const char *path)
 {
     char *end;

@@ -48,7 +48,7 @@ check_rows() {
     awk -F, -v complete="${2:-}" '
         NR == 1 { columns = NF; next }
         NF != columns { print "line " NR " has " NF " columns"; bad = 1 }
-        seen[$3, $4]++ { print "cell " $3 " repetition " $4 " stands twice"; bad = 1 }
+        seen[$3, $4]++ { print "duplicate row: cell " $3 ", repetition " $4; bad = 1 }
         { cells[$3]; counted[$3] += !$5; marked += $12 }
         END {
             for (cell in cells) {

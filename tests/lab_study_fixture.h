@@ -63,7 +63,7 @@ static inline void wait_for_rows(const lab_room *room, json_int_t count)
         ;
 }
 
-/* The state's study after its end. */
+/* Waits for the study's end; returns its state. */
 static inline json_t *wait_for_end(const lab_room *room)
 {
     for (;;) {

@@ -1,4 +1,4 @@
-/* Ways of a ray in closed form, to compare probe_path with: through plane layers, and through coaxial cylinders or
+/* Paths of a ray in closed form, to compare with probe_path: through plane layers, and through coaxial cylinders or
  * concentric spheres. Ownership: values. */
 #pragma once
 
@@ -6,7 +6,8 @@
 
 enum { CROSSINGS_MAX = 64 };
 
-/* An interface: where, at which angle, between which indices; and the direction behind it. */
+/* An interface: the point, the angle of incidence, the indices on both sides, and the direction of the refracted
+ * ray. */
 typedef struct crossing {
     vec3 point, direction;
     double angle_i, n_from, n_to;
@@ -17,7 +18,7 @@ typedef struct known_way {
     crossing at[CROSSINGS_MAX];
 } known_way;
 
-/* The largest error of a way, relative to a length for positions, and of weights relative to themselves. */
+/* The largest error of a path: of positions relative to `length`, of weights relative to themselves. */
 static inline double way_error(const ray_tree *tree, const known_way *k, double length)
 {
     double worst = 0.0, weight = 1.0;
@@ -43,14 +44,14 @@ static inline double way_error(const ray_tree *tree, const known_way *k, double 
 
 /* --- plane layers --- */
 
-/* Layers below y = 0 of a frame, one under another, in surroundings of index outside. */
+/* Layers stacked downwards from y = 0 of a frame, in surroundings of index `outside`. */
 typedef struct layers {
     int count;
     double outside, n[32], thickness[32];
 } layers;
 
-/* A ray that meets the top at the frame's origin under angle_i, towards +x: behind each layer it is d tan(angle)
- * further on, and n sin(angle) stays (Hecht, 4.4.1; Born and Wolf, Principles of Optics, 7th ed., 1.6). */
+/* A ray that hits the top layer at the frame's origin at angle_i, towards +x: each layer displaces it by d tan(angle),
+ * and n sin(angle) is invariant (Hecht, 4.4.1; Born and Wolf, Principles of Optics, 7th ed., 1.6). */
 static inline known_way way_through_layers(const layers *l, double angle_i, vec3 position, vec3 rotation_deg)
 {
     const double kept = l->outside * sin(angle_i);
@@ -80,11 +81,11 @@ typedef struct shells {
     double radius[16], n[17];
 } shells;
 
-/* A ray towards +x of a turned frame at z = offset, which rises by d_y along the axis y: for cylinders about y, and
- * with d_y = 0 for spheres. Across the axis it goes like a plane ray in media of index sqrt(n^2 - (n_0 d_y)^2), because
- * n d_y stays (Bravais's law of oblique rays: Tricker, Introduction to Meteorological Optics, 1970, 4; Marcuse, Applied
- * Optics 13, 1974), and there the index times the distance from the axis stays (Bouguer: Born and Wolf, 7th ed., 3.2.1,
- * eq. 7). */
+/* A ray towards +x of a rotated frame at z = offset, with slope d_y along the axis y: for cylinders about y, and with
+ * d_y = 0 for spheres. Projected across the axis it is a plane ray in media of index sqrt(n^2 - (n_0 d_y)^2), because n
+ * d_y is invariant (Bravais's law of oblique rays: Tricker, Introduction to Meteorological Optics, 1970, 4; Marcuse,
+ * Applied Optics 13, 1974); there the index times the distance from the axis is invariant (Bouguer: Born and Wolf, 7th
+ * ed., 3.2.1, eq. 7). */
 static inline known_way way_through_shells(const shells *s, double offset, double d_y, vec3 position, vec3 rotation_deg)
 {
     const int m = s->count;
@@ -96,7 +97,7 @@ static inline known_way way_through_shells(const shells *s, double offset, doubl
     known_way w = {.count = 2 * m};
     w.origin = vec3_add(position, turned(vec3_make(-start, 0.0, offset), rotation_deg));
     w.direction = turned(vec3_make(across, d_y, 0.0), rotation_deg);
-    /* polar angle, from x towards z, and heading both fall */
+    /* the polar angle, from x towards z, and the heading both decrease */
     double polar = acos(-1.0) - asin(offset / s->radius[0]), heading = 0.0;
     double y = (start - sqrt(s->radius[0] * s->radius[0] - offset * offset)) * rise / n[0];
     for (int j = 0; j < 2 * m; j++) {

@@ -1,7 +1,7 @@
-/* Is a note of the linter true? Found without the linter's lines, boxes and intervals: solids contain points by
- * their definitions in quadruple precision (solid_reference.h), meshes by their solid angle (van Oosterom and
- * Strackee, IEEE Trans. Biomed. Eng. 30, 1983), and what lies along random lines is asked at the middle of each
- * piece between two crossings. Ownership: the scene is borrowed. */
+/* An independent check whether a note of the linter is true. It does not use the linter's lines, boxes and intervals:
+ * containment in solids is by definition in quadruple precision (solid_reference.h), in meshes by the solid angle (van
+ * Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983); along random lines, each segment between two crossings is
+ * classified at its midpoint. Ownership: the scene is borrowed. */
 #pragma once
 
 #include "law_scene.h"
@@ -51,7 +51,7 @@ static inline double solid_angle(quad3 a, quad3 b, quad3 c)
 /* May the point be within the first copy? Not beyond all of its vertices along an axis. */
 static inline bool mesh_comes_near(const solid_shape *s, const mesh *m, vec3 p)
 {
-    const double margin = 1e-9; /* of doubles */
+    const double margin = 1e-9; /* rounding of doubles */
     vec3 low = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (size_t i = 0; i < m->vertex_count; i++) {
         const vec3 v = m->vertices[i];
@@ -87,7 +87,7 @@ static inline bool oracle_holds(const oracle *o, const solid *x, quad3 point)
     return x->shape.kind == SHAPE_MESH ? mesh_holds(o, x, point) : reference_contains(&x->shape, point);
 }
 
-/* The solid that wins at a point; NULL for none. */
+/* The solid of highest priority at a point; NULL for none. */
 static inline const solid *oracle_winner(const oracle *o, quad3 point)
 {
     const solid *best = NULL;
@@ -142,8 +142,8 @@ static inline ball ball_of(const solid *x)
     return ball_around(&s);
 }
 
-/* A corner, or a point of an edge or a rim, a little inside: what is there alone is met by few lines through the
- * whole. */
+/* A corner, or a point of an edge or a rim, slightly inside: few lines through the whole solid pass through a part that
+ * is only there. */
 static inline vec3 oracle_corner(oracle *o, const solid *x)
 {
     const solid_shape *s = &x->shape;
@@ -182,8 +182,8 @@ static inline vec3 oracle_corner(oracle *o, const solid *x)
     return vec3_add(s->position, mat3_apply(rotation_from_deg(s->rotation_deg), p));
 }
 
-/* A line through a random point of the smaller one's ball or near a corner of one, along an axis of the world's or
- * of one of the two. */
+/* A line through a random point of the smaller solid's bounding ball or near a corner of either solid, along an axis of
+ * the world or of either solid. */
 static inline reference_line oracle_line(oracle *o, const solid *a, const solid *b)
 {
     const ball p = ball_of(a), q = ball_of(b), small = p.radius < q.radius ? p : q;
@@ -202,10 +202,10 @@ static inline reference_line oracle_line(oracle *o, const solid *a, const solid 
     return (reference_line){quad3_from(through), quad3_from(d)};
 }
 
-/* Is there a piece of the line longer than that where both are? */
+/* Does the line have a segment longer than `longer` inside both solids? */
 static inline bool line_overlap(const oracle *o, const solid *a, const solid *b, const reference_line *l, double longer)
 {
-    crossing_list c = {.count = 2, .t = {-1e4, 1e4}}; /* half-spaces have one crossing alone */
+    crossing_list c = {.count = 2, .t = {-1e4, 1e4}}; /* half-spaces have a single crossing */
     add_crossings(o, a, l, &c);
     add_crossings(o, b, l, &c);
     reference_sort(c.t, c.count);
@@ -227,7 +227,7 @@ static inline bool oracle_overlap(oracle *o, const solid *a, const solid *b, int
     return false;
 }
 
-/* No less than the width of the solid where it is thinnest. */
+/* An upper bound of the thickness of the solid at its thinnest part. */
 static inline double oracle_thickness(const solid *x)
 {
     const solid_shape *s = &x->shape;
@@ -248,7 +248,7 @@ static inline double oracle_thickness(const solid *x)
 
 static inline bool line_gap(const oracle *o, const solid *a, const solid *b, const reference_line *l, double narrower)
 {
-    crossing_list c = {.count = 2, .t = {-1e4, 1e4}}; /* half-spaces have one crossing alone */
+    crossing_list c = {.count = 2, .t = {-1e4, 1e4}}; /* half-spaces have a single crossing */
     add_crossings(o, a, l, &c);
     add_crossings(o, b, l, &c);
     reference_sort(c.t, c.count);
@@ -278,7 +278,7 @@ static inline bool oracle_gap(oracle *o, const solid *a, const solid *b)
 
 /* --- at points --- */
 
-/* Is the cover wherever the hidden one is, and wins? */
+/* Does `cover` contain `hidden`, and win everywhere in it? */
 static inline bool oracle_covers(oracle *o, const solid *cover, const solid *hidden)
 {
     const ball around = ball_of(hidden);
@@ -296,7 +296,7 @@ static inline bool has_surrounding_index(const oracle *o, const solid *x)
     return x->surface.ior == o->s->background.ior;
 }
 
-/* Is it of the surroundings' index, and never there in place of another one that can be seen? */
+/* Has the solid the surroundings' index, and does it nowhere replace another visible solid? */
 static inline bool oracle_bends_nothing(oracle *o, const solid *x)
 {
     const ball around = ball_of(x);

@@ -12,7 +12,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 unset CUVETTE_ISA
 case ${CONFIG:-release}${CC:-gcc} in
-tsan* | fuzz* | sanitize*clang*)
+tsan* | fuzz* | coverage* | sanitize*clang*)
     echo "# allocates by itself, whatever is preloaded"
     exit 77
     ;;

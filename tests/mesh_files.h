@@ -90,7 +90,7 @@ static inline void add_float(bytes *b, float value)
     add(b, &value, sizeof value);
 }
 
-/* A tetrahedron with its fronts facing outwards; the coordinates are floats but not short decimals. */
+/* A tetrahedron with outward normals; the coordinates are floats but not short decimals. */
 static const float corners[4][3] = {{0.1f, -0.2f, 0.3f}, {1.1f, -0.2f, 0.3f}, {0.1f, 0.9f, 0.3f}, {0.1f, -0.2f, 1.7f}};
 static const uint8_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
 

@@ -1,4 +1,4 @@
-/* Small meshes for tests, made from lists, and a cube that tests take apart. */
+/* Small meshes for tests, made from lists, and a cube that tests modify. */
 #pragma once
 
 #include "geometry/mesh.h"

@@ -1,6 +1,6 @@
-/* Pictures of random paths against what they should be: within the interval that the renderer reports. Eight layers
- * give a standard error of seven degrees of freedom; Student's t, two-sided (Abramowitz and Stegun, table 26.10). Each
- * call asserts that it worked. */
+/* Images of the path tracer compared with expected values: within the confidence interval that the renderer reports.
+ * Eight layers give a standard error with seven degrees of freedom; Student's t, two-sided (Abramowitz and Stegun,
+ * table 26.10). Each call asserts that it succeeded. */
 #pragma once
 
 #include "scene/model/scene.h"
@@ -22,7 +22,7 @@ static inline estimate estimate_at(const render_result *r, int x, int y, int cha
     return e;
 }
 
-/* The middle of a picture of one pixel, one channel. */
+/* The mean of an image of one pixel, in one channel. */
 static inline estimate look_by_chance(const scene *s, int channel)
 {
     render_result *r = render(s);
@@ -38,15 +38,15 @@ static inline void expect_estimate(estimate e, double wanted)
         fail_msg("%.9g +- %.2g instead of %.9g", e.value, e.standard_error, wanted);
 }
 
-/* Over many values: how many lie in their own interval of 95%, and how far the mean of all lies off in its standard
- * errors. */
+/* Statistics over many values: the number inside their own 95% interval, and the mean deviation of all in units of its
+ * standard error. */
 typedef struct agreement {
     int count, inside;
     double off, variance;
 } agreement;
 
-/* unseen: how far off a value may be that shows no spread: ROUNDINGS where nothing is left to chance, else what rare
- * events weigh of which none was seen, about 10 / paths. */
+/* unseen: the tolerance for a value whose layers do not differ: ROUNDINGS where nothing is random, otherwise the weight
+ * of rare events none of which was sampled, about 10 / paths. */
 static inline void agreement_add(agreement *a, estimate e, double wanted, double unseen)
 {
     if (e.standard_error < 1e-9) {

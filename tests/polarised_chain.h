@@ -1,5 +1,5 @@
 /* Random chains of interfaces for the tests of polarised light: the ray from the eye step by step, and the light's
- * field the other way, as complex vectors in space that know no Stokes frame. Pure but for the seed. */
+ * field in the opposite direction, as complex vectors in space that need no Stokes frame. Pure except for the seed. */
 #pragma once
 
 #include "optics/mueller.h"
@@ -43,8 +43,9 @@ static inline field field_cross(field a, field b)
     return f;
 }
 
-/* Stokes parameters of field E exp(-i omega t) in the frame (x, y), from their meaning: u compares the powers along the
- * two diagonals; v is twice E_x dE_y/dt - E_y dE_x/dt (per omega), positive when the field turns from x to y. */
+/* Stokes parameters of the field E exp(-i omega t) in the frame (x, y), from their definition: u compares the powers
+ * along the two diagonals; v is twice E_x dE_y/dt - E_y dE_x/dt (per omega), positive when the field rotates from x to
+ * y. */
 static inline stokes field_stokes(field e, vec3 x, vec3 y)
 {
     const double complex ex = field_along(e, x), ey = field_along(e, y), up = (ex + ey) / sqrt(2.0),
@@ -56,8 +57,8 @@ static inline stokes field_stokes(field e, vec3 x, vec3 y)
     return s;
 }
 
-/* Amplitudes by Fresnel's formulas with a complex angle of refraction; exp(-i omega t): the wave beyond total
- * reflection dies away for a positive imaginary cos_t. Born and Wolf, 7th ed., 1.5.2 and 1.5.4. */
+/* Amplitudes by Fresnel's formulas with a complex angle of refraction; with exp(-i omega t) the evanescent wave beyond
+ * total reflection decays for a positive imaginary cos_t. Born and Wolf, 7th ed., 1.5.2 and 1.5.4. */
 typedef struct amplitudes {
     double complex cos_t, r_s, r_p, t_s, t_p;
 } amplitudes;
@@ -81,7 +82,7 @@ typedef struct chain_step {
     double cos_i, n_from, n_to;
 } chain_step;
 
-/* A ray d in n_from meets a random plane. */
+/* A ray d in n_from hits a random plane. */
 static inline chain_step chain_step_random(uint64_t *seed, vec3 d, double n_from)
 {
     chain_step c = {(enum chain_kind)random_below(seed, CHAIN_KINDS), d, random_direction(seed), d, 0.0, n_from, 1.0};
@@ -120,7 +121,7 @@ static inline stokes chain_analyser(const chain_step *c, stokes row)
     }
 }
 
-/* The field that leaves along -d for a field that arrives along -child, in units of the root of power. */
+/* The outgoing field along -d for a field incoming along -child, in units of the square root of power. */
 static inline field chain_field(const chain_step *c, field e)
 {
     const vec3 s = vec3_normalize(vec3_cross(c->d, c->n));
@@ -129,7 +130,7 @@ static inline field chain_field(const chain_step *c, field e)
     if (c->kind == CHAIN_REFLECT) {
         amplitudes a = amplitudes_at(c->cos_i, c->n_from, c->n_to);
         a_s = a.r_s, a_p = a.r_p;
-    } else if (c->kind == CHAIN_REFRACT) { /* out of n_to, where the angle is that of refraction */
+    } else if (c->kind == CHAIN_REFRACT) { /* seen from n_to, where the angle is that of refraction */
         const double cos_t = -vec3_dot(c->child, c->n);
         amplitudes a = amplitudes_at(cos_t, c->n_to, c->n_from);
         const double root = sqrt(c->n_from * creal(a.cos_t) / (c->n_to * cos_t));

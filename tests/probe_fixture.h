@@ -1,6 +1,6 @@
-/* Scenes written line by line, and single rays through them, for tests that look through render/inspect/probe.h. Each
- * call asserts that it worked. Ownership: stage_of gives, stage_close releases; trees belong to their stage and last
- * until its next ray. */
+/* Scenes written line by line, and single rays traced through them, for tests that use render/inspect/probe.h. Each
+ * call asserts that it succeeded. Ownership: stage_of creates, stage_close releases; a tree belongs to its stage and is
+ * valid until its next ray. */
 #pragma once
 
 #include "scene/model/scene.h"
@@ -28,7 +28,7 @@ __attribute__((format(printf, 2, 3))) static inline void add(scene_text *t, cons
     assert_true(n >= 0 && t->length < sizeof t->at);
 }
 
-/* A sky of 1 in every channel, no lights; solids are to follow, one a line, from add_clear. */
+/* A sky of 1 in every channel, no lights; the solids follow, one a line, by add_clear. */
 static inline scene_text scene_begin(double surrounding_ior, int depth)
 {
     scene_text t = {.length = 0};
@@ -37,7 +37,7 @@ static inline scene_text scene_begin(double surrounding_ior, int depth)
     return t;
 }
 
-/* A clear solid; more: further keys, as "shape: sphere, radius: 2". */
+/* A transparent solid; more: further keys, as "shape: sphere, radius: 2". */
 static inline void add_clear(scene_text *t, const char *name, double ior, int priority, vec3 position,
                              vec3 rotation_deg, const char *more)
 {
@@ -107,7 +107,7 @@ static inline const ray_node *child_of(const ray_tree *tree, const ray_node *par
     return NULL;
 }
 
-/* Throughput of all that the depth limit or render.min_weight cut off, in one channel. */
+/* Sum of the throughput of all rays cut off by the depth limit or render.min_weight, in one channel. */
 static inline double tree_cut(const ray_tree *tree, int channel)
 {
     double sum = 0.0;
@@ -117,8 +117,7 @@ static inline double tree_cut(const ray_tree *tree, int channel)
     return sum;
 }
 
-/* Power reflectances from the angles alone: Hecht, Optics, 5th ed., eqs. 4.42 and 4.43, squared; at normal
- * incidence 4.47. */
+/* Power reflectances from the angles: Hecht, Optics, 5th ed., eqs. 4.42 and 4.43, squared; at normal incidence 4.47. */
 typedef struct reflectance {
     double s, p, mean;
 } reflectance;
@@ -131,7 +130,7 @@ static inline reflectance reflectance_of_angles(double angle_i, double n_from, d
     return (reflectance){s * s, p * p, 0.5 * (s * s + p * p)};
 }
 
-/* From a frame turned by rotation_deg to the world's, in quadruple precision; rounded. */
+/* Rotates from a frame with rotation_deg to the world's, in quadruple precision; rounded. */
 static inline vec3 turned(vec3 local, vec3 rotation_deg)
 {
     const quad3 v = quad3_turn(quad3_from(local), rotation_deg, 0);

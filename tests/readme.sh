@@ -1,8 +1,7 @@
 #!/bin/bash
-# What the pages for people promise: files that they name are there, commands and the study of README.md work as they
-# stand,
-# and results/README.md names every column that a study writes. tests/readme.sh [PROGRAM]; needs the compiler (CC) for
-# tests/json_get.c. One line a check ("ok ...", "not ok ...").
+# The documents keep their promises: linked files exist, the commands of README.md work as printed, and
+# results/README.md describes every column that a study writes. tests/readme.sh [PROGRAM]; needs the compiler (CC) for
+# tests/json_get.c. One line per check ("ok ...", "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

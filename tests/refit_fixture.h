@@ -129,7 +129,7 @@ typedef struct collected {
     uint32_t triangle[SHOWN_MAX];
 } collected;
 
-static inline void gather(void *context, const mesh_hit *hit)
+static inline void collect(void *context, const mesh_hit *hit)
 {
     collected *g = context;
     uint64_t bits;
@@ -139,7 +139,7 @@ static inline void gather(void *context, const mesh_hit *hit)
     g->triangle[g->count++] = hit->triangle;
 }
 
-static inline double gather_box(void *context, uint32_t triangle, double t_max)
+static inline double collect_box(void *context, uint32_t triangle, double t_max)
 {
     collected *g = context;
     assert_true(g->count < SHOWN_MAX);
@@ -147,15 +147,15 @@ static inline double gather_box(void *context, uint32_t triangle, double t_max)
     return t_max;
 }
 
-/* Every triangle that is hit is reported, and none twice. */
-static inline void shows_what_is_hit(const hierarchy_kernels *kernel, const hierarchy *h, const mesh_ray *r,
-                                     const collected *hits)
+/* Asserts that every triangle that is hit is also reported, and none twice. */
+static inline void reports_every_hit_once(const hierarchy_kernels *kernel, const hierarchy *h, const mesh_ray *r,
+                                          const collected *hits)
 {
     static collected shown;
     uint8_t *times = calloc(h->of->triangle_count, 1);
     assert_non_null(times);
     shown.count = 0;
-    kernel->boxes(h, r, gather_box, &shown);
+    kernel->boxes(h, r, collect_box, &shown);
     for (long i = 0; i < shown.count; i++)
         assert_int_equal(times[shown.triangle[i]]++, 0);
     for (long i = 0; i < hits->count; i++)
@@ -192,11 +192,11 @@ static inline long compare(const mesh *m, const hierarchy *refitted, int batches
         }
         for (int i = 0; i < 8; i++) {
             memset(all, 0, sizeof all);
-            kernel->all(none, &r[i], gather, &all[0]);
-            kernel->all(refitted, &r[i], gather, &all[1]);
+            kernel->all(none, &r[i], collect, &all[0]);
+            kernel->all(refitted, &r[i], collect, &all[1]);
             assert_int_equal(all[1].count, all[0].count);
             assert_true(all[1].sum == all[0].sum);
-            shows_what_is_hit(kernel, refitted, &r[i], &all[0]);
+            reports_every_hit_once(kernel, refitted, &r[i], &all[0]);
         }
     }
     hierarchy_destroy(fresh);

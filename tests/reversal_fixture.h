@@ -1,22 +1,23 @@
-/* A path of light there and back, for tests. Ownership as in probe_fixture.h. */
+/* A light path traced in both directions, for tests. Ownership as in probe_fixture.h. */
 #pragma once
 
 #include "probe_fixture.h"
 #include "scene/model/scene.h"
 
-/* A path of light is the same in both directions (Hecht, 4.5: Fermat's principle and reversibility; 4.10: Stokes's
- * relations), and so is the share of power that goes along it: R and T = n_t cos_t / (n_i cos_i) |t|^2 of an interface
- * are the same from either side. Radiance is another matter: it grows by (n_t / n_i)^2 on the way into a medium, L /
- * n^2 stays (Nicodemus, Applied Optics 2, 1963; Veach 1997, 5.2). The tracer's throughput is one of power: between an
- * eye in a medium a and a sky in a medium b it leaves out the factor (n_a / n_b)^2, which is 1 where both are of one
- * medium. Were the factor in it, there and back would differ by its square. */
+/* A light path is the same in both directions (Hecht, 4.5: Fermat's principle and reversibility; 4.10: Stokes's
+ * relations), and so is its share of power: R and T = n_t cos_t / (n_i cos_i) |t|^2 of an interface are the same from
+ * either side. Radiance is not: it grows by (n_t / n_i)^2 on entering a medium, and L / n^2 is invariant (Nicodemus,
+ * Applied Optics 2, 1963; Veach 1997, 5.2). The tracer's throughput is that of power: between an eye in a medium a and
+ * a sky in a medium b it omits the factor (n_a / n_b)^2, which is 1 if both are in one medium. With the factor, the two
+ * directions would differ by its square. */
 
-/* Curved surfaces are a billiard, where a rounding grows with every bounce (to 1e-7 after sixty), and near grazing with
- * the square of 1/cos. A reflectance next to nothing is a difference of almost equal numbers. */
+/* Limits of the comparison. Reflections between curved surfaces form a billiard, where a rounding error grows with
+ * every bounce (to 1e-7 after sixty), and near grazing incidence with the square of 1/cos. A reflectance close to zero
+ * is a difference of almost equal numbers. */
 static const double STEEP = 0.1;
 enum { BOUNCES_MAX = 12 };
-/* A point that lies beside the other turns the normal, the angles and so the reflectances: relative change of
- * throughput a unit of length. */
+/* A displaced hit point rotates the normal and so changes the angles and the reflectances: relative change of
+ * throughput per unit of length. */
 static const double SWAY = 100.0;
 
 static inline bool is_tame(const ray_tree *way)
@@ -34,8 +35,8 @@ static inline bool is_tame(const ray_tree *way)
     return way->node[way->count - 1].end == RAY_END_SKY;
 }
 
-/* T of power by Hecht's eqs. 4.61, 4.32 and 4.38, the mean of both polarisations, and what a coating leaves of it; R
- * under a reflection. */
+/* The transmittance of power by Hecht's eqs. 4.61, 4.32 and 4.38, the mean of both polarisations, times the share that
+ * a coating transmits; R for a reflection. */
 static inline double share_of(const ray_hit *h, double coating, ray_kind next)
 {
     const double a = h->n_from * h->cos_i, b = h->n_to * h->cos_t;
@@ -44,9 +45,9 @@ static inline double share_of(const ray_hit *h, double coating, ray_kind next)
     return next == RAY_REFRACT ? T : 1.0 - T;
 }
 
-/* What came of a path: whether it was one to compare, whether the path back met the same surfaces, how far its points
- * lay from those of the path there, by how much their throughputs differ beyond what that explains, and that of the
- * path there from the closed forms. */
+/* The result for one path: whether it was usable, whether the reverse path hit the same surfaces, the largest distance
+ * between the hit points of both, the difference of their throughputs beyond what that distance explains, and the
+ * difference between the forward throughput and the closed form. */
 typedef struct reversal {
     bool used, same_surfaces, reflected, other_media;
     int crossings;
@@ -57,15 +58,15 @@ static inline double unequal_throughput(const ray_node *there, const ray_node *b
 {
     double worst = 0.0;
     for (int c = 0; c < 3; c++) {
-        /* the first stretch of either path is not part of the other; absorption between is */
+        /* the first segment of either path is not part of the other; absorption between is */
         const double forth = there[n].throughput[c] / there[0].hit.transmittance[c];
         const double other = back[n].throughput[c] / back[0].hit.transmittance[c];
-        worst = fabs(forth / other - 1.0) <= worst ? worst : fabs(forth / other - 1.0); /* also what is no number */
+        worst = fabs(forth / other - 1.0) <= worst ? worst : fabs(forth / other - 1.0); /* also true for NaN */
     }
     return worst;
 }
 
-/* One path, and back from 3 units behind its last interface. */
+/* Traces one path, and its reverse from 3 units beyond its last interface. */
 static inline reversal there_and_back(stage *g, vec3 origin, vec3 direction, int reflect_at)
 {
     reversal r = {.used = false};

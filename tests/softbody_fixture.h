@@ -1,4 +1,4 @@
-/* Small nets whose motion is known, and how to run them. */
+/* Small spring nets whose motion is known in closed form, and functions that run them. */
 #pragma once
 
 #include "scene/model/edit/edit.h"
@@ -23,7 +23,7 @@ static inline void assert_near_at(double got, double wanted, double within, cons
     }
 }
 
-/* The toy as the parameter table has it. */
+/* The toy with the defaults of the parameter table. */
 static inline softbody_settings default_toy(void)
 {
     scene *s = scene_create();
@@ -34,7 +34,7 @@ static inline softbody_settings default_toy(void)
     return settings;
 }
 
-/* Nothing acts but springs. */
+/* No force but the springs'. */
 static inline softbody_settings settings_in_space(softbody_integrator integrator, double dt_s)
 {
     softbody_settings s = default_toy();
@@ -74,7 +74,7 @@ static inline softbody *point_at(vec3 position, vec3 velocity, const softbody_se
     return body_of_net(&net, s);
 }
 
-/* Two masses along x on a spring of length 1, drawn apart by `drawn`. */
+/* Two masses along x on a spring of length 1, stretched by `drawn`. */
 static inline softbody *pair_of(double m1, double m2, double k, double damping, double drawn,
                                 const softbody_settings *s)
 {

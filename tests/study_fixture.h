@@ -1,4 +1,4 @@
-/* A folder of its own for a test, with a small scene and a study in it; gone at the end. */
+/* A temporary folder for a test, with a small scene and a study in it; removed at the end. */
 #pragma once
 
 #include <math.h>
@@ -48,7 +48,7 @@ __attribute__((unused)) static void fixture_write(const fixture *f, const char *
     assert_int_equal(fclose(file), 0);
 }
 
-/* The whole of a file, or "" when it is not there; free it. */
+/* The whole text of a file, or "" if it does not exist; free it. */
 __attribute__((unused)) static char *fixture_text(const fixture *f, const char *name)
 {
     char path[400];
@@ -98,7 +98,7 @@ __attribute__((unused)) static int fixture_teardown(void **state)
     return 0;
 }
 
-/* Reads a study of this text, which must be right; the study's scene is scene.yaml of the folder. */
+/* Reads a study from this text, which must be valid; its scene is scene.yaml of the folder. */
 __attribute__((unused)) static study *fixture_study(const fixture *f, const char *text)
 {
     char path[400], said[DIAGNOSTIC_TEXT_MAX];
@@ -111,7 +111,7 @@ __attribute__((unused)) static study *fixture_study(const fixture *f, const char
     return s;
 }
 
-/* Runs it without a shard, which must end well; returns the rows written. */
+/* Runs the study without a shard, which must succeed; returns the number of rows written. */
 __attribute__((unused)) static size_t fixture_run(const fixture *f, const study *s)
 {
     char said[DIAGNOSTIC_TEXT_MAX];
@@ -123,7 +123,7 @@ __attribute__((unused)) static size_t fixture_run(const fixture *f, const study 
     return ran;
 }
 
-/* How often a text holds another. */
+/* The number of occurrences of a text in another. */
 __attribute__((unused)) static size_t fixture_count(const char *text, const char *part)
 {
     size_t count = 0;

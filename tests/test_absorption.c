@@ -1,6 +1,6 @@
 /* Tests of absorption by Beer and Lambert's law: the transmittance of a length d of a medium is exp(-a d) (Hecht,
- * 4.8.1, eq. 4.79), wherever light passes through it: slabs with their reflections, solids without refraction, and
- * straight shadow rays. */
+ * 4.8.1, eq. 4.79), in every case of light passing through it: slabs with their reflections, solids without refraction,
+ * and straight shadow rays. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 static const vec3 askew = {17.0, -33.0, 71.0};
 static const double a_per_m[3] = {0.7, 0.0, 2.5};
 
-/* A slab of thickness d across y = 0. */
+/* A slab of that thickness, centred on y = 0. */
 static stage slab(double n, double thickness, int depth, const char *assignments)
 {
     char more[128];
@@ -24,7 +24,7 @@ static stage slab(double n, double thickness, int depth, const char *assignments
     return stage_of(text.at, assignments);
 }
 
-/* Sum of the light that leaves on one side. */
+/* Sum of the radiance of the rays that leave on one side. */
 static double leaving(const ray_tree *tree, vec3 side, int channel)
 {
     double sum = 0.0;
@@ -113,8 +113,8 @@ static void a_solid_without_refraction_still_absorbs(void **state)
     stage_close(&g);
 }
 
-/* In the open, with the surroundings' index, and seen against the sky: no hit, but absorption; from inside, only from
- * there on. */
+/* In surroundings of the same index, in front of the sky: no hit, but absorption; from inside, only from the origin
+ * on. */
 static void a_cloud_attenuates_the_sky_behind_it(void **state)
 {
     (void)state;
@@ -137,7 +137,7 @@ static void a_cloud_attenuates_the_sky_behind_it(void **state)
 }
 
 /* An infinite medium returns light only in a channel that it transmits: R, and R + T = 1. */
-static void a_bottomless_medium_is_black(void **state)
+static void an_absorbing_infinite_medium_is_black(void **state)
 {
     (void)state;
     scene_text text = scene_begin(1.0, 4);
@@ -164,8 +164,8 @@ static const char lit_ground[] = "background: {color: [0, 0, 0]}\n"
                                  "  pane: {shape: box, transparency: 0.9, ior: 1.5, position: [0, 2, 0], size: [50, "
                                  "0.5, 50], absorb_per_m: [0.7, 0, 2.5]}\n";
 
-/* The pane's thickness on the path of the light, its faces there, and the length of the view ray in it. */
-static void check_lit_ground(const char *assignments, double on_the_way, double faces, double eye_way)
+/* The pane's thickness along the light's path, its number of faces there, and the length of the view ray in it. */
+static void check_lit_ground(const char *assignments, double light_path, double faces, double eye_path)
 {
     stage g = stage_of(lit_ground, assignments);
     for (double x = 0.0; x < 8.0; x += 0.5) {
@@ -176,14 +176,14 @@ static void check_lit_ground(const char *assignments, double on_the_way, double 
         assert_int_equal((int)tree->count, 2);
         assert_int_equal(tree->node[1].kind, RAY_SHADOW);
         for (int c = 0; c < 3; c++) {
-            const double wanted = n_l * exp(-a_per_m[c] * (on_the_way / n_l + eye_way)) * pow(0.9, faces);
+            const double wanted = n_l * exp(-a_per_m[c] * (light_path / n_l + eye_path)) * pow(0.9, faces);
             assert_true(fabs(tree->radiance[c] - wanted) <= 1e-12);
             assert_true(fabs(tree->node[1].brought[c] - wanted) <= 1e-12);
         }
         g.setting->camera.aimed = 1;
         g.setting->camera.position = at, g.setting->camera.target = vec3_make(x, 0.0, 0.0);
         const vec3 seen = look(g.setting);
-        assert_true(fabs(seen.x - n_l * exp(-a_per_m[0] * (on_the_way / n_l + eye_way)) * pow(0.9, faces)) <= 1e-12);
+        assert_true(fabs(seen.x - n_l * exp(-a_per_m[0] * (light_path / n_l + eye_path)) * pow(0.9, faces)) <= 1e-12);
     }
     stage_close(&g);
 }
@@ -196,7 +196,7 @@ static void light_is_attenuated_along_its_straight_path(void **state)
     check_lit_ground("pane.transparency=1 pane.ior=1", 0.5, 0.0, 0.0); /* absorbs without refraction */
     check_lit_ground("pane.ior=1", 0.5, 0.0, 0.0);                     /* there is no interface */
     check_lit_ground("lamp.position=0,2.1,0", 0.35, 1.0, 0.0);         /* a lamp in the pane */
-    check_lit_ground("lamp.position=0,1.5,0", 0.0, 0.0, 0.0);          /* and one under it */
+    check_lit_ground("lamp.position=0,1.5,0", 0.0, 0.0, 0.0);          /* a lamp under the pane */
     check_lit_ground("render.unit_m=0.1 pane.absorb_per_m=7,0,25", 0.5, 2.0, 0.0);
     /* camera and ground in the medium, which overlaps the ground at lower priority; and light that leaves the medium */
     check_lit_ground("pane.position=0,1,0 pane.size=50,4,50 ground.priority=1", 3.0, 1.0, sqrt(2.0));
@@ -218,7 +218,7 @@ static void other_shadow_modes_have_no_absorption(void **state)
 /* A table of wavelengths replaces the three coefficients: linear between points, constant outside, evaluated at the
  * channels' wavelengths (CHANNEL_LAMBDA_NM, the dominant wavelengths of the primaries of sRGB: 611.4, 549.1 and 464.3
  * nm). */
-static void a_spectrum_of_absorption_is_read_at_the_channels_wavelengths(void **state)
+static void an_absorption_spectrum_is_sampled_at_the_channels_wavelengths(void **state)
 {
     (void)state;
     stage g = slab(1.0, 1.0, 4, "slab.absorb_spectrum=[400,1,500,3,600,5]");
@@ -242,10 +242,10 @@ int main(void)
         cmocka_unit_test(the_scene_sets_the_length_of_a_unit),
         cmocka_unit_test(a_solid_without_refraction_still_absorbs),
         cmocka_unit_test(a_cloud_attenuates_the_sky_behind_it),
-        cmocka_unit_test(a_bottomless_medium_is_black),
+        cmocka_unit_test(an_absorbing_infinite_medium_is_black),
         cmocka_unit_test(light_is_attenuated_along_its_straight_path),
         cmocka_unit_test(other_shadow_modes_have_no_absorption),
-        cmocka_unit_test(a_spectrum_of_absorption_is_read_at_the_channels_wavelengths),
+        cmocka_unit_test(an_absorption_spectrum_is_sampled_at_the_channels_wavelengths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

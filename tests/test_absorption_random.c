@@ -1,6 +1,6 @@
 /* Tests of absorption along rays in random scenes against the integral of the absorption coefficient (Beer and Lambert;
- * Born and Wolf, 7th ed., 4.11.4): the media along the ray are read from the solids' own shapes, at many points, and
- * the boundaries found by bisection. */
+ * Born and Wolf, 7th ed., 4.11.4): the media along the ray are determined from the solids' own shapes, at many points,
+ * and the boundaries by bisection. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,7 +18,7 @@ static vec3 at_distance(vec3 origin, vec3 direction, double t)
     return vec3_add(origin, vec3_scale(direction, t));
 }
 
-/* The end of the medium at the nearer distance; the farther distance is in another one. */
+/* The end of the medium at the nearer distance; the medium at the farther distance differs. */
 static double border(const probe *p, vec3 origin, vec3 direction, int medium, double near, double far)
 {
     while (far - near > 1e-13) {
@@ -60,29 +60,29 @@ static void optical_depth(const probe *p, const scene *s, vec3 origin, vec3 dire
 }
 
 typedef struct tally {
-    int ways, unlike;
+    int rays, unlike;
     double worst;
 } tally;
 
-static void compare(tally *sum, const double depth[3], const double kept[3])
+static void compare(tally *sum, const double depth[3], const double transmittance[3])
 {
     double error = 0.0;
     for (int c = 0; c < 3; c++)
-        error = fmax(error, fabs(kept[c] - exp(-depth[c])));
-    sum->ways++;
+        error = fmax(error, fabs(transmittance[c] - exp(-depth[c])));
+    sum->rays++;
     sum->unlike += error > 1e-9;
     sum->worst = fmax(sum->worst, error);
 }
 
 static void check_node(const stage *g, const ray_node *node, tally *hits, tally *shadows)
 {
-    double depth[3], kept[3];
+    double depth[3], transmittance[3];
     /* a shadow ray's contribution is rounded to film units: make it large enough for nine digits */
     if (node->kind == RAY_SHADOW && node->end == RAY_END_LIT && fmin(node->throughput[0], node->throughput[2]) > 1e-3) {
         optical_depth(g->probe, g->setting, node->origin, node->direction, node->light_distance, depth);
         for (int c = 0; c < 3; c++)
-            kept[c] = node->brought[c] / node->throughput[c];
-        compare(shadows, depth, kept);
+            transmittance[c] = node->brought[c] / node->throughput[c];
+        compare(shadows, depth, transmittance);
     }
     if (node->kind != RAY_SHADOW && node->end == RAY_END_HIT && node->hit.t < 20.0) {
         optical_depth(g->probe, g->setting, node->origin, node->direction, node->hit.t, depth);
@@ -90,7 +90,7 @@ static void check_node(const stage *g, const ray_node *node, tally *hits, tally 
     }
 }
 
-static void rays_and_shadow_rays_are_absorbed_by_the_media_in_their_path(void **state)
+static void rays_and_shadow_rays_have_the_transmittance_of_the_media_along_them(void **state)
 {
     (void)state;
     uint64_t seed = 8;
@@ -117,15 +117,15 @@ static void rays_and_shadow_rays_are_absorbed_by_the_media_in_their_path(void **
         }
         stage_close(&g);
     }
-    assert_true(hits.ways > 3000 && shadows.ways > 1500);
-    assert_true(hits.unlike < hits.ways / 500 && hits.worst < 0.01);
-    assert_true(shadows.unlike < shadows.ways / 500 && shadows.worst < 0.01);
+    assert_true(hits.rays > 3000 && shadows.rays > 1500);
+    assert_true(hits.unlike < hits.rays / 500 && hits.worst < 0.01);
+    assert_true(shadows.unlike < shadows.rays / 500 && shadows.worst < 0.01);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rays_and_shadow_rays_are_absorbed_by_the_media_in_their_path),
+        cmocka_unit_test(rays_and_shadow_rays_have_the_transmittance_of_the_media_along_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

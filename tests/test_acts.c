@@ -1,8 +1,8 @@
-/* Every control acts, or says why it does not: for each shipped scene and each parameter that `cuvette params SCENE`
- * prints, other legal values change the film, or a note says why none does, or the table marks the parameter as one of
- * how a frame is computed. A note is proved by its remedy: with what it says set, the parameter changes the film. A
- * parameter that the table gains is tried, too. ACTS_SCENE=rod.yaml tries that scene alone; ACTS_VERBOSE=1 tells what
- * acts by one value only, and which remedies do not help there. */
+/* Every parameter has an effect, or a note explains why not: for each shipped scene and each parameter that `cuvette
+ * params SCENE` prints, other legal values change the film, or a note states why none does, or the table marks the
+ * parameter as not affecting the image. A note is proved by its remedy: once the remedy is applied, the parameter
+ * changes the film. New parameters of the table are covered automatically. ACTS_SCENE=rod.yaml tests that scene alone;
+ * ACTS_VERBOSE=1 lists parameters of which only one value has an effect, and remedies that do not help. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,7 +18,7 @@
 
 enum { RULES_MAX = 300, JOBS_MAX = 96, TEXT_MAX = 1 << 14 };
 
-/* How often each condition was said of a parameter of this name, and proved by its remedy. */
+/* How often each condition was reported for a parameter of this name, and how often its remedy proved it. */
 typedef struct rule_count {
     const char *rule, *name;
     int said, proved;
@@ -30,7 +30,7 @@ typedef struct account {
     int tried, acting, by_one, noted, refused, marked, bad;
     rule_count rules[RULES_MAX];
     int rule_count;
-    char text[TEXT_MAX]; /* what is bad, a line each */
+    char text[TEXT_MAX]; /* the failures, one a line */
 } account;
 
 typedef struct visitor {
@@ -56,8 +56,8 @@ static rule_count *count_of(account *out, const char *rule, const char *name)
     return &out->rules[out->rule_count++];
 }
 
-/* What the remedy says is done, and what the next note says, until there is none: then the parameter changes the film.
- */
+/* Applies the remedy of the note, then that of the next note, until there is none: then the parameter must change the
+ * film. */
 static bool remedy_works(const acts *a, const char *path, const param *row, const inert_answer *first)
 {
     enum { STEPS = 4 };
@@ -87,8 +87,8 @@ static bool remedy_works(const acts *a, const char *path, const param *row, cons
     return works;
 }
 
-/* An index that is no one's: where no light is bent, one above MIRROR_IOR still makes a mirror, and where no ray goes
- * on, one that is the surroundings' still makes a surface none. */
+/* Drops indices of special meaning: where no light is refracted, an index above MIRROR_IOR still makes a mirror, and
+ * where no ray continues, the surroundings' index still removes a surface. */
 static void drop_special_indices(const inert_answer *answer, const param *row, acts_values *v)
 {
     if (strcmp(row->name, "ior") != 0 ||
@@ -116,7 +116,7 @@ static void judge_note(visitor *x, const char *path, const param *row, acts_valu
                  note_line(&answer->note, line, sizeof line));
     if (strcmp(answer->note.place, path) != 0 || !answer->note.text[0] || !answer->note.remedy[0])
         complain(x->out, path, "the note lacks its place, text or remedy", note_line(&answer->note, line, sizeof line));
-    if (rule->proved > 0) /* once a scene is enough */
+    if (rule->proved > 0) /* one proof per scene is enough */
         return;
     if (remedy_works(x->a, path, row, answer)) {
         rule->proved++;
@@ -127,7 +127,8 @@ static void judge_note(visitor *x, const char *path, const param *row, acts_valu
     }
 }
 
-/* Marked as how: no value may change the film, but for Embree's hierarchy, whose row says so itself. */
+/* Parameters marked as not affecting the image: no value may change the film, except for Embree's hierarchy, whose
+ * table row documents it. */
 static void judge_mark(visitor *x, const char *path, acts_values *v)
 {
     for (int i = 0; i < v->count; i++)
@@ -172,7 +173,7 @@ static status try_parameter(void *context, const char *path, const param *row, c
     return STATUS_OK;
 }
 
-/* --- jobs on two threads, each with an account of its own --- */
+/* --- jobs on two threads, each with its own account --- */
 
 typedef void job(int number, account *out);
 typedef struct bench {
@@ -221,7 +222,7 @@ static void try_scene(int number, account *out)
     acts_close(&a);
 }
 
-/* Ways of making a picture in which light goes on from surfaces. */
+/* Render modes in which light continues from surfaces. */
 static const char *const modes[] = {
     "render.integrator=path render.paths=4",
     "render.integrator=aov",
@@ -249,9 +250,10 @@ static void try_mode(int number, account *out)
     acts_close(&a);
 }
 
-/* --- conditions that no shipped scene meets, and remedies that no assignment says --- */
+/* --- conditions that no shipped scene has, and remedies that are not an assignment --- */
 
-/* Under these assignments the rule is said of the parameter. works: its remedy makes the parameter act. */
+/* Under these assignments the rule is reported for the parameter. works: the rule's remedy makes the parameter
+ * effective. */
 typedef struct condition {
     const char *scene, *assignments, *path, *rule;
     bool works;
@@ -328,7 +330,8 @@ static const condition conditions[] = {
     {"models", "lamp.intensity=0 bowl.ambient=0 china.reflectivity=0", "bowl.shading", "unshaded", true},
 };
 
-/* Where the condition of a remedy without an assignment is false: no note, and the parameter acts. */
+/* Cases where the condition of a remedy without an assignment is false: there is no note, and the parameter changes the
+ * film. */
 typedef struct counterpart {
     const char *rule, *scene, *path, *assignments;
 } counterpart;
@@ -369,7 +372,7 @@ static bool open_with(const char *name, const char *assignments, acts *out, diag
     return false;
 }
 
-/* Room for the values of a parameter of the scene. */
+/* Allocates the values of a parameter of the scene. */
 static const param *values_at(const acts *a, const char *path, acts_values *v)
 {
     param_place at;
@@ -446,7 +449,7 @@ static void add_rules(const account *one)
 
 static void add_account(const account *one)
 {
-    if (one->tried == 0 && one->bad == 0) /* not asked for */
+    if (one->tried == 0 && one->bad == 0) /* not selected */
         return;
     printf("# %-38s tried %4d, acting %3d, noted %3d, refused %d, marked %2d, unexplained or wrong %d\n", one->path,
            one->tried, one->acting, one->noted, one->refused, one->marked, one->bad);
@@ -456,7 +459,7 @@ static void add_account(const account *one)
     add_rules(one);
 }
 
-static void every_parameter_of_every_shipped_scene_acts_or_says_why_not(void **state)
+static void every_parameter_of_every_shipped_scene_changes_the_film_or_has_a_note(void **state)
 {
     (void)state;
     assert_int_equal(glob("experiments/scenes/*.yaml", 0, NULL, &shipped), 0);
@@ -472,7 +475,7 @@ static void every_parameter_of_every_shipped_scene_acts_or_says_why_not(void **s
     assert_int_equal(all.bad, 0);
 }
 
-static void every_parameter_acts_or_says_why_not_in_other_ways_of_making_a_picture(void **state)
+static void every_parameter_changes_the_film_or_has_a_note_in_every_render_mode(void **state)
 {
     (void)state;
     if (getenv("ACTS_SCENE"))
@@ -502,7 +505,7 @@ static void add_jobs(job *one, int count)
     assert_int_equal(bad, 0);
 }
 
-static void each_note_is_proved(void **state)
+static void applying_the_remedy_of_each_note_makes_the_parameter_effective(void **state)
 {
     (void)state;
     if (getenv("ACTS_SCENE"))
@@ -521,7 +524,7 @@ static void each_note_is_proved(void **state)
     assert_int_equal(unproved, 0);
 }
 
-/* --- other settings: whatever is noted under them does nothing --- */
+/* --- other settings: every parameter that has a note under them is without effect --- */
 
 static const struct {
     const char *scene, *assignments;
@@ -591,7 +594,7 @@ static void try_setting(int number, account *out)
     acts_close(&a);
 }
 
-static void no_note_is_false_under_other_settings(void **state)
+static void parameters_with_a_note_have_no_effect_under_other_settings(void **state)
 {
     (void)state;
     if (getenv("ACTS_SCENE"))
@@ -610,10 +613,10 @@ static void no_note_is_false_under_other_settings(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_parameter_of_every_shipped_scene_acts_or_says_why_not),
-        cmocka_unit_test(every_parameter_acts_or_says_why_not_in_other_ways_of_making_a_picture),
-        cmocka_unit_test(each_note_is_proved),
-        cmocka_unit_test(no_note_is_false_under_other_settings),
+        cmocka_unit_test(every_parameter_of_every_shipped_scene_changes_the_film_or_has_a_note),
+        cmocka_unit_test(every_parameter_changes_the_film_or_has_a_note_in_every_render_mode),
+        cmocka_unit_test(applying_the_remedy_of_each_note_makes_the_parameter_effective),
+        cmocka_unit_test(parameters_with_a_note_have_no_effect_under_other_settings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

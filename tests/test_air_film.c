@@ -7,15 +7,16 @@
 
 #include "probe_fixture.h"
 
-/* A film of air between two slabs of glass, modelled on purpose, against glass in contact, which is one body. Light is
- * incoherent here: a film shows no colours, but it has two interfaces more. */
+/* Tests of a film of air between two slabs of glass, modelled explicitly, against glass in contact, which is one
+ * region. Light is incoherent here: a film shows no interference colours, but has two more interfaces. */
 
 static const double GLASS = 1.5;
-/* However thin: the tracer tells boundaries apart down to their error bounds. */
+/* However thin the film: the tracer resolves boundaries down to their error bounds. */
 static const double films[] = {1e-3, 1e-6, 1e-9};
 static const vec3 askew = {17.0, -33.0, 71.0};
 
-/* Each slab is 1 thick; they touch at y = 0 of a turned frame, and the film, if it has a thickness, lies there. */
+/* Each slab is 1 thick; they touch at y = 0 of a rotated frame, which is the place of the film if it has a
+ * thickness. */
 static stage slabs(double outside, double thickness, const char *assignments)
 {
     scene_text text = scene_begin(outside, 60);
@@ -36,22 +37,22 @@ static vec3 downwards(double angle)
     return turned(vec3_make(sin(angle), -cos(angle), 0.0), askew);
 }
 
-/* From above both slabs through all that is there. */
+/* From above both slabs through all interfaces. */
 static const ray_tree *straight_through(stage *g, double angle)
 {
     const vec3 d = downwards(angle);
     return stage_way(g, vec3_sub(turned(vec3_make(0.0, 1.0, 0.0), askew), vec3_scale(d, 2.0)), d, -1);
 }
 
-/* Two interfaces in contact, four with a film: the product of as many transmittances (Hecht, 4.6.3). */
-static void a_film_has_two_interfaces_more(void **state)
+/* Two interfaces in contact, four with a film: the product of that many transmittances (Hecht, 4.6.3). */
+static void an_air_film_adds_two_interfaces(void **state)
 {
     (void)state;
     stage contact = slabs(1.0, 0.0, "");
     for (size_t k = 0; k < COUNT(films); k++) {
         stage air = slabs(1.0, films[k], "");
         for (double angle = 0.0; angle < 1.5; angle += 0.1) {
-            const double T = 1.0 - reflectance_of_angles(angle, 1.0, GLASS).mean; /* the same at all of them */
+            const double T = 1.0 - reflectance_of_angles(angle, 1.0, GLASS).mean; /* equal at all interfaces */
             const ray_tree *tree = straight_through(&contact, angle);
             assert_int_equal((int)tree->count, 3);
             assert_true(fabs(tree->node[2].throughput[0] / (T * T) - 1.0) <= 1e-12);
@@ -66,8 +67,8 @@ static void a_film_has_two_interfaces_more(void **state)
     stage_close(&contact);
 }
 
-/* Power that goes on downwards, or back up, after all reflections within the film, from inside glass that has no other
- * end. */
+/* The power transmitted downwards, or reflected upwards, after all reflections within the film, starting inside glass
+ * that has no other surface. */
 static double share_down(const ray_tree *tree, bool down)
 {
     double sum = 0.0;
@@ -77,10 +78,10 @@ static double share_down(const ray_tree *tree, bool down)
     return sum;
 }
 
-/* T (1 + R^2 + R^4 + ...) T = (1 - R) / (1 + R), for each polarisation by itself (Stokes 1862; Hecht, 8.6 for the pile
+/* T (1 + R^2 + R^4 + ...) T = (1 - R) / (1 + R), for each polarisation separately (Stokes 1862; Hecht, 8.6 for the pile
  * of plates; Born and Wolf, 7.6.1, with intensities instead of amplitudes). Without polarisation R is the mean of both
  * at each interface. */
-static void a_film_transmits_the_series_of_its_reflections(void **state)
+static void a_film_transmits_the_sum_of_its_internal_reflections(void **state)
 {
     (void)state;
     stage plain = slabs(GLASS, films[0], ""), polarised = slabs(GLASS, films[0], "render.polarisation=on");
@@ -103,9 +104,9 @@ static void a_film_transmits_the_series_of_its_reflections(void **state)
     stage_close(&polarised);
 }
 
-/* Beyond the critical angle, arcsin(1 / 1.5) = 41.8 degrees, the film reflects all and glass in contact is not there at
- * all. */
-static void beyond_the_critical_angle_a_film_is_a_mirror_and_contact_is_nothing(void **state)
+/* Beyond the critical angle, arcsin(1 / 1.5) = 41.8 degrees, the film reflects totally, and glass in contact has no
+ * interface. */
+static void beyond_the_critical_angle_a_film_reflects_totally_and_contact_transmits(void **state)
 {
     (void)state;
     stage air = slabs(GLASS, films[0], ""), contact = slabs(GLASS, 0.0, "");
@@ -122,8 +123,8 @@ static void beyond_the_critical_angle_a_film_is_a_mirror_and_contact_is_nothing(
     stage_close(&contact);
 }
 
-/* The same seen: an eye in the glass above looks down at white paper below. */
-static void paper_under_a_film_vanishes_and_under_contact_does_not(void **state)
+/* The same as an image: an eye in the upper glass looks down at white paper below. */
+static void beyond_the_critical_angle_a_film_hides_the_paper_below(void **state)
 {
     (void)state;
     for (int air = 0; air < 2; air++) {
@@ -154,10 +155,10 @@ static void paper_under_a_film_vanishes_and_under_contact_does_not(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_film_has_two_interfaces_more),
-        cmocka_unit_test(a_film_transmits_the_series_of_its_reflections),
-        cmocka_unit_test(beyond_the_critical_angle_a_film_is_a_mirror_and_contact_is_nothing),
-        cmocka_unit_test(paper_under_a_film_vanishes_and_under_contact_does_not),
+        cmocka_unit_test(an_air_film_adds_two_interfaces),
+        cmocka_unit_test(a_film_transmits_the_sum_of_its_internal_reflections),
+        cmocka_unit_test(beyond_the_critical_angle_a_film_reflects_totally_and_contact_transmits),
+        cmocka_unit_test(beyond_the_critical_angle_a_film_hides_the_paper_below),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

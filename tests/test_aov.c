@@ -112,7 +112,7 @@ static int check_pixel(const render_result *r, int x, int y)
     return even ? 1 << 10 : 1 << 11;
 }
 
-static void closed_forms(void **state)
+static void layers_match_closed_forms(void **state)
 {
     (void)state;
     scene *s = scene_from(room);
@@ -152,7 +152,7 @@ static void misses_are_zero(void **state)
 }
 
 /* The view of normals has the format of normal maps: (n + 1) / 2 as encoded numbers. */
-static void normals_as_normal_maps(void **state)
+static void the_view_of_normals_is_encoded_as_a_normal_map(void **state)
 {
     (void)state;
     scene *s = scene_from(room);
@@ -176,7 +176,7 @@ static void same(const render_result *a, const render_result *b)
                             WIDTH * HEIGHT * sizeof(float) * (size_t)layer_channels[i]);
 }
 
-static void threads_and_instruction_sets(void **state)
+static void layers_are_bit_identical_for_any_threads_and_instruction_set(void **state)
 {
     (void)state;
     scene *s = scene_from(room);
@@ -196,7 +196,7 @@ static void threads_and_instruction_sets(void **state)
     scene_destroy(s);
 }
 
-static void files_read_back(void **state)
+static void written_layers_read_back(void **state)
 {
     (void)state;
     char folder[] = "/tmp/cuvette-aov-XXXXXX", prefix[64];
@@ -225,7 +225,7 @@ static void files_read_back(void **state)
 }
 
 /* There are no layers unless requested, and none with another integrator. */
-static void layers_only_on_request(void **state)
+static void layers_exist_only_on_request(void **state)
 {
     (void)state;
     scene *s = scene_from(room);
@@ -242,9 +242,12 @@ static void layers_only_on_request(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(closed_forms),           cmocka_unit_test(misses_are_zero),
-        cmocka_unit_test(normals_as_normal_maps), cmocka_unit_test(threads_and_instruction_sets),
-        cmocka_unit_test(files_read_back),        cmocka_unit_test(layers_only_on_request),
+        cmocka_unit_test(layers_match_closed_forms),
+        cmocka_unit_test(misses_are_zero),
+        cmocka_unit_test(the_view_of_normals_is_encoded_as_a_normal_map),
+        cmocka_unit_test(layers_are_bit_identical_for_any_threads_and_instruction_set),
+        cmocka_unit_test(written_layers_read_back),
+        cmocka_unit_test(layers_exist_only_on_request),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Tests of hostile mesh files: each is refused with one line, in bounded time and memory, and leaves nothing behind. */
+/* Tests of hostile mesh files: each is refused with one line of error, in bounded time and memory, and leaves no
+ * process, descriptor or file behind. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -78,7 +79,7 @@ static void small_bad_files_are_refused(void **state)
     }
 }
 
-static void what_is_tolerated_is_a_sound_mesh(void **state)
+static void tolerated_files_give_a_valid_mesh(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof tolerated_meshes / sizeof *tolerated_meshes; i++) {
@@ -116,7 +117,7 @@ static void truncated_binary_files_are_refused(void **state)
     }
 }
 
-static void noise_is_refused_under_every_name(void **state)
+static void noise_is_refused_in_every_format(void **state)
 {
     (void)state;
     static const char *const names[] = {"noise.obj", "noise.ply", "noise.stl", "noise.gltf", "noise.glb"};
@@ -136,7 +137,7 @@ static void noise_is_refused_under_every_name(void **state)
     }
 }
 
-static void an_stl_that_miscounts_is_refused(void **state)
+static void an_stl_with_a_wrong_facet_count_is_refused(void **state)
 {
     (void)state;
     static const uint32_t counts[] = {0, 5, 1000000, 1000000000, 0x80000000u, 0xffffffffu};
@@ -227,7 +228,7 @@ static void deep_nesting_is_refused(void **state)
 }
 
 /* Each node has the next one as its child twice: 2^40 of them. */
-static void nodes_that_multiply_are_refused(void **state)
+static void exponentially_shared_nodes_are_refused(void **state)
 {
     (void)state;
     bytes b = {0};
@@ -240,7 +241,7 @@ static void nodes_that_multiply_are_refused(void **state)
     refuse_bytes("doubling.gltf", b, "");
 }
 
-static void too_many_of_anything_is_refused(void **state)
+static void counts_above_the_limits_are_refused(void **state)
 {
     (void)state;
     mesh_limits few = limits;
@@ -295,7 +296,7 @@ static void memory_and_time_have_limits(void **state)
     refuse_within("polygon.obj", &small, "limit of 0.5 s");
 }
 
-static void what_is_no_file_is_refused(void **state)
+static void folders_pipes_loops_and_devices_are_refused(void **state)
 {
     (void)state;
     char *path = in_folder("folder.stl"), *fifo = in_folder("fifo.ply"), *loop = in_folder("loop.obj"),
@@ -340,7 +341,7 @@ static void with_importer(const char *script, const char *pattern, status expect
     free(path);
 }
 
-static void an_importer_that_goes_wrong_is_survived(void **state)
+static void a_failing_importer_gives_an_error(void **state)
 {
     (void)state;
     with_importer("#!/bin/sh\nkill -SEGV $$\n", "stopped by signal 11", STATUS_BAD_INPUT);
@@ -379,7 +380,7 @@ static int open_descriptors(void)
     return count;
 }
 
-static void nothing_is_left_behind(void **state)
+static void no_descriptor_or_child_process_is_leaked(void **state)
 {
     (void)state;
     int before = open_descriptors();
@@ -392,7 +393,7 @@ static void nothing_is_left_behind(void **state)
 }
 
 /* The last test: covers everything that was refused before it. */
-static void all_of_it_was_bounded(void **state)
+static void all_refusals_kept_the_limits_of_time_and_memory(void **state)
 {
     (void)state;
     struct rusage ours, theirs;
@@ -413,20 +414,20 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(small_bad_files_are_refused),
-        cmocka_unit_test(what_is_tolerated_is_a_sound_mesh),
+        cmocka_unit_test(tolerated_files_give_a_valid_mesh),
         cmocka_unit_test(truncated_binary_files_are_refused),
-        cmocka_unit_test(noise_is_refused_under_every_name),
-        cmocka_unit_test(an_stl_that_miscounts_is_refused),
+        cmocka_unit_test(noise_is_refused_in_every_format),
+        cmocka_unit_test(an_stl_with_a_wrong_facet_count_is_refused),
         cmocka_unit_test(a_ply_with_bad_lists_is_refused),
         cmocka_unit_test(a_glb_with_wrong_lengths_is_refused),
         cmocka_unit_test(deep_nesting_is_refused),
-        cmocka_unit_test(nodes_that_multiply_are_refused),
-        cmocka_unit_test(too_many_of_anything_is_refused),
+        cmocka_unit_test(exponentially_shared_nodes_are_refused),
+        cmocka_unit_test(counts_above_the_limits_are_refused),
         cmocka_unit_test(memory_and_time_have_limits),
-        cmocka_unit_test(what_is_no_file_is_refused),
-        cmocka_unit_test(an_importer_that_goes_wrong_is_survived),
-        cmocka_unit_test(nothing_is_left_behind),
-        cmocka_unit_test(all_of_it_was_bounded),
+        cmocka_unit_test(folders_pipes_loops_and_devices_are_refused),
+        cmocka_unit_test(a_failing_importer_gives_an_error),
+        cmocka_unit_test(no_descriptor_or_child_process_is_leaked),
+        cmocka_unit_test(all_refusals_kept_the_limits_of_time_and_memory),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

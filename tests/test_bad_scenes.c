@@ -1,5 +1,5 @@
-/* Every file of tests/bad/scenes ends in STATUS_BAD_INPUT with the one line that expected.txt says. Run from the
- * repository root. */
+/* Tests of faulty scene files: every file of tests/bad/scenes is refused with STATUS_BAD_INPUT and the one line of
+ * expected.txt. Run from the repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,14 +21,14 @@ static status read_bad_scene(const char *path, diagnostic *why)
     return code;
 }
 
-static void every_bad_scene_has_its_located_line(void **state)
+static void every_faulty_scene_is_refused_with_its_located_error(void **state)
 {
     (void)state;
     assert_bad_files(FOLDER, read_bad_scene, 60);
 }
 
-/* A file that was cut anywhere is a scene or is refused with a place; it never does anything else. */
-static void every_cut_of_a_good_scene_is_a_scene_or_refused(void **state)
+/* A file truncated at any byte is either a valid scene or refused with a location. */
+static void every_truncation_of_a_valid_scene_is_read_or_refused(void **state)
 {
     (void)state;
     char text[16384];
@@ -38,7 +38,7 @@ static void every_cut_of_a_good_scene_is_a_scene_or_refused(void **state)
     fclose(file);
     assert_true(size > 1000 && size < sizeof text);
     for (size_t cut = 0; cut < size; cut++) {
-        char *exact = malloc(cut + 1); /* of its own size, for the address sanitizer */
+        char *exact = malloc(cut + 1); /* of exact size, for the address sanitizer */
         assert_non_null(exact);
         memcpy(exact, text, cut);
         diagnostic why = {.what = ""};
@@ -52,7 +52,7 @@ static void every_cut_of_a_good_scene_is_a_scene_or_refused(void **state)
     assert_true(refused > 100);
 }
 
-static void a_file_that_is_not_there_is_named(void **state)
+static void a_missing_file_is_named_in_the_error(void **state)
 {
     (void)state;
     diagnostic why = {.what = ""};
@@ -65,9 +65,9 @@ static void a_file_that_is_not_there_is_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_bad_scene_has_its_located_line),
-        cmocka_unit_test(every_cut_of_a_good_scene_is_a_scene_or_refused),
-        cmocka_unit_test(a_file_that_is_not_there_is_named),
+        cmocka_unit_test(every_faulty_scene_is_refused_with_its_located_error),
+        cmocka_unit_test(every_truncation_of_a_valid_scene_is_read_or_refused),
+        cmocka_unit_test(a_missing_file_is_named_in_the_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

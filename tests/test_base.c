@@ -39,7 +39,7 @@ static void diagnose_fills_and_returns(void **state)
     diagnostic_locate(NULL, "x", 1, 1);
 }
 
-static void diagnostic_text_leaves_out_what_is_absent(void **state)
+static void diagnostic_text_omits_missing_parts(void **state)
 {
     (void)state;
     static const struct {
@@ -59,7 +59,7 @@ static void diagnostic_text_leaves_out_what_is_absent(void **state)
     }
 }
 
-static void diagnostics_stay_one_line_of_valid_text(void **state)
+static void diagnostics_are_one_line_of_valid_utf8(void **state)
 {
     (void)state;
     diagnostic why = {0};
@@ -83,7 +83,7 @@ static void diagnostics_stay_one_line_of_valid_text(void **state)
     assert_int_equal((unsigned char)why.remedy[509], 0xa9);
 }
 
-static void diagnose_may_quote_itself(void **state)
+static void diagnose_accepts_its_own_texts_as_arguments(void **state)
 {
     (void)state;
     diagnostic why = {0};
@@ -118,7 +118,7 @@ static void reals_are_parsed(void **state)
     check_real("1.7976931348623157e308", DBL_MAX);
 }
 
-static void what_is_no_real_is_refused(void **state)
+static void invalid_reals_are_refused(void **state)
 {
     (void)state;
     static const char *const bad[] = {"",          " 1",     "1 ",    "1,5", "0x10", "nan", "NaN",   "inf",
@@ -275,7 +275,7 @@ static void text_is_formatted(void **state)
 }
 
 /* tests/memory.sh tests out of memory. */
-static void written_text_is_whole(void **state)
+static void a_text_writer_returns_the_whole_text(void **state)
 {
     (void)state;
     enum { LINES = 20000 };
@@ -302,7 +302,7 @@ static void written_text_is_whole(void **state)
 
 /* ---- hashes: expected values from an independent computation with integers of any size ---- */
 
-static void hashes_are_known(void **state)
+static void hashes_equal_independent_values(void **state)
 {
     (void)state;
     const int64_t words[] = {1, -2, INT64_C(1) << 40};
@@ -313,7 +313,7 @@ static void hashes_are_known(void **state)
     assert_true(parts == hash_words(HASH_START, words, 3));
 }
 
-static void hashes_see_order_and_top_bits(void **state)
+static void hashes_depend_on_order_and_top_bits(void **state)
 {
     (void)state;
     const int64_t a[] = {1, 2}, b[] = {2, 1}, c[] = {1 ^ INT64_MIN, 2 ^ INT64_MIN}, zero[] = {0, 0};
@@ -446,7 +446,7 @@ static void files_of_proc_are_read_to_their_end(void **state)
     free(text);
 }
 
-static void what_is_no_file_is_refused(void **state)
+static void unreadable_paths_are_refused(void **state)
 {
     (void)state;
     char *missing = in_folder("missing"), *fifo = in_folder("fifo"), *text;
@@ -465,7 +465,7 @@ static void what_is_no_file_is_refused(void **state)
     free(fifo);
 }
 
-static void nothing_shows_before_the_commit(void **state)
+static void the_file_is_unchanged_before_the_commit(void **state)
 {
     (void)state;
     char *path = in_folder("a"), *fresh = in_folder("b");
@@ -488,7 +488,7 @@ static void nothing_shows_before_the_commit(void **state)
     free(fresh);
 }
 
-static void two_writers_do_not_meet(void **state)
+static void two_writers_do_not_interfere(void **state)
 {
     (void)state;
     char *a = in_folder("a"), *b = in_folder("b");
@@ -528,7 +528,7 @@ static void permissions_follow_umask_or_the_old_file(void **state)
     free(b);
 }
 
-static void links_stay_links(void **state)
+static void writing_through_a_link_keeps_the_link(void **state)
 {
     (void)state;
     char *target = in_folder("target"), *absolute = in_folder("absolute"), *relative = in_folder("relative");
@@ -556,7 +556,7 @@ static void links_stay_links(void **state)
     free(loop);
 }
 
-static void devices_are_written_straight(void **state)
+static void devices_are_written_directly(void **state)
 {
     (void)state;
     diagnostic why = {0};
@@ -606,7 +606,7 @@ static void a_full_disk_keeps_the_old_file(void **state)
 }
 
 /* Space that becomes free before the commit does not restore what was lost. */
-static void an_early_failure_is_remembered(void **state)
+static void an_early_write_error_is_reported_at_the_commit(void **state)
 {
     (void)state;
     char *path = in_folder("a");
@@ -631,7 +631,7 @@ static void an_early_failure_is_remembered(void **state)
     free(path);
 }
 
-static void unwritable_places_are_refused(void **state)
+static void unwritable_paths_are_refused(void **state)
 {
     (void)state;
     char *closed = in_folder("closed"), *inside = in_folder("closed/a"), *no_folder = in_folder("none/a");
@@ -664,7 +664,7 @@ static void unwritable_places_are_refused(void **state)
     free(read_only);
 }
 
-static void minus_is_standard_output(void **state)
+static void a_path_of_minus_is_standard_output(void **state)
 {
     (void)state;
     char *path = in_folder("out");
@@ -690,7 +690,7 @@ static void minus_is_standard_output(void **state)
     free(path);
 }
 
-static void folders_are_made_with_their_parents(void **state)
+static void folders_are_created_with_their_parents(void **state)
 {
     (void)state;
     char *deep = in_folder("a//b/c/"), *c = in_folder("a/b/c"), *file = in_folder("file"), *under = in_folder("file/x");
@@ -717,11 +717,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(diagnose_fills_and_returns),
-        cmocka_unit_test(diagnostic_text_leaves_out_what_is_absent),
-        cmocka_unit_test(diagnostics_stay_one_line_of_valid_text),
-        cmocka_unit_test(diagnose_may_quote_itself),
+        cmocka_unit_test(diagnostic_text_omits_missing_parts),
+        cmocka_unit_test(diagnostics_are_one_line_of_valid_utf8),
+        cmocka_unit_test(diagnose_accepts_its_own_texts_as_arguments),
         cmocka_unit_test(reals_are_parsed),
-        cmocka_unit_test(what_is_no_real_is_refused),
+        cmocka_unit_test(invalid_reals_are_refused),
         cmocka_unit_test(integers_are_parsed),
         cmocka_unit_test(reals_are_formatted_shortest),
         cmocka_unit_test(formatted_reals_read_back),
@@ -729,23 +729,23 @@ int main(void)
         cmocka_unit_test(distances_are_optimal_string_alignments),
         cmocka_unit_test(nearest_word_is_near),
         cmocka_unit_test(text_is_formatted),
-        cmocka_unit_test(written_text_is_whole),
-        cmocka_unit_test(hashes_are_known),
-        cmocka_unit_test(hashes_see_order_and_top_bits),
+        cmocka_unit_test(a_text_writer_returns_the_whole_text),
+        cmocka_unit_test(hashes_equal_independent_values),
+        cmocka_unit_test(hashes_depend_on_order_and_top_bits),
         file_test(written_files_read_back),
         file_test(large_files_read_back),
         file_test(files_of_proc_are_read_to_their_end),
-        file_test(what_is_no_file_is_refused),
-        file_test(nothing_shows_before_the_commit),
-        file_test(two_writers_do_not_meet),
+        file_test(unreadable_paths_are_refused),
+        file_test(the_file_is_unchanged_before_the_commit),
+        file_test(two_writers_do_not_interfere),
         file_test(permissions_follow_umask_or_the_old_file),
-        file_test(links_stay_links),
-        file_test(devices_are_written_straight),
+        file_test(writing_through_a_link_keeps_the_link),
+        file_test(devices_are_written_directly),
         file_test(a_full_disk_keeps_the_old_file),
-        file_test(an_early_failure_is_remembered),
-        file_test(unwritable_places_are_refused),
-        file_test(minus_is_standard_output),
-        file_test(folders_are_made_with_their_parents),
+        file_test(an_early_write_error_is_reported_at_the_commit),
+        file_test(unwritable_paths_are_refused),
+        file_test(a_path_of_minus_is_standard_output),
+        file_test(folders_are_created_with_their_parents),
     };
     return cmocka_run_group_tests_name("base", tests, NULL, NULL);
 }

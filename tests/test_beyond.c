@@ -1,4 +1,4 @@
-/* Tests of render.beyond, the fallback for branches that the depth limit cuts off: nothing, the sky in their direction,
+/* Tests of render.beyond, the fallback for branches that the depth limit cuts off: black, the sky in their direction,
  * or the sky's mean. */
 #include <math.h>
 #include <setjmp.h>
@@ -41,7 +41,7 @@ static void a_cut_branch_adds_the_mean_of_the_sky(void **state)
 }
 
 /* Both branches of a clear surface are cut: R + T = 1 of the mean, polarised or not. */
-static void both_branches_add_it(void **state)
+static void reflected_and_transmitted_branches_add_the_mean_of_the_sky(void **state)
 {
     (void)state;
     scene *s = scene_from(mirror);
@@ -52,7 +52,7 @@ static void both_branches_add_it(void **state)
     scene_destroy(s);
 }
 
-static void cut_random_paths_add_it(void **state)
+static void cut_random_paths_add_the_mean_of_the_sky(void **state)
 {
     (void)state;
     scene *s = scene_from(mirror);
@@ -65,7 +65,7 @@ static void cut_random_paths_add_it(void **state)
 }
 
 /* The colour of the spectral film's mean is the rgb film's, up to the error of 256 wavelengths. */
-static void spectral_films_add_it(void **state)
+static void spectral_films_add_the_mean_of_the_sky(void **state)
 {
     (void)state;
     scene *s = scene_from(mirror);
@@ -74,7 +74,7 @@ static void spectral_films_add_it(void **state)
     scene_destroy(s);
 }
 
-static void it_changes_no_count(void **state)
+static void the_fallback_changes_no_counter(void **state)
 {
     (void)state;
     need_counters();
@@ -102,10 +102,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cut_branch_adds_the_mean_of_the_sky),
-        cmocka_unit_test(both_branches_add_it),
-        cmocka_unit_test(cut_random_paths_add_it),
-        cmocka_unit_test(spectral_films_add_it),
-        cmocka_unit_test(it_changes_no_count),
+        cmocka_unit_test(reflected_and_transmitted_branches_add_the_mean_of_the_sky),
+        cmocka_unit_test(cut_random_paths_add_the_mean_of_the_sky),
+        cmocka_unit_test(spectral_films_add_the_mean_of_the_sky),
+        cmocka_unit_test(the_fallback_changes_no_counter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,9 @@
 #include "render_fixture.h"
 #include <unistd.h>
 
-/* BMP files, laid out here by Microsoft's description of the format ("Bitmap Storage"), apart from the reader: same
- * pixels as PNG, same film; what is no 24-bit BMP, or damaged, is refused with one line. */
+/* Tests of BMP files, written here according to Microsoft's description of the format ("Bitmap Storage"), independently
+ * of the reader: the pixels equal those of a PNG, and so does the film; a file that is damaged or not a 24-bit BMP is
+ * refused with one line of error. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -27,20 +28,20 @@ static void put_number(unsigned char *at, uint32_t value, int bytes)
         at[i] = (unsigned char)(value >> 8 * i);
 }
 
-/* A value for each place and channel that no two neighbours share. */
+/* A value for each position and channel that differs between neighbours. */
 static unsigned char value_at(int x, int y, int channel)
 {
     return (unsigned char)(37 * x + 101 * y + 77 * channel + 5);
 }
 
-/* gap: bytes between headers and pixels, as a palette or a profile that a reader has to pass over. */
+/* gap: bytes between headers and pixels, such as a palette or a profile, which a reader must skip. */
 static bmp_file make_bmp(int width, int height, uint32_t header, uint32_t gap, bool from_top)
 {
     const uint32_t row = ((uint32_t)width * 3 + 3) & ~3U, offset = 14 + header + gap,
                    size = offset + row * (uint32_t)height;
     bmp_file f = {calloc(size, 1), size};
     assert_non_null(f.bytes);
-    memset(f.bytes + 14 + header, 0xEE, size - 14 - header); /* padding is anything */
+    memset(f.bytes + 14 + header, 0xEE, size - 14 - header); /* the padding may have any value */
     memcpy(f.bytes, "BM", 2);
     put_number(f.bytes + 2, size, 4);
     put_number(f.bytes + 10, offset, 4);
@@ -86,7 +87,7 @@ static void every_width_header_and_order_is_read(void **state)
                 }
 }
 
-static void what_lies_behind_the_pixels_does_no_harm(void **state)
+static void bytes_after_the_pixels_are_ignored(void **state)
 {
     (void)state;
     bmp_file f = make_bmp(3, 2, 124, 0, false);
@@ -94,7 +95,7 @@ static void what_lies_behind_the_pixels_does_no_harm(void **state)
     assert_non_null(longer);
     memset(longer + f.size, 0xAB, 77);
     f = (bmp_file){longer, f.size + 77};
-    put_number(f.bytes + 2, 0, 4); /* some writers leave the file's own size out */
+    put_number(f.bytes + 2, 0, 4); /* some writers omit the file's size */
     is_the_image(&f, 3, 2);
     f.size -= 77 + 3; /* the last row's padding may be missing */
     is_the_image(&f, 3, 2);
@@ -113,7 +114,7 @@ static void refused(const unsigned char *bytes, size_t size, const char *word, c
         fail_msg("'%s' has no '%s' or '%s'", said, word, remedy);
 }
 
-static void other_kinds_are_refused_with_the_remedy(void **state)
+static void unsupported_kinds_are_refused_with_a_remedy(void **state)
 {
     (void)state;
     static const struct {
@@ -125,10 +126,10 @@ static void other_kinds_are_refused_with_the_remedy(void **state)
         {28, 2, 8, "8 bits"},
         {28, 2, 16, "16 bits"},
         {28, 2, 32, "32 bits"},
-        {30, 4, 1, "run lengths"},
-        {30, 4, 2, "run lengths"},
-        {30, 4, 3, "kind 3"},
-        {30, 4, 4, "kind 4"},
+        {30, 4, 1, "run-length"},
+        {30, 4, 2, "run-length"},
+        {30, 4, 3, "compression 3"},
+        {30, 4, 4, "compression 4"},
         {14, 4, 12, "OS/2"},
         {14, 4, 64, "OS/2"},
         {14, 4, 16, "OS/2"},
@@ -172,7 +173,7 @@ static void hostile_sizes_are_refused(void **state)
         free(f.bytes);
     }
     bmp_file f = make_bmp(4, 3, 40, 0, false);
-    put_number(f.bytes + 18, 65536, 4), put_number(f.bytes + 22, 4096, 4); /* 2^28 pixels of nothing */
+    put_number(f.bytes + 18, 65536, 4), put_number(f.bytes + 22, 4096, 4); /* 2^28 pixels without data */
     refused(f.bytes, f.size, "65536 x 4096", "");
     free(f.bytes);
 }
@@ -182,7 +183,8 @@ static void truncated_files_are_refused(void **state)
     (void)state;
     const bmp_file f = make_bmp(5, 4, 124, 0, true);
     for (size_t size = 0; size < f.size - 1; size++) {
-        unsigned char *cut = malloc(size ? size : 1); /* of its own size, so that a look beyond its end is found */
+        unsigned char *cut =
+            malloc(size ? size : 1); /* of exact size, so that the address sanitizer finds reads beyond its end */
         image *img;
         diagnostic why = {0};
         assert_non_null(cut);
@@ -194,7 +196,7 @@ static void truncated_files_are_refused(void **state)
     free(f.bytes);
 }
 
-static void corruptions_do_no_harm(void **state)
+static void corrupted_files_are_read_or_refused(void **state)
 {
     (void)state;
     uint64_t seed = 5;
@@ -216,7 +218,7 @@ static void corruptions_do_no_harm(void **state)
     free(f.bytes);
 }
 
-/* The film of a scene whose sky and texture are that file. */
+/* The film of a scene whose sky and texture are the given file. */
 static uint64_t film_with(const char *path)
 {
     char text[1024];
@@ -263,11 +265,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_width_header_and_order_is_read),
-        cmocka_unit_test(what_lies_behind_the_pixels_does_no_harm),
-        cmocka_unit_test(other_kinds_are_refused_with_the_remedy),
+        cmocka_unit_test(bytes_after_the_pixels_are_ignored),
+        cmocka_unit_test(unsupported_kinds_are_refused_with_a_remedy),
         cmocka_unit_test(hostile_sizes_are_refused),
         cmocka_unit_test(truncated_files_are_refused),
-        cmocka_unit_test(corruptions_do_no_harm),
+        cmocka_unit_test(corrupted_files_are_read_or_refused),
         cmocka_unit_test(same_pixels_give_the_same_film_as_png),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -93,7 +93,7 @@ static void quarter_turns_rotate_the_image(void **state)
 }
 
 /* Paths along mirrors have no random choice; others agree up to noise. */
-static void paths_rotate_too(void **state)
+static void path_traced_images_rotate_with_the_roll(void **state)
 {
     (void)state;
     static const char mirrors[] =
@@ -106,7 +106,7 @@ static void paths_rotate_too(void **state)
 
 /* A point on a triangle's edge belongs to the triangle on its right or below, which is another one when the film is
  * rotated. The checkered ground is textured both perspective-correct and affine. */
-static void the_depth_buffer_rotates_too(void **state)
+static void rasterised_images_rotate_with_the_roll(void **state)
 {
     (void)state;
     static const char *const settings[] = {"", "render.texturing=affine", "render.samples=9"};
@@ -131,7 +131,7 @@ static void assert_vectors_near(vec3 a, vec3 b, double most)
 
 /* Rodrigues: v cos a + (n x v) sin a for v perpendicular to n. The roll rotates right towards down, which in this
  * left-handed frame (right, up, forward) is by -a. */
-static void the_frame_rotates_about_the_view(void **state)
+static void roll_rotates_the_camera_frame_about_the_view_direction(void **state)
 {
     (void)state;
     uint64_t seed = 8;
@@ -161,7 +161,7 @@ static void the_frame_rotates_about_the_view(void **state)
 }
 
 /* trace: the ray of a pixel follows the camera frame. */
-static void the_ray_of_a_pixel_rolls(void **state)
+static void the_ray_of_a_pixel_follows_the_rolled_frame(void **state)
 {
     (void)state;
     scene *s = rod_scene("camera.position=2,3,-5 camera.target=-0.3,1,0.4 camera.roll_deg=37");
@@ -180,9 +180,11 @@ static void the_ray_of_a_pixel_rolls(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quarter_turns_rotate_the_image), cmocka_unit_test(paths_rotate_too),
-        cmocka_unit_test(the_depth_buffer_rotates_too),   cmocka_unit_test(the_frame_rotates_about_the_view),
-        cmocka_unit_test(the_ray_of_a_pixel_rolls),
+        cmocka_unit_test(quarter_turns_rotate_the_image),
+        cmocka_unit_test(path_traced_images_rotate_with_the_roll),
+        cmocka_unit_test(rasterised_images_rotate_with_the_roll),
+        cmocka_unit_test(roll_rotates_the_camera_frame_about_the_view_direction),
+        cmocka_unit_test(the_ray_of_a_pixel_follows_the_rolled_frame),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,7 +10,7 @@
 #include <pthread.h>
 #include <time.h>
 
-static void wall_never_goes_back(void **state)
+static void the_wall_clock_is_monotonic(void **state)
 {
     (void)state;
     int64_t last = clock_wall_ns();
@@ -51,7 +51,7 @@ static void thread_clock_counts_its_own_thread(void **state)
     assert_true(all - mine >= 0.019); /* the other thread's CPU time counts for the process, not for this thread */
 }
 
-static void sleep_costs_wall_not_cpu(void **state)
+static void sleeping_takes_wall_time_and_no_cpu_time(void **state)
 {
     (void)state;
     struct timespec pause = {.tv_nsec = 50000000};
@@ -63,7 +63,7 @@ static void sleep_costs_wall_not_cpu(void **state)
     assert_true(cpu < wall);
 }
 
-static void quality_is_positive(void **state)
+static void clock_tick_and_overhead_are_positive(void **state)
 {
     (void)state;
     clock_quality wall = clock_wall_quality(), cpu = clock_thread_cpu_quality();
@@ -75,10 +75,10 @@ static void quality_is_positive(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wall_never_goes_back),
+        cmocka_unit_test(the_wall_clock_is_monotonic),
         cmocka_unit_test(thread_clock_counts_its_own_thread),
-        cmocka_unit_test(sleep_costs_wall_not_cpu),
-        cmocka_unit_test(quality_is_positive),
+        cmocka_unit_test(sleeping_takes_wall_time_and_no_cpu_time),
+        cmocka_unit_test(clock_tick_and_overhead_are_positive),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -73,7 +73,7 @@ static void a_sheet_of_air_with_coated_faces_is_a_half_mirror(void **state)
 
 /* R' + T' = 1, so that no light is lost, whatever a ray's tree: a sphere under a sky of 1 is 1 except for what the
  * depth limit cuts off. */
-static void coated_media_lose_nothing(void **state)
+static void coated_media_conserve_energy(void **state)
 {
     (void)state;
     stage g = coated("shape: sphere, radius: 1", 1.7, 0.35, 9, "render.beyond=black");
@@ -151,7 +151,7 @@ static void constant_weights_have_no_coating(void **state)
 }
 
 /* A shadow ray keeps (1 - reflectivity) at each face, in addition to the transparency. */
-static void a_coated_pane_shades(void **state)
+static void a_coated_pane_attenuates_shadow_rays(void **state)
 {
     (void)state;
     static const char lit_ground[] = "background: {color: [0, 0, 0]}\n"
@@ -180,7 +180,7 @@ static double floor_then_wall(reflectance first, double first_coating, reflectan
     return second.s * s + second.p * p + second_coating * ((1.0 - second.s) * s + (1.0 - second.p) * p);
 }
 
-static void a_coating_reflects_unpolarised(void **state)
+static void a_coating_reflects_unpolarised_light(void **state)
 {
     (void)state;
     for (int which = 0; which < 4; which++) {
@@ -205,7 +205,7 @@ static void a_coating_reflects_unpolarised(void **state)
 }
 
 /* Random paths choose coated branches at random: the mean over many is the tree's. */
-static void random_paths_agree(void **state)
+static void random_paths_have_the_mean_of_the_ray_tree(void **state)
 {
     (void)state;
     stage g = coated("shape: box, size: [50, 0.1, 50]", 1.0, 0.5, 40, "render.integrator=path render.paths=65536");
@@ -223,13 +223,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_coating_reflects_a_share_of_the_transmitted_light),
         cmocka_unit_test(a_sheet_of_air_with_coated_faces_is_a_half_mirror),
-        cmocka_unit_test(coated_media_lose_nothing),
+        cmocka_unit_test(coated_media_conserve_energy),
         cmocka_unit_test(a_polarised_view_of_a_coating_deviates_by_its_polarisation),
         cmocka_unit_test(a_coating_belongs_to_the_surface_owner),
         cmocka_unit_test(constant_weights_have_no_coating),
-        cmocka_unit_test(a_coated_pane_shades),
-        cmocka_unit_test(a_coating_reflects_unpolarised),
-        cmocka_unit_test(random_paths_agree),
+        cmocka_unit_test(a_coated_pane_attenuates_shadow_rays),
+        cmocka_unit_test(a_coating_reflects_unpolarised_light),
+        cmocka_unit_test(random_paths_have_the_mean_of_the_ray_tree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -126,7 +126,7 @@ static assembly cylinder_on_a_plane_that_wins(void)
 }
 
 /* A gap of 1e-9 is not a rounding error: it must be resolved. */
-static assembly blocks_a_hair_apart(void)
+static assembly blocks_with_a_gap(void)
 {
     assembly m = blocks(1, 2, 3);
     m.shape[1].position.y += 1e-9;
@@ -144,27 +144,27 @@ static assembly blocks_with_a_sheet_between(void)
     return m;
 }
 
-static void thin_films_that_are_there_are_seen(void **state)
+static void films_of_1e_9_are_resolved(void **state)
 {
     (void)state;
-    through_the_contact(blocks_a_hair_apart, "02010");
+    through_the_contact(blocks_with_a_gap, "02010");
     through_the_contact(blocks_with_a_sheet_between, "02310");
 }
 
-static void one_glass_has_no_seam(void **state)
+static void blocks_of_one_glass_have_no_interface_in_contact(void **state)
 {
     (void)state;
     through_the_contact(blocks_of_one_glass, "010");
 }
 
-static void two_glasses_meet_in_one_interface(void **state)
+static void blocks_of_two_glasses_in_contact_have_one_interface(void **state)
 {
     (void)state;
     through_the_contact(blocks_of_two_glasses, "0210");
     through_the_contact(blocks_of_which_the_lower_wins, "0210");
 }
 
-static void what_stands_on_a_plane_touches_it(void **state)
+static void a_solid_on_a_plane_has_one_interface_with_it(void **state)
 {
     (void)state;
     through_the_contact(block_on_a_plane, "021");
@@ -191,7 +191,7 @@ static void mirror_at_the_contact(assembly_maker *make)
     }
 }
 
-static void a_mirrored_ray_leaves_the_contact(void **state)
+static void a_ray_mirrored_at_the_contact_returns_through_the_upper_block(void **state)
 {
     (void)state;
     mirror_at_the_contact(blocks_of_two_glasses);
@@ -200,7 +200,7 @@ static void a_mirrored_ray_leaves_the_contact(void **state)
 
 /* A liquid that fills its vessel exactly: same radius, same floor, same height; with a higher priority of the vessel,
  * then of the liquid. */
-static void a_liquid_that_fits_its_vessel_exactly(void **state)
+static void a_liquid_that_fits_its_vessel_exactly_has_one_interface_with_it(void **state)
 {
     (void)state;
     uint64_t seed = 33;
@@ -247,7 +247,7 @@ static void a_liquid_that_fits_its_vessel_exactly(void **state)
 }
 
 /* As in the reference scene: the liquid overlaps the wall, which has the higher priority. */
-static void a_liquid_that_reaches_into_the_wall(void **state)
+static void a_liquid_overlapping_the_wall_has_one_interface_with_it(void **state)
 {
     (void)state;
     static const double turning_points[] = {1.0, 1.1, 2.9, 3.0}; /* along x, from x = -2 */
@@ -281,7 +281,7 @@ static void a_liquid_that_reaches_into_the_wall(void **state)
 }
 
 /* Solids of the surrounding medium are invisible, alone or overlapping; in another medium they are bubbles. */
-static void equal_media_are_no_interface(void **state)
+static void equal_media_have_no_interface(void **state)
 {
     (void)state;
     assembly m = {.count = 3, .priority = {0, 1, 2}, .medium = {0, 0, 0}};
@@ -316,14 +316,14 @@ static void equal_media_are_no_interface(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_glass_has_no_seam),
-        cmocka_unit_test(two_glasses_meet_in_one_interface),
-        cmocka_unit_test(thin_films_that_are_there_are_seen),
-        cmocka_unit_test(what_stands_on_a_plane_touches_it),
-        cmocka_unit_test(a_mirrored_ray_leaves_the_contact),
-        cmocka_unit_test(a_liquid_that_fits_its_vessel_exactly),
-        cmocka_unit_test(a_liquid_that_reaches_into_the_wall),
-        cmocka_unit_test(equal_media_are_no_interface),
+        cmocka_unit_test(blocks_of_one_glass_have_no_interface_in_contact),
+        cmocka_unit_test(blocks_of_two_glasses_in_contact_have_one_interface),
+        cmocka_unit_test(films_of_1e_9_are_resolved),
+        cmocka_unit_test(a_solid_on_a_plane_has_one_interface_with_it),
+        cmocka_unit_test(a_ray_mirrored_at_the_contact_returns_through_the_upper_block),
+        cmocka_unit_test(a_liquid_that_fits_its_vessel_exactly_has_one_interface_with_it),
+        cmocka_unit_test(a_liquid_overlapping_the_wall_has_one_interface_with_it),
+        cmocka_unit_test(equal_media_have_no_interface),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,7 +49,7 @@ static const struct {
     {{2.0776, 0.0795, -1.1350}, {0.9033, -0.0636, -0.5514}, 0.9082},
 };
 
-static void differences_are_those_of_the_published_pairs(void **state)
+static void differences_equal_the_published_pairs(void **state)
 {
     (void)state;
     for (size_t k = 0; k < COUNT(pairs); k++) {
@@ -60,7 +60,7 @@ static void differences_are_those_of_the_published_pairs(void **state)
 }
 
 /* L*a*b* of white and of the sRGB primaries under D65: Lindbloom's calculator, brucelindbloom.com. */
-static void lab_of_white_and_primaries(void **state)
+static void lab_of_white_and_primaries_equals_published_values(void **state)
 {
     (void)state;
     static const struct {
@@ -81,8 +81,8 @@ static void lab_of_white_and_primaries(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(differences_are_those_of_the_published_pairs),
-        cmocka_unit_test(lab_of_white_and_primaries),
+        cmocka_unit_test(differences_equal_the_published_pairs),
+        cmocka_unit_test(lab_of_white_and_primaries_equals_published_values),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Comparison of pictures: closed forms, and independent programs on pictures that a formula makes. */
+/* Tests of image comparison: closed forms, and independent programs on images computed by formulas. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The pictures: linear light k / 256 with a whole k, 0 to 256, of place, channel and variant (0 for a, 1 for b), so
- * that floats hold it exactly and another program can make the same. */
+/* The test images: linear light k / 256 with an integer k, 0 to 256, that depends on position, channel and variant (0
+ * for a, 1 for b), so that floats hold it exactly and another program can compute the same. */
 typedef int formula(int x, int y, int channel, int variant);
 
 static int ramp(int x, int y, int channel, int variant)
@@ -73,7 +73,7 @@ static image_comparison compare(const image *a, const image *b)
     return c;
 }
 
-/* Compares and releases. */
+/* Compares and frees both images. */
 static image_comparison compare_once(image *a, image *b)
 {
     image_comparison c = compare(a, b);
@@ -88,15 +88,13 @@ static void assert_near(double value, double expected, double within)
         fail_msg("%.12g is not %.12g within %g", value, expected, within);
 }
 
-/* Where the numbers come from, all computed in double precision from the formulas above, encoded by IEC 61966-2-1: mse,
+/* Sources of the numbers, all computed in double precision from the formulas above, encoded by IEC 61966-2-1. mse,
  * psnr, largest, share: NumPy 1.24.2, array expressions. ssim: scikit-image 0.19.3, structural_similarity(luma a, luma
- * b, gaussian_weights=True, sigma=1.5,
- *   use_sample_covariance=False, data_range=1); where a side is under 11, which it refuses, NumPy by the definition
- *   in compare_ssim.c, window by window, with central moments. The two agree to 1e-12 where both can be had.
- * flip: the authors' Python implementation (github.com/NVlabs/flip, python/flip_api.py at 313517b, compute_ldrflip),
- *   float64 in place of float32, and for its cv.filter2D SciPy 1.10.1's ndimage.correlate(mode='nearest'), both
- *   explicit
- *   two-dimensional sums. */
+ * b, gaussian_weights=True, sigma=1.5, use_sample_covariance=False, data_range=1); where a side is under 11, which it
+ * refuses, NumPy by the definition in compare_ssim.c, window by window, with central moments. The two agree to 1e-12
+ * where both are available. flip: the authors' Python implementation (github.com/NVlabs/flip, python/flip_api.py at
+ * 313517b, compute_ldrflip), float64 in place of float32, and for its cv.filter2D SciPy 1.10.1's
+ * ndimage.correlate(mode='nearest'), both explicit two-dimensional sums. */
 typedef struct expectation {
     formula *of;
     int width, height;
@@ -120,7 +118,7 @@ static const expectation expectations[] = {
     {grain, 1, 1, 0.0149869930778, 18.2428549328, 0.995277663708, 0.27845931009, 0.206468988225, 0, 0, 1},
 };
 
-static void every_measure_is_that_of_independent_programs(void **state)
+static void every_measure_equals_independent_programs(void **state)
 {
     (void)state;
     for (size_t i = 0; i < sizeof expectations / sizeof *expectations; i++) {
@@ -152,7 +150,7 @@ static void every_measure_is_symmetric(void **state)
     }
 }
 
-static void a_picture_is_identical_to_itself(void **state)
+static void an_image_is_identical_to_itself(void **state)
 {
     (void)state;
     image *a = make(97, 61, grain, 0);
@@ -163,8 +161,8 @@ static void a_picture_is_identical_to_itself(void **state)
     assert_true(c.flip == 0 && c.largest == 0 && c.differing_share == 0 && c.largest_x == 0 && c.largest_y == 0);
 }
 
-/* A known offset of the encoded values: mse its square, psnr by its definition; of two constants the variances are 0,
- * so that the similarity is (2 a b + C1) / (a^2 + b^2 + C1), Wang et al. eq. 6. */
+/* A known offset of the encoded values: mse is its square, psnr follows by definition; the variances of two constants
+ * are 0, so that the similarity is (2 a b + C1) / (a^2 + b^2 + C1), Wang et al. eq. 6. */
 static void constants_have_closed_forms(void **state)
 {
     (void)state;
@@ -178,11 +176,11 @@ static void constants_have_closed_forms(void **state)
     assert_true(c.differing_share == 1);
 }
 
-/* Two greys of one lightness each: without chroma HyAB is the difference of the lightnesses; filters leave constants as
- * they are and find no features. Linear 1 and 0.18418651851 have L* 100 and 50. The distance to the power 0.7 is under
- * the knee of 0.4 times that of green and blue, (203.3016558)^0.7 by their CIELAB values (87.7362, -75.6099, 72.9812)
- * and (32.2982, 25.5781, -34.8364), Hunt-adjusted. */
-static void flip_of_greys_is_their_difference_of_lightness(void **state)
+/* Two grey images of constant lightness: without chroma, HyAB is the difference of the lightnesses; the filters leave
+ * constants unchanged and detect no features. Linear 1 and 0.18418651851 have L* 100 and 50. The distance to the power
+ * 0.7 is below the knee of 0.4 times that of green and blue, (203.3016558)^0.7 by their CIELAB values (87.7362,
+ * -75.6099, 72.9812) and (32.2982, 25.5781, -34.8364), Hunt-adjusted. */
+static void flip_of_greys_is_their_lightness_difference(void **state)
 {
     (void)state;
     double middle = (66.0 / 116.0) * (66.0 / 116.0) * (66.0 / 116.0);
@@ -200,7 +198,7 @@ static void flip_of_green_and_blue_is_one(void **state)
     assert_near(compare_once(green, blue).flip, 1.0, 1e-12);
 }
 
-static void one_differing_pixel_is_found(void **state)
+static void a_single_differing_pixel_is_located(void **state)
 {
     (void)state;
     image *a = make(64, 48, grain, 0), *b = make(64, 48, grain, 0);
@@ -218,7 +216,7 @@ static void one_differing_pixel_is_found(void **state)
 }
 
 /* A quarter of an 8-bit step. */
-static void what_eight_bits_cannot_tell_apart_still_has_an_error(void **state)
+static void differences_below_an_8_bit_step_still_have_an_error(void **state)
 {
     (void)state;
     image_comparison c =
@@ -228,7 +226,7 @@ static void what_eight_bits_cannot_tell_apart_still_has_an_error(void **state)
     assert_true(c.flip > 0);
 }
 
-static void what_a_display_clamps_is_equal(void **state)
+static void values_beyond_the_displays_range_are_clamped(void **state)
 {
     (void)state;
     image *a = constant(16, 16, 1.5), *b = constant(16, 16, (double)INFINITY);
@@ -239,7 +237,7 @@ static void what_a_display_clamps_is_equal(void **state)
     assert_near(c.ssim, 1.0, 1e-12);
 }
 
-static void sizes_that_differ_are_refused(void **state)
+static void different_sizes_are_refused(void **state)
 {
     (void)state;
     image *a = constant(16, 12, 0.5), *b = constant(12, 16, 0.5), *map = a;
@@ -253,7 +251,7 @@ static void sizes_that_differ_are_refused(void **state)
     image_destroy(b);
 }
 
-static void a_pixel_that_is_not_a_number_is_named(void **state)
+static void a_nan_pixel_is_refused_and_located(void **state)
 {
     (void)state;
     image *a = constant(16, 12, 0.5), *b = constant(16, 12, 0.5), *map = a;
@@ -281,8 +279,8 @@ static void assert_color(const image *map, int x, int y, int red, int green, int
     }
 }
 
-/* Colours of matplotlib 3.6.3's magma at 255 times the error, on a line between the two nearest, to one step; the
- * error, at the end of each line, by the oracle of FLIP above. */
+/* Colours of matplotlib 3.6.3's magma at 255 times the error, interpolated linearly between the two nearest, to one
+ * step; the error, in the comment of each line, is by the implementation of FLIP above. */
 static void the_map_shows_the_error_in_magma(void **state)
 {
     (void)state;
@@ -304,17 +302,17 @@ static void the_map_shows_the_error_in_magma(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_measure_is_that_of_independent_programs),
+        cmocka_unit_test(every_measure_equals_independent_programs),
         cmocka_unit_test(every_measure_is_symmetric),
-        cmocka_unit_test(a_picture_is_identical_to_itself),
+        cmocka_unit_test(an_image_is_identical_to_itself),
         cmocka_unit_test(constants_have_closed_forms),
-        cmocka_unit_test(flip_of_greys_is_their_difference_of_lightness),
+        cmocka_unit_test(flip_of_greys_is_their_lightness_difference),
         cmocka_unit_test(flip_of_green_and_blue_is_one),
-        cmocka_unit_test(one_differing_pixel_is_found),
-        cmocka_unit_test(what_eight_bits_cannot_tell_apart_still_has_an_error),
-        cmocka_unit_test(what_a_display_clamps_is_equal),
-        cmocka_unit_test(sizes_that_differ_are_refused),
-        cmocka_unit_test(a_pixel_that_is_not_a_number_is_named),
+        cmocka_unit_test(a_single_differing_pixel_is_located),
+        cmocka_unit_test(differences_below_an_8_bit_step_still_have_an_error),
+        cmocka_unit_test(values_beyond_the_displays_range_are_clamped),
+        cmocka_unit_test(different_sizes_are_refused),
+        cmocka_unit_test(a_nan_pixel_is_refused_and_located),
         cmocka_unit_test(the_map_shows_the_error_in_magma),
     };
     return cmocka_run_group_tests_name("comparison of pictures", tests, NULL, NULL);

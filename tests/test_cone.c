@@ -1,4 +1,4 @@
-/* Tests of a cone's special cases: its apex, the other half of the double cone, and a cylinder as its limit. */
+/* Tests of a cone's special cases: its apex, the other nappe of the double cone, and a cylinder as its limit. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,7 +21,7 @@ static one_ray random_ray(uint64_t *seed, double reach)
     return (one_ray){from, vec3_normalize(vec3_sub(to, from)), FACE_NONE, 0};
 }
 
-static void with_equal_radii_it_is_a_cylinder(void **state)
+static void a_cone_with_equal_radii_is_a_cylinder(void **state)
 {
     (void)state;
     uint64_t seed = 1;
@@ -49,7 +49,7 @@ static void with_equal_radii_it_is_a_cylinder(void **state)
 }
 
 /* pi h (R^2 + R r + r^2) / 3 */
-static void its_volume_is_that_of_a_frustum(void **state)
+static void the_volume_is_that_of_a_frustum(void **state)
 {
     (void)state;
     enum { POINTS = 200000 };
@@ -69,8 +69,9 @@ static void its_volume_is_that_of_a_frustum(void **state)
     }
 }
 
-/* Through the middle of the axis a horizontal chord is the mean of both diameters; along the axis it is the height. */
-static void chords_through_the_middle(void **state)
+/* Through the middle of the axis, a horizontal chord has the mean of both diameters as its length; along the axis, the
+ * height. */
+static void chords_through_the_middle_have_their_closed_form(void **state)
 {
     (void)state;
     const solid_shape s = cone_of(1.0, 0.5, 2.0);
@@ -86,8 +87,8 @@ static void chords_through_the_middle(void **state)
     scene_geometry_destroy(a);
 }
 
-/* Rays at the apex and near it: a hit has a normal and no number is NaN; above the apex there is nothing. */
-static void the_point_is_met_and_its_double_is_not(void **state)
+/* Rays at the apex and near it: a hit has a normal and no number is NaN; above the apex there is no hit. */
+static void the_apex_is_hit_and_the_other_nappe_is_not(void **state)
 {
     (void)state;
     uint64_t seed = 3;
@@ -110,7 +111,7 @@ static void the_point_is_met_and_its_double_is_not(void **state)
         const one_hit next = nearest_interface(a, (one_ray){h.point, d, h.face, h.inside_after});
         assert_true(next.hit_primitive < 0 || (isfinite(next.t) && next.t >= 0.0));
     }
-    for (int trial = 0; trial < 20000; trial++) { /* within the double, downwards to above the apex */
+    for (int trial = 0; trial < 20000; trial++) { /* within the other nappe, downwards to above the apex */
         const double high = random_real(&seed, 1e-9, 2.0);
         const vec3 at = vec3_add(tip, vec3_make(0.3 * high * cos(trial), high, 0.3 * high * sin(trial)));
         const vec3 side = random_direction(&seed);
@@ -123,7 +124,7 @@ static void the_point_is_met_and_its_double_is_not(void **state)
 
 /* A liquid that widens upwards overlaps the wall of a glass, which has the higher priority, only where it is wide
  * enough; below that there is air between them. */
-static void a_liquid_reaches_into_the_wall(void **state)
+static void a_conical_liquid_overlaps_the_wall_only_where_it_is_wide_enough(void **state)
 {
     (void)state;
     const solid_shape shapes[2] = {
@@ -148,9 +149,11 @@ static void a_liquid_reaches_into_the_wall(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(with_equal_radii_it_is_a_cylinder), cmocka_unit_test(its_volume_is_that_of_a_frustum),
-        cmocka_unit_test(chords_through_the_middle),         cmocka_unit_test(the_point_is_met_and_its_double_is_not),
-        cmocka_unit_test(a_liquid_reaches_into_the_wall),
+        cmocka_unit_test(a_cone_with_equal_radii_is_a_cylinder),
+        cmocka_unit_test(the_volume_is_that_of_a_frustum),
+        cmocka_unit_test(chords_through_the_middle_have_their_closed_form),
+        cmocka_unit_test(the_apex_is_hit_and_the_other_nappe_is_not),
+        cmocka_unit_test(a_conical_liquid_overlaps_the_wall_only_where_it_is_wide_enough),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -65,7 +65,7 @@ static double magnitudes(double x, double middle, double size, double angle)
     return fabs(start) + way + fmax(fabs(x), fabs(middle)) + size;
 }
 
-static void the_narrowest_gap_is_the_manuals(void **state)
+static void the_narrowest_resolved_gap_is_that_of_the_manual(void **state)
 {
     (void)state;
     const double angles[] = {0.0, 0.3, 0.8, 1.2}, places[] = {0.0, 30.0, 1000.0};
@@ -81,7 +81,7 @@ static void the_narrowest_gap_is_the_manuals(void **state)
     }
 }
 
-static void both_sides_of_the_limit_whichever_solid_wins(void **state)
+static void the_limit_is_independent_of_the_priorities(void **state)
 {
     (void)state;
     const double limit = 16.0 * DBL_EPSILON * (magnitudes(0.0, 0.5, 4.0, 0.4) + magnitudes(0.0, -1.0, 4.0, 0.4));
@@ -91,7 +91,7 @@ static void both_sides_of_the_limit_whichever_solid_wins(void **state)
     }
 }
 
-static void a_solid_far_away_moves_the_limit_by_nothing(void **state)
+static void a_distant_solid_does_not_change_the_limit(void **state)
 {
     (void)state;
     for (int upper_wins = 0; upper_wins < 2; upper_wins++)
@@ -151,7 +151,7 @@ static double light_through_discs(double gap, const vec3 *turn_deg)
 
 /* In and out of each disc, or from one into the other: a factor of 0.5 each. A shadow ray's direction is not a unit
  * vector. */
-static void shadow_rays_see_the_same_gaps(void **state)
+static void shadow_rays_resolve_the_same_gaps(void **state)
 {
     (void)state;
     const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {90.0, 0.0, 45.0}};
@@ -166,11 +166,11 @@ static void shadow_rays_see_the_same_gaps(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_narrowest_gap_is_the_manuals),
-        cmocka_unit_test(both_sides_of_the_limit_whichever_solid_wins),
-        cmocka_unit_test(a_solid_far_away_moves_the_limit_by_nothing),
+        cmocka_unit_test(the_narrowest_resolved_gap_is_that_of_the_manual),
+        cmocka_unit_test(the_limit_is_independent_of_the_priorities),
+        cmocka_unit_test(a_distant_solid_does_not_change_the_limit),
         cmocka_unit_test(a_film_in_contact_is_entered),
-        cmocka_unit_test(shadow_rays_see_the_same_gaps),
+        cmocka_unit_test(shadow_rays_resolve_the_same_gaps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,7 +57,7 @@ static void the_film_has_the_reference_hash(void **state)
     scene_destroy(s);
 }
 
-static void instruction_sets(void **state)
+static void the_film_is_the_same_for_every_instruction_set(void **state)
 {
     (void)state;
     static const char *const variants[] = {
@@ -75,7 +75,7 @@ static void instruction_sets(void **state)
     }
 }
 
-static void threads_schedules_tiles_and_pool(void **state)
+static void the_film_is_the_same_for_all_threads_schedules_tiles_and_pool(void **state)
 {
     (void)state;
     static const int threads[] = {1, 2, 3, 7, 64}, tiles[] = {1, 8, 64};
@@ -103,7 +103,7 @@ static void threads_schedules_tiles_and_pool(void **state)
 }
 
 /* More threads than columns, rows or tiles, persistent or new. */
-static void a_thousand_threads(void **state)
+static void the_film_is_the_same_with_1024_threads(void **state)
 {
     (void)state;
     scene *s = rod_scene(SMALL " render.tile=8");
@@ -119,7 +119,7 @@ static void a_thousand_threads(void **state)
 }
 
 /* Additional outputs do not change the film; rays by pixel add up to all rays. */
-static void additional_outputs_change_nothing(void **state)
+static void additional_outputs_do_not_change_the_film(void **state)
 {
     (void)state;
     scene *s = rod_scene(SMALL " render.threads=3");
@@ -145,7 +145,6 @@ static void additional_outputs_change_nothing(void **state)
     scene_destroy(s);
 }
 
-/* The counters are consistent. */
 static void counters_are_consistent(void **state)
 {
     (void)state;
@@ -179,9 +178,12 @@ static void counters_are_consistent(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_film_has_the_reference_hash),   cmocka_unit_test(instruction_sets),
-        cmocka_unit_test(threads_schedules_tiles_and_pool),  cmocka_unit_test(a_thousand_threads),
-        cmocka_unit_test(additional_outputs_change_nothing), cmocka_unit_test(counters_are_consistent),
+        cmocka_unit_test(the_film_has_the_reference_hash),
+        cmocka_unit_test(the_film_is_the_same_for_every_instruction_set),
+        cmocka_unit_test(the_film_is_the_same_for_all_threads_schedules_tiles_and_pool),
+        cmocka_unit_test(the_film_is_the_same_with_1024_threads),
+        cmocka_unit_test(additional_outputs_do_not_change_the_film),
+        cmocka_unit_test(counters_are_consistent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

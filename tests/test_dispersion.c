@@ -1,4 +1,4 @@
-/* Tests of the dispersion laws. */
+/* Tests of the dispersion laws against their formulas, at values computed by hand, and of their checks. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -75,8 +75,8 @@ static void laws_agree_with_their_formulas(void **state)
     }
 }
 
-/* Numbers for mental arithmetic, at 500 nm or 1 um; each would differ under another law's formula. */
-static void laws_at_easy_numbers(void **state)
+/* Values computed by hand, at 500 nm or 1 um; each would differ under another law's formula. */
+static void laws_equal_values_computed_by_hand(void **state)
 {
     (void)state;
     const struct {
@@ -114,7 +114,7 @@ static void tables_are_linear_between_their_points(void **state)
 }
 
 /* n = A + B / L^2 has V = (A - 1 + B / L_d^2) / (B / L_F^2 - B / L_C^2). */
-static void abbes_number_of_a_cauchy_law(void **state)
+static void the_abbe_number_of_a_cauchy_law_has_its_closed_form(void **state)
 {
     (void)state;
     const long double d = 0.5875618L, F = 0.4861327L, C = 0.6562725L, A = 1.5L, B = 0.004L;
@@ -125,7 +125,7 @@ static void abbes_number_of_a_cauchy_law(void **state)
     assert_true(isinf(dispersion_abbe_number(&vacuum)));
 }
 
-static void coverage_is_the_range_that_was_stated(void **state)
+static void coverage_is_the_given_range(void **state)
 {
     (void)state;
     dispersion law = {DISPERSION_CAUCHY, 1, {1.5}, 400.0, 700.0};
@@ -144,7 +144,7 @@ static void coverage_is_the_range_that_was_stated(void **state)
     assert_false(dispersion_covers(&table, 400.0, 501.0));
 }
 
-static void what_is_no_law_is_refused_with_a_reason(void **state)
+static void invalid_laws_are_refused_with_a_reason(void **state)
 {
     (void)state;
     const double two = nextafter(2.0, 3.0);
@@ -202,7 +202,7 @@ static void what_is_no_law_is_refused_with_a_reason(void **state)
 }
 
 /* A term with zero weight, as catalogues pad short laws, and resonances just outside the visible. */
-static void laws_at_the_edge_are_accepted(void **state)
+static void laws_at_the_limits_are_accepted(void **state)
 {
     (void)state;
     const dispersion good[] = {
@@ -217,7 +217,7 @@ static void laws_at_the_edge_are_accepted(void **state)
         assert_int_equal(dispersion_check(&good[k], NULL), STATUS_OK);
 }
 
-static void every_kind_has_a_name_and_a_formula_of_its_own(void **state)
+static void every_kind_has_its_own_name_and_formula(void **state)
 {
     (void)state;
     for (int i = 0; i < DISPERSION_KIND_COUNT; i++) {
@@ -234,13 +234,13 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(laws_agree_with_their_formulas),
-        cmocka_unit_test(laws_at_easy_numbers),
+        cmocka_unit_test(laws_equal_values_computed_by_hand),
         cmocka_unit_test(tables_are_linear_between_their_points),
-        cmocka_unit_test(abbes_number_of_a_cauchy_law),
-        cmocka_unit_test(coverage_is_the_range_that_was_stated),
-        cmocka_unit_test(what_is_no_law_is_refused_with_a_reason),
-        cmocka_unit_test(laws_at_the_edge_are_accepted),
-        cmocka_unit_test(every_kind_has_a_name_and_a_formula_of_its_own),
+        cmocka_unit_test(the_abbe_number_of_a_cauchy_law_has_its_closed_form),
+        cmocka_unit_test(coverage_is_the_given_range),
+        cmocka_unit_test(invalid_laws_are_refused_with_a_reason),
+        cmocka_unit_test(laws_at_the_limits_are_accepted),
+        cmocka_unit_test(every_kind_has_its_own_name_and_formula),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

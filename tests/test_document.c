@@ -1,4 +1,5 @@
-/* The YAML tree: kinds, places, limits, helpers of readers. What is refused is in test_bad_scenes.c too. */
+/* Tests of the YAML tree: node kinds, locations, limits, and helpers of readers. Faulty files are also tested in
+ * test_bad_scenes.c. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -31,7 +32,7 @@ static void expect_error(const char *text, size_t size, long line, long column)
     assert_int_equal(document_parse("t.yaml", text, size, &d, NULL), STATUS_BAD_INPUT);
 }
 
-static void nodes_know_kind_text_and_place(void **state)
+static void nodes_have_kind_text_and_location(void **state)
 {
     (void)state;
     document *d = parse("a: 1\nlist:\n  - x\n  - 'y z'\nmap: {k: v, é: \"\"}\nnone:\n");
@@ -59,7 +60,7 @@ static void nodes_know_kind_text_and_place(void **state)
     document_destroy(NULL);
 }
 
-static void any_root_and_line_end_are_read(void **state)
+static void any_root_and_line_ending_are_read(void **state)
 {
     (void)state;
     static const char *const lists[] = {"[1, 2]", "\xef\xbb\xbf[1, 2]", "---\n- 1\n- 2\n...\n", "- 1\r\n- 2\r\n"};
@@ -83,7 +84,7 @@ static char *repeat(const char *head, const char *part, size_t count, const char
     return text;
 }
 
-static void sixteen_levels_and_no_more(void **state)
+static void nesting_is_limited_to_sixteen_levels(void **state)
 {
     (void)state;
     document *d = parse("[[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]");
@@ -95,7 +96,7 @@ static void sixteen_levels_and_no_more(void **state)
 static void size_and_number_of_values_are_limited(void **state)
 {
     (void)state;
-    char *most = repeat("[", "0,", 65534, "0]"); /* and the list itself: 65536 */
+    char *most = repeat("[", "0,", 65534, "0]"); /* with the list itself: 65536 */
     document *d = parse(most);
     assert_int_equal(document_root(d)->count, 65535);
     document_destroy(d);
@@ -108,7 +109,7 @@ static void size_and_number_of_values_are_limited(void **state)
     free(large);
 }
 
-static void what_makes_files_cyclic_or_ambiguous_is_refused(void **state)
+static void cyclic_or_ambiguous_yaml_is_refused(void **state)
 {
     (void)state;
     expect_error("a: &x 1\n", 8, 1, 4);
@@ -128,7 +129,7 @@ static void what_makes_files_cyclic_or_ambiguous_is_refused(void **state)
                  3, 1, 1);
 }
 
-static void check_keys_names_the_nearest(void **state)
+static void an_unknown_key_is_reported_with_the_nearest_word(void **state)
 {
     (void)state;
     static const char *const words[] = {"depth", "width"};
@@ -148,7 +149,7 @@ static void check_keys_names_the_nearest(void **state)
     document_destroy(good);
 }
 
-static void a_remedy_fits_its_wrong_key(void **state)
+static void the_remedy_for_an_unknown_key_suggests_the_right_word(void **state)
 {
     (void)state;
     static const char *const words[] = {"radius",        "ior", "yaw_deg", "pitch_deg", "checker",
@@ -163,8 +164,8 @@ static void a_remedy_fits_its_wrong_key(void **state)
         {"colour", "did you mean 'color'?"},
         {"yaw", "did you mean 'yaw_deg'?"},
         {"raduis", "did you mean 'radius'?"},
-        {"chec", "the keys here are: "},  /* begins two */
-        {"alpha", "the keys here are: "}, /* transparency is no word here */
+        {"chec", "the keys here are: "},  /* the key begins two words */
+        {"alpha", "the keys here are: "}, /* transparency is not in this list of words */
         {"io", "the keys here are: "},
         {"r", "the keys here are: "},
         {"5", "a decimal comma? write 1.5; a vector is [0, 1, 2]"},
@@ -184,7 +185,7 @@ static void a_remedy_fits_its_wrong_key(void **state)
     }
 }
 
-static void value_text_is_what_the_command_line_takes(void **state)
+static void value_text_has_the_command_lines_syntax(void **state)
 {
     (void)state;
     static const struct {
@@ -207,7 +208,7 @@ static void value_text_is_what_the_command_line_takes(void **state)
     }
 }
 
-static void files_are_read_and_missing_ones_named(void **state)
+static void files_are_read_and_missing_files_are_named(void **state)
 {
     (void)state;
     char folder[] = "/tmp/test_document_XXXXXX", path[64];
@@ -236,15 +237,15 @@ static void files_are_read_and_missing_ones_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nodes_know_kind_text_and_place),
-        cmocka_unit_test(any_root_and_line_end_are_read),
-        cmocka_unit_test(sixteen_levels_and_no_more),
+        cmocka_unit_test(nodes_have_kind_text_and_location),
+        cmocka_unit_test(any_root_and_line_ending_are_read),
+        cmocka_unit_test(nesting_is_limited_to_sixteen_levels),
         cmocka_unit_test(size_and_number_of_values_are_limited),
-        cmocka_unit_test(what_makes_files_cyclic_or_ambiguous_is_refused),
-        cmocka_unit_test(check_keys_names_the_nearest),
-        cmocka_unit_test(a_remedy_fits_its_wrong_key),
-        cmocka_unit_test(value_text_is_what_the_command_line_takes),
-        cmocka_unit_test(files_are_read_and_missing_ones_named),
+        cmocka_unit_test(cyclic_or_ambiguous_yaml_is_refused),
+        cmocka_unit_test(an_unknown_key_is_reported_with_the_nearest_word),
+        cmocka_unit_test(the_remedy_for_an_unknown_key_suggests_the_right_word),
+        cmocka_unit_test(value_text_has_the_command_lines_syntax),
+        cmocka_unit_test(files_are_read_and_missing_files_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Tests of the error bounds of powers and angles. */
+/* Tests of the error bounds of the elementary functions: powers, sines and angles. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -54,7 +54,7 @@ static void power_keeps_its_bound_over_the_range(void **state)
     check_power(0.70378209561803062, 101.52557517459427); /* the worst of 24 million: 3.2e-16 */
 }
 
-static void power_is_right_at_the_edges(void **state)
+static void power_is_exact_at_special_arguments(void **state)
 {
     (void)state;
     assert_true(elementary_pow(0.0, 0.0) == 1.0);
@@ -76,8 +76,8 @@ static void power_is_right_at_the_edges(void **state)
     assert_true(isnan(elementary_pow(2.0, (double)NAN)));
 }
 
-/* The bound that base/elementary.h names: 3e-14 at x^y = 1e-30. */
-static void power_of_a_dim_highlight(void **state)
+/* The bound given in base/elementary.h: 3e-14 at x^y = 1e-30. */
+static void power_of_a_dim_highlight_keeps_its_bound(void **state)
 {
     (void)state;
     need_long_double();
@@ -156,7 +156,7 @@ static void angle_of_a_point_keeps_its_bound(void **state)
     check_direction(1e-300, 1e300);
 }
 
-static void angle_of_a_point_on_the_axes(void **state)
+static void angle_of_a_point_is_exact_on_the_axes(void **state)
 {
     (void)state;
     assert_true(elementary_atan2_deg(0.0, 0.0) == 0.0);
@@ -174,12 +174,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(power_keeps_its_bound_over_the_range),
-        cmocka_unit_test(power_is_right_at_the_edges),
-        cmocka_unit_test(power_of_a_dim_highlight),
+        cmocka_unit_test(power_is_exact_at_special_arguments),
+        cmocka_unit_test(power_of_a_dim_highlight_keeps_its_bound),
         cmocka_unit_test(sine_and_cosine_keep_their_bound),
         cmocka_unit_test(sine_and_cosine_are_exact_at_right_angles),
         cmocka_unit_test(angle_of_a_point_keeps_its_bound),
-        cmocka_unit_test(angle_of_a_point_on_the_axes),
+        cmocka_unit_test(angle_of_a_point_is_exact_on_the_axes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

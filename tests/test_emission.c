@@ -1,4 +1,4 @@
-/* Tests of emission: k_e times the surface's colour, with every integrator, and as light sources of random paths. */
+/* Tests of emission: k_e times the surface's colour, with every integrator, and as a light source of random paths. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +24,7 @@ static void expect_color(const scene *s, double r, double g, double b, double to
     assert_near(seen.z, b, tolerance);
 }
 
-static void every_integrator_shows_emission(void **state)
+static void every_integrator_renders_emission(void **state)
 {
     (void)state;
     static const char *const settings[] = {
@@ -40,7 +40,7 @@ static void every_integrator_shows_emission(void **state)
     }
 }
 
-/* Added to the ambient term and the lamp's; random paths have no ambient term. */
+/* Emission adds to the ambient term and the lamp's; random paths have no ambient term. */
 static void emission_adds_to_the_other_terms(void **state)
 {
     (void)state;
@@ -53,7 +53,7 @@ static void emission_adds_to_the_other_terms(void **state)
 }
 
 /* A clear solid with the surroundings' index, which otherwise has no surface: k_e C on entry, and t k_e C on exit. */
-static void clear_solids_emit_whatever_their_index(void **state)
+static void clear_solids_emit_at_any_index(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 3, beyond: black, paths: 64}\n"
@@ -70,8 +70,8 @@ static void clear_solids_emit_whatever_their_index(void **state)
     scene_destroy(s);
 }
 
-/* A mirror reflects it, glass transmits it: R + T = 1 between two equal emitting walls. */
-static void mirrors_and_glass_pass_emission_on(void **state)
+/* A mirror reflects emission, glass transmits it: R + T = 1 between two equal emitting walls. */
+static void mirrors_reflect_and_glass_transmits_emission(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 6, beyond: black, paths: 64}\n"
@@ -84,7 +84,7 @@ static void mirrors_and_glass_pass_emission_on(void **state)
     expect_color(s, 1.5, 1.5, 1.5, 1e-10);
     set_all(s, "render.integrator=whitted ground.reflectivity=0 ground.transparency=1 ground.ior=1.5 wall.priority=1");
     expect_color(s, 3.0, 3.0, 3.0, 1e-12); /* the wall continues below the water line */
-    set(s, "ground.emission=0.5");         /* a clear surface emits, too */
+    set(s, "ground.emission=0.5");         /* a clear surface emits as well */
     expect_color(s, 3.5, 3.5, 3.5, 1e-12);
     set(s, "wall.visible=off");
     expect_color(s, 0.5, 0.5, 0.5, 1e-12);
@@ -111,7 +111,7 @@ static double geometric_sum(double first, double ratio, int terms)
     return first * (1.0 - pow(ratio, terms)) / (1.0 - ratio);
 }
 
-static void a_furnace_of_emitting_walls(void **state)
+static void a_furnace_of_emitting_walls_has_its_geometric_sum(void **state)
 {
     (void)state;
     static const double color[3] = {1.0, 0.5, 0.25};
@@ -131,8 +131,8 @@ static void a_furnace_of_emitting_walls(void **state)
     scene_destroy(s);
 }
 
-/* Spectral, in white: the same sum at each wavelength. */
-static void a_furnace_at_each_wavelength(void **state)
+/* Spectral, with white walls: the same sum at each wavelength. */
+static void a_spectral_furnace_has_its_geometric_sum(void **state)
 {
     (void)state;
     scene *s = scene_from(box);
@@ -145,7 +145,7 @@ static void a_furnace_at_each_wavelength(void **state)
 /* Under a disc of radius r at the height h, on its axis, irradiance is pi L r^2 / (r^2 + h^2) (Lambert's cosine law
  * over the disc; Modest, Radiative Heat Transfer, appendix D): a matte floor of albedo a reflects a L r^2 / (r^2 +
  * h^2). */
-static void a_disc_lights_the_floor_below_it(void **state)
+static void a_disc_lights_the_floor_by_the_closed_form(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 1, beyond: black, integrator: path, paths: 4096}\n"
@@ -162,13 +162,13 @@ static void a_disc_lights_the_floor_below_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clear_solids_emit_whatever_their_index),
-        cmocka_unit_test(every_integrator_shows_emission),
+        cmocka_unit_test(clear_solids_emit_at_any_index),
+        cmocka_unit_test(every_integrator_renders_emission),
         cmocka_unit_test(emission_adds_to_the_other_terms),
-        cmocka_unit_test(mirrors_and_glass_pass_emission_on),
-        cmocka_unit_test(a_furnace_of_emitting_walls),
-        cmocka_unit_test(a_furnace_at_each_wavelength),
-        cmocka_unit_test(a_disc_lights_the_floor_below_it),
+        cmocka_unit_test(mirrors_reflect_and_glass_transmits_emission),
+        cmocka_unit_test(a_furnace_of_emitting_walls_has_its_geometric_sum),
+        cmocka_unit_test(a_spectral_furnace_has_its_geometric_sum),
+        cmocka_unit_test(a_disc_lights_the_floor_by_the_closed_form),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

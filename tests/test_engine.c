@@ -66,7 +66,7 @@ static void the_library_has_the_headers_version(void **state)
     assert_string_equal(cuvette_version(), text);
 }
 
-static void errors_are_reported_and_change_nothing(void **state)
+static void errors_are_reported_and_leave_the_arguments_unchanged(void **state)
 {
     (void)state;
     cuvette_diagnostic why = {.what = ""};
@@ -104,7 +104,7 @@ static void errors_are_reported_and_change_nothing(void **state)
     cuvette_engine_cancel(NULL);
 }
 
-static void parameters_are_set_and_read_by_name(void **state)
+static void parameters_are_set_and_read_by_path(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -160,7 +160,7 @@ static bool stop_after_three(void *context, const cuvette_parameter *one)
     return ++*(int *)context < 3;
 }
 
-static void all_parameters_together_make_the_scene(void **state)
+static void copying_every_parameter_reproduces_the_film(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -335,7 +335,7 @@ static void a_texture_from_memory_is_visible(void **state)
 }
 
 /* Reference hash from the program: cuvette render experiments/scenes/rod.yaml --set render.depth=8. */
-static void the_film_is_the_programs(void **state)
+static void the_film_equals_the_programs_film(void **state)
 {
     (void)state;
     cuvette_engine *engine = make_engine();
@@ -347,7 +347,7 @@ static void the_film_is_the_programs(void **state)
     cuvette_engine_destroy(engine);
 }
 
-static void counters_and_pixels_are_the_renderers(void **state)
+static void counters_and_pixels_equal_the_renderers(void **state)
 {
     (void)state;
     enum { W = 80, H = 60, WIDE = 300 };
@@ -408,7 +408,7 @@ static void counters_and_pixels_are_the_renderers(void **state)
 }
 
 /* A program that was compiled with an earlier, shorter struct. */
-static void an_older_struct_is_filled_as_far_as_it_goes(void **state)
+static void a_shorter_struct_is_filled_up_to_its_size(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -566,7 +566,7 @@ static bool say_begun(void *context, double share)
     return true;
 }
 
-static void another_thread_cancels_and_the_next_frame_is_whole(void **state)
+static void another_thread_cancels_and_the_next_frame_is_complete(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -610,7 +610,7 @@ static bool try_while_busy(void *context, double share)
     return true;
 }
 
-static void what_is_in_use_is_busy(void **state)
+static void objects_in_use_return_busy(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -678,7 +678,7 @@ static void *render_shared(void *context)
     return (void *)(uintptr_t)hash;
 }
 
-static void two_engines_may_begin_with_one_scene(void **state)
+static void two_engines_may_render_one_scene_with_unloaded_meshes(void **state)
 {
     (void)state;
     static const char text[] = "render: {width: 40, height: 30}\ncamera: {position: [0, 0, -3], target: [0, 0, 0]}\n"
@@ -703,21 +703,21 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_library_has_the_headers_version),
-        cmocka_unit_test(errors_are_reported_and_change_nothing),
-        cmocka_unit_test(parameters_are_set_and_read_by_name),
-        cmocka_unit_test(all_parameters_together_make_the_scene),
+        cmocka_unit_test(errors_are_reported_and_leave_the_arguments_unchanged),
+        cmocka_unit_test(parameters_are_set_and_read_by_path),
+        cmocka_unit_test(copying_every_parameter_reproduces_the_film),
         cmocka_unit_test(a_scene_built_by_calls_equals_its_file),
         cmocka_unit_test(objects_are_added_moved_turned_and_removed),
         cmocka_unit_test(a_texture_from_memory_is_visible),
-        cmocka_unit_test(the_film_is_the_programs),
-        cmocka_unit_test(counters_and_pixels_are_the_renderers),
-        cmocka_unit_test(an_older_struct_is_filled_as_far_as_it_goes),
+        cmocka_unit_test(the_film_equals_the_programs_film),
+        cmocka_unit_test(counters_and_pixels_equal_the_renderers),
+        cmocka_unit_test(a_shorter_struct_is_filled_up_to_its_size),
         cmocka_unit_test(each_piece_is_reported_once_and_final),
         cmocka_unit_test(progress_can_cancel_before_the_first_ray),
-        cmocka_unit_test(another_thread_cancels_and_the_next_frame_is_whole),
-        cmocka_unit_test(what_is_in_use_is_busy),
+        cmocka_unit_test(another_thread_cancels_and_the_next_frame_is_complete),
+        cmocka_unit_test(objects_in_use_return_busy),
         cmocka_unit_test(two_engines_do_not_affect_each_other),
-        cmocka_unit_test(two_engines_may_begin_with_one_scene),
+        cmocka_unit_test(two_engines_may_render_one_scene_with_unloaded_meshes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

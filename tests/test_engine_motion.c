@@ -141,7 +141,7 @@ static void expect_ended(cuvette_motion *m, const char *because)
     cuvette_motion_destroy(m);
 }
 
-static void a_film_is_that_of_the_scene_at_its_time(void **state)
+static void the_film_is_that_of_the_scene_at_the_motions_time(void **state)
 {
     (void)state;
     static const double moments[] = {0.0, 0.1, 0.15, 0.15, 0.5};
@@ -246,7 +246,7 @@ static void picks_agree_with_ray_hits(void **state)
     cuvette_scene_destroy(s);
 }
 
-static void a_meshs_name_means_the_nearest_of_its_solids(void **state)
+static void picking_a_mesh_finds_the_nearest_of_its_solids(void **state)
 {
     (void)state;
     cuvette_scene *s = scene_of(toys);
@@ -475,7 +475,7 @@ static void a_motion_ends_when_a_slime_is_unstable(void **state)
     const int hand = grab(m, "toy", ray_of(-0.6, 1.1, -6, 0, 0, 1), 0.1);
     fine(cuvette_motion_move(m, hand, (const double[]){0, 1, 0}, &why), &why);
     assert_int_equal(cuvette_motion_advance(m, 10.0, &why), CUVETTE_BAD_INPUT);
-    assert_non_null(strstr(why.what, "toy: the slime blew up"));
+    assert_non_null(strstr(why.what, "toy: the simulation diverged"));
     expect_ended(m, "failed");
     cuvette_scene_destroy(s);
 }
@@ -502,7 +502,7 @@ static bool try_while_rendering(void *context, double share)
     return true;
 }
 
-static void what_is_in_use_is_busy(void **state)
+static void objects_in_use_return_busy(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -567,10 +567,10 @@ static void two_motions_do_not_affect_each_other(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_film_is_that_of_the_scene_at_its_time),
+        cmocka_unit_test(the_film_is_that_of_the_scene_at_the_motions_time),
         cmocka_unit_test(hands_are_bit_identical_to_a_script),
         cmocka_unit_test(picks_agree_with_ray_hits),
-        cmocka_unit_test(a_meshs_name_means_the_nearest_of_its_solids),
+        cmocka_unit_test(picking_a_mesh_finds_the_nearest_of_its_solids),
         cmocka_unit_test(a_miss_grabs_nothing),
         cmocka_unit_test(held_masses_follow_the_hand),
         cmocka_unit_test(a_slime_has_at_most_sixteen_hands),
@@ -578,7 +578,7 @@ int main(void)
         cmocka_unit_test(a_motion_ends_when_its_slimes_change),
         cmocka_unit_test(motion_and_scene_are_released_in_any_order),
         cmocka_unit_test(a_motion_ends_when_a_slime_is_unstable),
-        cmocka_unit_test(what_is_in_use_is_busy),
+        cmocka_unit_test(objects_in_use_return_busy),
         cmocka_unit_test(two_motions_do_not_affect_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -158,7 +158,7 @@ static void keep_last(void *context, const scene_note *note)
     snprintf(context, NOTE_LINE_MAX, "%s", note_line(note, line, sizeof line));
 }
 
-static void a_note_names_the_owner(void **state)
+static void a_note_names_the_solid_whose_shares_are_ignored(void **state)
 {
     (void)state;
     char said[NOTE_LINE_MAX] = "";
@@ -179,7 +179,7 @@ int main(void)
         cmocka_unit_test(each_face_transmits_its_own_share),
         cmocka_unit_test(each_face_reflects_its_own_share),
         cmocka_unit_test(shadows_depend_on_the_faces),
-        cmocka_unit_test(a_note_names_the_owner),
+        cmocka_unit_test(a_note_names_the_solid_whose_shares_are_ignored),
     };
     return cmocka_run_group_tests(tests, make_files, remove_files);
 }

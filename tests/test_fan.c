@@ -25,7 +25,7 @@ static const char ball_text[] =
 
 /* A ball lens: f = n R / (2 (n - 1)) from its centre (Hecht 6.2, thick lens with R_1 = -R_2 = R and d = 2 R); 1.5 for
  * glass. */
-static void a_thin_pencil_meets_in_a_balls_focus(void **state)
+static void a_thin_pencil_converges_at_the_focus_of_a_ball_lens(void **state)
 {
     (void)state;
     scene *s = scene_from(ball_text);
@@ -90,7 +90,7 @@ static void light_from_the_focus_leaves_parallel(void **state)
 
 /* A plane slab makes a point appear nearer by d (1 - 1/n) for a slab of thickness d (Hecht 4.4, paraxial). Its image is
  * virtual. */
-static void a_slab_shifts_a_point(void **state)
+static void a_slab_shifts_the_virtual_image_of_a_point(void **state)
 {
     (void)state;
     scene *s =
@@ -126,8 +126,8 @@ static void only_deflected_rays_count_for_the_focus(void **state)
 }
 
 /* i = asin 0.9: the two rays cross at 0.9 / sin(2 (i - t)) = 1.104 on the axis, 0.204 behind the ball. A stone next to
- * the axis blocks the second from 0.177 to 0.061 before that point, and the first one 0.020 behind it. */
-static void rays_cross_only_where_both_arrive(void **state)
+ * the axis blocks the second ray from 0.177 to 0.061 before that point, and the first one 0.020 behind it. */
+static void rays_cross_only_where_both_are_unblocked(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {depth: 6}\n"
@@ -150,7 +150,7 @@ static void rays_cross_only_where_both_arrive(void **state)
     scene_destroy(s);
 }
 
-static void planes_are_horizontal_vertical_or_given(void **state)
+static void the_plane_of_a_fan_is_horizontal_vertical_or_given(void **state)
 {
     (void)state;
     scene *s = scene_from(ball_text);
@@ -203,10 +203,14 @@ static void bad_rules_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_thin_pencil_meets_in_a_balls_focus),    cmocka_unit_test(a_wide_pencil_obeys_snells_law),
-        cmocka_unit_test(light_from_the_focus_leaves_parallel),    cmocka_unit_test(a_slab_shifts_a_point),
-        cmocka_unit_test(only_deflected_rays_count_for_the_focus), cmocka_unit_test(rays_cross_only_where_both_arrive),
-        cmocka_unit_test(planes_are_horizontal_vertical_or_given), cmocka_unit_test(bad_rules_are_refused),
+        cmocka_unit_test(a_thin_pencil_converges_at_the_focus_of_a_ball_lens),
+        cmocka_unit_test(a_wide_pencil_obeys_snells_law),
+        cmocka_unit_test(light_from_the_focus_leaves_parallel),
+        cmocka_unit_test(a_slab_shifts_the_virtual_image_of_a_point),
+        cmocka_unit_test(only_deflected_rays_count_for_the_focus),
+        cmocka_unit_test(rays_cross_only_where_both_are_unblocked),
+        cmocka_unit_test(the_plane_of_a_fan_is_horizontal_vertical_or_given),
+        cmocka_unit_test(bad_rules_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,7 +43,7 @@ static void sums_are_fixed_point(void **state)
     film_destroy(f);
 }
 
-/* The hash depends on every bit of every sum, the size, and the order. */
+/* The hash depends on every bit of every sum, on the size, and on the order. */
 static void different_films_have_different_hashes(void **state)
 {
     (void)state;
@@ -79,7 +79,7 @@ static void a_film_becomes_an_image(void **state)
     film_destroy(f);
 }
 
-/* queue_take pops the end of the queue, at most a batch, and leaves whole vectors behind. */
+/* queue_take removes the end of the queue, at most a batch, and leaves whole vectors in it. */
 static void a_queue_is_last_in_first_out(void **state)
 {
     (void)state;

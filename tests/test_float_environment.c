@@ -23,7 +23,7 @@ enum { X86_DAZ = 0x0040, X86_FTZ = 0x8000, X87_PRECISION = 0x0300 };
 
 typedef struct surroundings {
     int rounding;      /* FE_UPWARD ... */
-    unsigned flushing; /* bits of MXCSR; other processors do without */
+    unsigned flushing; /* bits of MXCSR; other processors have none */
     bool narrow;       /* x87 registers with 24-bit significands */
     int traps;         /* for feenableexcept */
 } surroundings;
@@ -58,11 +58,11 @@ static void set_surroundings(const surroundings *wanted)
 #endif
     fesetround(wanted->rounding);
     if (!wanted->traps)
-        feraiseexcept(FE_OVERFLOW); /* the caller has something to lose */
+        feraiseexcept(FE_OVERFLOW); /* a raised exception, which the library must not clear */
     feenableexcept(wanted->traps);
 }
 
-/* The state of its environment that a caller can observe. */
+/* The part of the environment that a caller can observe. */
 typedef struct noticed {
     int rounding, raised, traps;
     unsigned mxcsr, control;
@@ -90,7 +90,7 @@ static void expect_unchanged(const noticed *before)
                  after.control);
 }
 
-/* --- the caller's requests; no arithmetic on numbers here: it would be the caller's own --- */
+/* --- the caller's requests; without arithmetic on numbers here, which would run in the caller's environment --- */
 
 static void fine(cuvette_status code, const cuvette_diagnostic *why)
 {
@@ -372,20 +372,20 @@ static void expect_one_answer(question *ask)
         (void)state;               \
         expect_one_answer(ask);    \
     }
-ONE_ANSWER(a_whole_tree_of_rays, ask_whitted)
-ONE_ANSWER(random_paths, ask_path)
-ONE_ANSWER(spectra, ask_spectral)
-ONE_ANSWER(polarised_light, ask_polarised)
-ONE_ANSWER(absorption, ask_absorption)
-ONE_ANSWER(meshes_and_textures, ask_meshes)
-ONE_ANSWER(a_slime_of_its_moment, ask_slime)
-ONE_ANSWER(the_depth_buffer, ask_zbuffer)
-ONE_ANSWER(numbers_in_and_out, ask_numbers)
-ONE_ANSWER(rays_of_the_hosts_own, ask_rays)
-ONE_ANSWER(motions_and_hands, ask_motion)
+ONE_ANSWER(ray_trees_are_the_same_in_every_environment, ask_whitted)
+ONE_ANSWER(random_paths_are_the_same_in_every_environment, ask_path)
+ONE_ANSWER(spectral_films_are_the_same_in_every_environment, ask_spectral)
+ONE_ANSWER(polarised_films_are_the_same_in_every_environment, ask_polarised)
+ONE_ANSWER(absorption_is_the_same_in_every_environment, ask_absorption)
+ONE_ANSWER(meshes_and_textures_are_the_same_in_every_environment, ask_meshes)
+ONE_ANSWER(a_slime_at_a_time_is_the_same_in_every_environment, ask_slime)
+ONE_ANSWER(rasterised_films_are_the_same_in_every_environment, ask_zbuffer)
+ONE_ANSWER(parsed_and_formatted_numbers_are_the_same_in_every_environment, ask_numbers)
+ONE_ANSWER(query_rays_are_the_same_in_every_environment, ask_rays)
+ONE_ANSWER(motions_are_the_same_in_every_environment, ask_motion)
 
-/* The hash that tests/test_determinism.c pins and `cuvette render` prints. */
-static void the_golden_film(void **state)
+/* The hash that tests/test_determinism.c checks and `cuvette render` prints. */
+static void the_reference_film_is_the_same_in_a_changed_environment(void **state)
 {
     (void)state;
     char line[64] = "";
@@ -467,7 +467,7 @@ static cuvette_status render_with(cuvette_engine *engine, const cuvette_scene *s
     return code;
 }
 
-static void the_hosts_functions_run_in_its_environment(void **state)
+static void callbacks_run_in_the_callers_environment(void **state)
 {
     (void)state;
     const surroundings now = {FE_UPWARD, X86_FTZ, false, 0};
@@ -490,7 +490,7 @@ static void the_hosts_functions_run_in_its_environment(void **state)
     cuvette_engine_destroy(engine);
 }
 
-static void it_comes_back_whichever_way_a_call_ends(void **state)
+static void the_callers_environment_is_restored_after_errors_and_cancellation(void **state)
 {
     (void)state;
     const surroundings now = {FE_TOWARDZERO, X86_DAZ, true, 0};
@@ -543,7 +543,7 @@ static void sign_in_pool(void *context, int worker)
     r->seen[worker] = notice();
 }
 
-static void threads_begin_in_the_default(void **state)
+static void threads_start_in_the_default_environment(void **state)
 {
     (void)state;
     enum { THREADS = 4 };
@@ -573,21 +573,21 @@ static void threads_begin_in_the_default(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_whole_tree_of_rays),
-        cmocka_unit_test(random_paths),
-        cmocka_unit_test(spectra),
-        cmocka_unit_test(polarised_light),
-        cmocka_unit_test(absorption),
-        cmocka_unit_test(meshes_and_textures),
-        cmocka_unit_test(a_slime_of_its_moment),
-        cmocka_unit_test(the_depth_buffer),
-        cmocka_unit_test(numbers_in_and_out),
-        cmocka_unit_test(rays_of_the_hosts_own),
-        cmocka_unit_test(motions_and_hands),
-        cmocka_unit_test(the_golden_film),
-        cmocka_unit_test(the_hosts_functions_run_in_its_environment),
-        cmocka_unit_test(it_comes_back_whichever_way_a_call_ends),
-        cmocka_unit_test(threads_begin_in_the_default),
+        cmocka_unit_test(ray_trees_are_the_same_in_every_environment),
+        cmocka_unit_test(random_paths_are_the_same_in_every_environment),
+        cmocka_unit_test(spectral_films_are_the_same_in_every_environment),
+        cmocka_unit_test(polarised_films_are_the_same_in_every_environment),
+        cmocka_unit_test(absorption_is_the_same_in_every_environment),
+        cmocka_unit_test(meshes_and_textures_are_the_same_in_every_environment),
+        cmocka_unit_test(a_slime_at_a_time_is_the_same_in_every_environment),
+        cmocka_unit_test(rasterised_films_are_the_same_in_every_environment),
+        cmocka_unit_test(parsed_and_formatted_numbers_are_the_same_in_every_environment),
+        cmocka_unit_test(query_rays_are_the_same_in_every_environment),
+        cmocka_unit_test(motions_are_the_same_in_every_environment),
+        cmocka_unit_test(the_reference_film_is_the_same_in_a_changed_environment),
+        cmocka_unit_test(callbacks_run_in_the_callers_environment),
+        cmocka_unit_test(the_callers_environment_is_restored_after_errors_and_cancellation),
+        cmocka_unit_test(threads_start_in_the_default_environment),
     };
     return cmocka_run_group_tests_name("float_environment", tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 /* Tests of the white furnace: under a sky of 1, without opaque surfaces and absorption, every ray returns 1, whatever
  * its path, because each interface has R + T = 1 (pbrt-v4's own furnace tests; Veach, Robust Monte Carlo Methods for
- * Light Transport Simulation, 1997, 5.3.1: energy is conserved). Only what the depth limit cuts off is missing, to the
- * last bit. */
+ * Light Transport Simulation, 1997, 5.3.1: energy is conserved). Only the light of the branches that the depth limit
+ * cuts off is missing, to the last bit. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

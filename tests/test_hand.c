@@ -1,4 +1,4 @@
-/* Recorded hands: what a script keeps, and what it refuses without being changed. */
+/* Tests of recorded hands: the keys of a script, and the keys that it refuses without being changed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -54,7 +54,7 @@ static void refuse(hand_script *s, const char *hand, hand_key key, const char *w
     assert_int_equal(hand_script_add(s, hand, &key, NULL), STATUS_BAD_INPUT);
 }
 
-static void an_empty_script_ends_at_once(void **state)
+static void an_empty_script_ends_at_time_0(void **state)
 {
     (void)state;
     char path[] = "tug.yaml";
@@ -68,7 +68,7 @@ static void an_empty_script_ends_at_once(void **state)
     hand_script_destroy(NULL);
 }
 
-static void keys_stand_in_their_hands_in_the_order_in_which_they_came(void **state)
+static void keys_are_kept_per_hand_in_the_order_added(void **state)
 {
     (void)state;
     hand_script *s = create();
@@ -95,52 +95,52 @@ static void keys_stand_in_their_hands_in_the_order_in_which_they_came(void **sta
     hand_script_destroy(s);
 }
 
-static void what_a_hand_cannot_do_is_refused(void **state)
+static void impossible_key_sequences_are_refused(void **state)
 {
     (void)state;
     hand_script *s = create();
-    refuse(s, "left", move(0.0, 1.0), "moves what it does not hold");
-    refuse(s, "left", release(0.0), "releases what it does not hold");
+    refuse(s, "left", move(0.0, 1.0), "cannot move without a grab");
+    refuse(s, "left", release(0.0), "cannot release without a grab");
     add(s, "left", grab(1.0));
-    refuse(s, "left", grab(2.0), "holds something already");
+    refuse(s, "left", grab(2.0), "already holds something");
     refuse(s, "left", move(0.999, 1.0), "comes after");
-    refuse(s, "right", move(2.0, 1.0), "moves what it does not hold");
+    refuse(s, "right", move(2.0, 1.0), "cannot move without a grab");
     add(s, "left", move(1.0, 1.0));
-    refuse(s, "left", grab(2.0), "holds something already");
+    refuse(s, "left", grab(2.0), "already holds something");
     add(s, "left", release(1.5));
-    refuse(s, "left", move(2.0, 1.0), "moves what it does not hold");
-    refuse(s, "left", release(2.0), "releases what it does not hold");
+    refuse(s, "left", move(2.0, 1.0), "cannot move without a grab");
+    refuse(s, "left", release(2.0), "cannot release without a grab");
     refuse(s, "left", grab(1.25), "comes after");
     hand_script_destroy(s);
 }
 
-static void numbers_that_mean_nothing_are_refused(void **state)
+static void invalid_numbers_are_refused(void **state)
 {
     (void)state;
     hand_script *s = create();
     hand_key key = grab(-1.0);
-    refuse(s, "left", key, "no time");
+    refuse(s, "left", key, "invalid time");
     key = grab((double)NAN);
-    refuse(s, "left", key, "no time");
+    refuse(s, "left", key, "invalid time");
     key = grab((double)INFINITY);
-    refuse(s, "left", key, "no time");
+    refuse(s, "left", key, "invalid time");
     key = grab(0.0);
     key.direction = (vec3){0.0, 0.0, 0.0};
-    refuse(s, "left", key, "along no ray");
+    refuse(s, "left", key, "the grab ray is not finite");
     key = grab(0.0);
     key.origin.y = (double)NAN;
-    refuse(s, "left", key, "along no ray");
+    refuse(s, "left", key, "the grab ray is not finite");
     key = grab(0.0);
     key.reach = 0.0;
     refuse(s, "left", key, "reach");
     key.reach = (double)NAN;
     refuse(s, "left", key, "reach");
     add(s, "left", grab(0.0));
-    refuse(s, "left", move(1.0, (double)INFINITY), "nowhere");
+    refuse(s, "left", move(1.0, (double)INFINITY), "the displacement is not finite");
     hand_script_destroy(s);
 }
 
-static void hands_are_few_and_have_names(void **state)
+static void hands_are_limited_in_number_and_have_valid_names(void **state)
 {
     (void)state;
     hand_script *s = create();
@@ -155,7 +155,7 @@ static void hands_are_few_and_have_names(void **state)
         snprintf(name, sizeof name, "hand%d", i);
         add(s, name, grab(0.0));
     }
-    refuse(s, "another", grab(0.0), "one hand too many");
+    refuse(s, "another", grab(0.0), "too many hands");
     add(s, "hand3", release(0.0));
     add(s, "hand3", grab(0.0));
     assert_int_equal(s->track_count, SOFTBODY_HANDS_MAX);
@@ -165,11 +165,11 @@ static void hands_are_few_and_have_names(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_empty_script_ends_at_once),
-        cmocka_unit_test(keys_stand_in_their_hands_in_the_order_in_which_they_came),
-        cmocka_unit_test(what_a_hand_cannot_do_is_refused),
-        cmocka_unit_test(numbers_that_mean_nothing_are_refused),
-        cmocka_unit_test(hands_are_few_and_have_names),
+        cmocka_unit_test(an_empty_script_ends_at_time_0),
+        cmocka_unit_test(keys_are_kept_per_hand_in_the_order_added),
+        cmocka_unit_test(impossible_key_sequences_are_refused),
+        cmocka_unit_test(invalid_numbers_are_refused),
+        cmocka_unit_test(hands_are_limited_in_number_and_have_valid_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

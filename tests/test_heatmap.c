@@ -1,4 +1,4 @@
-/* False-colour pictures: the colour map, the font, the key under the picture. */
+/* Tests of false-colour images: the colour map, the font, the colour bar under the image. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@ static bool pixel_is(const image *img, int x, int y, int red, int green, int blu
            (int)codec_quantize(pixel[2], 255) == blue;
 }
 
-/* Pixels of the ink of text in a rectangle. */
+/* The number of pixels with the colour of text in a rectangle. */
 static int ink_in(const image *img, int left, int right, int top, int bottom)
 {
     int count = 0;
@@ -91,8 +91,8 @@ static void colors_are_clamped(void **state)
     }
 }
 
-/* Luminance, Y of Rec. 709: more is always brighter, also in grey print. */
-static void more_is_brighter(void **state)
+/* Luminance, Y of Rec. 709: larger values are always brighter, also in grey print. */
+static void larger_values_are_brighter(void **state)
 {
     (void)state;
     double before = -1.0;
@@ -118,7 +118,7 @@ static void print_glyph(char character, char drawn[FONT_HEIGHT * (FONT_WIDTH + 1
     *drawn = 0;
 }
 
-static void glyphs_look_like_their_letters(void **state)
+static void glyphs_have_the_expected_pixels(void **state)
 {
     (void)state;
     char drawn[FONT_HEIGHT * (FONT_WIDTH + 1) + 1];
@@ -146,9 +146,9 @@ static void glyphs_differ(void **state)
     assert_false(font_dot('#', -1, 0) || font_dot('#', 5, 0) || font_dot('#', 0, -1) || font_dot('#', 0, 8));
 }
 
-/* ---- pictures ---- */
+/* ---- images ---- */
 
-static void values_become_colors(void **state)
+static void values_are_mapped_to_colors(void **state)
 {
     (void)state;
     double *values = make_values(300, 20, 118.0);
@@ -166,7 +166,7 @@ static void values_become_colors(void **state)
     free(values);
 }
 
-static void narrow_data_stand_in_the_middle(void **state)
+static void narrow_images_are_centred(void **state)
 {
     (void)state;
     double *values = make_values(40, 10, 1.0);
@@ -180,7 +180,7 @@ static void narrow_data_stand_in_the_middle(void **state)
     free(values);
 }
 
-/* Finds text in the key by drawing it with the font at one pixel a dot. */
+/* Finds text in the colour bar by drawing it with the font at one pixel a dot. */
 static bool shows(const image *img, int top, const char *text)
 {
     int width = (int)strlen(text) * FONT_ADVANCE - 1;
@@ -199,7 +199,7 @@ static bool shows(const image *img, int top, const char *text)
     return false;
 }
 
-static void check_key(double largest, const char *const numbers[5])
+static void check_color_bar(double largest, const char *const numbers[5])
 {
     double *values = make_values(300, 3, largest);
     image *img = draw(values, 300, 3, "cost, in rays");
@@ -212,20 +212,20 @@ static void check_key(double largest, const char *const numbers[5])
     free(values);
 }
 
-static void the_key_shows_quarters_of_the_range(void **state)
+static void the_color_bar_is_labelled_at_quarters_of_the_range(void **state)
 {
     (void)state;
-    check_key(118.0, (const char *const[]){"0", "29.5", "59", "88.5", "118"});
-    check_key(1.0, (const char *const[]){"0", "0.25", "0.5", "0.75", "1"});
-    check_key(1234.0, (const char *const[]){"0", "308.5", "617", "925.5", "1234"});
-    check_key(12345678.0, (const char *const[]){"0", "3.086M", "6.173M", "9.259M", "12.35M"});
-    check_key(50000.0, (const char *const[]){"0", "12.5k", "25k", "37.5k", "50k"});
-    check_key(0.004, (const char *const[]){"0", "1m", "2m", "3m", "4m"});
-    check_key(9999.99, (const char *const[]){"0", "2500", "5000", "7500", "10000"});
-    check_key(2e-6, (const char *const[]){"0", "0.5u", "1u", "1.5u", "2u"});
+    check_color_bar(118.0, (const char *const[]){"0", "29.5", "59", "88.5", "118"});
+    check_color_bar(1.0, (const char *const[]){"0", "0.25", "0.5", "0.75", "1"});
+    check_color_bar(1234.0, (const char *const[]){"0", "308.5", "617", "925.5", "1234"});
+    check_color_bar(12345678.0, (const char *const[]){"0", "3.086M", "6.173M", "9.259M", "12.35M"});
+    check_color_bar(50000.0, (const char *const[]){"0", "12.5k", "25k", "37.5k", "50k"});
+    check_color_bar(0.004, (const char *const[]){"0", "1m", "2m", "3m", "4m"});
+    check_color_bar(9999.99, (const char *const[]){"0", "2500", "5000", "7500", "10000"});
+    check_color_bar(2e-6, (const char *const[]){"0", "0.5u", "1u", "1.5u", "2u"});
 }
 
-static void whole_values_have_whole_numbers_at_the_scale(void **state)
+static void integer_values_have_integer_labels(void **state)
 {
     (void)state;
     static const struct {
@@ -244,14 +244,14 @@ static void whole_values_have_whole_numbers_at_the_scale(void **state)
     }
 }
 
-static void the_scale_is_not_set_by_a_few_outliers(void **state)
+static void the_scale_ignores_a_few_outliers(void **state)
 {
     (void)state;
     double values[1200];
     for (int i = 0; i < 1200; i++)
         values[i] = i * 7 % 1200 / 2.0 + 0.25;
     values[0] = 1e9;
-    image *img = draw(values, 300, 4, "t"); /* 6 of 1200 are above the percentile: the outlier, and 5 more */
+    image *img = draw(values, 300, 4, "t"); /* 6 of 1200 values are above the percentile: the outlier, and 5 more */
     assert_true(shows(img, 4, ">=597.3"));
     assert_true(pixel_is(img, 0, 0, 253, 231, 37));
     unsigned char rgb[3];
@@ -269,7 +269,7 @@ static void the_scale_is_not_set_by_a_few_outliers(void **state)
     image_destroy(img);
 }
 
-static void a_long_title_is_cut(void **state)
+static void a_long_title_is_truncated(void **state)
 {
     (void)state;
     double *values = make_values(240, 3, 1.0);
@@ -286,7 +286,7 @@ static void a_long_title_is_cut(void **state)
     free(values);
 }
 
-static void nothing_but_zeros_is_no_error(void **state)
+static void an_image_of_zeros_is_valid(void **state)
 {
     (void)state;
     static const double zeros[240 * 2] = {0};
@@ -296,11 +296,11 @@ static void nothing_but_zeros_is_no_error(void **state)
     image_destroy(img);
 }
 
-static void text_grows_with_the_picture(void **state)
+static void text_is_scaled_with_the_image(void **state)
 {
     (void)state;
     double *values = make_values(1600, 2, 1.0);
-    for (int i = 0; i < 1600 * 2; i++) /* the same numbers at the scale of both */
+    for (int i = 0; i < 1600 * 2; i++) /* both images have the same numbers at their scales */
         values[i] = i % 5 / 4.0;
     image *small = draw(values, 400, 2, "title"), *large = draw(values, 1600, 2, "title");
     assert_int_equal((large->height - 2), 4 * (small->height - 2));
@@ -310,7 +310,7 @@ static void text_grows_with_the_picture(void **state)
     free(values);
 }
 
-static void what_cannot_be_drawn_is_refused(void **state)
+static void invalid_values_and_sizes_are_refused(void **state)
 {
     (void)state;
     static const double bad[] = {(double)NAN, INFINITY, -1.0, -INFINITY};
@@ -333,18 +333,18 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(viridis_has_its_published_colors),
         cmocka_unit_test(colors_are_clamped),
-        cmocka_unit_test(more_is_brighter),
-        cmocka_unit_test(glyphs_look_like_their_letters),
+        cmocka_unit_test(larger_values_are_brighter),
+        cmocka_unit_test(glyphs_have_the_expected_pixels),
         cmocka_unit_test(glyphs_differ),
-        cmocka_unit_test(values_become_colors),
-        cmocka_unit_test(narrow_data_stand_in_the_middle),
-        cmocka_unit_test(the_key_shows_quarters_of_the_range),
-        cmocka_unit_test(whole_values_have_whole_numbers_at_the_scale),
-        cmocka_unit_test(the_scale_is_not_set_by_a_few_outliers),
-        cmocka_unit_test(a_long_title_is_cut),
-        cmocka_unit_test(nothing_but_zeros_is_no_error),
-        cmocka_unit_test(text_grows_with_the_picture),
-        cmocka_unit_test(what_cannot_be_drawn_is_refused),
+        cmocka_unit_test(values_are_mapped_to_colors),
+        cmocka_unit_test(narrow_images_are_centred),
+        cmocka_unit_test(the_color_bar_is_labelled_at_quarters_of_the_range),
+        cmocka_unit_test(integer_values_have_integer_labels),
+        cmocka_unit_test(the_scale_ignores_a_few_outliers),
+        cmocka_unit_test(a_long_title_is_truncated),
+        cmocka_unit_test(an_image_of_zeros_is_valid),
+        cmocka_unit_test(text_is_scaled_with_the_image),
+        cmocka_unit_test(invalid_values_and_sizes_are_refused),
     };
     return cmocka_run_group_tests_name("heatmap", tests, NULL, NULL);
 }

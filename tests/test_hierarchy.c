@@ -107,9 +107,9 @@ static void every_hierarchy_gives_the_same_hits(void **state)
         one_scene(&seed, 5000);
 }
 
-/* Rays as from a camera, a lamp or the sun: parallel, or from one point, to corners, edges and anywhere. Random rays
- * are too different to share a traversal. */
-static int rays_alike(const mesh *m, uint64_t *seed, mesh_ray *r)
+/* Coherent rays, as from a camera, a lamp or the sun: parallel, or from one point, to corners, edges and anywhere.
+ * Random rays are too different to share a traversal. */
+static int coherent_rays(const mesh *m, uint64_t *seed, mesh_ray *r)
 {
     const int count = 1 + random_below(seed, BATCH), how = random_below(seed, 3);
     const double reach = 1e-300 + vec3_length(vec3_sub(m->bounds.high, m->bounds.low));
@@ -128,7 +128,7 @@ static int rays_alike(const mesh *m, uint64_t *seed, mesh_ray *r)
     return count;
 }
 
-static void rays_that_are_alike_hit_what_each_hits_alone(void **state)
+static void batches_of_coherent_rays_have_the_hits_of_single_rays(void **state)
 {
     (void)state;
     uint64_t seed = 7;
@@ -142,7 +142,7 @@ static void rays_that_are_alike_hit_what_each_hits_alone(void **state)
             mesh_ray r[BATCH];
             mesh_hit expected, hits[BATCH];
             bool shadowed[BATCH];
-            const int count = rays_alike(m, &seed, r);
+            const int count = coherent_rays(m, &seed, r);
             const hierarchy_kernels *kernel = kernels[(unsigned)k % (unsigned)(isa_best() + 1)];
             kernel->nearest_batch(h, r, count, hits);
             kernel->any_batch(h, r, count, shadowed);
@@ -184,8 +184,9 @@ static void instruction_sets_give_the_same_hits(void **state)
     }
 }
 
-/* Rays from inside, to corners, to points of edges and anywhere: a ray that escapes has found a hole. */
-static void no_ray_slips_out_of(mesh *m, int rays)
+/* Rays from inside, to corners, to points of edges and anywhere: a ray that escapes has found a gap between
+ * triangles. */
+static void no_ray_escapes_from(mesh *m, int rays)
 {
     uint64_t seed = 6;
     hierarchy *h = NULL;
@@ -231,12 +232,12 @@ static mesh *bumpy_sphere(int level, double bumps, bool single)
     return m;
 }
 
-static void no_ray_slips_through_a_closed_mesh(void **state)
+static void closed_meshes_are_watertight(void **state)
 {
     (void)state;
-    no_ray_slips_out_of(bumpy_sphere(3, 0.0, false), effort(4000000));
-    no_ray_slips_out_of(bumpy_sphere(3, 0.0, true), effort(3000000));
-    no_ray_slips_out_of(bumpy_sphere(4, 0.1, false), effort(3000000));
+    no_ray_escapes_from(bumpy_sphere(3, 0.0, false), effort(4000000));
+    no_ray_escapes_from(bumpy_sphere(3, 0.0, true), effort(3000000));
+    no_ray_escapes_from(bumpy_sphere(4, 0.1, false), effort(3000000));
 }
 
 /* A triangle with known hits: in the plane z = 0, its front towards +z; from (0.25, 0.5, 2) downwards it is hit at t =
@@ -281,7 +282,7 @@ static void check_known_hit(const hierarchy *h, const hierarchy_kernels *kernel)
     assert_true(hit.t == 2.0 && hit.u == 0.25 && hit.v == 0.5);
 }
 
-static void a_known_triangle_is_hit_where_it_is(void **state)
+static void a_known_triangle_is_hit_at_the_known_distance_and_weights(void **state)
 {
     (void)state;
     with_known_triangle(check_known_hit);
@@ -299,7 +300,7 @@ static void check_limits(const hierarchy *h, const hierarchy_kernels *kernel)
 {
     mesh_ray r = known_ray;
     r.t_max = 2.0;
-    assert_true(known_is_hit(h, kernel, r)); /* both ends belong to it */
+    assert_true(known_is_hit(h, kernel, r)); /* both ends belong to the interval */
     r.t_min = 2.0;
     assert_true(known_is_hit(h, kernel, r));
     r.t_max = 3.0;
@@ -310,20 +311,20 @@ static void check_limits(const hierarchy *h, const hierarchy_kernels *kernel)
     r.t_max = nextafter(2.0, 1.0);
     assert_false(known_is_hit(h, kernel, r));
     r = known_ray;
-    r.direction.z = 1.0; /* away */
+    r.direction.z = 1.0; /* in the opposite direction */
     assert_false(known_is_hit(h, kernel, r));
     r = known_ray;
-    r.origin.z = 0.0; /* from its plane */
+    r.origin.z = 0.0; /* starting in the triangle's plane */
     assert_true(known_is_hit(h, kernel, r));
 }
 
-static void both_limits_belong_to_the_interval(void **state)
+static void the_ray_interval_includes_both_limits(void **state)
 {
     (void)state;
     with_known_triangle(check_limits);
 }
 
-static void check_wishes(const hierarchy *h, const hierarchy_kernels *kernel)
+static void check_skip_and_side(const hierarchy *h, const hierarchy_kernels *kernel)
 {
     mesh_ray r = known_ray;
     r.skip = 0;
@@ -341,10 +342,10 @@ static void check_wishes(const hierarchy *h, const hierarchy_kernels *kernel)
     assert_false(known_is_hit(h, kernel, r));
 }
 
-static void a_triangle_can_be_skipped_and_a_side_be_chosen(void **state)
+static void a_ray_can_skip_a_triangle_and_select_a_side(void **state)
 {
     (void)state;
-    with_known_triangle(check_wishes);
+    with_known_triangle(check_skip_and_side);
 }
 
 static void check_edges(const hierarchy *h, const hierarchy_kernels *kernel)
@@ -376,7 +377,7 @@ static void edges_and_corners_belong_to_a_triangle(void **state)
     with_known_triangle(check_edges);
 }
 
-static void check_nonsense(const hierarchy *h, const hierarchy_kernels *kernel)
+static void check_invalid_rays(const hierarchy *h, const hierarchy_kernels *kernel)
 {
     const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1e300};
     for (size_t i = 0; i < COUNT(bad); i++) {
@@ -398,13 +399,13 @@ static void check_nonsense(const hierarchy *h, const hierarchy_kernels *kernel)
     assert_true(known_is_hit(h, kernel, r));
 }
 
-static void no_ray_of_nonsense_hits(void **state)
+static void invalid_rays_hit_nothing(void **state)
 {
     (void)state;
-    with_known_triangle(check_nonsense);
+    with_known_triangle(check_invalid_rays);
 }
 
-static void of_equally_near_triangles_the_lower_number_is_hit(void **state)
+static void of_equally_near_triangles_the_lowest_index_is_hit(void **state)
 {
     (void)state;
     enum { COPIES = 100 };
@@ -431,7 +432,7 @@ static void of_equally_near_triangles_the_lower_number_is_hit(void **state)
     mesh_release(m);
 }
 
-static void a_mesh_of_no_triangles_is_never_hit(void **state)
+static void a_mesh_without_triangles_is_never_hit(void **state)
 {
     (void)state;
     mesh *m = mesh_of_corners(known_corners, 0);
@@ -445,7 +446,7 @@ static void a_mesh_of_no_triangles_is_never_hit(void **state)
     mesh_release(m);
 }
 
-static void a_mesh_keeps_its_hierarchies(void **state)
+static void a_mesh_caches_its_hierarchies(void **state)
 {
     (void)state;
     mesh *m = mesh_of_corners(known_corners, 1);
@@ -465,18 +466,18 @@ static void a_mesh_keeps_its_hierarchies(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_known_triangle_is_hit_where_it_is),
-        cmocka_unit_test(both_limits_belong_to_the_interval),
-        cmocka_unit_test(a_triangle_can_be_skipped_and_a_side_be_chosen),
+        cmocka_unit_test(a_known_triangle_is_hit_at_the_known_distance_and_weights),
+        cmocka_unit_test(the_ray_interval_includes_both_limits),
+        cmocka_unit_test(a_ray_can_skip_a_triangle_and_select_a_side),
         cmocka_unit_test(edges_and_corners_belong_to_a_triangle),
-        cmocka_unit_test(no_ray_of_nonsense_hits),
-        cmocka_unit_test(of_equally_near_triangles_the_lower_number_is_hit),
-        cmocka_unit_test(a_mesh_of_no_triangles_is_never_hit),
-        cmocka_unit_test(a_mesh_keeps_its_hierarchies),
-        cmocka_unit_test(rays_that_are_alike_hit_what_each_hits_alone),
+        cmocka_unit_test(invalid_rays_hit_nothing),
+        cmocka_unit_test(of_equally_near_triangles_the_lowest_index_is_hit),
+        cmocka_unit_test(a_mesh_without_triangles_is_never_hit),
+        cmocka_unit_test(a_mesh_caches_its_hierarchies),
+        cmocka_unit_test(batches_of_coherent_rays_have_the_hits_of_single_rays),
         cmocka_unit_test(instruction_sets_give_the_same_hits),
         cmocka_unit_test(every_hierarchy_gives_the_same_hits),
-        cmocka_unit_test(no_ray_slips_through_a_closed_mesh),
+        cmocka_unit_test(closed_meshes_are_watertight),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

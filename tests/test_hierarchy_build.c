@@ -156,7 +156,7 @@ static fixture soup(size_t count, double reach, double size, bool single, uint64
     return f;
 }
 
-static void every_triangle_is_in_one_leaf_and_boxes_enclose_what_they_hold(void **state)
+static void every_triangle_is_in_one_leaf_and_boxes_enclose_their_content(void **state)
 {
     (void)state;
     static const size_t counts[] = {1, 2, 3, 4, 5, 8, 9, 33, 257, 1000, 20000};
@@ -195,13 +195,13 @@ static void the_tree_is_the_same_for_any_number_of_threads(void **state)
             assert_int_equal(other.h.block_count, one.h.block_count);
             assert_memory_equal(other.h.nodes, one.h.nodes, one.h.node_count * sizeof(bvh_node));
             assert_memory_equal(other.h.blocks, one.h.blocks, one.h.block_count * block);
-            fixture_fell(&other);
+            fixture_free_hierarchy(&other);
         }
         fixture_free(&one);
     }
 }
 
-static void triangles_in_one_place_are_halved(void **state)
+static void coincident_triangles_are_split_at_the_median(void **state)
 {
     (void)state;
     fixture f = fixture_make(100000, true);
@@ -214,7 +214,7 @@ static void triangles_in_one_place_are_halved(void **state)
     fixture_free(&f);
 }
 
-static void many_copies_among_others_stay_shallow(void **state)
+static void many_coincident_triangles_keep_the_tree_shallow(void **state)
 {
     (void)state;
     uint64_t seed = 5;
@@ -230,7 +230,7 @@ static void many_copies_among_others_stay_shallow(void **state)
 }
 
 /* Triangles at 2^-k, each scale smaller than a bin of the previous one: a split separates a few at a time. */
-static void scales_without_end_keep_the_depth_within_bounds(void **state)
+static void ever_smaller_triangles_keep_the_depth_bounded(void **state)
 {
     (void)state;
     fixture f = fixture_make(60000, false);
@@ -243,7 +243,7 @@ static void scales_without_end_keep_the_depth_within_bounds(void **state)
     fixture_free(&f);
 }
 
-static void huge_and_tiny_meshes_are_enclosed_too(void **state)
+static void huge_and_tiny_meshes_are_enclosed(void **state)
 {
     (void)state;
     static const double reaches[] = {5e8, 1e-3, 1e-12, 1e-30, 1e-42, 1e-300};
@@ -255,7 +255,7 @@ static void huge_and_tiny_meshes_are_enclosed_too(void **state)
     }
 }
 
-static void flat_and_straight_meshes_are_divided(void **state)
+static void flat_and_straight_meshes_are_split(void **state)
 {
     (void)state;
     for (int flat = 1; flat <= 2; flat++) {
@@ -273,7 +273,7 @@ static void flat_and_straight_meshes_are_divided(void **state)
     }
 }
 
-static void triangles_that_no_ray_hits_are_left_out_and_slivers_stay(void **state)
+static void triangles_without_area_are_omitted_and_slivers_are_kept(void **state)
 {
     (void)state;
     fixture f = soup(50000, 1.0, 0.1, false, 17);
@@ -298,7 +298,7 @@ static void triangles_that_no_ray_hits_are_left_out_and_slivers_stay(void **stat
 /* A plane of 64 x 64 squares of two triangles each. The squares can be distributed among leaves without overlap: a line
  * that hits the plane then visits one leaf and one node per level; nodes of eight over leaves of two squares need four
  * levels. */
-static void a_plane_is_shared_out_without_overlap(void **state)
+static void leaves_of_a_plane_do_not_overlap(void **state)
 {
     (void)state;
     fixture f = fixture_make(2 * 64 * 64, true);
@@ -322,7 +322,7 @@ static void a_plane_is_shared_out_without_overlap(void **state)
 /* A thousand small triangles far apart: leaves hold neighbours, so that few leaves are visited. A random line through
  * the cube hits boxes in proportion to their area; 4 triangles in a cell of 1/250 of the cube have at least
  * (1/250)^(2/3) of its area, in all 6.3 leaves. */
-static void neighbours_share_leaves(void **state)
+static void leaves_hold_neighbouring_triangles(void **state)
 {
     (void)state;
     fixture f = soup(1000, 1.0, 0.001, false, 41);
@@ -346,7 +346,7 @@ static void count_call(void *context, size_t index, int member)
         atomic_fetch_add(&t->bad_members, 1);
 }
 
-static void a_team_does_each_task_once(void **state)
+static void a_thread_team_runs_each_task_once(void **state)
 {
     (void)state;
     for (int threads = 1; threads <= 5; threads += 2) {
@@ -367,18 +367,18 @@ static void a_team_does_each_task_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_triangle_is_in_one_leaf_and_boxes_enclose_what_they_hold),
+        cmocka_unit_test(every_triangle_is_in_one_leaf_and_boxes_enclose_their_content),
         cmocka_unit_test(a_mesh_without_triangles_has_a_root_without_children),
         cmocka_unit_test(the_tree_is_the_same_for_any_number_of_threads),
-        cmocka_unit_test(triangles_in_one_place_are_halved),
-        cmocka_unit_test(many_copies_among_others_stay_shallow),
-        cmocka_unit_test(scales_without_end_keep_the_depth_within_bounds),
-        cmocka_unit_test(huge_and_tiny_meshes_are_enclosed_too),
-        cmocka_unit_test(flat_and_straight_meshes_are_divided),
-        cmocka_unit_test(triangles_that_no_ray_hits_are_left_out_and_slivers_stay),
-        cmocka_unit_test(a_plane_is_shared_out_without_overlap),
-        cmocka_unit_test(neighbours_share_leaves),
-        cmocka_unit_test(a_team_does_each_task_once),
+        cmocka_unit_test(coincident_triangles_are_split_at_the_median),
+        cmocka_unit_test(many_coincident_triangles_keep_the_tree_shallow),
+        cmocka_unit_test(ever_smaller_triangles_keep_the_depth_bounded),
+        cmocka_unit_test(huge_and_tiny_meshes_are_enclosed),
+        cmocka_unit_test(flat_and_straight_meshes_are_split),
+        cmocka_unit_test(triangles_without_area_are_omitted_and_slivers_are_kept),
+        cmocka_unit_test(leaves_of_a_plane_do_not_overlap),
+        cmocka_unit_test(leaves_hold_neighbouring_triangles),
+        cmocka_unit_test(a_thread_team_runs_each_task_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Tests of the Embree backend. */
+/* Tests of the Embree backend: hits on a sphere, or the refusal of a build without Embree. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,7 +24,7 @@ static double distance_to_sphere(const mesh_ray *r)
 }
 
 /* Rays from outside at a unit sphere of 50000 triangles, which are within 1e-3 of it. */
-static void embree_meets_the_sphere_where_it_is(void **state)
+static void embree_hits_the_sphere_at_the_closed_form_distance(void **state)
 {
     (void)state;
     mesh *m = NULL;
@@ -71,7 +71,7 @@ static void embree_meets_the_sphere_where_it_is(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(embree_meets_the_sphere_where_it_is),
+        cmocka_unit_test(embree_hits_the_sphere_at_the_closed_form_distance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,7 +19,7 @@ static void cluster(vec3 *corners, double x)
     }
 }
 
-static void cost_is_that_of_the_areas(void **state)
+static void cost_is_the_ratio_of_surface_areas(void **state)
 {
     (void)state;
     vec3 corners[24];
@@ -29,7 +29,7 @@ static void cost_is_that_of_the_areas(void **state)
     hierarchy *h = built(m, HIERARCHY_BVH), *h2 = built(two, HIERARCHY_BVH), *none = built(m, HIERARCHY_NONE),
               *nothing = built(empty, HIERARCHY_BVH);
     assert_true(hierarchy_cost(h) == 2.0); /* the root, and one block in an equal box */
-    /* Boxes 1 x 1 x 1, half of their surface 3, two of them in one of 100 x 1 x 1, half of its surface 201. */
+    /* Boxes of 1 x 1 x 1 with half surface area 3, two of them in one of 100 x 1 x 1 with half surface area 201. */
     assert_true(fabs(hierarchy_cost(h2) - (1.0 + 2.0 * 3.0 / 201.0)) < 1e-15);
     assert_true(hierarchy_cost(none) == 0.0 && hierarchy_cost(nothing) == 0.0);
     assert_true(hierarchy_refit(nothing));
@@ -39,7 +39,7 @@ static void cost_is_that_of_the_areas(void **state)
     assert_true(fabs(hierarchy_cost(h2) - (1.0 + 2.0 * 3.0 / 21.0)) < 1e-15);
     for (int i = 0; i < 24; i++)
         corners[i] = vec3_make(1.0, 2.0, 3.0);
-    move(two, corners); /* into one point, which no ray hits */
+    move(two, corners); /* collapsed into one point, which no ray hits */
     assert_true(hierarchy_refit(h2));
     assert_true(hierarchy_cost(h2) == 0.0);
     hierarchy *const all[] = {h, h2, none, nothing};
@@ -64,7 +64,7 @@ static void shuffle(mesh *m, uint64_t *seed)
     free(to);
 }
 
-static void cost_grows_when_the_body_is_shuffled(void **state)
+static void cost_grows_when_the_vertices_are_shuffled(void **state)
 {
     (void)state;
     uint64_t seed = 4;
@@ -108,7 +108,7 @@ static void same_by_all_kinds(const mesh *m, uint64_t *seed)
     }
 }
 
-static void a_mesh_keeps_what_followed_it(void **state)
+static void moved_meshes_refit_or_rebuild_their_hierarchies_by_cost(void **state)
 {
     (void)state;
     uint64_t seed = 5;
@@ -118,7 +118,7 @@ static void a_mesh_keeps_what_followed_it(void **state)
     assert_true(moves.refitted == 0 && moves.rebuilt == 0 && moves.growth == 0.0);
     const hierarchy *bvh = kept(m, HIERARCHY_BVH);
     const double cost = hierarchy_cost(bvh);
-    moves = follow(m, 1.0); /* did not move: same cost */
+    moves = follow(m, 1.0); /* the mesh did not move: same cost */
     assert_true(moves.refitted == 1 && moves.rebuilt == 0 && moves.growth == 1.0);
     assert_ptr_equal(kept(m, HIERARCHY_BVH), bvh);
 
@@ -149,7 +149,7 @@ static void a_mesh_keeps_what_followed_it(void **state)
     mesh_release(m);
 }
 
-static void what_cannot_be_refitted_is_built_anew(void **state)
+static void hierarchies_that_cannot_be_refitted_are_rebuilt(void **state)
 {
     (void)state;
     uint64_t seed = 6;
@@ -171,10 +171,10 @@ static void what_cannot_be_refitted_is_built_anew(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cost_is_that_of_the_areas),
-        cmocka_unit_test(cost_grows_when_the_body_is_shuffled),
-        cmocka_unit_test(a_mesh_keeps_what_followed_it),
-        cmocka_unit_test(what_cannot_be_refitted_is_built_anew),
+        cmocka_unit_test(cost_is_the_ratio_of_surface_areas),
+        cmocka_unit_test(cost_grows_when_the_vertices_are_shuffled),
+        cmocka_unit_test(moved_meshes_refit_or_rebuild_their_hierarchies_by_cost),
+        cmocka_unit_test(hierarchies_that_cannot_be_refitted_are_rebuilt),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

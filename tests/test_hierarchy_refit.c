@@ -14,7 +14,7 @@ static void (*const refit_nodes[ISA_COUNT])(hierarchy *) = {hierarchy_refit_node
                                                             hierarchy_refit_nodes_avx512};
 static deformation *const deformations[] = {squash, twist, scatter, collapse, far_away, tiny, on_floats};
 
-static void a_refitted_hierarchy_gives_the_hits_of_a_new_one(void **state)
+static void a_refitted_hierarchy_has_the_hits_of_a_rebuilt_one(void **state)
 {
     (void)state;
     uint64_t seed = 1;
@@ -80,7 +80,7 @@ static void there_and_back(mesh *m, deformation *way, uint64_t *seed)
     mesh_release(m);
 }
 
-static void boxes_are_rounded_as_at_the_build(void **state)
+static void refitted_boxes_are_rounded_as_in_the_build(void **state)
 {
     (void)state;
     uint64_t seed = 2;
@@ -95,7 +95,7 @@ static void boxes_are_rounded_as_at_the_build(void **state)
     there_and_back(m, far_away, &seed);
 }
 
-static void what_cannot_be_refitted_is_refused(void **state)
+static void refits_that_need_a_rebuild_are_refused(void **state)
 {
     (void)state;
     uint64_t seed = 3;
@@ -107,14 +107,14 @@ static void what_cannot_be_refitted_is_refused(void **state)
         hierarchy_destroy(h);
     }
     deform(m, rest, collapse, &seed);
-    hierarchy *h = built(m, HIERARCHY_BVH); /* leaves some out, which get an area again */
+    hierarchy *h = built(m, HIERARCHY_BVH); /* the build omits some triangles, which get an area again */
     move(m, rest);
     assert_false(hierarchy_refit(h));
     hierarchy_destroy(h);
     deform(m, rest, on_floats, &seed);
     h = built(m, HIERARCHY_BVH);
     assert_true(hierarchy_refit(h));
-    move(m, rest); /* not floats */
+    move(m, rest); /* the coordinates are not floats */
     assert_false(hierarchy_refit(h));
     deform(m, rest, on_floats, &seed);
     assert_true(hierarchy_refit(h));
@@ -126,9 +126,9 @@ static void what_cannot_be_refitted_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_refitted_hierarchy_gives_the_hits_of_a_new_one),
-        cmocka_unit_test(boxes_are_rounded_as_at_the_build),
-        cmocka_unit_test(what_cannot_be_refitted_is_refused),
+        cmocka_unit_test(a_refitted_hierarchy_has_the_hits_of_a_rebuilt_one),
+        cmocka_unit_test(refitted_boxes_are_rounded_as_in_the_build),
+        cmocka_unit_test(refits_that_need_a_rebuild_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

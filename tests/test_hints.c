@@ -1,4 +1,5 @@
-/* Hints: each shows where something was forgotten, and not where all is there. Run from the repository root. */
+/* Tests of the linter's hints: each is given where a scene lacks something, and not where the scene is complete. Run
+ * from the repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +13,7 @@
 
 #define LIT "lights: {lamp: {}}\n"
 
-/* All the lines, each with its newline. */
+/* Appends each line with its newline. */
 static void append_line(void *context, const scene_note *note)
 {
     char *all = context, text[NOTE_LINE_MAX];
@@ -31,7 +32,7 @@ static void expect_hints(const char *file, const char *hints)
     scene_destroy(s);
 }
 
-static void what_is_forgotten_is_hinted_at(void **state)
+static void missing_objects_and_lights_give_a_hint(void **state)
 {
     (void)state;
     static const char none[] = "solids: no visible solids: the image shows only the background; add solids:\n";
@@ -64,7 +65,7 @@ static void what_is_forgotten_is_hinted_at(void **state)
                  "egg.ior: egg has a refractive index but is opaque; set its transparency\n");
 }
 
-static void a_law_beyond_its_measurements_is_hinted_at(void **state)
+static void extrapolated_dispersion_laws_give_a_hint(void **state)
 {
     (void)state;
     expect_hints("solids: {drop: {shape: sphere, transparency: 1, medium: ethanol}}", "");
@@ -84,7 +85,7 @@ static void a_law_beyond_its_measurements_is_hinted_at(void **state)
                  "invisible; set its ior\n");
 }
 
-static void what_has_no_effect_is_hinted_at(void **state)
+static void ineffective_parameters_give_a_hint(void **state)
 {
     (void)state;
     expect_hints("render: {lambda_nm: 700}\nsolids: {drop: {shape: sphere, transparency: 1, medium: table, "
@@ -109,7 +110,7 @@ static void what_has_no_effect_is_hinted_at(void **state)
     expect_hints("render: {integrator: path}\nlights: {lamp: {}}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
 }
 
-static void what_a_depth_buffer_cannot_show_is_hinted_at(void **state)
+static void features_that_the_z_buffer_does_not_render_give_a_hint(void **state)
 {
     (void)state;
     expect_hints(
@@ -125,7 +126,7 @@ static void what_a_depth_buffer_cannot_show_is_hinted_at(void **state)
     expect_hints(LIT "render: {integrator: zbuffer}\nsolids: {ball: {shape: sphere, diffuse: 1}}", "");
 }
 
-static void what_is_hidden_is_hinted_at(void **state)
+static void hidden_solids_give_a_hint(void **state)
 {
     (void)state;
     static const char shell[] = "lights: {lamp: {}}\nsolids: {shell: {shape: sphere, transparency: 1, ior: 1.5}, ";
@@ -159,7 +160,7 @@ static void what_is_hidden_is_hinted_at(void **state)
     }
 }
 
-static void what_is_meant_is_not(void **state)
+static void intended_settings_give_no_hint(void **state)
 {
     (void)state;
     expect_hints(LIT "solids: {a: {shape: sphere, ambient: 1}, b: {shape: sphere, reflectivity: 1, radius: 2}, "
@@ -173,7 +174,7 @@ static void what_is_meant_is_not(void **state)
     expect_hints("render: {weights: constant}\nsolids: {veil: {shape: sphere, transparency: 0.5}}", "");
 }
 
-static void the_projects_scenes_lack_nothing(void **state)
+static void the_shipped_scenes_give_no_hint(void **state)
 {
     (void)state;
     static const char *const names[] = {"rod", "rod-leaning", "rod-from-inside", "solids", "rainbow", "plates"};
@@ -191,13 +192,13 @@ static void the_projects_scenes_lack_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_forgotten_is_hinted_at),
-        cmocka_unit_test(a_law_beyond_its_measurements_is_hinted_at),
-        cmocka_unit_test(what_has_no_effect_is_hinted_at),
-        cmocka_unit_test(what_a_depth_buffer_cannot_show_is_hinted_at),
-        cmocka_unit_test(what_is_hidden_is_hinted_at),
-        cmocka_unit_test(what_is_meant_is_not),
-        cmocka_unit_test(the_projects_scenes_lack_nothing),
+        cmocka_unit_test(missing_objects_and_lights_give_a_hint),
+        cmocka_unit_test(extrapolated_dispersion_laws_give_a_hint),
+        cmocka_unit_test(ineffective_parameters_give_a_hint),
+        cmocka_unit_test(features_that_the_z_buffer_does_not_render_give_a_hint),
+        cmocka_unit_test(hidden_solids_give_a_hint),
+        cmocka_unit_test(intended_settings_give_no_hint),
+        cmocka_unit_test(the_shipped_scenes_give_no_hint),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Tests of the HTTP server: access checks, the error of each, limits of bodies and rates, slow clients. The clients
- * are plain sockets. */
+/* Tests of the HTTP server: access checks and their errors, limits of bodies and rates, slow clients. The clients are
+ * plain sockets. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -133,7 +133,7 @@ static void only_the_token_grants_access(void **state)
     free(target);
 }
 
-static void the_first_address_gives_a_cookie(void **state)
+static void a_token_in_the_address_sets_a_cookie(void **state)
 {
     const http_server *s = *state;
     char *target = text_format("/hello?word=a%%20b&token=%s&x", http_token(s)),
@@ -189,7 +189,7 @@ static void foreign_hosts_and_origins_are_refused(void **state)
               text_format("Host: 127.0.0.1:%d\r\nOrigin: http://127.0.0.1:%d\r\n%s", port, port, token));
 }
 
-static void paths_do_not_lead_upwards(void **state)
+static void paths_that_leave_the_root_are_refused(void **state)
 {
     static const char *const bad[] = {"/../etc/passwd",
                                       "/%2e%2e/etc/passwd",
@@ -227,12 +227,12 @@ static void paths_do_not_lead_upwards(void **state)
         "GET /hello%cx HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\nAuthorization: Bearer %s\r\n\r\n", 0,
         http_port(*state), http_token(*state));
     char *reply = client_raw(http_port(*state), nul, (size_t)size);
-    /* libmicrohttpd ends the request line there, and so do our checks. */
+    /* libmicrohttpd ends the request line there, and so do the server's checks. */
     assert_true(reply_code(reply) == 400 || strstr(reply_body(reply), "\"path\":\"/hello\""));
     free(reply);
 }
 
-static void routes_get_their_values(void **state)
+static void routes_receive_decoded_values(void **state)
 {
     char *reply = client_ask(*state, "GET", "/of/a%20b/all/..c?x=1", "", NULL);
     assert_string_equal(reply_body(reply), "{\"name\":\"a b\",\"member\":\"..c\"}");
@@ -245,7 +245,7 @@ static void routes_get_their_values(void **state)
     expect(*state, 500, "GET", "/nothing", "", NULL);
 }
 
-static void wrong_methods_get_the_allowed_ones(void **state)
+static void a_wrong_method_is_refused_with_the_allowed_ones(void **state)
 {
     char *reply = client_ask(*state, "PATCH", "/number", "Content-Type: application/json\r\n", "1");
     assert_int_equal(reply_code(reply), 405);
@@ -322,7 +322,7 @@ static void the_page_is_embedded(void **state)
     free(style);
 }
 
-static void changes_are_json(void **state)
+static void changes_require_json(void **state)
 {
     expect(*state, 415, "PUT", "/number", "", "1");
     expect(*state, 415, "PUT", "/number", "Content-Type: text/plain\r\n", "1");
@@ -338,7 +338,7 @@ static void changes_are_json(void **state)
     free(reply);
 }
 
-/* In chunks of 1000 bytes and one of the rest. */
+/* Sends chunks of 1000 bytes and a last one with the rest. */
 static char *ask_in_chunks(const http_server *s, size_t size)
 {
     const size_t room = size + 16 * (size / 1000 + 2);
@@ -360,7 +360,7 @@ static char *ask_in_chunks(const http_server *s, size_t size)
     return reply;
 }
 
-static void bodies_are_bounded(void **state)
+static void bodies_are_limited_in_size(void **state)
 {
     char body[2 * BODY_MAX + 1];
     memset(body, 'x', sizeof body);
@@ -388,7 +388,7 @@ static void bodies_are_bounded(void **state)
     expect(*state, 200, "POST", "/echo", "Content-Type: application/json\r\n", "");
 }
 
-static void a_thousand_requests_in_a_row(void **state)
+static void a_connection_serves_a_thousand_requests(void **state)
 {
     const http_server *s = *state;
     char *request = text_format("GET /hello HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
@@ -411,7 +411,7 @@ static void a_thousand_requests_in_a_row(void **state)
         expect(s, 200, "GET", "/hello", "", NULL);
 }
 
-static void floods_are_limited(void **state)
+static void the_request_rate_is_limited(void **state)
 {
     (void)state;
     http_server *s = start((http_settings){.requests_per_s = 1});
@@ -435,7 +435,7 @@ static void floods_are_limited(void **state)
     http_stop(s);
 }
 
-static void slow_clients_are_cut_off(void **state)
+static void slow_clients_are_disconnected(void **state)
 {
     (void)state;
     http_server *s = start((http_settings){.timeout_s = 1});
@@ -461,7 +461,7 @@ static void slow_clients_are_cut_off(void **state)
     http_stop(s);
 }
 
-static void a_port_is_used_once(void **state)
+static void a_port_in_use_is_refused(void **state)
 {
     const http_server *s = *state;
     http_server *second;
@@ -479,7 +479,7 @@ static void a_port_is_used_once(void **state)
     const int port = http_port(other);
     expect(other, 200, "GET", "/hello", "", NULL);
     http_stop(other);
-    other = start((http_settings){.port = port}); /* immediately again */
+    other = start((http_settings){.port = port}); /* the port is free again immediately */
     assert_int_equal(http_port(other), port);
     http_stop(other);
 }
@@ -488,19 +488,19 @@ int main(void)
 {
     const struct CMUnitTest cases[] = {
         cmocka_unit_test(only_the_token_grants_access),
-        cmocka_unit_test(the_first_address_gives_a_cookie),
+        cmocka_unit_test(a_token_in_the_address_sets_a_cookie),
         cmocka_unit_test(foreign_hosts_and_origins_are_refused),
-        cmocka_unit_test(paths_do_not_lead_upwards),
-        cmocka_unit_test(routes_get_their_values),
-        cmocka_unit_test(wrong_methods_get_the_allowed_ones),
+        cmocka_unit_test(paths_that_leave_the_root_are_refused),
+        cmocka_unit_test(routes_receive_decoded_values),
+        cmocka_unit_test(a_wrong_method_is_refused_with_the_allowed_ones),
         cmocka_unit_test(every_reply_has_security_headers),
         cmocka_unit_test(the_page_is_embedded),
-        cmocka_unit_test(changes_are_json),
-        cmocka_unit_test(bodies_are_bounded),
-        cmocka_unit_test(a_thousand_requests_in_a_row),
-        cmocka_unit_test(floods_are_limited),
-        cmocka_unit_test(slow_clients_are_cut_off),
-        cmocka_unit_test(a_port_is_used_once),
+        cmocka_unit_test(changes_require_json),
+        cmocka_unit_test(bodies_are_limited_in_size),
+        cmocka_unit_test(a_connection_serves_a_thousand_requests),
+        cmocka_unit_test(the_request_rate_is_limited),
+        cmocka_unit_test(slow_clients_are_disconnected),
+        cmocka_unit_test(a_port_in_use_is_refused),
     };
     return cmocka_run_group_tests_name("http", cases, set_up, tear_down);
 }

@@ -1,5 +1,5 @@
-/* Tests of event streams: their number, delivery, slow or leaving clients, a server that stops meanwhile; and of
- * requests with random bytes. */
+/* Tests of event streams: the limit on their number, delivery, slow clients, clients that disconnect, and a server that
+ * stops while streams are open; and of requests with random bytes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -39,7 +39,7 @@ static int listen_to(const http_server *s, int *code)
     return fd;
 }
 
-/* Reads exactly to the end of that text; false if the stream ends before. */
+/* Reads up to the end of that text; false if the stream ends before. */
 static bool read_until(int fd, const char *end)
 {
     enum { BLOCK = 65536, KEEP = 256 };
@@ -157,7 +157,7 @@ static void slow_listeners_get_the_last_state(void **state)
     close(fast);
 }
 
-static void many_names_do_not_fill_memory(void **state)
+static void many_event_names_do_not_fill_memory(void **state)
 {
     (void)state;
     http_server *s = start((http_settings){0});
@@ -174,7 +174,7 @@ static void many_names_do_not_fill_memory(void **state)
     http_stop(s);
 }
 
-static void a_stop_leaves_nothing_behind(void **state)
+static void a_stopped_server_leaks_no_descriptor_or_thread(void **state)
 {
     (void)state;
     http_stop(start((http_settings){0})); /* libraries open some files only once */
@@ -248,7 +248,7 @@ static size_t mutate(uint64_t *seed, char *to, const char *good, size_t size)
 
 /* CUVETTE_HTTP_FUZZ: the number of requests. Half of the connections close at once, the others shut down writing and
  * read the reply. */
-static void random_requests_do_no_harm(void **state)
+static void the_server_survives_random_requests(void **state)
 {
     (void)state;
     const char *expected = getenv("CUVETTE_HTTP_FUZZ");
@@ -298,9 +298,11 @@ static void random_requests_do_no_harm(void **state)
 int main(void)
 {
     const struct CMUnitTest cases[] = {
-        cmocka_unit_test(all_listeners_get_events),      cmocka_unit_test(slow_listeners_get_the_last_state),
-        cmocka_unit_test(many_names_do_not_fill_memory), cmocka_unit_test(a_stop_leaves_nothing_behind),
-        cmocka_unit_test(random_requests_do_no_harm),
+        cmocka_unit_test(all_listeners_get_events),
+        cmocka_unit_test(slow_listeners_get_the_last_state),
+        cmocka_unit_test(many_event_names_do_not_fill_memory),
+        cmocka_unit_test(a_stopped_server_leaks_no_descriptor_or_thread),
+        cmocka_unit_test(the_server_survives_random_requests),
     };
     return cmocka_run_group_tests_name("http_events", cases, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Pictures: the sRGB curve, and PNG, JPEG and PFM in and out, whole and damaged. */
+/* Tests of images: the sRGB curve, and reading and writing of PNG, JPEG and PFM, complete and damaged. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -31,7 +31,7 @@ static int make_folder(void **state)
     return mkdtemp(folder) ? 0 : -1;
 }
 
-/* How many files the folder held. */
+/* Empties the folder; returns the number of files that were in it. */
 static int empty_folder(void)
 {
     DIR *entries = opendir(folder);
@@ -99,7 +99,7 @@ static bool same_float(float a, float b)
     return memcmp(&a, &b, sizeof a) == 0;
 }
 
-/* A smooth picture with some grain. */
+/* A smooth image with some grain. */
 static image *make_image(int width, int height)
 {
     image *img;
@@ -122,7 +122,8 @@ static void srgb_has_its_published_values(void **state)
     assert_close(srgb_encode(0.18), 0.461356129500442, 1e-12);
     assert_close(srgb_decode(0.5), 0.214041140482232, 1e-12);
     assert_close(srgb_encode(0.0031308), 12.92 * 0.0031308, 1e-15);
-    assert_close(srgb_encode(nextafter(0.0031308, 1)), 12.92 * 0.0031308, 5e-8); /* the standard's own step */
+    assert_close(srgb_encode(nextafter(0.0031308, 1)), 12.92 * 0.0031308,
+                 5e-8); /* the step of the standard's own definition */
     assert_close(srgb_decode(0.04045), 0.04045 / 12.92, 1e-15);
     assert_close(srgb_decode(1.0), 1.0, 1e-14);
     assert_true(srgb_decode(0.0) == 0.0 && srgb_encode(0.0) == 0.0 && srgb_encode(1.0) == 1.0);
@@ -172,7 +173,7 @@ static void the_byte_table_rounds_like_the_curve(void **state)
     assert_int_equal(codec_byte(&table, -INFINITY), 0);
 }
 
-static void formats_are_told_by_their_endings(void **state)
+static void the_format_follows_the_file_name_extension(void **state)
 {
     (void)state;
     assert_int_equal(image_format_of("a/b.png"), IMAGE_PNG);
@@ -187,7 +188,7 @@ static void formats_are_told_by_their_endings(void **state)
         assert_int_equal(image_format_of(unknown[i]), IMAGE_UNKNOWN);
 }
 
-static void pictures_have_limits(void **state)
+static void image_sizes_are_limited(void **state)
 {
     (void)state;
     image *img;
@@ -205,7 +206,7 @@ static void pictures_have_limits(void **state)
 
 /* ---- round trips ---- */
 
-/* Every one of the encoded values, three times over, comes back as itself. */
+/* Every encoded value, three times, is read back unchanged. */
 static void check_png_depth(int bits, int width, int height)
 {
     unsigned maximum = (1u << bits) - 1;
@@ -271,7 +272,7 @@ static void check_same_bytes(const char *name, int bits)
     image_destroy(img);
 }
 
-static void the_same_picture_gives_the_same_bytes(void **state)
+static void the_same_image_gives_the_same_bytes(void **state)
 {
     (void)state;
     check_same_bytes("a.png", 8);
@@ -298,13 +299,13 @@ static void png_has_an_srgb_chunk_and_no_time(void **state)
     image_destroy(img);
 }
 
-static void jpeg_is_close(void **state)
+static void jpeg_is_close_to_the_original(void **state)
 {
     (void)state;
     image *img = make_image(50, 33), *back;
     char *path = in_folder("a.jpeg");
     int bits = 0;
-    for (int i = 0; i < 50 * 33 * 3; i++) /* without the grain */
+    for (int i = 0; i < 50 * 33 * 3; i++) /* compared without the grain */
         img->pixel[i] = (float)(0.5 + 0.4 * sin(0.1 * (i / 3 % 50) + i % 3));
     assert_int_equal(image_write(img, path, 8, NULL), STATUS_OK);
     assert_int_equal(image_read(path, &back, &bits, NULL), STATUS_OK);
@@ -343,7 +344,7 @@ static void pfm_keeps_every_bit(void **state)
     free(path);
 }
 
-/* ---- PFM by hand ---- */
+/* ---- PFM written by hand ---- */
 
 static status read_bytes(const void *bytes, size_t size, image **out, diagnostic *why)
 {
@@ -419,7 +420,7 @@ static void bad_pfm_is_refused(void **state)
         bad("Pf\n1 1\n-1\n\0\0\x80\x7f"),
         bad("PX\n1 1\n-1\n\0\0\0\0"),
         bad("Pf\n1 1111111111111111111111111111111111111111\n-1\n\0\0\0\0"),
-        bad("not a picture"),
+        bad("unknown image format"),
     };
 #undef bad
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -603,7 +604,7 @@ static void huge_png_is_refused(void **state)
     }
 }
 
-/* A file of kilobytes that asks for gigabytes. */
+/* A file of kilobytes whose header declares gigabytes. */
 static void write_bomb(const char *path, png_uint_32 side, int bits, int color, int interlaced)
 {
     FILE *file = fopen(path, "wb");
@@ -625,7 +626,7 @@ static void write_bomb(const char *path, png_uint_32 side, int bits, int color, 
     fclose(file);
 }
 
-static void bombs_are_refused(void **state)
+static void decompression_bombs_are_refused(void **state)
 {
     (void)state;
     static const struct {
@@ -646,10 +647,10 @@ static void bombs_are_refused(void **state)
         assert_int_equal(image_read(path, &img, NULL, &why), STATUS_BAD_INPUT);
         getrusage(RUSAGE_SELF, &after);
         assert_null(img);
-        assert_non_null(strstr(why.what, "claims"));
+        assert_non_null(strstr(why.what, "the image has"));
         assert_true(after.ru_maxrss - before.ru_maxrss < 64 << 10);
     }
-    /* Sixteen million pixels of one colour are still a picture. */
+    /* Sixteen million pixels of one colour are still a valid image. */
     write_bomb(path, 4000, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE);
     image *img;
     assert_int_equal(image_read(path, &img, NULL, NULL), STATUS_OK);
@@ -716,9 +717,9 @@ static void jpeg_of_other_kinds_is_read(void **state)
     }
 }
 
-/* A good file whose frame header then claims another size (SOF, ITU-T T.81, B.2.2): height and width follow the
+/* A valid file whose frame header then declares another size (SOF, ITU-T T.81, B.2.2): height and width follow the
  * precision. */
-static void jpeg_that_claims_another_size_is_refused(void **state)
+static void jpeg_with_a_false_size_is_refused(void **state)
 {
     (void)state;
     static const unsigned char sizes[][4] = {
@@ -790,7 +791,7 @@ static void make_victims(victim victims[VICTIMS])
     image_destroy(img);
 }
 
-/* Never half a picture: either a refusal that names the file, or a picture of the whole size. */
+/* Never a partial image: either a refusal that names the file, or an image of the full size. */
 static status check_damaged(const void *bytes, size_t size)
 {
     image *img;
@@ -826,7 +827,7 @@ static void truncated_files_are_refused(void **state)
     assert_true(cut > 1000);
 }
 
-static void corrupted_files_do_no_harm(void **state)
+static void corrupted_files_are_refused_or_read_whole(void **state)
 {
     (void)state;
     victim victims[VICTIMS];
@@ -845,7 +846,7 @@ static void corrupted_files_do_no_harm(void **state)
     }
 }
 
-static void many_corruptions_do_no_harm(void **state)
+static void files_with_many_corruptions_are_refused_or_read_whole(void **state)
 {
     (void)state;
     victim victims[VICTIMS];
@@ -865,7 +866,7 @@ static void many_corruptions_do_no_harm(void **state)
     }
 }
 
-/* ---- writing goes wrong ---- */
+/* ---- failing writes ---- */
 
 static void wrong_requests_are_refused(void **state)
 {
@@ -899,7 +900,7 @@ static void wrong_requests_are_refused(void **state)
     free(lost);
 }
 
-static void a_full_disk_keeps_the_old_picture(void **state)
+static void a_full_disk_keeps_the_old_image(void **state)
 {
     (void)state;
     static const char *const names[] = {"full.png", "full.jpg", "full.pfm"};
@@ -941,27 +942,27 @@ int main(void)
         cmocka_unit_test(srgb_has_its_published_values),
         cmocka_unit_test(srgb_agrees_with_libm),
         cmocka_unit_test(the_byte_table_rounds_like_the_curve),
-        cmocka_unit_test(formats_are_told_by_their_endings),
-        cmocka_unit_test(pictures_have_limits),
+        cmocka_unit_test(the_format_follows_the_file_name_extension),
+        cmocka_unit_test(image_sizes_are_limited),
         file_test(png_keeps_every_value),
         file_test(values_out_of_range_are_clamped),
-        file_test(the_same_picture_gives_the_same_bytes),
+        file_test(the_same_image_gives_the_same_bytes),
         file_test(png_has_an_srgb_chunk_and_no_time),
-        file_test(jpeg_is_close),
+        file_test(jpeg_is_close_to_the_original),
         file_test(pfm_keeps_every_bit),
         file_test(pfm_is_read_in_either_byte_order),
         file_test(bad_pfm_is_refused),
         file_test(png_of_every_kind_is_read),
         file_test(huge_png_is_refused),
-        file_test(bombs_are_refused),
-        file_test(jpeg_that_claims_another_size_is_refused),
+        file_test(decompression_bombs_are_refused),
+        file_test(jpeg_with_a_false_size_is_refused),
         file_test(jpeg_of_other_kinds_is_read),
         file_test(cmyk_jpeg_is_refused),
         file_test(truncated_files_are_refused),
-        file_test(corrupted_files_do_no_harm),
-        file_test(many_corruptions_do_no_harm),
+        file_test(corrupted_files_are_refused_or_read_whole),
+        file_test(files_with_many_corruptions_are_refused_or_read_whole),
         file_test(wrong_requests_are_refused),
-        file_test(a_full_disk_keeps_the_old_picture),
+        file_test(a_full_disk_keeps_the_old_image),
     };
     return cmocka_run_group_tests_name("image", tests, NULL, NULL);
 }

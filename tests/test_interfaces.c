@@ -1,4 +1,4 @@
-/* Tests of single interfaces as a ray meets them: Fresnel's equations, and the onset of total internal reflection. */
+/* Tests of single interfaces hit by a ray: Fresnel's equations, and the onset of total internal reflection. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -29,7 +29,7 @@ static const ray_tree *meet(stage *g, double angle, vec3 rotation_deg)
 /* Printed values: Hecht, Optics, 5th ed., 4.6.2 and 4.6.3 (r at normal incidence 0.2 and 4% for air and glass;
  * polarisation angle 56.3 degrees; with R_s = ((n^2 - 1) / (n^2 + 1))^2 there). The rest to four places from the sine
  * and tangent laws by hand. */
-static void reflectances_are_those_of_the_textbook(void **state)
+static void reflectances_equal_the_textbooks_values(void **state)
 {
     (void)state;
     static const struct {
@@ -83,7 +83,7 @@ static void reflectances_follow_the_sine_and_tangent_laws(void **state)
 }
 
 /* R is the same from the other side, at the angle of refraction (Stokes's relations: Hecht, 4.10). */
-static void both_sides_reflect_alike(void **state)
+static void the_reflectance_is_the_same_from_both_sides(void **state)
 {
     (void)state;
     for (size_t k = 0; k + 1 < COUNT(pairs); k += 2) {
@@ -151,14 +151,14 @@ static void total_reflection_begins_at_the_critical_angle(const cell *c, const c
     }
 }
 
-static void total_reflection_in_a_box(void **state)
+static void total_reflection_in_a_box_begins_at_the_critical_angle(void **state)
 {
     (void)state;
     total_reflection_begins_at_the_critical_angle(&cells[0], "");
     total_reflection_begins_at_the_critical_angle(&cells[0], "box.absorb_per_m=0.5,0,2");
 }
 
-static void total_reflection_in_a_sphere(void **state)
+static void total_reflection_in_a_sphere_begins_at_the_critical_angle(void **state)
 {
     (void)state;
     total_reflection_begins_at_the_critical_angle(&cells[1], "");
@@ -168,11 +168,11 @@ static void total_reflection_in_a_sphere(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reflectances_are_those_of_the_textbook),
+        cmocka_unit_test(reflectances_equal_the_textbooks_values),
         cmocka_unit_test(reflectances_follow_the_sine_and_tangent_laws),
-        cmocka_unit_test(both_sides_reflect_alike),
-        cmocka_unit_test(total_reflection_in_a_box),
-        cmocka_unit_test(total_reflection_in_a_sphere),
+        cmocka_unit_test(the_reflectance_is_the_same_from_both_sides),
+        cmocka_unit_test(total_reflection_in_a_box_begins_at_the_critical_angle),
+        cmocka_unit_test(total_reflection_in_a_sphere_begins_at_the_critical_angle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

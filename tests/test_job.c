@@ -1,5 +1,5 @@
 /* Tests of the job: stopping before, during and after a frame, refused scenes, the content of accounts, and equal films
- * from all users of a job. */
+ * for all callers of a job. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -59,7 +59,7 @@ static bool refuse(void *context, double share_done)
     return ++((caller *)context)->asked < 1;
 }
 
-static void a_cancelled_job_begins_nothing(void **state)
+static void a_cancelled_job_starts_no_work(void **state)
 {
     (void)state;
     scene *s = small_scene();
@@ -79,12 +79,12 @@ static void a_cancelled_job_begins_nothing(void **state)
     assert_int_equal(job_render(j, s, NULL, &made, &why), STATUS_OK);
     assert_true(made.whole);
     job_account_release(&made);
-    job_cancel(j); /* after it: the result does not change */
+    job_cancel(j); /* after the frame: the result does not change */
     job_destroy(j);
     scene_destroy(s);
 }
 
-/* Long enough that no machine finishes it before the first check. */
+/* Long enough that no machine finishes the frame before the first check. */
 static scene *long_scene(void)
 {
     scene *s = small_scene();
@@ -102,7 +102,7 @@ static void a_frame_ends_when_it_is_cancelled(void **state)
     const render_options options = {.progress = cancel_soon, .progress_s = 0.001, .context = &c};
     job_account made;
     assert_int_equal(job_render(j, s, &options, &made, NULL), STATUS_INTERRUPTED);
-    assert_non_null(made.result); /* a part of it */
+    assert_non_null(made.result); /* the unfinished frame */
     assert_false(made.whole);
     assert_int_equal(made.count, 0);
     assert_true(c.share < 1.0);
@@ -114,7 +114,7 @@ static void a_frame_ends_when_it_is_cancelled(void **state)
     const render_options refused = {.progress = refuse, .progress_s = 0.001, .context = &c};
     assert_int_equal(job_render(j, s, &refused, &made, NULL), STATUS_INTERRUPTED);
     job_account_release(&made);
-    assert_false(job_must_stop(j)); /* that was of one frame */
+    assert_false(job_must_stop(j)); /* the cancellation was for one frame */
     job_destroy(j);
     scene_destroy(s);
 }
@@ -171,7 +171,7 @@ static void expect_refusal(job_settings settings, scene *s, const render_options
         fail_msg("'%s' is not about '%s'", why.what, what);
     assert_null(made.result);
     job_account_release(&made);
-    scene *good = small_scene(); /* the job goes on */
+    scene *good = small_scene(); /* the job remains usable */
     assert_int_equal(job_render(j, good, NULL, &made, &why), STATUS_OK);
     job_account_release(&made);
     scene_destroy(good);
@@ -188,7 +188,7 @@ static void invalid_scenes_are_refused(void **state)
     expect_refusal((job_settings){.measured = true}, s, NULL, STATUS_BAD_INPUT, "target");
 }
 
-/* More threads than there is memory for their stacks: in a process of its own, whose address space is bounded. */
+/* Requests more threads than there is memory for their stacks: in a separate process with a limited address space. */
 static int ask_for_too_many(void)
 {
     scene *s = small_scene();
@@ -202,7 +202,7 @@ static int ask_for_too_many(void)
     if (job_render(j, s, NULL, &made, &why) != STATUS_FAILURE || made.result || !strstr(why.what, "thread"))
         return 2;
     job_account_release(&made);
-    s->render.threads = 2; /* the job goes on with fewer */
+    s->render.threads = 2; /* the job continues with fewer threads */
     if (job_render(j, s, NULL, &made, &why) != STATUS_OK)
         return 3;
     job_account_release(&made);
@@ -215,10 +215,10 @@ static void too_many_threads_are_an_error(void **state)
 {
     (void)state;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    skip(); /* whose shadow memory is larger than any bound */
+    skip(); /* the sanitizers' shadow memory exceeds any limit */
 #endif
     if (getenv("RUNNER"))
-        skip(); /* so does valgrind's */
+        skip(); /* valgrind's does too */
     int ended = 0;
     const pid_t child = fork();
     if (child == 0)
@@ -244,7 +244,7 @@ static void limits_are_enforced(void **state)
                    "not finished");
 }
 
-static void an_account_has_what_was_measured(void **state)
+static void an_account_has_the_requested_measurements(void **state)
 {
     (void)state;
     scene *s = small_scene();
@@ -254,7 +254,7 @@ static void an_account_has_what_was_measured(void **state)
         const render_options options = {.pixel_rays = true, .timeline = true};
         assert_int_equal(job_repeat(j, s, 2, &options, &made, NULL), STATUS_OK);
         assert_int_equal(made.count, 2);
-        assert_non_null(made.result->pixel_rays); /* of a third one */
+        assert_non_null(made.result->pixel_rays); /* of a third, unmeasured frame */
         assert_true(made.result->event_count > 0);
         assert_true(made.of == s && made.level == job_isa(j) && made.ended_ms > 0);
         assert_int_equal(made.spent.peak_rss_bytes > 0, measured);
@@ -292,7 +292,7 @@ static void pinned_scenes_have_the_same_film(void **state)
 }
 
 /* The engine's frame, the job's own, and one of a job that keeps meshes. */
-static void all_callers_make_the_same_film(void **state)
+static void all_callers_of_a_job_get_the_same_film(void **state)
 {
     (void)state;
     const char *path = "experiments/scenes/models.yaml";
@@ -329,16 +329,16 @@ static void all_callers_make_the_same_film(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cancelled_job_begins_nothing),
+        cmocka_unit_test(a_cancelled_job_starts_no_work),
         cmocka_unit_test(a_frame_ends_when_it_is_cancelled),
         cmocka_unit_test(a_stop_request_is_obeyed),
         cmocka_unit_test(finished_frames_are_kept),
         cmocka_unit_test(invalid_scenes_are_refused),
         cmocka_unit_test(too_many_threads_are_an_error),
         cmocka_unit_test(limits_are_enforced),
-        cmocka_unit_test(an_account_has_what_was_measured),
+        cmocka_unit_test(an_account_has_the_requested_measurements),
         cmocka_unit_test(pinned_scenes_have_the_same_film),
-        cmocka_unit_test(all_callers_make_the_same_film),
+        cmocka_unit_test(all_callers_of_a_job_get_the_same_film),
     };
     return cmocka_run_group_tests_name("job", tests, NULL, NULL);
 }

@@ -49,7 +49,7 @@ static void assert_param(const char *path, const char *key, double expected)
     json_decref(json);
 }
 
-static void parameters_are_set_as_by_the_option(void **state)
+static void parameters_are_set_as_by_the_option_set(void **state)
 {
     (void)state;
     room_post(&room, "/api/set",
@@ -74,7 +74,8 @@ static void parameters_are_set_as_by_the_option(void **state)
     assert_param("render.depth", "value", 3);
 }
 
-/* Sets values and returns the number of notes in the reply; checks place and words of the first if they are given. */
+/* Sets values and returns the number of notes in the reply; checks place and words of the first note if they are
+ * given. */
 static size_t notes_on(const char *body, const char *place, const char *words)
 {
     json_t *answer = room_ask(&room, "POST", "/api/set", body, 200);
@@ -268,7 +269,7 @@ static void the_command_renders_the_same_film(void **state)
 }
 
 /* The paths of its textures are relative to its own folder. */
-static void a_command_of_a_file_in_another_folder(void **state)
+static void the_command_works_for_a_file_in_another_folder(void **state)
 {
     (void)state;
     char *inner = room_path(&room, "inner");
@@ -296,7 +297,7 @@ static void a_command_of_a_file_in_another_folder(void **state)
     free(inner);
 }
 
-static void the_scene_is_a_file_too(void **state)
+static void the_scene_is_returned_as_a_scene_file(void **state)
 {
     (void)state;
     room_post(&room, "/api/set", "{\"set\": {\"ball.ior\": 1.8}}");
@@ -338,7 +339,7 @@ static void the_linters_notes_are_listed(void **state)
     json_decref(json);
 }
 
-static void images_have_their_generation(void **state)
+static void images_are_labelled_with_their_generation(void **state)
 {
     (void)state;
     const json_int_t generation = room_post(&room, "/api/set", "{\"set\": {\"ball.radius\": 0.8}}");
@@ -357,7 +358,7 @@ static void images_have_their_generation(void **state)
     free(line);
 }
 
-static void other_clients_are_refused(void **state)
+static void clients_without_token_or_with_foreign_origin_are_refused(void **state)
 {
     (void)state;
     static const char *const targets[] = {"/",           "/api/state", "/api/scene",   "/api/picture.png",
@@ -393,7 +394,7 @@ static void other_clients_are_refused(void **state)
     free(host);
 }
 
-static void no_scene_opens_an_empty_room(void **state)
+static void without_a_scene_the_lab_opens_a_new_one(void **state)
 {
     (void)state;
     lab_room empty;
@@ -408,7 +409,7 @@ static void no_scene_opens_an_empty_room(void **state)
     room_close(&empty);
 }
 
-static void bad_starts_are_refused(void **state)
+static void invalid_arguments_of_lab_start_are_refused(void **state)
 {
     (void)state;
     lab *l;
@@ -443,18 +444,18 @@ int main(void)
 {
 #define IN_A_ROOM(test) cmocka_unit_test_setup_teardown(test, open_room, close_room)
     const struct CMUnitTest cases[] = {
-        IN_A_ROOM(parameters_are_set_as_by_the_option),
+        IN_A_ROOM(parameters_are_set_as_by_the_option_set),
         IN_A_ROOM(ineffective_values_are_noted),
         IN_A_ROOM(wrong_values_are_refused_with_a_remedy),
         IN_A_ROOM(the_camera_orbits_turns_and_steps),
         IN_A_ROOM(the_command_renders_the_same_film),
-        IN_A_ROOM(the_scene_is_a_file_too),
+        IN_A_ROOM(the_scene_is_returned_as_a_scene_file),
         IN_A_ROOM(the_linters_notes_are_listed),
-        IN_A_ROOM(images_have_their_generation),
-        IN_A_ROOM(other_clients_are_refused),
-        IN_A_ROOM(no_scene_opens_an_empty_room),
-        IN_A_ROOM(bad_starts_are_refused),
-        IN_A_ROOM(a_command_of_a_file_in_another_folder),
+        IN_A_ROOM(images_are_labelled_with_their_generation),
+        IN_A_ROOM(clients_without_token_or_with_foreign_origin_are_refused),
+        IN_A_ROOM(without_a_scene_the_lab_opens_a_new_one),
+        IN_A_ROOM(invalid_arguments_of_lab_start_are_refused),
+        IN_A_ROOM(the_command_works_for_a_file_in_another_folder),
         IN_A_ROOM(the_longest_list_is_refused_quickly),
     };
     return cmocka_run_group_tests_name("lab", cases, NULL, NULL);

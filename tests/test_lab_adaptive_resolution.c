@@ -19,7 +19,7 @@ static int settle(adaptive_resolution *p, double full_s, int frames)
     return adaptive_resolution_divisor(p);
 }
 
-static void it_settles_at_the_available_time(void **state)
+static void the_resolution_settles_at_the_finest_step_that_the_time_allows(void **state)
 {
     (void)state;
     static const double full_s[] = {0.001, 0.02, 0.05, 0.1, 0.3, 1.0, 3.0};
@@ -34,7 +34,7 @@ static void it_settles_at_the_available_time(void **state)
         }
 }
 
-static void it_has_limits(void **state)
+static void the_resolution_has_limits(void **state)
 {
     (void)state;
     adaptive_resolution p = {.step = 3};
@@ -44,7 +44,7 @@ static void it_has_limits(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(it_settles_at_the_available_time),
-                                       cmocka_unit_test(it_has_limits)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_resolution_settles_at_the_finest_step_that_the_time_allows),
+                                       cmocka_unit_test(the_resolution_has_limits)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

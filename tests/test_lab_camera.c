@@ -25,7 +25,7 @@ static scene *looking_along_z(double roll_deg)
     return s;
 }
 
-static void moves_follow_the_image(void **state)
+static void camera_moves_follow_the_rolled_image(void **state)
 {
     (void)state;
     for (size_t k = 0; k < COUNT(rolls); k++) {
@@ -44,7 +44,7 @@ static void moves_follow_the_image(void **state)
     }
 }
 
-static void a_step_goes_along_the_image(void **state)
+static void a_step_moves_along_the_axes_of_the_rolled_image(void **state)
 {
     (void)state;
     for (size_t k = 0; k < COUNT(rolls); k++) {
@@ -52,8 +52,8 @@ static void a_step_goes_along_the_image(void **state)
         const vec3 before = s->camera.position, right = camera_frame_of(s).right;
         camera_move aside = {.step = {0.5, 0.0, 0.0}};
         assert_int_equal(camera_move_apply(&aside, s, NULL), STATUS_OK);
-        const vec3 way = vec3_sub(s->camera.position, before);
-        assert_true(vec3_length(vec3_sub(way, vec3_scale(right, 0.5))) < 1e-12);
+        const vec3 moved = vec3_sub(s->camera.position, before);
+        assert_true(vec3_length(vec3_sub(moved, vec3_scale(right, 0.5))) < 1e-12);
         scene_destroy(s);
     }
 }
@@ -72,8 +72,8 @@ static void an_image_point_maps_to_its_ray(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moves_follow_the_image),
-        cmocka_unit_test(a_step_goes_along_the_image),
+        cmocka_unit_test(camera_moves_follow_the_rolled_image),
+        cmocka_unit_test(a_step_moves_along_the_axes_of_the_rolled_image),
         cmocka_unit_test(an_image_point_maps_to_its_ray),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -210,7 +210,7 @@ static void an_unfinished_image_is_not_compared(void **state)
     json_decref(json);
 }
 
-static void the_reference_image_stays(void **state)
+static void the_reference_image_is_kept_across_changes(void **state)
 {
     pin(*state);
     change(*state, "\"render.width\": 32");
@@ -307,7 +307,7 @@ static void images_of_two_sizes_have_no_comparison(void **state)
     json_decref(json);
 }
 
-static void a_cleared_reference_is_gone(void **state)
+static void a_cleared_reference_image_is_removed(void **state)
 {
     pin(*state);
     json_t *json = room_get(*state, "/api/state");
@@ -339,7 +339,7 @@ static void *ask(void *context)
     return NULL;
 }
 
-static void many_at_once_get_the_same(void **state)
+static void concurrent_comparisons_return_the_same_result(void **state)
 {
     asker askers[10];
     pin(*state);
@@ -375,7 +375,7 @@ static void *ask_often(void *context)
 }
 
 /* Reference images are replaced while other threads compare. */
-static void references_may_change_during_comparisons(void **state)
+static void reference_images_may_change_during_comparisons(void **state)
 {
     asker askers[6];
     for (size_t i = 0; i < 6; i++) {
@@ -403,14 +403,14 @@ int main(void)
         cmocka_unit_test_setup_teardown(equal_images_have_no_difference, open_ball, close_room),
         cmocka_unit_test_setup_teardown(numbers_and_map_are_those_of_the_images, open_ball, close_room),
         cmocka_unit_test_setup_teardown(an_unfinished_image_is_not_compared, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(the_reference_image_stays, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(the_reference_image_is_kept_across_changes, open_ball, close_room),
         cmocka_unit_test_setup_teardown(changed_parameters_are_listed, open_ball, close_room),
         cmocka_unit_test_setup_teardown(a_material_is_listed_once, open_ball, close_room),
         cmocka_unit_test_setup_teardown(added_and_removed_objects_have_one_side, open_ball, close_room),
         cmocka_unit_test_setup_teardown(images_of_two_sizes_have_no_comparison, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(a_cleared_reference_is_gone, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(many_at_once_get_the_same, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(references_may_change_during_comparisons, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(a_cleared_reference_image_is_removed, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(concurrent_comparisons_return_the_same_result, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(reference_images_may_change_during_comparisons, open_ball, close_room),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -184,7 +184,7 @@ static void open_obj(const room *r, const char *library)
     free(text);
 }
 
-static void test_libraries_of_materials(void **state)
+static void material_libraries_outside_the_folder_are_refused(void **state)
 {
     const room *r = *state;
     char *sub = text_format("%s/sub", r->inside);
@@ -208,7 +208,7 @@ static void test_libraries_of_materials(void **state)
 }
 
 /* In the working directory, assimp uses the name of a library unchanged. */
-static void test_absolute_libraries_of_models_in_the_working_folder(void **state)
+static void absolute_material_libraries_outside_the_folder_are_refused(void **state)
 {
     const room *r = *state;
     char here[4096];
@@ -229,7 +229,7 @@ static void test_absolute_libraries_of_models_in_the_working_folder(void **state
     assert_int_equal(chdir(here), 0);
 }
 
-static void test_images_of_materials(void **state)
+static void images_of_materials_outside_the_folder_are_refused(void **state)
 {
     const room *r = *state;
     put_link(r, "out.png", "../p.png");
@@ -254,7 +254,7 @@ static void test_images_of_materials(void **state)
     free(absolute);
 }
 
-static void test_files_of_gltf(void **state)
+static void buffers_and_images_of_gltf_outside_the_folder_are_refused(void **state)
 {
     const room *r = *state;
     put(r, "lab/m.gltf", GLTF("../b.bin", "p.png"));
@@ -273,7 +273,7 @@ static void test_files_of_gltf(void **state)
 }
 
 /* A model is loaded before it is added to the document. */
-static void test_models_that_are_added(void **state)
+static void added_models_are_confined_to_the_folder(void **state)
 {
     const room *r = *state;
     put(r, "lab/m.obj", "mtllib ../a.mtl\n" TRIANGLE);
@@ -296,7 +296,7 @@ static void is_refused_for_the_file_itself(const room *r)
     free(message);
 }
 
-static void test_files_that_become_links(void **state)
+static void files_replaced_by_links_after_the_check_are_refused(void **state)
 {
     const room *r = *state;
     static const struct {
@@ -327,7 +327,7 @@ static void test_files_that_become_links(void **state)
 }
 
 /* Scenes without a file are confined too. */
-static void test_a_new_scene(void **state)
+static void new_scenes_are_confined_to_the_folder(void **state)
 {
     const room *r = *state;
     char *change =
@@ -359,7 +359,7 @@ static status let_all_load(void *context, const scene *setting, diagnostic *why)
 }
 
 /* As if each file were replaced by a link just after the check. */
-static void test_scenes_and_studies_that_become_links(void **state)
+static void scenes_and_studies_replaced_by_links_are_refused(void **state)
 {
     const room *r = *state;
     put(r, "s.yaml", SCENE(""));
@@ -408,7 +408,7 @@ static bool opens(const room *r, const char *name, const char *root)
     return fd >= 0;
 }
 
-static void test_below(void **state)
+static void only_paths_below_the_root_are_opened(void **state)
 {
     const room *r = *state;
     char *beginning = text_format("%s/la", r->above);
@@ -427,7 +427,7 @@ static void test_below(void **state)
 /* --- triangles --- */
 
 /* The second of two meshes that exceed the limit together is dropped. */
-static void test_triangles_together(void **state)
+static void meshes_are_dropped_when_their_sum_exceeds_the_triangle_limit(void **state)
 {
     const room *r = *state;
     static const char two[] =
@@ -456,7 +456,7 @@ static void test_triangles_together(void **state)
 }
 
 /* The importer stops at a single file that exceeds the limit. */
-static void test_triangles_of_one_file(void **state)
+static void a_file_above_the_triangle_limit_is_refused(void **state)
 {
     const room *r = *state;
     put(r, "lab/two.obj", TRIANGLE "f 1 3 2\n");
@@ -474,7 +474,7 @@ static void test_triangles_of_one_file(void **state)
 }
 
 /* The document's check counts a file as a few triangles; the real number is known after loading. */
-static void test_triangles_of_the_laboratory(void **state)
+static void the_lab_enforces_the_triangle_limit_after_loading(void **state)
 {
     const room *r = *state;
     char *path = text_format("%s/many.obj", r->inside);
@@ -496,18 +496,18 @@ static void test_triangles_of_the_laboratory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_libraries_of_materials, enter, leave),
-        cmocka_unit_test_setup_teardown(test_absolute_libraries_of_models_in_the_working_folder, enter, leave),
-        cmocka_unit_test_setup_teardown(test_images_of_materials, enter, leave),
-        cmocka_unit_test_setup_teardown(test_files_of_gltf, enter, leave),
-        cmocka_unit_test_setup_teardown(test_models_that_are_added, enter, leave),
-        cmocka_unit_test_setup_teardown(test_files_that_become_links, enter, leave),
-        cmocka_unit_test_setup_teardown(test_a_new_scene, enter, leave),
-        cmocka_unit_test_setup_teardown(test_scenes_and_studies_that_become_links, enter, leave),
-        cmocka_unit_test_setup_teardown(test_below, enter, leave),
-        cmocka_unit_test_setup_teardown(test_triangles_together, enter, leave),
-        cmocka_unit_test_setup_teardown(test_triangles_of_one_file, enter, leave),
-        cmocka_unit_test_setup_teardown(test_triangles_of_the_laboratory, enter, leave),
+        cmocka_unit_test_setup_teardown(material_libraries_outside_the_folder_are_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(absolute_material_libraries_outside_the_folder_are_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(images_of_materials_outside_the_folder_are_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(buffers_and_images_of_gltf_outside_the_folder_are_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(added_models_are_confined_to_the_folder, enter, leave),
+        cmocka_unit_test_setup_teardown(files_replaced_by_links_after_the_check_are_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(new_scenes_are_confined_to_the_folder, enter, leave),
+        cmocka_unit_test_setup_teardown(scenes_and_studies_replaced_by_links_are_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(only_paths_below_the_root_are_opened, enter, leave),
+        cmocka_unit_test_setup_teardown(meshes_are_dropped_when_their_sum_exceeds_the_triangle_limit, enter, leave),
+        cmocka_unit_test_setup_teardown(a_file_above_the_triangle_limit_is_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(the_lab_enforces_the_triangle_limit_after_loading, enter, leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -74,7 +74,7 @@ static void assert_state(scene_document *d, const char *key, const char *text)
     json_decref(state);
 }
 
-static void each_change_is_a_generation_and_can_be_undone(void **state)
+static void each_change_increments_the_generation_and_can_be_undone(void **state)
 {
     (void)state;
     scene_document *d = open_document(BALL_SCENE);
@@ -103,7 +103,7 @@ static void each_change_is_a_generation_and_can_be_undone(void **state)
     scene_document_destroy(d);
 }
 
-static void a_refused_change_changes_nothing(void **state)
+static void a_refused_change_has_no_effect(void **state)
 {
     (void)state;
     static const char *const bad[] = {"ball.ior=-1", "ball.nothing=1", "camera.position=0,1,0", "render.width=0",
@@ -150,7 +150,7 @@ static void work_and_memory_are_bounded(void **state)
     scene_document_destroy(d);
 }
 
-static void a_gesture_is_one_step(void **state)
+static void a_gesture_is_one_undo_step(void **state)
 {
     (void)state;
     scene_document *d = open_document(BALL_SCENE);
@@ -172,7 +172,7 @@ static void a_gesture_is_one_step(void **state)
     scene_document_destroy(d);
 }
 
-static void undo_has_a_limit(void **state)
+static void the_undo_history_has_a_limit(void **state)
 {
     (void)state;
     scene_document *d = open_document(BALL_SCENE);
@@ -230,7 +230,7 @@ static bool is_saved(scene_document *d)
     return saved;
 }
 
-static void it_tracks_what_is_saved(void **state)
+static void the_document_tracks_whether_it_is_saved(void **state)
 {
     (void)state;
     scene_document *d = open_document(BALL_SCENE);
@@ -289,7 +289,7 @@ static void *change_often(void *of)
     return NULL;
 }
 
-static void threads_lose_no_change(void **state)
+static void concurrent_changes_are_all_applied(void **state)
 {
     (void)state;
     scene_document *d = open_document(BALL_SCENE);
@@ -305,15 +305,15 @@ static void threads_lose_no_change(void **state)
 int main(void)
 {
     const struct CMUnitTest cases[] = {
-        cmocka_unit_test(each_change_is_a_generation_and_can_be_undone),
-        cmocka_unit_test(a_refused_change_changes_nothing),
+        cmocka_unit_test(each_change_increments_the_generation_and_can_be_undone),
+        cmocka_unit_test(a_refused_change_has_no_effect),
         cmocka_unit_test(work_and_memory_are_bounded),
-        cmocka_unit_test(a_gesture_is_one_step),
-        cmocka_unit_test(undo_has_a_limit),
+        cmocka_unit_test(a_gesture_is_one_undo_step),
+        cmocka_unit_test(the_undo_history_has_a_limit),
         cmocka_unit_test(resets_restore_the_opened_scene),
-        cmocka_unit_test(it_tracks_what_is_saved),
+        cmocka_unit_test(the_document_tracks_whether_it_is_saved),
         cmocka_unit_test(loaded_data_is_shared),
-        cmocka_unit_test(threads_lose_no_change),
+        cmocka_unit_test(concurrent_changes_are_all_applied),
     };
     return cmocka_run_group_tests_name("lab_desk", cases, NULL, NULL);
 }

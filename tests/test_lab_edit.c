@@ -186,7 +186,7 @@ static double value(const room *r, const char *path, size_t index)
     return number;
 }
 
-static void test_files(void **state)
+static void files_of_the_folder_are_listed(void **state)
 {
     const room *r = *state;
     json_t *files = ask(r, 200, "GET", "/api/files", NULL);
@@ -204,7 +204,7 @@ static void test_files(void **state)
     json_decref(media);
 }
 
-static void test_open_refuses(void **state)
+static void opening_refuses_invalid_requests_and_files(void **state)
 {
     const room *r = *state;
     const json_int_t before = generation(r);
@@ -233,7 +233,7 @@ static void test_open_refuses(void **state)
     assert_int_equal(generation(r), before);
 }
 
-static void test_open_and_undo(void **state)
+static void opening_a_scene_can_be_undone(void **state)
 {
     const room *r = *state;
     char first[64], hash[64], text[256];
@@ -254,7 +254,7 @@ static void test_open_and_undo(void **state)
     assert_string_equal(hash, first);
 }
 
-static void test_save(void **state)
+static void a_saved_scene_reopens_with_the_same_film_and_invalid_names_are_refused(void **state)
 {
     const room *r = *state;
     static const char *const bad[] = {"{\"file\": \"../new.yaml\"}",
@@ -299,7 +299,7 @@ static void test_save(void **state)
     }
 }
 
-static void test_links_are_not_written_through(void **state)
+static void saving_does_not_follow_links_out_of_the_folder(void **state)
 {
     const room *r = *state;
     char *link_path = text_format("%s/link.yaml", r->inside), *gone = text_format("%s/gone.yaml", r->inside);
@@ -313,7 +313,7 @@ static void test_links_are_not_written_through(void **state)
     free(gone);
 }
 
-static void test_paths_of_parameters(void **state)
+static void path_parameters_are_confined_to_the_folder(void **state)
 {
     const room *r = *state;
     tell(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
@@ -330,7 +330,7 @@ static void test_paths_of_parameters(void **state)
     film(r, hash);
 }
 
-static void test_each_solid_is_added_and_visible(void **state)
+static void each_added_solid_is_visible(void **state)
 {
     const room *r = *state;
     static const char *const shapes[] = {"torus", "cone", "prism", "plane", "cylinder", "cup", "box", "sphere", "mesh"};
@@ -355,7 +355,7 @@ static void test_each_solid_is_added_and_visible(void **state)
     json_t *second = ask(r, 200, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"box\"}");
     assert_string_equal(json_string_value(json_object_get(second, "name")), "box2");
     json_decref(second);
-    /* On the ground, a sixth of the viewing distance in size, and not inside each other. */
+    /* On the ground, a sixth of the viewing distance in size, and disjoint. */
     assert_float_equal(value(r, "box.size", 0), 1.0, 1e-9);
     assert_float_equal(value(r, "box.position", 1), 0.5, 1e-9);
     assert_float_equal(value(r, "cup.position", 1), 0.0, 1e-9);
@@ -363,7 +363,7 @@ static void test_each_solid_is_added_and_visible(void **state)
                       value(r, "box.position", 2) - value(r, "box2.position", 2)) > 1.0);
 }
 
-static void test_other_objects_are_added(void **state)
+static void lights_materials_models_and_slimes_are_added(void **state)
 {
     const room *r = *state;
     char hash[64], next[64];
@@ -407,7 +407,7 @@ static void test_other_objects_are_added(void **state)
     assert_int_equal(generation(r), before);
 }
 
-static void test_change(void **state)
+static void objects_are_moved_turned_scaled_renamed_and_copied(void **state)
 {
     const room *r = *state;
     char word[64], text[256];
@@ -466,7 +466,7 @@ static double apart(const room *r, const char *a, const char *b, size_t axis)
     return fabs(value(r, of_a, axis) - value(r, of_b, axis));
 }
 
-/* Whether all corners of its box are inside the image of rod_scene. */
+/* Are all corners of its bounding box inside the image of rod_scene? */
 static bool is_seen(const room *r, const char *rod)
 {
     char path[32];
@@ -483,7 +483,7 @@ static bool is_seen(const room *r, const char *rod)
     return true;
 }
 
-static void test_copies_of_a_rod(void **state)
+static void copies_of_a_rod_are_visible_and_disjoint(void **state)
 {
     const room *r = *state;
     static const char *const rods[] = {"rod", "rod2", "rod3", "rod4"};
@@ -499,7 +499,7 @@ static void test_copies_of_a_rod(void **state)
     assert_true(apart(r, "rod", "rod2", 0) < 0.3); /* the copy is in the liquid too */
 }
 
-static void test_copies_of_meshes(void **state)
+static void meshes_and_textures_are_copied_and_removed(void **state)
 {
     const room *r = *state;
     char hash[64], next[64];
@@ -525,7 +525,7 @@ static void test_copies_of_meshes(void **state)
     assert_string_equal(hash, next);
 }
 
-static void test_whole_scene(void **state)
+static void groups_of_objects_are_moved_scaled_and_turned(void **state)
 {
     const room *r = *state;
     const double lamp = value(r, "lamp.position", 0), ball = value(r, "ball.position", 0),
@@ -549,7 +549,7 @@ static void test_whole_scene(void **state)
     assert_true(fabs(value(r, "lamp.position", 0) - (lamp)) < 1e-12);
 }
 
-static void test_change_refuses(void **state)
+static void invalid_object_changes_are_refused(void **state)
 {
     const room *r = *state;
     const json_int_t before = generation(r);
@@ -600,7 +600,7 @@ static void test_change_refuses(void **state)
 }
 
 /* Names stay unique, and the limit of objects holds. */
-static void test_full_scene(void **state)
+static void the_number_of_objects_is_limited(void **state)
 {
     const room *r = *state;
     char name[64];
@@ -645,7 +645,7 @@ static void *visit(void *of)
     return NULL;
 }
 
-static void test_many_at_once(void **state)
+static void concurrent_edits_are_all_applied(void **state)
 {
     enum { VISITORS = 4 };
     const room *r = *state;
@@ -666,21 +666,22 @@ static void test_many_at_once(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_files, enter, leave),
-        cmocka_unit_test_setup_teardown(test_open_refuses, enter, leave),
-        cmocka_unit_test_setup_teardown(test_open_and_undo, enter, leave),
-        cmocka_unit_test_setup_teardown(test_save, enter, leave),
-        cmocka_unit_test_setup_teardown(test_links_are_not_written_through, enter, leave),
-        cmocka_unit_test_setup_teardown(test_paths_of_parameters, enter, leave),
-        cmocka_unit_test_setup_teardown(test_each_solid_is_added_and_visible, enter, leave),
-        cmocka_unit_test_setup_teardown(test_other_objects_are_added, enter, leave),
-        cmocka_unit_test_setup_teardown(test_change, enter, leave),
-        cmocka_unit_test_setup_teardown(test_whole_scene, enter, leave),
-        cmocka_unit_test_setup_teardown(test_copies_of_a_rod, enter, leave),
-        cmocka_unit_test_setup_teardown(test_copies_of_meshes, enter, leave),
-        cmocka_unit_test_setup_teardown(test_change_refuses, enter, leave),
-        cmocka_unit_test_setup_teardown(test_full_scene, enter, leave),
-        cmocka_unit_test_setup_teardown(test_many_at_once, enter, leave),
+        cmocka_unit_test_setup_teardown(files_of_the_folder_are_listed, enter, leave),
+        cmocka_unit_test_setup_teardown(opening_refuses_invalid_requests_and_files, enter, leave),
+        cmocka_unit_test_setup_teardown(opening_a_scene_can_be_undone, enter, leave),
+        cmocka_unit_test_setup_teardown(a_saved_scene_reopens_with_the_same_film_and_invalid_names_are_refused, enter,
+                                        leave),
+        cmocka_unit_test_setup_teardown(saving_does_not_follow_links_out_of_the_folder, enter, leave),
+        cmocka_unit_test_setup_teardown(path_parameters_are_confined_to_the_folder, enter, leave),
+        cmocka_unit_test_setup_teardown(each_added_solid_is_visible, enter, leave),
+        cmocka_unit_test_setup_teardown(lights_materials_models_and_slimes_are_added, enter, leave),
+        cmocka_unit_test_setup_teardown(objects_are_moved_turned_scaled_renamed_and_copied, enter, leave),
+        cmocka_unit_test_setup_teardown(groups_of_objects_are_moved_scaled_and_turned, enter, leave),
+        cmocka_unit_test_setup_teardown(copies_of_a_rod_are_visible_and_disjoint, enter, leave),
+        cmocka_unit_test_setup_teardown(meshes_and_textures_are_copied_and_removed, enter, leave),
+        cmocka_unit_test_setup_teardown(invalid_object_changes_are_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(the_number_of_objects_is_limited, enter, leave),
+        cmocka_unit_test_setup_teardown(concurrent_edits_are_all_applied, enter, leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

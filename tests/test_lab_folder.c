@@ -101,7 +101,7 @@ static bool leads(const room *r, const char *name, bool must_exist)
     return code == STATUS_OK;
 }
 
-static void test_names_inside(void **state)
+static void names_inside_the_folder_are_accepted(void **state)
 {
     const room *r = *state;
     assert_true(leads(r, "a scene.yaml", true));
@@ -118,7 +118,7 @@ static void test_names_inside(void **state)
     assert_false(leads(r, "a scene.yaml/new.yaml", false));
 }
 
-static void test_names_outside(void **state)
+static void names_outside_the_folder_are_refused(void **state)
 {
     const room *r = *state;
     char *absolute = text_format("%s/a scene.yaml", r->inside), *longest = malloc(100001);
@@ -166,7 +166,7 @@ static void name_is(const room *r, const char *below, const char *expected)
     free(path);
 }
 
-static void test_names_of_paths(void **state)
+static void paths_are_named_relative_to_the_folder(void **state)
 {
     const room *r = *state;
     name_is(r, "a scene.yaml", "a scene.yaml");
@@ -186,7 +186,7 @@ static void test_names_of_paths(void **state)
     assert_null(folder_name(r->f, ""));
 }
 
-static void test_the_working_folder(void **state)
+static void the_working_directory_can_be_the_folder(void **state)
 {
     const room *r = *state;
     char here[4096], *path = NULL;
@@ -217,7 +217,7 @@ static void test_the_working_folder(void **state)
     folder_close(f);
 }
 
-static void test_invalid_folders(void **state)
+static void invalid_folders_are_refused(void **state)
 {
     const room *r = *state;
     char *file = text_format("%s/a scene.yaml", r->inside);
@@ -250,7 +250,7 @@ static status check_naming(const room *r, const char *row, const char *path)
     return code;
 }
 
-static void test_files_of_scenes(void **state)
+static void files_that_a_scene_refers_to_must_be_inside(void **state)
 {
     const room *r = *state;
     static const char *const rows[] = {"background.picture", "body.file", "body.script", "cloth.file"};
@@ -274,7 +274,7 @@ static bool lists(const json_t *all, const char *use, const char *name)
     return false;
 }
 
-static void test_list(void **state)
+static void visible_files_inside_are_listed_by_use(void **state)
 {
     const room *r = *state;
     put(r->inside, ".hidden.yaml", "solids: {}\n");
@@ -307,7 +307,7 @@ static void test_list(void **state)
 }
 
 /* Files of upper folders are listed first. */
-static void test_list_is_bounded(void **state)
+static void the_list_of_files_is_limited(void **state)
 {
     const room *r = *state;
     make_folder(r->inside, "aa");
@@ -329,14 +329,14 @@ static void test_list_is_bounded(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_names_inside, enter, leave),
-        cmocka_unit_test_setup_teardown(test_names_outside, enter, leave),
-        cmocka_unit_test_setup_teardown(test_names_of_paths, enter, leave),
-        cmocka_unit_test_setup_teardown(test_the_working_folder, enter, leave),
-        cmocka_unit_test_setup_teardown(test_invalid_folders, enter, leave),
-        cmocka_unit_test_setup_teardown(test_files_of_scenes, enter, leave),
-        cmocka_unit_test_setup_teardown(test_list, enter, leave),
-        cmocka_unit_test_setup_teardown(test_list_is_bounded, enter, leave),
+        cmocka_unit_test_setup_teardown(names_inside_the_folder_are_accepted, enter, leave),
+        cmocka_unit_test_setup_teardown(names_outside_the_folder_are_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(paths_are_named_relative_to_the_folder, enter, leave),
+        cmocka_unit_test_setup_teardown(the_working_directory_can_be_the_folder, enter, leave),
+        cmocka_unit_test_setup_teardown(invalid_folders_are_refused, enter, leave),
+        cmocka_unit_test_setup_teardown(files_that_a_scene_refers_to_must_be_inside, enter, leave),
+        cmocka_unit_test_setup_teardown(visible_files_inside_are_listed_by_use, enter, leave),
+        cmocka_unit_test_setup_teardown(the_list_of_files_is_limited, enter, leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,7 +18,7 @@
 #include "web/live/live.h"
 #include "scene/model/scene.h"
 
-/* It starts on the floor and comes to rest soon. */
+/* The slime starts on the floor and soon comes to rest. */
 static const char toys[] =
     "render: {width: 32, height: 24}\n"
     "camera: {position: [0, 0, -6], target: [0, 0, 0]}\n"
@@ -97,8 +97,8 @@ static bool is_troubled(live *l)
     return yes;
 }
 
-/* Advances and checks the order of states; what is waited for must happen within a simulated minute. */
-static void go_on(live *l)
+/* Advances and checks the order of states; the awaited state must come within a simulated minute. */
+static void advance_playing(live *l)
 {
     advance(l);
     assert_false(is_troubled(l));
@@ -109,7 +109,7 @@ static void go_on(live *l)
 static void come_to_rest(live *l)
 {
     do {
-        go_on(l);
+        advance_playing(l);
     } while (live_is_moving(l));
     assert_true(flag(l, "resting"));
 }
@@ -146,14 +146,14 @@ static puller grab(live *l, double x, double y)
     return h;
 }
 
-static vec3 skin_low(const scene *s)
+static vec3 surface_low(const scene *s)
 {
     return s->meshes[TOY].data->bounds.low;
 }
 
 /* --- tests --- */
 
-static void it_is_off_until_it_is_played(void **state)
+static void a_slime_is_off_until_played(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
@@ -186,15 +186,15 @@ static void it_is_off_until_it_is_played(void **state)
     scene_destroy(s);
 }
 
-static void time_runs_and_pauses(void **state)
+static void the_simulation_plays_pauses_and_restarts(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
-    scene *s = scene_with(toys, "toy.ground=off"); /* it falls forever */
+    scene *s = scene_with(toys, "toy.ground=off"); /* without a floor it falls and never comes to rest */
     attach(l, s);
     live_send(l, LIVE_PLAY);
     while (number(l, "time_s") < 0.05)
-        go_on(l);
+        advance_playing(l);
     assert_true(s->meshes[TOY].time_s == number(l, "time_s"));
     assert_true(number(l, "speed") > 0.0);
     assert_true(fabs(number(l, "volume") / number(l, "volume_at_rest") - 1.0) < 0.01);
@@ -214,15 +214,15 @@ static void time_runs_and_pauses(void **state)
     scene_destroy(s);
 }
 
-static void a_pull_stretches_it_and_it_recovers(void **state)
+static void a_pulled_slime_stretches_and_recovers(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
     scene *s = scene_with(toys, "");
     attach(l, s);
     live_send(l, LIVE_PLAY);
-    while (number(l, "time_s") < 0.5) /* until it is on the floor */
-        go_on(l);
+    while (number(l, "time_s") < 0.5) /* until the slime is on the floor */
+        advance_playing(l);
     const bounds3 rest = s->meshes[TOY].data->bounds;
     puller missed = grab(l, 3.5, 0);
     assert_int_equal(missed.code, STATUS_OK);
@@ -237,13 +237,13 @@ static void a_pull_stretches_it_and_it_recovers(void **state)
     assert_int_equal(live_where(l, h.hand, &json, &why), STATUS_OK);
     assert_true(json.x == h.where.x && json.y == h.where.y && json.z == h.where.z);
     assert_int_equal(live_move(l, h.hand, vec3_make(-1.0, 0, 0), &why), STATUS_OK);
-    while (skin_low(s).x > rest.low.x - 0.8)
-        go_on(l);
+    while (surface_low(s).x > rest.low.x - 0.8)
+        advance_playing(l);
     assert_false(flag(l, "resting"));
     assert_int_equal(live_release(l, h.hand, &why), STATUS_OK);
     assert_int_equal(live_move(l, h.hand, vec3_make(0, 0, 0), &why), STATUS_BAD_INPUT); /* the hand is released */
-    while (skin_low(s).x < rest.low.x - 0.2)
-        go_on(l);
+    while (surface_low(s).x < rest.low.x - 0.2)
+        advance_playing(l);
     assert_true(number(l, "held") > 0.0);
     assert_int_equal(live_release(l, still.hand, &why), STATUS_OK);
     advance(l);
@@ -253,7 +253,7 @@ static void a_pull_stretches_it_and_it_recovers(void **state)
     scene_destroy(s);
 }
 
-static void a_hand_wakes_a_resting_body(void **state)
+static void a_hand_wakes_a_resting_slime(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
@@ -276,7 +276,7 @@ static void a_hand_wakes_a_resting_body(void **state)
 }
 
 /* A slow render worker advances in long steps; at the end of each the body may be at a turning point. */
-static void rest_needs_several_samples(void **state)
+static void rest_is_detected_over_several_samples(void **state)
 {
     (void)state;
     const struct timespec slow = {.tv_nsec = 200000000};
@@ -291,7 +291,7 @@ static void rest_needs_several_samples(void **state)
     int looks = 0;
     do {
         nanosleep(&slow, NULL);
-        go_on(l);
+        advance_playing(l);
         looks++;
     } while (live_is_moving(l));
     assert_true(looks >= 5);
@@ -300,7 +300,7 @@ static void rest_needs_several_samples(void **state)
     scene_destroy(s);
 }
 
-/* As the render worker does after a change of the document. */
+/* Replaces the scene as the render worker does after a change of the document. */
 static scene *replace(live *l, scene *old, const char *assignments)
 {
     scene *next = scene_with(toys, assignments);
@@ -310,7 +310,7 @@ static scene *replace(live *l, scene *old, const char *assignments)
     return next;
 }
 
-static void other_colours_leave_its_shape(void **state)
+static void unrelated_changes_keep_the_slimes_shape(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
@@ -321,8 +321,8 @@ static void other_colours_leave_its_shape(void **state)
     puller h = grab(l, 0.2, 0);
     diagnostic why = {.what = ""};
     live_move(l, h.hand, vec3_make(-1.0, 0.3, 0), &why);
-    while (skin_low(s).x > -1.5)
-        go_on(l);
+    while (surface_low(s).x > -1.5)
+        advance_playing(l);
     const size_t size = s->meshes[TOY].data->vertex_count * sizeof(vec3);
     vec3 *before = malloc(size);
     memcpy(before, s->meshes[TOY].data->vertices, size);
@@ -334,8 +334,8 @@ static void other_colours_leave_its_shape(void **state)
     advance(l);
     assert_true(number(l, "held") > 0);
     assert_int_equal(live_move(l, h.hand, vec3_make(-1.5, 0.3, 0), &why), STATUS_OK);
-    while (skin_low(s).x > -2.0)
-        go_on(l);
+    while (surface_low(s).x > -2.0)
+        advance_playing(l);
     live_send(l, LIVE_OFF);
     advance(l);
     assert_true(s->meshes[TOY].time_s == 0.2 && !s->meshes[TOY].data);
@@ -345,7 +345,7 @@ static void other_colours_leave_its_shape(void **state)
     scene_destroy(s);
 }
 
-static void a_changed_body_restarts(void **state)
+static void a_changed_slime_restarts(void **state)
 {
     (void)state;
     static const char *const others[] = {"toy.stiffness=30", "toy.level=1", "toy.gravity=0,1,0"};
@@ -355,7 +355,7 @@ static void a_changed_body_restarts(void **state)
     live_send(l, LIVE_PLAY);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
         while (number(l, "time_s") == 0.0)
-            go_on(l);
+            advance_playing(l);
         puller h = grab(l, 1.1, 0.1);
         assert_true(h.hand > 0);
         s = replace(l, s, others[i]);
@@ -367,7 +367,7 @@ static void a_changed_body_restarts(void **state)
         assert_true(number(l, "time_s") > 0.0);
     }
     s = replace(l, s, "pin.level=0 body.mesh=pin");
-    assert_true(live_is_on(l)); /* it moves, although it is not rendered */
+    assert_true(live_is_on(l)); /* the slime moves, although it is not rendered */
     live_detach(l);
     scene_destroy(s);
     s = scene_with("solids: {ball: {shape: sphere}}\n", "");
@@ -381,7 +381,7 @@ static void a_changed_body_restarts(void **state)
     scene_destroy(s);
 }
 
-static void a_diverged_body_reports_it_until_restarted(void **state)
+static void divergence_is_reported_until_restart(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
@@ -433,10 +433,10 @@ static void a_script_plays_until_hands_interfere(void **state)
     attach(l, s);
     live_send(l, LIVE_PLAY);
     while (number(l, "time_s") < 0.55) {
-        go_on(l);
+        advance_playing(l);
         assert_true(live_is_moving(l)); /* never at rest before the script's end */
     }
-    assert_true(skin_low(s).x < -1.5);
+    assert_true(surface_low(s).x < -1.5);
     live_detach(l);
     scene_destroy(s);
     free(assignment);
@@ -448,7 +448,7 @@ static void a_script_plays_until_hands_interfere(void **state)
     advance(l);
     assert_true(number(l, "held") > 0);
     while (number(l, "time_s") < 0.2)
-        go_on(l);
+        advance_playing(l);
     assert_false(is_troubled(l));
     assert_true(number(l, "held") == 0.0);
     live_detach(l);
@@ -458,7 +458,7 @@ static void a_script_plays_until_hands_interfere(void **state)
     unlink(path);
 }
 
-static void a_slime_that_cannot_start_reports_why(void **state)
+static void a_slime_that_cannot_start_reports_an_error(void **state)
 {
     (void)state;
     live *l = live_create(NULL, NULL);
@@ -475,7 +475,7 @@ static void a_slime_that_cannot_start_reports_why(void **state)
     assert_int_equal(live_attach(l, s, &why), STATUS_BAD_INPUT);
     assert_true(why.what[0] && is_troubled(l));
     s = replace(l, s, "");
-    go_on(l);
+    advance_playing(l);
     live_detach(l);
     live_destroy(l);
     scene_destroy(s);
@@ -503,7 +503,7 @@ static void waits_end_when_the_worker_ends(void **state)
 }
 
 /* Commands from many threads while the snapshot is replaced again and again. */
-static void *give_orders(void *of)
+static void *send_commands(void *of)
 {
     puller *h = of;
     diagnostic why;
@@ -532,7 +532,7 @@ static void many_threads_may_send_commands(void **state)
     pthread_t threads[THREADS];
     for (int i = 0; i < THREADS; i++) {
         h[i] = (puller){.l = l, .origin = vec3_make(0.7 + 0.2 * i, 0, -6), .direction = vec3_make(0, 0, 1)};
-        assert_int_equal(pthread_create(&threads[i], NULL, give_orders, &h[i]), 0);
+        assert_int_equal(pthread_create(&threads[i], NULL, send_commands, &h[i]), 0);
     }
     for (int turn = 0; !atomic_load(&h[0].done); turn++) {
         advance(l);
@@ -550,7 +550,8 @@ static void many_threads_may_send_commands(void **state)
     scene_destroy(s);
 }
 
-/* The document may have a slime, and a command to play it, while the worker is about to show the previous scene. */
+/* The document may already have a slime, and a command to play it, while the worker still attaches the previous
+ * scene. */
 static void a_command_for_a_future_slime_is_kept(void **state)
 {
     (void)state;
@@ -577,16 +578,16 @@ static void a_command_for_a_future_slime_is_kept(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_is_off_until_it_is_played),
-        cmocka_unit_test(time_runs_and_pauses),
-        cmocka_unit_test(a_pull_stretches_it_and_it_recovers),
-        cmocka_unit_test(a_hand_wakes_a_resting_body),
-        cmocka_unit_test(rest_needs_several_samples),
-        cmocka_unit_test(other_colours_leave_its_shape),
-        cmocka_unit_test(a_changed_body_restarts),
-        cmocka_unit_test(a_diverged_body_reports_it_until_restarted),
+        cmocka_unit_test(a_slime_is_off_until_played),
+        cmocka_unit_test(the_simulation_plays_pauses_and_restarts),
+        cmocka_unit_test(a_pulled_slime_stretches_and_recovers),
+        cmocka_unit_test(a_hand_wakes_a_resting_slime),
+        cmocka_unit_test(rest_is_detected_over_several_samples),
+        cmocka_unit_test(unrelated_changes_keep_the_slimes_shape),
+        cmocka_unit_test(a_changed_slime_restarts),
+        cmocka_unit_test(divergence_is_reported_until_restart),
         cmocka_unit_test(a_script_plays_until_hands_interfere),
-        cmocka_unit_test(a_slime_that_cannot_start_reports_why),
+        cmocka_unit_test(a_slime_that_cannot_start_reports_an_error),
         cmocka_unit_test(waits_end_when_the_worker_ends),
         cmocka_unit_test(many_threads_may_send_commands),
         cmocka_unit_test(a_command_for_a_future_slime_is_kept),

@@ -1,5 +1,5 @@
-/* Load tests of the laboratory: many pages, many changes, hanging or faulty clients, random requests: nothing
- * breaks, memory stays bounded, the last change wins. */
+/* Load tests of the laboratory: many pages, many changes, hanging or faulty clients, random requests. The server keeps
+ * working, its memory stays bounded, and the last change wins. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -66,7 +66,7 @@ static void take_event(tab *t, const char *line)
     json_decref(json);
 }
 
-static void *be_a_tab(void *of)
+static void *run_tab(void *of)
 {
     tab *t = of;
     const int fd = client_connect(http_port(room.server));
@@ -88,13 +88,13 @@ static void *be_a_tab(void *of)
     return NULL;
 }
 
-static void ten_pages_and_a_thousand_changes(void **state)
+static void ten_pages_receive_a_thousand_changes(void **state)
 {
     (void)state;
     static tab tabs[PAGES];
     memset(tabs, 0, sizeof tabs);
     for (int i = 0; i < PAGES; i++)
-        assert_int_equal(pthread_create(&tabs[i].thread, NULL, be_a_tab, &tabs[i]), 0);
+        assert_int_equal(pthread_create(&tabs[i].thread, NULL, run_tab, &tabs[i]), 0);
     while (http_event_clients((http_server *)(uintptr_t)room.server) < PAGES)
         usleep(1000);
     char change[128];
@@ -138,7 +138,7 @@ static void states_are_sent_in_order(void **state)
     (void)state;
     pthread_t others[PAGES];
     tab listener = {.seen = 0};
-    assert_int_equal(pthread_create(&listener.thread, NULL, be_a_tab, &listener), 0);
+    assert_int_equal(pthread_create(&listener.thread, NULL, run_tab, &listener), 0);
     while (http_event_clients((http_server *)(uintptr_t)room.server) < 1)
         usleep(1000);
     for (int i = 0; i < PAGES; i++)
@@ -297,7 +297,7 @@ static char *ask_randomly(uint64_t *seed, const char **method)
 }
 
 /* CUVETTE_LAB_FUZZ: the number of requests. */
-static void random_requests_do_no_harm(void **state)
+static void the_laboratory_survives_random_requests(void **state)
 {
     (void)state;
     const char *expected = getenv("CUVETTE_LAB_FUZZ");
@@ -334,10 +334,10 @@ int main(void)
 {
 #define IN_A_ROOM(test) cmocka_unit_test_setup_teardown(test, open_room, close_room)
     const struct CMUnitTest cases[] = {
-        IN_A_ROOM(ten_pages_and_a_thousand_changes),
+        IN_A_ROOM(ten_pages_receive_a_thousand_changes),
         IN_A_ROOM(states_are_sent_in_order),
         IN_A_ROOM(faulty_clients_do_not_affect_others),
-        IN_A_ROOM(random_requests_do_no_harm),
+        IN_A_ROOM(the_laboratory_survives_random_requests),
     };
     return cmocka_run_group_tests_name("lab_load", cases, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Tests of the render worker: the final image is the film of the scene, newer changes win, errors are reported,
- * waiting ends. */
+/* Tests of the render worker: the final image is the film of the scene, newer changes win, errors are reported, and all
+ * waits end with the worker. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -41,7 +41,7 @@ static void take_image(void *of, const shared_image *shown)
     pthread_mutex_unlock(&s->lock);
 }
 
-static void be_told(void *of)
+static void on_state(void *of)
 {
     studio *s = of;
     pthread_mutex_lock(&s->lock);
@@ -60,7 +60,7 @@ static void open_studio(studio *s, scene *first)
     *s = (studio){.lock = PTHREAD_MUTEX_INITIALIZER};
     diagnostic why = {0};
     worked(scene_document_create(first, "ball.yaml", NULL, changed, s, &s->d, &why), &why);
-    const render_worker_listener listener = {take_image, be_told, s};
+    const render_worker_listener listener = {take_image, on_state, s};
     worked(render_worker_create(s->d, isa_best(), &listener, &s->p, &why), &why);
 }
 
@@ -112,7 +112,7 @@ static uint64_t film_of(scene *s)
     return hash;
 }
 
-static void the_final_image_is_the_film(void **state)
+static void the_final_image_is_the_film_of_the_scene(void **state)
 {
     (void)state;
     studio s;
@@ -125,7 +125,7 @@ static void the_final_image_is_the_film(void **state)
     close_studio(&s);
 }
 
-static void coarse_passes_come_first_and_change_no_film(void **state)
+static void coarse_passes_come_first_and_leave_the_film_unchanged(void **state)
 {
     (void)state;
     studio s;
@@ -204,7 +204,7 @@ static void *wait_for_final(void *of)
     return (void *)(intptr_t)code;
 }
 
-static void an_end_ends_all_waiting(void **state)
+static void ending_the_worker_ends_all_waits(void **state)
 {
     (void)state;
     studio s;
@@ -254,7 +254,7 @@ static void passes_fit_the_available_time(void **state)
 }
 
 /* The load is long enough to check for interruptions. */
-static void slow_loads_are_shown(void **state)
+static void a_slowly_loading_scene_is_rendered(void **state)
 {
     (void)state;
     studio s;
@@ -278,7 +278,7 @@ static void slow_loads_are_shown(void **state)
     "solids:\n"                                                                                   \
     "  body: {shape: mesh, mesh: toy}\n"
 
-/* Whether the program becomes idle; retried, because other processes may delay it. */
+/* Waits until the program is idle; with retries, because other processes may delay it. */
 static bool comes_to_rest(void)
 {
     enum { LOOKS = 100 };
@@ -303,12 +303,12 @@ static void an_unrenderable_scene_leaves_the_worker_idle(void **state)
     diagnostic why = {0};
     assert_int_equal(render_worker_take_final(s.p, 60.0, &shown, &why), STATUS_BAD_INPUT);
     assert_true(comes_to_rest());
-    live_send(render_worker_live(s.p), LIVE_PAUSE); /* a command is run even then */
+    live_send(render_worker_live(s.p), LIVE_PAUSE); /* a command is executed even then */
     assert_true(comes_to_rest());
     close_studio(&s);
 }
 
-/* Each change interrupts a load of hours; none is let through to its end. */
+/* Each change interrupts a load of hours; no load runs to its end. */
 static void long_loads_do_not_delay_newer_changes(void **state)
 {
     (void)state;
@@ -343,7 +343,7 @@ static status look_at_meshes(void *of, scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-static void *look_on_and_on(void *of)
+static void *look_repeatedly(void *of)
 {
     looker *l = of;
     diagnostic why;
@@ -352,8 +352,8 @@ static void *look_on_and_on(void *of)
     return NULL;
 }
 
-/* A thread that reads without a gap delays no change and never sees an unloaded scene. */
-static void readers_see_a_loaded_scene(void **state)
+/* Threads that read without pause delay no change and never get an unloaded scene. */
+static void readers_get_only_loaded_scenes(void **state)
 {
     (void)state;
     enum { LOOKERS = 6, CHANGES = 300 };
@@ -367,7 +367,7 @@ static void readers_see_a_loaded_scene(void **state)
     final_film(&s);
     for (int i = 0; i < LOOKERS; i++) {
         look[i] = (looker){.s = &s, .ends = &ends};
-        assert_int_equal(pthread_create(&thread[i], NULL, look_on_and_on, &look[i]), 0);
+        assert_int_equal(pthread_create(&thread[i], NULL, look_repeatedly, &look[i]), 0);
     }
     for (int i = 0; i < CHANGES; i++) {
         const shared_image *shown;
@@ -389,7 +389,7 @@ static void readers_see_a_loaded_scene(void **state)
     close_studio(&s);
 }
 
-/* Also if the slime is switched off before it has moved, while something else is loaded. */
+/* Also when the slime is switched off before it has moved, while something else is loaded. */
 static void a_formerly_live_slime_is_loaded(void **state)
 {
     (void)state;
@@ -421,16 +421,16 @@ static void a_formerly_live_slime_is_loaded(void **state)
 int main(void)
 {
     const struct CMUnitTest cases[] = {
-        cmocka_unit_test(the_final_image_is_the_film),
-        cmocka_unit_test(coarse_passes_come_first_and_change_no_film),
+        cmocka_unit_test(the_final_image_is_the_film_of_the_scene),
+        cmocka_unit_test(coarse_passes_come_first_and_leave_the_film_unchanged),
         cmocka_unit_test(the_last_of_many_changes_wins),
         cmocka_unit_test(errors_are_reported_and_cleared),
         cmocka_unit_test(nothing_is_rendered_while_suspended),
-        cmocka_unit_test(an_end_ends_all_waiting),
-        cmocka_unit_test(slow_loads_are_shown),
+        cmocka_unit_test(ending_the_worker_ends_all_waits),
+        cmocka_unit_test(a_slowly_loading_scene_is_rendered),
         cmocka_unit_test(an_unrenderable_scene_leaves_the_worker_idle),
         cmocka_unit_test(long_loads_do_not_delay_newer_changes),
-        cmocka_unit_test(readers_see_a_loaded_scene),
+        cmocka_unit_test(readers_get_only_loaded_scenes),
         cmocka_unit_test(a_formerly_live_slime_is_loaded),
         cmocka_unit_test(passes_fit_the_available_time),
     };

@@ -1,4 +1,5 @@
-/* Tests of the semaphore: never more threads inside than places, all get in, and closing it ends all waits. */
+/* Tests of the semaphore: never more threads inside than it has places, every thread gets in, and closing it ends all
+ * waits. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -38,7 +39,7 @@ static void *visit(void *of)
     return NULL;
 }
 
-static void no_more_threads_than_places(void **state)
+static void no_more_threads_enter_than_there_are_places(void **state)
 {
     (void)state;
     pthread_t visitors[VISITORS];
@@ -59,7 +60,7 @@ static void a_closed_semaphore_ends_every_wait(void **state)
     pthread_t visitors[VISITORS];
     hall h = {.g = semaphore_create(1)};
     diagnostic why = {.what = ""};
-    assert_int_equal(semaphore_acquire(h.g, &why), STATUS_OK); /* and keeps its place */
+    assert_int_equal(semaphore_acquire(h.g, &why), STATUS_OK); /* held until the end */
     for (int i = 0; i < VISITORS; i++)
         assert_int_equal(pthread_create(&visitors[i], NULL, visit, &h), 0);
     semaphore_close(h.g);
@@ -74,7 +75,7 @@ static void a_closed_semaphore_ends_every_wait(void **state)
 int main(void)
 {
     const struct CMUnitTest cases[] = {
-        cmocka_unit_test(no_more_threads_than_places),
+        cmocka_unit_test(no_more_threads_enter_than_there_are_places),
         cmocka_unit_test(a_closed_semaphore_ends_every_wait),
     };
     return cmocka_run_group_tests_name("lab_gate", cases, NULL, NULL);

@@ -44,7 +44,7 @@ static bool is(const lab_room *room, const char *key)
     return value;
 }
 
-static void order(const lab_room *room, const char *text)
+static void send_command(const lab_room *room, const char *text)
 {
     json_decref(room_ask(room, "POST", "/api/slime", text, 200));
 }
@@ -72,7 +72,7 @@ static int grab(const lab_room *room, double x, double y, double where[3])
     return hand;
 }
 
-static void off_shows_the_scenes_time(void **state)
+static void switching_off_shows_the_slime_at_the_scenes_time(void **state)
 {
     (void)state;
     lab_room room;
@@ -80,12 +80,12 @@ static void off_shows_the_scenes_time(void **state)
     char *before = room_film(&room);
     assert_false(is(&room, "on"));
     refused(&room, "/api/slime/grab", "{\"x\": 32, \"y\": 24}", 409);
-    order(&room, "{\"do\": \"play\", \"preview\": \"zbuffer\"}");
+    send_command(&room, "{\"do\": \"play\", \"preview\": \"zbuffer\"}");
     wait_for_time(&room, 0.05);
-    order(&room, "{\"do\": \"pause\"}");
+    send_command(&room, "{\"do\": \"pause\"}");
     char *paused = room_film(&room);
     assert_string_not_equal(paused, before);
-    order(&room, "{\"do\": \"off\"}");
+    send_command(&room, "{\"do\": \"off\"}");
     while (is(&room, "on"))
         ;
     char *after = room_film(&room);
@@ -100,13 +100,13 @@ static void off_shows_the_scenes_time(void **state)
     room_close(&room);
 }
 
-static void a_hand_drags_it_through_the_image(void **state)
+static void a_hand_drags_the_slime_through_the_image(void **state)
 {
     (void)state;
     lab_room room;
     room_open(&room, TOY_SCENE);
     free(room_film(&room)); /* the state has a slime after the scene was loaded */
-    order(&room, "{\"do\": \"play\"}");
+    send_command(&room, "{\"do\": \"play\"}");
     wait_for_time(&room, 0.1);
     refused(&room, "/api/slime/grab", "{\"x\": 1, \"y\": 1}", 404);
     double where[3];
@@ -145,7 +145,7 @@ static void invalid_requests_are_refused(void **state)
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies; i++)
         refused(&room, "/api/slime", bodies[i], 400);
     assert_false(is(&room, "on"));
-    order(&room, "{\"do\": \"play\"}");
+    send_command(&room, "{\"do\": \"play\"}");
     static const char *const grabs[] = {"{\"x\": 1}", "{\"x\": 1e9, \"y\": 2}", "{\"x\": 32, \"y\": 24, \"reach\": -1}",
                                         "{\"x\": \"a\", \"y\": 2}"};
     for (size_t i = 0; i < sizeof grabs / sizeof *grabs; i++)
@@ -164,7 +164,7 @@ static void invalid_requests_are_refused(void **state)
     room_close(&room);
 }
 
-static void pages_get_events_while_it_moves(void **state)
+static void pages_receive_events_while_the_slime_moves(void **state)
 {
     (void)state;
     enum { ROOM = 1 << 20 };
@@ -174,7 +174,7 @@ static void pages_get_events_while_it_moves(void **state)
     char *asked = text_format("GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
                               http_port(room.server), http_token(room.server));
     client_send(fd, asked, strlen(asked));
-    order(&room, "{\"do\": \"play\"}");
+    send_command(&room, "{\"do\": \"play\"}");
     char *heard = calloc(ROOM, 1);
     size_t size = 0;
     while (!strstr(heard, "event: slime")) {
@@ -189,13 +189,13 @@ static void pages_get_events_while_it_moves(void **state)
 }
 
 /* A grab during the shutdown gets a reply or is cut off; no thread waits forever. */
-static void the_laboratory_ends_with_a_hand_in_the_slime(void **state)
+static void the_laboratory_stops_while_a_hand_holds_the_slime(void **state)
 {
     (void)state;
     lab_room room;
     room_open(&room, TOY_SCENE);
     free(room_film(&room)); /* the state has a slime after the scene was loaded */
-    order(&room, "{\"do\": \"play\"}");
+    send_command(&room, "{\"do\": \"play\"}");
     double where[3];
     assert_true(grab(&room, 32, 24, where) > 0);
     room_close(&room);
@@ -204,11 +204,11 @@ static void the_laboratory_ends_with_a_hand_in_the_slime(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(off_shows_the_scenes_time),
-        cmocka_unit_test(a_hand_drags_it_through_the_image),
+        cmocka_unit_test(switching_off_shows_the_slime_at_the_scenes_time),
+        cmocka_unit_test(a_hand_drags_the_slime_through_the_image),
         cmocka_unit_test(invalid_requests_are_refused),
-        cmocka_unit_test(pages_get_events_while_it_moves),
-        cmocka_unit_test(the_laboratory_ends_with_a_hand_in_the_slime),
+        cmocka_unit_test(pages_receive_events_while_the_slime_moves),
+        cmocka_unit_test(the_laboratory_stops_while_a_hand_holds_the_slime),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

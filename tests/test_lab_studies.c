@@ -64,7 +64,7 @@ static void studies_are_listed(void **state)
 
 /* --- run, stop, continue --- */
 
-/* A cell and repetition that occurs twice would have been measured twice. */
+/* Counts the rows of each cell; a cell and repetition that occurs twice was measured twice. */
 static void count_cells(const lab_room *room, int counted[TINY_CELLS])
 {
     char *path = room_path(room, "results/tiny/rows.csv");
@@ -99,7 +99,7 @@ static int open_events(const lab_room *room)
     return fd;
 }
 
-/* The next event `study` that satisfies the condition. */
+/* Waits for the next event `study` that satisfies the condition. */
 static json_t *wait_for_event(int fd, bool (*is_so)(const json_t *))
 {
     char line[65536];
@@ -196,7 +196,7 @@ static void a_study_is_stopped_and_continued(void **state)
     free(rows_now);
 }
 
-static void one_runs_at_a_time(void **state)
+static void one_study_runs_at_a_time(void **state)
 {
     const lab_room *room = *state;
     room_write(room, "tiny.study", ENDLESS);
@@ -206,7 +206,7 @@ static void one_runs_at_a_time(void **state)
     assert_non_null(strstr(said, "tiny"));
     free(said);
     free(room_refused(room, "POST", "/api/studies/tiny/run", "{}", 409));
-    free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 409)); /* drawing would disturb the other study */
+    free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 409)); /* drawing would disturb the running study */
     free(room_refused(room, "POST", "/api/studies/other/stop", "{}", 409));
     json_t *json = room_get(room, "/api/studies/tiny");
     assert_true(json_is_true(json_object_get(json, "running")));
@@ -219,7 +219,7 @@ static void one_runs_at_a_time(void **state)
     json_decref(json);
 }
 
-static void the_laboratory_may_end_meanwhile(void **state)
+static void stopping_the_laboratory_during_a_study_keeps_its_rows(void **state)
 {
     lab_room *room = *state;
     room_write(room, "tiny.study", ENDLESS);
@@ -247,7 +247,7 @@ static void errors_are_reported(void **state)
 
 /* --- refused requests --- */
 
-static void nothing_outside_is_read(void **state)
+static void files_outside_the_folder_are_not_read(void **state)
 {
     const lab_room *room = *state;
     char *inside = room_path(room, "inside"), *first = room_path(room, "inside/scene.yaml"),
@@ -307,10 +307,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(studies_are_listed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_study_is_stopped_and_continued, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(one_runs_at_a_time, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(the_laboratory_may_end_meanwhile, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(one_study_runs_at_a_time, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(stopping_the_laboratory_during_a_study_keeps_its_rows, set_up, tear_down),
         cmocka_unit_test_setup_teardown(errors_are_reported, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(nothing_outside_is_read, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(files_outside_the_folder_are_not_read, set_up, tear_down),
         cmocka_unit_test_setup_teardown(the_machine_is_described, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("lab_studies", tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* Tests of study results through the API: tables, two runs compared, figures. */
+/* Tests of study results through the API: tables, the comparison of two runs, figures. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +12,7 @@
 
 /* --- tables --- */
 
-static void tables_are_as_the_files(void **state)
+static void tables_equal_those_of_the_command(void **state)
 {
     const lab_room *room = *state;
     room_write(room, "tiny.study", TINY("7"));
@@ -129,7 +129,7 @@ static void figures_are_drawn(void **state)
 {
     const lab_room *room = *state;
     room_write(room, "tiny.study", TINY("1"));
-    free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 400)); /* there is no script */
+    free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 400)); /* there is no plot script */
     make_folder(room, "plots");
     room_write(room, "plots/draw.sh",
                "shift; results=$1; shift 3; mkdir -p $results/figures\n"
@@ -177,7 +177,7 @@ static void *draw(void *of)
 }
 
 /* A script that never ends is killed with the laboratory. */
-static void drawing_ends_with_the_laboratory(void **state)
+static void stopping_the_laboratory_kills_the_drawing_script(void **state)
 {
     lab_room *room = *state;
     room_write(room, "tiny.study", TINY("1"));
@@ -202,10 +202,10 @@ static void drawing_ends_with_the_laboratory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(tables_are_as_the_files, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(tables_equal_those_of_the_command, set_up, tear_down),
         cmocka_unit_test_setup_teardown(two_runs_are_compared, set_up, tear_down),
         cmocka_unit_test_setup_teardown(figures_are_drawn, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(drawing_ends_with_the_laboratory, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(stopping_the_laboratory_kills_the_drawing_script, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("lab_study_tables", tests, NULL, NULL);
 }

@@ -98,7 +98,7 @@ static void compare_at(const lab_room *room, scene *s, int x, int y)
     }
 }
 
-static void a_trace_is_what_the_command_writes(void **state)
+static void a_trace_equals_the_commands_output(void **state)
 {
     scene *s = rod_scene("render.width=80 render.height=60");
     for (int y = 5; y < 60; y += 18)
@@ -108,7 +108,7 @@ static void a_trace_is_what_the_command_writes(void **state)
     scene_destroy(s);
 }
 
-static void it_follows_the_scene(void **state)
+static void a_trace_uses_the_current_scene(void **state)
 {
     char *before = ask_at(*state, "", 40, 40);
     room_post(*state, "/api/set", "{\"set\": {\"liquid.ior\": 1.5, \"render.samples\": 4}}");
@@ -126,7 +126,7 @@ static void it_follows_the_scene(void **state)
     free(again);
 }
 
-static void it_is_the_displayed_pixel(void **state)
+static void a_trace_has_the_radiance_of_the_displayed_pixel(void **state)
 {
     free(room_film(*state));
     json_t *trace = room_get(*state, "/api/trace?x=41&y=37");
@@ -191,7 +191,7 @@ static void *ask_once(void *context)
     return NULL;
 }
 
-static void many_at_once_get_the_same(void **state)
+static void concurrent_traces_return_the_same_text(void **state)
 {
     asker askers[10];
     for (size_t i = 0; i < 10; i++) {
@@ -208,7 +208,7 @@ static void many_at_once_get_the_same(void **state)
 }
 
 /* "scene" is the name under which the scene was last opened or saved. */
-static void the_scene_has_its_files_name(void **state)
+static void a_trace_names_the_scenes_file(void **state)
 {
     json_decref(room_ask(*state, "POST", "/api/save", "{\"file\": \"saved.yaml\"}", 200));
     json_t *trace = room_get(*state, "/api/trace?x=1&y=1");
@@ -223,10 +223,13 @@ static void the_scene_has_its_files_name(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_trace_is_what_the_command_writes), cmocka_unit_test(it_follows_the_scene),
-        cmocka_unit_test(it_is_the_displayed_pixel),          cmocka_unit_test(invalid_pixels_are_refused),
-        cmocka_unit_test(many_at_once_get_the_same),          cmocka_unit_test(large_trees_are_refused),
-        cmocka_unit_test(the_scene_has_its_files_name),
+        cmocka_unit_test(a_trace_equals_the_commands_output),
+        cmocka_unit_test(a_trace_uses_the_current_scene),
+        cmocka_unit_test(a_trace_has_the_radiance_of_the_displayed_pixel),
+        cmocka_unit_test(invalid_pixels_are_refused),
+        cmocka_unit_test(concurrent_traces_return_the_same_text),
+        cmocka_unit_test(large_trees_are_refused),
+        cmocka_unit_test(a_trace_names_the_scenes_file),
     };
     return cmocka_run_group_tests(tests, open_rod, close_room);
 }

@@ -1,5 +1,5 @@
-/* Tests of laws that hold in every scene: random scenes under changes that the image must not show (law_pairs.h).
- * LAWS_SCENES and LAWS_SEED choose how many scenes and which; `make laws` tries a million. A scene that breaks a law is
+/* Tests of laws that hold in every scene: random scenes under changes that must not affect the image (law_pairs.h).
+ * LAWS_SCENES and LAWS_SEED select how many scenes and which; `make laws` tests a million. A scene that breaks a law is
  * printed as a scene file, with as few solids as possible. */
 #include <limits.h>
 #include <math.h>
@@ -52,7 +52,7 @@ static uint64_t seed_of(long seed, law which, long number)
     return random_bits(&mixed);
 }
 
-/* The number of scenes that broke it; the first few are printed. */
+/* Tests a law over all scenes; the first few that break it are printed. */
 static tally try_law(law which, judge *j)
 {
     enum { PRINTED_MAX = 3, ASKED_EVERY = 5 };
@@ -100,49 +100,49 @@ static void law_holds(law which, double skipped_at_most)
                     0.2);
 }
 
-static void a_solid_that_no_ray_meets_changes_no_bit(void **state)
+static void a_solid_that_no_ray_hits_leaves_the_film_bit_identical(void **state)
 {
     (void)state;
     law_holds(LAW_UNMET, 0.01);
 }
 
-static void order_and_priorities_of_solids_apart_change_no_bit(void **state)
+static void order_and_priorities_of_separate_solids_leave_the_film_bit_identical(void **state)
 {
     (void)state;
     law_holds(LAW_ORDER, 0.01);
 }
 
-static void a_scale_by_a_power_of_two_changes_no_bit(void **state)
+static void scaling_by_a_power_of_two_leaves_the_film_bit_identical(void **state)
 {
     (void)state;
     law_holds(LAW_SCALE, 0.0);
 }
 
-static void translation_rotation_and_mirror_change_no_radiance(void **state)
+static void translation_rotation_and_mirroring_preserve_radiance(void **state)
 {
     (void)state;
     law_holds(LAW_MOTION, 0.2);
 }
 
-static void a_clear_solid_may_be_cut_into_two(void **state)
+static void cutting_a_clear_solid_in_two_preserves_the_film(void **state)
 {
     (void)state;
     law_holds(LAW_CUT, 0.01);
 }
 
-static void a_solid_of_the_surroundings_medium_is_not_seen(void **state)
+static void a_solid_of_the_surrounding_medium_is_invisible(void **state)
 {
     (void)state;
     law_holds(LAW_SAME, 0.01);
 }
 
-static void a_path_reversed_has_the_same_throughput(void **state)
+static void a_reversed_path_has_the_same_throughput(void **state)
 {
     (void)state;
     law_holds(LAW_REVERSAL, 0.0);
 }
 
-static void a_gap_may_be_filled_with_the_surroundings_medium(void **state)
+static void filling_a_gap_with_the_surrounding_medium_preserves_the_film(void **state)
 {
     (void)state;
     law_holds(LAW_FILL, 0.01);
@@ -151,14 +151,14 @@ static void a_gap_may_be_filled_with_the_surroundings_medium(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_solid_that_no_ray_meets_changes_no_bit),
-        cmocka_unit_test(order_and_priorities_of_solids_apart_change_no_bit),
-        cmocka_unit_test(a_scale_by_a_power_of_two_changes_no_bit),
-        cmocka_unit_test(translation_rotation_and_mirror_change_no_radiance),
-        cmocka_unit_test(a_clear_solid_may_be_cut_into_two),
-        cmocka_unit_test(a_solid_of_the_surroundings_medium_is_not_seen),
-        cmocka_unit_test(a_path_reversed_has_the_same_throughput),
-        cmocka_unit_test(a_gap_may_be_filled_with_the_surroundings_medium),
+        cmocka_unit_test(a_solid_that_no_ray_hits_leaves_the_film_bit_identical),
+        cmocka_unit_test(order_and_priorities_of_separate_solids_leave_the_film_bit_identical),
+        cmocka_unit_test(scaling_by_a_power_of_two_leaves_the_film_bit_identical),
+        cmocka_unit_test(translation_rotation_and_mirroring_preserve_radiance),
+        cmocka_unit_test(cutting_a_clear_solid_in_two_preserves_the_film),
+        cmocka_unit_test(a_solid_of_the_surrounding_medium_is_invisible),
+        cmocka_unit_test(a_reversed_path_has_the_same_throughput),
+        cmocka_unit_test(filling_a_gap_with_the_surrounding_medium_preserves_the_film),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* Tests of the lighting models, each of which contains the one before, and of the falloff of lights; at a point
+/* Tests of the lighting models, each of which adds a term to the previous one, and of the falloff of lights, at a point
  * computed by hand. */
 #include <math.h>
 #include <setjmp.h>
@@ -13,8 +13,8 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The camera sees the origin of a glazed floor at V = (0, 0.6, -0.8), the lamp is at L = (0.6, 0.8, 0), five units
- * away: N.L = 0.8, R.V = 0.48. The floor reflects white sky. */
+/* The camera looks at the origin of a glazed floor along V = (0, 0.6, -0.8), the lamp is at L = (0.6, 0.8, 0), five
+ * units away: N.L = 0.8, R.V = 0.48. The floor reflects white sky. */
 static const char floor_scene[] =
     "render: {width: 1, height: 1, depth: 3}\n"
     "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
@@ -40,7 +40,7 @@ static void each_lighting_adds_to_the_previous_one(void **state)
 }
 
 /* Ray casting gives the image of depth 0, whatever the depth and the lighting; it has no branches to cut off. */
-static void raycasting_ends_at_the_first_surface(void **state)
+static void raycasting_shades_only_the_first_surface(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -62,7 +62,7 @@ static ray_counters count(const char *settings)
     return c;
 }
 
-static void only_whitteds_lighting_branches(void **state)
+static void only_whitteds_lighting_traces_secondary_rays(void **state)
 {
     (void)state;
     need_counters();
@@ -83,7 +83,7 @@ static void only_whitteds_lighting_branches(void **state)
     assert_true(count("render.lighting=lambert").shadow < count("render.lighting=phong").shadow);
 }
 
-/* A mirror is black to a lighting without branches, and so is clear glass without a highlight. */
+/* A mirror is black under a lighting model without branches, and so is clear glass without a highlight. */
 static void mirrors_and_glass_are_black_without_branches(void **state)
 {
     (void)state;
@@ -124,8 +124,8 @@ static void light_falls_off_with_the_squared_distance(void **state)
     scene_destroy(s);
 }
 
-/* Only the path integrator uses a sphere's radius: for the others it is a point in the middle. */
-static void a_radius_changes_only_random_paths(void **state)
+/* Only the path integrator uses a light's radius: for the others the light is a point at the centre. */
+static void a_lights_radius_affects_only_random_paths(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -139,11 +139,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_lighting_adds_to_the_previous_one),
-        cmocka_unit_test(raycasting_ends_at_the_first_surface),
-        cmocka_unit_test(only_whitteds_lighting_branches),
+        cmocka_unit_test(raycasting_shades_only_the_first_surface),
+        cmocka_unit_test(only_whitteds_lighting_traces_secondary_rays),
         cmocka_unit_test(mirrors_and_glass_are_black_without_branches),
         cmocka_unit_test(light_falls_off_with_the_squared_distance),
-        cmocka_unit_test(a_radius_changes_only_random_paths),
+        cmocka_unit_test(a_lights_radius_affects_only_random_paths),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,7 +12,7 @@
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-/* The camera sees the origin of a matte floor; the lamp is at L = (0.6, 0.8, 0), five units away: N.L = 0.8. */
+/* The camera looks at the origin of a matte floor; the lamp is at L = (0.6, 0.8, 0), five units away: N.L = 0.8. */
 static const char floor_scene[] = "render: {width: 1, height: 1, depth: 0}\n"
                                   "camera: {position: [0, 3, -4], target: [0, 0, 0], fov_deg: 1}\n"
                                   "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
@@ -31,7 +31,7 @@ static void aim(scene *s, double angle_deg, double turn_deg)
     lamp->target = vec3_add(lamp->position, vec3_scale(axis, 7.0));
 }
 
-static void a_cone_is_full_inside_and_dark_outside(void **state)
+static void a_cone_has_full_intensity_inside_and_none_outside(void **state)
 {
     (void)state;
     static const double half_deg[] = {0.001, 0.5, 10.0, 30.0, 60.0, 90.0, 120.0, 179.0};
@@ -78,8 +78,8 @@ static void a_soft_cone_falls_with_the_cosine(void **state)
     scene_destroy(s);
 }
 
-/* Colour, intensity and squared distance also apply, five units from a light of full strength at ten. */
-static void a_cone_changes_neither_colour_nor_falloff(void **state)
+/* Colour, intensity and squared distance apply as well, at five units from a light of full strength at ten. */
+static void colour_and_falloff_are_the_same_for_every_kind_of_light(void **state)
 {
     (void)state;
     static const char *const kinds[] = {"lamp.kind=point", "lamp.kind=cone", "lamp.kind=soft_cone"};
@@ -98,7 +98,7 @@ static void a_cone_changes_neither_colour_nor_falloff(void **state)
 }
 
 /* The falloff also applies to the highlight: the camera is at the lamp's mirror direction. */
-static void highlights_stay_in_the_cone(void **state)
+static void the_falloff_applies_to_highlights(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -110,7 +110,7 @@ static void highlights_stay_in_the_cone(void **state)
     scene_destroy(s);
 }
 
-static void no_shadow_rays_outside_a_cone(void **state)
+static void no_shadow_rays_are_traced_outside_a_cone(void **state)
 {
     (void)state;
     need_counters();
@@ -133,7 +133,7 @@ static void no_shadow_rays_outside_a_cone(void **state)
 }
 
 /* Every film and integrator, and the probe, gets the same share of a point light's value. */
-static void all_integrators_show_the_same_cone(void **state)
+static void all_integrators_have_the_same_cone_falloff(void **state)
 {
     (void)state;
     static const char *const films[] = {"render.spectrum=spectral", "render.polarisation=on", "render.shadows=off",
@@ -198,7 +198,7 @@ static void a_spheres_cone_is_visible_only_from_inside(void **state)
 /* Irradiance by a sphere that covers a cap of half-angle g about w, whose radiance (1 - (1 - o.u) / q) is linear in the
  * direction o towards it (u: against the axis, q = 1 - cos a). Over the cap the integral of o is pi sin^2 g w, that of
  * o o^T is A 1 + B w w^T with 3 A + B = 2 pi (1 - cos g) and A + B = 2 pi (1 - cos^3 g) / 3. */
-static void a_soft_sphere_lights_like_its_integral(void **state)
+static void irradiance_by_a_soft_sphere_equals_its_integral(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -214,7 +214,8 @@ static void a_soft_sphere_lights_like_its_integral(void **state)
                  second = A * vec3_dot(n, u) + B * vec3_dot(n, w) * vec3_dot(w, u);
     const double radiance = 25.0 / 4.0, wanted = radiance / pi * ((1.0 - 1.0 / q) * first + second / q);
     assert_near(look(s).x, wanted, 0.002 * wanted);
-    assert_true(fabs(wanted - irradiance * soft_share(30.0, 70.0)) > 0.005 * wanted); /* not that of a point */
+    assert_true(fabs(wanted - irradiance * soft_share(30.0, 70.0)) >
+                0.005 * wanted); /* not the value of a point light */
     scene_destroy(s);
 }
 
@@ -226,7 +227,7 @@ static void a_cone_needs_a_direction(void **state)
     char text[DIAGNOSTIC_TEXT_MAX];
     scene *s = scene_from(floor_scene);
     set(s, "lamp.target=3,4,0");
-    worked(scene_check(s, &why), &why); /* a point has no target */
+    worked(scene_check(s, &why), &why); /* a point light ignores its target */
     for (int k = 0; k < 2; k++) {
         s->lights[0].kind = k + 1;
         assert_int_equal(scene_check(s, &why), STATUS_BAD_INPUT);
@@ -242,15 +243,15 @@ static void a_cone_needs_a_direction(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_cone_is_full_inside_and_dark_outside),
+        cmocka_unit_test(a_cone_has_full_intensity_inside_and_none_outside),
         cmocka_unit_test(a_soft_cone_falls_with_the_cosine),
-        cmocka_unit_test(a_cone_changes_neither_colour_nor_falloff),
-        cmocka_unit_test(highlights_stay_in_the_cone),
-        cmocka_unit_test(no_shadow_rays_outside_a_cone),
-        cmocka_unit_test(all_integrators_show_the_same_cone),
+        cmocka_unit_test(colour_and_falloff_are_the_same_for_every_kind_of_light),
+        cmocka_unit_test(the_falloff_applies_to_highlights),
+        cmocka_unit_test(no_shadow_rays_are_traced_outside_a_cone),
+        cmocka_unit_test(all_integrators_have_the_same_cone_falloff),
         cmocka_unit_test(the_probe_names_the_spotlight_that_contributes),
         cmocka_unit_test(a_spheres_cone_is_visible_only_from_inside),
-        cmocka_unit_test(a_soft_sphere_lights_like_its_integral),
+        cmocka_unit_test(irradiance_by_a_soft_sphere_equals_its_integral),
         cmocka_unit_test(a_cone_needs_a_direction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,7 +1,7 @@
-/* The linter: each note shows where its mistake is and not in the nearest scene that is right; shipped scenes have
- * no note that is not true; on random legal scenes every note is true by an oracle of its own (lint_oracle.h).
- * LINT_SCENES, LINT_SEED and LINT_FIRST: how many, and which. Run from the repository root. tests/notes.sh has ten
- * scenes that a student would write. */
+/* Tests of the linter: each note is given at its mistake and not in the nearest valid scene; shipped scenes have only
+ * true notes; on random legal scenes every note is true by an independent check (lint_oracle.h). LINT_SCENES, LINT_SEED
+ * and LINT_FIRST select how many scenes and which. Run from the repository root. tests/notes.sh has ten scenes as a
+ * student would write them. */
 #include <limits.h>
 #include <math.h>
 #include <setjmp.h>
@@ -57,7 +57,7 @@ static note_list lint_text(const char *text)
     STAGE "camera: {position: [0, 1, -8], target: [0, 1, 0]}\n" \
           "meshes: {block: {generate: box, size: [1, 1, 1]}, ball: {generate: icosphere, level: 3}}\n"
 
-/* For cameras of their own. */
+/* For scenes with their own cameras. */
 #define HALL STAGE "meshes: {block: {generate: box, size: [2, 2, 2]}}\n"
 
 typedef struct lint_case {
@@ -81,7 +81,7 @@ static void try_cases(const lint_case *cases, size_t count)
 }
 #define CHECK(cases) try_cases(cases, sizeof cases / sizeof *cases)
 
-static void overlaps_of_equal_priority(void **state)
+static void overlaps_of_equal_priority_and_different_media_are_noted(void **state)
 {
     (void)state;
     static const char note[] = "overlap with equal priority and different media";
@@ -92,9 +92,9 @@ static void overlaps_of_equal_priority(void **state)
          "priority: 1}}",
          NULL, ""},
         {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1, 0, 0]}}", NULL,
-         ""}, /* they touch */
+         ""}, /* the boxes touch */
         {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: glass, position: [0.9, 0, 0]}}", NULL,
-         ""}, /* one medium */
+         ""}, /* equal media */
         {"solids: {a: {shape: box, material: clay}, b: {shape: box, material: clay, position: [0.9, 0, 0], color: "
          "[1, 0, 0]}}",
          NULL, ""},
@@ -104,7 +104,7 @@ static void overlaps_of_equal_priority(void **state)
          "3, rotation: [20, 0, 40]}}",
          "b.priority", note},
         {"solids: {a: {shape: sphere, material: glass}, b: {shape: sphere, material: water, position: [0, 2, 0]}}",
-         NULL, ""}, /* they touch */
+         NULL, ""}, /* the spheres touch */
         {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: sphere, material: water, position: "
          "[1.2, 0, 0]}}",
          "b.priority", note},
@@ -127,7 +127,7 @@ static void overlaps_of_equal_priority(void **state)
     CHECK(cases);
 }
 
-static void narrow_gaps(void **state)
+static void narrow_gaps_are_noted(void **state)
 {
     (void)state;
     static const char note[] = "is about";
@@ -137,13 +137,13 @@ static void narrow_gaps(void **state)
         {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1.0011, 0, 0]}}", NULL,
          ""}, /* wide enough */
         {"solids: {a: {shape: box, material: glass}, b: {shape: box, material: water, position: [1, 0, 0]}}", NULL,
-         ""}, /* in contact */
+         ""}, /* the boxes are in contact */
         {"solids: {a: {shape: box, material: clay}, b: {shape: box, material: clay, position: [1.0001, 0, 0]}}", NULL,
-         ""}, /* nobody sees it */
+         ""}, /* both sides are opaque */
         {"solids: {a: {shape: plane, material: clay}, b: {shape: box, material: glass, position: [0, 0.5001, 0]}}", "b",
          note},
         {"solids: {a: {shape: plane, material: clay}, b: {shape: sphere, material: glass, position: [0, 1.0001, 0]}}",
-         NULL, ""}, /* in one place alone */
+         NULL, ""}, /* narrow at a single point only */
         {"solids: {a: {shape: plane, material: clay}, b: {shape: cylinder, material: glass, position: [1, 1.0001, "
          "0], rotation: [0, 0, 90]}}",
          NULL, ""},
@@ -162,7 +162,7 @@ static void narrow_gaps(void **state)
         {"solids: {a: {shape: mesh, mesh: block, material: glass}, b: {shape: box, material: water, position: [0, "
          "1, 0]}}",
          NULL, ""},
-        /* a third solid fills it */
+        /* a third solid fills the gap */
         {"solids: {a: {shape: box, material: glass, priority: 1}, b: {shape: box, material: water, position: "
          "[1.0001, 0, 0], priority: 1}, "
          "c: {shape: box, material: clay, position: [0.5, 0, 0], size: [0.5, 3, 3]}}",
@@ -171,7 +171,7 @@ static void narrow_gaps(void **state)
     CHECK(cases);
 }
 
-static void indices_of_mirrors(void **state)
+static void indices_above_those_of_materials_are_noted(void **state)
 {
     (void)state;
     static const char note[] = "higher than any transparent material";
@@ -188,7 +188,7 @@ static void indices_of_mirrors(void **state)
     CHECK(cases);
 }
 
-static void cameras_that_see_nothing(void **state)
+static void cameras_inside_opaque_solids_are_noted(void **state)
 {
     (void)state;
     static const struct {
@@ -196,14 +196,14 @@ static void cameras_that_see_nothing(void **state)
     } cases[] = {
         {"0, 1, 0", "a: {shape: box, material: clay, size: [4, 4, 4]}", "is inside a, which is opaque"},
         {"0, 1, -3", "a: {shape: box, material: clay, size: [4, 4, 4]}", NULL},
-        {"0, 1, 0", "a: {shape: box, material: water, size: [4, 4, 4]}", NULL}, /* a diver */
+        {"0, 1, 0", "a: {shape: box, material: water, size: [4, 4, 4]}", NULL}, /* a camera under water is legal */
         {"0, 1, 0",
          "a: {shape: box, material: clay, size: [4, 4, 4]}, b: {shape: sphere, material: glass, radius: 1.5, "
          "priority: 1}",
          NULL},
         {"0, -1, -3", "a: {shape: plane, material: clay}", "is below the surface of a"},
         {"0, 0, -3", "a: {shape: plane, material: clay}, b: {shape: sphere, material: clay, position: [0, 1, 0]}",
-         NULL}, /* on it */
+         NULL}, /* exactly on the surface */
         {"0, -1, -3", "a: {shape: plane, material: water}", NULL},
         {"0.95, 1, 0", "a: {shape: cup, material: glass, radius: 1, inner_radius: 0.9, height: 2, floor: 0.1}",
          "is inside the wall of a"},
@@ -229,8 +229,8 @@ static void cameras_that_see_nothing(void **state)
     }
 }
 
-/* Two panes and a board take depth 4; less is too little, more is not. */
-static void depths_that_show(void **state)
+/* Two panes and a board need depth 4; a smaller depth gives a note, a larger one none. */
+static void an_insufficient_depth_is_noted_with_the_sufficient_one(void **state)
 {
     (void)state;
     for (int depth = 0; depth <= 8; depth++) {
@@ -252,8 +252,8 @@ static void depths_that_show(void **state)
     }
 }
 
-/* A tree of 40 levels has more rays than a machine traces in a day: the linter does not try, and says nothing. */
-static void depths_that_take_too_long_are_left_alone(void **state)
+/* A tree of 40 levels has more rays than a machine traces in a day: the linter skips it and gives no note. */
+static void a_depth_too_expensive_to_check_gives_no_note(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.depth=40");
@@ -261,8 +261,8 @@ static void depths_that_take_too_long_are_left_alone(void **state)
     scene_destroy(s);
 }
 
-/* A wide disc a hair above the ground was called wholly inside it. */
-static void what_sticks_out_by_a_hair_is_not_hidden(void **state)
+/* Regression: a wide disc protruding slightly above the ground was reported as entirely inside it. */
+static void only_entirely_covered_solids_are_noted(void **state)
 {
     (void)state;
     static const struct {
@@ -293,7 +293,7 @@ static void what_sticks_out_by_a_hair_is_not_hidden(void **state)
     }
 }
 
-static void shipped_scenes_have_true_notes_alone(void **state)
+static void shipped_scenes_have_only_true_notes(void **state)
 {
     (void)state;
     static const struct {
@@ -363,7 +363,7 @@ static void a_frame_is_the_same_after_the_linter(void **state)
 typedef struct tallies {
     long scenes, silent, skipped, notes, untrue;
     long overlaps, gaps, covers, cameras, indices, depths, others;
-    long pairs, unseen; /* pairs that the oracle finds to overlap, and of these without a note */
+    long pairs, unseen; /* pairs that overlap by the oracle, and those of them without a note */
 } tallies;
 
 static const solid *named(const scene *s, const char *name)
@@ -465,7 +465,7 @@ static bool is_noted(const note_list *all, const char *a, const char *b)
     return false;
 }
 
-/* Overlaps that a few random lines of the oracle find. */
+/* Counts overlaps that a few random lines of the oracle find. */
 static void count_unseen(oracle *o, const scene *s, const note_list *all, tallies *t)
 {
     for (size_t i = 0; i < s->solid_count; i++)
@@ -482,7 +482,7 @@ static void count_unseen(oracle *o, const scene *s, const note_list *all, tallie
         }
 }
 
-/* print_message has room for some lines alone. */
+/* print_message has a limited buffer: prints line by line. */
 static void print_lines(const char *text)
 {
     while (*text) {
@@ -497,7 +497,7 @@ static void try_scene(judge *j, long number, long seed, tallies *t)
     uint64_t stream = (uint64_t)seed * 0x9e3779b97f4a7c15u + (uint64_t)number;
     random_bits(&stream);
     law_scene w = random_law_scene(&stream, "depth: 4, threads: 1");
-    for (int i = 0; i < w.solid_count; i++) /* a quartic in quadruple precision takes long */
+    for (int i = 0; i < w.solid_count; i++) /* solving a quartic in quadruple precision takes long */
         if (w.solid[i].shape.kind == SHAPE_TORUS && random_below(&stream, 16))
             w.solid[i].shape.kind = SHAPE_SPHERE;
     scene *s = law_load(&w);
@@ -529,7 +529,7 @@ static void notes_on_random_scenes_are_true(void **state)
 {
     (void)state;
     const char *count = getenv("LINT_SCENES"), *from = getenv("LINT_SEED"), *first = getenv("LINT_FIRST");
-    const char *laws = getenv("LAWS_SCENES"); /* fewer under instruments */
+    const char *laws = getenv("LAWS_SCENES"); /* fewer scenes under sanitizers and valgrind */
     const long scenes = count  ? strtol(count, NULL, 10)
                         : laws ? strtol(laws, NULL, 10) / 10
                                : 1000,
@@ -554,14 +554,14 @@ static void notes_on_random_scenes_are_true(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(overlaps_of_equal_priority),
-        cmocka_unit_test(narrow_gaps),
-        cmocka_unit_test(indices_of_mirrors),
-        cmocka_unit_test(cameras_that_see_nothing),
-        cmocka_unit_test(depths_that_show),
-        cmocka_unit_test(depths_that_take_too_long_are_left_alone),
-        cmocka_unit_test(what_sticks_out_by_a_hair_is_not_hidden),
-        cmocka_unit_test(shipped_scenes_have_true_notes_alone),
+        cmocka_unit_test(overlaps_of_equal_priority_and_different_media_are_noted),
+        cmocka_unit_test(narrow_gaps_are_noted),
+        cmocka_unit_test(indices_above_those_of_materials_are_noted),
+        cmocka_unit_test(cameras_inside_opaque_solids_are_noted),
+        cmocka_unit_test(an_insufficient_depth_is_noted_with_the_sufficient_one),
+        cmocka_unit_test(a_depth_too_expensive_to_check_gives_no_note),
+        cmocka_unit_test(only_entirely_covered_solids_are_noted),
+        cmocka_unit_test(shipped_scenes_have_only_true_notes),
         cmocka_unit_test(a_frame_is_the_same_after_the_linter),
         cmocka_unit_test(notes_on_random_scenes_are_true),
     };

@@ -1,5 +1,5 @@
-/* Tests of media by priority against brute force: all crossings of all shapes in quadruple precision, and between two
- * crossings the winner at the midpoint by definition. */
+/* Tests of media by priority against brute force: all crossings of all shapes in quadruple precision; between two
+ * crossings the winner is that of the midpoint by definition. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -71,9 +71,9 @@ static void rooms_full_of_coincident_faces_agree_with_brute_force(void **state)
     assert_true(interfaces > 8000);
 }
 
-/* Along the grid's own planes and edges no answer is right, but the ray must end: media follow one another, and finally
- * the ray leaves. */
-static void rays_in_coincident_faces_come_to_an_end(void **state)
+/* For rays along the grid's own planes and edges every result is valid, but the ray must end: consecutive media match,
+ * and finally the ray leaves. */
+static void rays_in_coincident_faces_terminate(void **state)
 {
     (void)state;
     uint64_t seed = 25;
@@ -97,13 +97,13 @@ static void rays_in_coincident_faces_come_to_an_end(void **state)
                 medium = m.solids->regions[h.after].medium;
                 r = (one_ray){h.point, r.d, h.face, h.inside_after};
             }
-            assert_true(has_plane(&m) || medium == 0); /* no set keeps a solid that the ray has long passed */
+            assert_true(has_plane(&m) || medium == 0); /* no set contains a solid that the ray left long ago */
         }
         scene_geometry_destroy(m.solids);
     }
 }
 
-/* Mirrored or refracted at random at every interface. Half way to the next one the ray is in the medium of its set,
+/* Reflects or refracts at random at every interface. Halfway to the next interface the ray is in the medium of its set,
  * unless a surface is so near that rounding decides. */
 static void walk_at_random(const room *m, one_ray r, uint64_t *seed)
 {
@@ -125,7 +125,7 @@ static void walk_at_random(const room *m, one_ray r, uint64_t *seed)
     }
 }
 
-static void sets_stay_true_on_long_walks(void **state)
+static void region_sets_stay_correct_on_long_walks(void **state)
 {
     (void)state;
     uint64_t seed = 26;
@@ -145,7 +145,7 @@ static void sets_stay_true_on_long_walks(void **state)
 }
 
 /* All instruction sets give identical bits, for whole batches and all outputs. */
-static void instruction_sets_agree_to_the_bit(void **state)
+static void instruction_sets_give_bit_identical_hits(void **state)
 {
     (void)state;
     static double c[6][ROW];
@@ -193,9 +193,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_rooms_agree_with_brute_force),
         cmocka_unit_test(rooms_full_of_coincident_faces_agree_with_brute_force),
-        cmocka_unit_test(rays_in_coincident_faces_come_to_an_end),
-        cmocka_unit_test(sets_stay_true_on_long_walks),
-        cmocka_unit_test(instruction_sets_agree_to_the_bit),
+        cmocka_unit_test(rays_in_coincident_faces_terminate),
+        cmocka_unit_test(region_sets_stay_correct_on_long_walks),
+        cmocka_unit_test(instruction_sets_give_bit_identical_hits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,7 +26,7 @@ static double published(const char *name, double lambda_nm)
 }
 
 /* Computed from the published coefficients independently of this program, to eight and four decimals. */
-static void indices_at_the_lines_and_abbes_numbers(void **state)
+static void indices_at_spectral_lines_and_abbe_numbers_equal_computed_values(void **state)
 {
     (void)state;
     static const struct {
@@ -58,7 +58,7 @@ static void indices_at_the_lines_and_abbes_numbers(void **state)
 }
 
 /* Schott, data sheet N-BK7 517642.251: the lines t, s, r, C, C', He-Ne, D, d, e, F, F', g, h, i. */
-static void bk7_is_schotts_data_sheet(void **state)
+static void bk7_equals_schotts_data_sheet(void **state)
 {
     (void)state;
     static const double sheet[][2] = {
@@ -71,7 +71,7 @@ static void bk7_is_schotts_data_sheet(void **state)
 }
 
 /* Malitson 1965, table 1, computed column. */
-static void fused_silica_is_malitsons_table(void **state)
+static void fused_silica_equals_malitsons_table(void **state)
 {
     (void)state;
     static const double table[][2] = {
@@ -84,7 +84,7 @@ static void fused_silica_is_malitsons_table(void **state)
 
 /* Schott's catalogue; Handbook of Chemistry and Physics at the sodium line, 20 C (toluene by -5.7e-4 / K to 27 C).
  * Diamond: Kaye and Laby. The tolerances are the differences between the sources. */
-static void indices_of_handbooks(void **state)
+static void indices_equal_those_of_handbooks(void **state)
 {
     (void)state;
     assert_near(published("sf11", LINE_HELIUM_D_NM), 1.78472, 5.5e-6);
@@ -102,7 +102,7 @@ static void indices_of_handbooks(void **state)
 }
 
 /* Edlen, Metrologia 2, 71 (1966), eq. 1, for 300 ppm of CO2: 150 ppm more increase n - 1 by a relative 8e-5. */
-static void air_is_edlens(void **state)
+static void air_equals_edlens_formula(void **state)
 {
     (void)state;
     for (double lambda_nm = 300.0; lambda_nm <= 1600.0; lambda_nm += 10.0) {
@@ -114,7 +114,7 @@ static void air_is_edlens(void **state)
 
 /* Tilton and Taylor, J. Res. NBS 20, 419 (1938), give water relative to air: 1.33299 at D, 20 C; Daimon's law is
  * absolute. */
-static void water_relative_to_air_is_the_textbooks_1_3330(void **state)
+static void water_relative_to_air_has_the_textbooks_index(void **state)
 {
     (void)state;
     assert_false(the("water")->relative_to_air);
@@ -122,7 +122,7 @@ static void water_relative_to_air_is_the_textbooks_1_3330(void **state)
     assert_true(fabs(published("water", LINE_SODIUM_D_NM) - 1.33299) > 3e-4);
 }
 
-static void absolute_indices(void **state)
+static void relative_indices_are_converted_to_absolute_ones(void **state)
 {
     (void)state;
     for (size_t i = 0; i < media_count(); i++) {
@@ -138,7 +138,7 @@ static void absolute_indices(void **state)
 }
 
 /* Dispersion is normal in the visible: violet is refracted most. */
-static void every_law_is_sound_and_normal(void **state)
+static void every_law_is_valid_with_normal_dispersion(void **state)
 {
     (void)state;
     for (size_t i = 0; i < media_count(); i++) {
@@ -155,7 +155,7 @@ static void every_law_is_sound_and_normal(void **state)
     }
 }
 
-static void names_are_those_of_the_list_in_its_order(void **state)
+static void names_are_in_the_order_of_the_list(void **state)
 {
     (void)state;
 #define NAME(name) name,
@@ -171,8 +171,8 @@ static void names_are_those_of_the_list_in_its_order(void **state)
     assert_null(media_find(""));
 }
 
-/* The purpose of the matching liquid: at one wavelength, between C and F, its index equals the glass's. */
-static void the_matching_liquid_crosses_bk7(void **state)
+/* The purpose of the matching liquid: its index equals the glass's at one wavelength between C and F. */
+static void the_index_of_the_matching_liquid_crosses_that_of_bk7(void **state)
 {
     (void)state;
     const medium *glass = the("bk7"), *liquid = the("bk7-liquid");
@@ -184,16 +184,16 @@ static void the_matching_liquid_crosses_bk7(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(indices_at_the_lines_and_abbes_numbers),
-        cmocka_unit_test(bk7_is_schotts_data_sheet),
-        cmocka_unit_test(fused_silica_is_malitsons_table),
-        cmocka_unit_test(indices_of_handbooks),
-        cmocka_unit_test(air_is_edlens),
-        cmocka_unit_test(water_relative_to_air_is_the_textbooks_1_3330),
-        cmocka_unit_test(absolute_indices),
-        cmocka_unit_test(every_law_is_sound_and_normal),
-        cmocka_unit_test(names_are_those_of_the_list_in_its_order),
-        cmocka_unit_test(the_matching_liquid_crosses_bk7),
+        cmocka_unit_test(indices_at_spectral_lines_and_abbe_numbers_equal_computed_values),
+        cmocka_unit_test(bk7_equals_schotts_data_sheet),
+        cmocka_unit_test(fused_silica_equals_malitsons_table),
+        cmocka_unit_test(indices_equal_those_of_handbooks),
+        cmocka_unit_test(air_equals_edlens_formula),
+        cmocka_unit_test(water_relative_to_air_has_the_textbooks_index),
+        cmocka_unit_test(relative_indices_are_converted_to_absolute_ones),
+        cmocka_unit_test(every_law_is_valid_with_normal_dispersion),
+        cmocka_unit_test(names_are_in_the_order_of_the_list),
+        cmocka_unit_test(the_index_of_the_matching_liquid_crosses_that_of_bk7),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

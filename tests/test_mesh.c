@@ -24,7 +24,7 @@ static void a_cube_is_closed_and_has_its_volume_and_area(void **state)
     mesh_release(m);
 }
 
-static void bounds_are_of_vertices_that_triangles_use(void **state)
+static void bounds_include_only_vertices_of_triangles(void **state)
 {
     (void)state;
     const vec3 at[4] = {{1, 2, 3}, {4, 2, 3}, {1, 2.1, 3}, {100, 100, 100}};
@@ -328,7 +328,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cube_is_closed_and_has_its_volume_and_area),
-        cmocka_unit_test(bounds_are_of_vertices_that_triangles_use),
+        cmocka_unit_test(bounds_include_only_vertices_of_triangles),
         cmocka_unit_test(a_missing_triangle_is_a_hole_named_by_an_edge_of_its_neighbour),
         cmocka_unit_test(an_edge_of_three_triangles_is_named),
         cmocka_unit_test(vertices_at_equal_positions_are_one_and_so_are_the_zeros),

@@ -1,4 +1,5 @@
-/* Tests of copies of meshes: one image however they are made. */
+/* Tests of copies of meshes: the image is the same as with separate solids, and for every number of threads and
+ * hierarchy. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +28,7 @@ static uint64_t hash_of(const char *text, const char *assignments, isa level)
     return hash;
 }
 
-static void copies_are_as_many_solids(void **state)
+static void copies_equal_separate_solids(void **state)
 {
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
@@ -38,14 +39,14 @@ static void copies_are_as_many_solids(void **state)
         "[1.5, 1, 2], position: [-1.5, 0, -1]}\n",
         FRAME, look);
     add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n", FRAME);
-    for (int k = 0; k < 12; k++) /* one medium, as for copies */
+    for (int k = 0; k < 12; k++) /* one medium for all, as for copies */
         add(&b, "  r%d: {%s, position: [%g, %g, %g]}\n", k, look, -1.5 + 1.5 * (k % 3), 1.0 * (k / 3 % 2),
             -1.0 + 2.0 * (k / 6));
     assert_true(hash_of(a.at, "", isa_best()) == hash_of(b.at, "", isa_best()));
 }
 
 /* Copies that touch form one block, bit-identical to a single one. */
-static void copies_that_touch_are_one_block(void **state)
+static void touching_copies_equal_one_block(void **state)
 {
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
@@ -69,7 +70,7 @@ static void copies_that_touch_are_one_block(void **state)
 }
 
 /* The world vertices of a copy as a separate mesh. */
-static void placed_copies_are_transformed_vertices(void **state)
+static void placed_copies_equal_transformed_vertices(void **state)
 {
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
@@ -101,7 +102,7 @@ static void placed_copies_are_transformed_vertices(void **state)
     scene_destroy(moved);
 }
 
-static void a_hundred_thousand_copies_are_quick_and_small(void **state)
+static void a_hundred_thousand_copies_load_fast_in_little_memory(void **state)
 {
     (void)state;
     scene_text t = {.length = 0};
@@ -142,7 +143,7 @@ static const char gallery[] = FRAME
     "copies: [9, 2, 9], spacing: [0.21, 0.21, 0.21], position: [0.2, -0.3, -1.5]}\n"
     "  leaves: {shape: mesh, mesh: cloud, diffuse: 0.6, position: [0, 0.9, 1.6]}\n";
 
-static void one_film_however_it_is_made(void **state)
+static void the_film_is_the_same_for_all_threads_schedules_and_hierarchies(void **state)
 {
     (void)state;
     static const char *const ways[] = {"render.threads=1",
@@ -161,8 +162,8 @@ static void one_film_however_it_is_made(void **state)
         assert_true(hash_of(gallery, "", (isa)level) == wanted);
 }
 
-/* Shadow rays through two hundred absorbing beads each: more media than a batch's list can hold. */
-static void light_through_very_many_media_is_the_same_in_any_batch(void **state)
+/* Shadow rays through two hundred absorbing beads each: more media than the list of a batch can hold. */
+static void light_through_many_media_is_the_same_in_any_batch(void **state)
 {
     (void)state;
     scene_text t = {.length = 0};
@@ -195,12 +196,12 @@ static void light_through_very_many_media_is_the_same_in_any_batch(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(copies_are_as_many_solids),
-        cmocka_unit_test(copies_that_touch_are_one_block),
-        cmocka_unit_test(placed_copies_are_transformed_vertices),
-        cmocka_unit_test(a_hundred_thousand_copies_are_quick_and_small),
-        cmocka_unit_test(one_film_however_it_is_made),
-        cmocka_unit_test(light_through_very_many_media_is_the_same_in_any_batch),
+        cmocka_unit_test(copies_equal_separate_solids),
+        cmocka_unit_test(touching_copies_equal_one_block),
+        cmocka_unit_test(placed_copies_equal_transformed_vertices),
+        cmocka_unit_test(a_hundred_thousand_copies_load_fast_in_little_memory),
+        cmocka_unit_test(the_film_is_the_same_for_all_threads_schedules_and_hierarchies),
+        cmocka_unit_test(light_through_many_media_is_the_same_in_any_batch),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

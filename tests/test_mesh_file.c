@@ -1,4 +1,4 @@
-/* Tests of valid mesh files: the imported numbers are the file's own. */
+/* Tests of valid mesh files: the imported values equal those of the file. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -60,7 +60,7 @@ static void assert_tetrahedron(const mesh_import *got, double x)
     assert_null(m->uvs);
 }
 
-static void obj_with_two_materials(void **state)
+static void an_obj_with_two_materials_is_read(void **state)
 {
     (void)state;
     put_text("paint.png", "a picture");
@@ -72,11 +72,11 @@ static void obj_with_two_materials(void **state)
                                             "usemtl red\nf 1/1 2/2 3/3\nusemtl glass\nf 1/1 3/3 4/4\n");
     const mesh *m = got->mesh;
     assert_int_equal(m->triangle_count, 2);
-    assert_int_equal(m->vertex_count, 4); /* shared across the materials; the fifth belongs to no face */
+    assert_int_equal(m->vertex_count, 4); /* shared between the materials; the fifth vertex belongs to no face */
     assert_vec3(corner(m, 0, 2), 1, 2.5, 0);
     assert_vec3(corner(m, 1, 2), 0, 2.5, -0.125);
     mesh_uv uv = m->uvs[m->triangles[0].corner[2]];
-    assert_true(uv.u == 1 && uv.v == 0.75); /* v upwards, as in the file */
+    assert_true(uv.u == 1 && uv.v == 0.75); /* v increases upwards, as in the file */
     assert_true(m->single);
     assert_false(m->closed);
     assert_int_equal(got->material_count, 2);
@@ -96,7 +96,7 @@ static void obj_with_two_materials(void **state)
     mesh_import_destroy(got);
 }
 
-static void textures_of_other_spellings_are_found(void **state)
+static void texture_paths_are_found_in_other_spellings(void **state)
 {
     (void)state;
     put_text("my paint.png", "a picture");
@@ -130,8 +130,8 @@ static void obj_polygons_are_triangulated(void **state)
     mesh_import_destroy(got);
 }
 
-/* assimp's own joining merges vertices within 1e-5. */
-static void vertices_that_nearly_coincide_stay_apart(void **state)
+/* assimp's own merging would join vertices within 1e-5. */
+static void nearly_coincident_vertices_are_not_merged(void **state)
 {
     (void)state;
     mesh_import *got = read_text("tiny.obj", "v 0 0 0\nv 1e-7 0 0\nv 0 1e-7 0\nf 1 2 3\n");
@@ -140,7 +140,7 @@ static void vertices_that_nearly_coincide_stay_apart(void **state)
     mesh_import_destroy(got);
 }
 
-static void ply_text(void **state)
+static void an_ascii_ply_is_read(void **state)
 {
     (void)state;
     mesh_import *got = read_text(
@@ -154,7 +154,7 @@ static void ply_text(void **state)
     mesh_import_destroy(got);
 }
 
-static void ply_binary(void **state)
+static void a_binary_ply_is_read_exactly(void **state)
 {
     (void)state;
     mesh_import *got = read_bytes("b.ply", binary_ply());
@@ -163,7 +163,7 @@ static void ply_binary(void **state)
     mesh_import_destroy(got);
 }
 
-static void stl_text(void **state)
+static void an_ascii_stl_is_read(void **state)
 {
     (void)state;
     mesh_import *got = read_text(
@@ -177,7 +177,7 @@ static void stl_text(void **state)
 }
 
 /* Facets share their corners again, although each has its own normal in the file. */
-static void stl_binary(void **state)
+static void a_binary_stl_is_read_exactly(void **state)
 {
     (void)state;
     mesh_import *got = read_bytes("b.stl", binary_stl());
@@ -186,7 +186,7 @@ static void stl_binary(void **state)
     mesh_import_destroy(got);
 }
 
-static void glb_keeps_every_bit(void **state)
+static void a_glb_is_read_exactly(void **state)
 {
     (void)state;
     mesh_import *got = read_bytes("a.glb", tetrahedron_glb("{\"mesh\":0}"));
@@ -199,7 +199,7 @@ static void glb_keeps_every_bit(void **state)
 }
 
 /* Translated in double precision: the sum is not rounded to a float. */
-static void nodes_move_their_meshes(void **state)
+static void nodes_translate_their_meshes_in_double_precision(void **state)
 {
     (void)state;
     mesh_import *got = read_bytes("moved.glb", tetrahedron_glb("{\"mesh\":0,\"translation\":[1000,0,0]}"));
@@ -219,7 +219,7 @@ static void nodes_move_their_meshes(void **state)
 }
 
 /* A mirror turns fronts into backs, unless the corners are also listed in reverse. A quarter turn, column by column. */
-static void mirrored_and_turned_nodes_keep_their_fronts(void **state)
+static void mirrored_and_rotated_nodes_keep_their_orientation(void **state)
 {
     (void)state;
     mesh_import *plain = read_bytes("plain.glb", tetrahedron_glb("{\"mesh\":0}"));
@@ -254,7 +254,7 @@ static mesh_import *one_triangle(const char *node)
     return got;
 }
 
-static void gltf_with_its_buffer_inside(void **state)
+static void a_gltf_with_an_embedded_buffer_is_read(void **state)
 {
     (void)state;
     mesh_import *got = one_triangle("{\"mesh\":0,\"translation\":[0,0,0.5]}");
@@ -264,13 +264,13 @@ static void gltf_with_its_buffer_inside(void **state)
     assert_vec3(corner(got->mesh, 0, 2), 0, 1, 0.5);
     assert_false(got->materials[0].given);
     mesh_import_destroy(got);
-    got = one_triangle("{\"mesh\":0,\"scale\":[-1,1,1]}"); /* open: nothing else flips it */
+    got = one_triangle("{\"mesh\":0,\"scale\":[-1,1,1]}"); /* the mesh is open: nothing else inverts it */
     assert_vec3(corner(got->mesh, 0, 1), 0, 1, 0);
     assert_vec3(corner(got->mesh, 0, 2), -1, 0, 0);
     mesh_import_destroy(got);
 }
 
-static void awkward_names_are_only_names(void **state)
+static void unusual_file_names_are_read(void **state)
 {
     (void)state;
     static const char *const names[] = {"-o.obj", "a b;c: d.obj", "$(touch x).obj", "LOUD.OBJ"};
@@ -281,19 +281,19 @@ static void awkward_names_are_only_names(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(obj_with_two_materials),
-        cmocka_unit_test(textures_of_other_spellings_are_found),
+        cmocka_unit_test(an_obj_with_two_materials_is_read),
+        cmocka_unit_test(texture_paths_are_found_in_other_spellings),
         cmocka_unit_test(obj_polygons_are_triangulated),
-        cmocka_unit_test(vertices_that_nearly_coincide_stay_apart),
-        cmocka_unit_test(ply_text),
-        cmocka_unit_test(ply_binary),
-        cmocka_unit_test(stl_text),
-        cmocka_unit_test(stl_binary),
-        cmocka_unit_test(glb_keeps_every_bit),
-        cmocka_unit_test(nodes_move_their_meshes),
-        cmocka_unit_test(mirrored_and_turned_nodes_keep_their_fronts),
-        cmocka_unit_test(gltf_with_its_buffer_inside),
-        cmocka_unit_test(awkward_names_are_only_names),
+        cmocka_unit_test(nearly_coincident_vertices_are_not_merged),
+        cmocka_unit_test(an_ascii_ply_is_read),
+        cmocka_unit_test(a_binary_ply_is_read_exactly),
+        cmocka_unit_test(an_ascii_stl_is_read),
+        cmocka_unit_test(a_binary_stl_is_read_exactly),
+        cmocka_unit_test(a_glb_is_read_exactly),
+        cmocka_unit_test(nodes_translate_their_meshes_in_double_precision),
+        cmocka_unit_test(mirrored_and_rotated_nodes_keep_their_orientation),
+        cmocka_unit_test(a_gltf_with_an_embedded_buffer_is_read),
+        cmocka_unit_test(unusual_file_names_are_read),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,4 +1,5 @@
-/* Tests of the mesh generators. */
+/* Tests of the mesh generators: volumes and areas in closed form, convergence, orientation, texture coordinates, and
+ * refused arguments. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,7 +31,7 @@ static uint64_t float_hash(const mesh *m, size_t *bytes)
 
 /* The expected hashes are those of the triangles that the reference program embree_bench (gcc -O3 -march=native, with
  * fused multiply-add) dumped with -d bin. */
-static void triangle_sets_are_the_peers_to_the_bit(void **state)
+static void triangle_sets_are_bit_identical_to_the_reference_programs(void **state)
 {
     (void)state;
     static const struct {
@@ -123,7 +124,7 @@ static void the_coarsest_icosphere_is_an_icosahedron(void **state)
 }
 
 /* The error of an inscribed polyhedron is proportional to the square of its edge, which bisection halves. */
-static void icospheres_converge_to_the_sphere_by_the_square(void **state)
+static void icospheres_converge_quadratically_to_the_sphere(void **state)
 {
     (void)state;
     double volume_short = 0.0, area_short = 0.0;
@@ -145,7 +146,7 @@ static void icospheres_converge_to_the_sphere_by_the_square(void **state)
     }
 }
 
-static void spheres_of_every_split_are_closed(void **state)
+static void spheres_of_every_subdivision_are_closed(void **state)
 {
     (void)state;
     for (size_t f = 1; f <= 40; f++) {
@@ -158,7 +159,7 @@ static void spheres_of_every_split_are_closed(void **state)
     }
 }
 
-static void a_sphere_has_longitude_and_latitude(void **state)
+static void a_spheres_texture_coordinates_are_longitude_and_latitude(void **state)
 {
     (void)state;
     mesh *m;
@@ -184,8 +185,8 @@ static void a_sphere_has_longitude_and_latitude(void **state)
     mesh_release(m);
 }
 
-/* Prisms about the axis: the volume of the solid of revolution times n sin(2 pi / n) / (2 pi); Pappus gives a
- * polygon's. */
+/* Prisms about the axis: the volume of the solid of revolution times n sin(2 pi / n) / (2 pi); a polygon's is given by
+ * Pappus. */
 static void a_torus_of_flat_faces_has_its_exact_volume(void **state)
 {
     (void)state;
@@ -204,7 +205,7 @@ static void a_torus_of_flat_faces_has_its_exact_volume(void **state)
 }
 
 /* 2 pi^2 R r^2 and 4 pi^2 R r; the error decreases with the square of the number of segments. */
-static void tori_converge_to_the_torus(void **state)
+static void torus_meshes_converge_quadratically_to_the_torus(void **state)
 {
     (void)state;
     double volume_short = 0.0, area_short = 0.0;
@@ -223,27 +224,27 @@ static void tori_converge_to_the_torus(void **state)
     }
 }
 
-static mesh *turned(const profile_point *profile, size_t count, int around, double crease_deg)
+static mesh *lathe_of(const profile_point *profile, size_t count, int around, double crease_deg)
 {
     mesh *m = NULL;
     assert_int_equal(generate_lathe(profile, count, around, crease_deg, &m, NULL), STATUS_OK);
     return m;
 }
 
-static void turned_cylinders_and_cones_are_prisms_and_pyramids(void **state)
+static void lathed_cylinders_and_cones_are_prisms_and_pyramids(void **state)
 {
     (void)state;
     const profile_point cylinder[] = {{0, -1}, {2, -1}, {2, 2}, {0, 2}},
                         cone[] = {{0, 3}, {1.5, 0}, {0, 0}}; /* one profile runs up, the other down */
     for (int n = 3; n <= 40; n += n < 8 ? 1 : 11) {
         const double polygon = 0.5 * n * sin(2.0 * pi / n), side = 2.0 * sin(pi / n), inner = cos(pi / n);
-        mesh *m = turned(cylinder, COUNT(cylinder), n, 30.0);
+        mesh *m = lathe_of(cylinder, COUNT(cylinder), n, 30.0);
         assert_sound(m, 2);
         assert_int_equal(m->triangle_count, 4 * n);
         assert_near(mesh_volume(m), polygon * 4.0 * 3.0, 1e-13);
         assert_near(mesh_area(m), 2.0 * polygon * 4.0 + n * 2.0 * side * 3.0, 1e-13);
         mesh_release(m);
-        m = turned(cone, COUNT(cone), n, 30.0);
+        m = lathe_of(cone, COUNT(cone), n, 30.0);
         assert_sound(m, 2);
         assert_int_equal(m->triangle_count, 2 * n);
         const double radius = 1.5, slant = sqrt(9.0 + radius * radius * inner * inner);
@@ -253,12 +254,12 @@ static void turned_cylinders_and_cones_are_prisms_and_pyramids(void **state)
     }
 }
 
-static void a_turned_ring_is_a_torus(void **state)
+static void a_lathed_ring_is_a_torus(void **state)
 {
     (void)state;
     const profile_point up[] = {{1, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 0}},
                         down[] = {{1, 0}, {1, 1}, {2, 1}, {2, 0}, {1, 0}};
-    mesh *a = turned(up, 5, 12, 30.0), *b = turned(down, 5, 12, 180.0);
+    mesh *a = lathe_of(up, 5, 12, 30.0), *b = lathe_of(down, 5, 12, 180.0);
     assert_sound(a, 0);
     assert_sound(b, 0);
     assert_near(mesh_volume(a), 6.0 * sin(pi / 6.0) * (4.0 - 1.0), 1e-13);
@@ -267,12 +268,12 @@ static void a_turned_ring_is_a_torus(void **state)
     mesh_release(b);
 }
 
-static void creases_keep_their_edges_and_others_are_round(void **state)
+static void edges_above_the_crease_angle_are_sharp_and_others_are_smooth(void **state)
 {
     (void)state;
     const profile_point barrel[] = {
         {0, 0}, {1, 0}, {1.1, 1}, {1, 2}, {0, 2}}; /* turns by 90 - 5.7 degrees, 11.4, and so on */
-    mesh *m = turned(barrel, COUNT(barrel), 16, 30.0);
+    mesh *m = lathe_of(barrel, COUNT(barrel), 16, 30.0);
     bool round = false, flat = false, slanted = false;
     for (size_t v = 0; v < m->vertex_count; v++) {
         const vec3 p = m->vertices[v], n = m->normals[v];
@@ -287,7 +288,7 @@ static void creases_keep_their_edges_and_others_are_round(void **state)
     }
     assert_true(round && flat && slanted);
     mesh_release(m);
-    m = turned((profile_point[]){{1, 0}, {1, 1}}, 2, 8, 30.0); /* a tube without thickness */
+    m = lathe_of((profile_point[]){{1, 0}, {1, 1}}, 2, 8, 30.0); /* a tube without thickness */
     assert_false(m->closed);
     assert_int_equal(m->hole.sharing, 1);
     assert_fronts(m);
@@ -295,12 +296,12 @@ static void creases_keep_their_edges_and_others_are_round(void **state)
 }
 
 /* A lens's apex turns by 2 atan 0.1 = 11.4 degrees across the axis. */
-static void an_apex_is_round_below_the_crease(void **state)
+static void an_apex_below_the_crease_angle_is_smooth(void **state)
 {
     (void)state;
     const profile_point lens[] = {{0, -0.1}, {1, 0}, {0, 0.1}};
     for (int sharp = 0; sharp < 2; sharp++) {
-        mesh *m = turned(lens, 3, 12, sharp ? 11.0 : 12.0);
+        mesh *m = lathe_of(lens, 3, 12, sharp ? 11.0 : 12.0);
         assert_sound(m, 2);
         for (size_t v = 0; v < m->vertex_count; v++)
             if (m->vertices[v].y > 0.0)
@@ -309,7 +310,7 @@ static void an_apex_is_round_below_the_crease(void **state)
     }
 }
 
-static void seams_meet_and_texture_coordinates_run_through(void **state)
+static void seams_coincide_and_texture_coordinates_are_continuous(void **state)
 {
     (void)state;
     mesh *m;
@@ -325,7 +326,7 @@ static void seams_meet_and_texture_coordinates_run_through(void **state)
     mesh_release(m);
 }
 
-static void a_box_has_its_volume_and_whole_textures(void **state)
+static void a_box_has_its_volume_and_a_whole_texture_on_each_side(void **state)
 {
     (void)state;
     mesh *m;
@@ -365,7 +366,7 @@ static void a_plane_height_field_has_its_exact_volume(void **state)
     mesh_release(m);
 }
 
-static void bad_numbers_are_refused_with_a_remedy(void **state)
+static void invalid_arguments_are_refused_with_a_remedy(void **state)
 {
     (void)state;
     mesh *m = NULL;
@@ -401,21 +402,21 @@ static void bad_numbers_are_refused_with_a_remedy(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(triangle_sets_are_the_peers_to_the_bit),
+        cmocka_unit_test(triangle_sets_are_bit_identical_to_the_reference_programs),
         cmocka_unit_test(the_coarsest_icosphere_is_an_icosahedron),
-        cmocka_unit_test(icospheres_converge_to_the_sphere_by_the_square),
-        cmocka_unit_test(spheres_of_every_split_are_closed),
-        cmocka_unit_test(a_sphere_has_longitude_and_latitude),
+        cmocka_unit_test(icospheres_converge_quadratically_to_the_sphere),
+        cmocka_unit_test(spheres_of_every_subdivision_are_closed),
+        cmocka_unit_test(a_spheres_texture_coordinates_are_longitude_and_latitude),
         cmocka_unit_test(a_torus_of_flat_faces_has_its_exact_volume),
-        cmocka_unit_test(tori_converge_to_the_torus),
-        cmocka_unit_test(turned_cylinders_and_cones_are_prisms_and_pyramids),
-        cmocka_unit_test(a_turned_ring_is_a_torus),
-        cmocka_unit_test(creases_keep_their_edges_and_others_are_round),
-        cmocka_unit_test(an_apex_is_round_below_the_crease),
-        cmocka_unit_test(seams_meet_and_texture_coordinates_run_through),
-        cmocka_unit_test(a_box_has_its_volume_and_whole_textures),
+        cmocka_unit_test(torus_meshes_converge_quadratically_to_the_torus),
+        cmocka_unit_test(lathed_cylinders_and_cones_are_prisms_and_pyramids),
+        cmocka_unit_test(a_lathed_ring_is_a_torus),
+        cmocka_unit_test(edges_above_the_crease_angle_are_sharp_and_others_are_smooth),
+        cmocka_unit_test(an_apex_below_the_crease_angle_is_smooth),
+        cmocka_unit_test(seams_coincide_and_texture_coordinates_are_continuous),
+        cmocka_unit_test(a_box_has_its_volume_and_a_whole_texture_on_each_side),
         cmocka_unit_test(a_plane_height_field_has_its_exact_volume),
-        cmocka_unit_test(bad_numbers_are_refused_with_a_remedy),
+        cmocka_unit_test(invalid_arguments_are_refused_with_a_remedy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Tests of meshes among analytic solids, by priority, against brute force: every crossing of every triangle and shape,
- * and between two crossings the winner at the midpoint by definition. test_media.c does the same without meshes. */
+/* Tests of meshes among analytic solids, by priority, against brute force: every crossing of every triangle and shape;
+ * between two crossings the winner is that of the midpoint by definition. test_media.c does the same without meshes. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -46,7 +46,7 @@ static void walk_agrees(const mesh_room *m, vec3 from, vec3 direction, walks *su
     sum->interfaces += n + 1;
 }
 
-static walks walk_about(int trials, uint64_t seed, bool on_a_grid)
+static walks walk_random_rooms(int trials, uint64_t seed, bool on_a_grid)
 {
     walks sum = {0, 0, 0, 0};
     for (int trial = 0; trial < trials; trial++) {
@@ -62,20 +62,20 @@ static walks walk_about(int trials, uint64_t seed, bool on_a_grid)
 static void rooms_with_meshes_agree_with_brute_force(void **state)
 {
     (void)state;
-    const walks sum = walk_about(440, 41, false);
+    const walks sum = walk_random_rooms(440, 41, false);
     assert_true(sum.interfaces > 8000 && sum.seen_meshes > 3000 && sum.skipped < 200);
 }
 
 static void mesh_boxes_with_coincident_faces_agree_with_brute_force(void **state)
 {
     (void)state;
-    const walks sum = walk_about(500, 42, true);
+    const walks sum = walk_random_rooms(500, 42, true);
     assert_true(sum.interfaces > 5000 && sum.seen_meshes > 2000 && sum.skipped < 2500);
 }
 
-/* Along faces and edges no answer is right, but the ray must end: media follow one another. A ray that is restarted
- * each time may hit the two sides of an edge in turn, at one position. */
-static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
+/* For rays along faces and edges every result is valid, but the ray must end: consecutive media match. A ray that is
+ * restarted each time may hit the two sides of an edge in turn, at one position. */
+static void rays_in_coincident_mesh_faces_terminate(void **state)
 {
     (void)state;
     uint64_t seed = 43;
@@ -111,8 +111,8 @@ static void rays_in_coincident_mesh_faces_come_to_an_end(void **state)
     assert_true(rays > 1000 && stuck * 10 < rays);
 }
 
-/* Is a point farther than that from every triangle's bounding box and every shape's surface? A fast, conservative
- * test. */
+/* Is a point farther than the given distance from every triangle's bounding box and every shape's surface? A fast,
+ * conservative test. */
 static bool is_clear_of_surfaces(const mesh_room *m, vec3 at)
 {
     for (int i = 0; i < m->r.count; i++) {
@@ -127,7 +127,7 @@ static bool is_clear_of_surfaces(const mesh_room *m, vec3 at)
     return true;
 }
 
-/* Mirrored or refracted at random at every interface: half way to the next one the ray is in the medium of its set. */
+/* Reflects or refracts at random at every interface: halfway to the next one the ray is in the medium of its set. */
 static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *asked)
 {
     const scene_geometry *a = m->r.solids;
@@ -148,7 +148,7 @@ static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *a
     }
 }
 
-static void sets_stay_true_on_long_walks_among_meshes(void **state)
+static void region_sets_stay_correct_on_long_walks_among_meshes(void **state)
 {
     (void)state;
     uint64_t seed = 44;
@@ -208,7 +208,7 @@ static void shadow_rays_among_meshes_agree_with_brute_force(void **state)
     assert_true(lit > 500 && dark > 500 && between > 100);
 }
 
-static void instruction_sets_agree_to_the_bit_on_meshes(void **state)
+static void instruction_sets_give_bit_identical_hits_on_meshes(void **state)
 {
     (void)state;
     static double c[6][ROW];
@@ -257,10 +257,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rooms_with_meshes_agree_with_brute_force),
         cmocka_unit_test(mesh_boxes_with_coincident_faces_agree_with_brute_force),
-        cmocka_unit_test(rays_in_coincident_mesh_faces_come_to_an_end),
-        cmocka_unit_test(sets_stay_true_on_long_walks_among_meshes),
+        cmocka_unit_test(rays_in_coincident_mesh_faces_terminate),
+        cmocka_unit_test(region_sets_stay_correct_on_long_walks_among_meshes),
         cmocka_unit_test(shadow_rays_among_meshes_agree_with_brute_force),
-        cmocka_unit_test(instruction_sets_agree_to_the_bit_on_meshes),
+        cmocka_unit_test(instruction_sets_give_bit_identical_hits_on_meshes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Tests of meshes whose vertices move: the recomputed values are those of mesh_finish, and an invalid move changes
- * nothing. */
+/* Tests of meshes whose vertices move: the recomputed values equal those of mesh_finish, and an invalid move has no
+ * effect. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -64,7 +64,7 @@ static void moved_as_finished(mesh *m, const vec3 *vertices, const vec3 *normals
     mesh_release(expected);
 }
 
-static void bounds_are_of_the_vertices_that_triangles_use(void **state)
+static void bounds_include_only_vertices_of_triangles(void **state)
 {
     (void)state;
     mesh *m = sheet(false);
@@ -75,7 +75,7 @@ static void bounds_are_of_the_vertices_that_triangles_use(void **state)
     mesh_release(m);
 }
 
-static void bounds_are_found_in_meshes_of_many_pieces(void **state)
+static void bounds_of_large_meshes_are_those_of_mesh_finish(void **state)
 {
     (void)state;
     uint64_t seed = 1;
@@ -96,7 +96,7 @@ static void bounds_are_found_in_meshes_of_many_pieces(void **state)
     mesh_release(m);
 }
 
-static void one_coordinate_that_is_no_float_shows(void **state)
+static void a_coordinate_that_is_no_float_clears_single(void **state)
 {
     (void)state;
     mesh *m = sheet(false);
@@ -125,7 +125,7 @@ static void one_coordinate_that_is_no_float_shows(void **state)
     mesh_release(m);
 }
 
-static void normals_become_unit_vectors(void **state)
+static void normals_are_normalised(void **state)
 {
     (void)state;
     mesh *m = sheet(true);
@@ -142,12 +142,12 @@ static void normals_become_unit_vectors(void **state)
     assert_memory_equal(m->normals, before, sizeof before);
     mesh_release(m);
     m = sheet(false);
-    assert_int_equal(mesh_move(m, to, normals, NULL), STATUS_OK); /* it has no normals */
+    assert_int_equal(mesh_move(m, to, normals, NULL), STATUS_OK); /* the mesh has no normals */
     assert_null(m->normals);
     mesh_release(m);
 }
 
-static void what_cannot_be_changes_nothing(void **state)
+static void an_invalid_move_has_no_effect(void **state)
 {
     (void)state;
     const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, 1.0000001e9, -2e9};
@@ -185,7 +185,7 @@ static void what_cannot_be_changes_nothing(void **state)
     mesh_release(m);
 }
 
-static void a_mesh_of_nothing_can_be_moved(void **state)
+static void an_empty_mesh_can_be_moved(void **state)
 {
     (void)state;
     mesh *m = NULL;
@@ -199,12 +199,12 @@ static void a_mesh_of_nothing_can_be_moved(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bounds_are_of_the_vertices_that_triangles_use),
-        cmocka_unit_test(bounds_are_found_in_meshes_of_many_pieces),
-        cmocka_unit_test(one_coordinate_that_is_no_float_shows),
-        cmocka_unit_test(normals_become_unit_vectors),
-        cmocka_unit_test(what_cannot_be_changes_nothing),
-        cmocka_unit_test(a_mesh_of_nothing_can_be_moved),
+        cmocka_unit_test(bounds_include_only_vertices_of_triangles),
+        cmocka_unit_test(bounds_of_large_meshes_are_those_of_mesh_finish),
+        cmocka_unit_test(a_coordinate_that_is_no_float_clears_single),
+        cmocka_unit_test(normals_are_normalised),
+        cmocka_unit_test(an_invalid_move_has_no_effect),
+        cmocka_unit_test(an_empty_mesh_can_be_moved),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

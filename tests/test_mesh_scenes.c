@@ -15,7 +15,7 @@
     "camera: {position: [1.1, 1.3, -4], target: [0.1, 0.4, 0], fov_deg: 42}\n"         \
     "lights: {lamp: {position: [3, 5, -4]}, other: {position: [-4, 3, -1], intensity: 0.5}}\n"
 
-/* A box as a scene file has it, and as twelve triangles. */
+/* A scene of boxes, as analytic solids or as meshes of twelve triangles. */
 static scene_text with_boxes(const char *solids, bool as_mesh)
 {
     scene_text t = {.length = 0};
@@ -48,10 +48,11 @@ static void expect_same_tree(const ray_tree *a, const ray_tree *b, double *worst
         *worst = fmax(*worst, fabs(a->radiance[c] - b->radiance[c]));
 }
 
-static void mesh_boxes_are_boxes(void **state)
+static void mesh_boxes_have_the_ray_trees_of_boxes(void **state)
 {
     (void)state;
-    /* without a checker where an analytic box stands on it: whose checker is visible there is undefined */
+    /* without a checker where an analytic box is exactly on the ground: which of the two surfaces is visible there is
+     * undefined */
     static const char *const ground[] = {
         "  ground: {shape: plane, color: [0.8, 0.5, 0.3], checker: 0.4, checker_color: [0.1, 0.3, 0.2], diffuse: 0.8, "
         "ambient: 0.1}\n",
@@ -68,7 +69,7 @@ static void mesh_boxes_are_boxes(void **state)
         "  glass: {@[0.5, 1.6, 0.4], transparency: 1, ior: 1.5, position: [0.1, 0.95, 0], rotation: [0, 0, 20], "
         "priority: 2}\n"
         "  stick: {@[0.1, 1.2, 0.1], diffuse: 0.7, position: [0.3, 0.8, -0.2], rotation: [20, 0, 0], priority: 1}\n",
-        /* standing exactly on the ground, next to each other, nested, and flush with an analytic box */
+        /* exactly on the ground, next to each other, nested, and flush with an analytic box */
         "  glass: {@[1, 1, 1], transparency: 1, ior: 1.5, position: [0, 0.5, 0], priority: 1}\n",
         "  glass: {@[1, 1, 1], transparency: 1, ior: 1.5, position: [-0.5, 0.5, 0], priority: 1}\n"
         "  heavy: {@[1, 1, 1], transparency: 1, ior: 1.8, position: [0.5, 0.5, 0], priority: 1}\n",
@@ -95,9 +96,8 @@ static void mesh_boxes_are_boxes(void **state)
     }
 }
 
-/* The ground's own checker is visible through the bottom of a block that stands exactly on it, whichever surface comes
- * first. */
-static void through_a_mesh_block_the_ground_is_the_ground(void **state)
+/* The ground's own checker is visible through the bottom of a block exactly on it, whichever surface comes first. */
+static void the_grounds_checker_is_visible_through_a_block_on_it(void **state)
 {
     (void)state;
     const scene_text t = with_boxes("  ground: {shape: plane, position: [0.05, 0, 0.03], color: [1, 0, 0], "
@@ -124,18 +124,18 @@ static void through_a_mesh_block_the_ground_is_the_ground(void **state)
     stage_close(&g);
 }
 
-static void a_mesh_of_the_liquids_own_index_is_not_seen(void **state)
+static void a_mesh_with_the_liquids_index_is_invisible(void **state)
 {
     (void)state;
-    static const char worker_pool[] =
+    static const char basin[] =
         "  water: {shape: box, size: [2, 1, 2], transparency: 1, ior: 1.33, position: [0, 0.5, 0], priority: 1}\n";
     char both[1024];
     snprintf(both, sizeof both,
              "%s  lump: {shape: mesh, mesh: ring, transparency: 1, ior: 1.33, position: [0, 0.5, 0], rotation: [50, 0, "
              "0], priority: 2}\n",
-             worker_pool);
+             basin);
     scene_text a = {.length = 0}, b = {.length = 0};
-    add(&a, "%ssolids:\n%s", FRAME, worker_pool);
+    add(&a, "%ssolids:\n%s", FRAME, basin);
     add(&b, "%smeshes: {ring: {generate: torus, major: 0.4, minor: 0.15, around: 40, tube: 20}}\nsolids:\n%s", FRAME,
         both);
     scene *without = scene_with_meshes(a.at, "render.width=96 render.height=72"),
@@ -248,7 +248,7 @@ static void glass_meshes_converge_to_torus_cone_and_frustum(void **state)
 }
 
 /* The lathe's first corner is at +z, the prism's at -z. */
-static void a_lathe_of_few_segments_is_a_prism(void **state)
+static void a_lathe_of_few_segments_looks_like_a_prism(void **state)
 {
     (void)state;
     for (int sides = 3; sides <= 8; sides++) {
@@ -286,12 +286,12 @@ static void a_mesh_vessel_looks_like_the_cup(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mesh_boxes_are_boxes),
-        cmocka_unit_test(through_a_mesh_block_the_ground_is_the_ground),
-        cmocka_unit_test(a_mesh_of_the_liquids_own_index_is_not_seen),
+        cmocka_unit_test(mesh_boxes_have_the_ray_trees_of_boxes),
+        cmocka_unit_test(the_grounds_checker_is_visible_through_a_block_on_it),
+        cmocka_unit_test(a_mesh_with_the_liquids_index_is_invisible),
         cmocka_unit_test(a_glass_mesh_sphere_converges_to_the_sphere),
         cmocka_unit_test(glass_meshes_converge_to_torus_cone_and_frustum),
-        cmocka_unit_test(a_lathe_of_few_segments_is_a_prism),
+        cmocka_unit_test(a_lathe_of_few_segments_looks_like_a_prism),
         cmocka_unit_test(a_mesh_vessel_looks_like_the_cup),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* Tests of mesh shading at points where the result is known: Phong's sum with flat, interpolated and vertex values;
- * textures; and the limits of shading normals. */
+/* Tests of mesh shading at points with a known result: Phong's sum with flat, interpolated and vertex values; textures;
+ * and the limits of shading normals. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -64,7 +64,7 @@ static double phong(vec3 n, vec3 at, vec3 eye, double k_d, double k_s, double sh
     return n_l > 0.0 ? k_d * n_l + k_s * pow(fmax(vec3_dot(r, v), 0.0), shininess) : 0.0;
 }
 
-static void phongs_sum_at_known_points(void **state)
+static void phongs_sum_has_its_known_values(void **state)
 {
     (void)state;
     static const char *const rules[] = {"flat", "smooth", "gouraud"};
@@ -106,7 +106,7 @@ static void phongs_sum_at_known_points(void **state)
     }
 }
 
-static void light_behind_the_plane_leaves_the_ambient(void **state)
+static void light_behind_the_plane_adds_nothing_to_the_ambient_term(void **state)
 {
     (void)state;
     static const char *const rules[] = {"flat", "smooth", "gouraud"};
@@ -123,7 +123,7 @@ static void light_behind_the_plane_leaves_the_ambient(void **state)
 }
 
 /* Two coincident open sheets have no self-shadow and leak no light. */
-static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
+static void coincident_sheets_have_no_self_shadow_and_no_light_leaks(void **state)
 {
     (void)state;
     static const char *const sheets[] = {
@@ -157,9 +157,9 @@ static void doubled_sheets_have_no_acne_and_no_leaks(void **state)
     }
 }
 
-/* On a coarse smooth ball, inside and outside, mirrored rays stay on their side of the triangle and refracted rays
+/* On a coarse smooth ball, inside and outside, reflected rays stay on their side of the triangle and refracted rays
  * leave it. */
-static void bent_normals_keep_rays_on_their_sides(void **state)
+static void interpolated_normals_keep_rays_on_their_side(void **state)
 {
     (void)state;
     static const char text[] =
@@ -191,7 +191,7 @@ static void bent_normals_keep_rays_on_their_sides(void **state)
 }
 
 /* The white furnace (test_furnace.c) with nested meshes. */
-static void meshes_in_a_furnace_lose_nothing(void **state)
+static void meshes_in_a_furnace_conserve_energy(void **state)
 {
     (void)state;
     static const char text[] =
@@ -222,8 +222,8 @@ static void meshes_in_a_furnace_lose_nothing(void **state)
     }
 }
 
-/* exp(-a d) over the path through a box and through the centre of a fine sphere, straight on. */
-static void absorption_over_lengths_in_meshes(void **state)
+/* exp(-a d) over the path straight through a box and through the centre of a fine sphere. */
+static void absorption_in_meshes_has_its_closed_form(void **state)
 {
     (void)state;
     static const char *const regions[] = {"{generate: box, size: [2, 1, 2]}", "{generate: icosphere, level: 6}"};
@@ -256,7 +256,7 @@ static void expect_texel(const ray_tree *tree, double u, double v)
 }
 
 /* A texture in front of a viewer at -z who looks along +z begins at the viewer's left, on every shape. */
-static void textures_at_known_points(void **state)
+static void textures_have_the_expected_texels(void **state)
 {
     (void)state;
     static const char head[] =
@@ -307,7 +307,7 @@ static const char *refusal_of(const char *text, const char *assignments, char *r
     return room;
 }
 
-static void an_open_dielectric_names_its_hole(void **state)
+static void an_open_dielectric_is_refused_with_its_open_edge(void **state)
 {
     (void)state;
     char why[DIAGNOSTIC_TEXT_MAX];
@@ -319,7 +319,7 @@ static void an_open_dielectric_names_its_hole(void **state)
     assert_string_equal(refusal_of(open, "render.transmission=simple lens.transparency=0.9", why), "");
 }
 
-static void spectral_films_refuse_textures_and_faces(void **state)
+static void spectral_films_refuse_textures(void **state)
 {
     (void)state;
     char why[DIAGNOSTIC_TEXT_MAX];
@@ -373,9 +373,9 @@ static void faces_are_shaded_by_their_materials(void **state)
     rmdir(folder);
 }
 
-/* A file's Ke sets the emission: its brightest channel the intensity, in the surface's colour, or in Ke's own colour if
- * the surface is black; otherwise the solid's emission. */
-static void faces_shine_as_their_materials_say(void **state)
+/* A file's Ke sets the emission: its brightest channel is the intensity, in the surface's colour, or in Ke's own colour
+ * if the surface is black; otherwise the solid's emission applies. */
+static void faces_emit_by_their_materials(void **state)
 {
     (void)state;
     char folder[] = "/tmp/cuvette-shine-XXXXXX", path[64], library[64], text[1024];
@@ -415,17 +415,17 @@ static void faces_shine_as_their_materials_say(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(phongs_sum_at_known_points),
-        cmocka_unit_test(light_behind_the_plane_leaves_the_ambient),
-        cmocka_unit_test(doubled_sheets_have_no_acne_and_no_leaks),
-        cmocka_unit_test(bent_normals_keep_rays_on_their_sides),
-        cmocka_unit_test(meshes_in_a_furnace_lose_nothing),
-        cmocka_unit_test(absorption_over_lengths_in_meshes),
-        cmocka_unit_test(textures_at_known_points),
-        cmocka_unit_test(an_open_dielectric_names_its_hole),
-        cmocka_unit_test(spectral_films_refuse_textures_and_faces),
+        cmocka_unit_test(phongs_sum_has_its_known_values),
+        cmocka_unit_test(light_behind_the_plane_adds_nothing_to_the_ambient_term),
+        cmocka_unit_test(coincident_sheets_have_no_self_shadow_and_no_light_leaks),
+        cmocka_unit_test(interpolated_normals_keep_rays_on_their_side),
+        cmocka_unit_test(meshes_in_a_furnace_conserve_energy),
+        cmocka_unit_test(absorption_in_meshes_has_its_closed_form),
+        cmocka_unit_test(textures_have_the_expected_texels),
+        cmocka_unit_test(an_open_dielectric_is_refused_with_its_open_edge),
+        cmocka_unit_test(spectral_films_refuse_textures),
         cmocka_unit_test(faces_are_shaded_by_their_materials),
-        cmocka_unit_test(faces_shine_as_their_materials_say),
+        cmocka_unit_test(faces_emit_by_their_materials),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

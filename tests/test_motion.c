@@ -1,4 +1,4 @@
-/* A scene that moves: its film at each moment is that of the scene with its slimes' time_s set, loaded afresh. */
+/* Tests of a moving scene: its film at each time equals that of the scene loaded with that time_s for its slimes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -63,10 +63,10 @@ static scene_motion *begin(scene *s)
     return m;
 }
 
-static void advance(scene_motion *m, double time_s, bool skins)
+static void advance(scene_motion *m, double time_s, bool surfaces)
 {
     diagnostic why = {0};
-    worked(scene_motion_advance(m, time_s, skins, &why), &why);
+    worked(scene_motion_advance(m, time_s, surfaces, &why), &why);
 }
 
 static void expect_films(const char *assignments)
@@ -79,25 +79,26 @@ static void expect_films(const char *assignments)
         const uint64_t seen = film_of(s);
         if (seen != film_afresh(assignments, moments[i]))
             fail_msg("%s: another film at %g s", assignments, moments[i]);
-        assert_true((seen == before) == (i > 0 && moments[i] == moments[i - 1])); /* it does move */
+        assert_true((seen == before) == (i > 0 && moments[i] == moments[i - 1])); /* the film changes */
         before = seen;
     }
     scene_motion_destroy(m);
     scene_destroy(s);
 }
 
-static void a_film_is_that_of_the_scene_at_its_moment(void **state)
+static void the_film_is_that_of_the_scene_loaded_at_its_time(void **state)
 {
     (void)state;
-    static const char *const ways[] = {"render.threads=1",          "render.threads=2 toy.threads=2 drop.threads=2",
-                                       "render.keep=off",           "render.accel=octant",
-                                       "render.rebuild=1",          "render.rebuild=1000 render.build_threads=2",
-                                       "render.integrator=zbuffer", "toy.integrator=verlet drop.integrator=implicit"};
-    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
-        expect_films(ways[i]);
+    static const char *const settings[] = {
+        "render.threads=1",          "render.threads=2 toy.threads=2 drop.threads=2",
+        "render.keep=off",           "render.accel=octant",
+        "render.rebuild=1",          "render.rebuild=1000 render.build_threads=2",
+        "render.integrator=zbuffer", "toy.integrator=verlet drop.integrator=implicit"};
+    for (size_t i = 0; i < sizeof settings / sizeof *settings; i++)
+        expect_films(settings[i]);
 }
 
-static void it_begins_at_time_0_with_all_else_loaded(void **state)
+static void a_motion_starts_at_time_0_with_all_meshes_loaded(void **state)
 {
     (void)state;
     scene *s = toys_with("render.threads=2");
@@ -113,11 +114,11 @@ static void it_begins_at_time_0_with_all_else_loaded(void **state)
     assert_non_null(s->meshes[0].data);
     assert_true(film_of(s) == film_afresh("render.threads=1", 0.0));
     scene_motion_destroy(m);
-    assert_non_null(s->meshes[1].data); /* as it lies */
+    assert_non_null(s->meshes[1].data); /* the mesh at its current time */
     scene_destroy(s);
 }
 
-static void frames_that_are_not_rendered_leave_the_skins(void **state)
+static void advancing_without_surfaces_keeps_the_film(void **state)
 {
     (void)state;
     scene *s = toys_with("render.threads=1");
@@ -132,7 +133,7 @@ static void frames_that_are_not_rendered_leave_the_skins(void **state)
     scene_destroy(s);
 }
 
-static void the_latest_advance_is_accounted_for(void **state)
+static void the_report_counts_the_latest_advance(void **state)
 {
     (void)state;
     scene *s = toys_with("render.threads=1 render.rebuild=1000");
@@ -155,7 +156,7 @@ static void the_latest_advance_is_accounted_for(void **state)
     scene_destroy(s);
 }
 
-/* A clone holds the skins too: they stay where they were for it, and the scene gets others. */
+/* A clone shares the slimes' surfaces: they stay unchanged for it, and the scene gets new ones. */
 static void a_clone_does_not_move(void **state)
 {
     (void)state;
@@ -172,14 +173,15 @@ static void a_clone_does_not_move(void **state)
     assert_true(film_of(s) == film_afresh("render.threads=1", 0.3));
     const mesh *own = s->meshes[1].data;
     advance(m, 0.4, true);
-    assert_ptr_equal(own, s->meshes[1].data); /* in place, now that it is its own again */
+    assert_ptr_equal(own, s->meshes[1].data); /* in place, once the mesh has one owner again */
     scene_destroy(copy);
     scene_motion_destroy(m);
     scene_destroy(s);
 }
 
-/* It goes on in another scene that has the same slimes, and the one that it left has what it had. */
-static void it_goes_over_to_another_scene(void **state)
+/* The motion continues in another scene that has the same slimes, and the scene that it left gets its own meshes
+ * back. */
+static void a_motion_joins_another_scene_with_the_same_slimes(void **state)
 {
     (void)state;
     scene *s = toys_with("render.threads=1"),
@@ -189,13 +191,13 @@ static void it_goes_over_to_another_scene(void **state)
     const mesh *own = s->meshes[1].data;
     scene_motion *m = begin(s);
     advance(m, 0.1, true);
-    const mesh *skin = s->meshes[1].data;
+    const mesh *surface = s->meshes[1].data;
     bool joined = false;
     worked(scene_motion_join(m, other, &joined, &why), &why);
     assert_true(joined);
     assert_ptr_equal(s->meshes[1].data, own);
     assert_true(s->meshes[1].time_s == 0.4 && s->meshes[1].account.steps == 400);
-    assert_ptr_equal(other->meshes[1].data, skin);
+    assert_ptr_equal(other->meshes[1].data, surface);
     assert_true(other->meshes[1].time_s == 0.1 && other->meshes[2].time_s == 0.1);
     worked(scene_load(other, &why), &why);
     advance(m, 0.3, true);
@@ -213,7 +215,7 @@ static void it_goes_over_to_another_scene(void **state)
     scene_destroy(other);
 }
 
-static void a_scene_that_cannot_move_stays_as_it_was(void **state)
+static void a_scene_that_cannot_move_is_unchanged(void **state)
 {
     (void)state;
     scene *s = scene_from("meshes: {pin: {generate: icosphere}}\n");
@@ -233,7 +235,7 @@ static void a_scene_that_cannot_move_stays_as_it_was(void **state)
     scene_motion_destroy(NULL);
 }
 
-static void a_body_that_blows_up_says_so(void **state)
+static void an_unstable_slime_is_reported(void **state)
 {
     (void)state;
     scene *s = toys_with("toy.stiffness=1e7 toy.dt_s=0.1");
@@ -251,32 +253,33 @@ static bool leave(void *context, double share_done)
     return false;
 }
 
-/* Left at the first question of a long way, and again; then it goes where one goes whom nobody asks. */
-static void a_way_that_is_stopped_goes_on(void **state)
+/* Interrupted at the first check of a long advance, twice; afterwards the motion equals one that was never
+ * interrupted. */
+static void an_interrupted_advance_can_be_continued(void **state)
 {
     (void)state;
     const double far_s = 40.0;
     scene *s = toys_with(""), *straight = toys_with("");
-    scene_motion *m = begin(s), *way = begin(straight);
-    const mesh *skin = s->meshes[1].data;
-    const vec3 first = skin->vertices[0];
+    scene_motion *m = begin(s), *uninterrupted = begin(straight);
+    const mesh *surface = s->meshes[1].data;
+    const vec3 first = surface->vertices[0];
     for (int i = 0; i < 2; i++) {
         double share = -1.0;
         diagnostic why = {0};
         assert_int_equal(scene_motion_advance_until(m, 4000.0, true, &(load_watch){leave, &share}, &why),
                          STATUS_INTERRUPTED);
-        assert_true(share > 0.0 && share < 0.5); /* of two, on the way of the first */
-        assert_true(s->meshes[1].data == skin && s->meshes[1].time_s == 0.0 && s->meshes[1].account.steps == 0);
-        assert_memory_equal(&skin->vertices[0], &first, sizeof first);
+        assert_true(share > 0.0 && share < 0.5); /* of two slimes, during the first */
+        assert_true(s->meshes[1].data == surface && s->meshes[1].time_s == 0.0 && s->meshes[1].account.steps == 0);
+        assert_memory_equal(&surface->vertices[0], &first, sizeof first);
     }
     advance(m, far_s, true);
-    advance(way, far_s, true);
+    advance(uninterrupted, far_s, true);
     assert_true(s->meshes[1].account.steps == straight->meshes[1].account.steps && s->meshes[1].time_s == far_s);
     for (int i = 1; i < 3; i++)
         assert_memory_equal(s->meshes[i].data->vertices, straight->meshes[i].data->vertices,
                             s->meshes[i].data->vertex_count * sizeof first);
     scene_motion_destroy(m);
-    scene_motion_destroy(way);
+    scene_motion_destroy(uninterrupted);
     scene_destroy(s);
     scene_destroy(straight);
 }
@@ -284,15 +287,15 @@ static void a_way_that_is_stopped_goes_on(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_film_is_that_of_the_scene_at_its_moment),
-        cmocka_unit_test(it_begins_at_time_0_with_all_else_loaded),
-        cmocka_unit_test(frames_that_are_not_rendered_leave_the_skins),
-        cmocka_unit_test(the_latest_advance_is_accounted_for),
+        cmocka_unit_test(the_film_is_that_of_the_scene_loaded_at_its_time),
+        cmocka_unit_test(a_motion_starts_at_time_0_with_all_meshes_loaded),
+        cmocka_unit_test(advancing_without_surfaces_keeps_the_film),
+        cmocka_unit_test(the_report_counts_the_latest_advance),
         cmocka_unit_test(a_clone_does_not_move),
-        cmocka_unit_test(it_goes_over_to_another_scene),
-        cmocka_unit_test(a_scene_that_cannot_move_stays_as_it_was),
-        cmocka_unit_test(a_body_that_blows_up_says_so),
-        cmocka_unit_test(a_way_that_is_stopped_goes_on),
+        cmocka_unit_test(a_motion_joins_another_scene_with_the_same_slimes),
+        cmocka_unit_test(a_scene_that_cannot_move_is_unchanged),
+        cmocka_unit_test(an_unstable_slime_is_reported),
+        cmocka_unit_test(an_interrupted_advance_can_be_continued),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,8 +83,8 @@ static void equal_directions_have_equal_frames(void **state)
     assert_true(y.x == other_y.x && y.y == other_y.y && y.z == other_y.z);
 }
 
-/* The double angle by trigonometry. */
-static void a_turn_is_the_double_angle(void **state)
+/* The double angle computed by trigonometry. */
+static void a_frame_rotation_uses_the_double_angle(void **state)
 {
     (void)state;
     uint64_t seed = 2;
@@ -103,7 +103,7 @@ static void a_turn_is_the_double_angle(void **state)
 }
 
 /* Light along +45 degrees is u = 1 in the frame, and q = 1 in the frame rotated to it. */
-static void a_turned_frame_sees_the_same_light(void **state)
+static void a_rotated_frame_describes_the_same_light(void **state)
 {
     (void)state;
     uint64_t seed = 3;
@@ -123,7 +123,7 @@ static void a_turned_frame_sees_the_same_light(void **state)
     }
 }
 
-static void half_a_turn_is_no_turn(void **state)
+static void a_rotation_by_180_degrees_is_the_identity(void **state)
 {
     (void)state;
     uint64_t seed = 4;
@@ -143,7 +143,7 @@ static void half_a_turn_is_no_turn(void **state)
 /* --- one interface --- */
 
 /* tan theta_B = n: reflected light is polarised along s, with R_s = ((n^2 - 1) / (n^2 + 1))^2. Hecht, 8.6.1. */
-static void brewsters_angle_polarises_fully_along_s(void **state)
+static void reflection_at_brewsters_angle_is_fully_polarised_along_s(void **state)
 {
     (void)state;
     uint64_t seed = 5;
@@ -188,7 +188,7 @@ static void transmittances_agree_with_the_sine_laws(void **state)
 
 /* A pile of plates, light that is never reflected: T_s / T_p = cos^2 (i - t) at each surface, so that after k of them P
  * = (1 - cos^2k (i - t)) / (1 + cos^2k (i - t)). Born and Wolf, 7th ed., 1.5.3; Hecht, 8.6.1. */
-static void a_pile_of_plates_polarises_by_its_surfaces(void **state)
+static void a_pile_of_plates_has_its_degree_of_polarisation(void **state)
 {
     (void)state;
     uint64_t seed = 6;
@@ -247,7 +247,7 @@ static double retardance_deg(mueller m)
 
 /* delta = delta_s - delta_p, tan(delta_s / 2) = -root / cos, tan(delta_p / 2) = -root / (n^2 cos), root = sqrt(sin^2 -
  * n^2), n < 1 the relative index. Born and Wolf, 7th ed., 1.5.4. */
-static void total_reflection_retards_s_and_p_apart(void **state)
+static void total_reflection_has_the_closed_form_retardance(void **state)
 {
     (void)state;
     for (size_t k = 0; k < COUNT(indices); k++)
@@ -270,7 +270,7 @@ static void total_reflection_retards_s_and_p_apart(void **state)
 
 /* The greatest difference of phase, tan(delta / 2) = (1 - n^2) / 2n at sin^2 = 2 n^2 / (1 + n^2): for glass of 1.51
  * 45 deg 56' at 51 deg 20'. Born and Wolf, 7th ed., 1.5.4. */
-static void glass_retards_most_at_51_degrees(void **state)
+static void the_retardance_of_glass_is_largest_at_51_degrees(void **state)
 {
     (void)state;
     const double n = 1.0 / 1.51, sine = sqrt(2.0 * n * n / (1.0 + n * n)), theta = asin(sine);
@@ -314,7 +314,7 @@ static void fresnels_rhomb_makes_linear_light_circular(void **state)
 
 /* --- energy, realisability --- */
 
-static void one_interface_weighs_unpolarised_light_as_fresnel_does(void **state)
+static void an_interface_weights_unpolarised_light_by_fresnel(void **state)
 {
     (void)state;
     uint64_t seed = 9;
@@ -334,7 +334,7 @@ static void one_interface_weighs_unpolarised_light_as_fresnel_does(void **state)
 }
 
 /* R_s + T_s = 1 = R_p + T_p: reflected and refracted light add up for every polarisation and every row. */
-static void reflected_and_refracted_add_up(void **state)
+static void reflected_and_refracted_light_add_up_to_the_incident(void **state)
 {
     (void)state;
     uint64_t seed = 10;
@@ -366,7 +366,7 @@ static mueller chain_mueller(const chain_step *c)
     }
 }
 
-static void light_and_rows_stay_realisable(void **state)
+static void light_and_rows_stay_physically_realisable(void **state)
 {
     (void)state;
     uint64_t seed = 11;
@@ -393,7 +393,7 @@ static void light_and_rows_stay_realisable(void **state)
 
 /* --- backwards and forwards --- */
 
-/* The product of the matrices in the order in which light passes them, with explicit frames. */
+/* The product of the matrices in the order of the light's path, with explicit frames. */
 static stokes forwards(const chain_step *steps, int count, stokes light)
 {
     vec3 x, y;
@@ -421,8 +421,8 @@ static stokes chain_row(const chain_step *steps, int count, stokes row)
     return row;
 }
 
-/* The light's last step out of a medium knows its angle only through cos_t: a grazing angle loses digits to the square
- * root. */
+/* For the light's last step out of a medium the angle is only known through cos_t: a grazing angle loses digits to the
+ * square root. */
 static int chain_grazes(const chain_step *steps, int count)
 {
     for (int k = 0; k < count; k++)
@@ -431,7 +431,7 @@ static int chain_grazes(const chain_step *steps, int count)
     return 0;
 }
 
-static void the_row_sees_what_the_forward_product_brings(void **state)
+static void the_analysers_row_equals_the_forward_product(void **state)
 {
     (void)state;
     uint64_t seed = 12;
@@ -487,7 +487,7 @@ static void the_tests_fields_obey_maxwell_at_an_interface(void **state)
 }
 
 /* The field itself, as a vector in space, through the same chain. */
-static void the_row_sees_what_the_field_brings(void **state)
+static void the_analysers_row_equals_the_fields_intensity(void **state)
 {
     (void)state;
     uint64_t seed = 14;
@@ -514,7 +514,7 @@ static void the_row_sees_what_the_field_brings(void **state)
 
 /* A mirror at normal incidence: the field is inverted, so that linear light keeps its plane in space, and circular
  * light changes its handedness. */
-static void a_mirror_keeps_planes_and_changes_hands(void **state)
+static void a_mirror_keeps_linear_planes_and_inverts_handedness(void **state)
 {
     (void)state;
     uint64_t seed = 15;
@@ -538,9 +538,9 @@ static void a_mirror_keeps_planes_and_changes_hands(void **state)
     }
 }
 
-/* Towards normal incidence s and p lose their plane, but nothing jumps: rows differ from the limit by at most the
- * rotation of the canonical frames and the angle's square times Fresnel's difference. */
-static void nothing_jumps_near_normal_incidence(void **state)
+/* Towards normal incidence s and p lose their plane, but the result is continuous: rows differ from the limit by at
+ * most the rotation of the canonical frames and the angle's square times Fresnel's difference. */
+static void rows_are_continuous_near_normal_incidence(void **state)
 {
     (void)state;
     uint64_t seed = 16;
@@ -548,7 +548,7 @@ static void nothing_jumps_near_normal_incidence(void **state)
     for (int i = 0; i < 3000; i++) {
         vec3 n = random_direction(&seed);
         if (fabs(n.z) < 0.01)
-            continue; /* where the canonical frame itself jumps */
+            continue; /* where the canonical frame is discontinuous */
         const stokes row = random_light(&seed);
         const double n_to = random_real(&seed, 1.0, 2.5), plane_deg = random_real(&seed, 0.0, 360.0);
         const double R = squared((1.0 - n_to) / (1.0 + n_to));
@@ -570,7 +570,7 @@ static void nothing_jumps_near_normal_incidence(void **state)
             stokes refracted_row = analyser_refract(row, d, n, cos_i, 1.0, n_to, refracted);
             assert_stokes_near(reflected_row, back, turn);
             assert_stokes_near(refracted_row, on, turn);
-            /* no frame rotates these */
+            /* no rotation of the frame affects these */
             assert_near(reflected_row.i, back.i, difference);
             assert_near(refracted_row.i, on.i, difference);
             assert_near(reflected_row.v, back.v, difference);
@@ -581,7 +581,7 @@ static void nothing_jumps_near_normal_incidence(void **state)
 }
 
 /* R_s,p = R (1 +- 2 theta^2 / n) to the second order in theta, from Fresnel's equations with cos = 1 - theta^2 / 2. */
-static void s_leads_p_by_the_angles_square(void **state)
+static void s_and_p_differ_by_the_square_of_the_angle(void **state)
 {
     (void)state;
     uint64_t seed = 17;
@@ -602,25 +602,25 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_are_orthonormal_and_right_handed),
         cmocka_unit_test(equal_directions_have_equal_frames),
-        cmocka_unit_test(a_turn_is_the_double_angle),
-        cmocka_unit_test(a_turned_frame_sees_the_same_light),
-        cmocka_unit_test(half_a_turn_is_no_turn),
-        cmocka_unit_test(brewsters_angle_polarises_fully_along_s),
+        cmocka_unit_test(a_frame_rotation_uses_the_double_angle),
+        cmocka_unit_test(a_rotated_frame_describes_the_same_light),
+        cmocka_unit_test(a_rotation_by_180_degrees_is_the_identity),
+        cmocka_unit_test(reflection_at_brewsters_angle_is_fully_polarised_along_s),
         cmocka_unit_test(transmittances_agree_with_the_sine_laws),
-        cmocka_unit_test(a_pile_of_plates_polarises_by_its_surfaces),
+        cmocka_unit_test(a_pile_of_plates_has_its_degree_of_polarisation),
         cmocka_unit_test(two_brewster_reflections_obey_malus),
-        cmocka_unit_test(total_reflection_retards_s_and_p_apart),
-        cmocka_unit_test(glass_retards_most_at_51_degrees),
+        cmocka_unit_test(total_reflection_has_the_closed_form_retardance),
+        cmocka_unit_test(the_retardance_of_glass_is_largest_at_51_degrees),
         cmocka_unit_test(fresnels_rhomb_makes_linear_light_circular),
-        cmocka_unit_test(one_interface_weighs_unpolarised_light_as_fresnel_does),
-        cmocka_unit_test(reflected_and_refracted_add_up),
-        cmocka_unit_test(light_and_rows_stay_realisable),
-        cmocka_unit_test(the_row_sees_what_the_forward_product_brings),
+        cmocka_unit_test(an_interface_weights_unpolarised_light_by_fresnel),
+        cmocka_unit_test(reflected_and_refracted_light_add_up_to_the_incident),
+        cmocka_unit_test(light_and_rows_stay_physically_realisable),
+        cmocka_unit_test(the_analysers_row_equals_the_forward_product),
         cmocka_unit_test(the_tests_fields_obey_maxwell_at_an_interface),
-        cmocka_unit_test(the_row_sees_what_the_field_brings),
-        cmocka_unit_test(a_mirror_keeps_planes_and_changes_hands),
-        cmocka_unit_test(nothing_jumps_near_normal_incidence),
-        cmocka_unit_test(s_leads_p_by_the_angles_square),
+        cmocka_unit_test(the_analysers_row_equals_the_fields_intensity),
+        cmocka_unit_test(a_mirror_keeps_linear_planes_and_inverts_handedness),
+        cmocka_unit_test(rows_are_continuous_near_normal_incidence),
+        cmocka_unit_test(s_and_p_differ_by_the_square_of_the_angle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,15 +23,15 @@ static extent extent_of(const softbody *b)
         e.farthest = fmax(e.farthest, vec3_length(r));
     }
     free(at);
-    mesh *skin;
-    assert_int_equal(softbody_surface(b, &skin, NULL), STATUS_OK);
-    for (size_t t = 0; t < skin->triangle_count; t++) {
-        const uint32_t *corner = skin->triangles[t].corner;
-        const vec3 p = skin->vertices[corner[0]];
-        const vec3 n = vec3_cross(vec3_sub(skin->vertices[corner[1]], p), vec3_sub(skin->vertices[corner[2]], p));
+    mesh *surface;
+    assert_int_equal(softbody_surface(b, &surface, NULL), STATUS_OK);
+    for (size_t t = 0; t < surface->triangle_count; t++) {
+        const uint32_t *corner = surface->triangles[t].corner;
+        const vec3 p = surface->vertices[corner[0]];
+        const vec3 n = vec3_cross(vec3_sub(surface->vertices[corner[1]], p), vec3_sub(surface->vertices[corner[2]], p));
         e.turned_over += vec3_dot(n, vec3_sub(p, a.center)) <= 0.0;
     }
-    mesh_release(skin);
+    mesh_release(surface);
     return e;
 }
 

@@ -1,4 +1,4 @@
-/* Slimes in scene files: the mesh is the skin of the body that the parameters and the script say, and nothing else. */
+/* Slimes in scene files: the mesh is the surface of the body that the parameters and the script say, and nothing else. */
 #include "study_fixture.h"
 
 #include "scene/model/params.h"
@@ -70,31 +70,31 @@ static mesh *skin_of(const mesh_entry *m, const hand_script *script, softbody_ac
 {
     const softbody_settings settings = slime_settings(m);
     softbody *b = NULL;
-    mesh *skin = NULL;
+    mesh *surface = NULL;
     diagnostic why = {0};
     worked(softbody_create(&settings, isa_best(), &b, &why), &why);
     if (script)
         assert_int_equal(softbody_follow(b, script, NULL), STATUS_OK);
     worked(softbody_advance(b, m->time_s, &why), &why);
-    worked(softbody_surface(b, &skin, &why), &why);
+    worked(softbody_surface(b, &surface, &why), &why);
     *account = softbody_measure(b);
     softbody_destroy(b);
-    return skin;
+    return surface;
 }
 
 static void expect_skin(const mesh_entry *m, const hand_script *script)
 {
     softbody_account account;
-    mesh *skin = skin_of(m, script, &account);
-    assert_int_equal(m->data->vertex_count, skin->vertex_count);
-    assert_int_equal(m->data->triangle_count, skin->triangle_count);
-    assert_memory_equal(m->data->vertices, skin->vertices, skin->vertex_count * sizeof *skin->vertices);
-    assert_memory_equal(m->data->normals, skin->normals, skin->vertex_count * sizeof *skin->normals);
+    mesh *surface = skin_of(m, script, &account);
+    assert_int_equal(m->data->vertex_count, surface->vertex_count);
+    assert_int_equal(m->data->triangle_count, surface->triangle_count);
+    assert_memory_equal(m->data->vertices, surface->vertices, surface->vertex_count * sizeof *surface->vertices);
+    assert_memory_equal(m->data->normals, surface->normals, surface->vertex_count * sizeof *surface->normals);
     assert_true(m->data->closed);
     assert_true(m->account.time_s == account.time_s && m->account.steps == account.steps &&
                 m->account.kinetic == account.kinetic);
     assert_int_equal(m->account.held, account.held);
-    mesh_release(skin);
+    mesh_release(surface);
 }
 
 /* Semi-implicit Euler after n steps: y0 + v n dt - g dt^2 n (n + 1) / 2, of the centre whatever the springs do. */
@@ -108,7 +108,7 @@ static void a_slime_that_falls_is_where_its_steps_say(void **state)
     assert_int_equal(m->data->triangle_count, 20 * 16);
     assert_true(fabs(m->account.center.x - n * dt) < 1e-12 && fabs(m->account.center.z - 3.0 * n * dt) < 1e-12);
     assert_true(fabs(m->account.center.y - (1.0 + 2.0 * n * dt - 9.81 * dt * dt * n * (n + 1.0) / 2.0)) < 1e-12);
-    vec3 sum = {0.0, 0.0, 0.0}; /* of the skin, whose every vertex is a mass */
+    vec3 sum = {0.0, 0.0, 0.0}; /* of the surface, whose every vertex is a mass */
     for (size_t i = 0; i < m->data->vertex_count; i++)
         sum = vec3_add(sum, m->data->vertices[i]);
     if (m->data->vertex_count == 10 * 16 + 2)
@@ -152,7 +152,7 @@ static void what_is_wrong_is_located_where_it_is_written(void **state)
     const fixture *f = *state;
     refused_at(f, toy, "toy.yaml", 6, 13, "scripts/tug.yaml");
     write_scripts(f, "hands:\n  left:\n    - {time_s: 1, move: [1, 0, 0]}\n");
-    refused_at(f, toy, "scripts/tug.yaml", 3, 7, "does not hold");
+    refused_at(f, toy, "scripts/tug.yaml", 3, 7, "without a grab");
     write_scripts(f, "");
     refused_at(f, toy, "scripts/tug.yaml", 1, 1, "empty");
     write_scripts(f, "hands:\n  left:\n    - {time_s: 0.02, grab: [9, 9, 9], towards: [0, 1, 0], reach: 1}\n");

@@ -210,26 +210,26 @@ static void no_ray_falls_between_faces(void **state)
     s.level = 3;
     softbody *b = toy_of(&s);
     steps_of(b, 50);
-    mesh *skin = NULL;
+    mesh *surface = NULL;
     diagnostic why = {.what = ""};
-    assert_int_equal(softbody_surface(b, &skin, &why), STATUS_OK);
+    assert_int_equal(softbody_surface(b, &surface, &why), STATUS_OK);
     size_t reached = 0;
     for (size_t e = 0; e < sizeof eyes / sizeof *eyes; e++)
-        for (size_t i = 0; i < 3 * skin->triangle_count; i++) {
-            const mesh_triangle *face = &skin->triangles[i / 3];
-            const vec3 from = skin->vertices[face->corner[i % 3]], to = skin->vertices[face->corner[(i + 1) % 3]];
+        for (size_t i = 0; i < 3 * surface->triangle_count; i++) {
+            const mesh_triangle *face = &surface->triangles[i / 3];
+            const vec3 from = surface->vertices[face->corner[i % 3]], to = surface->vertices[face->corner[(i + 1) % 3]];
             const vec3 ends[] = {from, vec3_scale(vec3_add(from, to), 0.5)};
             for (size_t k = 0; k < 2; k++) {
                 const vec3 direction = vec3_sub(ends[k], eyes[e]);
                 vec3 where;
-                if (vec3_dot(skin->normals[face->corner[i % 3]], direction) > -0.2 * vec3_length(direction))
+                if (vec3_dot(surface->normals[face->corner[i % 3]], direction) > -0.2 * vec3_length(direction))
                     continue; /* not towards the eye */
                 assert_true(softbody_pick(b, eyes[e], direction, &where));
                 reached++;
             }
         }
     assert_true(reached > 1000);
-    mesh_release(skin);
+    mesh_release(surface);
     softbody_destroy(b);
 }
 
@@ -287,7 +287,7 @@ static vec3 held_at(const softbody *b, const vec3 *first, size_t count)
     softbody_positions(b, at);
     for (size_t i = 0; i < count; i++)
         if (vec3_length(vec3_sub(first[i], vec3_make(0.0, 1.0, -1.0))) <
-            0.15) { /* well within reach of where the ray meets the skin */
+            0.15) { /* well within reach of where the ray meets the surface */
             sum = vec3_add(sum, vec3_sub(at[i], first[i]));
             held++;
         }
@@ -349,7 +349,7 @@ static void a_hand_that_holds_nothing_is_named(void **state)
     assert_int_equal(softbody_follow(b, script, NULL), STATUS_OK);
     diagnostic why = {.what = ""};
     assert_int_equal(softbody_advance(b, 0.01, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "the hand late takes hold of nothing"));
+    assert_non_null(strstr(why.what, "the hand late grabs nothing"));
     assert_string_equal(why.file, "two.yaml");
     assert_int_equal(why.line, 7);
     hand_script_destroy(script);
@@ -411,11 +411,11 @@ static void bad_nets_are_refused(void **state)
     diagnostic why = {.what = ""};
     net.face_count = 3;
     assert_int_equal(softbody_create_net(&net, &s, isa_best(), &b, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "do not close"));
+    assert_non_null(strstr(why.what, "are not closed"));
     net.face_count = 4;
     net.spring_count = 2;
     assert_int_equal(softbody_create_net(&net, &s, isa_best(), &b, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "spring 1 joins"));
+    assert_non_null(strstr(why.what, "spring 1 connects"));
 }
 
 int main(void)

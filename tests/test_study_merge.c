@@ -132,7 +132,7 @@ static void contradictions_are_errors(void **state)
     diagnostic why = {0};
     size_t count;
     assert_int_equal(study_merge(s, f->results, &count, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.what, "stands twice"));
+    assert_non_null(strstr(why.what, "duplicate row"));
     assert_non_null(strstr(why.file, "rows.shard-0-of-2.csv"));
     assert_int_equal(why.line, 19);
     study_destroy(s);

@@ -393,7 +393,7 @@ static void columns_that_a_row_needs_are_named(void **state)
     fixture_run(f, s);
     rearrange(f, rows_name, "repetition", NULL);
     diagnostic why = refusal_of(f, s);
-    assert_non_null(strstr(why.what, "no column repetition"));
+    assert_non_null(strstr(why.what, "lack the column repetition"));
     assert_non_null(strstr(why.remedy, "--results"));
     assert_int_equal(why.line, 1);
     study_destroy(s);
@@ -453,7 +453,7 @@ static void recorded_texts_that_mean_the_same_are_believed(void **state)
     assert_int_equal(fixture_run(f, s), 4);
     csv *rows = table_of(f, rows_name), *compared = table_of(f, compare_name);
     assert_int_equal(rows->row_count, 8);
-    assert_int_equal(compared->row_count, 2); /* nothing was compared anew */
+    assert_int_equal(compared->row_count, 2); /* nothing was compared again */
     csv_destroy(rows);
     csv_destroy(compared);
     free(before);
@@ -487,11 +487,11 @@ static void what_cannot_be_verified_is_refused(void **state)
     expect_refusal(f, s, "cannot be read");
     fixture_write(f, manifest_name, manifest);
     replace(f, manifest_name, unknown, "0123456789abcdee");
-    expect_refusal(f, s, "another than the manifest.json beside them");
+    expect_refusal(f, s, "differs from that in the manifest.json");
     fixture_write(f, manifest_name, "{\"study\": {}}");
-    expect_refusal(f, s, "does not say");
+    expect_refusal(f, s, "does not define");
     fixture_write(f, manifest_name, "no json");
-    expect_refusal(f, s, "does not say");
+    expect_refusal(f, s, "does not define");
     char path[400];
     fixture_path(f, manifest_name, path);
     assert_int_equal(unlink(path), 0);
@@ -515,7 +515,7 @@ static void comparisons_know_their_reference(void **state)
     assert_int_equal(study_summary(s, f->results, out, &why), STATUS_BAD_INPUT);
     fclose(out);
     assert_non_null(strstr(why.file, "compare.csv"));
-    assert_non_null(strstr(why.remedy, "compared anew"));
+    assert_non_null(strstr(why.remedy, "compared again"));
     study_destroy(s);
 }
 
@@ -536,12 +536,12 @@ static void contents_of_files_are_verified(void **state)
     study_destroy(s);
     fixture_write(f, "spots.pfm", other);
     s = fixture_study(f, study_text);
-    expect_refusal(f, s, "holds something else now");
+    expect_refusal(f, s, "have changed");
     study_destroy(s);
     fixture_write(f, "spots.pfm", first);
     s = fixture_study(f, study_text);
     replace(f, manifest_name, "\"files\"", "\"filed\"");
-    expect_refusal(f, s, "does not say what the scene's meshes");
+    expect_refusal(f, s, "does not record the contents");
     study_destroy(s);
     free(scene_text);
 }

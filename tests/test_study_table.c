@@ -128,7 +128,7 @@ static void a_full_disk_leaves_rows_whole(void **state)
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     signal(SIGXFSZ, SIG_DFL);
     assert_int_equal(code, STATUS_FAILURE);
-    assert_non_null(strstr(why.remedy, "make room"));
+    assert_non_null(strstr(why.remedy, "free disk space"));
     expect(f, "rows.csv", "a,b\n1,2\n");
     append(t, "33,44\n");
     table_close(t);

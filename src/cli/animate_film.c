@@ -59,13 +59,13 @@ static bool show_motion(void *context, double share_done)
     return !terminal_stop_requested(NULL);
 }
 
-static status advance(animation_job *f, double to_s, bool skins, diagnostic *why)
+static status advance(animation_job *f, double to_s, bool surfaces, diagnostic *why)
 {
     const load_watch watch = {show_motion, f};
     const bool own_line = f->frame == 0 && to_s > 0;
     if (own_line)
         progress_start(&f->line, "simulating up to the first frame");
-    status result = scene_motion_advance_until(f->motion, to_s, skins, &watch, why);
+    status result = scene_motion_advance_until(f->motion, to_s, surfaces, &watch, why);
     if (own_line) {
         progress_erase(&f->line);
         progress_start(&f->line, f->label);

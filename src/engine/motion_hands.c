@@ -87,7 +87,7 @@ cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const doubl
     ENGINE_TRY(find_hand(motion, hand, &h, why));
     if (!engine_is_finite(by))
         return engine_report(
-            diagnose(&inner, STATUS_BAD_INPUT, "give three finite numbers", "the hand's displacement is not finite"),
+            diagnose(&inner, STATUS_BAD_INPUT, "use three finite numbers", "the hand's displacement is not finite"),
             &inner, why);
     h->to = motion_hand_offset(h, vector_of(by));
     return CUVETTE_OK;

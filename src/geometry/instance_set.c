@@ -146,7 +146,7 @@ status instance_set_build(const instance_source *sources, int count, instance_se
         f->instance_count += instances_of(p);
         const uint64_t bit = (uint64_t)1 << p->primitive;
         f->primitives |= bit;
-        *(p->closed ? &f->closed : &f->skins) |= bit;
+        *(p->closed ? &f->closed : &f->open_surfaces) |= bit;
         f->by_primitive[p->primitive] = i;
         if (p->priority_index < f->lowest)
             f->lowest = p->priority_index;

@@ -27,11 +27,11 @@ typedef struct instance_set {
     int part_count;
     instanced_mesh *parts;
     size_t instance_count;
-    mesh *proxies;          /* one triangle spanning the bounds of each instance; NULL for a single instance */
-    hierarchy *top;         /* over the proxies */
-    uint64_t primitives;    /* sets of primitives: all meshes ... */
-    uint64_t closed, skins; /* ... and separately the closed meshes and the open surfaces */
-    int lowest;             /* the lowest priority index of a mesh */
+    mesh *proxies;                  /* one triangle spanning the bounds of each instance; NULL for a single instance */
+    hierarchy *top;                 /* over the proxies */
+    uint64_t primitives;            /* sets of primitives: all meshes ... */
+    uint64_t closed, open_surfaces; /* ... and separately the closed meshes and the open surfaces */
+    int lowest;                     /* the lowest priority index of a mesh */
     uint64_t closed_under[PRIMITIVES_MAX + 1]; /* by priority index: the closed meshes below it */
     int lowest_closed;                         /* the lowest priority index of a closed mesh; INT_MAX for none */
     int by_primitive[PRIMITIVES_MAX];          /* index of the mesh, or -1 */

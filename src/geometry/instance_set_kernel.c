@@ -57,7 +57,7 @@ static double sum_of_magnitudes(vec3 v)
  * open surfaces within the error bound of its start. */
 static double beyond_start(const instance_set *f, const instance_ray *ray)
 {
-    if (!f->skins || !is_mesh_face(ray->start))
+    if (!f->open_surfaces || !is_mesh_face(ray->start))
         return 0.0;
     const instanced_mesh *p = &f->parts[f->by_primitive[mesh_face_primitive(ray->start)]];
     return along_ray(f, ray, ray->start, POINT_ERROR * (sum_of_magnitudes(ray->origin) + p->reach));

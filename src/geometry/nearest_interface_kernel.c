@@ -243,7 +243,7 @@ static void advance_rows(int first, int rows, bool inside, int k, int m, double 
 static void skip_crossing(const scene_geometry *a, int k, int m, ray_scratch *s, const hit_batch *c,
                           const instance_hit *mesh_hits)
 {
-    const uint64_t set = c->inside_after[k] & ~(a->meshes ? a->meshes->skins : 0);
+    const uint64_t set = c->inside_after[k] & ~(a->meshes ? a->meshes->open_surfaces : 0);
     const double t = c->t[k];
     for (int p = 0; p < a->primitive_count; p++) {
         double in = s->in[p][k], out = s->out[p][k];
@@ -349,7 +349,7 @@ static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch 
         }
     }
     for (int i = 0; a->meshes && i < rays->count; i++)
-        hits->inside_after[i] &= ~a->meshes->skins; /* a set never contains open surfaces */
+        hits->inside_after[i] &= ~a->meshes->open_surfaces; /* a set never contains open surfaces */
 }
 
 /* Does the range 0..1 of the ray overlap the region in the interval of that row, whatever hides it? If the ends of an

@@ -1,7 +1,7 @@
-/* Uncompressed BMP of 24 bits: a file header of 14 bytes, a header of 40 (BITMAPINFOHEADER, Windows 3) to 124 bytes
- * (BITMAPV5HEADER), and from the file header's offset on rows of blue, green, red, each padded to a multiple of 4
- * bytes; from the bottom, or from the top where the height is negative. Microsoft, Windows GDI, "Bitmap Storage".
- * Numbers are little-endian. */
+/* Uncompressed 24-bit BMP: a file header of 14 bytes, a header of 40 (BITMAPINFOHEADER, Windows 3) to 124 bytes
+ * (BITMAPV5HEADER), and from the file header's offset rows of blue, green, red, each padded to a multiple of 4 bytes;
+ * from the bottom, or from the top if the height is negative. Microsoft, Windows GDI, "Bitmap Storage". Numbers are
+ * little-endian. */
 #include "image/codec.h"
 
 #include <stdint.h>
@@ -35,14 +35,14 @@ static int64_t signed_at(const unsigned char *b)
     return value >= INT64_C(0x80000000) ? value - INT64_C(0x100000000) : value;
 }
 
-/* width and height in pixels; rows from the top where the file says so. */
+/* width and height in pixels; from_top for a negative height. */
 typedef struct bmp_header {
     int64_t width, height;
     size_t offset, row_bytes;
     bool from_top;
 } bmp_header;
 
-/* Only what the rows below read is believed; the file's own size is often wrong, and is not looked at. */
+/* Only the fields used below are trusted; the file size in the header is often wrong and is ignored. */
 static status check_kind(const unsigned char *bytes, size_t size, diagnostic *why)
 {
     const uint32_t header = size >= FILE_HEADER + 4 ? number_at(bytes + FILE_HEADER, 4) : 0;
@@ -79,7 +79,7 @@ static status read_header(const unsigned char *bytes, size_t size, bmp_header *o
     if (out->offset < FILE_HEADER + number_at(bytes + FILE_HEADER, 4) || out->offset > size)
         return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is damaged: its pixels begin at byte %zu of %zu",
                         out->offset, size);
-    /* sides are at most 65536: no overflow; the last row need not be padded */
+    /* sides are at most 65536: no overflow; the last row may lack its padding */
     const size_t needed = out->row_bytes * (size_t)(out->height - 1) + (size_t)out->width * 3;
     if (size - out->offset < needed)
         return diagnose(why, STATUS_BAD_INPUT, DAMAGED, "the BMP file is truncated: %zu bytes of pixels instead of %zu",

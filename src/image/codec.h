@@ -1,7 +1,7 @@
-/* The file formats behind image.h: three that are written and read, and BMP, which is read. Writers put a picture on a
- * stream and leave the stream's own errors to whoever closes it; readers decode a whole file that lies in memory.
- * Diagnostics are filled without the file's name. Ownership: a read picture is the caller's; nothing is allocated when
- * a status other than STATUS_OK comes back. */
+/* The file formats behind image.h: three that are written and read, and BMP, which is only read. Writers write an image
+ * to a stream and leave stream errors to the caller that closes it; readers decode a whole file in memory. Diagnostics
+ * lack the file name. Ownership: an image that was read is the caller's; nothing is allocated unless the status is
+ * STATUS_OK. */
 #pragma once
 
 #include "image/image.h"
@@ -9,20 +9,20 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* As many pixels as a picture from disk may have, 2^28. */
+/* Maximum number of pixels of an image file, 2^28. */
 #define CODEC_PIXELS_MAX 268435456LL
 
-/* So many pixels for each byte of its file may a picture have that is larger than CODEC_PIXELS_FREE. Deflate can reach
- * 8256 (1032 to 1, RFC 1951, eight pixels in a byte), which makes gigabytes of a file of kilobytes; photographs and
- * renderings stay far below 64. */
+/* Maximum number of pixels per byte of the file, for images larger than CODEC_PIXELS_FREE. Deflate can reach 8256 (1032
+ * to 1, RFC 1951, eight pixels per byte), which expands a file of kilobytes to gigabytes; photographs and renderings
+ * stay far below 64. */
 #define CODEC_PIXELS_FREE 16777216LL
 #define CODEC_PIXELS_A_BYTE 64LL
 
-/* STATUS_BAD_INPUT unless a file of so many bytes may have this size. */
+/* STATUS_BAD_INPUT unless a file with that many bytes may have this size. */
 status codec_check_size(long long width, long long height, size_t file_bytes, diagnostic *why);
 
-/* A picture of the size that a file of so many bytes claims, and the decoding table of its values 0..maximum. Both are
- * the caller's, also of what there is when this fails. */
+/* Creates an image of the size in the file, and the decoding table of its values 0..maximum. Both are the caller's,
+ * even after a failure. */
 status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **img, float **linear,
                    diagnostic *why);
 
@@ -35,10 +35,10 @@ typedef struct codec_bytes {
 } codec_bytes;
 void codec_bytes_prepare(codec_bytes *table);
 unsigned char codec_byte(const codec_bytes *table, float linear);
-/* Linear light of the encoded values 0..maximum; free it. NULL without memory. */
+/* Decoding table of the encoded values 0..maximum to linear values; free it. NULL without memory. */
 float *codec_decode_table(unsigned maximum);
 
-/* fast: with less effort, a larger file. */
+/* fast: less compression effort, a larger file. */
 status codec_png_write(const image *img, FILE *stream, int bits, bool fast, diagnostic *why);
 status codec_jpeg_write(const image *img, FILE *stream, diagnostic *why);
 status codec_pfm_write(const image *img, FILE *stream, diagnostic *why);

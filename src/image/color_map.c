@@ -1,6 +1,6 @@
 #include "image/color_map.h"
 
-/* Every fifth of the maps' 256 colours; straight lines between them stay within 1/255 of the rest. */
+/* Every fifth of the maps' 256 colours; linear interpolation between them is within 1/255 of the others. */
 enum { KNOTS = 52 };
 static const unsigned char maps[][KNOTS][3] = {
     [VIRIDIS] =

@@ -39,7 +39,7 @@ static double luma(const double encoded[3])
     return 0.299 * encoded[0] + 0.587 * encoded[1] + 0.114 * encoded[2];
 }
 
-/* What can be said of each pixel by itself; the lumas are kept for the structural similarity. */
+/* Measures of single pixels; the lumas are kept for the structural similarity. */
 static void compare_pixels(const image *a, const image *b, double *luma_a, double *luma_b, image_comparison *out)
 {
     size_t count = pixels_of(a), differing = 0;

@@ -41,7 +41,7 @@ void flip_opponent(const float rgb[3], double opponent[3])
     opponent[2] = xyz[1] - xyz[2];
 }
 
-/* CIE 15, the cube root with its straight foot. */
+/* CIE 15, the cube root with a linear segment near 0. */
 static double lab_root(double t)
 {
     const double delta = 6.0 / 29.0;
@@ -57,11 +57,11 @@ void flip_hunt_lab(const double opponent[3], double lab[3])
     multiply(XYZ_OF_RGB, rgb, xyz);
     double x = lab_root(xyz[0]), y = lab_root(xyz[1]), z = lab_root(xyz[2]);
     lab[0] = 116.0 * y - 16.0;
-    lab[1] = 0.01 * lab[0] * 500.0 * (x - y); /* Hunt: the lighter, the more colourful */
+    lab[1] = 0.01 * lab[0] * 500.0 * (x - y); /* Hunt effect: lighter colours appear more colourful */
     lab[2] = 0.01 * lab[0] * 200.0 * (y - z);
 }
 
-/* HyAB (Abasi, Tehran, Fairchild 2020), for large distances: city blocks in lightness, Euclid in colour; to the power
+/* HyAB (Abasi, Tehran, Fairchild 2020), for large distances: city block in lightness, Euclidean in colour; to the power
  * 0.7. */
 static double hyab_power(const double a[3], const double b[3])
 {
@@ -82,7 +82,7 @@ double flip_farthest(void)
 
 double flip_color_error(const double a[3], const double b[3], double farthest)
 {
-    const double share = 0.95; /* p_t, of the scale for distances below the knee, p_c = 0.4 of the farthest */
+    const double share = 0.95; /* p_t, the value at the knee, p_c = 0.4 of the maximum distance */
     double distance = hyab_power(a, b), knee = 0.4 * farthest;
     return distance < knee ? share * distance / knee : share + (1.0 - share) * (distance - knee) / (farthest - knee);
 }

@@ -4,7 +4,7 @@
 #include "image/compare_parts.h"
 #include <stdlib.h>
 
-/* The map's colour for 0..1 in linear light. */
+/* The map's colour for 0..1 in linear values. */
 static void magma(double t, float linear[3])
 {
     double rgb[3];

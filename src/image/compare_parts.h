@@ -1,10 +1,10 @@
-/* The measures behind compare.h that look at neighbours, each in a file of its own. Their pictures and planes have
- * passed compare_check. Ownership: everything is the caller's. Errors: STATUS_FAILURE without memory. */
+/* The measures of compare.h that use neighbourhoods, one file each. Their images and planes have passed compare_check.
+ * Ownership: everything is the caller's. Errors: STATUS_FAILURE without memory. */
 #pragma once
 
 #include "image/image.h"
 
-/* STATUS_BAD_INPUT unless the sizes are equal and every channel is a number. */
+/* STATUS_BAD_INPUT unless the sizes are equal and no channel is NaN. */
 status compare_check(const image *a, const image *b, diagnostic *why);
 
 /* Mean structural similarity of two planes of encoded luma, 0..1. */
@@ -13,14 +13,14 @@ status compare_ssim(const double *a, const double *b, int width, int height, dou
 /* FLIP error of each pixel, 0..1, into errors, width * height of them. */
 status compare_flip(const image *a, const image *b, double *errors, diagnostic *why);
 
-/* Colours of linear light as FLIP sees them: relative to white, and how far apart. */
+/* The colour space of FLIP: conversion relative to white, and distance. */
 
-/* Luminance and two opponent colours, red against green and yellow against blue: YCxCz without its scales and its
- * offset, which filters of sum 1 leave as they are. Linear in rgb, which is clamped to 0..1 first. */
+/* Luminance and two opponent colours, red-green and yellow-blue: YCxCz without its scales and offset, which filters of
+ * sum 1 preserve. Linear in rgb, which is clamped to 0..1 first. */
 void flip_opponent(const float rgb[3], double opponent[3]);
-/* Back to linear light, clamped to 0..1, and from there to CIELAB with Hunt's adjustment. */
+/* Back to linear RGB, clamped to 0..1, and from there to CIELAB with Hunt's adjustment. */
 void flip_hunt_lab(const double opponent[3], double lab[3]);
-/* HyAB distance to the power 0.7 of green and blue, the colours of the cube that lie farthest apart. */
+/* HyAB distance to the power 0.7 of green and blue, the most distant colours of the RGB cube. */
 double flip_farthest(void);
-/* The same of two colours of flip_hunt_lab, spread over 0..1. */
+/* The distance of two colours of flip_hunt_lab, mapped to 0..1. */
 double flip_color_error(const double a[3], const double b[3], double farthest);

@@ -25,7 +25,7 @@ static int within(int i, int count)
     return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-/* out += weight * row shifted, its ends prolonged. */
+/* out += weight * shifted row, with repeated border values. */
 static void add_shifted_row(const double *restrict row, int width, int shift, double weight, double *restrict out)
 {
     int first = shift < 0 ? within(-shift, width + 1) : 0;

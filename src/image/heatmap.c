@@ -15,15 +15,15 @@ static const unsigned char PAPER[3] = {255, 255, 255}, INK[3] = {34, 34, 34}, FR
 
 enum { WIDTH_MIN = 240, SCALE_MAX = 16 };
 
-/* Sizes of the key in pixels; scale is how many pixels a dot of the font is wide. */
+/* Sizes of the key in pixels; scale is the size of a dot of the font in pixels. */
 typedef struct key_layout {
     int scale, margin, bar_x, bar_width, bar_y, bar_height, tick, numbers_y, title_y, height;
 } key_layout;
 
-/* What the colours stand for. */
+/* The scale of the colours. */
 typedef struct key_scale {
-    double end; /* value of the last colour; the first one is 0 */
-    bool cut;   /* values above end were drawn in its colour */
+    double end; /* value of the last colour; the first is 0 */
+    bool cut;   /* values above end have the last colour */
     bool whole; /* all values are integers */
 } key_scale;
 
@@ -35,7 +35,7 @@ void heatmap_color(double t, unsigned char rgb[3])
         rgb[channel] = (unsigned char)floor(exact[channel] + 0.5);
 }
 
-/* A picture and the linear light of the 256 encoded values. */
+/* An image and the linear values of the 256 encoded ones. */
 typedef struct canvas {
     image *img;
     const float *decoded;
@@ -68,7 +68,7 @@ static void draw_text(const canvas *on, int x, int y, int scale, const char *tex
     }
 }
 
-/* A number of the key: four digits, and a prefix of the SI where it would be long: 0, 29.5, 118, 3.086M. */
+/* A number of the key: four digits, with an SI prefix if it would be long: 0, 29.5, 118, 3.086M. */
 static void format_key(double value, double largest, char text[NUMBER_TEXT_MAX + 2])
 {
     static const struct {
@@ -103,7 +103,7 @@ static key_layout lay_out_key(int width)
     return key;
 }
 
-/* At most as many characters as fit; the last three are dots when the title does not. */
+/* As many characters as fit; a title that is too long ends in three dots. */
 static void draw_title(const canvas *on, const key_layout *key, int top, const char *title)
 {
     char shown[256];
@@ -125,7 +125,7 @@ static void draw_number(const canvas *on, const key_layout *key, int top, int ce
     draw_text(on, x < 2 * key->scale ? 2 * key->scale : x, top + key->numbers_y, key->scale, text);
 }
 
-/* A tick and its number, at its place in the bar. */
+/* A tick and its number, at its position in the bar. */
 static void draw_tick(const canvas *on, const key_layout *key, int top, double value, const key_scale *scale)
 {
     int line = (key->scale + 1) / 2;
@@ -158,7 +158,7 @@ static void draw_key(const canvas *on, const key_layout *key, int top, const key
     draw_title(on, key, top, title);
 }
 
-/* Checks every value; on success *largest is the largest, and *whole says whether all are integers. */
+/* Checks every value; on success *largest is the maximum, and *whole is true if all are integers. */
 static status inspect(const double *values, size_t count, double *largest, bool *whole, diagnostic *why)
 {
     *largest = 0.0;
@@ -173,8 +173,8 @@ static status inspect(const double *values, size_t count, double *largest, bool 
     return STATUS_OK;
 }
 
-/* The value that rank others stand before in ascending order. Doubles that are not negative are ordered as their bits
- * are (IEEE 754), so a radix selection finds it byte by byte, without a copy. */
+/* The element number `rank` of the values in ascending order. Non-negative doubles are ordered as their bits (IEEE
+ * 754), so a radix selection finds it byte by byte, without a copy. */
 static double nth_smallest(const double *values, size_t count, size_t rank)
 {
     uint64_t found = 0;
@@ -201,8 +201,10 @@ static status find_scale(const double *values, size_t count, key_scale *out, dia
 {
     double largest;
     TRY(inspect(values, count, &largest, &out->whole, why));
-    double percentile = nth_smallest(values, count, count - 1 - count / 200); /* the 99.5th, by nearest rank */
-    out->cut = percentile > 0 && largest > 2 * percentile; /* of little but zeros the percentile says nothing */
+    double percentile = nth_smallest(values, count, count - 1 - count / 200); /* the 99.5th percentile, by nearest rank
+                                                                                 */
+    out->cut = percentile > 0 && largest > 2 * percentile; /* with very few non-zero values the percentile is
+                                                              meaningless */
     out->end = out->cut ? percentile : largest;
     return STATUS_OK;
 }

@@ -26,7 +26,7 @@ unsigned codec_quantize(float linear, unsigned maximum)
     return (unsigned)floor(srgb_encode(linear) * maximum + 0.5);
 }
 
-/* Positive floats are ordered as their bits are, so the threshold is found by halving the range of the bits. */
+/* Positive floats are ordered as their bits, so bisection on the bits finds the threshold. */
 static float least_value(unsigned byte)
 {
     uint32_t under = 0, enough = 0x3f800000; /* 0.0f and 1.0f */

@@ -42,7 +42,7 @@ static bool allocate(texture *t, int width, int height)
     return t->block;
 }
 
-/* The number that was decoded to a linear value; bytes is filled when coded_bits is 8. */
+/* The encoded value of a linear value; bytes is filled if coded_bits is 8. */
 static float restore(const codec_bytes *bytes, int coded_bits, float linear)
 {
     return coded_bits == 8    ? (float)(codec_byte(bytes, linear) / 255.0)

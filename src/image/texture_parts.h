@@ -1,15 +1,15 @@
-/* What the files of image/texture.h share: how a texture lies in memory. Nobody else includes it.
- * Ownership: all texels of all levels are one block, which belongs to the texture. */
+/* Memory layout of a texture, shared by the files of image/texture.h. Private to them. Ownership: all texels of all
+ * levels are one block, owned by the texture. */
 #pragma once
 
 #include "image/texture.h"
 
-/* Padded to 16 bytes: one load brings a texel, and none straddles two cache lines. */
+/* Padded to 16 bytes: one load per texel, and no texel straddles two cache lines. */
 typedef struct texel {
     float r, g, b, unused;
 } texel;
 
-/* Rows from below, as v runs: texels[y * width + x]. */
+/* Rows from the bottom, like v: texels[y * width + x]. */
 typedef struct texture_level {
     int width, height;
     texel *texels;
@@ -22,8 +22,8 @@ struct texture {
     texture_level level[TEXTURE_LEVELS_MAX];
     texel *block;
     size_t block_bytes;
-    size_t owners; /* changed atomically */
+    size_t owners; /* modified atomically */
 };
 
-/* Fills level 1 and those above it from level 0; sizes and memory are there. Cannot fail. */
+/* Computes level 1 and above from level 0; sizes and memory are set. Cannot fail. */
 void texture_build_pyramid(texture *t);

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A regular file as a stream, or NULL and the reason. Does not wait for a FIFO's writer. */
+/* A regular file as a stream, or NULL and the reason. Does not block on a FIFO. */
 static FILE *open_regular(const char *path, const char *root, const char **reason, bool *outside)
 {
     int fd = below_open(path, root);
@@ -52,7 +52,7 @@ status files_check(const request *asked, diagnostic *why)
     return first == EOF ? diagnose(why, STATUS_BAD_INPUT, "give a mesh file", "the file is empty") : STATUS_OK;
 }
 
-/* ---- what assimp calls ---- */
+/* ---- callbacks of assimp ---- */
 
 static FILE *stream_of(struct aiFile *file)
 {

@@ -1,8 +1,8 @@
-/* The program cuvette-import: reads one mesh file with assimp under limits that it sets itself, and writes the
- * triangles on standard output as import/mesh_wire.h says. It is a program of its own so that a file that crashes
- * or fills a reader takes nothing else down. Its parts, one file each. Ownership: what is allocated is never given
- * back; the process ends as soon as the mesh is written, and with it all of it goes. Errors: STATUS_BAD_INPUT and the
- * reason in the diagnostic; memory that is not there is the file's fault, too, because the limit on it is ours. */
+/* The program cuvette-import: reads one mesh file with assimp under resource limits that it sets itself, and writes the
+ * triangles to standard output in the format of import/mesh_wire.h. It is a separate program so that a file that
+ * crashes the reader or exhausts memory affects nothing else. One file per part. Ownership: memory is never freed; the
+ * process exits as soon as the mesh is written. Errors: STATUS_BAD_INPUT with the reason in the diagnostic; running out
+ * of memory counts as an error of the file, because the limit is ours. */
 #pragma once
 
 #include "base/status.h"
@@ -19,44 +19,44 @@ typedef enum file_kind { FILE_OBJ, FILE_PLY, FILE_STL, FILE_GLTF, FILE_GLB, FILE
 
 typedef struct request {
     const char *path;
-    file_kind kind;               /* by the ending of its name */
+    file_kind kind;               /* by file name extension */
     uint64_t memory_mib, seconds; /* limits on this process */
     uint64_t triangles, vertices; /* limits on the mesh */
-    const char *root;             /* all that is opened lies below it (base/below.h); "": anywhere */
+    const char *root;             /* all files are opened below this folder (base/below.h); "": anywhere */
 } request;
 
 /* ---- files.c ---- */
 
-/* How assimp opens files, here and all that they name: regular ones below the root, for reading, without waiting.
- * Counts the ones that are named and not there. */
+/* How assimp opens the file and all files that it refers to: regular files below the root, for reading, without
+ * blocking. Missing files are counted. */
 typedef struct file_access {
     struct aiFileIO io;
     const char *root;
-    char missing[512];  /* the first one that could not be opened; "" */
-    const char *reason; /* the system's word on it, or ours */
-    bool outside;       /* that it is not below the root */
+    char missing[512];  /* the first file that could not be opened; "" */
+    const char *reason; /* the system's error message, or our own */
+    bool outside;       /* it is not below the root */
 } file_access;
 
 void files_prepare(file_access *access, const request *asked);
-/* The file itself as such a stream, NULL where it cannot be opened any more. */
+/* The file itself as such a stream, NULL if it can no longer be opened. */
 FILE *files_open(const request *asked);
-/* That it is a regular file with something in it, or why not. */
+/* Checks that it is a regular file that is not empty. */
 status files_check(const request *asked, diagnostic *why);
 
 /* ---- whole.c ---- */
 
-/* That a PLY or STL file is as long as it says it is. */
+/* Checks that a PLY or STL file is as long as its header implies. */
 status check_whole(const request *asked, diagnostic *why);
 
 /* ---- read.c ---- */
 
-/* The scene of the file, triangulated; every file that it needs was there. */
+/* The scene of the file, triangulated; all files that it needs existed. */
 status read_scene(const request *asked, const struct aiScene **out, diagnostic *why);
 status no_memory_for(const request *asked, diagnostic *why);
 
 /* ---- flatten.c ---- */
 
-/* One mesh in world coordinates. Vertices that are equal in every number that they carry are one. */
+/* One mesh in world coordinates. Vertices that are equal in all their numbers are merged. */
 typedef struct flat_mesh {
     size_t vertex_count, triangle_count;
     vec3 *positions, *normals;
@@ -66,14 +66,14 @@ typedef struct flat_mesh {
     uint32_t (*triangles)[3];
     uint8_t *slots;
     bool with_normals, with_uvs;
-    unsigned material_count, materials[256]; /* by slot: index into the scene's */
+    unsigned material_count, materials[256]; /* by slot: index of the scene's material */
 } flat_mesh;
 
 status flatten(const request *asked, const struct aiScene *scene, flat_mesh *flat, diagnostic *why);
 
 /* ---- join.c ---- */
 
-/* Adds a vertex to flat, or finds the one that equals it. */
+/* Adds a vertex to flat, or finds an equal one. */
 typedef struct joiner {
     uint32_t *table;
     size_t size;

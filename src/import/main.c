@@ -1,4 +1,4 @@
-/* cuvette-import FILE: see import.h. Exit codes 0, 1 (the machine failed) and 2 (the file is wrong), one line on
+/* cuvette-import FILE: see import.h. Exit codes 0, 1 (failure of the machine) and 2 (error in the file), one line on
  * standard error. */
 #include "import/import.h"
 
@@ -63,7 +63,7 @@ static const struct argp_option options[] = {
     {0},
 };
 
-/* A limit that the system already sets lower stays. */
+/* A lower limit set by the system stays. */
 static void limit(__rlimit_resource_t what, rlim_t value)
 {
     struct rlimit now;
@@ -74,7 +74,7 @@ static void limit(__rlimit_resource_t what, rlim_t value)
     }
 }
 
-/* Nothing below can create or change a file, dump its memory, open many files, or outlive who asked. */
+/* From here on the process cannot create or modify files, dump its memory, open many files, or outlive its parent. */
 static void limit_all(const request *asked)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -118,5 +118,5 @@ int main(int count, char **arguments)
         char text[DIAGNOSTIC_TEXT_MAX];
         fprintf(stderr, "cuvette-import: %s\n", diagnostic_text(&why, text, sizeof text));
     }
-    _exit((int)code); /* destructors of a scene that may be anything are not run */
+    _exit((int)code); /* skips the destructors of a possibly invalid scene */
 }

@@ -1,5 +1,5 @@
-/* The bytes that cuvette-import writes on its standard output for the program that started it, both of one build and on
- * one machine: numbers in the machine's own order, no padding. Who reads them believes nothing
+/* The bytes that cuvette-import writes to standard output for its parent, both of one build and on
+ * one machine: numbers in native byte order, no padding. The reader does not trust them
  * (scene/assets/mesh_stream.h). In this order:
  *
  * - the header;
@@ -17,8 +17,8 @@
 #define MESH_WIRE_MAGIC "CUVMESH\n"
 #define MESH_WIRE_END "\nMESHEND"
 enum { MESH_WIRE_VERSION = 2, MESH_WIRE_TEXT_MAX = 1024 };
-enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 };          /* header's flags */
-enum { MESH_WIRE_GIVEN = 1, MESH_WIRE_TEXTURE_INSIDE = 2 }; /* material's flags */
+enum { MESH_WIRE_NORMALS = 1, MESH_WIRE_UVS = 2 };          /* flags of the header */
+enum { MESH_WIRE_GIVEN = 1, MESH_WIRE_TEXTURE_INSIDE = 2 }; /* flags of a material */
 
 typedef struct mesh_wire_header {
     char magic[8];
@@ -27,7 +27,7 @@ typedef struct mesh_wire_header {
     uint32_t material_count, reserved; /* 1 to MESH_SLOTS_MAX; 0 */
 } mesh_wire_header;
 
-/* As the file gives them, linear RGB. */
+/* As in the file, linear RGB. */
 typedef struct mesh_wire_material {
     double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;
     uint32_t flags, name_length, texture_length, reserved;

@@ -13,7 +13,7 @@ status no_memory_for(const request *asked, diagnostic *why)
                        (unsigned long long)asked->memory_mib);
 }
 
-/* Where a text of JSON is wrong: assimp only says that it is. True when it is. */
+/* Locates a syntax error in JSON, for which assimp gives no position. True if there is one. */
 static bool locate_json(const request *asked, diagnostic *why)
 {
     json_error_t error;
@@ -29,7 +29,7 @@ static bool locate_json(const request *asked, diagnostic *why)
     return !root;
 }
 
-/* What assimp says when it gives up, in words that stand alone. */
+/* assimp's error messages, shortened to be understood alone. */
 static status explain(const request *asked, const file_access *access, const char *said, diagnostic *why)
 {
     static const char *const names[] = {"OBJ", "PLY", "STL", "glTF 2.0", "binary glTF 2.0 (glb)"};
@@ -62,7 +62,7 @@ status read_scene(const request *asked, const struct aiScene **out, diagnostic *
                         "unknown mesh format");
     TRY(check_whole(asked, why));
     files_prepare(&access, asked);
-    /* Equal vertices are joined in join.c: assimp's own step moves those together that lie within 1e-5. */
+    /* Equal vertices are merged in join.c: assimp's own step merges vertices within 1e-5. */
     const struct aiScene *scene =
         aiImportFileEx(asked->path, aiProcess_ValidateDataStructure | aiProcess_Triangulate, &access.io);
     if (!scene || access.missing[0]) {

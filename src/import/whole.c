@@ -1,7 +1,7 @@
-/* Whether a PLY or STL file is as long as it says: assimp fills up what is missing with zeros or with what stood there
- * before, reads headers without an end for minutes, and asks for memory by counts that no file can hold. OBJ has no
- * counts and no end; assimp checks glTF's lengths itself. PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80
- * bytes, a count, 50 bytes a facet; or a text from solid to endsolid. */
+/* Checks that a PLY or STL file is as long as its header implies: assimp fills missing data with zeros or old memory,
+ * reads headers without an end for minutes, and allocates memory for impossible counts. OBJ has no counts and no end;
+ * assimp checks glTF's lengths itself. PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80 bytes, a count, 50
+ * bytes per facet; or a text from solid to endsolid. */
 #include "import/import.h"
 
 #include "base/below.h"
@@ -17,7 +17,7 @@ enum { PROPERTIES_MAX = 64, WORD_MAX = 63 };
 
 typedef struct property {
     int count_bytes, bytes;
-} property; /* count_bytes: of a list's length; 0: no list */
+} property; /* count_bytes: size of a list's length; 0: no list */
 
 typedef struct ply {
     const char *at, *end;
@@ -93,7 +93,7 @@ static status take_element(ply *p, const char *name, const char *number)
     return STATUS_OK;
 }
 
-/* The words of the next line; their number, -1 when there is no line that ends. */
+/* The words of the next line; their number, -1 if there is no complete line. */
 static int next_line(ply *p, char words[6][WORD_MAX + 1])
 {
     const char *end = p->at < p->end ? memchr(p->at, '\n', (size_t)(p->end - p->at)) : NULL;
@@ -147,7 +147,7 @@ static status read_header(ply *p)
 
 /* ---- body ---- */
 
-/* Skips that many words; the last one is left in number. False at the end of the file. */
+/* Skips that many words; the last one is stored in number. False at the end of the file. */
 static bool skip_words(ply *p, uint64_t count, double *number)
 {
     for (; count > 0; count--) {
@@ -174,8 +174,7 @@ static bool skip_bytes(ply *p, uint64_t count)
     return there;
 }
 
-/* A list's length. It has at most eight bytes, of which a float or a double makes no sense and is taken for a long
- * list. */
+/* The length of a list, at most eight bytes; a float or double is invalid and counts as too long. */
 static bool read_length(ply *p, int bytes, uint64_t *length)
 {
     if (p->end - p->at < bytes)
@@ -220,7 +219,7 @@ static status check_stl(const char *bytes, size_t size, diagnostic *why)
 {
     uint32_t count = 0;
     if (size >= 84)
-        memcpy(&count, bytes + 80, sizeof count); /* little-endian, as this machine */
+        memcpy(&count, bytes + 80, sizeof count); /* little-endian, like this machine */
     uint64_t needed = 84 + 50 * (uint64_t)count;
     if (size >= 84 && size == needed)
         return STATUS_OK;

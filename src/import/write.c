@@ -20,8 +20,8 @@ static void get_number(const struct aiMaterial *material, const char *key, doubl
         *to = (double)value;
 }
 
-/* assimp gives triangles without a material one of this name; in a PLY file one without a name; in a glTF file the one
- * that it puts after all others. */
+/* The name that assimp gives to the material of triangles without one; in a PLY file a material without a name; in a
+ * glTF file the last one. */
 static bool is_given(const request *asked, const struct aiScene *scene, unsigned index, const struct aiString *name)
 {
     bool gltf = asked->kind == FILE_GLTF || asked->kind == FILE_GLB;
@@ -38,7 +38,7 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
     double strength = 1; /* glTF's KHR_materials_emissive_strength */
     *name = *texture = (struct aiString){0};
     if (aiGetMaterialString(material, AI_MATKEY_NAME, name) != aiReturn_SUCCESS)
-        *name = (struct aiString){0}; /* which it leaves undefined */
+        *name = (struct aiString){0}; /* undefined in assimp */
     get_color(material, "$clr.diffuse", m.diffuse, &alpha);
     get_color(material, "$clr.ambient", m.ambient, &unused);
     get_color(material, "$clr.specular", m.specular, &unused);
@@ -54,7 +54,7 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
         aiReturn_SUCCESS)
         *texture = (struct aiString){0};
     m.flags = is_given(asked, scene, index, name) ? MESH_WIRE_GIVEN : 0;
-    if (texture->data[0] == '*') { /* the index of a picture inside the file */
+    if (texture->data[0] == '*') { /* the index of an embedded image */
         m.flags |= MESH_WIRE_TEXTURE_INSIDE;
         *texture = (struct aiString){0};
     }

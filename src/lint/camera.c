@@ -4,9 +4,9 @@
 
 #include <math.h>
 
-#define CAMERA_CLOSE 1e-9 /* share of the scene's extent: a camera so close to a surface is not inside */
+#define CAMERA_CLOSE 1e-9 /* fraction of the scene's extent: a camera so close to a surface does not count as inside */
 
-/* The rank of the medium at the camera, and so far about it; -1 where it is not one. */
+/* The priority index of the medium at the camera and in a neighbourhood around it; -1 if it is not constant there. */
 static int medium_about(const plan *made)
 {
     const vec3 eye = made->view.eye;

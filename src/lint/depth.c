@@ -1,5 +1,5 @@
-/* A small image of the scene at its depth limit and deeper, until that changes nothing any more or enough rays are
- * spent. */
+/* Compares small images of the scene at its depth limit and at greater depths, until deeper images stop changing or the
+ * ray budget is spent. */
 #include "lint/parts.h"
 #include "render/core/tracer.h"
 #include "scene/model/scene.h"
@@ -8,18 +8,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define RAYS_MAX 400000.0    /* of all images: some ten milliseconds */
-#define MESH_RAY 10.0        /* rays that one among triangles costs */
-#define CHANGED_PIXELS 0.05  /* share of the pixels ... */
-#define CHANGED_VALUE 0.05   /* ... that change by more than this share of the brighter */
-#define SETTLED_PIXELS 0.002 /* fewer changed: deeper images are taken to be the same */
-#define DARK (1.0 / 255.0)   /* what is darker is shown as black */
+#define RAYS_MAX 400000.0    /* budget of all images, in rays: some ten milliseconds */
+#define MESH_RAY 10.0        /* cost of a ray in a scene with triangles, in rays */
+#define CHANGED_PIXELS 0.05  /* fraction of the pixels ... */
+#define CHANGED_VALUE 0.05   /* ... that change by more than this fraction of the brighter value */
+#define SETTLED_PIXELS 0.002 /* if fewer pixels change, deeper images count as equal */
+#define DARK (1.0 / 255.0)   /* darker values are displayed as black */
 enum { DEEPER_MAX = 24, SAFE_DEPTH = 8 };
 
 typedef struct depth_probe {
     plan *made;
     tracer *rays;
-    film *image[DEEPER_MAX + 1]; /* by depth over the scene's */
+    film *image[DEEPER_MAX + 1]; /* by depth, starting at the scene's */
     double *pixel_rays;
     double spent;
 } depth_probe;
@@ -44,7 +44,7 @@ static status trace_image(depth_probe *p, int deeper, diagnostic *why)
     return STATUS_OK;
 }
 
-/* What is beyond white is shown as white. */
+/* Values above white are displayed as white. */
 static double shown(const film *f, int x, int y, int channel)
 {
     return fmin(1.0, film_value(f, x, y, channel));
@@ -61,7 +61,7 @@ static bool pixel_changes(const film *a, const film *b, int x, int y)
     return change > CHANGED_VALUE * brightest;
 }
 
-/* The share of pixels that change. */
+/* The fraction of pixels that change. */
 static double changed_share(const film *a, const film *b)
 {
     size_t changed = 0;
@@ -71,8 +71,8 @@ static double changed_share(const film *a, const film *b)
     return (double)changed / ((double)a->width * a->height);
 }
 
-/* A tree may have twice as many rays with each level: images below the scene's depth limit tell beforehand that its own
- * one would take too many. *affordable says that it does not. */
+/* The number of rays may double with each level of a ray tree: images below the scene's depth limit predict whether the
+ * limit itself exceeds the budget. *affordable: it does not. */
 static status climb(depth_probe *p, int depth, double most, bool *affordable, diagnostic *why)
 {
     status code = STATUS_OK;
@@ -87,7 +87,7 @@ static status climb(depth_probe *p, int depth, double most, bool *affordable, di
     return code;
 }
 
-/* The deepest image: *settled says that deeper ones would be the same, or nearly. */
+/* The deepest image; *settled: deeper ones would be nearly equal. */
 static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, diagnostic *why)
 {
     const double most = p->made->geometry->meshes ? RAYS_MAX / MESH_RAY : RAYS_MAX;
@@ -111,8 +111,8 @@ static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, d
     return STATUS_OK;
 }
 
-/* How far off the share may be: of pixels taken by chance, four standard errors; 0 where the image is the scene's own.
- */
+/* The uncertainty of the fraction: four standard errors for a random sample of pixels; 0 if the image is the scene's
+ * own. */
 static double doubt(const lint_room *room, const film *small)
 {
     const render_settings *r = &room->of->render;
@@ -133,8 +133,9 @@ static void note_depth(const lint_room *room, const depth_probe *p, int depth, i
     snprintf(remedy, sizeof remedy, "set render.depth=%d%s", depth + enough,
              settled || enough < last ? "" : " or more");
     note_give(room->taker, "render", "depth", remedy,
-              "a depth of %d is too small: more changes about %.0f %% of the pixels by more than 5 %%", depth,
-              100.0 * share);
+              "a depth of %d is too small: a greater depth changes about %.0f %% of the pixels by more "
+              "than 5 %%",
+              depth, 100.0 * share);
 }
 
 status lint_depth(const lint_room *room, diagnostic *why)

@@ -22,7 +22,7 @@ static void take_crossing(void *context, const mesh_hit *hit)
 {
     mesh_crossings *c = context;
     int i = c->count++;
-    if (i >= 2 * SPANS_MAX) /* too many: the count says so */
+    if (i >= 2 * SPANS_MAX) /* too many: the count shows it */
         return;
     for (; i > 0 && c->t[i - 1] > hit->t; i--) {
         c->t[i] = c->t[i - 1];
@@ -32,8 +32,7 @@ static void take_crossing(void *context, const mesh_hit *hit)
     c->facing[i] = hit->facing;
 }
 
-/* Of one copy: in at a front, out at a back, and so on. From here the line is followed from its origin, which lies
- * before the mesh. */
+/* One copy: alternating front and back faces. The line is traced from its origin, in front of the mesh. */
 static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, line_spans *out)
 {
     const vec3 o = mat3_apply_transposed(p->rotation, vec3_sub(l->origin, instance_set_origin(p, copy)));
@@ -55,8 +54,7 @@ static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, 
     return true;
 }
 
-/* Copies do not overlap, and those of one line of them stand in the order of their distance only if they are looked
- * at so. */
+/* Copies do not overlap, but those on one line are not in the order of distance for every direction. */
 static void sort_spans(line_spans *s)
 {
     for (int i = 1; i < s->count; i++)

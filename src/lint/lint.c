@@ -16,7 +16,7 @@ static bool has_meshes(const scene *s)
     return any;
 }
 
-/* As small as the probe image is to be, of the same shape. */
+/* The size of the small probe image, with the aspect ratio of the scene's. */
 static void shrink(render_settings *r, double most)
 {
     const double pixels = (double)r->width * (double)r->height;
@@ -38,7 +38,7 @@ static bool is_loaded(const scene *s)
     return s->background.kind != BACKGROUND_IMAGE || s->background.img;
 }
 
-/* A hierarchy that is kept is the one that a frame would build at its first use; else the linter builds its own. */
+/* A persistent hierarchy is the one that a frame would build at its first use; otherwise the linter builds its own. */
 static scene *small_copy(const scene *s)
 {
     scene *copy = scene_clone(s);

@@ -1,21 +1,20 @@
-/* The linter: notes on a scene that is legal and still looks wrong, from what it says (scene/model/hints.h), from where
- * its solids and its camera are, and from a small probe image. Where solids are is found along lines through them: a
- * note is only given where the solids themselves show it, so that it is never a false alarm; what lies between all
- * lines is not seen.
+/* The linter: notes on valid but suspicious scenes, from the scene itself (scene/model/hints.h), the placement of its
+ * solids and camera, and a small probe image. Placement is examined along lines through the solids: a note is given
+ * only if the solids themselves confirm it, so there are no false alarms; features between all lines are missed.
  *
- * Nothing of a later frame changes: neither its film nor its counters. Ownership: the scene is borrowed, a note
- * lasts for the call. */
+ * Later frames are not affected: neither film nor counters. Ownership: the scene is borrowed, a note is valid during
+ * the call. */
 #pragma once
 
 #include "base/isa.h"
 #include "scene/model/inert/note.h"
 #include "scene/model/open.h"
 
-/* Of a scene that is not loaded (scene_load) and has meshes only what it says is looked at. level: from isa_choose. */
+/* Without scene_load, a scene with meshes is examined only by its parameters. level: from isa_choose. */
 status lint_scene(const scene *s, isa level, const note_taker *taker, diagnostic *why);
 
-/* The same for a scene of which some parameters vary: `varies` is asked about each note, and one whose place varies
- * is left out. NULL: none does. */
+/* The same for a scene of which some parameters vary: `varies` is called for each note, and a note whose place varies
+ * is dropped. NULL: none varies. */
 typedef struct lint_filter {
     bool (*varies)(void *context, const char *place);
     void *context;

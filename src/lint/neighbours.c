@@ -1,6 +1,6 @@
-/* Pairs of solids along a lattice of lines through the region that both reach. What a line shows is tried again by
- * points around it before it becomes a note: a touch is no overlap, and one narrow place of two curved surfaces is
- * no gap. */
+/* Pairs of solids, examined along a lattice of lines through the region of both. A finding is confirmed at nearby
+ * points before it becomes a note: touching is not overlapping, and the closest point of two curved surfaces is not a
+ * gap. */
 #include "geometry/shapes/shape.h"
 #include "lint/lines.h"
 #include "lint/parts.h"
@@ -10,10 +10,10 @@
 #include <stdlib.h>
 
 enum { LATTICE_LEAST = 8, LATTICE_MOST = 32, LINES_MAX = 200000 };
-#define GAP_SHARE 1e-3      /* of the thinner neighbour: a gap under it is a narrow one */
-#define PATCH_SHARE 0.25    /* of the thinner neighbour: a narrow gap is as wide as that at the least */
-#define OVERLAP_SHARE 1e-6  /* of the thinner neighbour: what overlaps less only touches */
-#define CONTACT_SHARE 1e-12 /* of the coordinates: surfaces that are closer are in contact */
+#define GAP_SHARE 1e-3      /* fraction of the thinner solid's thickness: a smaller gap is narrow */
+#define PATCH_SHARE 0.25    /* fraction of the thinner solid's thickness: the minimum extent of a narrow gap */
+#define OVERLAP_SHARE 1e-6  /* fraction of the thinner solid's thickness: a smaller overlap counts as touching */
+#define CONTACT_SHARE 1e-12 /* fraction of the coordinates: closer surfaces are in contact */
 
 typedef struct neighbour {
     const region *of;
@@ -26,12 +26,12 @@ typedef struct neighbour {
 typedef struct pair {
     const lint_room *room;
     const neighbour *a, *b;
-    vec3 low, high; /* the region that both reach, and gaps around it */
+    vec3 low, high; /* the bounds common to both solids, enlarged by gaps */
     double thinner, extent;
-    int lattice;         /* lines along an edge */
-    bool overlaps, gaps; /* what is looked for */
-    float *gap;          /* by line of one axis: of its narrow gap, 0 for none; lattice * lattice */
-    double *middle;      /* where that is on the line */
+    int lattice;         /* lines per edge of the lattice */
+    bool overlaps, gaps; /* thresholds */
+    float *gap;          /* width of the narrow gap on each line of one axis, 0 for none; lattice * lattice */
+    double *middle;      /* its position on the line */
 } pair;
 
 static double *component(vec3 *v, int axis)
@@ -44,13 +44,13 @@ static bool is_in(const region *b, uint64_t inside)
     return (inside >> b->outside & 1) && !(b->hollow >= 0 && (inside >> b->hollow & 1));
 }
 
-/* How deep an overlap is at the least. */
+/* The minimum depth of an overlap. */
 static double deep_enough(const pair *p)
 {
     return fmax(OVERLAP_SHARE * p->thinner, CONTACT_SHARE * p->extent);
 }
 
-/* Are both at the point, and so far about it? */
+/* Whether both contain the point and a neighbourhood around it. */
 static bool overlap_at(const pair *p, vec3 point)
 {
     const scene_geometry *a = p->room->made->geometry;
@@ -70,7 +70,7 @@ static line lattice_line(const pair *p, int axis, int i, int j)
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     vec3 low = p->low, high = p->high;
     line l = {low, {0.0, 0.0, 0.0}};
-    /* not at round shares, where edges are */
+    /* irregular fractions, to avoid edges */
     *component(&l.origin, u) += (*component(&high, u) - *component(&low, u)) * (i + 0.4871) / p->lattice;
     *component(&l.origin, v) += (*component(&high, v) - *component(&low, v)) * (j + 0.5237) / p->lattice;
     vec3 first = p->a->box.low, second = p->b->box.low;
@@ -99,7 +99,7 @@ static bool spans_overlap(const pair *p, const line *l, const line_spans *a, con
     return false;
 }
 
-/* The narrowest gap from a span of one to a span of the other, wide enough to be one; 0 for none. */
+/* The narrowest gap between a span of one and a span of the other above the minimum; 0 for none. */
 static double spans_gap(const pair *p, const line_spans *a, const line_spans *b, double *middle)
 {
     double best = GAP_SHARE * p->thinner;
@@ -117,7 +117,7 @@ static double spans_gap(const pair *p, const line_spans *a, const line_spans *b,
     return found ? best : 0.0;
 }
 
-/* Looks along all lines of an axis; true where they overlap. */
+/* Examines all lines of an axis; true if the solids overlap. */
 static bool look_along(const pair *p, int axis)
 {
     const scene_geometry *a = p->room->made->geometry;
@@ -138,7 +138,7 @@ static bool look_along(const pair *p, int axis)
     return false;
 }
 
-/* Is the gap narrow on the line and on eight around it, a patch as wide as is wanted, and nothing else in it? */
+/* Whether the gap is narrow and empty on the line and on eight lines around it, over the minimum extent. */
 static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step_v)
 {
     const scene_geometry *a = p->room->made->geometry;
@@ -160,7 +160,7 @@ static bool is_patch(const pair *p, int axis, int i, int j, int step_u, int step
     return true;
 }
 
-/* How many lines to either side a patch reaches. */
+/* Number of lines from the centre of a patch to its edge. */
 static int patch_step(const pair *p, int axis)
 {
     vec3 size = vec3_sub(p->high, p->low);
@@ -168,7 +168,7 @@ static int patch_step(const pair *p, int axis)
     return (int)fmin(p->lattice, fmax(1.0, ceil(0.5 * PATCH_SHARE * p->thinner / apart)));
 }
 
-/* The narrowest of an axis' gaps. */
+/* The narrowest gap of an axis. */
 static double narrowest(const pair *p)
 {
     double least = HUGE_VAL;
@@ -210,7 +210,7 @@ static void note_gap(const pair *p, double gap)
               first->name, second->name, gap, thin->said->name, thin->thickness);
 }
 
-/* Two half-spaces share a region unless they face away from each other. */
+/* Two half-spaces intersect unless they face away from each other. */
 static bool planes_overlap(const pair *p)
 {
     const primitive *a = &p->room->made->geometry->primitives[p->a->of->outside],
@@ -240,14 +240,14 @@ static void look_at_pair(pair *p)
         note_gap(p, gap);
 }
 
-/* Is the medium another one, or does it absorb otherwise? */
+/* Whether medium or absorption differ. */
 static bool media_differ(const plan *made, const neighbour *a, const neighbour *b)
 {
     const vec3 off = vec3_sub(made->absorption[a->priority_index], made->absorption[b->priority_index]);
     return a->of->medium != b->of->medium || off.x != 0.0 || off.y != 0.0 || off.z != 0.0;
 }
 
-/* Does an interface with what is around all show, on a clear solid or an opaque one? */
+/* Whether an interface with the surroundings is visible, on a transparent or an opaque solid. */
 static bool shows(const region *b)
 {
     return b->opaque || b->medium != 0;
@@ -258,11 +258,11 @@ static bool is_covered(const lint_room *room, const neighbour *a, const neighbou
     return scene_cover(room->of, a->said) == b->said || scene_cover(room->of, b->said) == a->said;
 }
 
-/* False: there is nothing to look for. */
+/* False: the pair needs no examination. */
 static bool prepare_pair(const lint_room *room, const neighbour *a, const neighbour *b, pair *p)
 {
     if (a->of->opaque && b->of->opaque)
-        return false; /* what lies inside them is not seen */
+        return false; /* their interior is invisible */
     *p = (pair){.room = room, .a = a, .b = b, .thinner = fmin(a->thickness, b->thickness)};
     if (!isfinite(p->thinner))
         p->thinner = 1.0;

@@ -1,4 +1,4 @@
-/* The linter's parts; for src/lint alone. Each looks at a plan and gives its notes. */
+/* The parts of the linter; private to src/lint. Each examines a plan and passes its notes on. */
 #pragma once
 
 #include "render/core/plan.h"
@@ -6,22 +6,22 @@
 #include "scene/model/scene.h"
 
 typedef struct lint_room {
-    const scene *of; /* what is looked at, as the caller has it */
-    plan *made;      /* of a copy with a small image; its depth may be turned */
+    const scene *of; /* the caller's scene */
+    plan *made;      /* plan of a copy with a small image, possibly with another depth */
     isa level;
     const note_taker *taker;
 } lint_room;
 
-/* Solids of equal priority that overlap, and narrow gaps. */
+/* Overlapping solids of equal priority, and narrow gaps. */
 status lint_neighbours(const lint_room *room, diagnostic *why);
 
-/* A camera where nothing is seen: in an opaque solid, under the ground, in the wall of a cup. */
+/* A camera that sees nothing: in an opaque solid, under the ground, in the wall of a cup. */
 void lint_camera(const lint_room *room);
 
-/* A depth limit that shows. */
+/* A depth limit with a visible effect. */
 status lint_depth(const lint_room *room, diagnostic *why);
 
-/* The solid of a rank's body. */
+/* The solid of a priority index. */
 static inline const solid *lint_solid(const lint_room *room, int priority_index)
 {
     return &room->of->solids[room->made->geometry->regions[priority_index].solid];

@@ -1,15 +1,15 @@
-/* Beer and Lambert: in the liquid alone, rays run from within to the rod over known lengths; -ln(transmittance) over
- * length is a line, whose slope is the coefficient (Hecht, Optics, 5th ed., eq. 4.78 with the power's coefficient). A
- * liquid that absorbs nothing is given coefficients for it.
+/* Beer-Lambert law: rays run inside the liquid to the rod over known lengths; -ln(transmittance) over length is a line
+ * whose slope is the absorption coefficient (Hecht, Optics, 5th ed., eq. 4.78 with the coefficient of power). A liquid
+ * without absorption is given coefficients.
  *
- * Tolerance: 2.2e-16 in a transmittance, over the optical depth that the longest way has. */
+ * Tolerance: 2.2e-16 in a transmittance, divided by the optical depth of the longest path. */
 #include "realism/metrics.h"
 
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include <math.h>
 
-#define ABSORPTION_TOLERANCE 1e-10 /* relative, at an optical depth of 1e-4 and more */
+#define ABSORPTION_TOLERANCE 1e-10 /* relative, for an optical depth of at least 1e-4 */
 enum { LENGTHS = 9 };
 
 scene *attenuation_scene(const scene *s, const setup *at)
@@ -20,7 +20,7 @@ scene *attenuation_scene(const scene *s, const setup *at)
     solid *liquid = &copy->solids[at->liquid];
     liquid->visible = 1;
     liquid->shape.position = vec3_make(0.0, 0.0, 0.0);
-    /* The rod's face stands at x = 0 exactly, so that lengths carry no rounding of the place. */
+    /* The rod's face is at x = 0 exactly, so that lengths have no rounding error from its position. */
     const double width = 0.1 * liquid->shape.radius;
     solid *rod = &copy->solids[at->rod];
     rod->visible = 1;
@@ -33,7 +33,7 @@ scene *attenuation_scene(const scene *s, const setup *at)
     return copy;
 }
 
-/* Along x to the rod, half way up. */
+/* Along x to the rod, at half height. */
 status attenuation_point(trial *t, const setup *at, double length, double transmittance[3], diagnostic *why)
 {
     const solid_shape *liquid = &t->s->solids[at->liquid].shape;
@@ -49,10 +49,10 @@ double attenuation_reach(const trial *t, const setup *at)
 {
     const vec3 a = material_absorption(&t->s->solids[at->liquid].surface);
     const double most = fmax(a.x, fmax(a.y, a.z)) * t->s->render.unit_m;
-    return fmin(0.95 * t->s->solids[at->liquid].shape.radius, 20.0 / most); /* no further than light goes */
+    return fmin(0.95 * t->s->solids[at->liquid].shape.radius, 20.0 / most); /* not longer than the liquid allows */
 }
 
-/* Slopes of the lines of least squares through the points (length, -ln transmittance). */
+/* Slopes of the least squares lines through the points (length, -ln transmittance). */
 static status fit_slopes(const metrics *m, trial *t, double reach, double slope[3], diagnostic *why)
 {
     double mean_x = 0.0, xx = 0.0, x[LENGTHS], y[3][LENGTHS];
@@ -107,10 +107,10 @@ status realism_absorption(const metrics *m, diagnostic *why)
     double tolerance = ABSORPTION_TOLERANCE;
     const bool exists = m->theory_at.liquid >= 0 && m->at.liquid >= 0;
     const status code = exists ? compare_slopes(m, &worst, &tolerance, why) : STATUS_OK;
-    metrics_add(m,
-                (realism_value){"absorption.slope",
-                                exists ? "of -ln(transmittance) over length in the liquid; of three channels the worst"
-                                       : "there is no liquid",
-                                "1/m", worst.measured, worst.theory, tolerance});
+    metrics_add(
+        m, (realism_value){"absorption.slope",
+                           exists ? "slope of -ln(transmittance) over length in the liquid; worst of three channels"
+                                  : "there is no liquid",
+                           "1/m", worst.measured, worst.theory, tolerance});
     return code;
 }

@@ -1,6 +1,6 @@
-/* The white furnace: under a sky of radiance 1, clear media that absorb nothing are invisible; a ray sees 1, whatever
- * its tree, or 1 less what the depth limit cut off. A material that keeps light (transparency below 1) or makes some
- * does not pass.
+/* The white furnace: under a sky of radiance 1, transparent media without absorption are invisible; a ray returns 1,
+ * whatever its ray tree, or 1 minus what the depth limit cut off. Materials with a transparency below 1 or with
+ * emission fail.
  *
  * Tolerance: half a unit of the film, 2.9e-14, for each of the up to 512 rays of a tree that end in the sky. */
 #include "realism/metrics.h"
@@ -51,8 +51,10 @@ status realism_balance(const metrics *m, diagnostic *why)
             worst_take(&worst, seen_and_cut(&t.tree, c), 1.0);
     }
     trial_end(&t);
-    metrics_add(m, (realism_value){"balance.furnace",
-                                   "radiance and what the depth cut off, in a sky of 1; of 300 rays the worst", "",
-                                   worst.measured, worst.theory, BALANCE_TOLERANCE});
+    metrics_add(
+        m, (realism_value){"balance.furnace",
+                           "radiance plus the weight cut off at the depth limit, under a sky of radiance 1; worst of "
+                           "300 rays",
+                           "", worst.measured, worst.theory, BALANCE_TOLERANCE});
     return code;
 }

@@ -10,11 +10,11 @@ typedef struct curve_words {
     const char *name, *x, *y;
 } curve_words;
 static const curve_words words[REALISM_CURVE_COUNT] = {
-    [REALISM_CURVE_FRESNEL_S] = {"fresnel-s", "angle of incidence, deg", "reflectance across the plane of incidence"},
-    [REALISM_CURVE_FRESNEL_P] = {"fresnel-p", "angle of incidence, deg", "reflectance in the plane of incidence"},
+    [REALISM_CURVE_FRESNEL_S] = {"fresnel-s", "angle of incidence, deg", "reflectance, s-polarised"},
+    [REALISM_CURVE_FRESNEL_P] = {"fresnel-p", "angle of incidence, deg", "reflectance, p-polarised"},
     [REALISM_CURVE_FRESNEL] = {"fresnel", "angle of incidence, deg", "reflectance of unpolarised light"},
     [REALISM_CURVE_DEVIATION] = {"deviation", "offset from the axis, scene units", "deviation, deg"},
-    [REALISM_CURVE_DEPTH] = {"depth", "depth of recursion", "transmittance of a slab at 40 deg"},
+    [REALISM_CURVE_DEPTH] = {"depth", "recursion depth", "transmittance of a slab at 40 deg"},
     [REALISM_CURVE_ABSORPTION] = {"absorption", "length, m", "transmittance of the liquid, red"},
     [REALISM_CURVE_EDGES] = {"edges", "index of the liquid", "displacement of the rod's left edge, px"},
 };
@@ -133,8 +133,8 @@ status realism_trace_curve(const scene *s, isa level, realism_curve which, reali
         return code;
     const bool of_liquid = which == REALISM_CURVE_ABSORPTION || which == REALISM_CURVE_EDGES;
     if (of_liquid && m.at.liquid < 0)
-        return diagnose(why, STATUS_BAD_INPUT, "add a cylinder named 'liquid'",
-                        "the curve '%s' is of the liquid, and there is none", words[which].name);
+        return diagnose(why, STATUS_BAD_INPUT, "add a cylinder named 'liquid'", "the curve '%s' requires a liquid",
+                        words[which].name);
     switch (which) {
     case REALISM_CURVE_FRESNEL_S:
     case REALISM_CURVE_FRESNEL_P:

@@ -1,6 +1,5 @@
 /* The first rainbow of a drop: a sphere, the first solid whose name begins with drop (experiments/scenes/rainbow.yaml).
- * The rainbow stands where rays that were reflected once inside are turned least, at the angle from the point opposite
- * the light. */
+ * It appears where rays with one internal reflection have minimum deviation, at an angle from the antisolar point. */
 #include "realism/metrics.h"
 
 #include "geometry/shapes/shape.h"
@@ -9,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#define ANGLE_TOLERANCE 1e-12 /* rad; the angle is flat in the ray's offset, as a prism's least deviation */
+#define ANGLE_TOLERANCE 1e-12 /* rad; the angle is stationary in the ray's offset, as in a prism's minimum deviation */
 
 static int drop_of(const scene *s)
 {
@@ -24,7 +23,7 @@ bool drop_is_there(const scene *s)
     return drop_of(s) >= 0;
 }
 
-/* A copy in which the drop is alone. */
+/* A copy with the drop alone. */
 static scene *drop_alone(const scene *s, double lambda_nm)
 {
     scene *copy = arrange_at(s, lambda_nm);
@@ -42,8 +41,7 @@ typedef struct search {
     double radius;
 } search;
 
-/* Angle between the way back and the way there, turned round in sign, for a ray that is aimed past the centre at
- * `offset` radii. */
+/* Angle between the emerging ray and the reversed incident ray, for a ray aimed past the centre at `offset` radii. */
 static double minus_turned_back(void *context, double offset)
 {
     search *s = context;
@@ -57,15 +55,15 @@ static double minus_turned_back(void *context, double offset)
     return -atan2(vec3_length(vec3_cross(in, out)), -vec3_dot(in, out));
 }
 
-/* The largest angle back is the least turn; between the middle of the drop and its edge there is one. */
+/* The maximum of this angle is the minimum deviation; it lies between the axis and the edge of the drop. */
 static double rainbow_angle(search *s)
 {
     return -least_value(minus_turned_back, s, 0.4, 0.9999);
 }
 
 /* cos i = sqrt((n^2 - 1) / 3), angle 4 r - 2 i: Born and Wolf, Principles of Optics, 7th ed., 4.7 exercises;
- * Nussenzveig, "The theory of the rainbow", Scientific American 236(4), 1977. NaN for n outside 1 .. 2, where there is
- * no such ray. */
+ * Nussenzveig, "The theory of the rainbow", Scientific American 236(4), 1977. NaN for n outside 1 .. 2, where no such
+ * ray exists. */
 static double theory_rainbow(double n)
 {
     if (!(n > 1.0 && n < 2.0))
@@ -93,6 +91,6 @@ status realism_drop(const metrics *m, diagnostic *why)
         "angle of the first rainbow at the F line, 486.1 nm", "angle of the first rainbow at the d line, 587.6 nm",
         "angle of the first rainbow at the C line, 656.3 nm", "angle of the first rainbow at render.lambda_nm"};
     double unused[2];
-    return metrics_at_lines(m, names, what, "an index outside 1..2 makes no rainbow", at_line, ANGLE_TOLERANCE, unused,
-                            why);
+    return metrics_at_lines(m, names, what, "a refractive index outside 1..2 has no first rainbow", at_line,
+                            ANGLE_TOLERANCE, unused, why);
 }

@@ -1,8 +1,8 @@
-/* The rod in the picture: where its edges stand, how far the filled vessel has moved them, and how much wider it makes
- * the rod.
+/* The rod in the image: the position of its edges, their displacement by the filled vessel, and the magnification.
  *
- * Tolerance: a place in the picture is good to some 1e-12 px by bisection, and a ray's place on the rod to 1e-14 scene
- * units, which at a few hundred px a unit is as much; times the lens's own magnification of errors towards its rim. */
+ * Tolerance: bisection finds a position in the image to about 1e-12 px, and the position on the rod is good to 1e-14
+ * scene units, which at a few hundred px per unit is as much; multiplied by the lens's magnification of errors near its
+ * rim. */
 #include "realism/metrics.h"
 #include "realism/level_section.h"
 #include "scene/model/scene.h"
@@ -10,10 +10,10 @@
 #include <math.h>
 
 #define EDGE_TOLERANCE_PX 1e-9
-#define RATIO_TOLERANCE 1e-10 /* an edge's, over a rod that is some ten px wide or more */
+#define RATIO_TOLERANCE 1e-10 /* error of an edge over a rod at least about ten px wide */
 enum { SCAN_STEPS = 1024 };
 
-/* Edges by the tracer, in a scene that it takes over; NaN where there are none. */
+/* Edges measured with the tracer, in a scene that the function takes over; NaN if there are none. */
 static status traced_edges(scene *taken, const metrics *m, const double range[2], double py, double edge[2],
                            diagnostic *why)
 {
@@ -36,8 +36,7 @@ static bool theory_sees(void *context, double x)
     return level_section_sees_rod(l->c, x, l->py);
 }
 
-/* The line of the picture through the axis in the middle of what is filled of the rod's height, and the theory in it.
- */
+/* The image line through the axis at half height of the filled part of the rod, and theory for that line. */
 typedef struct image_line {
     double py, range[2], filled[2], bare[2];
 } image_line;
@@ -59,10 +58,10 @@ static const char *theory_edges(const scene *s, const setup *at, image_line *out
     theory_line filled_line = {&c, out->py}, bare_line = {&bare, out->py};
     if (!find_edges(theory_sees, &filled_line, out->range[0], out->range[1], SCAN_STEPS, out->filled) ||
         !find_edges(theory_sees, &bare_line, out->range[0], out->range[1], SCAN_STEPS, out->bare))
-        return "both edges of the rod are not in sight through the vessel";
+        return "the edges of the rod are not visible through the vessel";
     for (int i = 0; i < 2; i++)
         if (!level_section_stays(&c, out->filled[i], out->py, low, high))
-            return "the view is too steep: no ray through the filled wall meets the rod below the surface";
+            return "the view is too steep: no ray through the filled wall hits the rod below the surface";
     return NULL;
 }
 
@@ -100,26 +99,29 @@ static status add_edges(const metrics *m, diagnostic *why)
     double filled[2] = {NAN, NAN}, bare[2] = {NAN, NAN};
     const char *const none = theory_edges(m->supposed, &m->theory_at, &l);
     const status code = none ? STATUS_OK : measure_edges(m, &l, filled, bare, why);
-    const double nothing = none ? NAN : 0.0; /* what was found on the way does not count then */
+    const double nothing = none ? NAN : 0.0; /* intermediate results are discarded then */
     const double tolerance = EDGE_TOLERANCE_PX;
     metrics_add(m, (realism_value){"edges.left",
-                                   none ? none : "the rod's left edge in the picture, through the filled vessel", "px",
+                                   none ? none : "left edge of the rod in the image, through the filled vessel", "px",
                                    filled[0], l.filled[0] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.right", none ? none : "the rod's right edge", "px", filled[1],
+    metrics_add(m, (realism_value){"edges.right", none ? none : "right edge of the rod in the image", "px", filled[1],
                                    l.filled[1] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.left_shift", none ? none : "how far vessel and liquid move the left edge",
-                                   "px", filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.right_shift", none ? none : "how far vessel and liquid move the right edge",
-                                   "px", filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.magnification",
-                                   none ? none : "the rod's width in the picture, by that without vessel and liquid",
-                                   "", (filled[1] - filled[0]) / (bare[1] - bare[0]),
-                                   (l.filled[1] - l.filled[0]) / (l.bare[1] - l.bare[0]) + nothing, RATIO_TOLERANCE});
+    metrics_add(m,
+                (realism_value){"edges.left_shift", none ? none : "displacement of the left edge by vessel and liquid",
+                                "px", filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, tolerance});
+    metrics_add(m, (realism_value){"edges.right_shift",
+                                   none ? none : "displacement of the right edge by vessel and liquid", "px",
+                                   filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, tolerance});
+    metrics_add(m,
+                (realism_value){"edges.magnification",
+                                none ? none : "width of the rod in the image over its width without vessel and liquid",
+                                "", (filled[1] - filled[0]) / (bare[1] - bare[0]),
+                                (l.filled[1] - l.filled[0]) / (l.bare[1] - l.bare[0]) + nothing, RATIO_TOLERANCE});
     return code;
 }
 
-/* A thin round rod on the axis, seen along a level line: the tangent ray passes the axis at the rod's radius, so
- * outside at n_liquid / n_outside times it. */
+/* A thin round rod on the axis, seen along a horizontal line: inside, the tangent ray passes the axis at the rod's
+ * radius, so outside at n_liquid / n_outside times that. */
 static scene *round_rod(const metrics *m, double radius, double distance)
 {
     scene *s = arrange_vessel(m->traced, &m->at);
@@ -153,10 +155,11 @@ static status add_round(const metrics *m, diagnostic *why)
         scene_destroy(s);
         theory = NAN;
     }
-    metrics_add(m, (realism_value){"edges.round_magnification",
-                                   visible ? "of a thin round rod on the axis: the liquid's index"
-                                           : "the wall keeps its edges out of sight",
-                                   "", (edge[1] - edge[0]) / (2.0 * radius), theory, RATIO_TOLERANCE});
+    metrics_add(m, (realism_value){
+                       "edges.round_magnification",
+                       visible ? "magnification of a thin round rod on the axis; theory the liquid's refractive index"
+                               : "its edges are hidden by the wall",
+                       "", (edge[1] - edge[0]) / (2.0 * radius), theory, RATIO_TOLERANCE});
     return code;
 }
 

@@ -1,10 +1,10 @@
 /* An empty gap between the vessel's medium and an opaque surface of radiance 1, seen from within the medium: the
- * radiance is 1 - R below the critical angle and 0 beyond it, however narrow the gap (in contact it would be 1). A far
- * solid that no ray meets changes neither.
+ * radiance is 1 - R below the critical angle and 0 above it, however narrow the gap (in contact it would be 1). A
+ * distant solid that no ray hits changes neither.
  *
- * Depth 1, so that nothing comes back from the medium's other face. Tolerance: some film units, 5.7e-14 each, and near
- * the critical angle, where R has an infinite slope, the root of a rounding times the angle's distance from it, a
- * degree at the least. */
+ * Depth 1, so that nothing returns from the medium's other face. Tolerance: some film units, 5.7e-14 each, and near the
+ * critical angle, where R has an infinite slope, the square root of a rounding error times the distance from that
+ * angle, at least one degree. */
 #include "realism/metrics.h"
 #include "scene/model/scene.h"
 
@@ -29,7 +29,7 @@ static scene *gap_scene(const scene *s, const setup *at, double gap, bool far_so
     return copy;
 }
 
-/* With basic radiance the eye, in the vessel's medium, has the square of the index too. */
+/* With basic radiance the camera, inside the vessel's medium, also sees a factor of the square of the index. */
 static double gap_theory(const metrics *m, double angle)
 {
     const double n_from = m->theory_at.n[SETUP_VESSEL], n_to = m->theory_at.n[SETUP_OUTSIDE], ratio = n_from / n_to;
@@ -53,8 +53,9 @@ static status measure(const metrics *m, double gap, bool far_solid, worst_pair *
 status realism_gap(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"gap.empty", "gap.far_solid"};
-    static const char *const what[] = {"radiance through an empty gap of 1e-7; of the angles 0 to 85 degrees the worst",
-                                       "through a gap of 0.001, with a solid 100000 away that no ray meets"};
+    static const char *const what[] = {
+        "radiance through an empty gap of 1e-7; worst of the angles 0 to 85 degrees",
+        "radiance through a gap of 0.001, with a solid at distance 100000 that no ray hits"};
     const bool fresnel =
         !scene_has_constant_shares(&m->traced->render) && m->traced->render.transmission == TRANSMISSION_REFRACT;
     status code = STATUS_OK;
@@ -63,7 +64,7 @@ status realism_gap(const metrics *m, diagnostic *why)
         worst_pair worst = {NAN, NAN, false};
         if (fresnel && third)
             code = measure(m, far_solid ? wide : narrow, far_solid, &worst, why);
-        const char *line = !fresnel ? "constant shares know no critical angle"
+        const char *line = !fresnel ? "constant weights have no critical angle"
                            : !third ? "an empty vessel's scene has no third solid"
                                     : what[far_solid];
         metrics_add(m, (realism_value){names[far_solid], line, "", worst.measured, worst.theory, GAP_TOLERANCE});

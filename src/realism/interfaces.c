@@ -1,8 +1,8 @@
-/* Single interfaces between the scene's media: where total reflection begins, and how much is reflected.
+/* Single interfaces between the scene's media: critical angles and reflectances.
  *
- * Tolerances: the cosine of an angle near the critical one is good to 2e-16 over its slope. Reflectances are a few
- * roundings off, but rise with an infinite slope to the critical angle, before which 1e-16 in the squared cosine of
- * refraction can be 1e-10. */
+ * Tolerances: the cosine near the critical angle is good to 2e-16 divided by its slope. Reflectances have a few
+ * rounding errors, but rise with infinite slope towards the critical angle, where 1e-16 in the squared cosine of
+ * refraction can become 1e-10. */
 #include "realism/metrics.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ status interface_measure(probe *p, ray_tree *tree, double start_y, double angle,
     const status code = probe_path(p, vec3_make(0.0, start_y, 0.0), down, 0, tree, why);
     const ray_hit *hit = &tree->node[0].hit;
     *out = (interface_shares){0.0, 0.0, 0.0};
-    /* Between media that refract alike there is no interface: the ray goes on to what lies further off. */
+    /* Between media with equal indices there is no interface: the ray continues to the next surface. */
     if (code != STATUS_OK || tree->node[0].end != RAY_END_HIT || fabs(hit->point.y) > 0.5)
         return code;
     const bool reflected = tree->count > 1 && tree->node[1].kind == RAY_REFLECT;
@@ -36,8 +36,9 @@ static const crossing crossings[] = {
     {"critical.liquid", "fresnel.liquid.s", "fresnel.liquid.p", "fresnel.liquid", SETUP_OUTSIDE, SETUP_LIQUID},
     {"critical.wall", "fresnel.wall.s", "fresnel.wall.p", "fresnel.wall", SETUP_VESSEL, SETUP_LIQUID},
 };
-static const char *const critical_what[] = {"angle of incidence where total reflection begins, vessel and surroundings",
-                                            "the same, liquid and surroundings", "the same, vessel and liquid"};
+static const char *const critical_what[] = {"critical angle, vessel to surroundings",
+                                            "critical angle, liquid to surroundings",
+                                            "critical angle, vessel to liquid"};
 
 static status bisect_critical(trial *t, double start_y, double *angle, diagnostic *why)
 {
@@ -60,7 +61,7 @@ static bool has_media(const metrics *m, const crossing *at)
     return at->to != SETUP_LIQUID || (m->theory_at.liquid >= 0 && m->at.liquid >= 0);
 }
 
-/* From the denser side. */
+/* From the optically denser side. */
 static status add_critical(const metrics *m, int which, diagnostic *why)
 {
     setup_medium from = crossings[which].from, to = crossings[which].to;
@@ -72,7 +73,8 @@ static status add_critical(const metrics *m, int which, diagnostic *why)
     const bool filled = has_media(m, &crossings[which]);
     const double theory = filled ? theory_critical_angle(n[from], n[to]) : NAN;
     const bool exists = !isnan(theory);
-    const char *const none = filled ? "the media refract alike, so that none reflects totally" : "there is no liquid";
+    const char *const none =
+        filled ? "the media have equal refractive indices: there is no total reflection" : "there is no liquid";
     double measured = NAN, start_y;
     status code = STATUS_OK;
     if (exists) {
@@ -113,12 +115,11 @@ static status add_fresnel(const metrics *m, int which, diagnostic *why)
     worst_pair worst[3] = {{NAN, NAN, false}, {NAN, NAN, false}, {NAN, NAN, false}};
     const status code = exists ? compare_shares(m, at, worst, why) : STATUS_OK;
     const char *const none = exists ? NULL : "there is no liquid";
-    metrics_add(m, (realism_value){
-                       at->s, none ? none : "reflectance across the plane of incidence; of 0 to 89.9 degrees the worst",
-                       "", worst[0].measured, worst[0].theory, SHARE_TOLERANCE});
-    metrics_add(m, (realism_value){at->p, none ? none : "reflectance in the plane of incidence", "", worst[1].measured,
+    metrics_add(m, (realism_value){at->s, none ? none : "reflectance, s-polarised; worst of 0 to 89.9 degrees", "",
+                                   worst[0].measured, worst[0].theory, SHARE_TOLERANCE});
+    metrics_add(m, (realism_value){at->p, none ? none : "reflectance, p-polarised", "", worst[1].measured,
                                    worst[1].theory, SHARE_TOLERANCE});
-    metrics_add(m, (realism_value){at->mean, none ? none : "share of a ray that is reflected", "", worst[2].measured,
+    metrics_add(m, (realism_value){at->mean, none ? none : "reflected share of a ray", "", worst[2].measured,
                                    worst[2].theory, SHARE_TOLERANCE});
     return code;
 }

@@ -1,9 +1,7 @@
-/* The filled vessel as a lens for level rays: how far it turns a ray that passes beside its axis, its power, its
- * dispersion.
+/* The filled vessel as a lens for horizontal rays: deviation of a ray off its axis, optical power, dispersion.
  *
- * Tolerances: an angle is good to some 1e-15, which towards the rim, where rays graze the wall, becomes some 1e-13.
- * Power is extrapolated from offsets down to a 160th of the radius: 1e-15 over that, and what the extrapolation makes
- * of it. */
+ * Tolerances: an angle is good to about 1e-15, and to 1e-13 near the rim, where rays graze the wall. Power is
+ * extrapolated from offsets down to a 160th of the radius: 1e-15 divided by that, amplified by the extrapolation. */
 #include "realism/metrics.h"
 
 #include "optics/media.h"
@@ -22,7 +20,7 @@ status lens_deviation(probe *p, ray_tree *tree, const setup *at, double offset, 
     TRY(probe_path(p, from, vec3_make(0.0, 0.0, 1.0), -1, tree, why));
     const ray_node *last = &tree->node[tree->count - 1];
     *radians = last->end == RAY_END_SKY ? atan2(-last->direction.x, last->direction.z)
-                                        : NAN; /* towards the axis, which is at -x */
+                                        : NAN; /* towards the axis, in the direction -x */
     return STATUS_OK;
 }
 
@@ -39,13 +37,13 @@ static status add_deviation(const metrics *m, trial *t, diagnostic *why)
         worst_take(&worst, measured, theory_shells_deviation(&c, offset));
     }
     metrics_add(m, (realism_value){"lens.deviation",
-                                   "how far the filled vessel turns a ray; of 64 offsets from its axis the worst",
-                                   "rad", worst.measured, worst.theory, ANGLE_TOLERANCE});
+                                   "deviation of a ray by the filled vessel; worst of 64 offsets from its axis", "rad",
+                                   worst.measured, worst.theory, ANGLE_TOLERANCE});
     return code;
 }
 
-/* The limit of deviation / offset, which is even in the offset: Richardson's extrapolation from halved offsets, as
- * Romberg's (Press and others, Numerical Recipes, 3rd ed., 4.3). */
+/* The limit of deviation / offset, an even function of the offset: Richardson extrapolation from halved offsets, as in
+ * Romberg's method (Press and others, Numerical Recipes, 3rd ed., 4.3). */
 static status paraxial_power(const metrics *m, trial *t, double *power, diagnostic *why)
 {
     double value[LEVELS];
@@ -69,19 +67,20 @@ static status add_power(const metrics *m, trial *t, diagnostic *why)
     const double theory = theory_shells_power(&c), tolerance = POWER_TOLERANCE / c.outer;
     double measured = NAN;
     const status code = paraxial_power(m, t, &measured, why);
-    /* An error of the power is one of f, f^2 times as large. */
+    /* An error e of the power is an error f^2 e of the focal length f. */
     const double size = fabs(theory) * c.outer;
     const bool focuses = size > 1e-4;
-    metrics_add(m, (realism_value){"lens.power", "of the filled vessel, near its axis", "1/scene unit", measured,
-                                   theory, tolerance});
+    metrics_add(m, (realism_value){"lens.power", "optical power of the filled vessel, near its axis", "1/scene unit",
+                                   measured, theory, tolerance});
     metrics_add(m, (realism_value){"lens.focal_length",
-                                   focuses ? "from the vessel's axis, for rays near it" : "the vessel does not focus",
+                                   focuses ? "focal length, from the vessel's axis, for paraxial rays"
+                                           : "the vessel does not focus",
                                    "scene units", focuses ? 1.0 / measured : NAN, focuses ? 1.0 / theory : NAN,
                                    tolerance / (theory * theory)});
     return code;
 }
 
-/* The same with water in BK7 at one line, half way to the rim. */
+/* The same with water in BK7 at one spectral line, half way to the rim. */
 static status deviation_at_line(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why)
 {
     trial t;
@@ -114,12 +113,14 @@ static status add_dispersion(const metrics *m, diagnostic *why)
     double measured[3], theory[3];
     for (int i = 0; i < 3; i++)
         TRY(deviation_at_line(m, lines[i], &measured[i], &theory[i], why));
-    const char *none = isnan(theory[0] + theory[1] + theory[2]) ? "the ray does not get into the core" : NULL;
+    const char *none = isnan(theory[0] + theory[1] + theory[2]) ? "the ray does not enter the core" : NULL;
     metrics_add(m, (realism_value){"dispersion.d",
                                    none ? none : "deviation half way to the rim, water in BK7, at the d line", "rad",
                                    measured[1], theory[1], ANGLE_TOLERANCE});
-    metrics_add(m, (realism_value){"dispersion.F-C", none ? none : "the same at the F line less that at the C line",
-                                   "rad", measured[0] - measured[2], theory[0] - theory[2], ANGLE_TOLERANCE});
+    metrics_add(m,
+                (realism_value){"dispersion.F-C",
+                                none ? none : "chromatic difference: deviation at the F line minus that at the C line",
+                                "rad", measured[0] - measured[2], theory[0] - theory[2], ANGLE_TOLERANCE});
     return STATUS_OK;
 }
 

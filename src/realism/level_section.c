@@ -7,7 +7,7 @@ const char *level_section_read(const scene *s, const setup *at, level_section *o
 {
     const solid_shape *rod = &s->solids[at->rod].shape;
     if (rod->rotation_deg.x != 0.0 || rod->rotation_deg.z != 0.0)
-        return "the rod leans: this wants an upright one";
+        return "the rod leans: this requires an upright one";
     *out = (level_section){.eye = view_of(s), .shells = setup_shells(at), .x = at->x, .z = at->z};
     out->eye.roll = 0.0; /* as in arrange_empty */
     const double turn = rod->rotation_deg.y * M_PI / 180.0;
@@ -19,7 +19,7 @@ const char *level_section_read(const scene *s, const setup *at, level_section *o
             return "the rod reaches into the vessel's wall";
     }
     if (hypot(out->eye.x - at->x, out->eye.z - at->z) <= at->outer)
-        return "the camera stands within the vessel's circle";
+        return "the camera is within the vessel's circle";
     return NULL;
 }
 
@@ -30,7 +30,7 @@ level_section level_section_bare(const level_section *c)
     return bare;
 }
 
-/* A ray from above: where it passes the axis, which way it goes, and the shells' indices for it. */
+/* A ray seen from above: its offset from the axis, its heading, and the effective indices of the shells. */
 typedef struct flat_ray {
     double heading, offset, steepness;
     theory_shells shells;
@@ -57,7 +57,7 @@ bool level_section_sees_rod(const level_section *c, double px, double py)
     const flat_ray r = flatten(c, px, py);
     if (!(fabs(r.offset) < theory_shells_reach(&r.shells)))
         return false;
-    /* An offset to the left of the ray has the axis on its right, where it turns to: the heading falls. */
+    /* A ray with an offset to the left has the axis on its right, and turns towards it: the heading decreases. */
     const double heading = r.heading - theory_shells_turn(&r.shells, r.offset);
     const double offset = r.offset * r.shells.n_around / r.shells.n_core;
     double least = INFINITY, most = -INFINITY;
@@ -90,13 +90,13 @@ bool level_section_stays(const level_section *c, double px, double py, double lo
     const theory_shells *n = &r.shells;
     const double b[3] = {r.offset, r.offset * n->n_around / n->n_wall, r.offset * n->n_around / n->n_core};
     const double distance = hypot(c->eye.x - c->x, c->eye.z - c->z);
-    const double way[3] = {sqrt(distance * distance - b[0] * b[0]) - sqrt(n->outer * n->outer - b[0] * b[0]),
+    const double run[3] = {sqrt(distance * distance - b[0] * b[0]) - sqrt(n->outer * n->outer - b[0] * b[0]),
                            sqrt(n->outer * n->outer - b[1] * b[1]) - sqrt(n->inner * n->inner - b[1] * b[1]),
                            sqrt(n->inner * n->inner - b[2] * b[2]) + hypot(c->corner_x[0], c->corner_z[0])};
     const double index[3] = {n->n_around, n->n_wall, n->n_core};
     double y = c->eye.y;
     for (int i = 0; i < 3; i++) {
-        y += way[i] * r.steepness / index[i];
+        y += run[i] * r.steepness / index[i];
         if (!(y > low && y < high))
             return false;
     }

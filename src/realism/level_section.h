@@ -1,7 +1,7 @@
-/* Theory of the rod in the picture: whether the camera's ray through a point of the picture meets the rod behind the
- * wall of a filled vessel. Upright surfaces leave n d_y of a ray as it is, d_y the upward part of its unit direction.
- * Seen from above, a ray therefore bends at the circles as a flat one whose indices are sqrt(n^2 - (n d_y)^2): Snell's
- * law with the part along y taken off both sides. Exact. Pure; scalars only. */
+/* Theory of the rod in the image: whether the camera ray through a point of the image hits the rod behind the wall of a
+ * filled vessel. Vertical surfaces preserve n d_y of a ray, d_y the vertical component of its unit direction. Seen from
+ * above, a ray therefore refracts at the circles like a ray in the plane with the indices sqrt(n^2 - (n d_y)^2):
+ * Snell's law without the component along y. Exact. Pure; scalars only. */
 #pragma once
 
 #include "realism/setup.h"
@@ -11,10 +11,10 @@ typedef struct level_section {
     view eye;
     theory_shells shells;
     double x, z;                     /* of the axis */
-    double corner_x[4], corner_z[4]; /* of the rod, from the axis */
+    double corner_x[4], corner_z[4]; /* of the rod, relative to the axis */
 } level_section;
 
-/* NULL, or why theory has no answer for this scene. */
+/* NULL, or the reason why theory does not apply to this scene. */
 const char *level_section_read(const scene *s, const setup *at, level_section *out);
 
 /* The same without vessel and liquid. */
@@ -22,8 +22,8 @@ level_section level_section_bare(const level_section *c);
 
 bool level_section_sees_rod(const level_section *c, double px, double py);
 
-/* Where in the picture's line py the vessel begins and ends, around the axis at px. */
+/* The horizontal bounds of the vessel in image line py, around the axis at px. */
 void level_section_range(const level_section *c, double px, double py, double range[2]);
 
-/* Does the ray stay between the two heights up to the rod's far side? */
+/* Whether the ray stays between the two heights up to the rod's far side. */
 bool level_section_stays(const level_section *c, double px, double py, double low, double high);

@@ -10,7 +10,7 @@ void metrics_add(const metrics *m, realism_value value)
 
 void worst_take(worst_pair *w, double measured, double theory)
 {
-    /* Written so that a measurement that is no number counts as the worst. */
+    /* Written so that a NaN counts as the worst measurement. */
     if (!w->any || !(fabs(measured - theory) <= fabs(w->measured - w->theory)))
         *w = (worst_pair){measured, theory, true};
 }
@@ -35,7 +35,7 @@ status realism_measure(const scene *s, isa level, realism_report *out, diagnosti
     return realism_measure_against(s, s, level, out, why);
 }
 
-/* Other than the vessel: known by the names of their solids. */
+/* Scenes other than the vessel, identified by the names of their solids. */
 static const struct arrangement_kind {
     bool (*is_there)(const scene *s);
     status (*measure)(const metrics *m, diagnostic *why);

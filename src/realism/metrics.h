@@ -1,6 +1,6 @@
-/* The room's inside: what all metrics share. A metric is a function that adds its values to the report; it adds the
- * same names for every scene, with theory NaN and the reason where the scene has no such thing. Ownership: trial_start
- * takes the scene over, trial_end releases all of it. */
+/* Shared code of all metrics; private to this folder. A metric is a function that adds its values to the report; it
+ * adds the same names for every scene, with theory NaN and the reason if a value is undefined. Ownership: trial_start
+ * takes the scene over, trial_end releases everything. */
 #pragma once
 
 #include "realism/realism.h"
@@ -8,14 +8,14 @@
 #include "render/inspect/probe.h"
 
 typedef struct metrics {
-    const scene *traced, *supposed; /* measured in; theory's */
-    setup at, theory_at;            /* of these */
+    const scene *traced, *supposed; /* the scene to measure; the scene for theory */
+    setup at, theory_at;            /* of these scenes */
     isa level;
     realism_report *report;
 } metrics;
 
-status realism_edges(const metrics *m, diagnostic *why); /* edges.c: the rod's edges in the picture, magnification */
-status realism_water_line(const metrics *m, diagnostic *why); /* water_line.c: the leaning rod's break */
+status realism_edges(const metrics *m, diagnostic *why); /* edges.c: edges of the rod in the image, magnification */
+status realism_water_line(const metrics *m, diagnostic *why); /* water_line.c: kink of the leaning rod */
 status realism_lens(const metrics *m, diagnostic *why);       /* lens.c: deviation, power, dispersion */
 status realism_interfaces(const metrics *m, diagnostic *why); /* interfaces.c: critical angles, Fresnel */
 status realism_balance(const metrics *m, diagnostic *why);    /* balance.c: white furnace */
@@ -23,20 +23,20 @@ status realism_slab(const metrics *m, diagnostic *why);       /* slab.c: converg
 status realism_gap(const metrics *m, diagnostic *why);        /* gap.c: empty gaps, and solids far away */
 status realism_radiance(const metrics *m, diagnostic *why);   /* radiance.c: radiance across a flat surface */
 status realism_absorption(const metrics *m, diagnostic *why); /* attenuation.c: Beer and Lambert */
-status realism_reversal(const metrics *m, diagnostic *why);   /* reversal.c: ways backwards */
+status realism_reversal(const metrics *m, diagnostic *why);   /* reversal.c: reversed paths */
 
-/* Arrangements of their own: what they are made of, and whether a scene has it. Of m only the scenes, the level and the
- * report count. */
+/* Metrics with scenes of their own: the required solids, and whether a scene has them. Only the scenes, the level and
+ * the report of m are used. */
 bool prism_is_there(const scene *s);
-status realism_prism(const metrics *m, diagnostic *why); /* prism.c: least deviation */
+status realism_prism(const metrics *m, diagnostic *why); /* prism.c: minimum deviation */
 bool drop_is_there(const scene *s);
 status realism_drop(const metrics *m, diagnostic *why); /* drop.c: the first rainbow */
 bool stack_is_there(const scene *s);
-status realism_stack(const metrics *m, diagnostic *why); /* stack.c: a pile of two plates */
+status realism_stack(const metrics *m, diagnostic *why); /* stack.c: a stack of two plates */
 
 void metrics_add(const metrics *m, realism_value value);
 
-/* Remembers the pair that lies furthest apart. */
+/* Keeps the pair with the largest difference. */
 typedef struct worst_pair {
     double measured, theory;
     bool any;
@@ -55,7 +55,7 @@ double slab_theory(const metrics *m, int depth, bool polarised);
 scene *attenuation_scene(const scene *s, const setup *at);
 status edges_displacement(const metrics *m, double measured[2], double theory[2], diagnostic *why);
 
-/* A scene and the means to send rays through it. */
+/* A scene and a tracer for it. */
 typedef struct trial {
     scene *s;
     probe *p;
@@ -64,32 +64,33 @@ typedef struct trial {
 status trial_start(trial *t, scene *taken, isa level, diagnostic *why);
 void trial_end(trial *t);
 
-/* Shares of light left after a length of the liquid, in a trial of attenuation_scene; and how far it is good to go. */
+/* Transmittances after a length of the liquid, in a trial of attenuation_scene; and the maximum length. */
 status attenuation_point(trial *t, const setup *at, double length, double transmittance[3], diagnostic *why);
 double attenuation_reach(const trial *t, const setup *at);
 
-/* Index of a solid's medium relative to what surrounds all; NaN when its coefficients make no law. */
+/* Index of a solid's medium relative to the surroundings; NaN if its coefficients are invalid. */
 double relative_index(const scene *s, int at, double lambda_nm);
 
-/* The least value between low and high of a function that has one minimum there: golden section (Kiefer, "Sequential
- * minimax search for a maximum", Proc. AMS 4, 1953). Flat at its minimum, the function's value is good to rounding. */
+/* The minimum between low and high of a function with a single minimum there: golden section search (Kiefer,
+ * "Sequential minimax search for a maximum", Proc. AMS 4, 1953). As the function is stationary there, its value is good
+ * to rounding. */
 double least_value(double (*f)(void *context, double x), void *context, double low, double high);
 
-/* First and last place between `from` and `to` where something is seen, each to 1e-12, the change looked for in `steps`
- * steps. */
+/* First and last position between `from` and `to` where something is visible, each to 1e-12; changes are searched in
+ * `steps` steps. */
 typedef bool seen_at(void *context, double x);
 bool find_edges(seen_at *seen, void *context, double from, double to, int steps, double edge[2]);
 
-/* The same of a solid in a line of the traced picture: where the camera's way, refracted where it can be, ends on it
- * without a reflection, through upright surfaces only where that is asked for. NaN where it has no edges. */
+/* The same for a solid in a line of the traced image: where the camera path, refracted where possible, ends on it
+ * without a reflection, optionally only through vertical surfaces. NaN if it has no edges. */
 status trial_edges(trial *t, int which, bool upright, double py, const double range[2], int steps, double edge[2],
                    diagnostic *why);
 
-/* Adds an angle at the F, d and C lines and at render.lambda_nm; difference: of F less C, measured and in theory. none
- * says why there is no theory, where that can be. */
+/* Adds an angle at the F, d and C lines and at render.lambda_nm; difference: F minus C, measured and theory. none is
+ * the reason if there is no theory. */
 typedef status at_line_call(const metrics *m, double lambda_nm, double *measured, double *theory, diagnostic *why);
 status metrics_at_lines(const metrics *m, const char *const names[4], const char *const what[4], const char *none,
                         at_line_call *at_line, double tolerance, double difference[2], diagnostic *why);
 
-/* A copy at a wavelength, with settings that trace what such an angle needs; NULL without memory. */
+/* A copy at a wavelength, with the settings needed to trace such an angle; NULL without memory. */
 scene *arrange_at(const scene *s, double lambda_nm);

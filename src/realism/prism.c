@@ -1,7 +1,7 @@
-/* A prism's least deviation at the F, d and C lines. The scene has solids named prism, and left and right, the
+/* Minimum deviation of a prism at the F, d and C lines. The scene has solids named prism, and left and right, the
  * half-spaces that cut its two faces (experiments/scenes/prism.yaml).
  *
- * Least deviation is flat in the angle of incidence, so that its value is good to rounding however it is found. */
+ * The deviation is stationary in the angle of incidence at its minimum, so its value is good to rounding. */
 #include "realism/metrics.h"
 
 #include "scene/model/scene.h"
@@ -20,8 +20,7 @@ bool prism_is_there(const scene *s)
     return scene_find_solid(s, "prism") >= 0 && scene_find_solid(s, "left") >= 0 && scene_find_solid(s, "right") >= 0;
 }
 
-/* A half-space's matter lies under its local y; what it cuts off the prism has that as its outward normal, turned
- * round. */
+/* A half-space is below its local y = 0; the face that it cuts has the negative of its normal as outward normal. */
 static vec3 outward(const solid *cut)
 {
     return vec3_scale(mat3_apply(rotation_from_deg(cut->shape.rotation_deg), vec3_make(0.0, 1.0, 0.0)), -1.0);
@@ -45,8 +44,8 @@ typedef struct search {
     diagnostic *why;
 } search;
 
-/* Deviation of a ray that meets the middle of the left face at an angle of incidence; NaN if it does not come through
- * both. */
+/* Deviation of a ray that hits the middle of the left face at an angle of incidence; NaN unless it passes both faces.
+ * */
 static double deviation(void *context, double incidence)
 {
     search *s = context;
@@ -55,16 +54,16 @@ static double deviation(void *context, double incidence)
         s->code = probe_path(s->t->p, vec3_sub(s->at.point, vec3_scale(in, 3.0)), in, -1, &s->t->tree, s->why);
     if (s->code != STATUS_OK)
         return NAN;
-    const ray_tree *way = &s->t->tree;
-    if (way->count < 3 || way->node[2].kind != RAY_REFRACT || way->node[0].hit.to != s->at.region ||
-        way->node[1].hit.from != s->at.region)
+    const ray_tree *tree = &s->t->tree;
+    if (tree->count < 3 || tree->node[2].kind != RAY_REFRACT || tree->node[0].hit.to != s->at.region ||
+        tree->node[1].hit.from != s->at.region)
         return NAN;
-    const vec3 out = way->node[2].direction;
+    const vec3 out = tree->node[2].direction;
     const vec3 across = vec3_cross(in, out);
     return atan2(vec3_length(across), vec3_dot(in, out));
 }
 
-/* Between the first and the last angle where a way leads through. */
+/* Between the first and the last angle of transmitted rays. */
 static double least_deviation(search *s)
 {
     double low = NAN, high = NAN;
@@ -101,12 +100,13 @@ status realism_prism(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"prism.F", "prism.d", "prism.C", "prism.own"};
     static const char *const what[] = {
-        "least deviation at the F line, 486.1 nm", "least deviation at the d line, 587.6 nm",
-        "least deviation at the C line, 656.3 nm", "least deviation at render.lambda_nm"};
+        "minimum deviation at the F line, 486.1 nm", "minimum deviation at the d line, 587.6 nm",
+        "minimum deviation at the C line, 656.3 nm", "minimum deviation at render.lambda_nm"};
     double off[2];
     const status code = metrics_at_lines(m, names, what, NULL, at_line, ANGLE_TOLERANCE, off, why);
     if (code == STATUS_OK)
-        metrics_add(m, (realism_value){"prism.F-C", "that at the F line less that at the C line", "rad", off[0], off[1],
-                                       2.0 * ANGLE_TOLERANCE});
+        metrics_add(m, (realism_value){"prism.F-C",
+                                       "angular dispersion: minimum deviation at the F line minus that at the C line",
+                                       "rad", off[0], off[1], 2.0 * ANGLE_TOLERANCE});
     return code;
 }

@@ -1,9 +1,9 @@
-/* Radiance across the liquid's flat surface with render.radiance: basic. L / n^2 is handed on but for what is
- * reflected (Nicodemus 1963), so that from within the liquid a sky of radiance 1 is (n / n_0)^2 T, and a floor of
- * radiance 1 in the liquid is T (n_0 / n)^2 from above. A lamp above lights that floor through the surface with T of
- * its own straight line, and the square of the index only on the way back.
+/* Radiance across the liquid's flat surface with render.radiance: basic. L / n^2 is preserved except for reflection
+ * (Nicodemus 1963), so that from within the liquid a sky of radiance 1 has (n / n_0)^2 T, and a floor of radiance 1 in
+ * the liquid has T (n_0 / n)^2 from above. A light above illuminates that floor through the surface with the T of its
+ * own straight line, and the square of the index applies only to the returning path.
  *
- * * Tolerance: as of gap.c; some film units and, near the critical angle, the root of a rounding. */
+ * Tolerance: as in gap.c; some film units and, near the critical angle, the square root of a rounding error. */
 #include "realism/metrics.h"
 
 #include "scene/model/edit/edit.h"
@@ -17,7 +17,7 @@ typedef enum look { LOOK_SKY, LOOK_FLOOR, LOOK_LAMP, LOOKS } look;
 
 static const vec3 lamp_place = {9.0, LAMP_HEIGHT, 3.0};
 
-/* The liquid fills 0 < y < 1, on a matte floor. */
+/* The liquid fills 0 < y < 1, on a diffuse floor. */
 static scene *pond(const scene *s, const setup *at, look which)
 {
     scene *copy = arrange_empty(s);
@@ -27,7 +27,8 @@ static scene *pond(const scene *s, const setup *at, look which)
     water->visible = 1, ground->visible = which != LOOK_SKY;
     water->priority = 1, ground->priority = 2;
     water->shape = box_at(vec3_make(0.0, 0.0, 0.0), vec3_make(1e4, 2.0, 1e4));
-    water->surface.ambient = water->surface.diffuse = water->surface.specular = 0.0; /* no light of the surface's own */
+    water->surface.ambient = water->surface.diffuse = water->surface.specular = 0.0; /* no reflection of the surface's
+                                                                                        own */
     water->surface.absorb_per_m = vec3_make(0.0, 0.0, 0.0);
     water->surface.absorb_spectrum.count = 0;
     ground->shape = ground_at(0.0);
@@ -44,7 +45,7 @@ static scene *pond(const scene *s, const setup *at, look which)
     return copy;
 }
 
-/* A point of light above the surface, and no other. */
+/* A single point light above the surface. */
 static status hang_lamp(scene *s, diagnostic *why)
 {
     size_t at = 0;
@@ -63,7 +64,7 @@ static double through(double angle, double n_from, double n_to)
     return n_from == n_to ? 1.0 : 1.0 - theory_fresnel(angle, n_from, n_to);
 }
 
-/* E at the point of the floor that a ray from (0, EYE_HEIGHT, 0) comes to. */
+/* Irradiance E at the point of the floor that a ray from (0, EYE_HEIGHT, 0) hits. */
 static double lamp_theory(double angle, double n_around, double n_liquid)
 {
     const double x = (EYE_HEIGHT - 1.0) * tan(angle) + tan(theory_snell(angle, n_around, n_liquid));
@@ -77,7 +78,7 @@ static double theory(const setup *at, look which, double angle)
     if (which == LOOK_SKY)
         return ratio * ratio * through(angle, n_liquid, n_around);
     const double T = through(angle, n_around, n_liquid);
-    if (T == 0.0) /* totally reflected from above, by an index lower than what is around */
+    if (T == 0.0) /* total reflection from above, with an index below that of the surroundings */
         return 0.0;
     return T / (ratio * ratio) * (which == LOOK_LAMP ? lamp_theory(angle, n_around, n_liquid) : 1.0);
 }
@@ -109,8 +110,10 @@ status realism_radiance(const metrics *m, diagnostic *why)
     static const char *const names[] = {"radiance.sky_under_water", "radiance.floor_under_water",
                                         "radiance.lamp_under_water"};
     static const char *const what[] = {
-        "a sky of 1 from within the liquid, with render.radiance basic; of the angles 0 to 85 degrees the worst",
-        "a floor of radiance 1 in the liquid, from above it", "the same floor, matte, by a lamp above it"};
+        "radiance of a sky of 1 seen from within the liquid, with render.radiance=basic; worst of "
+        "the angles 0 to 85 degrees",
+        "radiance of a floor of radiance 1 below the liquid, seen from above",
+        "radiance of a diffuse floor below the liquid, lit by a light above it"};
     const bool fresnel = !scene_has_constant_shares(&m->traced->render);
     status code = STATUS_OK;
     for (int k = 0; k < LOOKS && code == STATUS_OK; k++) {
@@ -119,7 +122,7 @@ status realism_radiance(const metrics *m, diagnostic *why)
         if (defined)
             code = measure(m, (look)k, &worst, why);
         const char *line = m->at.liquid < 0 ? "there is no liquid"
-                           : !fresnel       ? "constant shares know no angle"
+                           : !fresnel       ? "constant weights do not depend on the angle"
                                             : what[k];
         metrics_add(m, (realism_value){names[k], line, "", worst.measured, worst.theory, RADIANCE_TOLERANCE});
     }

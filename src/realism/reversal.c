@@ -1,10 +1,10 @@
-/* Reversed ways: light goes back the way that it came, and an interface shares it out alike from either side (Stokes's
- * relations; Hecht, Optics, 5th ed., 4.10). Random ways through the vessel, refracted or once reflected, are traced to
- * their end and back. The way back ends on the ray that the way began with, and has the same throughput. (Radiance
- * takes on a factor n^2 in a medium; both ends lie outside, where it has gone again, and the tracer's throughput leaves
- * it out.) Ways that graze a surface are left out: errors grow there as 1 / cos.
+/* Reversed paths: light returns along the path that it came, and an interface has the same transmittance from both
+ * sides (Stokes relations; Hecht, Optics, 5th ed., 4.10). Random paths through the vessel, refracted or reflected once,
+ * are traced to their end and back. The reversed path ends on the origin ray of the path, and has the same throughput.
+ * (Radiance has an additional factor n^2 in a medium; both ends are outside, where it cancels, and the tracer's
+ * throughput omits it.) Paths near grazing incidence are excluded: errors grow there as 1 / cos.
  *
- * Tolerance: 1e-16 a surface, over the cosines of up to 16 surfaces, of 0.1 at least. */
+ * Tolerance: 1e-16 per surface, divided by the cosines of up to 16 surfaces, of at least 0.1. */
 #include "realism/metrics.h"
 
 #include "base/random.h"
@@ -14,12 +14,12 @@
 #define LEAST_COSINE 0.1
 enum { WAYS = 2000, HITS_MAX = 12 };
 
-typedef struct way {
+typedef struct test_path {
     vec3 from, along;
     int reflect_at;
-} way;
+} test_path;
 
-static way random_path(const setup *at, uint32_t number)
+static test_path random_path(const setup *at, uint32_t number)
 {
     const random_words a = random_at(10, number, 0, 0, 0), b = random_at(10, number, 1, 0, 0);
     const double turn = 2.0 * M_PI * random_unit(a.word[0]), middle = (at->low + at->high) / 2.0;
@@ -29,12 +29,12 @@ static way random_path(const setup *at, uint32_t number)
     const double aside = at->outer * (2.0 * random_unit(a.word[2]) - 1.0);
     const vec3 to = vec3_make(at->x - aside * sin(turn), at->low + (at->high - at->low) * random_unit(a.word[3]),
                               at->z + aside * cos(turn));
-    const way w = {from, vec3_normalize(vec3_sub(to, from)), (int)(b.word[0] % 4) - 1};
+    const test_path w = {from, vec3_normalize(vec3_sub(to, from)), (int)(b.word[0] % 4) - 1};
     return w;
 }
 
-/* The way's number of surfaces; -1 when it does not leave or grazes one. Media that refract alike have none between
- * them. */
+/* The number of surfaces of the path; -1 if it does not leave the vessel or grazes a surface. There are no surfaces
+ * between media with equal indices. */
 static int surfaces(const ray_tree *tree)
 {
     const int hits = (int)tree->count - 1;
@@ -48,13 +48,13 @@ static int surfaces(const ray_tree *tree)
     return hits;
 }
 
-/* A reflection that was asked for where the way had none left to follow is one at another surface backwards. */
+/* A reflection requested after the last surface of the path would be at another surface on the reversed path. */
 static int reflected_at(const ray_tree *tree, int asked)
 {
     return asked >= 0 && asked + 1 < (int)tree->count && tree->node[asked + 1].kind == RAY_REFLECT ? asked : -1;
 }
 
-/* Of the way back: its throughput, and how far it passes from where the way began. */
+/* Of the reversed path: its throughput, and its distance from the origin of the path. */
 typedef struct round_trip {
     double forth, back, miss;
     bool done;
@@ -62,7 +62,7 @@ typedef struct round_trip {
 
 static status trace_back(trial *forth, trial *back, const setup *at, uint32_t number, round_trip *out, diagnostic *why)
 {
-    const way w = random_path(at, number);
+    const test_path w = random_path(at, number);
     *out = (round_trip){NAN, NAN, NAN, false};
     status code = probe_path(forth->p, w.from, w.along, w.reflect_at, &forth->tree, why);
     const int hits = code == STATUS_OK ? surfaces(&forth->tree) : -1;
@@ -78,7 +78,7 @@ static status trace_back(trial *forth, trial *back, const setup *at, uint32_t nu
     out->done = true;
     out->forth = last->throughput[0];
     if ((int)back->tree.count - 1 != hits || home->end != RAY_END_SKY)
-        return STATUS_OK; /* another way: nothing agrees */
+        return STATUS_OK; /* another path: nothing agrees */
     out->back = home->throughput[0];
     out->miss = vec3_length(vec3_cross(away, home->direction));
     return STATUS_OK;
@@ -101,9 +101,9 @@ status realism_reversal(const metrics *m, diagnostic *why)
     trial_end(&forth);
     trial_end(&back);
     metrics_add(m, (realism_value){"reversal.throughput",
-                                   "of ways traced back, by that of the way there; of some 1000 the worst", "",
+                                   "throughput of a reversed path over that of the path; worst of about 1000", "",
                                    ratio.measured, ratio.theory, REVERSAL_TOLERANCE});
-    metrics_add(m, (realism_value){"reversal.way", "how far the way back passes from where the way began",
+    metrics_add(m, (realism_value){"reversal.way", "distance of the reversed path from the origin of the path",
                                    "scene units", miss.measured, miss.theory, REVERSAL_TOLERANCE * m->at.outer});
     return code;
 }

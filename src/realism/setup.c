@@ -31,8 +31,8 @@ static status index_of(const scene *s, int which, double *n, diagnostic *why)
 
 static status read_vessel(const scene *s, setup *out, diagnostic *why)
 {
-    const char *const example =
-        "take the names and shapes of experiments/scenes/rod.yaml, prism.yaml, rainbow.yaml or plates.yaml";
+    const char *const example = "use the names and shapes of experiments/scenes/rod.yaml, prism.yaml, rainbow.yaml or "
+                                "plates.yaml";
     out->vessel = find_visible(s, "vessel");
     out->rod = find_visible(s, "rod");
     if (out->vessel < 0 || s->solids[out->vessel].shape.kind != SHAPE_CUP)
@@ -44,8 +44,7 @@ static status read_vessel(const scene *s, setup *out, diagnostic *why)
         return wrong(s, why, "set vessel.m to 1: the closed forms are those of a round vessel",
                      "the vessel is elliptic");
     if (is_turned(vessel) || vessel->surface.transparency == 0.0)
-        return wrong(s, why, "let it stand upright, and set its transparency above 0",
-                     "the vessel is turned or opaque");
+        return wrong(s, why, "set its rotation to 0, and its transparency above 0", "the vessel is rotated or opaque");
     if (rod->surface.transparency != 0.0 || rod->priority <= vessel->priority)
         return wrong(s, why, "set its transparency to 0 and its priority above the vessel's",
                      "the rod is not opaque, or is displaced");
@@ -56,7 +55,7 @@ static status read_vessel(const scene *s, setup *out, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Does the vessel's glass win where both are? */
+/* Whether the vessel has precedence where both are. */
 static bool glass_wins(const scene *s, const setup *at)
 {
     const int64_t vessel = s->solids[at->vessel].priority, liquid = s->solids[at->liquid].priority;
@@ -69,7 +68,7 @@ static status read_liquid(const scene *s, setup *out, diagnostic *why)
     const solid_shape *shape = &liquid->shape;
     if (shape->kind != SHAPE_CYLINDER || shape->m != 1.0 || is_turned(liquid) || liquid->surface.transparency == 0.0)
         return wrong(s, why, "make it an upright round cylinder with a transparency above 0",
-                     "the liquid is no clear round cylinder");
+                     "the liquid is not a transparent round cylinder");
     if (shape->position.x != out->x || shape->position.z != out->z || shape->radius < out->inner ||
         shape->radius >= out->outer)
         return wrong(s, why, "give both one axis, and the liquid a radius between the vessel's inner_radius and radius",
@@ -81,8 +80,8 @@ static status read_liquid(const scene *s, setup *out, diagnostic *why)
         out->low = fmax(s->solids[out->vessel].shape.position.y, shape->position.y);
     }
     if (shape->position.y > out->low || shape->position.y + shape->height <= out->low)
-        return wrong(s, why, "let the liquid begin within the vessel's floor and end above it",
-                     "the liquid does not stand on the floor");
+        return wrong(s, why, "make the liquid begin within the vessel's floor and end above it",
+                     "the liquid does not rest on the vessel's floor");
     out->high = fmin(out->high, shape->position.y + shape->height);
     return STATUS_OK;
 }
@@ -139,8 +138,8 @@ scene *arrange_empty(const scene *s)
     r->samples = 1;
     r->min_weight = 0.0;
     r->depth = 16;
-    copy->camera.roll_deg = 0.0; /* edges of upright things are looked for along the image's lines */
-    copy->background.absorb_per_m = vec3_make(0.0, 0.0, 0.0); /* the closed forms know no way to the vessel */
+    copy->camera.roll_deg = 0.0; /* vertical edges are searched along the lines of the image */
+    copy->background.absorb_per_m = vec3_make(0.0, 0.0, 0.0); /* the closed forms do not cover the path to the vessel */
     return copy;
 }
 

@@ -1,5 +1,5 @@
-/* What a scene's vessel, liquid and rod are, in the numbers that theory wants; and copies of a scene in which some of
- * its media stand in another arrangement. Ownership: arrange_* give a scene, or NULL when memory is out. */
+/* The vessel, liquid and rod of a scene as the numbers that theory needs; and copies of a scene with some of its media
+ * in other solids. Ownership: arrange_* give a scene, or NULL if memory runs out. */
 #pragma once
 
 #include "geometry/solid.h"
@@ -10,39 +10,38 @@ typedef enum setup_medium { SETUP_OUTSIDE, SETUP_VESSEL, SETUP_LIQUID, SETUP_MED
 
 typedef struct setup {
     int vessel, liquid, rod; /* indices in scene.solids; liquid is -1 for none */
-    double n[SETUP_MEDIA];   /* at render.lambda_nm; of an empty vessel the liquid's is that of what is outside */
+    double n[SETUP_MEDIA];   /* at render.lambda_nm; for an empty vessel the liquid's is that of the surroundings */
     double x, z;             /* of the axis */
-    double outer, inner;     /* radii of the wall */
-    double low, high; /* what is filled, y: from the floor to the liquid's surface, or of an empty vessel to its rim */
+    double outer, inner;     /* inner and outer radius of the wall */
+    double low, high; /* the filled range of y: from the floor to the liquid's surface, or for an empty vessel to its
+                         rim */
 } setup;
 
-/* STATUS_BAD_INPUT when a solid is missing or not as theory needs it. */
+/* STATUS_BAD_INPUT if a solid is missing or not as theory requires. */
 status setup_read(const scene *s, setup *out, diagnostic *why);
 
 theory_shells setup_shells(const setup *at);
 
-/* The shapes that closed forms are about, upright: a half-space below y; boxes and balls about their centre; a round
- * cylinder above the middle of its base. */
+/* The shapes of the closed forms, vertical: a half-space below y; boxes and spheres about their centre; a round
+ * cylinder above the centre of its base. */
 solid_shape ground_at(double y);
 solid_shape box_at(vec3 position, vec3 size);
 solid_shape ball_at(vec3 position, double radius);
 solid_shape cylinder_at(vec3 position, double radius, double height);
 
-/* Takes off what the closed forms know nothing of: clear solids' tints, and their coatings under Fresnel's weights. */
+/* Removes what the closed forms do not cover: tints of transparent solids, and their coatings under Fresnel weights. */
 void arrange_bare(scene *s);
 
-/* A bare copy without solids or lights in sight, and with settings that trace every ray of a way. What an interface
- * does with light (render.weights) and the media stay as they are. */
+/* A copy without visible solids or lights, and with settings that trace every ray of a path. The behaviour of
+ * interfaces (render.weights) and the media are unchanged. */
 scene *arrange_empty(const scene *s);
 
-/* The vessel with its liquid alone. */
+/* Only the vessel with its liquid. */
 scene *arrange_vessel(const scene *s, const setup *at);
 
-/* A slab of the vessel's medium without absorption, and below y a surface that shines with radiance 1 under a black
- * sky.
- */
+/* A slab of the vessel's medium without absorption, and below y a surface that emits radiance 1 under a black sky. */
 scene *arrange_shining(const scene *s, const setup *at, solid_shape slab, double y);
 
-/* Two media that meet at y = 0, a ray coming from (0, *start_y, 0); one of them may be SETUP_OUTSIDE, none a missing
+/* Two media that meet at y = 0, for a ray from (0, *start_y, 0); one of them may be SETUP_OUTSIDE, neither a missing
  * liquid. */
 scene *arrange_interface(const scene *s, const setup *at, setup_medium from, setup_medium to, double *start_y);

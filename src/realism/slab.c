@@ -1,9 +1,9 @@
-/* Convergence with depth: a slab of the vessel's medium before a surface that shines with radiance 1. A ray at 40
- * degrees sees (1 - R)^2 (1 + R^2 + R^4 + ...), and a depth of recursion cuts that series off after a term: the first
- * needs depth 2, each further one two more. Of unpolarised light that is the series of the mean R when each interface
- * takes the mean, and the mean of the two series when rays carry their polarisation, as light does.
+/* Convergence with depth: a slab of the vessel's medium in front of a surface that emits radiance 1. A ray at 40
+ * degrees sees (1 - R)^2 (1 + R^2 + R^4 + ...), and a recursion depth truncates that series: the first term needs depth
+ * 2, each further one two more. For unpolarised light this is the series of the mean R if each interface uses the mean,
+ * and the mean of the two series if rays carry their polarisation, which is physically correct.
  *
- * Tolerance: some film units, 5.7e-14 each, and a few roundings. */
+ * Tolerance: some film units, 5.7e-14 each, and a few rounding errors. */
 #include "realism/metrics.h"
 #include "scene/model/scene.h"
 
@@ -49,8 +49,10 @@ double slab_theory(const metrics *m, int depth, bool polarised)
 status realism_slab(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"slab.depth", "slab.depth_polarised"};
-    static const char *const what[] = {"radiance behind a slab at 40 degrees; of the depths 0 to 12 the worst",
-                                       "the same with render.polarisation on"};
+    static const char *const what[] = {
+        "radiance behind a slab at 40 degrees; worst of the depths 0 to 12",
+        "radiance behind a slab at 40 degrees with render.polarisation=on; worst of the depths 0 "
+        "to 12"};
     status code = STATUS_OK;
     for (int polarised = 0; polarised < 2 && code == STATUS_OK; polarised++) {
         const bool exists = !polarised || !scene_has_constant_shares(&m->traced->render);
@@ -60,9 +62,9 @@ status realism_slab(const metrics *m, diagnostic *why)
             code = slab_measure(m, depth, polarised, &measured, why);
             worst_take(&worst, measured, slab_theory(m, depth, polarised));
         }
-        metrics_add(m,
-                    (realism_value){names[polarised], exists ? what[polarised] : "constant shares know no polarisation",
-                                    "", worst.measured, worst.theory, SLAB_TOLERANCE});
+        metrics_add(m, (realism_value){names[polarised],
+                                       exists ? what[polarised] : "constant weights have no polarisation", "",
+                                       worst.measured, worst.theory, SLAB_TOLERANCE});
     }
     return code;
 }

@@ -1,7 +1,6 @@
-/* A stack of parallel plates, solids named plate1 and plate2: boxes alike, turned alike
- * (experiments/scenes/plates.yaml). What the camera's middle ray finds behind them, of white light: with polarisation s
- * and p light each go their own way through the four interfaces, without it every interface takes the mean of both, as
- * renderers do. */
+/* A stack of parallel plates, solids named plate1 and plate2: equal boxes with equal rotation
+ * (experiments/scenes/plates.yaml). The transmittance for the camera's central ray and white light: with polarisation s
+ * and p light are transmitted separately, without it every interface uses the mean of both, as most renderers do. */
 #include "realism/metrics.h"
 
 #include "realism/setup.h"
@@ -34,9 +33,9 @@ static bool stack_read(const scene *s, stack *out)
            plate->surface.transparency == 1.0;
 }
 
-/* A plate of reflectance R at each face lets (1 - R) / (1 + R) through and sends the rest back; a second one behind it,
- * with all that goes to and fro between them: Stokes, "On the intensity of the light reflected from or transmitted
- * through a pile of plates", Proc. R. Soc. 11, 1862. */
+/* A plate of reflectance R at each face transmits (1 - R) / (1 + R) and reflects the rest; for two plates with all
+ * reflections between them: Stokes, "On the intensity of the light reflected from or transmitted through a pile of
+ * plates", Proc. R. Soc. 11, 1862. */
 static double through_two_plates(double R)
 {
     const double T = theory_slab_whole(R), back = 1.0 - T;
@@ -54,8 +53,8 @@ static double of_both(const stack *s, double (*through)(double R))
     return s->polarised ? 0.5 * (through(R_s) + through(R_p)) : through(0.5 * (R_s + R_p));
 }
 
-/* Sums up what ends in the sky or on a board and goes on as the eye looks: parallel faces turn nothing; and what the
- * depth limit cut off. */
+/* Sums the radiance of rays that end in the sky or on a board in the direction of view, since parallel faces do not
+ * change directions; and what the depth limit cut off. */
 static void add_up(const ray_tree *tree, vec3 forward, double *through, double *cut)
 {
     *through = *cut = 0.0;
@@ -98,14 +97,14 @@ status realism_stack(const metrics *m, diagnostic *why)
 {
     stack supposed;
     if (!stack_read(m->supposed, &supposed))
-        return diagnose(why, STATUS_BAD_INPUT, "make both plates clear: transparency 1",
-                        "the plates of the stack are not clear");
+        return diagnose(why, STATUS_BAD_INPUT, "make both plates transparent: transparency 1",
+                        "the plates of the stack are not transparent");
     double straight, whole, cut;
     TRY(look_through(m, &straight, &whole, &cut, why));
-    metrics_add(m, (realism_value){"stack.straight", "what comes straight through four interfaces", "", straight,
-                                   of_both(&supposed, straight_through), WEIGHT_TOLERANCE});
+    metrics_add(m, (realism_value){"stack.straight", "transmittance of four interfaces without reflections", "",
+                                   straight, of_both(&supposed, straight_through), WEIGHT_TOLERANCE});
     metrics_add(m, (realism_value){"stack.whole",
-                                   "what comes through with all reflections; the tolerance is what depth 16 cuts off",
-                                   "", whole, of_both(&supposed, through_two_plates), cut + WEIGHT_TOLERANCE});
+                                   "transmittance with all reflections; the tolerance is what depth 16 cuts off", "",
+                                   whole, of_both(&supposed, through_two_plates), cut + WEIGHT_TOLERANCE});
     return STATUS_OK;
 }

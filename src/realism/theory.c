@@ -40,7 +40,7 @@ double theory_fresnel(double angle, double n_from, double n_to)
 
 double theory_slab(double R, int passes)
 {
-    /* The sum of a geometric series of ratio R^2; where R is 1 nothing gets in. */
+    /* The sum of a geometric series of ratio R^2; if R is 1 nothing is transmitted. */
     return passes <= 0 || R >= 1.0 ? 0.0 : pow(1.0 - R, 2) * (1.0 - pow(R, 2.0 * passes)) / (1.0 - R * R);
 }
 
@@ -73,7 +73,7 @@ double theory_shells_power(const theory_shells *c)
                   (c->n_around / c->n_wall - c->n_around / c->n_core) / c->inner);
 }
 
-/* Horizontal reach of the ray with n sin(angle) = p. */
+/* Horizontal distance covered by the ray with n sin(angle) = p. */
 static double reach(double p, double height, double depth, double n_above, double n_below)
 {
     return height * p / sqrt(n_above * n_above - p * p) + depth * p / sqrt(n_below * n_below - p * p);
@@ -81,7 +81,7 @@ static double reach(double p, double height, double depth, double n_above, doubl
 
 double theory_apparent_tangent(double height, double depth, double distance, double n_above, double n_below)
 {
-    /* Reach grows from 0 to infinity, or to the end of the smaller medium's. */
+    /* The distance grows from 0 to infinity, or up to the limit set by the smaller index. */
     double low = 0.0, high = fmin(n_above, n_below);
     if (!(height > 0.0 && depth >= 0.0))
         return NAN;

@@ -1,6 +1,6 @@
-/* Closed forms of textbook optics, on scalars: written apart from the tracer's formulas (optics/interface.h,
- * geometry/), in another algebraic form where there is one, so that the two cannot share a mistake. Angles in radians;
- * n are refractive indices, any unit of length. NaN where there is no such quantity. Pure; cannot fail. */
+/* Closed forms of textbook optics, on scalars: independent of the tracer's formulas (optics/interface.h, geometry/), in
+ * another algebraic form where one exists, so that the two cannot share an error. Angles in radians; n are refractive
+ * indices, any unit of length. NaN for undefined quantities. Pure; cannot fail. */
 #pragma once
 
 /* Angle of refraction; NaN under total internal reflection. Hecht, Optics, 5th ed., eq. 4.4. */
@@ -15,29 +15,29 @@ double theory_fresnel_s(double angle, double n_from, double n_to);
 double theory_fresnel_p(double angle, double n_from, double n_to);
 double theory_fresnel(double angle, double n_from, double n_to);
 
-/* Share of the light that `passes` orders of a slab of reflectance R at each face let through: (1 - R)^2 (1 + R^2 + R^4
- * + ...), `passes` terms; and of all of them, (1 - R) / (1 + R). Born and Wolf, Principles of Optics, 7th ed., 7.6,
- * without phases. */
+/* Transmittance of the first `passes` orders of a slab of reflectance R at each face: (1 - R)^2 (1 + R^2 + R^4 + ...),
+ * `passes` terms; and of all of them, (1 - R) / (1 + R). Born and Wolf, Principles of Optics, 7th ed., 7.6, without
+ * phases. */
 double theory_slab(double R, int passes);
 double theory_slab_whole(double R);
 
-/* Coaxial cylinders: a wall of n_wall from `outer` to `inner` around n_core, in n_around. Along a ray n rho is one
- * number, rho its distance from the axis: Bouguer's invariant, Born and Wolf, 3.2. So a ray that is aimed past the axis
- * at `offset` passes it at offset n_around / n in each medium, and turns by a difference of asin at each surface. */
+/* Coaxial cylinders: a wall of n_wall from `outer` to `inner` around n_core, in n_around. Along a ray n rho is
+ * constant, rho its distance from the axis: Bouguer's invariant, Born and Wolf, 3.2. So a ray aimed past the axis at
+ * `offset` passes it at offset n_around / n in each medium, and turns by a difference of asin at each surface. */
 typedef struct theory_shells {
     double n_around, n_wall, n_core, outer, inner;
 } theory_shells;
 
 /* Largest offset of a ray that reaches the core. */
 double theory_shells_reach(const theory_shells *c);
-/* By how much a ray has turned towards the axis when it is in the core; and when it is out again, which is twice that.
- */
+/* The deviation of a ray towards the axis inside the core; and after leaving, which is twice that. */
 double theory_shells_turn(const theory_shells *c, double offset);
 double theory_shells_deviation(const theory_shells *c, double offset);
-/* Limit of deviation / offset on the axis: 1 / focal length, from the lens's middle. For one medium 2 (n - 1) / (n R),
- * the ball lens's: Hecht, table 6.1. */
+/* Limit of deviation / offset on the axis: 1 / focal length, from the centre of the lens. For one medium 2 (n - 1) / (n
+ * R), the ball lens: Hecht, table 6.1. */
 double theory_shells_power(const theory_shells *c);
 
-/* A flat surface: the eye stands `height` above it in n_above, the point `depth` below it in n_below, `distance` away
- * horizontally. Tangent of the angle from the vertical at which the eye sees the point; NaN where no ray goes. */
+/* A flat surface: the eye is `height` above it in n_above, the point `depth` below it in n_below, at horizontal
+ * distance `distance`. Tangent of the angle from the vertical at which the eye sees the point; NaN if there is no such
+ * ray. */
 double theory_apparent_tangent(double height, double depth, double distance, double n_above, double n_below);

@@ -20,8 +20,8 @@ void trial_end(trial *t)
     *t = (trial){0};
 }
 
-/* Does the way from there, refracted where it can be, end on that solid without a reflection; through upright surfaces
- * only? A failure of the tracer goes to *code. */
+/* Whether the path from there, refracted where possible, ends on that solid without a reflection, optionally only
+ * through vertical surfaces. A failure of the tracer is stored in *code. */
 static bool meets(trial *t, vec3 origin, vec3 direction, int which, bool upright, status *code, diagnostic *why)
 {
     if (*code == STATUS_OK)
@@ -38,7 +38,7 @@ static bool meets(trial *t, vec3 origin, vec3 direction, int which, bool upright
     return false;
 }
 
-/* Between a place where the answer is `before` and one where it is not. */
+/* Bisects between a position where the answer is `before` and one where it is not. */
 static double bisect(seen_at *seen, void *context, double from, double to, bool before)
 {
     while (to - from > 1e-12) {
@@ -64,7 +64,7 @@ double relative_index(const scene *s, int at, double lambda_nm)
 
 double least_value(double (*f)(void *context, double x), void *context, double low, double high)
 {
-    enum { STEPS = 80 }; /* the golden ratio's 80th power is 2e-17 */
+    enum { STEPS = 80 }; /* the 80th power of the golden ratio's inverse is 2e-17 */
     const double golden = 0.5 * (sqrt(5.0) - 1.0);
     double a = high - golden * (high - low), b = low + golden * (high - low);
     double at_a = f(context, a), at_b = f(context, b);
@@ -89,7 +89,7 @@ bool find_edges(seen_at *seen, void *context, double from, double to, int steps,
             first = first < 0 ? i : first;
             last = i;
         }
-    if (first < 1 || last >= steps) /* nowhere, or not all of it */
+    if (first < 1 || last >= steps) /* not found, or not both edges */
         return false;
     edge[0] = bisect(seen, context, from + (first - 1) * step, from + first * step, false);
     edge[1] = bisect(seen, context, from + last * step, from + (last + 1) * step, true);

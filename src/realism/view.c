@@ -26,7 +26,8 @@ view view_of(const scene *s)
     return v;
 }
 
-/* The camera sees (right, up, ahead); roll turns right and up, pitch then up and ahead, yaw then right and ahead. */
+/* Camera coordinates (right, up, ahead); roll rotates right and up, pitch then up and ahead, yaw then right and ahead.
+ * */
 sight view_through(const view *v, double px, double py)
 {
     const double across = (px - v->width / 2.0) / v->focal_px, upwards = (v->height / 2.0 - py) / v->focal_px;

@@ -1,7 +1,7 @@
-/* The straw in the glass: a thin rod leans through a wide flat surface, and its left edge in the picture breaks there.
- * The eye stands above, not far away, so that every point below has its own angle: all of it counts, not only small
- * angles. The break is the angle between two secants of the edge, above and below. In a line of the picture the edge is
- * the leftmost of the images of the rod's four long edges, since what is seen of it is bounded by them.
+/* The straw in the glass: a thin rod leans through a wide flat surface, and its left edge has a kink in the image
+ * there. The camera is above, at a short distance, so that every point below has its own angle: this tests more than
+ * small angles. The kink is the angle between two secants of the edge, above and below. In a line of the image the edge
+ * is the leftmost image of the rod's four long edges, which bound its visible part.
  *
  * Tolerance: edges are good to 1e-11 px; over a secant of 50 px that is 1e-11 degrees. */
 #include "realism/metrics.h"
@@ -16,7 +16,7 @@
 #define BREAK_TOLERANCE_DEG 1e-9
 
 enum { LINES = 4 };
-/* From the picture's middle, where the rod enters: px. */
+/* Distance in px from the centre of the image, where the rod enters the liquid. */
 static const double line_at[LINES] = {-80.0, -30.0, 30.0, 80.0};
 
 static scene *leaning_rod(const scene *s, const setup *at)
@@ -47,8 +47,8 @@ typedef struct water {
     double n_above, n_below;
 } water;
 
-/* Where a place on a long edge of the rod appears in the picture; the edge by its place in the rod's section, the place
- * by its distance along it from the middle. */
+/* Projection of a point on a long edge of the rod; the edge is given by its position in the cross-section, the point by
+ * its distance along the edge from the middle. */
 static bool edge_image(const water *w, int edge, double along, double *px, double *py)
 {
     const double lean = -LEAN_DEG * M_PI / 180.0;
@@ -62,8 +62,8 @@ static bool edge_image(const water *w, int edge, double along, double *px, doubl
                       px, py);
 }
 
-/* Where that edge crosses a line of the picture; NaN if it does not. Its image falls from the top of the rod to its
- * bottom. */
+/* Where that edge crosses a line of the image; NaN if it does not. Its projection is monotonic from the top of the rod
+ * to its bottom. */
 static double crossing(const water *w, int edge, double line)
 {
     double low = -ROD_LENGTH / 2.0, high = ROD_LENGTH / 2.0, px = NAN, py = NAN;
@@ -124,7 +124,7 @@ static status measure_break(const metrics *m, scene *arranged, double *degrees, 
 
 status realism_water_line(const metrics *m, diagnostic *why)
 {
-    const char *what = "the leaning rod's left edge in the picture breaks at the liquid's surface by";
+    const char *what = "kink of the leaning rod's left edge in the image at the liquid's surface";
     double measured = NAN, theory = NAN;
     status code = STATUS_OK;
     scene *supposed = leaning_rod(m->supposed, &m->theory_at);
@@ -133,7 +133,7 @@ status realism_water_line(const metrics *m, diagnostic *why)
     if (m->theory_at.liquid < 0)
         what = "there is no liquid";
     else if (isnan(theory = theory_break(supposed, &m->theory_at)))
-        what = "the rod below the surface is not in sight there";
+        what = "the rod below the surface is not visible there";
     else
         code = measure_break(m, leaning_rod(m->traced, &m->at), &measured, why);
     scene_destroy(supposed);

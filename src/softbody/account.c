@@ -1,5 +1,5 @@
-/* What a body comes to: energies, momenta, volume; and its masses for who looks at them. Not of the steps' own code, so
- * that it can judge them. */
+/* The account of a body: energies, momenta, volume; and access to its masses. Independent of the code of the steps, so
+ * that it can check them. */
 #include "softbody/softbody_private.h"
 
 #include <string.h>

@@ -39,7 +39,7 @@ static hand_track *find_track(const hand_script *s, const char *hand)
     return NULL;
 }
 
-/* Not NaN, which no comparison finds. */
+/* Also refuses NaN, for which every comparison is false. */
 static bool is_point(vec3 v)
 {
     return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
@@ -48,9 +48,9 @@ static bool is_point(vec3 v)
 static status check_numbers(const char *hand, const hand_key *key, diagnostic *why)
 {
     if (!(key->time_s >= 0.0 && isfinite(key->time_s)))
-        return diagnose(why, STATUS_BAD_INPUT, "give a time from 0 on", "%s: invalid time %g s", hand, key->time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "use a time of at least 0", "%s: invalid time %g s", hand, key->time_s);
     if (key->act == HAND_MOVE && !is_point(key->by))
-        return diagnose(why, STATUS_BAD_INPUT, "give three finite numbers", "%s: the displacement is not finite", hand);
+        return diagnose(why, STATUS_BAD_INPUT, "use three finite numbers", "%s: the displacement is not finite", hand);
     if (key->act != HAND_GRAB)
         return STATUS_OK;
     if (!is_point(key->origin) || !is_point(key->direction) || !(vec3_dot(key->direction, key->direction) > 0.0))
@@ -60,7 +60,7 @@ static status check_numbers(const char *hand, const hand_key *key, diagnostic *w
     return STATUS_OK;
 }
 
-/* Does the key follow from what the hand did last? */
+/* Whether the key is valid after the hand's last one. */
 static status check_order(const char *hand, const hand_track *track, const hand_key *key, diagnostic *why)
 {
     const hand_key *last = track && track->key_count ? &track->keys[track->key_count - 1] : NULL;
@@ -94,7 +94,7 @@ static hand_track *add_track(hand_script *s, const char *hand)
     hand_track *added = &s->tracks[s->track_count];
     *added = (hand_track){.keys = NULL};
     strcpy(added->name, hand);
-    return added; /* counted once it has a key */
+    return added; /* counted only with a key */
 }
 
 status hand_script_add(hand_script *s, const char *hand, const hand_key *key, diagnostic *why)

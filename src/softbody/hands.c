@@ -1,4 +1,4 @@
-/* Hands: what they hold goes where they go, and the script that tells them. */
+/* Moves grabbed masses with their hands, and plays scripts. */
 #include "softbody/softbody_private.h"
 
 #include <stdlib.h>
@@ -19,7 +19,7 @@ int softbody_grab(softbody *b, vec3 where, double reach)
         const vec3 away = vec3_sub(vectors_at(b->at, i), where);
         const double distance = vec3_length(away);
         if (b->inverse_mass[i] == 0.0)
-            continue; /* another hand has it */
+            continue; /* grabbed by another hand */
         nearest = distance < least ? i : nearest;
         least = distance < least ? distance : least;
         if (distance <= reach)
@@ -62,8 +62,8 @@ void softbody_aim_hands(softbody *b, double dt_s)
         const grip *h = &b->hands[i];
         for (size_t k = 0; h->busy && k < h->count; k++) {
             const uint32_t mass = h->masses[k].mass;
-            const vec3 way = vec3_sub(vec3_add(h->target, h->masses[k].offset), vectors_at(b->at, mass));
-            vectors_put(b->velocity, mass, vec3_scale(way, 1.0 / dt_s));
+            const vec3 displacement = vec3_sub(vec3_add(h->target, h->masses[k].offset), vectors_at(b->at, mass));
+            vectors_put(b->velocity, mass, vec3_scale(displacement, 1.0 / dt_s));
         }
     }
 }
@@ -88,7 +88,7 @@ status softbody_follow(softbody *b, const hand_script *script, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The step before which a time comes; far ones are never reached. */
+/* The step of a time; times too far away are never reached. */
 static uint64_t step_of(const softbody *b, double time_s)
 {
     return (uint64_t)fmin(floor(time_s / b->set.dt_s + 0.5), 0x1p62);
@@ -116,7 +116,7 @@ static status take_hold(softbody *b, const hand_track *track, const hand_key *ke
     return STATUS_OK;
 }
 
-/* A key whose step has come. */
+/* A key that is due. */
 static status act(softbody *b, const hand_track *track, const hand_key *key, track_play *play, diagnostic *why)
 {
     switch (key->act) {
@@ -133,7 +133,7 @@ static status act(softbody *b, const hand_track *track, const hand_key *key, tra
     return STATUS_OK;
 }
 
-/* Where a hand is to be at the end of the step that begins: on its way to the next move, else where it is. */
+/* The target of a hand at the end of the current step: on its line to the next move, otherwise unchanged. */
 static vec3 offset_after(const softbody *b, const hand_track *track, const track_play *play)
 {
     if (play->next == track->key_count || track->keys[play->next].act != HAND_MOVE)

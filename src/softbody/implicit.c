@@ -1,12 +1,12 @@
-/* Backward Euler: (M + dt D + dt^2 K) dv = dt (f + f_damping) - dt^2 K v, with K and D of the springs as they lie
- * (Baraff and Witkin, 1998, equation 6), and of the pressure the part K V'V'^T / V0. With f that of springs at rest,
- * the right side is dt f less what the same matrix without M makes of v. Held masses keep their velocities. Solved by
- * conjugate gradients from dv = 0, so that dv has the momentum of the forces (Shewchuk, "An introduction to the
+/* Backward Euler: (M + dt D + dt^2 K) dv = dt (f + f_damping) - dt^2 K v, with K and D of the springs in their current
+ * state (Baraff and Witkin, 1998, equation 6), and for the pressure the term K V'V'^T / V0. With f for springs at rest,
+ * the right side is dt f minus the product of the matrix without M with v. Grabbed masses keep their velocities. Solved
+ * by conjugate gradients from dv = 0, so that dv has the momentum of the forces (Shewchuk, "An introduction to the
  * conjugate gradient method", 1994). */
 #include "softbody/softbody_private.h"
 
 enum { ITERATIONS_MAX = 10000 };
-#define TOLERANCE 1e-10 /* of the residual, over the first one */
+#define TOLERANCE 1e-10 /* of the residual, relative to the first one */
 
 static void stiffen(softbody *b, size_t begin, size_t end, size_t chunk)
 {
@@ -32,7 +32,7 @@ static void press_direction(softbody *b, size_t begin, size_t end, size_t chunk)
     b->sums[chunk] = dot(b->gradient, b->direction, begin, end);
 }
 
-/* What the pressure's stiffness makes of a field whose product with the gradient has just been summed. */
+/* Applies the pressure's stiffness to a field whose product with the gradient has just been summed. */
 static double pressing(const softbody *b)
 {
     const double dt = b->solver_dt_s;
@@ -58,7 +58,7 @@ static void begin_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
     b->sums[chunk] = dot(b->residual, b->residual, begin, end);
 }
 
-/* The matrix times the direction, and the direction times that. */
+/* The product of the matrix with the direction, and its scalar product with the direction. */
 static void apply_chunk(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     b->kernels->resist(&b->net, b->stiff, b->direction, b->image, begin, end);
@@ -101,7 +101,7 @@ bool softbody_solve(softbody *b)
 {
     b->solver_dt_s = b->pushing.dt_s;
     softbody_for_chunks(b, clear_chunk);
-    softbody_find_forces(b, &b->change); /* damping is the matrix's */
+    softbody_find_forces(b, &b->change); /* damping is part of the matrix */
     softbody_for_chunks(b, stiffen);
     softbody_for_chunks(b, press_velocity);
     b->pressing = pressing(b);
@@ -120,5 +120,5 @@ bool softbody_solve(softbody *b)
         b->factor = square / before;
         softbody_for_chunks(b, turn_chunk);
     }
-    return left > 0 && square <= enough; /* not of no number */
+    return left > 0 && square <= enough; /* false for NaN */
 }

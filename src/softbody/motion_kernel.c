@@ -1,10 +1,9 @@
-/* Forces and steps, over arrays. The same source for every instruction set, and the same bits from all. */
+/* Forces and steps over arrays. One source for all instruction sets, with bit-identical results. */
 #include "base/kernel.h"
 #include "base/lanes.h"
 #include "softbody/softbody_private.h"
 
-/* gcc keeps arrays apart in a loop that are restricted parameters of its function; as locals they are not enough for
- * it. */
+/* gcc recognises arrays as distinct in a loop only if they are restricted parameters of its function, not locals. */
 #define ARRAYS3(name) double *__restrict name##x, double *__restrict name##y, double *__restrict name##z
 #define FIXED3(name) \
     const double *__restrict name##x, const double *__restrict name##y, const double *__restrict name##z
@@ -29,8 +28,8 @@ static void pack(vectors at, vectors velocity, double *state, size_t begin, size
     }
 }
 
-/* Four vertices at a time. One neighbour's state is one cache line, and four of them turned into columns cost half of
- * what gathering numbers does. */
+/* Four vertices at a time. The state of a neighbour is one cache line; transposing four of them costs half as much as
+ * gathering numbers. */
 typedef double four __attribute__((vector_size(32)));
 typedef int64_t four_int __attribute__((vector_size(32)));
 typedef struct columns {
@@ -84,8 +83,8 @@ ALWAYS_INLINE void add_cross(columns *sum, columns a, columns b)
     sum->z += a.x * b.y - a.y * b.x;
 }
 
-/* One slot of four vertices: Hooke and damping of softbody.h, whose signs change here, since x leads to the other end.
- * It is left in *away. */
+/* One slot of four vertices: Hooke and damping of softbody.h with opposite signs, since x points to the other end. The
+ * result is in *away. */
 ALWAYS_INLINE void add_spring(const springs *s, size_t at, const double *state, columns place, columns velocity,
                               columns *force, columns *away)
 {
@@ -94,7 +93,7 @@ ALWAYS_INLINE void add_spring(const springs *s, size_t at, const double *state, 
     const double *c = state + STATE * (size_t)other[2], *d = state + STATE * (size_t)other[3];
     const columns x = minus(turn(a, b, c, d), place), v = minus(turn(a + 4, b + 4, c + 4, d + 4), velocity);
     const four one = {1.0, 1.0, 1.0, 1.0}, zero = {0.0, 0.0, 0.0, 0.0}, square = dot(x, x);
-    const four_int apart = square > zero; /* two masses in one place pull in no direction */
+    const four_int apart = square > zero; /* two masses at one position have no direction of force */
     const four safe = (four)(((four_int)square & apart) | ((four_int)one & ~apart)), inverse = one / safe;
     four length;
     for (int lane = 0; lane < 4; lane++)
@@ -107,8 +106,8 @@ ALWAYS_INLINE void add_spring(const springs *s, size_t at, const double *state, 
     *away = x;
 }
 
-/* Volume is a sixth of the sum of a . (b x c) over the faces; around a closed ring its gradient does not depend on
- * where it is seen from. The ring's neighbours are the first slots. */
+/* The volume is a sixth of the sum of a . (b x c) over the faces; around a closed ring its gradient does not depend on
+ * the origin. The ring's neighbours are the first slots. */
 static void forces(const springs *s, const double *state, vectors at, vectors velocity, vectors force, vectors gradient,
                    size_t begin, size_t end)
 {
@@ -132,14 +131,13 @@ static void forces(const springs *s, const double *state, vectors at, vectors ve
     }
 }
 
-/* A mass as the floor leaves it. */
+/* The state of a mass after contact with the floor. */
 typedef struct landed {
     double y, u, v, w;
 } landed;
 
-/* What the floor makes of a mass that has come under it: the speed against it comes back as restitution says (Newton),
- * and of the speed along it friction takes at most its coefficient times that change (Coulomb's law, for the impulse of
- * one step). */
+/* Contact of a mass below the floor: its normal speed is reflected with the restitution (Newton), and friction reduces
+ * its tangential speed by at most the coefficient times that change (Coulomb's law, for the impulse of one step). */
 ALWAYS_INLINE landed meet_floor(const push *p, int64_t free, double y, double u, double v, double w)
 {
     const int64_t under = free & mask_less(y, p->ground_y), falls = under & mask_less(v, 0.0);
@@ -151,7 +149,7 @@ ALWAYS_INLINE landed meet_floor(const push *p, int64_t free, double y, double u,
                     blend(falls, w * keep, w)};
 }
 
-/* 1 for a mass that blew up: too fast, or of no number. */
+/* 1 for a diverged mass: too fast, or NaN. */
 ALWAYS_INLINE int64_t blew_up(const push *p, landed a)
 {
     return 1 & ~mask_less_equal(a.u * a.u + a.v * a.v + a.w * a.w, p->speed_limit * p->speed_limit);
@@ -235,9 +233,9 @@ static int64_t kick(const push *p, const double *inverse_mass, vectors force, ve
                        end);
 }
 
-/* A spring's stiffness along itself is k, across itself k (1 - l / |x|), which is left out where it would be negative:
- * a pushed spring that gives way to the side would make the matrix indefinite (Choi and Ko, "Stable but responsive
- * cloth", SIGGRAPH 2002). */
+/* The stiffness of a spring is k along its axis and k (1 - l / |x|) across it, which is omitted if negative: a
+ * compressed spring that buckles would make the matrix indefinite (Choi and Ko, "Stable but responsive cloth", SIGGRAPH
+ * 2002). */
 static void stiffen_slot(double dt, FIXED3(p), const int32_t *__restrict other, const double *__restrict rest,
                          const double *__restrict k, const double *__restrict kd, ARRAYS3(n), double *__restrict across,
                          double *__restrict along, size_t begin, size_t end)

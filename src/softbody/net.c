@@ -1,12 +1,12 @@
-/* The toy's net: masses where an icosphere's vertices lie, springs along its edges, across its neighbouring faces, and
- * from side to side. */
+/* The mass-spring net of the toy: masses at the vertices of an icosphere, springs along its edges, across neighbouring
+ * faces, and through the body. */
 #include "geometry/mesh_generators.h"
 #include "geometry/mesh_parts.h"
 #include "softbody/softbody_private.h"
 
 #include <stdlib.h>
 
-/* A face's side: between two masses, and the corner across from it. */
+/* An edge of a face: its two masses, and the opposite corner. */
 typedef struct side {
     uint32_t low, high, across;
 } side;
@@ -21,7 +21,7 @@ static int by_ends(const void *a, const void *b)
     return p->across < q->across ? -1 : p->across > q->across;
 }
 
-/* Damping goes with stiffness (Rayleigh's second term); alone it is along edges. */
+/* Damping is proportional to stiffness (Rayleigh's second term); its coefficient is given for springs along edges. */
 static void add_spring(const softbody_settings *s, toy_net *n, uint32_t a, uint32_t b, double stiffness)
 {
     const double damping = s->stiffness > 0.0                        ? s->damping * (stiffness / s->stiffness)
@@ -31,7 +31,7 @@ static void add_spring(const softbody_settings *s, toy_net *n, uint32_t a, uint3
     n->springs[n->spring_count++] = (softbody_spring){{a, b}, rest, stiffness, damping};
 }
 
-/* Each side of a closed surface is there twice: an edge, and two corners across. */
+/* Each edge of a closed surface occurs twice: one spring along it, and one between the two opposite corners. */
 static status add_edges(const softbody_settings *s, toy_net *n, diagnostic *why)
 {
     const size_t count = 3 * n->face_count;
@@ -66,8 +66,8 @@ static int by_place(const void *a, const void *b)
     return p.z < q.z ? -1 : p.z > q.z;
 }
 
-/* An icosphere has the opposite of each of its vertices, to the bit: it is made of the same operations with the other
- * sign. unit: on the unit sphere. */
+/* An icosphere has the exact opposite of each of its vertices, since it is computed by the same operations with the
+ * other sign. unit: on the unit sphere. */
 static status add_diameters(const softbody_settings *s, const vec3 *unit, toy_net *n, diagnostic *why)
 {
     spot *spots = malloc(n->mass_count * sizeof *spots);
@@ -90,7 +90,7 @@ static status add_diameters(const softbody_settings *s, const vec3 *unit, toy_ne
     return code;
 }
 
-/* Masses are the welded vertices, in the order in which they first come. */
+/* Masses are the merged vertices, in the order of their first use. */
 static status place_masses(const softbody_settings *s, const mesh *sphere, vec3 *unit, toy_net *n, diagnostic *why)
 {
     uint32_t *same;
@@ -123,7 +123,8 @@ status toy_net_create(const softbody_settings *s, toy_net *out, diagnostic *why)
     out->mass_of = malloc(sphere->vertex_count * sizeof *out->mass_of);
     out->faces = malloc(sphere->triangle_count * sizeof *out->faces);
     out->springs = malloc(4 * sphere->triangle_count *
-                          sizeof *out->springs); /* 1.5 edges a face, as many across, and a quarter through */
+                          sizeof *out->springs); /* 1.5 edges per face, as many across, and a quarter through the body
+                                                    */
     if (!unit || !out->position || !out->mass_of || !out->faces || !out->springs)
         code = diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
     THEN(code, place_masses(s, sphere, unit, out, why));

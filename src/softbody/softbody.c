@@ -89,10 +89,10 @@ static void fill_masses(softbody *b, const softbody_net *net)
     }
 }
 
-/* Of x'' = -omega^2 x - gamma x', semi-implicit Euler is stable where omega^2 dt^2 + 2 gamma dt < 4 (Jury's criterion
- * for lambda^2 - (2 - gamma dt - omega^2 dt^2) lambda + 1 - gamma dt). Verlet, whose damping takes a guess of the
- * velocity, bears half as much of that: without springs, trace 1 - 3/2 gamma dt and determinant -1/2 gamma dt hold it
- * to gamma dt < 1. */
+/* For x'' = -omega^2 x - gamma x', semi-implicit Euler is stable if omega^2 dt^2 + 2 gamma dt < 4 (Jury's criterion for
+ * lambda^2 - (2 - gamma dt - omega^2 dt^2) lambda + 1 - gamma dt). Verlet, whose damping uses a predicted velocity,
+ * allows half as much damping: without springs, trace 1 - 3/2 gamma dt and determinant -1/2 gamma dt limit it to gamma
+ * dt < 1. */
 static double stable_dt_of(softbody_integrator integrator, double omega2, double damping)
 {
     const double gamma = integrator == SOFTBODY_VERLET ? 2.0 * damping : damping;
@@ -101,8 +101,8 @@ static double stable_dt_of(softbody_integrator integrator, double omega2, double
     return gamma > 0.0 ? 2.0 / gamma : INFINITY;
 }
 
-/* Rows of the stiffness over the mass, by Gershgorin's circles: a spring's k counts at both of its ends, and each end's
- * sum twice. */
+/* Rows of the stiffness matrix over the mass, by Gershgorin's circles: a spring's k counts at both of its ends, and
+ * each end's sum twice. */
 static void find_stable_dt(softbody *b)
 {
     double omega2 = 0.0, gamma = 0.0, pressed = 0.0;
@@ -122,8 +122,8 @@ static void find_stable_dt(softbody *b)
     b->stable_dt_s = stable_dt_of((softbody_integrator)b->set.integrator, omega2, gamma);
 }
 
-/* A step waits for its threads several times, which costs tens of microseconds each: with less to do than this they
- * would only be waited for. */
+/* A step synchronises its threads several times, at tens of microseconds each: with less work than this, threads do not
+ * pay. */
 enum { CHUNKS_A_THREAD = 8 };
 
 static int useful_threads(const softbody *b)
@@ -162,8 +162,8 @@ static status check_net(const softbody_net *net, diagnostic *why)
     for (size_t i = 0; i < net->spring_count; i++) {
         const softbody_spring *s = &net->springs[i];
         if (s->end[0] >= net->mass_count || s->end[1] >= net->mass_count || s->end[0] == s->end[1])
-            return diagnose(why, STATUS_BAD_INPUT, "join two of its masses",
-                            "spring %zu joins masses %lu and %lu of %zu", i, (unsigned long)s->end[0],
+            return diagnose(why, STATUS_BAD_INPUT, "connect two of its masses",
+                            "spring %zu connects masses %lu and %lu of %zu", i, (unsigned long)s->end[0],
                             (unsigned long)s->end[1], net->mass_count);
         if (!(s->rest >= 0.0 && s->stiffness >= 0.0 && s->damping >= 0.0))
             return diagnose(why, STATUS_BAD_INPUT, "use values of at least 0",
@@ -187,7 +187,7 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
     if (!b)
         return out_of_memory(why);
     b->set = *s;
-    b->skin_level = -1;
+    b->surface_level = -1;
     b->kernels = kernels[level];
     status code = fill(b, net, why);
     if (code != STATUS_OK) {
@@ -217,7 +217,7 @@ status softbody_create(const softbody_settings *s, isa level, softbody **out, di
     status code = mass_kg ? softbody_create_net(&net, s, level, out, why) : out_of_memory(why);
     if (code == STATUS_OK) {
         (*out)->mass_of = toy.mass_of;
-        (*out)->skin_level = (int)s->level;
+        (*out)->surface_level = (int)s->level;
         toy.mass_of = NULL;
     }
     free(mass_kg);

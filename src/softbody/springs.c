@@ -1,4 +1,4 @@
-/* Springs and faces as a list become arrays by vertex. */
+/* Converts lists of springs and faces to arrays by vertex. */
 #include "softbody/softbody_private.h"
 
 #include <stdlib.h>
@@ -16,7 +16,7 @@ static bool make_slots(springs *s)
     return s->other && s->rest && s->stiffness && s->damping;
 }
 
-/* Of a face seen from one of its corners: the next corner and the one after; has the first a spring yet? */
+/* A face seen from one of its corners: the next corner and the one after; whether the first has a spring already. */
 typedef struct wedge {
     int32_t from, to;
     bool taken;
@@ -24,7 +24,7 @@ typedef struct wedge {
 typedef struct rings {
     int *used;
     wedge *wedges;
-} rings; /* by vertex: how many wedges, and ring_slots of them */
+} rings; /* by vertex: the number of wedges, and ring_slots of them */
 
 static int most(const int *used, size_t count)
 {
@@ -34,7 +34,7 @@ static int most(const int *used, size_t count)
     return largest;
 }
 
-/* Puts a vertex's wedges in a row, each beginning where the one before ends; false where they do not close. */
+/* Sorts a vertex's wedges so that each starts where the previous one ends; false if they are not closed. */
 static bool chain(wedge *wedges, int count)
 {
     for (int i = 1; i < count; i++) {
@@ -56,7 +56,7 @@ static void rings_release(rings r)
     free(r.wedges);
 }
 
-/* Each vertex's wedges in a row. STATUS_BAD_INPUT where they do not close around it. */
+/* Sorts each vertex's wedges. STATUS_BAD_INPUT if they are not closed. */
 static status find_rings(springs *s, const softbody_net *net, rings *out, diagnostic *why)
 {
     *out = (rings){.used = calloc(s->stride + 1, sizeof *out->used)};
@@ -74,7 +74,7 @@ static status find_rings(springs *s, const softbody_net *net, rings *out, diagno
     }
     for (size_t i = 0; i < s->count; i++)
         if (!chain(out->wedges + i * (size_t)s->ring_slots, out->used[i]))
-            return diagnose(why, STATUS_BAD_INPUT, "give a closed surface, or no faces",
+            return diagnose(why, STATUS_BAD_INPUT, "use a closed surface, or no faces",
                             "the faces around mass %zu are not closed", i);
     return STATUS_OK;
 }
@@ -88,8 +88,8 @@ static void fill_rings(springs *s, rings r)
     }
 }
 
-/* The slot of a vertex for its next spring: the ring's to that neighbour unless it is taken, else the next behind the
- * ring. */
+/* The slot of a vertex for its next spring: the ring's slot of that neighbour unless it is in use, otherwise the next
+ * after the ring. */
 static int slot_of(const springs *s, rings r, uint32_t at, uint32_t other, int *behind)
 {
     wedge *own = r.wedges + at * (size_t)s->ring_slots;
@@ -102,7 +102,7 @@ static int slot_of(const springs *s, rings r, uint32_t at, uint32_t other, int *
     return s->ring_slots + behind[at]++;
 }
 
-/* Gives every spring its slots; fill: and writes it there. behind: of each vertex the slots behind its ring. */
+/* Assigns slots to every spring; fill: and writes them. behind: the number of slots after the ring of each vertex. */
 static void assign_slots(springs *s, const softbody_net *net, rings r, int *behind, bool fill)
 {
     memset(behind, 0, s->stride * sizeof *behind);

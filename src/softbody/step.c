@@ -1,4 +1,4 @@
-/* Time: forces, substeps, and whether the body still holds together. */
+/* Time integration: forces, substeps, and detection of divergence. */
 #include "softbody/softbody_private.h"
 
 #include <math.h>
@@ -44,8 +44,8 @@ static void pack(softbody *b, size_t begin, size_t end, size_t chunk)
     b->kernels->pack(b->at, *b->damped, b->state, begin, end);
 }
 
-/* Volume is of degree 3 in the places, so a third of the sum of place times gradient (Euler); seen from one mass, where
- * least cancels. */
+/* Volume is homogeneous of degree 3 in the positions, so it is a third of the sum of position times gradient (Euler);
+ * relative to one mass, for the least cancellation. */
 static double volume_of_chunk(const softbody *b, size_t begin, size_t end)
 {
     const double x = b->at.x[0], y = b->at.y[0], z = b->at.z[0];
@@ -100,7 +100,7 @@ static void push_settle(softbody *b, size_t begin, size_t end, size_t chunk)
     b->bad[chunk] = b->kernels->settle(&b->pushing, b->inverse_mass, b->change, b->at, b->velocity, begin, end);
 }
 
-/* The acceleration that the first half of a step begins with. */
+/* The acceleration for the first half of a step. */
 static void find_acceleration(softbody *b)
 {
     const push step = b->pushing;
@@ -121,7 +121,7 @@ static void substep_verlet(softbody *b)
     softbody_for_chunks(b, push_kick);
 }
 
-/* False when backward Euler finds no solution. */
+/* False if backward Euler does not converge. */
 static bool substep(softbody *b, double dt_s)
 {
     const softbody_settings *s = &b->set;
@@ -130,7 +130,7 @@ static bool substep(softbody *b, double dt_s)
     b->pushing.ground_y = s->ground ? s->ground_y : -INFINITY;
     b->pushing.restitution = s->restitution;
     b->pushing.friction = s->friction;
-    b->pushing.rest_speed = 2.0 * fabs(s->gravity.y) * dt_s; /* what a mass at rest has gained in two steps */
+    b->pushing.rest_speed = 2.0 * fabs(s->gravity.y) * dt_s; /* the speed that a mass at rest gains in two steps */
     b->pushing.speed_limit = b->size > 0.0 ? b->size / dt_s : 1e150;
     switch ((softbody_integrator)s->integrator) {
     case SOFTBODY_EULER:
@@ -148,7 +148,7 @@ static bool substep(softbody *b, double dt_s)
     return true;
 }
 
-/* Largest relative speed of a spring's ends, in its lengths a second. */
+/* Largest relative speed of a spring's ends, in spring lengths per second. */
 static double strain_rate(const softbody *b)
 {
     double square = 0.0;
@@ -180,7 +180,7 @@ static bool any_bad(const softbody *b)
     return bad > 0;
 }
 
-/* Speed of a mass against that of the centre of mass: how fast the body comes apart there. */
+/* Speed of a mass relative to the centre of mass, a measure of divergence. */
 static double speed_apart(const softbody *b, vec3 center, size_t i)
 {
     return vec3_length(vec3_sub(vectors_at(b->velocity, i), center));
@@ -197,7 +197,7 @@ static vec3 velocity_of_center(const softbody *b)
     return vec3_scale(sum, 1.0 / mass);
 }
 
-/* The first mass that is nowhere, or leaves the others too fast; the count of masses if there is none. */
+/* The first mass with a NaN position, or that leaves the others too fast; the number of masses if there is none. */
 static size_t find_blown(const softbody *b, double *speed)
 {
     const vec3 center = velocity_of_center(b);
@@ -210,7 +210,7 @@ static size_t find_blown(const softbody *b, double *speed)
     return i;
 }
 
-/* The kernels look at speeds as they are. A body that is fast as a whole is none that comes apart. */
+/* The kernels check absolute speeds. A fast body as a whole has not diverged. */
 static bool has_blown(softbody *b)
 {
     double speed;
@@ -233,7 +233,9 @@ static status blown(const softbody *b, diagnostic *why)
              b->stable_dt_s);
     if (isfinite(speed))
         snprintf(what, sizeof what,
-                 "the speed of mass %zu against the others is %.3g, over its own size in one substep", i, speed);
+                 "the speed of mass %zu relative to the others is %.3g: more than its own size in one "
+                 "substep",
+                 i, speed);
     else
         snprintf(what, sizeof what, "the speed of mass %zu is not a number", i < b->net.count ? i : 0);
     return diagnose(why, STATUS_BAD_INPUT, remedy, "the simulation diverged in step %llu, at %.6g s: %s",
@@ -242,7 +244,7 @@ static status blown(const softbody *b, diagnostic *why)
 
 status softbody_step(softbody *b, diagnostic *why)
 {
-    if (any_bad(b)) /* before this step; it has not come together since */
+    if (any_bad(b)) /* before this step; it has not recovered since */
         return blown(b, why);
     TRY(softbody_play(b, why));
     softbody_aim_hands(b, b->set.dt_s);

@@ -1,10 +1,10 @@
-/* The toy's skin as a mesh, and where a ray meets it. */
+/* The toy's surface as a mesh, and ray intersection with it. */
 #include "geometry/mesh_generators.h"
 #include "softbody/softbody_private.h"
 
 #include <stdlib.h>
 
-/* The sum of the area vectors of the faces around each mass, doubled: weights by area, which cost no angles. */
+/* The doubled sum of the area vectors of the faces around each mass: area weighting needs no angles. */
 static void sum_areas(const softbody *b, vec3 *area)
 {
     for (size_t i = 0; i < b->face_count; i++) {
@@ -16,18 +16,18 @@ static void sum_areas(const softbody *b, vec3 *area)
     }
 }
 
-status softbody_move_surface(const softbody *b, mesh *skin, diagnostic *why)
+status softbody_move_surface(const softbody *b, mesh *surface, diagnostic *why)
 {
-    vec3 *area = calloc(b->net.count, sizeof *area), *vertices = malloc(skin->vertex_count * sizeof *vertices);
-    vec3 *normals = malloc(skin->vertex_count * sizeof *normals);
+    vec3 *area = calloc(b->net.count, sizeof *area), *vertices = malloc(surface->vertex_count * sizeof *vertices);
+    vec3 *normals = malloc(surface->vertex_count * sizeof *normals);
     status code = STATUS_FAILURE;
     if (area && vertices && normals) {
         sum_areas(b, area);
-        for (size_t v = 0; v < skin->vertex_count; v++) {
+        for (size_t v = 0; v < surface->vertex_count; v++) {
             vertices[v] = vectors_at(b->at, b->mass_of[v]);
             normals[v] = area[b->mass_of[v]];
         }
-        code = mesh_move(skin, vertices, normals, why);
+        code = mesh_move(surface, vertices, normals, why);
     } else {
         diagnose(why, code, "use a lower level", "out of memory for a slime's surface");
     }
@@ -40,18 +40,18 @@ status softbody_move_surface(const softbody *b, mesh *skin, diagnostic *why)
 status softbody_surface(const softbody *b, mesh **out, diagnostic *why)
 {
     *out = NULL;
-    if (b->skin_level < 0)
-        return diagnose(why, STATUS_BAD_INPUT, "use the toy", "a net of masses and springs has no surface");
-    mesh *skin;
-    status code = generate_icosphere(b->skin_level, &skin, why);
-    if (code == STATUS_OK && (code = softbody_move_surface(b, skin, why)) != STATUS_OK)
-        mesh_release(skin);
-    *out = code == STATUS_OK ? skin : NULL;
+    if (b->surface_level < 0)
+        return diagnose(why, STATUS_BAD_INPUT, "use a slime toy", "a net of masses and springs has no surface");
+    mesh *surface;
+    status code = generate_icosphere(b->surface_level, &surface, why);
+    if (code == STATUS_OK && (code = softbody_move_surface(b, surface, why)) != STATUS_OK)
+        mesh_release(surface);
+    *out = code == STATUS_OK ? surface : NULL;
     return code;
 }
 
-/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997; fronts alone. slack: how far
- * beyond an edge, as a share of the face, still counts. */
+/* Moller and Trumbore, "Fast, minimum storage ray/triangle intersection", JGT 2(1), 1997; front faces only. slack:
+ * tolerance beyond an edge, as a fraction of the face. */
 static bool meets(const softbody *b, const mesh_triangle *face, double slack, vec3 origin, vec3 direction, double *t)
 {
     const vec3 a = vectors_at(b->at, face->corner[0]);
@@ -81,7 +81,7 @@ static double nearest_front(const softbody *b, double slack, vec3 origin, vec3 d
 bool softbody_pick(const softbody *b, vec3 origin, vec3 direction, vec3 *where)
 {
     double nearest = nearest_front(b, 0.0, origin, direction);
-    if (!(nearest < INFINITY)) /* along an edge rounding can lose both of its faces */
+    if (!(nearest < INFINITY)) /* along an edge rounding can miss both faces */
         nearest = nearest_front(b, 1e-9, origin, direction);
     if (nearest < INFINITY)
         *where = vec3_add(origin, vec3_scale(direction, nearest));

@@ -8,36 +8,43 @@ static const struct {
 } trial_table[SOFTBODY_TRIAL_COUNT] = {
     [SPRING_PERIOD] = {"spring.period_s", "s",
                        "two masses on one spring: period; theory 2 pi sqrt(m / 2k) (Goldstein 3.1)"},
-    [SPRING_PERIOD_DISCRETE] = {"spring.period_discrete_s", "s",
-                                "the same; theory the integrator's own: pi dt / asin(omega dt / 2), implicit 2 pi dt / "
-                                "atan(omega dt) (HLW I.1)"},
+    [SPRING_PERIOD_DISCRETE] =
+        {"spring.period_discrete_s", "s",
+         "two masses on one spring: period; theory of the integrator: pi dt / asin(omega dt / 2), "
+         "implicit 2 pi dt / atan(omega dt) (HLW I.1)"},
     [SPRING_DECAY] = {"spring.decay", "",
-                      "factor of the swing in one step; theory 1, implicit 1 / sqrt(1 + (omega dt)^2) (HLW I.1)"},
-    [SPRING_ORDER] =
-        {"spring.order", "",
-         "log2 of the error with dt over that with dt / 2, after a quarter swing; theory 1, verlet 2 (HLW I.1)"},
+                      "growth of the amplitude in one step; theory 1, implicit 1 / sqrt(1 + (omega dt)^2) (HLW "
+                      "I.1)"},
+    [SPRING_ORDER] = {"spring.order", "",
+                      "order of convergence: log2 of the error with dt over that with dt / 2, after a quarter "
+                      "period; theory 1, verlet 2 (HLW I.1)"},
     [FALL_DEPTH] = {"fall.depth", "scene units", "fall of one mass in 1 s (whole steps); theory g t^2 / 2 (Galilei)"},
-    [FALL_DEPTH_DISCRETE] = {"fall.depth_discrete", "scene units",
-                             "the same; theory the integrator's own: g t (t + dt) / 2, verlet g t^2 / 2"},
+    [FALL_DEPTH_DISCRETE] =
+        {"fall.depth_discrete", "scene units",
+         "fall of one mass in 1 s (whole steps); theory of the integrator: g t (t + dt) / 2, verlet "
+         "g t^2 / 2"},
     [BOUNCE_HEIGHT] = {"bounce.height", "scene units",
                        "rebound height of a mass that falls by 1; theory restitution^2 (Newton)"},
     [BOUNCE_BODY] = {"bounce.body", "",
                      "rebound height of the toy's centre over its height at rest, after a fall by its radius"},
     [ENERGY_DRIFT] = {"energy.drift", "", "free toy without damping, 1 s: largest |E - E0| / E0; theory 0"},
-    [ENERGY_END] = {"energy.end", "", "the same at its end: E / E0 - 1; theory 0"},
+    [ENERGY_END] = {"energy.end", "", "free toy without damping, after 1 s: E / E0 - 1; theory 0"},
     [ENERGY_RISE] = {"energy.rise", "",
                      "free toy with damping, 1 s: largest rise of E from one step to the next, over E0; theory 0"},
     [MOMENTUM_DRIFT] = {"momentum.drift", "",
-                        "free toy that turns, 1 s: largest change of momentum over the sum of |m v|; theory 0"},
-    [ANGULAR_MOMENTUM_DRIFT] = {"angular_momentum.drift", "",
-                                "the same of angular momentum, over the sum of |m x cross v|; theory 0"},
+                        "rotating free toy, 1 s: largest change of momentum over the sum of |m v|; theory 0"},
+    [ANGULAR_MOMENTUM_DRIFT] =
+        {"angular_momentum.drift", "",
+         "rotating free toy, 1 s: largest change of angular momentum over the sum of |m x cross v|; "
+         "theory 0"},
     [VOLUME_DRIFT] = {"volume.drift", "",
                       "toy after 3 s on its floor: relative change of volume; theory 0, for infinite pressure"},
     [STABLE_SPRING] = {"stable_dt.spring_s", "s",
                        "largest stable dt of the spring; theory 2 / omega; none for implicit"},
     [STABLE_TOY] = {"stable_dt.toy_s", "s",
-                    "the same of the free toy, 1000 steps; theory a bound from below (Gershgorin); none for implicit"},
-    [RATE_SUBSTEPS] = {"rate.substeps", "", "steps that each step is split into, on the floor"},
+                    "largest stable dt of the free toy, 1000 steps; theory a lower bound (Gershgorin); none "
+                    "for implicit"},
+    [RATE_SUBSTEPS] = {"rate.substeps", "", "substeps of a step, on the floor"},
     [RATE_STEP] = {"rate.step_s", "s", "wall time of a step: median of 64"},
     [RATE_SIMULATED] = {"rate.simulated_s_per_s", "", "simulated over wall time"},
 };

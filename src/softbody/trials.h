@@ -1,18 +1,16 @@
-/* Measured properties of the motion, theory beside them: what the settings' own integrator, step and stiffness make of
- * a spring, a fall, a bounce and a free toy, as a list of named values. Each trial builds what it needs from the part
- * of the settings that it is about:
- *   spring.*, stable_dt.spring_s  two masses of the toy's (mass_kg over their number), one spring of `stiffness` and no
+/* Measured properties of the motion and their theory: the behaviour of a spring, a fall, a bounce and a free toy with
+ * the integrator, step and stiffness of the settings, as a list of named values. Each trial uses a part of the settings:
+ *   spring.*, stable_dt.spring_s  two masses of the toy (mass_kg over their number), one spring of `stiffness` and no
  *                                 damping, integrator, dt_s
  *   fall.*, bounce.height         one mass; gravity's y, restitution, integrator, dt_s
- *   bounce.body, volume.drift     the toy over a floor, all settings but place and speed at the beginning
+ *   bounce.body, volume.drift     the toy over a floor, all settings except initial position and velocity
  *   energy.*, momentum.*          the toy without gravity and floor; energy.drift and energy.end also without damping
  *   stable_dt.toy_s               the same, with damping
  *   rate.*                        the toy on a floor, all settings
- * Springs, falls and stable_dt.* take steps of dt_s that are not split; the others follow `adaptive`. Hands have no
- * part in it.
+ * Springs, falls and stable_dt.* use steps of dt_s without splitting; the others follow `adaptive`. Hands are ignored.
  *
- * A body that blows up is an answer here and no error: NaN for what could not be measured then, and where a trial would
- * take more than 300000 steps. All values but rate.step_s and rate.simulated_s_per_s are the same to the bit for any
+ * A diverged simulation is a result here and no error: NaN for values that cannot be measured then, and for trials that
+ * would take more than 300000 steps. All values except rate.step_s and rate.simulated_s_per_s are bit-identical for any
  * number of threads and any instruction set.
  *
  * Cost, with steps of 1 ms, mostly of some 15000 steps of the toy (implicit: 8000), in seconds of one core:
@@ -20,7 +18,7 @@
  *     level 2     0.2     0.2      0.5
  *     level 4     2.3     2.0      10
  *
- * Ownership: values. Errors: STATUS_BAD_INPUT for settings that softbody_check refuses, STATUS_FAILURE when memory is
+ * Ownership: values. Errors: STATUS_BAD_INPUT for settings that softbody_check refuses, STATUS_FAILURE if memory runs
  * out. */
 #pragma once
 
@@ -29,7 +27,7 @@
 typedef struct softbody_trial {
     const char *name;        /* "spring.period_s" */
     const char *unit;        /* "" for ratios */
-    const char *what;        /* one line: what is measured, and where theory has it from */
+    const char *what;        /* one line: the measured quantity, and the source of its theory */
     double measured, theory; /* NaN: none */
 } softbody_trial;
 
@@ -42,5 +40,5 @@ typedef struct softbody_trial_report {
 
 status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why);
 
-/* |measured - theory|; NaN where one of them is. */
+/* |measured - theory|; NaN if one of them is. */
 double softbody_trial_error(const softbody_trial *t);

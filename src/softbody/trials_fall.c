@@ -1,4 +1,4 @@
-/* Falls and bounces: of one mass, against Galilei and Newton, and of the toy. */
+/* Falls and bounces: of one mass, compared with Galilei and Newton, and of the toy. */
 #include "softbody/trials_private.h"
 
 static status measure_fall(const trials *t)
@@ -56,8 +56,8 @@ static bool follow_body(const softbody *b, void *context)
     return !((bounce *)context)->done;
 }
 
-/* Time for a fall from a height and thrice as much again: a bounce is over by then, and a body has swung. It mostly
- * ends earlier. */
+/* Time for a fall from a height, and three times as much again: the bounce is complete by then, and the body has
+ * oscillated. It mostly ends earlier. */
 static status run_bounce(softbody *b, const softbody_settings *s, double height, trial_watch *watch, double *high,
                          diagnostic *why)
 {

@@ -1,7 +1,7 @@
-/* The toy alone in space: what its motion keeps. */
+/* The toy alone in space: its conserved quantities. */
 #include "softbody/trials_private.h"
 
-/* A frequency of the whole body, as far as the settings alone say: from all that holds it together, and its mass. */
+/* Estimated frequency of the whole body from the settings: all its stiffness over its mass. */
 static double body_omega(const softbody_settings *s)
 {
     return sqrt((s->stiffness + s->bending + s->through + s->pressure * s->radius) / s->mass_kg);
@@ -30,7 +30,7 @@ static bool watch_energy(const softbody *b, void *context)
     return true;
 }
 
-/* NaN where it blows up. */
+/* NaN if it diverges. */
 static status follow_energy(const trials *t, double damping, energies *e)
 {
     const trial_field field = {.wobble = 0.02 * body_omega(t->set)};

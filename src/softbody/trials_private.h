@@ -1,11 +1,11 @@
-/* What the trials share. For src/softbody/trials*.c alone. */
+/* Shared code of the trials. Private to src/softbody/trials*.c. */
 #pragma once
 
 #include "softbody/trials.h"
 
 enum { TRIAL_STEPS_MAX = 300000 };
 
-/* What a trial measures with; out: where its values go. */
+/* Context of a trial; out: where its values are stored. */
 typedef struct trials {
     const softbody_settings *set;
     isa level;
@@ -41,40 +41,40 @@ static inline void trial_put(const trials *t, trial_name name, double measured, 
     t->out->value[name].theory = theory;
 }
 
-/* The settings at the origin, at rest, without gravity, floor or split steps. */
+/* The settings at the origin, at rest, without gravity, floor or splitting. */
 softbody_settings trial_alone(const trials *t);
 
-/* Of one of the toy's masses, and of two of them on a spring along an edge: omega^2 = k / (m / 2) (Goldstein,
+/* For one of the toy's masses, and for two of them on a spring along an edge: omega^2 = k / (m / 2) (Goldstein,
  * "Classical mechanics", 3.1). */
 double trial_mass_kg(const softbody_settings *s);
 double trial_omega(const softbody_settings *s);
 
-/* How many steps make up a time, at least 1; 0 when they are more than TRIAL_STEPS_MAX. */
+/* The number of steps in a time, at least 1; 0 if they are more than TRIAL_STEPS_MAX. */
 uint64_t trial_steps(const softbody_settings *s, double time_s);
 
-/* Takes steps and calls watch, where there is one, after each, until it says false. *held: no step blew up, and there
- * was one. */
+/* Takes steps and calls watch, if not NULL, after each, until it returns false. *held: no step diverged, and there was
+ * one. */
 typedef bool trial_watch(const softbody *b, void *context);
 status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, diagnostic *why);
 
-/* All but gravity's. */
+/* All energy except gravity's. */
 double trial_energy(const softbody *b);
 
-/* One mass, or two masses on an undamped spring that is longer than its length at rest, 1, by swing. */
+/* One mass, or two masses on an undamped spring of rest length 1, stretched by swing. */
 status trial_one_mass(const trials *t, const softbody_settings *s, softbody **out);
 status trial_swing(const trials *t, const softbody_settings *s, double swing, softbody **out);
 
-/* How much longer the swing's spring is than at rest, and how fast it grows, over omega. */
+/* The elongation of the spring, and its rate of change over omega. */
 typedef struct swing_state {
     double q, p;
 } swing_state;
 swing_state trial_swing_state(const softbody *b, double omega);
 
-/* Shows every mass's place and velocity to act, and puts the masses where it leaves them if that is wanted. */
+/* Passes every mass's position and velocity to act, and optionally stores its changes. */
 typedef void trial_mass(const void *context, size_t i, vec3 *at, vec3 *velocity);
 status trial_each_mass(softbody *b, trial_mass *act, const void *context, bool place, diagnostic *why);
 
-/* A velocity field u = wobble (x, -2 y, z), which keeps the volume at first, + turn x (place) + drift. */
+/* A velocity field u = wobble (x, -2 y, z), which initially preserves the volume, + turn x (position) + drift. */
 typedef struct trial_field {
     double wobble;
     vec3 turn, drift;

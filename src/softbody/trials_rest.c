@@ -1,4 +1,4 @@
-/* The toy on its floor, when it has come to rest: its volume, and what a step of it costs. */
+/* The toy at rest on its floor: its volume, and the time of a step. */
 #include "softbody/trials_private.h"
 
 #include "measure/clock.h"

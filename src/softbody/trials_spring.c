@@ -1,5 +1,5 @@
-/* A spring alone. Along its own line it is linear whatever its swing, so that its motion is that of a recurrence of
- * second order, and the integrators' closed forms hold to rounding. */
+/* A single spring. Along its own line it is linear for any amplitude, so its motion follows a recurrence of second
+ * order, and the integrators' closed forms hold to rounding. */
 #include "softbody/trials_private.h"
 
 enum { SAMPLES = 64 };
@@ -21,8 +21,8 @@ static bool record(const softbody *b, void *context)
     return r->count < SAMPLES;
 }
 
-/* q[n + 1] = a q[n] + b q[n - 1] by least squares (de Prony, 1795): of a sampled swing with factor r and angle phi a
- * sample, a = 2 r cos phi and b = -r^2. */
+/* q[n + 1] = a q[n] + b q[n - 1] by least squares (de Prony, 1795): for a sampled oscillation with factor r and angle
+ * phi per sample, a = 2 r cos phi and b = -r^2. */
 static bool fit_swing(const recording *s, double *factor, double *angle)
 {
     double aa = 0.0, ab = 0.0, bb = 0.0, ay = 0.0, by = 0.0;
@@ -39,7 +39,7 @@ static bool fit_swing(const recording *s, double *factor, double *angle)
     return det > 0.0 && b < 0.0 && fabs(a) < 2.0 * *factor;
 }
 
-/* A sample about once a radian: closer ones lie too near each other for the fit, and a swing must not turn by pi
+/* About one sample per radian: closer samples make the fit ill-conditioned, and the phase must not advance by pi
  * between two. */
 static status measure_period(const trials *t, double omega, double *period_s, double *decay)
 {
@@ -58,8 +58,8 @@ static status measure_period(const trials *t, double omega, double *period_s, do
     return code;
 }
 
-/* Distance in (q, p) from where a swing is after a quarter, (0, -1) swings, when it began at (1, 0). Both count: of the
- * semi-implicit method's places alone the first order cancels when a swing starts at rest. */
+/* Distance in (q, p) from the exact state after a quarter period, (0, -1) amplitudes, starting at (1, 0). Both matter:
+ * in the positions of the semi-implicit method alone the first order cancels when starting at rest. */
 static status quarter_error(const trials *t, double omega, uint64_t steps, double *error)
 {
     softbody_settings s = trial_alone(t);
@@ -76,8 +76,8 @@ static status quarter_error(const trials *t, double omega, uint64_t steps, doubl
     return code;
 }
 
-/* Steps so short that the next order does not show (64 in a quarter, or dt_s if that is shorter), and so long that
- * rounding does not (1024). */
+/* Steps short enough to hide the next order (64 in a quarter, or dt_s if that is shorter), and long enough to hide
+ * rounding (1024). */
 static status measure_order(const trials *t, double omega)
 {
     const double wanted = ceil(0.5 * M_PI / omega / t->set->dt_s);

@@ -1,4 +1,4 @@
-/* The longest step that does not blow up, by bisection. */
+/* The longest stable step, by bisection. */
 #include "softbody/trials_private.h"
 
 #include "base/random.h"
@@ -7,8 +7,8 @@ enum { STEPS = 1000, LOOK = 50, WIDENINGS = 12 };
 
 typedef status holds_at(const trials *t, double dt_s, bool *holds);
 
-/* From a guess outwards until one end holds and the other does not; NaN when that is nowhere within a factor of 4096.
- */
+/* Expands from a guess until one end is stable and the other is not; NaN if there is no limit within a factor of 4096.
+ * */
 static status find_limit(const trials *t, holds_at *try_it, double guess_s, int halvings, double *out)
 {
     double low = guess_s, high = guess_s;
@@ -47,9 +47,9 @@ static bool watch_swing(const softbody *b, void *context)
     return !w->grown;
 }
 
-/* Below the limit q^2 + p^2 - omega dt q p stays (verlet: p^2 + (1 - (omega dt / 2)^2) q^2), so a swing grows by at
- * most sqrt(2 / (1 - omega dt / 2)): to a thousandfold only 2e-6 from the limit; beyond it by exp(2 acosh(omega dt /
- * 2)) a step: to that in 1000 steps from 6e-6 on. */
+/* Below the limit q^2 + p^2 - omega dt q p is conserved (verlet: p^2 + (1 - (omega dt / 2)^2) q^2), so the amplitude
+ * grows by at most sqrt(2 / (1 - omega dt / 2)): a thousandfold only at 2e-6 from the limit; above it by exp(2
+ * acosh(omega dt / 2)) per step: a thousandfold in 1000 steps from 6e-6. */
 static status spring_holds(const trials *t, double dt_s, bool *holds)
 {
     softbody_settings s = trial_alone(t);
@@ -78,7 +78,7 @@ static bool watch_energy(const softbody *b, void *context)
     return !g->grown;
 }
 
-/* Puts a mass off its place by up to 1e-4 of the radius, so that all modes swing; at rest. */
+/* Displaces a mass by up to 1e-4 of the radius, so that all modes are excited; at rest. */
 static void shake(const void *context, size_t i, vec3 *at, vec3 *velocity)
 {
     const double *reach = context;

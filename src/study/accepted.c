@@ -37,9 +37,9 @@ static status read_parts(study *s, const document *d, const void *scene_text, di
     return code == STATUS_OK ? read_reference(s, d, node_get(root, "reference"), why) : code;
 }
 
-/* The study of texts that a manifest keeps, in the place of `now`: its scene stands where that one's file does, so that
- * the files it names are looked for there. Nothing is opened, loaded or checked beyond what reading takes; fit for
- * meaning_of_study alone. */
+/* Builds a study from the texts recorded in a manifest. Its scene is placed in the folder of the current scene file, so
+ * that relative file names resolve as before. Nothing is opened, loaded or checked beyond parsing; use it only for
+ * meaning_of_study. */
 static status recorded_study(const study *now, const char *text, const char *scene_text, study **out, diagnostic *why)
 {
     *out = NULL;
@@ -50,7 +50,7 @@ static status recorded_study(const study *now, const char *text, const char *sce
     return out_of_memory(why);
 }
 
-/* Do the recorded texts mean what the study means? The difference goes into why_not. */
+/* Whether the recorded texts have the same meaning as the study. A difference is described in why_not. */
 static bool means_the_same(accepted *a, const manifest_study *recorded)
 {
     diagnostic why = {.what = ""};
@@ -68,7 +68,7 @@ static bool means_the_same(accepted *a, const manifest_study *recorded)
     return same;
 }
 
-/* Did the files that the scene names hold the same? Their names do not say. */
+/* Whether the contents of the scene's files are unchanged. Their names alone do not show that. */
 static bool files_are_the_same(accepted *a, const manifest_study *recorded)
 {
     uint64_t now = HASH_START;

@@ -10,7 +10,7 @@
 #include "study/grid.h"
 #include <math.h>
 
-/* What is measured of a cell, and where it is written. */
+/* A table of one cell: its measured data and its output file. */
 typedef struct cell_lines {
     const study *s;
     size_t cell;
@@ -25,7 +25,7 @@ void cell_table_number(FILE *out, double value)
     fprintf(out, "\t%s", isfinite(value) ? number_format(value, text) : "NA");
 }
 
-/* A line's beginning, up to the grid's last value. */
+/* The start of a line, up to the last axis value. */
 static void begin(const cell_lines *l)
 {
     fprintf(l->out, "%s\t%zu", l->s->name, l->cell);
@@ -92,7 +92,7 @@ static status put_motion(const cell_lines *l, diagnostic *why)
 }
 
 static const struct {
-    const char *columns; /* behind the grid's */
+    const char *columns; /* after the axis values */
     status (*put)(const cell_lines *l, diagnostic *why);
 } tables[] = {
     [CELL_METRICS] = {"metric\tunit\tmeasured\ttheory\terror\ttolerance\tpasses\twhat", put_metrics},

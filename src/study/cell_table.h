@@ -1,7 +1,7 @@
-/* Tables of what a cell's scene measures to, beside its picture: its realism metrics (realism/realism.h), one line a
- * metric, or a point of a curve; and its slimes' motion (softbody/trials.h), one line a value. Each line begins with
- * study, cell and the cell's values of the grid, so that the tables of all cells can be strung together. Tab separated,
- * NA for what there is none of; results/README.md lists the columns. A file appears whole or not at all. */
+/* Tables of the properties of a cell's scene, in addition to its image: realism metrics (realism/realism.h), one line
+ * per metric or point of a curve, and the motion of its slimes (softbody/trials.h), one line per value. Each line
+ * starts with study, cell and the axis values, so that the tables of all cells can be concatenated. Tab separated, NA
+ * for undefined values; results/README.md lists the columns. Files are written atomically. */
 #pragma once
 
 #include "base/isa.h"
@@ -10,10 +10,10 @@
 
 typedef enum cell_table { CELL_METRICS, CELL_CURVES, CELL_MOTION } cell_table;
 
-/* Can the tables that the study keeps be measured in every cell? Errors are located in the study file. */
+/* Checks that the tables kept by the study can be measured in every cell. Errors are located in the study file. */
 status cell_tables_check(const study *s, diagnostic *why);
 
-/* setting: the cell's scene. STATUS_BAD_INPUT when it is none that the metrics know. */
+/* setting: the cell's scene. STATUS_BAD_INPUT if the metrics do not support it. */
 status cell_table_write(cell_table which, const study *s, size_t cell, const scene *setting, isa level,
                         const char *path, diagnostic *why);
 

@@ -17,7 +17,7 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
 {
     image *img = NULL;
     status code = film_image(frame->img, &img, why);
-    THEN(code, image_compare(img, row->against->img, &row->lies, why));
+    THEN(code, image_compare(img, row->against->img, &row->difference, why));
     if (code == STATUS_OK) {
         row->error_rms = difference_rms(img, row->against->img);
         row->film_hash = film_hash(frame->img);
@@ -40,14 +40,14 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
     X("reference_film", "", "fingerprint of the reference's film", csv_hash(line, r->against->film_hash))              \
     X("film_hash", "", "fingerprint of the cell's film", csv_hash(line, r->film_hash))                                 \
     X("mse", "", "mean squared difference of the sRGB-encoded channels, values clamped to 0..1",                       \
-      csv_real(line, r->lies.mse))                                                                                     \
+      csv_real(line, r->difference.mse))                                                                               \
     X("psnr_db", "dB", "10 log10(1 / mse); NA where mse is 0",                                                         \
-      csv_real(line, isfinite(r->lies.psnr_db) ? r->lies.psnr_db : NAN))                                               \
-    X("ssim", "", "mean structural similarity of the luma, 1 for equal images", csv_real(line, r->lies.ssim))          \
-    X("flip", "", "mean FLIP error at 67 pixels per degree, 0 for equal images", csv_real(line, r->lies.flip))         \
-    X("largest", "", "largest difference of an encoded channel, 0..1", csv_real(line, r->lies.largest))                \
+      csv_real(line, isfinite(r->difference.psnr_db) ? r->difference.psnr_db : NAN))                                   \
+    X("ssim", "", "mean structural similarity of the luma, 1 for equal images", csv_real(line, r->difference.ssim))    \
+    X("flip", "", "mean FLIP error at 67 pixels per degree, 0 for equal images", csv_real(line, r->difference.flip))   \
+    X("largest", "", "largest difference of an encoded channel, 0..1", csv_real(line, r->difference.largest))          \
     X("differing_share", "", "share of the pixels whose 8-bit encodings differ, 0..1",                                 \
-      csv_real(line, r->lies.differing_share))                                                                         \
+      csv_real(line, r->difference.differing_share))                                                                   \
     X("error_rms", "radiance",                                                                                         \
       "root of the mean square of film less reference, over all pixels and channels, linear, not clamped; 1 is white", \
       csv_real(line, r->error_rms))                                                                                    \

@@ -1,6 +1,6 @@
-/* The rows of compare.csv: how far each cell's picture lies from its reference. Pictures depend on their scenes alone,
- * so there is one row a cell. results/README.md lists every column. Pure but for memory; a csv_line that ran out of it
- * has failed set. */
+/* The rows of compare.csv: the error of each cell's image against its reference. Images depend only on their scenes, so
+ * there is one row per cell. results/README.md lists every column. Pure except for memory; a csv_line that ran out of
+ * memory has failed set. */
 #pragma once
 
 #include "image/compare.h"
@@ -9,7 +9,7 @@
 #include "study/rows.h"
 
 row_columns compare_each_column;
-/* Those that a summary shows beside a cell's times, by name. */
+/* The columns that a summary shows in addition to a cell's times. */
 extern const char *const compare_shown[];
 extern const size_t compare_shown_count;
 
@@ -20,12 +20,12 @@ typedef struct compare_row {
     const scene *setting; /* the cell's scene */
     const reference *against;
     uint64_t film_hash;
-    double noise_rms; /* of the cell's frame */
-    image_comparison lies;
+    double noise_rms; /* the account of the cell's frame */
+    image_comparison difference;
     double error_rms;
 } compare_row;
 
-/* Measures how far the frame's picture lies from row->against: fills film_hash, noise_rms, lies and error_rms. */
+/* Compares the frame's image with row->against: fills film_hash, noise_rms, error and error_rms. */
 status compare_row_measure(compare_row *row, const render_result *frame, diagnostic *why);
 
 void compare_row_write(csv_line *line, const compare_row *r);

@@ -122,10 +122,10 @@ static status damaged(const char *path, long line, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "move the file away, or use a copy without this line", "the row is damaged");
 }
 
-/* Finds where rows start, and cuts them apart. */
+/* Finds the row starts and splits the rows into fields. */
 static status split_all(csv *table, const char *path, diagnostic *why)
 {
-    size_t lines = 0, places = 0; /* of fields, at most: a quoted comma counts too */
+    size_t lines = 0, places = 0; /* upper bound of the number of fields: quoted commas are counted as well */
     for (size_t i = 0; i < table->whole; i++) {
         lines += table->raw[i] == '\n';
         places += table->raw[i] == '\n' || table->raw[i] == ',';

@@ -1,56 +1,56 @@
-/* Comma-separated values after RFC 4180, with the one restriction that no field holds a line break, so that a line
- * is whole exactly when its newline is there. Ownership: csv_read gives, csv_destroy releases; a csv_line is
- * released with csv_line_free. */
+/* Comma-separated values (RFC 4180), restricted to fields without line breaks, so that a line is complete if and only
+ * if its newline is present. Ownership: csv_read gives, csv_destroy releases; a csv_line is released with
+ * csv_line_free. */
 #pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
 #include <stdint.h>
 
-/* A line under construction. Running out of memory is remembered in failed, and every later call does nothing. */
+/* A line under construction. Running out of memory sets failed, and later calls do nothing. */
 typedef struct csv_line {
     char *text;
     size_t size, capacity;
     bool started, failed;
 } csv_line;
 
-/* Each adds one field. Absent values are written NA: text NULL, a real that is NaN, an integer under 0 for
+/* Each function appends one field. Missing values are written as NA: a NULL text, a NaN, a negative integer in
  * csv_count. */
 void csv_text(csv_line *line, const char *text);
 void csv_real(csv_line *line, double value);
 void csv_count(csv_line *line, int64_t value);
 void csv_hash(csv_line *line, uint64_t value); /* 16 hex digits */
-/* Ends the line; fields that follow begin the next one in the same text. */
+/* Ends the line; later fields start the next line in the same text. */
 void csv_end(csv_line *line);
 void csv_line_free(csv_line *line);
 
-/* A file as it was read: its whole lines only. What lies behind the last newline is torn and not in it. */
+/* The complete lines of a file. An incomplete line after the last newline is ignored. */
 typedef struct csv {
     char *raw;
-    size_t size; /* the file's bytes; whole is where the last newline ends */
+    size_t size; /* the file's bytes; whole is the offset after the last newline */
     size_t whole;
-    char *split; /* the same with fields cut apart; owned */
+    char *split; /* the same bytes split into fields; owned */
     size_t column_count;
     char **header; /* column_count names */
     size_t row_count;
-    char **fields; /* row_count * column_count, behind the header's */
-    size_t *start; /* where row i begins in raw; start[row_count] = whole */
+    char **fields; /* row_count * column_count fields, after the header */
+    size_t *start; /* offset of row i in raw; start[row_count] = whole */
 } csv;
 
-/* STATUS_OK and *out = NULL when there is no such file. A row with another number of fields than the header is
- * STATUS_BAD_INPUT. */
+/* STATUS_OK and *out = NULL if the file does not exist. STATUS_BAD_INPUT if a row does not have as many fields as the
+ * header. */
 status csv_read(const char *path, csv **out, diagnostic *why);
-/* The same of a file that lies below root (base/below.h). */
+/* The same for a file below root (base/below.h). */
 status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why);
 void csv_destroy(csv *table);
 
-/* Cuts the fields of one line without its newline apart, in place; returns how many, or 0 when quotes are wrong. fields
- * may be NULL. */
+/* Splits one line without its newline into fields, in place; returns their number, or 0 for invalid quotes. fields may
+ * be NULL. */
 size_t csv_split(char *line, char **fields);
 
 /* Index of the column of that name, or -1. */
 int csv_column(const csv *table, const char *name);
-/* "NA" for a column that the file does not have. */
+/* "NA" for a missing column. */
 const char *csv_field(const csv *table, size_t row, int column);
-/* The field as a number; NaN for NA and what is no number. */
+/* The field as a number; NaN for NA and for anything that is not a number. */
 double csv_field_real(const csv *table, size_t row, int column);

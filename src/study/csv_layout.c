@@ -10,7 +10,7 @@ typedef struct names {
 
 struct csv_layout {
     size_t from_count, to_count;
-    int *source; /* of each column of `to`: which one of `from`, or -1 */
+    int *source; /* for each column of `to`: the index of that column in `from`, or -1 */
 };
 
 static void names_free(names *n)
@@ -19,7 +19,7 @@ static void names_free(names *n)
     free(n->name);
 }
 
-/* Of a line, with or without its newline. False when memory is out or quotes are wrong. */
+/* The number of fields of a line, with or without its newline. False if memory runs out or quotes are invalid. */
 static bool names_split(const char *line, size_t size, names *out)
 {
     size -= size > 0 && line[size - 1] == '\n';
@@ -110,7 +110,7 @@ char *csv_header_extend(const char *header, const char *more, size_t *added)
 
 enum { TABLE_BYTES_MAX = 1 << 30 };
 
-/* The file's lines below a wider header; each goes on with as many values that are not known. */
+/* Rewrites the file's lines under a wider header; the additional values are NA. */
 static status widen(const char *path, const char *lines, const char *header, size_t added, diagnostic *why)
 {
     file_writer writer;

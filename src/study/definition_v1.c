@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The parameters of that program. Never to be added to: what is not here came later. */
+/* The parameters of that program. Do not add to this list: everything else is newer. */
 static const char *const names[PARAM_GROUP_COUNT] = {
     [PARAM_RENDER] = ("width height depth samples integrator lighting weights transmission beyond shadows min_weight "
                       "paths roulette seed polarisation spectrum wavelengths lambda_nm unit_m threads pool schedule "
@@ -24,7 +24,7 @@ static const char *const names[PARAM_GROUP_COUNT] = {
     [PARAM_SOLID] = "position rotation priority visible",
 };
 
-/* Its shapes by their numbers, and what each had besides. */
+/* Its shapes by number, and their additional parameters. */
 static const struct {
     const char *word, *names;
 } shapes[] = {
@@ -51,7 +51,7 @@ static bool is_word_of(const char *word, const char *words)
     return false;
 }
 
-/* The number of its shape then, or -1. */
+/* The number of the shape in that version, or -1. */
 static int shape_number(const solid *of)
 {
     for (int i = 0; i < (int)(sizeof shapes / sizeof *shapes); i++)

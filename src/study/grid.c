@@ -68,7 +68,7 @@ static bool is_performance_only(const scene *s, const char *path)
     return param_place_find(s, path, &at, NULL) == STATUS_OK && at.row->performance_only;
 }
 
-/* Embree's hits are of single precision: its film is its own. */
+/* Embree's hits are in single precision, so its film differs. */
 static bool is_foreign(const char *value)
 {
     return strcmp(value, "embree") == 0;
@@ -193,7 +193,7 @@ void grid_hash_point(uint64_t *hash, const study_point *point)
 status grid_definition(const study *s, uint64_t *hash, diagnostic *why)
 {
     meaning said = {0};
-    status code = scene_load_files(s->base, why); /* what is computed follows from the parameters */
+    status code = scene_load_files(s->base, why); /* derived from the parameters */
     if (code == STATUS_OK && meaning_of_study(&said, s) != STATUS_OK)
         code = out_of_memory(why);
     const int64_t word = (int64_t)meaning_hash(&said);

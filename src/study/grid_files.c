@@ -1,4 +1,5 @@
-/* What a scene's files hold, for the fingerprint of a study: the same names with other contents are another scene. */
+/* Hashes the contents of a scene's files for the study's definition: equal names with other contents are another scene.
+ * */
 #include "study/grid.h"
 
 #include "base/file.h"
@@ -20,8 +21,8 @@ static void hash_texture(uint64_t *hash, const texture *t)
         *hash = texture_hash(t, *hash);
 }
 
-/* What a later version reads of a face goes in only where it is not at its default: the fingerprints that rows carry
- * must stay. */
+/* Properties of faces that newer versions read are hashed only if they are not at their defaults, so that old hashes
+ * stay valid. */
 static void hash_visit(uint64_t *hash, const face_material *l)
 {
     const double numbers[] = {l->given, l->color.x, l->color.y, l->color.z, l->diffuse, l->specular, l->shininess};
@@ -46,7 +47,7 @@ static void hash_mesh(uint64_t *hash, const mesh *m)
             hash_array(hash, m->slot_names[i], strlen(m->slot_names[i]) + 1, 1);
 }
 
-/* The text of a slime's script. One that cannot be read holds nothing: loading it says so. */
+/* The text of a slime's script. An unreadable script is skipped: loading it reports the error. */
 static void hash_script(uint64_t *hash, const scene *of, const mesh_entry *m)
 {
     enum { SCRIPT_BYTES_MAX = 1 << 20 };

@@ -11,9 +11,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-/* The files of a cell, and what of the study says whether they are wanted. */
+/* The files of a cell, and the settings of the study that select them. */
 static const struct {
-    size_t wish; /* of study: a bool */
+    size_t wish; /* offset in study of a bool */
     const char *ending;
 } files[] = {
     {offsetof(study, keep_image), ".png"},
@@ -125,7 +125,7 @@ status keep_index(const study *s, const char *folder, bool renew, diagnostic *wh
     status code = path && images ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && keeps && access(images, F_OK) == 0 && (renew || access(path, F_OK) != 0)) {
         file_writer writer;
-        /* Of shards that end at one time the last one must list the files of all. */
+        /* If several shards finish at the same time, the last one must list the files of all of them. */
         int lock = open(images, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
         if (lock >= 0)
             flock(lock, LOCK_EX);

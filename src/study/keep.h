@@ -1,18 +1,18 @@
-/* What a study keeps of each cell beside its rows: pictures, ray and time maps, timeline, realism metrics and curves,
- * motion, in results/<study>/images/. They come from a frame of their own after the rows, so that looking disturbs
- * nothing that is measured; its film must be that of the rows. Every file appears whole or not at all. */
+/* Files that a study keeps for each cell in addition to its rows: images, ray and time maps, timeline, realism metrics
+ * and curves, motion, in results/<study>/images/. They are rendered in a separate frame after the rows, so that they do
+ * not disturb measurements; the film must equal that of the rows. Files are written atomically. */
 #pragma once
 
 #include "job/account.h"
 #include "study/study.h"
 
-/* Does the cell lack a file that the study keeps? */
+/* Whether a file that the study keeps is missing for the cell. */
 bool keep_missing(const study *s, const char *folder, size_t cell);
 
-/* The frame's options for what is kept; progress and context are left NULL. */
+/* The options of the frame; progress and context stay NULL. */
 render_options keep_options(const study *s);
 
-/* A cell, and its frame rendered with those options. Borrowed. */
+/* A cell, and its frame rendered with these options. Borrowed. */
 typedef struct kept_cell {
     size_t cell;
     const job_account *made;
@@ -21,6 +21,6 @@ typedef struct kept_cell {
 /* Writes the cell's files. */
 status keep_write(const study *s, const char *folder, const kept_cell *c, diagnostic *why);
 
-/* Writes images/index.tsv: file, cell and axis values of every kept file that is there, all shards' together. Unless
- * renew, only when it is missing. Nothing for a study that keeps nothing. */
+/* Writes images/index.tsv: file, cell and axis values of every existing kept file, of all shards. Without renew, only
+ * if it is missing. Does nothing for a study that keeps nothing. */
 status keep_index(const study *s, const char *folder, bool renew, diagnostic *why);

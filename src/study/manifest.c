@@ -38,7 +38,7 @@
 
 static const double load_sample_s = 0.2;
 
-/* Takes over fresh text; null when there is none or it is not UTF-8. */
+/* Takes ownership of text; null if it is NULL or not UTF-8. */
 static json_t *taken(char *text)
 {
     json_t *value = text ? json_string(text) : NULL;
@@ -52,7 +52,7 @@ static json_t *borrowed(const char *text)
     return value ? value : json_null();
 }
 
-/* Now, or the time that SOURCE_DATE_EPOCH gives (reproducible-builds.org/specs/source-date-epoch). */
+/* The current time, or that of SOURCE_DATE_EPOCH (reproducible-builds.org/specs/source-date-epoch). */
 static json_t *time_text(void)
 {
     char text[ROW_TIME_MAX];
@@ -110,7 +110,7 @@ static void add_disturbance(void *list, const char *text)
     json_array_append_new(list, borrowed(text));
 }
 
-/* What may differ from one run of a study to the next; of its file the repetitions, the order, what is kept. */
+/* The properties of a run that may change between runs: repetitions, order, kept files. */
 static json_t *run_facts(const study *s, const topology *machine, isa level, long shard, long shards)
 {
     char *folder = strdup(s->path);
@@ -130,7 +130,7 @@ static json_t *run_facts(const study *s, const topology *machine, isa level, lon
         "libraries", libraries(), "disturbances", disturbances, "study_text", borrowed(s->text));
 }
 
-/* The manifest that is there, or a new one. */
+/* The existing manifest, or a new one. */
 static status load(const study *s, const char *path, const topology *machine, json_t **out, diagnostic *why)
 {
     *out = NULL;
@@ -153,7 +153,7 @@ status manifest_write(const study *s, const char *folder, const topology *machin
     json_t *run = run_facts(s, machine, level, shard, shards), *manifest = NULL;
     char *path = text_format("%s/manifest.json", folder);
     status code = run && path ? STATUS_OK : out_of_memory(why);
-    /* Shards may start at one time, and each reads the list before it writes it. */
+    /* Locked, because shards may start at the same time, and each reads the list before it writes it. */
     int lock = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock >= 0)
         flock(lock, LOCK_EX);

@@ -1,4 +1,4 @@
-/* Facts as JSON beside rows; and what rows of an earlier version meant, from the manifest. */
+/* JSON values next to rows, and the recorded meaning of old rows. */
 #include "base/file.h"
 #include "base/text.h"
 #include "study/manifest.h"
@@ -39,7 +39,7 @@ status facts_read(const char *path, const char *root, json_t **out, diagnostic *
 
 status facts_write(const json_t *facts, size_t flags, const char *path, diagnostic *why)
 {
-    /* jansson writes reals in the C locale's form by itself. */
+    /* jansson writes reals independently of the locale. */
     char *text = json_dumps(facts, JSON_INDENT(2) | flags), *line = text ? text_format("%s\n", text) : NULL;
     const status code = line ? file_write(path, line, why) : out_of_memory(why);
     free(line);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Takes over both texts. */
+/* Takes ownership of both texts. */
 static status add(meaning *m, char *name, char *value)
 {
     if (!name || !value || !room_for_one(&m->items, m->count, sizeof *m->items)) {
@@ -39,7 +39,7 @@ static status add_param(void *context, const char *path, const param *row, const
     return code;
 }
 
-/* Every object is named in its place: one whose parameters all are at their defaults is there, too. */
+/* Every object is listed, including those with all parameters at their defaults. */
 static status add_objects(meaning *m, const scene *of, param_group group)
 {
     for (size_t i = 0; i < param_place_group_size(of, group); i++)

@@ -1,8 +1,7 @@
-/* What a row of a study means: all that decides which frame its numbers are of, as names with values. What is not said
- * is at its default, so that a version of the program with more parameters, shapes or words finds the same meaning in
- * the same files; objects and shapes go by their names, never by a number of the program's own. For that to hold, a
- * default once published must not change, nor may a name or a word. Ownership: meaning_free releases what was
- * filled. */
+/* The meaning of a row: everything that determines its frame, as pairs of name and value. Values at their defaults are
+ * omitted, so that a version of the program with more parameters, shapes or words gives the same meaning for the same
+ * files; objects and shapes are identified by name. For this, a published default, name or word must never change.
+ * Ownership: meaning_free releases what was filled. */
 #pragma once
 
 #include "study/study.h"
@@ -15,16 +14,16 @@ typedef struct meaning {
     size_t count;
 } meaning;
 
-/* Of a scene, with or without the parameters that are how a frame is computed (param.performance_only). STATUS_FAILURE
- * when memory is out. */
+/* The meaning of a scene, with or without the parameters that affect only performance (param.performance_only).
+ * STATUS_FAILURE if memory runs out. */
 status meaning_of_scene(meaning *m, const scene *of, bool without_performance);
-/* Of a study: its name, its scene with the fixed parameters, its grid. What files hold is not in it
+/* The meaning of a study: its name, its scene with the fixed parameters, its grid. Contents of files are not included
  * (grid_hash_files). */
 status meaning_of_study(meaning *m, const study *s);
 void meaning_free(meaning *m);
 
-/* The same for any order of the items. */
+/* A hash that does not depend on the order of the items. */
 uint64_t meaning_hash(const meaning *m);
 
-/* The first item that differs, in words: "render.width is 800 there, and 640 here". False when none does. */
+/* Describes the first difference: "render.width is 800 there, and 640 here". False if there is none. */
 bool meaning_difference(const meaning *there, const meaning *here, char *text, size_t size);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The rows of one file, from `from` on; those of a file with other columns under their names. */
+/* Appends the rows of one file, starting at `from`, converted to the common columns. */
 static status write_rows(FILE *out, const row_files *files, size_t from, size_t to, const char *header, diagnostic *why)
 {
     const csv *of = files->rows[from].table;
@@ -28,7 +28,7 @@ static status write_rows(FILE *out, const row_files *files, size_t from, size_t 
     return code;
 }
 
-/* The header with what columns any of the files has besides; fresh memory, or NULL. */
+/* The header extended by the additional columns of all files; fresh memory, or NULL. */
 static char *joined_header(const row_files *files, const char *header)
 {
     char *all = strdup(header);
@@ -44,7 +44,7 @@ static char *joined_header(const row_files *files, const char *header)
     return all;
 }
 
-/* All rows of one kind into rows.csv, workers.csv or compare.csv, line by line as they are. */
+/* Merges all rows of one kind into rows.csv, workers.csv or compare.csv, unchanged line by line. */
 static status write_joined(const row_files *files, const char *path, const char *header, diagnostic *why)
 {
     file_writer writer;
@@ -64,7 +64,7 @@ static status write_joined(const row_files *files, const char *path, const char 
     return file_writer_end(&writer, code, why);
 }
 
-/* Every file is locked meanwhile, so that no row is written into one that is being replaced. */
+/* Every file is locked during the merge, so that no row is written into a file that is being replaced. */
 static status join(const study *s, const char *results, row_kind kind, size_t *rows, diagnostic *why)
 {
     *rows = 0;
@@ -105,7 +105,7 @@ static status join(const study *s, const char *results, row_kind kind, size_t *r
 status study_merge(const study *s, const char *results, size_t *rows, diagnostic *why)
 {
     size_t joined = 0;
-    /* Worker rows first: they may be there without their row, but not the other way round. */
+    /* Worker rows come first: worker rows without their row are valid, the opposite is not. */
     status code = join(s, results, WORKER_ROWS, &joined, why);
     THEN(code, join(s, results, COMPARE_ROWS, &joined, why));
     THEN(code, join(s, results, ROWS, &joined, why));

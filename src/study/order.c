@@ -2,14 +2,14 @@
 
 #include "base/random.h"
 
-/* 64 random bits: draw number attempt for place i. */
+/* 64 random bits: attempt number `attempt` for position i. */
 static uint64_t random_bits(uint64_t seed, uint64_t stream, uint32_t place, uint32_t attempt)
 {
     random_words drawn = random_at(seed, place, attempt, (uint32_t)stream, (uint32_t)(stream >> 32));
     return (uint64_t)drawn.word[1] << 32 | drawn.word[0];
 }
 
-/* Even on 0..bound-1: bits of the last, incomplete stretch of bound values are drawn again. */
+/* Uniform on 0..bound-1: values in the incomplete last range of length bound are rejected. */
 static uint64_t random_below(uint64_t seed, uint64_t stream, uint32_t place, uint64_t bound)
 {
     uint64_t incomplete = -bound % bound; /* 2^64 mod bound */

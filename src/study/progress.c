@@ -8,9 +8,9 @@ static const double refresh_s = 0.1;
 struct progress_line {
     const study *s;
     const study_options *options;
-    study_moment now; /* left_s: at the time of the last count */
+    study_moment now; /* left_s: at the last call of progress_count */
     bool shown;
-    double shown_s; /* 0: what comes next is shown at once */
+    double shown_s; /* 0: show the next update immediately */
 };
 
 progress_line *progress_begin(const study *s, const study_options *options)
@@ -98,7 +98,7 @@ void progress_count(progress_line *line, size_t cell, const progress_index *done
     if (!is_watched(line))
         return;
     count_frames(line, done, cells, cell_count);
-    progress_show(line, 0); /* frames of under a tenth of a second are not heard of in between */
+    progress_show(line, 0); /* frames shorter than a tenth of a second do not report their progress */
 }
 
 void progress_measured(progress_line *line, const progress_index *done, const size_t *cells, size_t cell_count)
@@ -116,7 +116,7 @@ void progress_images(progress_line *line, size_t cell, size_t img, size_t images
     line->now.img = img;
     line->now.images = images;
     if (img == 1)
-        line->shown_s = 0; /* what comes after the rows is not held up by them */
+        line->shown_s = 0; /* kept files are not part of the estimate */
     progress_show(line, 0);
 }
 

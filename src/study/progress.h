@@ -1,6 +1,6 @@
-/* How far a study is and about how long it takes: as a line on a terminal, and for whoever asked to be told
- * (study_options). With neither every call does nothing. progress_begin gives (NULL when memory is out), progress_end
- * releases; study and options are borrowed in between. */
+/* The progress of a study and the estimated time left: a line on a terminal, and callbacks (study_options). Without
+ * both, every call does nothing. progress_begin gives (NULL if memory runs out), progress_end releases; study and
+ * options are borrowed until then. */
 #pragma once
 
 #include "study/progress_index.h"
@@ -8,16 +8,16 @@
 typedef struct progress_line progress_line;
 
 progress_line *progress_begin(const study *s, const study_options *options);
-/* Before a cell is measured. Reckons what is left: the repetitions that cells lack at most, at the mean time of theirs
+/* Before a cell is measured. Estimates the time left: the maximum number of missing repetitions times their mean time
  * so far. */
 void progress_count(progress_line *line, size_t cell, const progress_index *done, const size_t *cells,
                     size_t cell_count);
-/* All of them are measured; told at once. */
+/* All cells are measured; reported immediately. */
 void progress_measured(progress_line *line, const progress_index *done, const size_t *cells, size_t cell_count);
-/* From now on the kept pictures are made, this one (from 1) of how many. */
+/* From now on the kept files are made: file img (from 1) of images. */
 void progress_images(progress_line *line, size_t cell, size_t img, size_t images);
-/* Shows it; share_done is that of the frame. */
+/* Updates the display; share_done is the completed fraction of the frame. */
 void progress_show(progress_line *line, double share_done);
-/* The same while slimes move before a frame; share_done is that of their motion. */
+/* The same while slimes move before a frame; share_done is the completed fraction of the motion. */
 void progress_moving(progress_line *line, double share_done);
 void progress_end(progress_line *line);

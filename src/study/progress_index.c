@@ -83,7 +83,7 @@ bool progress_index_cell_done(const progress_index *l, size_t cell)
         return true;
     if (at->counted < (size_t)s->repetitions_min || s->relative_width <= 0)
         return false;
-    summary walls = summarize(at->wall_s, at->counted); /* sorting them does no harm */
+    summary walls = summarize(at->wall_s, at->counted); /* safe to sort in place */
     double width = summary_relative_width(&walls);
     return isfinite(width) && width < s->relative_width;
 }

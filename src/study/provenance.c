@@ -12,7 +12,7 @@
 
 extern char **environ;
 
-/* The first line of a file that begins with prefix, without prefix, blanks and colon; NULL if there is none. */
+/* The rest of the first line of a file that starts with prefix, without blanks and colon; NULL if there is none. */
 static char *line_of(const char *path, const char *prefix)
 {
     FILE *file = fopen(path, "re");
@@ -70,7 +70,7 @@ char *provenance_binding(void)
     return text;
 }
 
-/* What `git -C folder arguments` prints, at most size - 1 bytes; false when it fails. */
+/* The output of `git -C folder arguments`, at most size - 1 bytes; false if it fails. */
 static bool run_git(const char *folder, const char *const *arguments, char *text, size_t size)
 {
     const char *argv[12] = {"git", "--no-optional-locks", "-C", folder};

@@ -1,5 +1,5 @@
-/* Facts about the machine and the program that a manifest names. Fresh memory, release with free; NULL when a fact
- * is not to be had. Never fails otherwise. */
+/* Facts about the machine and the program for the manifest. Fresh memory, release with free; NULL if a fact is not
+ * available. Cannot fail otherwise. */
 #pragma once
 
 #include <stdbool.h>
@@ -9,12 +9,12 @@
 char *provenance_cpu_model(void);
 /* "Linux 6.1.0 x86_64". */
 char *provenance_kernel(void);
-/* Frequency governor of the first processing unit, "performance". */
+/* Frequency governor of the first processing unit, such as "performance". */
 char *provenance_governor(void);
-/* The units that the process may use, "0-3,8". */
+/* The processing units available to the process, "0-3,8". */
 char *provenance_binding(void);
-/* The commit checked out where folder lies, 40 hex digits; *dirty: tracked files differ from it. Quiet without git. */
+/* The commit checked out in folder, 40 hex digits; *dirty: tracked files differ from it. Silent without git. */
 char *provenance_git_commit(const char *folder, bool *dirty);
-/* hwloc's XML without what tells one machine from another of its kind: host name, serial numbers, addresses,
- * control groups. Changes xml in place; NULL is allowed. */
+/* Removes from hwloc's XML everything that distinguishes machines of the same kind: host name, serial numbers,
+ * addresses, control groups. Changes xml in place; NULL is allowed. */
 void provenance_anonymize(char *xml);

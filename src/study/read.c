@@ -35,14 +35,14 @@ enum { FILE_BYTES_MAX = 1 << 20, NAME_MAX_LENGTH = 64, TITLE_MAX_LENGTH = 200 };
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-/* An integer, though perhaps of more digits than a number holds? */
+/* Whether the text is an integer, possibly with too many digits for a number. */
 static bool only_digits(const char *text)
 {
     text += *text == '-' || *text == '+';
     return *text && text[strspn(text, "0123456789")] == 0;
 }
 
-/* A node that is not there leaves *out as it is. */
+/* A missing node leaves *out unchanged. */
 static status read_integer(const document *d, const node *n, const char *key, int64_t lowest, int64_t highest,
                            int64_t *out, diagnostic *why)
 {
@@ -60,7 +60,7 @@ static status read_integer(const document *d, const node *n, const char *key, in
     return node_error(d, n, why, remedy, "%s: '%.64s' is not an integer", key, n->text);
 }
 
-/* Likewise. */
+/* The same. */
 static status read_switch(const document *d, const node *n, const char *key, bool *out, diagnostic *why)
 {
     if (!n)
@@ -74,7 +74,7 @@ static status read_switch(const document *d, const node *n, const char *key, boo
     return node_error(d, n, why, "write on or off", "%s is neither on nor off", key);
 }
 
-/* A file name that needs no quoting anywhere, and that is none of the folders beside the studies'. */
+/* A file name that needs no quoting, and that is not one of the reserved folders of results. */
 static bool name_is_fit(const char *name)
 {
     static const char *const taken[] = {"figures", "tables", "reference"};
@@ -101,7 +101,7 @@ static status read_names(study *s, const document *d, const node *root, diagnost
     return s->name && s->title ? STATUS_OK : out_of_memory(why);
 }
 
-/* With six the median has a 95% interval (measure/statistics.h). */
+/* From six repetitions on the median has a 95% interval (measure/statistics.h). */
 enum { REPETITIONS_DEFAULT = 6 };
 
 /* {min: 6, max: 20, relative_width: 0.02} */
@@ -180,7 +180,7 @@ static status read_keep(study *s, const document *d, const node *n, diagnostic *
     return STATUS_OK;
 }
 
-/* The scene's file, its text for the manifest and its model. Errors inside it are located in it. */
+/* The scene's file, its text for the manifest, and its model. Errors in it are located in the scene file. */
 static status read_scene(study *s, const document *d, const node *root, const study_guard *guard, diagnostic *why)
 {
     const node *n = node_get(root, "scene");

@@ -21,7 +21,7 @@ static status locate(const document *d, const node *at, diagnostic *why, status 
     return code;
 }
 
-/* Sets one parameter on the scene, and gives the value as scene_get writes it: 1.0 and 1 are one value. */
+/* Sets one parameter of the scene, and returns the value as scene_get writes it: 1.0 and 1 are one value. */
 static status try_value(scene *on, const document *d, const node *key, const node *value, char **canonical,
                         diagnostic *why)
 {
@@ -65,7 +65,7 @@ static status point_add(study_point *point, scene *on, const document *d, const 
     return point->paths[point->count++] ? STATUS_OK : out_of_memory(why);
 }
 
-/* Every entry of a map path: value. */
+/* Each entry of a map path: value. */
 static status read_point(study_point *point, scene *on, const document *d, const node *map, diagnostic *why)
 {
     if (map->kind != NODE_MAP || map->count == 0)
@@ -76,7 +76,7 @@ static status read_point(study_point *point, scene *on, const document *d, const
     return STATUS_OK;
 }
 
-/* Brings the point's paths into the order of the axis' first point. */
+/* Reorders the point's paths to the order of the axis' first point. */
 static status align_point(study_point *point, const study_point *first, const document *d, const node *at,
                           diagnostic *why)
 {
@@ -107,7 +107,7 @@ static bool points_equal(const study_point *a, const study_point *b)
     return true;
 }
 
-/* One parameter: the values are a list. */
+/* One parameter with a list of values. */
 static status read_values(study_axis *axis, scene *on, const document *d, const node *key, const node *list,
                           diagnostic *why)
 {
@@ -131,7 +131,7 @@ static status read_step_count(const document *d, const node *n, int64_t *steps, 
     return STATUS_OK;
 }
 
-/* {from: 1.0, to: 2.0, steps: 5}: evenly spaced, both ends included. What lies between is taken to 15 digits, so that
+/* {from: 1.0, to: 2.0, steps: 5}: evenly spaced, both ends included. Values between are rounded to 15 digits, so that
  * 1.0 to 1.6 in 4 steps has 1.4, not 1.4000000000000001. */
 static status read_range(study_axis *axis, scene *on, const document *d, const node *key, const node *range,
                          diagnostic *why)
@@ -187,7 +187,7 @@ static status read_points(study_axis *axis, scene *on, const document *d, const 
     return code;
 }
 
-/* at: where the points stand; its items are theirs if it is a list. */
+/* at: the node of the points; if it is a list, each point is located at its item. */
 static status check_distinct(const study_axis *axis, const document *d, const node *at, diagnostic *why)
 {
     for (size_t i = 1; i < axis->count; i++)
@@ -226,7 +226,7 @@ static status read_axis(study_axis *axis, scene *on, const document *d, const no
     return code == STATUS_OK ? check_distinct(axis, d, list, why) : code;
 }
 
-/* A parameter may be set in one place only: else one of the two would silently lose. */
+/* A parameter may be set in one place only: otherwise one setting would be lost silently. */
 static status check_once(const study *s, size_t axis, const document *d, const node *at, diagnostic *why)
 {
     const study_point *point = &s->axes[axis].points[0];

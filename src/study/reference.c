@@ -98,7 +98,7 @@ status reference_load(const char *folder, const char *root, uint64_t scene_hash,
     char *facts = file_path(folder, scene_hash, ".json"), *img = file_path(folder, scene_hash, ".pfm");
     uint64_t pixels = 0;
     status code = facts && img ? STATUS_OK : out_of_memory(why);
-    /* The facts are written last: without them the picture is not believed. */
+    /* The JSON file is written last: without it the image is ignored. */
     if (code == STATUS_OK && access(facts, F_OK) == 0 && access(img, F_OK) == 0) {
         code = load_facts(facts, root, out, &pixels, why);
         THEN(code, image_read_below(img, root, &out->img, NULL, why));

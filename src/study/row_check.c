@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The file of the rows that the worker rows of a file belong to: workers.shard-0-of-2.csv -> rows.shard-0-of-2.csv. */
+/* The file of rows for a file of worker rows: workers.shard-0-of-2.csv -> rows.shard-0-of-2.csv. */
 static const csv *rows_beside(const row_files *rows, const char *workers_path)
 {
     const char *ending = strrchr(workers_path, '/') + 1 + strlen("workers");
@@ -31,7 +31,7 @@ void row_check_drop_orphans(row_files *workers, const row_files *rows)
         row_ref ref = workers->rows[i];
         while (workers->tables[file] != ref.table)
             file++;
-        /* Those of one repetition stand together. */
+        /* The worker rows of one repetition are consecutive. */
         if (ref.table != last.table || ref.cell != last.cell || ref.repetition != last.repetition)
             last_kept = has_row(rows, rows_beside(rows, workers->paths[file]), &ref);
         last = ref;
@@ -53,7 +53,7 @@ static int compare_keys(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Has every column of a the same value in b? */
+/* Whether b has the same value as a in every column of a. */
 static bool has_values(const row_ref *a, const row_ref *b)
 {
     for (size_t i = 0; i < a->table->column_count; i++) {
@@ -102,7 +102,7 @@ status row_check_drop_twins(row_files *files, diagnostic *why)
     return code;
 }
 
-/* What a row must have to be one; the rest is "NA" where it is missing. */
+/* The required columns of a row; others are "NA" if they are missing. */
 static const char *const needed[][10] = {
     [ROWS] = {"study", "definition", "cell", "repetition", "warmup", "film_hash", "film_expected", "marked", "wall_s"},
     [WORKER_ROWS] = {"study", "definition", "cell", "repetition", "warmup", "worker"},

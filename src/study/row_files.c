@@ -47,7 +47,7 @@ static int compare_shards(const void *a, const void *b)
     return (x->shard > y->shard) - (x->shard < y->shard);
 }
 
-/* Is name exactly the file of a shard? rows.shard-0-of-2.torn.csv is not. */
+/* Whether name is exactly the file of a shard; rows.shard-0-of-2.torn.csv is not. */
 static bool parse_shard(const char *name, row_kind kind, shard_name *out)
 {
     char format[64], again[128];
@@ -58,7 +58,7 @@ static bool parse_shard(const char *name, row_kind kind, shard_name *out)
     return strcmp(name, again) == 0;
 }
 
-/* The shards' files in a folder, in order. *list is the caller's. */
+/* The files of the shards in a folder, sorted. *list is owned by the caller. */
 static status list_shards(const char *folder, row_kind kind, shard_name **list, size_t *count, diagnostic *why)
 {
     struct dirent **entries = NULL;
@@ -131,7 +131,7 @@ double row_field_real(const row_ref *ref, const char *name)
     return csv_field_real(ref->table, ref->row, csv_column(ref->table, name));
 }
 
-/* A whole number from 0 to highest in the column of that name. */
+/* An integer from 0 to highest in the named column. */
 static bool field_integer(const row_ref *ref, const char *name, int64_t highest, int64_t *out)
 {
     return number_parse_int(row_field(ref, name), out) && *out >= 0 && *out <= highest;

@@ -29,7 +29,7 @@ void row_put_axes(csv_line *line, const study *s, const scene *setting)
     }
 }
 
-/* "480000;95458;...": depth 0 to the last one with a ray. */
+/* "480000;95458;...": from depth 0 to the last depth with a ray. */
 static void put_by_depth(csv_line *line, const quantity_value *v)
 {
     char text[(COUNTERS_DEPTH_MAX + 1) * 21 + 1];
@@ -66,8 +66,8 @@ static void put_time(csv_line *line, const study_row *r)
     csv_text(line, row_time(r->made->ended_ms, text));
 }
 
-/* A study's own columns: name, unit, meaning and how each is written stand together, so that header, dictionary and
- * row cannot part. In the last one: line, r (the row). The others are those of job/quantities.h. */
+/* The study's own columns: name, unit, meaning and writer in one place, so that header, dictionary and row always
+ * agree. The last macro argument uses line and r (the row). The other columns are those of job/quantities.h. */
 #define WHOSE(X)                                                                                                \
     X("study", "", "name of the study", csv_text(line, r->of->name))                                            \
     X("definition", "", "fingerprint of scene, fixed parameters and grid, 16 hex digits",                       \
@@ -87,7 +87,7 @@ static void put_time(csv_line *line, const study_row *r)
     X("<axis>", "of the parameter", "value of each parameter of the grid, in its order", \
       row_put_axes(line, r->of, r->made->of))
 
-/* After the film's hash. */
+/* Columns after film_hash. */
 #define JUDGED(X)                                                                                                      \
     X("film_expected", "",                                                                                             \
       "film_hash of the first row of all cells that must have one film: they differ only in how it is made (threads, " \

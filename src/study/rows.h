@@ -1,14 +1,14 @@
-/* The rows of a study: rows.csv and workers.csv, and the one way to write them. Their columns are a study's own and the
- * quantities of job/quantities.h; results/README.md is their dictionary. Pure but for memory; a csv_line that ran out
- * of it has failed set. */
+/* The rows of a study, rows.csv and workers.csv, and the only code that writes them. Their columns are the study's own
+ * and the quantities of job/quantities.h; results/README.md is their dictionary. Pure except for memory; a csv_line
+ * that ran out of memory has failed set. */
 #pragma once
 
 #include "job/quantities.h"
 #include "study/csv.h"
 #include "study/study.h"
 
-/* A name in angle brackets stands for as many columns as the study has of them: "<axis>" one for each path of the
- * grid, "first_hits.<solid>" one for each solid of the scene. */
+/* A name in angle brackets represents several columns: "<axis>" one for each path of the grid, "first_hits.<solid>" one
+ * for each solid of the scene. */
 typedef struct row_column {
     const char *name, *unit, *meaning;
 } row_column;
@@ -23,18 +23,18 @@ row_columns row_each_column, worker_each_column;
 typedef struct study_row {
     const study *of;
     size_t cell;
-    long repetition; /* running number in the cell, warm-ups counted */
+    long repetition; /* number in the cell, warm-ups included */
     bool warmup;
-    size_t order; /* running number in the file */
+    size_t order; /* number in the file */
     uint64_t film_expected;
     const job_account *made;
 } study_row;
 
-/* A line of rows.csv; the lines of workers.csv, one a worker. */
+/* A line of rows.csv; the lines of workers.csv, one per worker. */
 void row_write(csv_line *line, const study_row *r);
 void worker_rows_write(csv_line *line, const study_row *r);
 
-/* A header line of these columns. The values of the grid's parameters, one field each. A quantity of a frame, or of a
+/* A header line of these columns; the values of the grid's parameters, one field each; a quantity of a frame or of a
  * worker. */
 void row_columns_header(csv_line *line, const study *s, row_columns *each);
 void row_put_axes(csv_line *line, const study *s, const scene *setting);

@@ -1,8 +1,7 @@
-/* Runs what a study lacks. Repetitions go in rounds: round k measures every cell once that has k measured
- * repetitions, in an order shuffled afresh, so that slow drift of the machine falls on all cells alike (a
- * randomised complete block design; Montgomery, Design and Analysis of Experiments, 4.1). A cell's warm-ups come
- * right before its first repetition in this process. A continued run finds the round where it stopped from the rows
- * themselves. */
+/* Measures the missing repetitions of a study. They are measured in rounds: round k measures every cell once that has k
+ * measured repetitions, in a new random order, so that slow drift of the machine affects all cells alike (a randomised
+ * complete block design; Montgomery, Design and Analysis of Experiments, 4.1). A cell's warm-ups come immediately
+ * before its first repetition in this process. A resumed run derives the current round from the rows. */
 #include "study/keep.h"
 #include "study/order.h"
 #include "study/row_files.h"
@@ -78,7 +77,7 @@ status run_render(run *r, const scene *setting, const render_options *wanted, jo
     return say_interrupted(job_render(r->with, setting, &options, out, why), why);
 }
 
-/* One frame, one row. */
+/* One frame and its row. */
 static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
 {
     scene *setting = NULL;

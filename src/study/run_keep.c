@@ -1,5 +1,5 @@
-/* What is made of each cell once: its pictures and maps, and how far its picture lies from the reference. A frame of
- * its own after the rows, so that looking disturbs nothing that is measured; its film must be that of the rows. */
+/* Makes the kept files of each cell once: images and maps, and the comparison with the reference. They use a separate
+ * frame after the rows, so that measurements are not disturbed; its film must equal that of the rows. */
 #include "study/compare_rows.h"
 #include "study/keep.h"
 #include "study/row_files.h"
@@ -50,7 +50,7 @@ static status render_reference(run *r, const scene *setting, reference *out, dia
     return code;
 }
 
-/* Brings the cell's reference into r->held: the one that is there, or from disk, or a frame. */
+/* Loads the cell's reference into r->held: the current one, one from disk, or a new frame. */
 static status hold_reference(run *r, size_t cell, diagnostic *why)
 {
     scene *setting = NULL;

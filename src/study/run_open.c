@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Worker rows are written before the row that they belong to; those at the end without one are what a killed
- * process left. */
+/* Worker rows are written before their row; worker rows at the end without a row are from a killed process. */
 static status set_orphans_aside(run *r, const csv *rows, const char *path, diagnostic *why)
 {
     csv *workers = NULL;
@@ -60,7 +59,7 @@ static status open_tables(run *r, diagnostic *why)
     return code;
 }
 
-/* Folder, locks, the rows so far (read again under the lock), manifest, job. */
+/* Opens folder, locks, existing rows (read again under the lock), manifest, job. */
 status run_prepare(run *r, diagnostic *why)
 {
     const job_settings settings = {.measured = true,

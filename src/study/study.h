@@ -1,7 +1,7 @@
-/* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and what to keep; run so that raw
- * rows are sacred (design, decision 7). results/<study>/ holds rows.csv (one row a repetition, appended and flushed
- * at once, never rewritten), manifest.json, images/ (one a cell); with a reference compare.csv (one row a cell) and
- * references/. Ownership: study_read gives, study_destroy releases. Errors in the file are located there: file, line,
+/* A study: a scene, fixed parameters, a grid over any parameters, repetitions, and files to keep. Raw rows are never
+ * changed (design, decision 7). results/<study>/ has rows.csv (one row per repetition, appended and flushed
+ * immediately), manifest.json, images/ (one per cell); with a reference also compare.csv (one row per cell) and
+ * references/. Ownership: study_read gives, study_destroy releases. Errors in the file are located by file, line and
  * column. */
 #pragma once
 
@@ -17,7 +17,8 @@ enum { STUDY_CELLS_MAX = 65536, STUDY_AXES_MAX = 16, STUDY_REPETITIONS_MAX = 100
 typedef struct study_point {
     char **paths, **values;
     size_t count;
-    size_t film; /* the axis' first point of which a frame has the same film: they differ in how it is computed */
+    size_t film; /* index of the first point of the axis with the same film: the points differ only in performance
+                    parameters */
     long line, column;
 } study_point;
 /* All points of an axis set the same paths, in the same order. */
@@ -30,44 +31,42 @@ typedef struct study_axis {
 typedef struct study {
     char *path, *name, *title;
     char *scene_path;  /* resolved against the study file's folder */
-    study_point fixed; /* parameters set for all cells */
+    study_point fixed; /* applied to all cells */
     study_axis *axes;
     size_t axis_count;
-    study_point reference; /* set on top of a cell's parameters, these give the picture that the cell's is
-                              compared with; count 0: nothing is compared */
-    long repetitions_min, repetitions_max; /* counted, without warm-ups */
-    double relative_width; /* stop after min once the 95% interval of the mean wall time is narrower than
-                              this share of it; 0: always max */
-    long warmups;          /* frames of a cell before its first measured one, in every process */
+    study_point reference; /* applied to a cell's scene, these parameters give its reference image; count 0: no
+                              comparison */
+    long repetitions_min, repetitions_max; /* without warm-ups */
+    double relative_width; /* stop after min repetitions as soon as the 95% interval of the mean wall time is narrower
+                              than this fraction of it; 0: always max */
+    long warmups;          /* unmeasured frames of a cell before its first measured one, in every process */
     bool shuffle;
     uint64_t seed;
     bool keep_image, keep_pfm, keep_workers, keep_pixel_rays, keep_pixel_time, keep_timeline, keep_metrics, keep_curves,
-        keep_motion;         /* of each cell, once */
-    char *text, *scene_text; /* both files, as they were read */
-    scene *base;             /* the scene with the fixed parameters set */
-    /* Of what a row means: name, scene, fixed parameters, grid; rows that mean something else are not
-     * mixed in (study/accepted.h).
-     * Repetitions, order, title and what is kept may change, and the study goes on. */
+        keep_motion;         /* once per cell */
+    char *text, *scene_text; /* the texts of both files */
+    scene *base;             /* the scene with the fixed parameters applied */
+    /* Hash of the meaning of a row: name, scene, fixed parameters, grid; rows with another meaning are refused
+     * (study/accepted.h). Repetitions, order, title and kept files may change between runs. */
     uint64_t definition_hash;
-    uint64_t compare_hash; /* of what a row of compare.csv means: the definition, and the reference */
+    uint64_t compare_hash; /* hash of the meaning of a row of compare.csv: the definition and the reference */
 } study;
 
-/* Does it keep files of its cells, beside rows? */
+/* Whether the study keeps files of its cells in addition to rows. */
 bool study_keeps_files(const study *s);
 
 status study_read(const char *path, study **out, diagnostic *why);
-/* Who reads a study for others says what it may read. Both are asked before anything is opened; other than STATUS_OK is
- * the study's error. */
+/* Access checks for callers that read a study on behalf of others. Both functions are called before anything is opened;
+ * any result other than STATUS_OK is the study's error. */
 typedef struct study_guard {
     status (*may_open)(void *context, const char *path, diagnostic *why); /* the scene's file */
     status (*may_load)(void *context, const scene *setting,
-                       diagnostic *why); /* what is named in the scene of a cell, or of its reference */
+                       diagnostic *why); /* the files of the scene of a cell, or of its reference */
     void *context;
-    const char *root; /* nothing is read that does not lie below it, whoever names it (base/below.h), rows included;
-                         NULL or "": anywhere */
+    const char *root; /* files, including rows, are read only below this folder (base/below.h); NULL or "": anywhere */
 } study_guard;
 status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why);
-/* The same from memory; name stands for the file in diagnostics, and its folder is where the scene's path starts. */
+/* The same from memory; name is used in diagnostics, and scene paths are relative to its folder. */
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why);
 void study_destroy(study *s);
 
@@ -75,10 +74,9 @@ void study_destroy(study *s);
 size_t study_cell_count(const study *s);
 /* The axis point of a cell: study.axes[axis].points[study_cell_point(...)]. */
 size_t study_cell_point(const study *s, size_t cell, size_t axis);
-/* The first cell that must have the same film: its parameters differ only in how a frame is computed
- * (param.performance_only). */
+/* The first cell that must have the same film: the parameters differ only in performance (param.performance_only). */
 size_t study_cell_film(const study *s, size_t cell);
-/* The study's scene with the fixed parameters and the cell's set; pictures are not loaded. */
+/* The study's scene with the fixed parameters and those of the cell applied; image files are not loaded. */
 status study_cell_scene(const study *s, size_t cell, scene **out, diagnostic *why);
 
 typedef enum study_phase {
@@ -87,37 +85,38 @@ typedef enum study_phase {
     STUDY_IMAGES
 } study_phase; /* moving: slimes, before a frame */
 
-/* How far a study is while it runs. */
+/* The progress of a running study. */
 typedef struct study_moment {
     study_phase stage;
-    size_t cell;                    /* whose frame it is */
-    double share;                   /* of that frame, or of the motion before it, 0..1 */
-    size_t frames_done, frames_all; /* repetitions, without warm-ups, of this process' cells */
-    double left_s;                  /* for the frames to come; NaN: not known */
-    size_t img, images;             /* which of the kept pictures, from 1; 0 of 0 while rows are measured */
+    size_t cell;                    /* the cell of the current frame */
+    double share;                   /* completed fraction of that frame, or of the motion before it, 0..1 */
+    size_t frames_done, frames_all; /* repetitions of this process' cells, without warm-ups */
+    double left_s;                  /* estimated time of the remaining frames; NaN: unknown */
+    size_t img, images;             /* number of the current kept file, from 1; 0 of 0 while rows are measured */
 } study_moment;
 
 typedef struct study_options {
-    const char *results; /* folder; results/<name>/ is made in it */
-    long shard, shards;  /* this process does the cells whose place in the shuffled grid, modulo shards, is shard;
-                            0 of 1 (or 0 of 0) for all */
+    const char *results; /* results folder; results/<name>/ is created in it */
+    long shard, shards;  /* this process measures the cells whose position in the shuffled grid, modulo shards, is
+                            shard; 0 of 1 (or 0 of 0) for all */
     FILE *progress;      /* a terminal for the progress line with ETA, or NULL */
     bool (*stop)(void *context); /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
     void (*progressed)(
         void *context,
-        const study_moment *now); /* about ten times a second at most, from the thread that runs it. May be NULL */
-    void *context;                /* of both */
+        const study_moment *now); /* at most about ten times per second, from the thread that runs the study. May be
+                                     NULL */
+    void *context;                /* passed to both */
 } study_options;
 
-/* Runs what is missing; a study that is complete costs nothing and says so through *ran = 0 (rows written). */
+/* Measures what is missing; for a complete study *ran = 0 rows are written. */
 status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why);
 
-/* How far it is, over rows.csv and the shards' files. */
+/* The progress of a study on disk, over rows.csv and the files of shards. */
 typedef struct study_progress {
     size_t cells, cells_done, rows, warmups, rows_marked;
-} study_progress; /* warmups: of the rows */
+} study_progress; /* warmups: warm-up rows */
 status study_status(const study *s, const char *results, study_progress *out, diagnostic *why);
 
-/* Joins the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv; no row lost or twice. rows.csv
- * appears whole or not at all; the shards' files stay. */
+/* Merges the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv; no row is lost or duplicated. rows.csv
+ * is written atomically; the files of shards stay. */
 status study_merge(const study *s, const char *results, size_t *rows, diagnostic *why);

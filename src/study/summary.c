@@ -21,7 +21,7 @@ static const char *const after_marked[] = {
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
-/* The rows of a cell, of which a line is made; or of none, for the line of the columns' names. */
+/* The rows of a cell, for one line; or none, for the header line. */
 typedef struct cell_rows {
     bool header;
     size_t number;
@@ -79,7 +79,7 @@ static status put_solids(const study *s, const cell_rows *cell, diagnostic *why)
     return STATUS_OK;
 }
 
-/* A picture has one comparison, so its values are as they stand. */
+/* An image has one comparison, so its values are shown unchanged. */
 static void put_compared(const study *s, const cell_rows *cell)
 {
     for (size_t i = 0; s->reference.count && i < compare_shown_count; i++)
@@ -116,7 +116,7 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
     return code;
 }
 
-/* Rows lie in the order of time; those of one cell are gathered for its line. */
+/* Rows are in the order of time; the rows of one cell are collected for its line. */
 static status put_cells(const study *s, const row_files *files, const row_files *compared, FILE *out, diagnostic *why)
 {
     size_t room = files->row_count + 1;

@@ -14,7 +14,7 @@ struct table {
     char *path, *header;
     int fd;
     bool settled;       /* the file has all columns of header, and layout is known */
-    csv_layout *layout; /* from header's columns to the file's; NULL when they are the same */
+    csv_layout *layout; /* converts header's columns to the file's; NULL if they are equal */
 };
 
 static status failed(const char *path, const char *doing, int error, diagnostic *why)
@@ -26,7 +26,7 @@ static status failed(const char *path, const char *doing, int error, diagnostic 
     return diagnose(why, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerror(error));
 }
 
-/* All of bytes at the end of the file, flushed; on failure the file is cut back and errno tells why. */
+/* Appends all bytes and flushes; on failure the file is truncated to its old size and errno is set. */
 static int append_all(int fd, const char *bytes, size_t size)
 {
     struct stat before;
@@ -65,7 +65,7 @@ static status keep_torn(const char *path, const char *bytes, size_t size, diagno
         return failed(path, "moving an incomplete row away", ENOMEM, why);
     status code = STATUS_OK;
     int fd = open(torn, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-    /* A torn end gets a newline of its own, so that the next one starts a line. */
+    /* Ends an incomplete line with a newline, so that the next one starts a new line. */
     if (fd < 0 || append_all(fd, bytes, size) != 0 || (bytes[size - 1] != '\n' && append_all(fd, "\n", 1) != 0))
         code = failed(torn, "moving an incomplete row away", errno, why);
     if (fd >= 0)
@@ -96,7 +96,7 @@ status table_set_aside(table *t, size_t offset, diagnostic *why)
     return code;
 }
 
-/* Where the last whole line ends. */
+/* Offset after the last complete line. */
 static status whole_lines(table *t, size_t *end, diagnostic *why)
 {
     struct stat now;
@@ -117,8 +117,7 @@ static status whole_lines(table *t, size_t *end, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Opens and locks. A merge puts a new file in the old one's place, so the name must still mean the file that is
- * locked. */
+/* Opens and locks the file. A merge may replace it, so the name must still refer to the locked file. */
 static status lock(table *t, diagnostic *why)
 {
     for (;;) {
@@ -174,7 +173,7 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
     return STATUS_OK;
 }
 
-/* Before the first row only, so that who has none to add leaves a file as it is. */
+/* Only before the first row, so that a process without new rows does not change the file. */
 static status settle(table *t, diagnostic *why)
 {
     bool replaced = false;

@@ -1,24 +1,24 @@
-/* A file of rows that only grows: one write() a block of whole lines, flushed to disk before the call returns, and one
- * process at a time (flock). What a killed process left half written is moved aside when the file is opened again: the
- * torn end of x.csv is appended to x.torn.csv, on disk, before x.csv is cut back to its last whole line. Nothing else
- * is ever taken out of the file or changed in it; one with other columns gets what it lacks before the first new row
- * (study/csv_layout.h). Ownership: table_open gives, table_close releases. Errors name the file, and leave whole
- * what is in it. */
+/* An append-only file of rows: one write() per block of complete lines, flushed to disk before the call returns, and
+ * one process at a time (flock). An incomplete line of a killed process is moved aside when the file is opened again:
+ * the incomplete end of x.csv is appended to x.torn.csv, on disk, before x.csv is truncated to its last complete line.
+ * Nothing else is ever removed or changed; a file with other columns gets the missing ones before the first new row
+ * (study/csv_layout.h). Ownership: table_open gives, table_close releases. Errors name the file and do not damage it.
+ * */
 #pragma once
 
 #include "base/status.h"
 
 typedef struct table table;
 
-/* Opens or makes the file, locks it, moves a torn end aside, and writes header (a whole line) if there is none.
- * STATUS_BAD_INPUT when another process holds it. */
+/* Opens or creates the file, locks it, moves an incomplete end aside, and writes header (a whole line) if it is
+ * missing. STATUS_BAD_INPUT if another process holds the lock. */
 status table_open(const char *path, const char *header, table **out, diagnostic *why);
 
-/* Adds whole lines, which stand under the header that the table was opened with. When the disk is full the file is cut
- * back to what it was: a line is there whole or not at all. */
+/* Appends complete lines, in the columns of the header given to table_open. If the disk is full, the file is truncated
+ * to its old size: a line is written completely or not at all. */
 status table_append(table *t, const char *lines, size_t size, diagnostic *why);
 
-/* Moves everything from offset (the start of a line) on aside, as a torn end. */
+/* Moves everything from offset (the start of a line) aside, like an incomplete end. */
 status table_set_aside(table *t, size_t offset, diagnostic *why);
 
 void table_close(table *t);

@@ -139,14 +139,15 @@ ALWAYS_INLINE void store_point(const primitive *p, point_function *project, bool
 {
     local_ray r =
         ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
-    vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), way = vec3_scale(d, t[i]), q = vec3_add(o, way);
+    vec3 d = vec3_make(r.dx, r.dy, r.dz), o = vec3_make(r.x, r.y, r.z), path = vec3_scale(d, t[i]),
+         q = vec3_add(o, path);
     int64_t at = rays->start[i] - p->first_face, leaving = -(int64_t)((rays->inside[i] & (uint64_t)1 << bit) != 0);
     local_point l = project(p, general, r, q, at, leaving);
     double side = blend(leaving, -1.0, 1.0); /* the normal faces the ray */
     vec3 n = vec3_scale(l.normal, side), point = l.point;
     double cosine = -vec3_dot(d, n);
     double size =
-        magnitude(o.x) + magnitude(o.y) + magnitude(o.z) + magnitude(way.x) + magnitude(way.y) + magnitude(way.z);
+        magnitude(o.x) + magnitude(o.y) + magnitude(o.z) + magnitude(path.x) + magnitude(path.y) + magnitude(path.z);
     if (general) {
         n = mat3_apply(p->rotation, n);
         point = mat3_apply(p->rotation, point);

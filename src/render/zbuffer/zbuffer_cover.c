@@ -89,7 +89,7 @@ void zbuffer_find_layers(zbuffer *z)
         /* A camera in an opaque solid sees it from inside, whether it is a layer or not. */
         if (!a->regions[r].opaque && eye_in(a, &a->regions[r], z->frame_plan->view.eye))
             z->eye_inside |= bit;
-        const bool is_open = a->meshes && a->meshes->skins >> a->regions[r].outside & 1;
+        const bool is_open = a->meshes && a->meshes->open_surfaces >> a->regions[r].outside & 1;
         z->open_surfaces |= is_open ? bit : 0;
     }
     z->eye_index = z->frame_plan->ior[z->eye_inside ? 64 - __builtin_clzll(z->eye_inside) : 0];

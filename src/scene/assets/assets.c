@@ -1,4 +1,4 @@
-/* What a scene names and does not hold in itself: meshes, textures and the sky's picture. */
+/* Loads the files of a scene: meshes, textures and the background image. */
 #include "base/file.h"
 #include "geometry/shapes/shape.h"
 #include "scene/assets/assets.h"
@@ -74,7 +74,7 @@ char *scene_file_path(const scene *s, const char *path)
     return file_beside(s->path, path);
 }
 
-/* Light is not negative, and the film must hold it. */
+/* Radiance must not be negative, and must fit the film. */
 static status check_sky(const image *sky, const char *path, diagnostic *bad)
 {
     for (int y = 0; y < sky->height; y++) {
@@ -176,7 +176,7 @@ static status load_mesh(const scene *s, mesh_entry *m, diagnostic *why)
     return code == STATUS_OK ? code : asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
 }
 
-/* After m was loaded: is it too much, with all that is there? */
+/* After m was loaded: whether all meshes together exceed the limit. */
 static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
 {
     size_t all = 0;
@@ -192,7 +192,7 @@ static status check_triangles(const scene *s, mesh_entry *m, diagnostic *why)
     return asset_error(s, m->name, m->path_line, m->path_column, &bad, code, why);
 }
 
-/* Sky and textures. */
+/* Background image and textures. */
 static status load_textures(scene *s, diagnostic *why)
 {
     TRY(load_sky(s, why));
@@ -202,10 +202,10 @@ static status load_textures(scene *s, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Of all slimes that are to move, what one of them does. */
+/* Progress of one slime as a part of all slimes that must move. */
 typedef struct shared_watch {
     const load_watch *whole;
-    double before, own, all; /* slime_work */
+    double before, own, all; /* as slime_work */
 } shared_watch;
 
 static bool go_on_all(void *context, double share_done)

@@ -1,9 +1,9 @@
-/* What the loaders of a scene's files share. Pure but for the diagnostic. */
+/* Shared code of the loaders of a scene's files. Pure except for the diagnostic. */
 #pragma once
 
 #include "scene/model/open.h"
 
-/* Passes on what is wrong with an asset (its name, in messages): located where the scene file names it, at line and
- * column, or where bad is, if line is 0. Returns code. */
+/* Passes on an error of an asset (name, for messages): located where the scene file refers to it, at line and column,
+ * or, if line is 0, at bad. Returns code. */
 status asset_error(const scene *s, const char *what, long line, long column, const diagnostic *bad, status code,
                    diagnostic *why);

@@ -18,7 +18,7 @@ double mesh_child_now_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* ---- listen ---- */
+/* ---- communication ---- */
 
 static void hang_up(int *fd)
 {
@@ -28,7 +28,8 @@ static void hang_up(int *fd)
     }
 }
 
-/* What it writes on standard error; only the beginning is kept, but it never has to wait for us. */
+/* Reads its standard error; only the beginning is kept, but the pipe is always drained, so that the child never blocks.
+ * */
 static void hear(mesh_child *child)
 {
     char buffer[4096];
@@ -44,7 +45,7 @@ static void hear(mesh_child *child)
     child->said_length += kept;
 }
 
-/* poll for as long as the deadline leaves; 0, and late, when that is over. */
+/* poll until the deadline; 0, with late set, after it. */
 static int wait_until_late(mesh_child *child, struct pollfd *files, nfds_t count)
 {
     const double left_s = child->deadline_s - mesh_child_now_s();
@@ -57,12 +58,12 @@ static bool is_passing(int error)
     return error == EINTR || error == EAGAIN;
 }
 
-/* Waits until there is something on standard output (true) or nothing will come. */
+/* Waits until standard output has data (true) or nothing more will come. */
 static bool wait_for_bytes(mesh_child *child)
 {
     while (child->out >= 0) {
         struct pollfd both[] = {{.fd = child->out, .events = POLLIN},
-                                {.fd = child->err, .events = POLLIN}}; /* -1 is left out */
+                                {.fd = child->err, .events = POLLIN}}; /* -1 is ignored */
         const int ready = wait_until_late(child, both, 2);
         if (child->late || (ready < 0 && !is_passing(errno)))
             return false;
@@ -74,7 +75,7 @@ static bool wait_for_bytes(mesh_child *child)
     return false;
 }
 
-/* Up to size bytes; 0 at the end, or when the time is over. */
+/* Reads up to size bytes; 0 at the end, or after the deadline. */
 static size_t take(mesh_child *child, void *bytes, size_t size)
 {
     while (wait_for_bytes(child)) {
@@ -108,10 +109,11 @@ status mesh_child_end(void *context, diagnostic *why)
 
 /* ---- end ---- */
 
-/* Its exit status as waitpid gives it; -1 when nobody knows any more (SIGCHLD is ignored by who started us). */
+/* The exit status as from waitpid; -1 if it is not available (the parent process ignores SIGCHLD). */
 static int reap(mesh_child *child, bool still_wanted)
 {
-    while (still_wanted && child->err >= 0 && !child->late) { /* what it still has to say; its end closes this too */
+    while (still_wanted && child->err >= 0 && !child->late) { /* remaining messages; the end of the stream also closes
+                                                                 this pipe */
         struct pollfd one = {.fd = child->err, .events = POLLIN};
         const int ready = wait_until_late(child, &one, 1);
         if (ready > 0)
@@ -119,7 +121,7 @@ static int reap(mesh_child *child, bool still_wanted)
         else if (ready < 0 && !is_passing(errno))
             break;
     }
-    /* One that ends just now keeps its own exit status: a process that is exiting takes no more signals. */
+    /* A child that is already exiting keeps its own exit status: it no longer receives signals. */
     if (child->handle >= 0)
         pidfd_send_signal(child->handle, SIGKILL, NULL, 0);
     else
@@ -134,8 +136,7 @@ static int reap(mesh_child *child, bool still_wanted)
     return state;
 }
 
-/* The child's line "cuvette-import: PATH[:LINE[:COLUMN]]: what[; remedy]" taken apart again; false when that is not
- * what it said. */
+/* Parses the child's line "cuvette-import: PATH[:LINE[:COLUMN]]: what[; remedy]"; false if it has another form. */
 static bool repeat(mesh_child *child, const char *path, diagnostic *why)
 {
     diagnostic here = {.what = ""};
@@ -168,7 +169,7 @@ static bool repeat(mesh_child *child, const char *path, diagnostic *why)
 
 status mesh_child_close(mesh_child *child, const char *path, const mesh_limits *limits, status code, diagnostic *why)
 {
-    /* A stream that was refused although it was all there: nothing more is awaited. */
+    /* A stream that was complete but refused: no further data is expected. */
     int state = reap(child, code == STATUS_OK || child->out < 0);
     diagnostic_locate(why, path, 0, 0);
     if (child->late)

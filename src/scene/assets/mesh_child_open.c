@@ -17,7 +17,7 @@ static status machine_error(diagnostic *why, const char *doing, int error)
     return diagnose(why, STATUS_FAILURE, NULL, "%s: %s", doing, reason ? reason : "unknown error");
 }
 
-/* Both ends above the standard descriptors, of which the caller may have closed some. */
+/* Both ends above the standard descriptors, some of which the caller may have closed. */
 static int open_pipe(int ends[2])
 {
     int low[2];
@@ -44,7 +44,7 @@ static int spawn_with_pipes(mesh_child *child, const char *program, char *const 
         return error;
     error = open_pipe(err);
     if (!error) {
-        fcntl(out[0], F_SETPIPE_SZ, 1 << 20); /* fewer switches between the two; it works without */
+        fcntl(out[0], F_SETPIPE_SZ, 1 << 20); /* fewer context switches; optional */
         error = spawn_program(&child->pid, program, arguments, out[1], err[1], false);
         close(err[1]);
         if (error)

@@ -6,8 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Two ways of writing a name that are not ours: \ for / (MTL files of Windows), and %20 for a blank (the URIs of glTF).
- */
+/* Alternative spellings of a file name: \ for / (MTL files from Windows), and %20 for a blank (URIs in glTF). */
 static void respell(char *name)
 {
     char *to = name;
@@ -32,7 +31,7 @@ static bool is_file(const char *path)
     return path && stat(path, &about) == 0 && S_ISREG(about.st_mode);
 }
 
-/* The picture's path as the caller can open it, first by the name's own spelling. */
+/* The path of an image that can be opened; the original spelling is tried first. */
 static status resolve_texture(const char *path, imported_material *m, diagnostic *why)
 {
     char *found = file_beside(path, m->texture);

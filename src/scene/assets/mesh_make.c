@@ -6,8 +6,8 @@
 #include "scene/assets/mesh_file.h"
 #include <stdlib.h>
 
-/* Points of a grid of `cells` cells an edge, drawn by their numbers; between them a smooth blend (Perlin, "Improving
- * noise", SIGGRAPH 2002: 6 s^5 - 15 s^4 + 10 s^3). x and z in cells. 0 to 1. */
+/* Value noise: random values at the points of a grid of `cells` cells per edge, interpolated with the fade curve 6 s^5
+ * - 15 s^4 + 10 s^3 (Perlin, "Improving noise", SIGGRAPH 2002). x and z in cells. Result 0 to 1. */
 static double noise(int64_t seed, uint32_t octave, double x, double z)
 {
     const double cx = floor(x), cz = floor(z), s = x - cx, r = z - cz;
@@ -23,7 +23,7 @@ static double noise(int64_t seed, uint32_t octave, double x, double z)
     return low + v * (high - low);
 }
 
-/* Hills: five octaves of noise, each of half the height and twice as fine as the one before. */
+/* Hills: five octaves of noise, each with half the amplitude and twice the frequency of the one before. */
 static status make_terrain(const mesh_entry *m, mesh **out, diagnostic *why)
 {
     enum { OCTAVES = 5, CELLS = 4 };

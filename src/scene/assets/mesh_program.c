@@ -15,8 +15,8 @@
 
 static const char here;
 
-/* Beside a file, or where `make install` puts it when the file is in bin, lib or lib/ARCHITECTURE; NULL if it is in
- * none of them. */
+/* Looks next to a file, or where `make install` puts it if the file is in bin, lib or lib/ARCHITECTURE; NULL if it is
+ * in none of them. */
 static char *near(char *file)
 {
     static const char *const places[] = {"", "/../libexec/cuvette", "/../../libexec/cuvette"};
@@ -42,7 +42,7 @@ char *mesh_child_program(void)
     ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
     own[length > 0 ? length : 0] = 0;
     char *path = near(own);
-    Dl_info library; /* that this stands in, when it is not the program itself */
+    Dl_info library; /* the shared library with this code, if it is not part of the program */
     if (!path && dladdr(&here, &library) && library.dli_fname) {
         snprintf(own, sizeof own, "%s", library.dli_fname);
         path = near(own);

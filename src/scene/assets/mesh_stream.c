@@ -8,7 +8,7 @@
 _Static_assert(sizeof(mesh_wire_header) == 40 && sizeof(mesh_wire_material) == 15 * 8 + 16, "no padding");
 _Static_assert(sizeof(vec3) == 24 && sizeof(mesh_uv) == 16 && sizeof(mesh_triangle) == 12, "arrays travel as they lie");
 
-#define COLOR_MAX 1e6 /* of a colour's part, an exponent or an index: more is a mistake in the file */
+#define COLOR_MAX 1e6 /* maximum of a colour component, an exponent or an index: larger values are errors in the file */
 
 mesh_limits mesh_limits_complete(const mesh_limits *limits)
 {
@@ -71,7 +71,7 @@ static status read_header(const mesh_source *source, const mesh_limits *limits, 
     return STATUS_OK;
 }
 
-/* The arrays as they come; mesh_finish checks what is in them, but for the slots, which it knows nothing of yet. */
+/* Reads the arrays; mesh_finish checks their contents, except for the slots, which are checked here. */
 static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
 {
     struct {
@@ -98,8 +98,7 @@ static status read_arrays(const mesh_source *source, mesh *m, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Fresh text of that length in *text, or NULL for none. A 0 or another control character inside would hide what
- * follows. */
+/* Fresh text of that length in *text, or NULL for none. NUL and other control characters are refused. */
 static status read_text(const mesh_source *source, uint32_t length, char **text, diagnostic *why)
 {
     *text = NULL;
@@ -128,7 +127,7 @@ static status read_text(const mesh_source *source, uint32_t length, char **text,
 static bool within(const double *values, int count, double low, double high)
 {
     for (int i = 0; i < count; i++)
-        if (!(values[i] >= low && values[i] <= high)) /* NaN is not within */
+        if (!(values[i] >= low && values[i] <= high)) /* NaN is refused as well */
             return false;
     return true;
 }

@@ -1,4 +1,4 @@
-/* Builds the tree from events (document_events.c). What is asked of its nodes is in document_node.c. */
+/* Builds the tree from events (document_events.c). Queries on its nodes are in document_node.c. */
 #include "scene/file/document.h"
 #include "base/file.h"
 #include "base/grow.h"
@@ -43,7 +43,7 @@ static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, nod
     return STATUS_OK;
 }
 
-/* Appends value, and key when the node is a map. On failure they stay the caller's. */
+/* Appends value, and key if the node is a map. On failure both remain the caller's. */
 static status node_append(event_reader *r, node *parent, node *key, node *value)
 {
     size_t count = parent->count;
@@ -116,7 +116,7 @@ static status read_key(event_reader *r, yaml_event_t *event, node **key)
     return read_scalar(r, event, key);
 }
 
-/* Reads entries until the list or map ends; what was read is in *n even on failure. */
+/* Reads entries up to the end of the list or map; those read are in *n even on failure. */
 static status read_entries(event_reader *r, yaml_event_type_t end, int depth, node *n)
 {
     for (;;) {
@@ -146,7 +146,7 @@ static status read_entries(event_reader *r, yaml_event_type_t end, int depth, no
     }
 }
 
-/* Reads the node that *event begins; the event stays the caller's. *out is set only on success. */
+/* Reads the node that starts with *event, which remains the caller's. *out is set only on success. */
 static status read_node(event_reader *r, yaml_event_t *event, int depth, node **out)
 {
     if (event->type == YAML_SCALAR_EVENT)
@@ -214,7 +214,7 @@ status document_parse(const char *name, const char *text, size_t size, document 
 {
     *out = NULL;
     static const char byte_order_mark[] = "\xef\xbb\xbf";
-    if (size >= 3 && memcmp(text, byte_order_mark, 3) == 0) { /* it is no column */
+    if (size >= 3 && memcmp(text, byte_order_mark, 3) == 0) { /* unknown */
         text += 3;
         size -= 3;
     }

@@ -13,7 +13,7 @@ static bool is_utf8_follower(char c)
     return ((unsigned char)c & 0xc0) == 0x80;
 }
 
-/* Line and column (in characters) of a byte: libyaml's reader knows only the byte where decoding failed. */
+/* Line and column (in characters) of a byte: libyaml only gives the byte where decoding failed. */
 static yaml_mark_t mark_of_byte(const event_reader *r, size_t offset)
 {
     yaml_mark_t mark = {.index = 0, .line = 0, .column = 0};
@@ -60,7 +60,7 @@ static status syntax_error(event_reader *r)
                     p->problem ? p->problem : "invalid YAML");
 }
 
-/* The next event; what the grammar of scene and study files leaves out (aliases, anchors, tags) ends here. */
+/* The next event; constructs that scene and study files exclude (aliases, anchors, tags) are refused here. */
 status events_next(event_reader *r, yaml_event_t *event)
 {
     if (!yaml_parser_parse(&r->parser, event))

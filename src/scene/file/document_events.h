@@ -1,5 +1,5 @@
 /* libyaml's events for document.c, with its errors as diagnostics. Ownership: the reader borrows its text; events_next
- * gives an event, release it with yaml_event_delete. */
+ * returns an event to release with yaml_event_delete. */
 #pragma once
 
 #include "base/status.h"
@@ -7,12 +7,12 @@
 
 typedef struct event_reader {
     yaml_parser_t parser;
-    const char *name, *text; /* the file's name, and all of its bytes */
+    const char *name, *text; /* the file name and the whole file */
     size_t size, node_count;
     diagnostic *why;
 } event_reader;
 
 /* STATUS_BAD_INPUT, located at mark. */
 status events_error(event_reader *r, yaml_mark_t mark, const char *remedy, const char *what);
-/* The next event. Aliases, anchors and tags are refused here, and so is what is not YAML or not UTF-8. */
+/* The next event. Aliases, anchors, tags, invalid YAML and invalid UTF-8 are refused. */
 status events_next(event_reader *r, yaml_event_t *event);

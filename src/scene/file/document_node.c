@@ -1,4 +1,4 @@
-/* What readers of a document's tree ask of its nodes. */
+/* Queries of readers on the nodes of a document. */
 #include "scene/file/document.h"
 #include "scene/model/suggest.h"
 
@@ -53,7 +53,7 @@ status node_check_keys(const document *d, const node *map, const char *const *wo
 bool node_is_value(const node *n)
 {
     for (size_t i = 0; n->kind == NODE_LIST && i < n->count; i++) {
-        /* A comma in an element would read back as two. */
+        /* A comma in an element would be read back as a separator. */
         if (n->items[i]->kind != NODE_SCALAR || strchr(n->items[i]->text, ','))
             return false;
     }

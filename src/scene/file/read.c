@@ -1,8 +1,8 @@
-/* Reads scene files. The grammar, in YAML (every key may be left out, but a solid's shape):
+/* Reads scene files. The grammar, in YAML (all keys are optional except a solid's shape):
  *
  *   title: TEXT
  *   render: {PARAMETER: VALUE, ...}
- *   camera: {PARAMETER: VALUE, ...}             either a target, or yaw_deg and pitch_deg (0 when left out)
+ *   camera: {PARAMETER: VALUE, ...}             either a target, or yaw_deg and pitch_deg (0 by default)
  *   background: {PARAMETER: VALUE, ...}
  *   meshes: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   textures: {NAME: {PARAMETER: VALUE, ...}, ...}
@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A picture that is named, of a background that is said to be of another kind? */
+/* Whether an image is given for a background of another kind. */
 static status check_sky(const scene_reader *r, const node *map)
 {
     const node *kind = node_get(map, "kind"), *img = node_get(map, "picture");
@@ -38,7 +38,7 @@ static status check_sky(const scene_reader *r, const node *map)
     return code;
 }
 
-/* A section that is one object. */
+/* A section that is a single object. */
 static status read_settings(const scene_reader *r, const char *name, param_group group, const node *map)
 {
     TRY(read_expect_map(r, map, name));
@@ -55,7 +55,7 @@ static status read_camera(const scene_reader *r, const char *name, param_group g
     if (target && (yaw || pitch))
         return node_error(r->file, yaw ? yaw : pitch, r->why, "keep either the target or the angles",
                           "the camera has both a target and %s", yaw ? "yaw_deg" : "pitch_deg");
-    if (yaw || pitch) /* the angle left out is 0, not the default target's */
+    if (yaw || pitch) /* a missing angle is 0, not that of the default target */
         r->scene->camera.aimed = 0;
     return read_settings(r, name, group, map);
 }
@@ -69,7 +69,7 @@ static status read_title(const scene_reader *r, const char *name, param_group gr
 
 static status read_sections(const scene_reader *r)
 {
-    /* Not in the file's order: solids refer to materials, and are checked under the weights of render. */
+    /* Not in the order of the file: solids refer to materials, and are checked with the weights of render. */
     static const struct section {
         const char *name;
         status (*read)(const scene_reader *, const char *, param_group, const node *);

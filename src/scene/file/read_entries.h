@@ -1,5 +1,5 @@
-/* What the sections of a scene file have in common: entries that are rows of the parameter table. For read.c and
- * read_objects.c. Ownership: a scene_reader borrows. */
+/* Common code of a scene file's sections: entries that are rows of the parameter table. For read.c and read_objects.c.
+ * Ownership: a scene_reader borrows. */
 #pragma once
 
 #include "scene/file/document.h"
@@ -11,24 +11,23 @@ typedef struct scene_reader {
     diagnostic *why;
 } scene_reader;
 
-/* Returns code; on a failure, puts the node's place into a diagnostic that a function without knowledge of the
- * file filled. */
+/* Returns code; on failure, adds the node's location to a diagnostic from a function that does not know the file. */
 status read_located(const scene_reader *r, const node *at, status code);
 
-/* A map, or nothing at all (which counts as a map without entries). */
+/* Requires a map, or nothing (an empty map). */
 status read_expect_map(const scene_reader *r, const node *n, const char *name);
-/* A scalar that is not empty. */
+/* Requires a scalar that is not empty. */
 status read_expect_word(const scene_reader *r, const node *n, const char *name);
 
-/* A map that gives an index must not name a medium too. */
+/* Refuses a map that has both an index and a medium. */
 status read_one_medium(const scene_reader *r, const node *map);
 
-/* Refuses keys that are no rows of the group. */
+/* Refuses keys that are not rows of the group. */
 status read_check_keys(const scene_reader *r, param_group group, const node *map);
-/* Sets the entries of a map that are rows of the group; name is the path's first word. Others are left to the
+/* Sets the entries of a map that are rows of the group; name is the path's first word. Other entries are left to the
  * caller. */
 status read_entries(const scene_reader *r, const char *name, param_group group, const node *map);
 
-/* A section of named objects: each is added to the scene, and checked. Materials come before solids, which refer to
- * them. */
+/* Reads a section of named objects: each is added to the scene and checked. Materials come before solids, which refer
+ * to them. */
 status read_objects(const scene_reader *r, const char *name, param_group group, const node *map);

@@ -19,7 +19,7 @@ static status read_shape(const scene_reader *r, const node *key, const node *map
     return read_located(r, shape, scene_shape_named(shape->text, out, r->why));
 }
 
-/* Gives the solid the material that its entry names, if any. */
+/* Assigns the material in the solid's entry, if any. */
 static status read_material_name(const scene_reader *r, const node *key, const node *map)
 {
     const node *word = node_get(map, "material");
@@ -29,7 +29,7 @@ static status read_material_name(const scene_reader *r, const node *key, const n
     return read_located(r, word, scene_give_material(r->scene, key->text, word->text, r->why));
 }
 
-/* A new solid, whose shape and material are no rows of the table. */
+/* Adds a solid; its shape and material are not rows of the table. */
 static status begin_solid(const scene_reader *r, const node *key, const node *map, size_t *index)
 {
     shape_kind shape = {0};
@@ -63,7 +63,7 @@ static void note_place(const node *file, long *line, long *column)
     }
 }
 
-/* Where files that are named stand, for diagnostics when they are read. */
+/* Stores the locations of file names, for diagnostics when the files are read. */
 static void note_places(const scene_reader *r, param_group group, size_t index, const node *map)
 {
     const node *file = node_get(map, "file");

@@ -1,6 +1,5 @@
-/* Goes through the scene's parameters in the order of the table and of the scene, and writes those that a reader would
- * not find by itself: which those are is in write_wanted.c. How a text is quoted is in write_text.c, how paths follow
- * the file in write_paths.c. */
+/* Writes the scene's parameters in the order of the table and of the scene, except those that a reader would infer
+ * (write_wanted.c). Quoting of text is in write_text.c, relative paths in write_paths.c. */
 #include "scene/file/write.h"
 #include "base/file.h"
 #include "base/text_writer.h"
@@ -12,17 +11,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* While the scene is gone through: what is being written, and where in the file that is. */
+/* State of the traversal: the output, and the position in the file. */
 typedef struct scene_writer {
     const scene *s;
-    const char *path; /* of the file to be */
+    const char *path; /* path of the new file */
     bool all;
     FILE *out;
-    bool begun;                      /* something stands in the file */
-    param_group group;               /* whose turn it is */
-    bool in_section;                 /* its heading stands there */
-    char object[SCENE_NAME_MAX + 1]; /* the one whose heading stands there last */
-    bool empty;                      /* and that has no line below it yet */
+    bool begun;                      /* the file is not empty */
+    param_group group;               /* the current group */
+    bool in_section;                 /* the heading of its section is written */
+    char object[SCENE_NAME_MAX + 1]; /* the object whose heading was written last */
+    bool empty;                      /* it has no line yet */
     diagnostic *why;
 } scene_writer;
 
@@ -41,7 +40,7 @@ static void put_section(scene_writer *w)
     }
 }
 
-/* An object without lines is an empty map. */
+/* An object without lines is written as an empty map. */
 static void end_object(scene_writer *w)
 {
     if (w->object[0] && w->empty)
@@ -58,7 +57,7 @@ static void begin_line(scene_writer *w, const char *key)
     fprintf(w->out, "%s%s: ", is_section_of_objects(w->group) ? "    " : "  ", key);
 }
 
-/* The heading of an object, and of a solid what is no row of the table. */
+/* The heading of an object; for a solid also its shape and material, which are not rows of the table. */
 static void begin_object(scene_writer *w, const param_place *at)
 {
     const char *name = param_place_group_name(w->s, at->object_group, at->index);
@@ -131,7 +130,7 @@ static status visit(void *context, const char *path, const param *row, const cha
     return STATUS_OK;
 }
 
-/* What a program gave as arrays stands in no file. */
+/* Arrays given by a program cannot be written to a file. */
 static status check_sources(const scene *s, diagnostic *why)
 {
     for (size_t i = 0; i < s->mesh_count; i++) {
@@ -151,7 +150,7 @@ static status check_sources(const scene *s, diagnostic *why)
 
 static status put_scene(scene_writer *w)
 {
-    /* What is referred to stands first, as a person would have it. */
+    /* Objects come before the objects that refer to them. */
     static const param_group order[] = {PARAM_RENDER,  PARAM_CAMERA,   PARAM_BACKGROUND, PARAM_MESH,
                                         PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT,      PARAM_SOLID};
     _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
@@ -170,7 +169,7 @@ static status put_scene(scene_writer *w)
         end_object(w);
     }
     if (!w->begun)
-        fputs("solids: {}\n", w->out); /* an empty file is no scene */
+        fputs("solids: {}\n", w->out); /* an empty file is not a scene */
     return code;
 }
 
@@ -181,7 +180,7 @@ status scene_write_text(const scene *s, const char *path, bool all, char **text,
     TRY(text_writer_open(&writer, why));
     scene_writer w = {.s = s, .path = path ? path : "", .all = all, .out = writer.stream, .why = why};
     const status code = text_writer_end(&writer, put_scene(&w), text, NULL, why);
-    /* Of a parameter whose text found no room, nothing has been said yet. */
+    /* A parameter whose text did not fit in memory has no diagnostic yet. */
     return code == STATUS_FAILURE ? out_of_memory(why) : code;
 }
 

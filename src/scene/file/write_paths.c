@@ -8,14 +8,13 @@
 #include <string.h>
 #include <unistd.h>
 
-/* The folder of a file, from the root and without links; of one that is not there, as it is spelt. NULL when memory is
- * out. */
+/* The folder of a file, absolute and without links; unchanged if it does not exist. NULL if memory runs out. */
 static char *real_folder(const char *file)
 {
     const char *slash = strrchr(file, '/');
     char *folder = slash ? strndup(file, (size_t)(slash - file) + 1) : strdup("."), here[PATH_MAX];
     char *real = folder ? realpath(folder, NULL) : NULL;
-    if (folder && !real && errno != ENOMEM) /* then the folder may well be there, elsewhere than it is spelt */
+    if (folder && !real && errno != ENOMEM) /* then the folder may exist, but elsewhere */
         real = folder[0] != '/' && getcwd(here, sizeof here) ? text_format("%s/%s", here, folder) : strdup(folder);
     free(folder);
     for (size_t length = real ? strlen(real) : 0; length > 1 && real[length - 1] == '/'; length--)
@@ -23,7 +22,7 @@ static char *real_folder(const char *file)
     return real;
 }
 
-/* folder and path as one, where "../" at path's beginning is taken off folder's end, which has no links. */
+/* Joins folder and path; each "../" at the start of path removes a part of folder, which has no links. */
 static char *join(const char *folder, const char *path)
 {
     size_t length = strcmp(folder, "/") == 0 ? 0 : strlen(folder);
@@ -42,14 +41,14 @@ static char *join(const char *folder, const char *path)
     }
 }
 
-/* The absolute path as it reads from a folder; absolute still when they share nothing but the root. */
+/* The absolute path relative to a folder; absolute if they share only the root. */
 static char *relative(const char *path, const char *folder)
 {
-    size_t shared = 0; /* bytes, up to and with a slash */
+    size_t shared = 0; /* bytes, including the last slash */
     size_t at = 0;
     for (; path[at] && path[at] == folder[at]; at++)
         shared = path[at] == '/' ? at + 1 : shared;
-    if (!folder[at] && path[at] == '/') /* the whole of folder leads to path */
+    if (!folder[at] && path[at] == '/') /* the whole of folder is a prefix of path */
         return text_format("%s%s", path[at + 1] == ' ' ? "./" : "", path + at + 1);
     if (shared <= 1)
         return strdup(path);

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* One character of UTF-8 (RFC 3629); returns its length in bytes, 0 when it is none. */
+/* Decodes one UTF-8 character (RFC 3629); returns its length in bytes, 0 if it is invalid. */
 static size_t decode(const char *text, uint32_t *out)
 {
     const unsigned char *b = (const unsigned char *)text;
@@ -34,14 +34,14 @@ status write_check_text(const char *label, const char *text, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Characters that YAML 1.1 lets a file hold as they are (5.1), and that no line ends at. */
+/* Characters allowed unescaped in YAML 1.1 (5.1), except line breaks. */
 static bool is_printable(uint32_t c)
 {
     return (c >= 0x20 && c < 0x7f) || (c >= 0xa0 && c <= 0xfffd && c != 0x2028 && c != 0x2029 && c != 0xfeff) ||
            c >= 0x10000;
 }
 
-/* Words that readers of YAML 1.1 take for a switch or for nothing. */
+/* Words that YAML 1.1 readers interpret as a boolean or as null. */
 static bool is_taken(const char *text)
 {
     static const char *const words[] = {"y", "n", "yes", "no", "on", "off", "true", "false", "null", "~"};
@@ -51,7 +51,7 @@ static bool is_taken(const char *text)
     return false;
 }
 
-/* Can the text stand without quotes? Not every text that could does, only those that plainly can. */
+/* Whether the text needs no quotes. Conservative: some texts are quoted unnecessarily. */
 static bool is_plain(const char *text)
 {
     const char first = text[0];
@@ -85,7 +85,7 @@ static void put_quoted(FILE *out, const char *text)
             fwrite(text, 1, length, out);
         else
             fprintf(out, c < 0x100 ? "\\x%02X" : "\\u%04X", (unsigned)c);
-        length += !length; /* goes on after what write_check_text would have refused */
+        length += !length; /* also handles text that write_check_text refuses */
     }
     fputc('"', out);
 }

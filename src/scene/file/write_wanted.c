@@ -16,7 +16,7 @@ static bool is_background_row(const param *row, size_t offset)
     return row->group == PARAM_BACKGROUND && row->offset == offset;
 }
 
-/* Of a mesh either the file is said or what generates it. */
+/* A mesh has either a file or a generator. */
 static bool is_other_source(const mesh_entry *m, const param *row)
 {
     if (row->offset == offsetof(mesh_entry, script_path))
@@ -25,7 +25,7 @@ static bool is_other_source(const mesh_entry *m, const param *row)
                                   : row->offset == offsetof(mesh_entry, path);
 }
 
-/* The index of a material whose medium is another's has no effect, and its file would set that medium aside. */
+/* The index of a material with another medium has no effect, and writing it would replace that medium. */
 static bool is_without_effect(const scene *s, const param_place *at)
 {
     if (at->object_group == PARAM_MESH)
@@ -39,8 +39,7 @@ static bool is_without_effect(const scene *s, const param_place *at)
     return m->medium != MEDIUM_IOR;
 }
 
-/* The text that a reader would have for a row without its line: the material's of a solid that has one, or the default.
- */
+/* The value that a reader would assume without the line: the material's for a solid with one, else the default. */
 static char *implied_text(const scene *s, const param_place *at)
 {
     const int index =
@@ -53,7 +52,7 @@ static char *implied_text(const scene *s, const param_place *at)
                                         : param_value_text(at->row, -1, (const char *)m + at->row->offset);
 }
 
-/* A camera is known to look along its angles by there being one. */
+/* The presence of an angle selects aiming by angles. */
 static bool is_needed(const param *row)
 {
     return row->group == PARAM_CAMERA && row->offset == offsetof(camera, yaw_deg);
@@ -68,7 +67,7 @@ status write_is_wanted(const scene *s, const param_place *at, const char *value,
     char *implied = implied_text(s, at);
     if (!implied)
         return out_of_memory(why);
-    /* An empty path says nothing, and none is visited where a file is named that is not in use. */
+    /* An empty path is not written, and unused paths are not visited. */
     *wanted = (all && value[0]) || is_needed(at->row) || strcmp(implied, value) != 0;
     free(implied);
     return STATUS_OK;

@@ -6,7 +6,7 @@ static void aim_at_target(const struct camera *c, camera_frame *f)
 {
     f->forward = vec3_normalize(vec3_sub(c->target, c->position));
     vec3 side = vec3_cross(vec3_make(0.0, 1.0, 0.0), f->forward);
-    f->right = vec3_length(side) > 1e-12 ? vec3_normalize(side) : vec3_make(1.0, 0.0, 0.0); /* straight up or down */
+    f->right = vec3_length(side) > 1e-12 ? vec3_normalize(side) : vec3_make(1.0, 0.0, 0.0); /* vertical */
 }
 
 static void aim_along_angles(const struct camera *c, camera_frame *f)
@@ -18,7 +18,7 @@ static void aim_along_angles(const struct camera *c, camera_frame *f)
     f->right = vec3_make(cos_yaw, 0.0, -sin_yaw);
 }
 
-/* About forward, right towards below. A roll of a multiple of 90 degrees is exact, one of 0 changes no bit. */
+/* Rolls the axes about forward, right towards down. A multiple of 90 degrees is exact, and 0 changes no bit. */
 static void roll(camera_frame *f, double degrees)
 {
     if (degrees == 0.0)

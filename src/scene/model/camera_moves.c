@@ -15,7 +15,7 @@ static vec3 direction_of(double yaw_deg, double pitch_deg)
     return vec3_make(cos(pitch) * sin(yaw), sin(pitch), cos(pitch) * cos(yaw));
 }
 
-/* The direction turned by yaw and pitch. */
+/* The direction rotated by yaw and pitch. */
 static vec3 turned(vec3 direction, const double by_deg[2])
 {
     const double yaw_deg = atan2(direction.x, direction.z) * 180.0 / M_PI,
@@ -23,7 +23,7 @@ static vec3 turned(vec3 direction, const double by_deg[2])
     return direction_of(yaw_deg + by_deg[0], pitch_deg + by_deg[1]);
 }
 
-/* The point that is looked at: the target, or one as far away as the middle of the scene's frame. */
+/* The target, or a point as far away as the centre of the scene's frame. */
 static vec3 focus_of(const scene *s, vec3 forward)
 {
     if (s->camera.aimed)
@@ -41,7 +41,7 @@ static void look_along(scene *s, vec3 direction, double distance)
     s->camera.pitch_deg = asin(fmin(fmax(direction.y, -1.0), 1.0)) * 180.0 / M_PI;
 }
 
-/* A turn to the image's right and up, as yaw to the right and pitch up: a rolled camera's image has its own right. */
+/* Converts a turn to the image's right and up into yaw and pitch: a rolled camera's image has its own right. */
 static void unrolled(double roll_deg, double right_deg, double up_deg, double out[2])
 {
     double sine, cosine;

@@ -1,5 +1,5 @@
-/* What no single range can say: parameters that need each other, names that must exist, combinations that cannot be.
- * The range of one value is checked where it is set (params_value.c). */
+/* Checks beyond single ranges: parameters that depend on each other, names that must exist, invalid combinations. The
+ * range of one value is checked when it is set (params_value.c). */
 #include "scene/model/check.h"
 #include "geometry/shapes/shape.h"
 #include "base/counters.h"
@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-/* A solid is at least one primitive, so the counters' room for solids follows. */
+/* A solid has at least one primitive, so the counters' limit on solids follows. */
 _Static_assert((int)SCENE_PRIMITIVES_MAX <= (int)COUNTERS_SOLID_MAX, "a counter for every solid");
 
 static bool is_reserved(const char *name)
@@ -150,7 +150,7 @@ static status check_texture(const texture_entry *t, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Texture or mesh: group says which. */
+/* A texture or a mesh, depending on group. */
 static status unknown(const scene *s, param_group group, const char *owner, const char *name, diagnostic *why)
 {
     char remedy[SCENE_NAME_MAX + 80];
@@ -159,7 +159,7 @@ static status unknown(const scene *s, param_group group, const char *owner, cons
                     name);
 }
 
-/* A clear solid bends light by what is inside it: an open mesh has no inside. */
+/* A transparent solid refracts at its inside, and an open mesh has no inside. */
 static status check_closed(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
 {
     const mesh *data = m->data;
@@ -172,7 +172,7 @@ static status check_closed(const scene *s, const solid *owner, const mesh_entry 
                     owner->name, m->name, a.x, a.y, a.z, b.x, b.y, b.z, data->hole.triangle, data->hole.sharing);
 }
 
-/* A spectral film's colours are spectra by material. */
+/* In a spectral film each material's colour is a spectrum. */
 static status check_colors(const scene *s, const solid *owner, const mesh_entry *m, diagnostic *why)
 {
     const bool by_face =
@@ -185,7 +185,7 @@ static status check_colors(const scene *s, const solid *owner, const mesh_entry 
                     by_face ? "materials by face" : "textures");
 }
 
-/* What the solid names is there. */
+/* The objects that the solid refers to must exist. */
 static status check_references(const scene *s, const solid *owner, diagnostic *why)
 {
     const mesh_entry *m = scene_mesh_of(s, owner);
@@ -202,7 +202,7 @@ static status check_references(const scene *s, const solid *owner, diagnostic *w
     return check_closed(s, owner, m, why);
 }
 
-/* The same sum for each kind of face that has shares of its own. */
+/* The same sum for each kind of face with its own coefficients. */
 static status check_faces(const scene *s, const solid *owner, diagnostic *why)
 {
     const int slots = s->render.transmission == TRANSMISSION_SIMPLE ? face_material_slots(s, owner) : 0;
@@ -228,8 +228,8 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
     index_law unused;
     TRY(material_index_law(&owner->surface, owner->name, &unused, why));
     TRY(material_absorption_check(&owner->surface, owner->name, why));
-    /* What a surface hands on is at most what it gets; the slack is for sums like 0.7 + 0.2 + 0.1. Under Fresnel
-     * weights R + T = 1 by themselves, and reflectivity counts for opaque surfaces alone. */
+    /* A surface must not return more light than it receives; the tolerance is for sums such as 0.7 + 0.2 + 0.1. Under
+     * Fresnel weights R + T = 1 always holds, and reflectivity applies only to opaque surfaces. */
     double sum = owner->surface.reflectivity + owner->surface.transparency;
     if (scene_has_constant_shares(&s->render) && sum > 1.0 + 1e-12) {
         const bool simple = s->render.transmission == TRANSMISSION_SIMPLE;
@@ -280,7 +280,7 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
     case PARAM_TEXTURE: return check_texture(&s->textures[index], why);
     case PARAM_LIGHT: return check_light(s, &s->lights[index], why);
     case PARAM_SOLID: return check_solid(s, &s->solids[index], why);
-    case PARAM_MATERIAL: /* where a solid shows it */
+    case PARAM_MATERIAL: /* if a solid uses it */
     case PARAM_GROUP_COUNT: break;
     }
     return STATUS_OK;

@@ -15,7 +15,7 @@ struct face_materials {
     face_material mat[];
 };
 
-/* Owners come and go while everything else of it stays as it was made. */
+/* Only the owner count changes; all other fields are constant. */
 static face_materials *counted(const face_materials *l)
 {
     return (face_materials *)(uintptr_t)l;
@@ -26,7 +26,7 @@ static double at_most_one(double value)
     return value < 1.0 ? value : 1.0;
 }
 
-/* Shared with a slot before it where that has the same picture. */
+/* Shared with an earlier slot that has the same image file. */
 static status read_image(const mesh_import *imported, int slot, const char *root, face_materials *shading_materials,
                          diagnostic *why)
 {
@@ -52,8 +52,8 @@ static double brightest(vec3 color)
     return fmax(color.x, fmax(color.y, color.z));
 }
 
-/* Emitted light has the surface's colour here, and is as bright in its brightest channel as the file says; a lamp whose
- * surface is black has the light's own colour. */
+/* Emission is the surface's colour times a scalar in this program: the scalar is the brightest channel of the file's
+ * emission; an emitter with a black surface takes the colour of the emission. */
 static void emit(face_material *mat, const imported_material *m)
 {
     const vec3 sent = vec3_make(m->emissive[0], m->emissive[1], m->emissive[2]);
@@ -66,13 +66,13 @@ static void emit(face_material *mat, const imported_material *m)
     mat->emission = fmin(brightest(sent) / brightest(mat->color), EMISSION_MAX);
 }
 
-/* A material file has a colour for each term where Phong's sum here has a coefficient: the brightest channel. */
+/* Material files have a colour for each term of Phong's equation, this program a coefficient: the brightest channel. */
 static face_material look_of(const imported_material *m)
 {
     face_material mat = {.given = m->given, .diffuse = 1.0, .shininess = m->shininess, .opacity = m->opacity};
     snprintf(mat.name, sizeof mat.name, "%s", m->name ? m->name : "");
     mat.color = vec3_make(at_most_one(m->color[0]), at_most_one(m->color[1]), at_most_one(m->color[2]));
-    /* A file that gives a highlight no exponent means none: to the power of 0 it would cover everything. */
+    /* A highlight without an exponent is ignored: with exponent 0 it would cover the whole surface. */
     for (int c = 0; c < 3 && m->shininess > 0.0; c++)
         mat.specular = m->specular[c] > mat.specular ? at_most_one(m->specular[c]) : mat.specular;
     emit(&mat, m);

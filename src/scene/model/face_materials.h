@@ -1,5 +1,5 @@
-/* How the faces of a mesh's slots look, as its file says it: what Phong's sum needs and a texture, by slot. Shared like
- * the mesh that they came with: face_materials_retain and face_materials_release count owners, from any thread. */
+/* The materials in a mesh file, by slot: the coefficients of Phong's equation and a texture. Reference counted like
+ * their mesh: face_materials_retain and face_materials_release are thread safe. */
 #pragma once
 
 #include "scene/assets/mesh_stream.h"
@@ -9,51 +9,51 @@
 #include "scene/model/solids.h"
 
 typedef struct face_material {
-    char name[SCENE_NAME_MAX + 1]; /* cut off where it is longer; "" for none */
-    bool given;                    /* the file says something; else the solid's own surface counts */
-    vec3 color;                    /* linear RGB, at most 1 */
+    char name[SCENE_NAME_MAX + 1]; /* truncated if longer; "" for none */
+    bool given;                    /* the file defines the material; otherwise the solid's own material is used */
+    vec3 color;                    /* linear RGB, each at most 1 */
     double diffuse, specular, shininess, emission, opacity;
-    const texture *img; /* one owner of it; NULL for none */
+    const texture *img; /* one reference; NULL for none */
 } face_material;
 
-/* From what an importer found; reads the pictures that it names, each once, below root (base/below.h). A diagnostic
- * names the picture's file. */
+/* Converts the importer's result; reads its image files, each once, below root (base/below.h). A diagnostic has the
+ * path of the image file. */
 status face_materials_create(const mesh_import *imported, const char *root, const face_materials **out,
                              diagnostic *why);
-void face_materials_retain(const face_materials *l); /* NULL is allowed, here and below */
+void face_materials_retain(const face_materials *l); /* NULL is allowed here and in the functions below */
 void face_materials_release(const face_materials *l);
 
-/* Do the mesh's slots, not one material, say how the solid's faces look? Where it is a mesh that has several, or a
- * file's materials, and names no material itself. False before scene_load. */
+/* Whether the mesh's slots determine the materials of the solid's faces: the mesh has several slots, or a file's
+ * materials, and the solid has no material of its own. False before scene_load. */
 bool has_face_materials(const scene *s, const solid *owner);
 
-/* What one kind of face of a solid looks like; the picture is borrowed. */
+/* The material of one kind of face of a solid; the texture is borrowed. */
 typedef struct shading_material {
     material surface;
     const texture *img;
-    int number; /* of a scene's material: 1 for the first; of a surface that is none of them: how many there are, and
-                   the solid's number, 1 for the first */
+    int number; /* 1-based index of a scene material; for a surface without one, the number of materials plus the
+                   1-based index of the solid */
 } shading_material;
 
-/* What says how a slot's faces look: the scene's material of its name, else what the file gives; both NULL where the
- * solid's own surface does. Of a solid that looks by face. */
+/* The source of a slot's material: the scene's material of the same name, else the file's; both NULL if the solid's own
+ * material is used. For solids with materials by face. */
 void face_material_source(const scene *s, const solid *owner, int slot, const material **named,
                           const face_material **given);
 
-/* How many slots say so; 0 where one material does. */
+/* The number of slots that determine materials; 0 if a single material does. */
 int face_material_slots(const scene *s, const solid *owner);
 
-/* The look of a slot's faces, of a solid with slots whose own material, as it is traced, is own: that of the scene's
- * material of the slot's name, else the file's, else own. Under simple transmission with its own transparency (MTL's d
- * or Tr, glTF's alpha; own's where the file says 1) and reflectivity; else with the solid's. */
+/* The material of a slot's faces: the scene's material of the slot's name, else the file's, else own, the solid's
+ * material. Under simple transmission it has its own transparency (MTL's d or Tr, glTF's alpha; own's if the file has
+ * 1) and reflectivity; otherwise the solid's. */
 shading_material shading_material_of_face(const scene *s, const solid *owner, const material *own, int slot);
 /* That of a solid without slots. */
 shading_material shading_material_of_solid(const scene *s, const material *own);
 
-/* Does no light pass any of its faces? */
+/* Whether all its faces are opaque. */
 bool solid_is_opaque(const scene *s, const solid *owner);
 
-/* Do its faces have a transparency or reflectivity that has no effect, because light is bent? */
+/* Whether its faces have a transparency or reflectivity without effect, because the solid refracts. */
 bool ignores_face_transparency(const scene *s, const solid *owner);
 
 int face_materials_count(const face_materials *l); /* 0 for NULL */

@@ -11,8 +11,8 @@ static bool is_lit(const material *m)
     return m->diffuse > 0.0 || m->specular > 0.0;
 }
 
-/* Does another medium hold the solid, so that one of the air's index is a bubble? Its position says so: the centre, or
- * that of the base. */
+/* Whether the solid is inside another medium, so that with the index of air it is a bubble; decided by the position of
+ * its centre or base. */
 static bool is_inside_medium(const scene *s, const solid *bubble)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -25,7 +25,7 @@ static bool is_inside_medium(const scene *s, const solid *bubble)
     return false;
 }
 
-/* Does it cut away from another one, so that one of the surroundings' index shows by what is missing there? */
+/* Whether the solid displaces another one, so that with the index of the surroundings it appears as a cavity. */
 static bool cuts_another(const scene *s, const solid *cutter)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -37,7 +37,7 @@ static bool cuts_another(const scene *s, const solid *cutter)
     return false;
 }
 
-/* What a clear solid seems to lack. */
+/* Properties that a transparent solid appears to lack. */
 static void hint_at_clear(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -55,11 +55,11 @@ static void hint_at_clear(const scene *s, const solid *owner, const note_taker *
     }
 }
 
-/* Of no clear matter the index of visible light reaches that: germanium's and silicon's are 4 to 5. */
+/* The largest refractive index of transparent matter for visible light: germanium and silicon have 4 to 5. */
 #define INDEX_MOST 5.0
 
-/* An index of a mirror, on what reflects nothing of its own. Above MIRROR_IOR a clear solid is a mirror indeed. True if
- * there is a note. */
+/* A refractive index meant for a mirror, on a solid with reflectivity 0. Above MIRROR_IOR a transparent solid really is
+ * a mirror. True if there is a note. */
 static bool hint_at_index(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -79,7 +79,7 @@ static bool hint_at_index(const scene *s, const solid *owner, const note_taker *
     return true;
 }
 
-/* What the solid seems to lack. */
+/* Properties that the solid appears to lack. */
 static void hint_at_solid(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;
@@ -92,7 +92,7 @@ static void hint_at_solid(const scene *s, const solid *owner, const note_taker *
                   "%s has a refractive index but is opaque", owner->name);
     } else if (m->ambient == 0.0 && m->emission == 0.0 && m->reflectivity == 0.0 && !is_lit(m) &&
                !has_face_materials(s, owner) &&
-               !scene_is_behind_camera(s, owner)) { /* a black board behind the eye keeps reflections dark */
+               !scene_is_behind_camera(s, owner)) { /* a black board behind the camera keeps reflections dark */
         note_give(taker, owner->name, "diffuse", "set its diffuse",
                   "%s is black: it is neither transparent, nor diffuse, nor ambient, nor emitting", owner->name);
     }
@@ -109,7 +109,7 @@ static void hint_at_cover(const scene *s, const solid *hidden, const note_taker 
     }
 }
 
-/* A law that is used outside the wavelengths where its medium was measured. */
+/* A dispersion law used outside the range in which its medium was measured. */
 static void hint_at_range(const scene *s, const char *where, const char *name, const index_law *law,
                           const note_taker *taker)
 {
@@ -128,7 +128,7 @@ static void hint_at_range(const scene *s, const char *where, const char *name, c
                   name, law->law.low_nm, law->law.high_nm);
 }
 
-/* What is set and does nothing. */
+/* Settings without effect. */
 static void hint_at_idle(const scene *s, const solid *owner, const note_taker *taker)
 {
     const material *m = &owner->surface;

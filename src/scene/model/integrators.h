@@ -1,11 +1,10 @@
-/* The integrators: the words of render.integrator, and what the rest of the program asks of each. A new one is a row
- * here and its own file in src/render/integrators; render's table of what they do is made from the same rows.
- * Constant. */
+/* The integrators: the words of render.integrator and the traits that the rest of the program queries. A new integrator
+ * is a row here and a file in src/render/integrators; render's dispatch table is made from the same rows. Constant. */
 #pragma once
 
 #include <stdbool.h>
 
-/* Name, word, and the traits that it has. */
+/* Name, word, traits. */
 #define INTEGRATORS(X)                 \
     X(RAYCAST, raycast, .tree = false) \
     X(WHITTED, whitted, .tree = true)  \
@@ -18,14 +17,14 @@ typedef enum integrator_rule { INTEGRATORS(INTEGRATOR_NUMBER) INTEGRATOR_COUNT }
 #undef INTEGRATOR_NUMBER
 
 typedef struct integrator_traits {
-    bool tree;      /* both branches of each ray are followed, where render.lighting says so (Whitted 1980) */
-    bool by_chance; /* random paths, render.paths a pixel, that see the lights' size */
-    bool drawn;     /* triangles are drawn into a depth buffer; no ray is traced, and no light followed */
-    bool layers;    /* of what camera rays meet first it gives named layers, and follows no light */
+    bool tree;      /* traces both branches at each interface, depending on render.lighting (Whitted 1980) */
+    bool by_chance; /* traces random paths, render.paths per pixel, which sample the area of lights */
+    bool drawn;     /* rasterises triangles into a depth buffer; traces no rays and no light paths */
+    bool layers;    /* writes named layers of the first hits of camera rays; no light transport */
 } integrator_traits;
 
 extern const char *const integrator_words[];
 extern const integrator_traits integrator_table[];
 
-/* The word of the first one that gives layers; NULL if none does. */
+/* The word of the first integrator that writes layers; NULL if there is none. */
 const char *integrator_with_layers(void);

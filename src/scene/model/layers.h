@@ -1,7 +1,8 @@
-/* Named layers: what an integrator may give of each pixel beside the film, and render.layer's words. Constant. */
+/* Named layers: additional values per pixel that an integrator may write besides the film, and the words of
+ * render.layer. Constant. */
 #pragma once
 
-/* Name, word, numbers a pixel. */
+/* Name, word, values per pixel. */
 #define LAYERS(X)            \
     X(NORMAL, normal, 3)     \
     X(ALBEDO, albedo, 3)     \

@@ -1,4 +1,4 @@
-/* Lights of a scene. Values; a light owns its name. */
+/* Lights of a scene. Plain values; a light owns its name. */
 #pragma once
 
 #include "base/vec3.h"
@@ -11,10 +11,10 @@ typedef enum light_kind { LIGHT_POINT, LIGHT_CONE, LIGHT_SOFT_CONE } light_kind;
 typedef struct light {
     char *name;
     int64_t kind;          /* light_kind */
-    vec3 position, target; /* target: the point that a cone is aimed at */
-    double half_angle_deg; /* of a cone, from its axis */
+    vec3 position, target; /* target: the point that a spotlight is aimed at */
+    double half_angle_deg; /* of a spotlight, from its axis */
     vec3 color;
     double intensity;
-    double radius; /* of the sphere that shines, for the path tracer; 0 = a point */
-    double reach;  /* distance at which intensity holds, falling off with the square; 0 = the same everywhere */
+    double radius; /* of the emitting sphere, for the path integrator; 0 = a point light */
+    double reach;  /* the distance at which the intensity applies, with inverse square falloff; 0 = no falloff */
 } light;

@@ -1,39 +1,39 @@
-/* What surfaces and media are like: the parameters of materials. Values. */
+/* The parameters of materials: surfaces and media. Plain values. */
 #pragma once
 
 #include "base/vec3.h"
 #include <stdint.h>
 
-/* Numbers, as many as one gives. */
+/* An owned array of numbers. */
 enum { NUMBER_LIST_MAX = 32 };
 typedef struct number_list {
     int64_t count;
     double value[NUMBER_LIST_MAX];
 } number_list;
 
-/* Of names in scene files, in bytes. */
+/* Maximum length of names in scene files, in bytes. */
 enum { SCENE_NAME_MAX = 63 };
 
 enum { SCENE_MATERIALS_MAX = 256 };
 
-/* Fields mean what Phong's sum I = k_e C + k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n and the weights
- * rule say. */
+/* The fields of Phong's equation I = k_e C + k_a I_a C + k_d I_L C max(0, N.L) + k_s I_L max(0, R.V)^n, and of the
+ * weights rule. */
 typedef struct material {
-    vec3 color; /* C, linear RGB; of a clear solid also the share of light left after tint_distance inside */
+    vec3 color; /* C, linear RGB; for transparent solids also the transmittance of the medium over tint_distance */
     double ambient, diffuse, specular, shininess; /* k_a, k_d, k_s, n */
-    double emission;                              /* k_e: the surface sends out k_e C by itself, to all sides */
-    double reflectivity; /* constant weights, simple transmission, and opaque materials; a clear one's coating under
-                            fresnel weights */
-    double transparency; /* 0 = opaque; else share of the refracted light that passes an interface */
-    double ior;          /* relative to vacuum, where medium is MEDIUM_IOR */
+    double emission;                              /* k_e: the surface emits k_e C in all directions */
+    double reflectivity; /* for constant weights, simple transmission and opaque materials; under Fresnel weights the
+                            coating of a transparent material */
+    double transparency; /* 0 = opaque; otherwise the fraction of the refracted light that passes an interface */
+    double ior;          /* relative to vacuum, if medium is MEDIUM_IOR */
     int64_t medium;      /* see scene/model/medium.h */
-    number_list coefficients;    /* of the medium's own law of dispersion */
-    vec3 absorb_per_m;           /* Beer and Lambert's coefficient by channel */
-    number_list absorb_spectrum; /* the same by wavelength: nm, 1/m, nm, 1/m ...; takes the place of absorb_per_m unless
-                                    empty */
-    double tint_distance;        /* scene units; tint and absorption add up */
-    char texture[SCENE_NAME_MAX + 1]; /* its colour is times color; "" for none */
-    double texture_size;              /* scene units of one repetition on solids that are no meshes; 0: one a face */
+    number_list coefficients;    /* coefficients of the medium's dispersion law */
+    vec3 absorb_per_m;           /* absorption coefficient of the Beer-Lambert law, by channel */
+    number_list absorb_spectrum; /* the same by wavelength: nm, 1/m, nm, 1/m ...; replaces absorb_per_m unless empty */
+    double tint_distance;        /* scene units; tint and absorption are added */
+    char texture[SCENE_NAME_MAX + 1]; /* its values are multiplied by color; "" for none */
+    double texture_size;              /* scene units per repetition on solids without texture coordinates; 0: one per
+                                         face */
     double checker;                   /* edge of the checker cells in the solid's own frame; 0 = none */
     vec3 checker_color;               /* colour of the other cells */
 } material;

@@ -81,7 +81,7 @@ bool material_matches_surroundings(const scene *s, const material *m)
 bool material_is_mirror(const material *m)
 {
     return m->transparency > 0.0 && m->medium == MEDIUM_IOR &&
-           m->ior > MIRROR_IOR; /* no law or catalogue reaches that */
+           m->ior > MIRROR_IOR; /* outside the range of every law and catalogue entry */
 }
 
 bool material_is_opaque(const material *m)
@@ -99,7 +99,7 @@ const char *surrounding_medium_name(const background *b)
     return b->medium >= SURROUNDING_CATALOGUE ? surrounding_words[b->medium] : NULL;
 }
 
-/* Linear between points x0, y0, x1, y1, ...; constant beyond the first and the last. */
+/* Piecewise linear through points x0, y0, x1, y1, ...; constant outside. */
 static double interpolate(const double *points, int64_t count, double x)
 {
     if (x <= points[0])

@@ -8,12 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where a scene keeps a group. */
+/* Where a scene stores the objects of a group. */
 typedef struct object_list {
-    size_t at;    /* of the array; of a group without names, of its one struct */
-    size_t count; /* of the array's length */
+    size_t at;    /* offset of the array, or of the struct of a group without names */
+    size_t count; /* offset of the array's length */
     size_t size;  /* of an element */
-    size_t value; /* in an element: what the rows are about */
+    size_t value; /* offset in an element of the struct that the rows of the table refer to */
 } object_list;
 
 static const object_list lists[PARAM_GROUP_COUNT] = {
@@ -78,7 +78,7 @@ int object_find(const scene *s, param_group group, const char *name)
     return -1;
 }
 
-/* The texts that an object owns: its name, and the paths of its files. */
+/* The strings that an object owns: its name, and the paths of its files. */
 static bool each_text(param_group group, void *object, bool (*act)(char **text))
 {
     bool good = act(object);
@@ -135,7 +135,7 @@ void object_remove(scene *s, param_group group, size_t index)
     memmove(gap, gap + size, (left - index) * size);
 }
 
-/* Copies what the object, a copy bit by bit, still shares with another one; what was loaded has one more owner. */
+/* Makes a bitwise copy independent: copies owned memory, and adds a reference to loaded data. */
 static bool own(param_group group, void *object)
 {
     if (group == PARAM_MESH) {

@@ -1,6 +1,6 @@
-/* The objects of a scene by their group, whatever they are: meshes, textures, lights, materials and solids stand in
- * arrays whose elements begin with their names; render, camera and background are one each, without a name of their
- * own. For the scene's own files, which make, copy, find and remove them. Ownership: the scene's. */
+/* The objects of a scene by group: meshes, textures, lights, materials and solids are in arrays whose elements start
+ * with their names; render, camera and background are single structs without a name. For the files of this folder,
+ * which create, copy, find and remove objects. Ownership: the scene's. */
 #pragma once
 
 #include "scene/model/params.h"
@@ -10,22 +10,22 @@ static inline bool group_has_names(param_group group)
     return group > PARAM_BACKGROUND;
 }
 
-/* The object itself, and the struct in it that its group's rows are about. */
+/* The object, and the struct in it that the rows of its group refer to. */
 void *object_at(const scene *s, param_group group, size_t index);
 void *object_values(const scene *s, param_group group, size_t index);
 
-/* Index of the object of that name, or -1. */
+/* Index of the object with that name, or -1. */
 int object_find(const scene *s, param_group group, const char *name);
 
-/* One more of a group with names, at its end: all zero but for a copy of the name; NULL when memory is out. */
+/* Appends an object to a group with names: all zero except for a copy of the name; NULL if memory runs out. */
 void *object_append(scene *s, param_group group, const char *name);
 void object_remove(scene *s, param_group group, size_t index);
 
-/* All of one but its name, to another one of its group. Copies share what was loaded; false when memory is out, and
- * what there is is released with the scene. */
+/* Copies everything except the name to another object of the group. Loaded data is shared; false if memory runs out:
+ * the partial copy is released with the scene. */
 bool object_assign(scene *s, param_group group, size_t to, size_t from);
 
-/* All that have names. As object_assign. */
+/* Copies all objects with names, as object_assign. */
 bool objects_clone(scene *s, const scene *original);
 void objects_release(scene *s);
 

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The struct that holds a place's row. */
+/* The struct with the field of a place. */
 static void *place_base(const scene *s, const param_place *at)
 {
     const bool of_surface = at->object_group == PARAM_SOLID && at->row->group == PARAM_MATERIAL;
@@ -33,7 +33,7 @@ static bool is_angle(const param *row)
     return is_camera_row(row, offsetof(camera, yaw_deg)) || is_camera_row(row, offsetof(camera, pitch_deg));
 }
 
-/* The camera with both of its directions valid: the one not in use is derived from the other. */
+/* The camera with both of its directions valid: the unused one is derived from the other. */
 static camera camera_with_both(camera c)
 {
     if (c.aimed) {
@@ -49,7 +49,7 @@ static camera camera_with_both(camera c)
     return c;
 }
 
-/* A plain index takes the place of a medium that was named before. */
+/* A constant index replaces a medium that was set before. */
 static void forget_medium(scene *s, const param_place *at)
 {
     if (at->row->group == PARAM_BACKGROUND && at->row->offset == offsetof(background, ior))
@@ -66,7 +66,7 @@ static void forget_medium(scene *s, const param_place *at)
             s->solids[i].surface.medium = MEDIUM_IOR;
 }
 
-/* What was loaded under the old value; a file that is named is also used. */
+/* Releases data loaded for the old value; setting a file also selects it. */
 static void forget_loaded(scene *s, const param_place *at, param_value value)
 {
     const bool names_file = at->row->type == PARAM_PATH, some = names_file && value.path[0];
@@ -133,7 +133,7 @@ status scene_set_assignment(scene *s, const char *assignment, diagnostic *why)
     return code;
 }
 
-/* at's value in s, whose camera has both directions. */
+/* The value of a place in s, whose camera has both directions. */
 static char *place_text(const scene *s, const param_place *at)
 {
     camera both = camera_with_both(s->camera);
@@ -160,8 +160,8 @@ static status visit_one(const scene *s, const param_place *at, param_visit *visi
     return code;
 }
 
-/* Setting the camera's direction, the sky's picture or a mesh's file that is not in use would put it in use; of a
- * slime's parameters only a slime has any. */
+/* Parameters that setting would put into use are skipped while they are not in use: the unused direction of the camera,
+ * the background image, a mesh's file; and the parameters of slimes for other meshes. */
 static bool is_in_use(const scene *s, const param_place *at)
 {
     const param *row = at->row;
@@ -174,7 +174,7 @@ static bool is_in_use(const scene *s, const param_place *at)
     return s->camera.aimed ? !is_angle(row) : !is_target(row);
 }
 
-/* The rows of one object that stand in one group of the table. */
+/* The rows of one object in one group of the table. */
 static status visit_rows(const scene *s, param_place at, param_group rows, param_visit *visit, void *context)
 {
     status code = STATUS_OK;

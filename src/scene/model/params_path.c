@@ -10,7 +10,7 @@
 
 enum { WORDS_MAX = 64 };
 
-/* A path's words; each is long enough for any right one, and a longer one is wrong. */
+/* The words of a path; a word that does not fit is invalid anyway. */
 typedef struct path_words {
     char text[200];
     const char *group, *name, *element; /* name and element may be NULL */
@@ -47,7 +47,7 @@ static bool split_path(const char *path, path_words *words)
     return true;
 }
 
-/* Every first word that a path of this scene may have, for suggestions; fresh memory, or NULL. */
+/* All valid first words of paths of this scene, for suggestions; fresh memory, or NULL. */
 static const char **group_words(const scene *s, size_t *count)
 {
     size_t room = 0, used = 0;
@@ -74,7 +74,7 @@ static bool find_group(const scene *s, const char *word, param_place *out)
     return false;
 }
 
-/* Appends the names of the rows of one group that the place's object has; returns the new count. */
+/* Appends the names of the rows of one group that apply to the place's object; returns the new count. */
 static size_t row_words(const scene *s, const param_place *at, param_group rows, const char **words, size_t count)
 {
     for (size_t i = 0; i < param_count() && count < WORDS_MAX; i++) {
@@ -85,7 +85,7 @@ static size_t row_words(const scene *s, const param_place *at, param_group rows,
     return count;
 }
 
-/* `depth` or `depht` alone: the group was forgotten. The nearest row of the groups without names, or NULL. */
+/* For `depth` or `depht` alone, without a group: the nearest row of the groups without names, or NULL. */
 static const param *nearest_setting(const scene *s, const char *word)
 {
     for (int g = 0; g <= PARAM_BACKGROUND; g++) {

@@ -1,4 +1,4 @@
-/* The table itself: a new parameter is one new row here, and a field in the struct of its group (render_settings.h,
+/* The table itself: a new parameter is a row here, and a field in the struct of its group (render_settings.h,
  * material.h, light.h, solids.h, mesh_entry.h, view_settings.h). */
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
@@ -23,7 +23,7 @@ static const char *const spectrum_words[] = {"rgb", "spectral", NULL};
 static const char *const accel_words[] = {"none", "sphere", "octant", "bvh", "embree", NULL};
 static const char *const texturing_words[] = {"perspective", "affine", NULL};
 static const char *const shading_words[] = {"flat", "smooth", "gouraud", NULL};
-/* arrays: what a program gave, which no file can say */
+/* arrays: meshes given by a program, which files cannot contain */
 static const char *const source_words[] = {"file",  "sparse",  "dense", "sphere", "icosphere", "torus",
                                            "lathe", "terrain", "box",   "slime",  "arrays",    NULL};
 static const char *const motion_words[] = {"euler", "verlet", "implicit", NULL};
@@ -35,22 +35,22 @@ static const char *const background_words[] = {"uniform", "gradient", "picture",
 
 enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 
-/* Positions and lengths stay where doubles still resolve 1e-10 of a scene unit. */
+/* Positions and lengths are limited so that doubles resolve 1e-10 of a scene unit. */
 #define FAR 1e6
-/* Well under the film's 524288, with room for many lights. */
+/* Far below the film's limit of 524288, with room for many lights. */
 #define BRIGHT 1e4
 
-/* A row whose name is that of its field, or of the field's last part; further members follow the place. */
+/* A row whose name is that of its field, or of the field's last part; further members follow the location. */
 #define ROW(group, name, kind, unit, low, high, above, fallback, meaning, words, ...)    \
     {                                                                                    \
         group, name, kind, unit, low, high, above, fallback, meaning, words, __VA_ARGS__ \
     }
 #define OF(type, field) ON_ALL, .offset = offsetof(type, field)
-/* How, not what: see param.performance_only. */
+/* Performance only: see param.performance_only. */
 #define PERFORMANCE(field) OF(render_settings, field), .performance_only = true
-/* Of a slime alone. */
+/* For slimes only. */
 #define SLIME(field) ON_SLIME, .offset = offsetof(mesh_entry, slime.field)
-/* Of some shapes: see geometry/shapes/shape.h. */
+/* For some shapes: see geometry/shapes/shape.h. */
 #define SHAPE(field) OF(solid, field), .by_shape = true
 
 #define INTEGER(group, type, field, unit, low, high, fallback, meaning) \
@@ -82,12 +82,12 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 #define LENGTH(field, fallback, meaning) \
     ROW(PARAM_SOLID, #field, PARAM_REAL, "scene units", 0, FAR, true, fallback, meaning, NULL, SHAPE(shape.field))
 
-/* In the order in which they are listed and printed; the groups stand together.
+/* Rows in the order in which they are listed and printed, by group.
  *
- * A material's terms are all 0 by default: a picture then shows no term of Phong's sum, and no branch of the tree, that
- * its scene does not name, and clear glass needs no line that takes a matte coat off again. A colour multiplies,
- * so it is white; a shininess without a specular coefficient does nothing, 80 is the one of the reference scene. ior
- * is vacuum's, so that nothing bends unasked. */
+ * A material's coefficients default to 0: an image shows only the terms of Phong's equation and the branches of the ray
+ * tree that its scene enables, and clear glass needs no line that removes a diffuse coat. A colour is a factor, so it
+ * defaults to white; shininess has no effect without a specular coefficient, and 80 is that of the reference scene. ior
+ * is that of vacuum, so that nothing refracts by default. */
 static const param table[] = {
     INTEGER(PARAM_RENDER, render_settings, width, "px", 1, 65536, "800", "width of the image"),
     INTEGER(PARAM_RENDER, render_settings, height, "px", 1, 65536, "600", "height of the image"),
@@ -265,7 +265,7 @@ static const param table[] = {
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which the intensity applies, with inverse-square falloff; 0: no falloff"),
 
-    /* A solid has these too, by its own name (liquid.ior): see param_find. */
+    /* Solids have these rows as well, by their own names (liquid.ior): see param_find. */
     COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1",
           "linear colour of ambient, diffuse and emitted light; in a transparent solid: transmittance over "
           "tint_distance"),

@@ -1,4 +1,4 @@
-/* Values and ranges of the table's rows as text. */
+/* Values and ranges of rows as text. */
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/model/params_value.h"

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* How much of a wrong value a message repeats. */
+/* How much of an invalid value a message repeats. */
 #define SHOWN "%.60s"
 
 static size_t count_words(const char *const *words)
@@ -29,7 +29,7 @@ static bool is_blank(char c)
 static status wrong(const param *row, bool one_element, diagnostic *why, const char *what, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* An error whose remedy is the row's range. */
+/* An error with the row's range as its remedy. */
 static status wrong(const param *row, bool one_element, diagnostic *why, const char *what, ...)
 {
     char text[300], remedy[420];
@@ -46,7 +46,7 @@ static bool in_range(const param *row, double value)
     return value <= row->highest && (row->above_lowest ? value > row->lowest : value >= row->lowest);
 }
 
-/* A number with something after it: a decimal comma, a unit? */
+/* Whether a number is followed by other text: a decimal comma, or a unit. */
 static status not_a_number(const param *row, const char *label, const char *text, diagnostic *why)
 {
     const char *digits = text + strspn(text, "+-."), *rest = digits + strspn(digits, "0123456789.eE+-");
@@ -109,7 +109,7 @@ static status parse_choice(const param *row, const char *label, const char *text
 {
     if (choose(row, text, out) || (is_switch(row) && choose_switch(text, out)))
         return STATUS_OK;
-    /* off and on are as near to each other as to a slip, and mean the opposite. */
+    /* No suggestion: off and on are equally near in spelling, and are opposites. */
     const char *nearest = is_switch(row) ? NULL : text_nearest(text, row->choices, count_words(row->choices));
     if (nearest) {
         char range[400], remedy[460];
@@ -133,7 +133,7 @@ static status parse_integer(const param *row, const char *label, const char *tex
     return STATUS_OK;
 }
 
-/* Splits "0,1,2" or "[0, 1, 2]" in place; returns how many parts there are, of which parts[] holds the first `room`. */
+/* Splits "0,1,2" or "[0, 1, 2]" in place; returns the number of parts; parts[] has the first `room` of them. */
 static size_t split_numbers(char *text, char **parts, size_t room)
 {
     size_t length = strlen(text), count = 0;
@@ -199,7 +199,7 @@ static status parse_path(const param *row, const char *label, char *text, char *
     return *out ? STATUS_OK : out_of_memory(why);
 }
 
-/* The name of another object, or nothing. */
+/* The name of another object, or none. */
 static status parse_word(const param *row, const char *label, const char *text, char word[SCENE_NAME_MAX + 1],
                          diagnostic *why)
 {
@@ -211,7 +211,7 @@ static status parse_word(const param *row, const char *label, const char *text, 
     return STATUS_OK;
 }
 
-/* text is a copy without blanks around it, which the parsers may cut up. */
+/* text is a trimmed copy, which the parsers may modify. */
 static status parse_trimmed(const param *row, int element, const char *label, char *text, param_value *out,
                             diagnostic *why)
 {

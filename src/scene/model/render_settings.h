@@ -1,5 +1,5 @@
-/* How a scene is rendered: the parameters render.*. Integer and enum parameters are int64_t, switches (on/off) too: one
- * type a kind of parameter. Values. */
+/* The parameters render.*: how a scene is rendered. Integers, enums and switches (on/off) are int64_t: one type per
+ * kind of parameter. Plain values. */
 #pragma once
 
 #include "scene/model/integrators.h"
@@ -24,35 +24,35 @@ enum { SCENE_SAMPLES_MAX = 64 };
 typedef struct render_settings {
     int64_t width, height; /* pixels */
     int64_t depth;         /* recursion depth; 0 = camera rays only */
-    int64_t samples;       /* a pixel: a whole square, at most SCENE_SAMPLES_MAX */
+    int64_t samples;       /* per pixel: a square number, at most SCENE_SAMPLES_MAX */
     int64_t integrator;    /* integrator_rule */
-    int64_t layer;         /* layer_rule: which one the film shows, of an integrator that gives layers */
+    int64_t layer;         /* layer_rule: the layer that the film shows, for integrators that write layers */
     int64_t lighting;      /* lighting_rule */
     int64_t weights;       /* weights_rule */
     int64_t transmission;  /* transmission_rule */
     int64_t beyond;        /* depth_limit_rule */
     int64_t radiance;      /* radiance_rule */
     int64_t shadows;       /* shadow_rule */
-    double min_weight;     /* children with a lower throughput in every channel are not traced; 0: all are */
-    int64_t paths;         /* of the path tracer, a pixel */
-    int64_t roulette;      /* 1: the path tracer ends faint paths by chance */
-    int64_t seed;          /* of everything that is drawn by chance */
-    int64_t polarisation;  /* 1: a ray carries its Stokes vector */
+    double min_weight;     /* rays with a lower throughput in every channel are not traced; 0: all are */
+    int64_t paths;         /* per pixel, for the path integrator */
+    int64_t roulette;      /* 1: Russian roulette in the path integrator */
+    int64_t seed;          /* of all random numbers */
+    int64_t polarisation;  /* 1: rays carry Stokes vectors */
     int64_t spectrum;      /* spectrum_rule */
-    int64_t wavelengths;   /* of the spectral film, a camera ray */
-    double lambda_nm;      /* at which indices are taken where there is no spectrum */
+    int64_t wavelengths;   /* per camera ray, for the spectral film */
+    double lambda_nm;      /* wavelength of the refractive indices of an RGB film */
     double unit_m;         /* length of one scene unit in metres */
     int64_t threads;       /* 1..1024 */
-    int64_t pool;          /* 1: threads started beforehand; 0: fresh ones for every frame */
+    int64_t pool;          /* 1: persistent threads; 0: new threads for every frame */
     int64_t schedule;      /* schedule_rule */
-    int64_t tile;          /* tile edge, pixels */
+    int64_t tile;          /* tile size, pixels */
     int64_t pin;           /* pin_rule */
     int64_t accel;         /* hierarchy_kind */
-    int64_t build_threads; /* that build hierarchies; 0: one a processing unit */
-    int64_t keep;          /* 1: a mesh keeps its hierarchy; 0: every frame builds them anew */
-    /* a moving mesh's hierarchy is built anew when its expected cost has grown by more than this factor */
+    int64_t build_threads; /* threads that build hierarchies; 0: one per processing unit */
+    int64_t keep;          /* 1: a mesh keeps its hierarchy; 0: every frame builds it again */
+    /* a refitted hierarchy of a moving mesh is rebuilt when its expected cost exceeds this factor */
     double rebuild;
-    int64_t texturing; /* texturing_rule, of the rasteriser */
+    int64_t texturing; /* texturing_rule, for the rasteriser */
 } render_settings;
 
 static inline const integrator_traits *integrator_traits_of(const render_settings *r)
@@ -60,13 +60,13 @@ static inline const integrator_traits *integrator_traits_of(const render_setting
     return &integrator_table[r->integrator];
 }
 
-/* Both branches of each ray are followed. */
+/* Whether both branches at each interface are traced. */
 static inline bool follows_trees(const render_settings *r)
 {
     return integrator_traits_of(r)->tree && r->lighting == LIGHTING_WHITTED;
 }
 
-/* All branches of each ray, for what looks into a scene; or a preview of triangles. */
+/* The integrators for inspecting a scene: all branches of each ray; and a preview of triangles. */
 static inline void trace_trees(render_settings *r)
 {
     r->integrator = INTEGRATOR_WHITTED;
@@ -77,17 +77,17 @@ static inline void draw_triangles(render_settings *r)
     r->integrator = INTEGRATOR_ZBUFFER;
 }
 
-/* Threads that build hierarchies: render.build_threads, or one a processing unit. */
+/* Threads that build hierarchies: render.build_threads, or one per processing unit. */
 int scene_build_threads(const render_settings *r);
 
-/* Are the shares of a clear surface the material's own constants, whatever its index? */
+/* Whether the weights of a transparent surface are the material's constants, whatever its index. */
 static inline bool scene_has_constant_shares(const render_settings *r)
 {
     return r->weights == WEIGHTS_CONSTANT || r->transmission == TRANSMISSION_SIMPLE;
 }
 
-/* Do rays carry basic radiance, L / n^2? Only light that is bent changes its solid angle: under simple transmission
- * nothing is, nor in what is drawn with a depth buffer. */
+/* Whether rays carry basic radiance, L / n^2. Only refraction changes solid angles: there is none under simple
+ * transmission or with a depth buffer. */
 static inline bool scene_has_basic_radiance(const render_settings *r)
 {
     return r->radiance == RADIANCE_BASIC && r->transmission == TRANSMISSION_REFRACT && !integrator_traits_of(r)->drawn;

@@ -44,7 +44,7 @@ static bool clone_texture(background *to, const background *from)
     if (!to->image_path)
         return false;
     if (from->img)
-        to->img = image_share(from->img); /* never changed once it is loaded */
+        to->img = image_share(from->img); /* not modified after loading */
     return true;
 }
 

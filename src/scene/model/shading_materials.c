@@ -4,7 +4,7 @@
 #include "scene/model/scene.h"
 #include <string.h>
 
-/* The material of that name in the scene, which goes before the file's. */
+/* The material of that name in the scene, which takes precedence over the file's. */
 static const material *named_material_of(const scene *s, const char *name)
 {
     for (size_t i = 0; name[0] && i < s->material_count; i++)
@@ -42,8 +42,8 @@ static void dress(shading_material *l, const material *own, const face_material 
     l->img = given->img;
 }
 
-/* Where light is bent, what the body is made of is the solid's own, and a face's look changes what an opaque surface
- * sends back. Where light goes straight on, a face lets through and reflects what its own material says. */
+/* With refraction, medium and transparency are properties of the solid, and a face's material affects only the
+ * reflection of opaque surfaces. Without refraction, transparency and reflectivity are properties of each face. */
 shading_material shading_material_of_face(const scene *s, const solid *owner, const material *own, int slot)
 {
     const material *named;
@@ -61,7 +61,7 @@ shading_material shading_material_of_face(const scene *s, const solid *owner, co
         return l;
     }
     l.surface.transparency = own->transparency;
-    if (!material_is_opaque(own)) /* shares that add up to at most 1 */
+    if (!material_is_opaque(own)) /* shares with a sum of at most 1 */
         l.surface.reflectivity = own->reflectivity;
     return l;
 }

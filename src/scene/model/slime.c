@@ -36,7 +36,7 @@ status slime_check_end(const mesh_entry *m, double end_s, diagnostic *why)
     return check_steps(m, end_s, "raise dt_s, or end earlier", why);
 }
 
-/* What is wrong with the body, unless it is in its script, which says so itself. */
+/* Locates an error of the body, except one in its script, which is already located. */
 static status body_error(const scene *s, const mesh_entry *m, const diagnostic *bad, status code, diagnostic *why)
 {
     if (bad->file[0] && bad->line > 0) {
@@ -57,7 +57,7 @@ status slime_read_script(const scene *s, const mesh_entry *m, hand_script **out,
     diagnostic bad = {.what = ""};
     const status code = script_read_below(path, scene_root(s), out, &bad);
     free(path);
-    if (code != STATUS_OK && bad.line == 0) /* no text to point at: wrong is what names it */
+    if (code != STATUS_OK && bad.line == 0) /* no text in the scene file: the message has the name */
         return asset_error(s, m->name, m->script_line, m->script_column, &bad, code, why);
     return code == STATUS_OK ? code : body_error(s, m, &bad, code, why);
 }
@@ -92,7 +92,7 @@ void slime_destroy(slime *x)
 
 static double steps_to(const mesh_entry *m, double time_s)
 {
-    return floor(time_s / m->slime.dt_s + 0.5); /* as softbody_advance counts them */
+    return floor(time_s / m->slime.dt_s + 0.5); /* counted as by softbody_advance */
 }
 
 double slime_work(const mesh_entry *m)
@@ -100,7 +100,7 @@ double slime_work(const mesh_entry *m)
     return steps_to(m, m->time_s) * (10.0 * pow(4.0, (double)m->level) + 2.0);
 }
 
-/* A step at a time, so that a wish to stop is heard soon, however short the steps are. */
+/* One step per call, so that a request to stop is honoured quickly, however short the steps are. */
 static status advance_watched(slime *x, const scene *s, const mesh_entry *m, double time_s, const load_watch *watch,
                               diagnostic *bad)
 {
@@ -140,11 +140,11 @@ status slime_advance(slime *x, const scene *s, const mesh_entry *m, double time_
 static status make_surface_mesh(const slime *x, const scene *s, mesh_entry *m, diagnostic *why)
 {
     diagnostic bad = {.what = ""};
-    mesh *skin = NULL;
-    const status code = softbody_surface(x->body, &skin, &bad);
+    mesh *surface = NULL;
+    const status code = softbody_surface(x->body, &surface, &bad);
     if (code != STATUS_OK)
         return body_error(s, m, &bad, code, why);
-    m->data = skin;
+    m->data = surface;
     m->account = softbody_measure(x->body);
     m->motion_s = x->motion_s;
     return STATUS_OK;

@@ -20,7 +20,7 @@ static const char *find(const char *word, const char *const *words, size_t count
     return NULL;
 }
 
-/* Other programs' names of our parameters. */
+/* Names of our parameters in other programs. */
 static const char *by_alias(const char *wrong, const char *const *words, size_t count)
 {
     static const char *const aliases[][2] = {

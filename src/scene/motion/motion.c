@@ -21,10 +21,10 @@ bool scene_moves(const scene *s)
 status motion_give_surface(const scene_motion *m, const moving_slime *one, diagnostic *why)
 {
     mesh_entry *entry = motion_entry(m, one);
-    mesh *skin = NULL;
-    TRY(softbody_surface(one->x.body, &skin, why));
+    mesh *surface = NULL;
+    TRY(softbody_surface(one->x.body, &surface, why));
     mesh_entry_unload(entry);
-    entry->data = skin;
+    entry->data = surface;
     return STATUS_OK;
 }
 
@@ -42,12 +42,12 @@ static status move_surface(scene_motion *m, const moving_slime *one, diagnostic 
     mesh_entry *entry = motion_entry(m, one);
     if (!entry->data || mesh_owners(entry->data) > 1)
         return motion_give_surface(m, one, why);
-    /* Made by motion_give_surface for this scene, which alone holds it. */
+    /* Made by motion_give_surface for this scene, its only owner. */
     status code = softbody_move_surface(one->x.body, (mesh *)(uintptr_t)entry->data, why);
     hierarchy_moves moves = {.refitted = 0};
     THEN(code, hierarchy_follow(entry->data, m->s->render.rebuild, scene_build_threads(&m->s->render), &moves, why));
     if (code != STATUS_OK) {
-        mesh_entry_unload(entry); /* triangles and hierarchies that do not fit each other */
+        mesh_entry_unload(entry); /* triangles and hierarchies would be inconsistent */
         return code;
     }
     add_moves(&m->last.hierarchies, &moves);
@@ -82,7 +82,7 @@ static status begin(scene_motion *m, diagnostic *why)
             return code;
         motion_take_account(m, one, 0.0);
     }
-    return scene_load(m->s, why); /* all else */
+    return scene_load(m->s, why); /* all other slimes */
 }
 
 status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
@@ -102,7 +102,7 @@ status scene_motion_create(scene *s, scene_motion **out, diagnostic *why)
     m->slimes = slimes;
     const status code = begin(m, why);
     if (code != STATUS_OK) {
-        scene_motion_end(m); /* what is at time 0 would pass for another time */
+        scene_motion_end(m); /* a state at time 0 would be taken for another time */
         return code;
     }
     *out = m;
@@ -119,7 +119,7 @@ void scene_motion_destroy(scene_motion *m)
     free(m);
 }
 
-/* One of count slimes, in turn. */
+/* Advances one of count slimes. */
 typedef struct turn_watch {
     const load_watch *whole;
     size_t turn, count;
@@ -142,36 +142,37 @@ static status advance_one(scene_motion *m, size_t i, double time_s, const load_w
     return code;
 }
 
-static status show_one(scene_motion *m, moving_slime *one, double time_s, bool skins, diagnostic *why)
+static status show_one(scene_motion *m, moving_slime *one, double time_s, bool surfaces, diagnostic *why)
 {
     const mesh_entry *entry = motion_entry(m, one);
     status code = STATUS_OK;
-    if (skins) {
+    if (surfaces) {
         const double begun_s = clock_wall_s();
         code = move_surface(m, one, why);
         m->last.skin_s += clock_wall_s() - begun_s;
     }
     if (code == STATUS_OK) {
-        motion_take_account(m, one, time_s > entry->time_s ? time_s : entry->time_s); /* it does not go back */
+        motion_take_account(m, one, time_s > entry->time_s ? time_s : entry->time_s); /* time does not go back */
         m->last.steps += entry->account.steps - one->steps;
         one->steps = entry->account.steps;
     }
     return code;
 }
 
-status scene_motion_advance_until(scene_motion *m, double time_s, bool skins, const load_watch *watch, diagnostic *why)
+status scene_motion_advance_until(scene_motion *m, double time_s, bool surfaces, const load_watch *watch,
+                                  diagnostic *why)
 {
     m->last = (scene_motion_report){.steps = 0};
     for (size_t i = 0; i < m->count; i++)
         TRY(advance_one(m, i, time_s, watch, why));
     for (size_t i = 0; i < m->count; i++)
-        TRY(show_one(m, &m->slimes[i], time_s, skins, why));
+        TRY(show_one(m, &m->slimes[i], time_s, surfaces, why));
     return STATUS_OK;
 }
 
-status scene_motion_advance(scene_motion *m, double time_s, bool skins, diagnostic *why)
+status scene_motion_advance(scene_motion *m, double time_s, bool surfaces, diagnostic *why)
 {
-    return scene_motion_advance_until(m, time_s, skins, NULL, why);
+    return scene_motion_advance_until(m, time_s, surfaces, NULL, why);
 }
 
 scene_motion_report scene_motion_last(const scene_motion *m)

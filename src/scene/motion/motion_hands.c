@@ -15,7 +15,7 @@ static vec3 over(vec3 a, vec3 b)
     return vec3_make(a.x / b.x, a.y / b.y, a.z / b.z);
 }
 
-/* What a pair of planes leaves of a ray, a little more than rounding needs. */
+/* Relative margin of the slab test of a ray, slightly larger than its rounding error. */
 static void cut(double low, double high, double o, double d, double *enter, double *leave)
 {
     const double slack = 1e-9 * (fabs(low) + fabs(high) + fabs(o));
@@ -28,7 +28,7 @@ static void cut(double low, double high, double o, double d, double *enter, doub
     }
 }
 
-/* Does the ray pass the box? There may be millions of copies that it has nothing to do with. */
+/* Whether the ray hits the box. There may be millions of copies to skip. */
 static bool passes(bounds3 box, vec3 o, vec3 d)
 {
     double enter = 0.0, leave = INFINITY;
@@ -38,7 +38,7 @@ static bool passes(bounds3 box, vec3 o, vec3 d)
     return enter <= leave;
 }
 
-/* What is looked for, in one solid's frame. */
+/* A query in one solid's frame. */
 typedef struct search {
     const softbody *body;
     bounds3 box;
@@ -47,7 +47,7 @@ typedef struct search {
     vec3 origin, direction;
 } search;
 
-/* The nearest of what is met so far and one copy. */
+/* The nearest of the hit so far and the hit of one copy. */
 static void pick_copy(const search *q, vec3 copy, motion_place *best)
 {
     const solid_shape *shape = q->shape;
@@ -140,7 +140,8 @@ static bool is_moving(const motion_hand *h)
     return h->holds && (h->from.x != h->to.x || h->from.y != h->to.y || h->from.z != h->to.z);
 }
 
-/* Where the hands are to be at the end of a step, a share of the way that they have; in a script's own arithmetic. */
+/* Targets of the hands at the end of a step, interpolated along their displacement, with the same arithmetic as for
+ * scripts. */
 static void put_hands(softbody *body, const motion_hand *hands, double share)
 {
     for (int i = 0; i < SOFTBODY_HANDS_MAX; i++) {

@@ -1,4 +1,4 @@
-/* Which scene a motion is in: what that had before, what it gets back, and whether another one has the same slimes. */
+/* Attachment of a simulation to a scene: saving and restoring its data, and comparing the slimes of another scene. */
 #include "scene/motion/motion_private.h"
 
 #include "base/text_writer.h"
@@ -14,8 +14,7 @@ static bool is_of_the_body(const param *row)
     return row->group == PARAM_MESH && row->offset != offsetof(mesh_entry, time_s);
 }
 
-/* What it is made of, as one text: its parameters but for time_s, and where its script lies. NULL when memory is out.
- */
+/* All its parameters except time_s as one text, and the path of its script. NULL if memory runs out. */
 static char *motion_parameters(const scene *s, const mesh_entry *entry)
 {
     char *text = NULL, *script = scene_file_path(s, entry->script_path);
@@ -67,7 +66,7 @@ void motion_forget(moving_slime *one)
 {
     slime_destroy(&one->x);
     mesh_release(one->given.data);
-    mesh_release(one->skin);
+    mesh_release(one->surface);
     free(one->name);
     free(one->parameters);
 }
@@ -77,7 +76,7 @@ void scene_motion_leave(scene_motion *m)
     for (size_t i = 0; m->s && i < m->count; i++) {
         moving_slime *one = &m->slimes[i];
         mesh_entry *entry = motion_entry(m, one);
-        one->skin = entry->data;
+        one->surface = entry->data;
         entry->data = NULL;
         give_back(entry, &one->given);
     }
@@ -92,7 +91,7 @@ void scene_motion_end(scene_motion *m)
     }
 }
 
-/* Index of the mesh of the same name and parameters. */
+/* Index of the mesh with the same name and parameters. */
 static status find_same(const scene *s, const moving_slime *one, size_t *mesh_index, bool *found, diagnostic *why)
 {
     *found = false;
@@ -116,8 +115,8 @@ static void put_into(scene_motion *m, moving_slime *one)
     mesh_entry *entry = motion_entry(m, one);
     take_given(&one->given, entry);
     mesh_entry_unload(entry);
-    entry->data = one->skin;
-    one->skin = NULL;
+    entry->data = one->surface;
+    one->surface = NULL;
     motion_take_account(m, one, one->time_s);
 }
 
@@ -136,7 +135,7 @@ status scene_motion_join(scene_motion *m, scene *s, bool *joined, diagnostic *wh
     m->s = s;
     for (size_t i = 0; i < m->count && code == STATUS_OK; i++) {
         moving_slime *one = &m->slimes[i];
-        const bool had_surface = one->skin != NULL;
+        const bool had_surface = one->surface != NULL;
         one->entry = places[i];
         put_into(m, one);
         code = had_surface ? STATUS_OK : motion_give_surface(m, one, why);

@@ -1,6 +1,6 @@
-/* Reads script files through the tree of scene/file/document.h. The grammar stands in the header; every key may be left
- * out but hands, time_s, one act an entry, and of a grab towards and reach. What hands can do in turn is
- * hand_script_add's to say. */
+/* Reads script files through the tree of scene/file/document.h. The grammar is in the header; all keys are optional
+ * except hands, time_s, one act per entry, and towards and reach of a grab. hand_script_add checks the sequence of
+ * acts. */
 #include "scene/motion/script.h"
 #include "base/number.h"
 #include "scene/file/document.h"
@@ -26,7 +26,7 @@ static const char *kind_name(const node *n)
     return n->kind == NODE_LIST ? "a list" : n->kind == NODE_MAP ? "a map" : "a word";
 }
 
-/* A finite number from low to high (its label's, in messages), as in scene files without quotes. */
+/* A finite number from low to high (label is used in messages), as in scene files without quotes. */
 static status read_number(const script_reader *r, const char *label, const node *n, double low, double high,
                           double *out)
 {
@@ -92,7 +92,7 @@ static status read_release(const script_reader *r, const node *value)
                  : node_error(r->file, value, r->why, "write 'release: on'", "the only value of release is on");
 }
 
-/* The one act of an entry. */
+/* The single act of an entry. */
 static status find_act(const script_reader *r, const node *entry, hand_act *out)
 {
     int found = -1;

@@ -1,6 +1,6 @@
-/* Script files: what hands do with a slime, as a person writes it. YAML:
+/* Script files: recorded hands that act on a slime. YAML:
  *
- *   title: A tug to the left            # may be left out
+ *   title: A tug to the left            # optional
  *   hands:
  *     left:                             # any name; each hand holds one place at a time
  *       - {time_s: 0.5, grab: [0, 1, -6], towards: [0, 0, 1], reach: 0.3}   # under the ray from a point in a direction
@@ -14,7 +14,7 @@
 
 #include "softbody/hand.h"
 
-/* From a file that lies below root (base/below.h; NULL: anywhere). */
+/* From a file below root (base/below.h; NULL: anywhere). */
 status script_read_below(const char *path, const char *root, hand_script **out, diagnostic *why);
-/* The same from memory; name stands for the file in diagnostics. */
+/* The same from memory; name is used in diagnostics. */
 status script_read_text(const char *name, const char *text, size_t size, hand_script **out, diagnostic *why);

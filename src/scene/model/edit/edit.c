@@ -1,5 +1,5 @@
-/* Objects go and change their names. How they come is in edit_add.c, what a solid is made of is in edit_solid.c, how
- * things move in edit_place.c. */
+/* Removes and renames objects. Adding is in edit_add.c, materials and shapes of solids in edit_solid.c, placement in
+ * edit_place.c. */
 #include "scene/model/edit/edit.h"
 #include "scene/model/check.h"
 #include "scene/model/objects.h"

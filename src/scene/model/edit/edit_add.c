@@ -6,7 +6,7 @@
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 
-/* shape is that of a solid. */
+/* shape is for solids. */
 static status add(scene *s, param_group group, shape_kind shape, const char *name, size_t *index, diagnostic *why)
 {
     const size_t at = param_place_group_size(s, group);

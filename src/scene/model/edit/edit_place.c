@@ -1,4 +1,4 @@
-/* Objects and the camera move and turn, one by one. All together: edit_whole.c. */
+/* Moves and rotates single objects and the camera. Groups of objects: edit_whole.c. */
 #include "scene/model/edit/edit.h"
 #include "scene/model/edit/edit_vector.h"
 #include "base/elementary.h"
@@ -40,7 +40,7 @@ static status has_no(const char *name, param_group group, const char *what, cons
                     group <= PARAM_BACKGROUND ? "the" : "a", param_group_name(group), what);
 }
 
-/* A cone goes on shining the same way. */
+/* A spotlight keeps its direction. */
 static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
 {
     light *l = &s->lights[index];
@@ -92,10 +92,10 @@ static mat3 product(mat3 a, mat3 b)
     return c;
 }
 
-/* Angles whose rotation_from_deg is r = R_z R_y R_x. The x angle is read from R_z^-1 r rather than from r's last row,
- * so that it makes up for whatever z was taken to be when the local x axis stands upright and x and z turn about one
- * line: Herter and Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive rotations, Computers &
- * Graphics 17 (1993). */
+/* Angles whose rotation_from_deg is r = R_z R_y R_x. The x angle is computed from R_z^-1 r instead of r's last row, so
+ * that it compensates any choice of z when the local x axis is vertical and x and z rotate about the same line: Herter
+ * and Lott, Algorithms for decomposing 3-D orthogonal matrices into primitive rotations, Computers & Graphics 17
+ * (1993). */
 static vec3 angles_of(mat3 r)
 {
     const double cos_y = sqrt(r.row[0].x * r.row[0].x + r.row[1].x * r.row[1].x);
@@ -112,8 +112,8 @@ static vec3 about(axis which, double degrees)
     return vec3_make(which == AXIS_X ? degrees : 0.0, which == AXIS_Y ? degrees : 0.0, which == AXIS_Z ? degrees : 0.0);
 }
 
-/* The angles after one more turn about an axis of the world. z is turned last, so a turn about z only adds to it; one
- * about y or x does where the angles after it are 0. Sums keep a person's numbers as they are. */
+/* The angles after a further rotation about a world axis. z is applied last, so a rotation about z only adds to it; the
+ * same holds for y or x if the angles after it are 0. Adding keeps round numbers round. */
 static vec3 turned(vec3 angles, axis which, double degrees)
 {
     if (degrees == 0.0)
@@ -139,7 +139,7 @@ static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
     if (c->aimed)
         return edit_set_vector(s, "camera", "target",
                                vec3_add(c->position, mat3_apply(turn, vec3_sub(c->target, c->position))), why);
-    if (degrees.x == 0.0 && degrees.z == 0.0) { /* yaw turns as y does, z towards x */
+    if (degrees.x == 0.0 && degrees.z == 0.0) { /* yaw rotates as y does, z towards x */
         c->yaw_deg = wrap(c->yaw_deg + degrees.y);
         return STATUS_OK;
     }
@@ -154,14 +154,14 @@ static status turn_camera(scene *s, vec3 degrees, diagnostic *why)
 
 static bool is_angle(double degrees)
 {
-    return fabs(degrees) <= 1e6; /* where elementary_sincos_deg still keeps its error; false for NaN */
+    return fabs(degrees) <= 1e6; /* range in which elementary_sincos_deg has its stated error; false for NaN */
 }
 
-/* A cone's target goes around its position. */
+/* A spotlight's target rotates about its position. */
 static status turn_light(scene *s, const light *l, vec3 degrees, diagnostic *why)
 {
-    const vec3 way = mat3_apply(rotation_from_deg(degrees), vec3_sub(l->target, l->position));
-    return edit_set_vector(s, l->name, "target", vec3_add(l->position, way), why);
+    const vec3 direction = mat3_apply(rotation_from_deg(degrees), vec3_sub(l->target, l->position));
+    return edit_set_vector(s, l->name, "target", vec3_add(l->position, direction), why);
 }
 
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)

@@ -1,4 +1,4 @@
-/* What a solid is made of and what shape it has: what a file says of it beside the rows of the table. */
+/* Material and shape of a solid: its properties that are not rows of the table. */
 #include "scene/model/suggest.h"
 #include "scene/model/edit/edit.h"
 #include "base/text.h"
@@ -76,7 +76,7 @@ static status put_shape(scene *s, solid *owner, const char *word, diagnostic *wh
     return code;
 }
 
-/* The solid that a path begins with, or NULL. */
+/* The solid at the start of a path, or NULL. */
 static solid *owner_of(const scene *s, const char *path)
 {
     const size_t length = strcspn(path, ".");

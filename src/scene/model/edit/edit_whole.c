@@ -1,5 +1,5 @@
-/* A whole scene moves, turns and is scaled: all its solids, lights, or both, with or without the camera. One solid or
- * light is scaled here too. */
+/* Moves, rotates and scales whole scenes: all solids, all lights, or both, with or without the camera. Scaling of one
+ * solid or light is here as well. */
 #include "scene/model/edit/edit.h"
 #include "scene/model/edit/edit_vector.h"
 #include "base/elementary.h"
@@ -59,7 +59,7 @@ status edit_find(const scene *s, const char *name, param_place *at, diagnostic *
     return code;
 }
 
-/* What an edit changes goes back to what it was in a clone. */
+/* The scene is edited in a clone, so that a failed edit leaves the original unchanged. */
 static void put_back(scene *s, const scene *before)
 {
     for (size_t i = 0; i < s->solid_count; i++) {
@@ -77,13 +77,13 @@ static void put_back(scene *s, const scene *before)
     s->render.unit_m = before->render.unit_m;
 }
 
-/* An edit of many objects, which is done whole or not at all. */
+/* An edit of many objects, done completely or not at all. */
 typedef struct whole_edit {
     scene *s;
     const scene *before;
     scene_parts parts;
-    const char *only; /* scales that solid or light alone, where it stands; NULL: the parts */
-    vec3 by;          /* of a move or turn */
+    const char *only; /* scales only that solid or light, in place; NULL: the parts */
+    vec3 by;          /* of a move or rotation */
     double factor;    /* of a scale */
     diagnostic *why;
     status (*act)(struct whole_edit *e);
@@ -112,7 +112,7 @@ static status move_parts(whole_edit *e)
     return e->parts.camera && code == STATUS_OK ? scene_move(e->s, "camera", e->by, e->why) : code;
 }
 
-/* About the origin; what is on an axis of the turn keeps its zeros. */
+/* About the origin; points on the axis of rotation keep their zeros. */
 static status turn_point(const whole_edit *e, const char *name, const char *row, vec3 point)
 {
     const vec3 to = mat3_apply(rotation_from_deg(e->by), point);
@@ -131,8 +131,8 @@ static status turn_light(whole_edit *e, const light *one)
     return code == STATUS_OK && one->kind != LIGHT_POINT ? turn_point(e, one->name, "target", one->target) : code;
 }
 
-/* The whole frame goes around the origin, so that the image's up does too: what is left between that and a level image
- * is roll. */
+/* The whole camera frame rotates about the origin, including the image's up direction: its deviation from a level image
+ * becomes roll. */
 static status turn_camera(whole_edit *e)
 {
     scene *s = e->s;
@@ -162,8 +162,7 @@ static status turn_parts(whole_edit *e)
     return e->parts.camera && code == STATUS_OK ? turn_camera(e) : code;
 }
 
-/* Lengths are the rows of the table whose unit is the scene unit, so that a new one is scaled too; and a mesh's own
- * scale. */
+/* Lengths are the rows of the table with scene units, so that new rows are scaled as well; and a mesh's own scale. */
 static bool is_length(const param *row)
 {
     if (row->group == PARAM_SOLID && strcmp(row->name, "scale") == 0)
@@ -176,7 +175,7 @@ static bool is_scaled(const whole_edit *e, const char *name, const param *row)
     param_place at;
     if (!is_length(row) || param_place_find_object(e->s, name, &at, NULL) != STATUS_OK)
         return false;
-    if (e->only) { /* its material stays what it is, as its absorption by render.unit_m does */
+    if (e->only) { /* its material is unchanged, and so is its absorption by render.unit_m */
         return strcmp(name, e->only) == 0 && strcmp(row->name, "tint_distance") != 0 &&
                strcmp(row->name, "position") != 0 && strcmp(row->name, "target") != 0;
     }
@@ -185,7 +184,7 @@ static bool is_scaled(const whole_edit *e, const char *name, const param *row)
                                             : at.object_group == PARAM_CAMERA && e->parts.camera;
 }
 
-/* Visits the clone, since a material that is set is set for its solids. */
+/* Visits the clone, since setting a material changes its solids. */
 static status scale_row(void *context, const char *path, const param *row, const char *value)
 {
     whole_edit *e = context;
@@ -207,7 +206,7 @@ static status scale_row(void *context, const char *path, const param *row, const
     return code;
 }
 
-/* Of what has no extent a texture size of 0 means 1, which is a length. */
+/* For shapes without extent a texture size of 0 means 1, which is a length. */
 static void scale_unbounded(whole_edit *e)
 {
     for (size_t i = 0; i < e->s->solid_count; i++) {
@@ -219,7 +218,7 @@ static void scale_unbounded(whole_edit *e)
     }
 }
 
-/* A scene that is scaled keeps its lengths in metres, and with them what its media absorb. */
+/* A scaled scene keeps its lengths in metres, and therefore its absorption. */
 static status keep_metres(whole_edit *e)
 {
     char text[NUMBER_TEXT_MAX];

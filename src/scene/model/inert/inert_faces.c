@@ -1,4 +1,4 @@
-/* Why a parameter of a surface does nothing on faces that look as a mesh's file says: see shading_material_of_face. */
+/* Surface parameters without effect on faces with materials from a mesh file: see shading_material_of_face. */
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
@@ -11,7 +11,7 @@ static bool is_row(const inert_case *c, const char *name)
     return strcmp(c->at.row->name, name) == 0;
 }
 
-/* What a body is made of. */
+/* Parameters of the interior. */
 static bool is_of_region(const inert_case *c)
 {
     static const char *const of_body[] = {"ior",           "medium", "coefficients", "absorb_per_m", "absorb_spectrum",
@@ -24,7 +24,8 @@ static bool is_straight(const inert_case *c)
     return c->s->render.transmission == TRANSMISSION_SIMPLE;
 }
 
-/* Does the solid's own surface say it, on faces of which a material of the scene or of the file says the rest? */
+/* Whether the solid's own surface determines it on faces whose other properties come from a material of the scene or
+ * the file. */
 static bool is_own(const inert_case *c, const material *named, const face_material *given)
 {
     static const char *const never_given[] = {"ambient", "reflectivity", "checker", "checker_color", NULL};
@@ -39,7 +40,7 @@ static bool is_own(const inert_case *c, const material *named, const face_materi
            (is_row(c, "color") && clear);
 }
 
-/* The rules of a whole surface, on one kind of face. */
+/* The rules of a uniform surface, applied to one kind of face. */
 static bool inert_on_slot(const inert_case *c, int slot)
 {
     const shading_material mat = shading_material_of_face(c->s, c->owner, &c->owner->surface, slot);
@@ -56,12 +57,12 @@ static bool say_by_face(const inert_case *c)
                      "the materials of the faces of %s come from the mesh file", c->owner->name);
 }
 
-/* Before the mesh is there, nobody knows. */
+/* Unknown until the mesh is loaded. */
 bool inert_faces(const inert_case *c)
 {
     if (!has_face_materials(c->s, c->owner))
         return false;
-    if (is_of_region(c)) { /* which is clear where a face is */
+    if (is_of_region(c)) { /* transparent if any face is */
         material clear = *c->m;
         clear.transparency = 1.0;
         inert_case region = *c;
@@ -82,7 +83,7 @@ bool inert_faces(const inert_case *c)
     return some || say_by_face(c);
 }
 
-/* Of the scene's material that c is about: does a face that is named so take it? */
+/* For the scene's material of c: whether it applies to a face with its name. */
 static bool is_named_ones(const inert_case *c)
 {
     if (is_of_region(c))
@@ -111,5 +112,5 @@ bool inert_named_faces(const inert_case *c)
         if (is_named_ones(c) ? !inert_on_slot(c, slot) : !say_of_solid(c))
             return false;
     }
-    return true; /* without an answer where no face is named so */
+    return true; /* no result if no face has that name */
 }

@@ -1,4 +1,4 @@
-/* What a scene does with light, as far as its file says it. Each of these is what the renderer decides by, too: see
+/* Light transport facts that follow from the scene alone. The renderer makes the same decisions: see
  * render/shade/shading.c, render/integrators/path.c and render/core/plan.c. */
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/medium.h"
@@ -25,7 +25,7 @@ bool draws_through(const scene *s)
            first_visible(s, is_clear);
 }
 
-/* Shadow rays pass clear solids where shadows are attenuated. */
+/* Attenuated shadow rays pass transparent solids. */
 bool nothing_passes(const scene *s)
 {
     const bool lit_through = !integrator_traits_of(&s->render)->drawn && !integrator_traits_of(&s->render)->layers &&

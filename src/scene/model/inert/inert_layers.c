@@ -1,5 +1,5 @@
-/* Why a parameter does nothing under an integrator that gives named layers of what camera rays meet first: it follows
- * no light. And why no other integrator shows a layer. */
+/* Parameters without effect for an integrator with named layers, which traces no light; and layers for other
+ * integrators. */
 #include "scene/model/inert/inert_private.h"
 
 #include "scene/model/params.h"
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* By group: what is about light alone. */
+/* By group: parameters that concern only light. */
 static bool is_of_light(const inert_case *c)
 {
     static const char *const of_render[] = {
@@ -42,7 +42,7 @@ bool inert_layers(const inert_case *c)
                                        "the image shows a layer of the first hits: light is not traced");
 }
 
-/* Does the film stay as it is with the parameter that many times as large? */
+/* Whether the film is unchanged with the parameter scaled by that factor. */
 static bool same_times(const inert_case *c, const char *path, double factor)
 {
     char *now = NULL;
@@ -53,8 +53,8 @@ static bool same_times(const inert_case *c, const char *path, double factor)
     return inert_same(c, "%s=%.6g", path, value);
 }
 
-/* What stands behind, and what of a surface only decides whether it is one, may be so or not in this image: the witness
- * tells. */
+/* The background, and surface properties that only decide whether there is a surface, may matter for this image: the
+ * witness decides. */
 bool inert_unmet(const inert_case *c, const char *path)
 {
     static const struct {

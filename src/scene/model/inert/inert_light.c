@@ -1,17 +1,17 @@
-/* Why a light's or the background's parameter does nothing in a scene. */
+/* Parameters of lights and of the background without effect. */
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
 
 #include <string.h>
 
-/* No visible surface shows a lamp's light, nor does the eye meet the lamp. */
+/* No visible surface is lit by lights, and no camera ray hits a light. */
 static bool lights_nothing(const inert_case *c, const light *l)
 {
     const scene *s = c->s;
     if (is_path(s) && l->radius > 0.0)
         return false;
-    scene lit = *s; /* borrows what s owns; a lamp alone, which shines */
+    scene lit = *s; /* borrows from s; a single light with an intensity */
     light white = *l;
     white.color = vec3_make(1.0, 1.0, 1.0), white.intensity = 1.0;
     lit.lights = &white, lit.light_count = 1;
@@ -52,7 +52,7 @@ static bool horizon(const inert_case *c)
            inert_say(c, "no-gradient", "set background.kind=gradient", "the background is not a gradient");
 }
 
-/* A gradient between equal colours is uniform; a picture must be named. */
+/* A gradient between equal colours is uniform; an image background needs a file. */
 static bool kind(const inert_case *c)
 {
     const background *b = &c->s->background;
@@ -72,7 +72,7 @@ static bool ambient(const inert_case *c)
     const scene *s = c->s;
     if (no_ambient_on_paths(c))
         return true;
-    scene bright = *s; /* borrows what s owns */
+    scene bright = *s; /* borrows from s */
     bright.background.ambient = vec3_make(1.0, 1.0, 1.0);
     const inert_remedy remedy = inert_set_on(first_visible(s, NULL), "ambient=0.5");
     return !first_visible(&bright, has_ambient) &&

@@ -1,4 +1,4 @@
-/* Why a material's parameter does nothing on the solids that have it. */
+/* Parameters of a material without effect on its solids. */
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/cover.h"
@@ -37,7 +37,7 @@ static int clear_users(const inert_case *c)
     return count;
 }
 
-/* Between equal indices is no surface: with any other one it is as with this. */
+/* With equal indices there is no surface: any other index would have an effect. */
 static bool not_bent(const inert_case *c)
 {
     const scene *s = c->s;
@@ -55,7 +55,7 @@ static bool index_rule(const inert_case *c)
     return opaque_rule(c) || not_bent(c);
 }
 
-/* Light in the solid is that of an eye in it alone. */
+/* Light inside the solid is seen only by a camera inside it. */
 static bool unpassed(const inert_case *c)
 {
     return nothing_passes(c->s) && scene_apart_from_eye(c->s, c->owner) && say_no_tree(c);
@@ -75,7 +75,7 @@ static bool no_color(const inert_case *c)
     return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text, "%s", text);
 }
 
-/* A clear solid has a tint, too. */
+/* A transparent solid also has a tint. */
 static bool color_rule(const inert_case *c)
 {
     const bool tints = !material_is_opaque(c->m) && !integrator_traits_of(&c->s->render)->layers;
@@ -126,9 +126,8 @@ static bool shininess_rule(const inert_case *c)
            specular_rule(c);
 }
 
-/* Weights are not negative: a film that is the same with all of the light mirrored shows nothing of it with less. A
- * coating takes from what passes as it adds to what is reflected; that both change nothing at one half and at one
- * leaves black on both ways. */
+/* Weights are not negative: if the film is unchanged with full reflection, it is unchanged with less. A coating reduces
+ * transmission by what it adds to reflection; if neither 1/2 nor 1 changes the film, both paths are black. */
 static bool mirrors_black(const inert_case *c)
 {
     const background *sky = &c->s->background;
@@ -158,7 +157,7 @@ static bool say_unseen(const inert_case *c)
 static bool reflectivity_rule(const inert_case *c)
 {
     const scene *s = c->s;
-    /* The coating of a clear surface keeps light from shadow rays, too. */
+    /* The coating of a transparent surface also attenuates shadow rays. */
     const bool coats = !material_is_opaque(c->m) && !scene_has_constant_shares(&s->render);
     if (coats)
         return (!material_matches_surroundings(s, c->m) && unpassed(c)) || mirrors_black(c);
@@ -239,12 +238,12 @@ bool is_among(const inert_case *c, const char *const *names)
     return *names != NULL;
 }
 
-/* What Phong's terms are of: all that a clear surface sends back of its own. */
+/* Phong terms: all reflection of a transparent surface's own lighting. */
 static const char *const of_surface[] = {"ambient",      "diffuse", "specular",      "shininess", "texture",
                                          "texture_size", "checker", "checker_color", NULL};
 
-/* What a surface that no ray meets would send back. Light that passes a clear one on its way to another is met by none.
- */
+/* The reflection of a surface that no ray hits. Light that crosses a transparent surface to another one does not count.
+ * */
 static bool unseen(const inert_case *c)
 {
     static const char *const of_opaque[] = {"color", "emission", "reflectivity", NULL};
@@ -252,7 +251,7 @@ static bool unseen(const inert_case *c)
     return sent_back && c->frame && c->frame->hits[c->owner - c->s->solids] == 0 && say_unseen(c);
 }
 
-/* A clear solid of the surroundings' index has no surface, where no other clear one has one either. */
+/* A transparent solid with the index of the surroundings has no surface, unless it touches another transparent one. */
 static bool no_interface(const inert_case *c)
 {
     const scene *s = c->s;
@@ -270,7 +269,7 @@ static bool no_interface(const inert_case *c)
                      "its refractive index equals that of the surrounding medium: it has no visible surface");
 }
 
-/* Wholly inside a solid that wins there: nothing of it is met. */
+/* Entirely inside a solid that has precedence: no ray hits it. */
 static bool covered(const inert_case *c)
 {
     const solid *cover = scene_cover(c->s, c->owner);
@@ -316,7 +315,7 @@ static bool unused(const inert_case *c, const solid *hidden)
     return inert_say(c, "unused-material", remedy.text, "no visible solid has this material");
 }
 
-/* On each visible solid that refers to it, and each face that is named so; the answer is the first one's. */
+/* For each visible solid with the material, and each face with its name; the result is the first one's. */
 bool inert_material(const inert_case *c)
 {
     const scene *s = c->s;

@@ -1,4 +1,4 @@
-/* Why a mesh's or a texture's parameter does nothing in a scene. */
+/* Parameters of meshes and textures without effect. */
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/scene.h"
@@ -7,8 +7,8 @@
 #include <string.h>
 #include <strings.h>
 
-/* Which bodies a parameter makes, and one of them as a remedy. Of slimes alone (param.makers) are the rows that none
- * else has. */
+/* The generators that use a parameter, and one of them as a remedy. Rows for slimes only (param.makers) belong to no
+ * other. */
 typedef struct maker_row {
     const char *name;
     unsigned makers;
@@ -45,7 +45,7 @@ static bool other_maker(const inert_case *c, const mesh_entry *m)
     return false;
 }
 
-/* Shown by a visible solid? If not, which solid could show it: a hidden one that does, or a visible mesh. */
+/* Whether a visible solid uses it. If not, a solid that could: a hidden one that does, or a visible mesh. */
 static bool unused_mesh(const inert_case *c)
 {
     const scene *s = c->s;
@@ -64,7 +64,7 @@ static bool unused_mesh(const inert_case *c)
     return inert_say(c, "unused-mesh", remedy.text, "no visible solid uses this mesh");
 }
 
-/* How a slime moves does not matter where it has not begun to. */
+/* The motion parameters of a slime have no effect at time 0. */
 static bool at_rest(const inert_case *c, const mesh_entry *m)
 {
     static const char *const always[] = {"time_s", "radius", "position", "dt_s", NULL};
@@ -117,7 +117,7 @@ static bool unused_texture(const inert_case *c)
     return inert_say(c, "unused-texture", remedy.text, "no visible solid has this texture");
 }
 
-/* Floats are linear light already: image/texture.c. */
+/* Float images are linear already: image/texture.c. */
 static bool of_floats(const inert_case *c)
 {
     const char *path = c->s->textures[c->at.index].path, *dot = strrchr(path, '.');

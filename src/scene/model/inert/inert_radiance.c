@@ -1,5 +1,5 @@
-/* Why basic and classic radiance are the same in a scene: all light begins and ends in a vacuum, where n^2 is 1
- * (render/shade/radiance.c). */
+/* Conditions under which basic and classic radiance are equal: all light paths begin and end in a vacuum, where n^2 is
+ * 1 (render/shade/radiance.c). */
 #include "scene/model/inert/inert_private.h"
 #include "scene/model/cover.h"
 #include "scene/model/medium.h"
@@ -10,7 +10,7 @@ static bool is_bare(const background *b)
     return b->medium == MEDIUM_IOR && b->ior == 1.0;
 }
 
-/* Light has another radiance in it. */
+/* Radiance differs inside it. */
 static bool is_dense(const scene *s, const solid *one)
 {
     (void)s;
@@ -18,7 +18,7 @@ static bool is_dense(const scene *s, const solid *one)
     return one->visible && !material_is_opaque(m) && !(m->medium == MEDIUM_IOR && m->ior == 1.0);
 }
 
-/* A solid that shines by itself, or one that stands for the eye, may lie in a dense one. */
+/* An emitting solid, or one around the camera, may be inside a dense medium. */
 static bool may_lie_in_dense(const scene *s, const solid *one)
 {
     for (size_t i = 0; i < s->solid_count; i++) {

@@ -1,4 +1,4 @@
-/* Why a setting of the renderer does nothing in a scene. */
+/* Renderer settings without effect. */
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/medium.h"
@@ -12,13 +12,13 @@ static bool path_only(const inert_case *c)
            inert_say(c, "path-only", "set render.integrator=path", "only the path integrator uses random numbers");
 }
 
-/* The spectral film's wavelengths are drawn, too: render/shade/spectra.c. */
+/* Wavelengths of the spectral film are also random: render/shade/spectra.c. */
 static bool seed(const inert_case *c)
 {
     return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
 }
 
-/* Faint paths end by chance after the third surface: render/integrators/path.c. */
+/* Russian roulette starts after the third surface: render/integrators/path.c. */
 static bool roulette(const inert_case *c)
 {
     enum { ROULETTE_DEPTH = 3 };
@@ -40,7 +40,7 @@ static inert_remedy mirror_remedy(const scene *s)
     return inert_set_on(first_visible(s, NULL), "reflectivity=0.5");
 }
 
-/* No ray has children. */
+/* No secondary rays. */
 static bool no_tree(const inert_case *c)
 {
     const scene *s = c->s;
@@ -57,12 +57,12 @@ static bool beyond(const inert_case *c)
     const scene *s = c->s;
     if (no_tree(c))
         return true;
-    scene sky = *s; /* borrows what s owns */
+    scene sky = *s; /* borrows from s */
     sky.render.beyond = DEPTH_LIMIT_SKY;
     if (is_dark_at_depth_limit(&sky))
         return inert_say(c, "dark-sky", "set background.color=0.5,0.5,0.5", "the background is black as well");
-    /* Each word but black gives cut rays light, and their weights are not negative: a film that is the same with both
-     * has no cut ray. */
+    /* Each word except black gives cut rays some radiance, and weights are not negative: if the film is the same with
+     * both, no ray is cut. */
     const bool nothing_cut = s->render.beyond != DEPTH_LIMIT_BLACK
                                  ? inert_same(c, "render.beyond=black")
                                  : inert_same(c, "render.beyond=sky") && inert_same(c, "render.beyond=mean");
@@ -70,7 +70,7 @@ static bool beyond(const inert_case *c)
                                     "no ray beyond render.depth carries more light than the film resolves");
 }
 
-/* Highlights and branches are all that the lighting model chooses. */
+/* The lighting model affects only highlights and secondary rays. */
 static bool lighting(const inert_case *c)
 {
     const scene *s = c->s;
@@ -93,7 +93,7 @@ static bool lighting(const inert_case *c)
                      "no visible surface has a highlight, reflects or refracts");
 }
 
-/* A plane alone shows little of what a clear solid does. */
+/* A plane alone is a poor example of a transparent solid. */
 static inert_remedy clear_remedy(const scene *s)
 {
     const solid *first = first_visible(s, NULL);
@@ -108,7 +108,7 @@ static bool no_clear(const inert_case *c)
            inert_say(c, "no-clear", clear_remedy(c->s).text, "no visible solid is transparent");
 }
 
-/* Of two words the film with the other one tells. */
+/* For two words the film with the other one decides. */
 static bool same_but_for(const inert_case *c, const char *one, const char *other, bool is_one)
 {
     const scene *s = c->s;
@@ -119,7 +119,7 @@ static bool same_but_for(const inert_case *c, const char *one, const char *other
 static bool transmission(const inert_case *c)
 {
     if (first_visible(c->s, may_have_face_materials))
-        return false; /* a file's faces may be clear where light goes straight on */
+        return false; /* faces from a file may be transparent under simple transmission */
     return no_clear(c) || same_but_for(c, "refract", "simple", c->s->render.transmission != TRANSMISSION_SIMPLE);
 }
 

@@ -1,4 +1,4 @@
-/* Why a solid's parameter does nothing in a scene. */
+/* Parameters of a solid without effect. */
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "geometry/shared_faces.h"
@@ -12,8 +12,8 @@ static bool is_opaque_pair(const solid *a, const solid *b)
     return a->surface.transparency == 0.0 && b->surface.transparency == 0.0;
 }
 
-/* Neither the eye nor light sees what of two solids is inside both, where both are opaque: from outside they are their
- * union, and each point of that has one owner, unless faces of both lie in one another. An eye inside would see it. */
+/* The intersection of two opaque solids is invisible: from outside only their union matters, and each point of its
+ * surface has one owner, unless faces coincide. A camera inside would see it. */
 static bool meets_unseen(const scene *s, const solid *a, const solid *b)
 {
     const solid_shape of_a = scene_loaded_shape(s, a), of_b = scene_loaded_shape(s, b);
@@ -39,7 +39,7 @@ static bool priority_rule(const inert_case *c)
     return inert_say(c, "apart", "move it into another solid", "no other visible solid overlaps %s", c->name);
 }
 
-/* Its surface looks alike all around. */
+/* Its surface is rotationally symmetric and uniform. */
 static bool is_plain(const scene *s, const material *m)
 {
     const bool checkered = m->checker > 0.0 && memcmp(&m->color, &m->checker_color, sizeof m->color) != 0;
@@ -48,7 +48,7 @@ static bool is_plain(const scene *s, const material *m)
 
 static bool rotation_rule(const inert_case *c)
 {
-    /* The depth buffer draws a sphere of triangles, which turn with it. */
+    /* The depth buffer rasterises a sphere as triangles, which rotate with it. */
     if (!shape_of(&c->owner->shape)->isotropic || !is_plain(c->s, c->m) || integrator_traits_of(&c->s->render)->drawn)
         return false;
     const inert_remedy color = color_remedy(c->s, c->m, c->name);
@@ -69,7 +69,7 @@ static bool spacing_rule(const inert_case *c)
 static bool mesh_shading(const inert_case *c)
 {
     const scene *s = c->s;
-    const bool textured = c->m->texture[0] && shows_color(s, c->m); /* a texel's footprint depends on the normal */
+    const bool textured = c->m->texture[0] && shows_color(s, c->m); /* the texture footprint depends on the normal */
     if (textured || is_lit_by_lamps(s, c->m) || may_have_face_materials(s, c->owner) ||
         (follows_rays(s) && sends_rays_on(s, c->owner)))
         return false;

@@ -1,4 +1,4 @@
-/* A second object like another. */
+/* Copies a solid. */
 #include "scene/model/place/new_objects.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/objects.h"
@@ -14,8 +14,8 @@ static vec3 rounded(vec3 v, double size)
     return vec3_make(placement_round(v.x, size), placement_round(v.y, size), placement_round(v.z, size));
 }
 
-/* How deep boxes around two solids, along the camera's ways, lie in each other once the first one has stepped; 0 where
- * something parts them. */
+/* Depth of overlap of two solids' bounding boxes, aligned with the camera, after moving the first; 0 if they are
+ * disjoint. */
 static double depth(const scene *s, const placement *where, const solid *a, vec3 step, const solid *b)
 {
     const vec3 along[] = {where->right, where->away, vec3_make(0, 1, 0)};
@@ -30,7 +30,7 @@ static double depth(const scene *s, const placement *where, const solid *a, vec3
     return fmax(0.0, least);
 }
 
-/* What it stands in, its copy may stand in, too. */
+/* The copy may be inside everything that contains the original. */
 static double overlap_after(const scene *s, const placement *where, const solid *of, vec3 step)
 {
     double sum = depth(s, where, of, step, of);
@@ -42,13 +42,13 @@ static double overlap_after(const scene *s, const placement *where, const solid 
     return sum;
 }
 
-/* A little more than its size that way, so that something parts it and its copy. */
+/* Slightly more than its size in that direction, so that the copy is separate. */
 static double stride(const scene *s, const solid *of, vec3 along, double radius)
 {
     return 2.1 * fmax(placement_half_size(s, of, along), 0.01 * radius);
 }
 
-/* From it to where a second one is seen and stands free, or nearly so: to a side, or behind or before it. */
+/* Offset from the original to a visible and preferably free place: to a side, behind or in front of it. */
 static vec3 step_beside(const scene *s, const placement *where, const solid *of, vec3 centre, double radius)
 {
     static const double offsets[][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},  {2, 0}, {-2, 0},
@@ -81,7 +81,7 @@ static status copy_object(scene *s, param_group group, size_t of, const char *na
     return out_of_memory(why);
 }
 
-/* A plane's stands behind its surface, where it changes nothing before it is moved. */
+/* The copy of a plane is behind its surface, where it has no effect until it is moved. */
 static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
 {
     const placement where = placement_of(s);

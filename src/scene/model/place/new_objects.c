@@ -36,7 +36,7 @@ static status name_for(const scene *s, const char *wanted, const char *base, obj
     return STATUS_OK;
 }
 
-/* NAME.ROW as scene_put takes it; after an error it does nothing. */
+/* NAME.ROW as for scene_put; does nothing after an error. */
 static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
 static void put(scene *s, status *code, diagnostic *why, const char *name, const char *row, const char *format, ...)
@@ -61,7 +61,7 @@ static void put_vector(scene *s, status *code, diagnostic *why, const char *name
     put(s, code, why, name, row, "%.17g,%.17g,%.17g", v.x, v.y, v.z);
 }
 
-/* A colour unlike the last one's. */
+/* A colour different from the last one. */
 static void put_appearance(scene *s, status *code, diagnostic *why, const char *name, size_t count)
 {
     static const char *const colors[] = {"0.85,0.3,0.2", "0.2,0.5,0.85",  "0.3,0.7,0.3",
@@ -72,7 +72,7 @@ static void put_appearance(scene *s, status *code, diagnostic *why, const char *
     put(s, code, why, name, "specular", "0.3");
 }
 
-/* Where there was no free place, it is what is seen there. */
+/* Without a free place, the point that the camera looks at. */
 static void put_above_others(scene *s, status *code, diagnostic *why, const char *name)
 {
     const int index = scene_find_solid(s, name);
@@ -88,7 +88,7 @@ static void put_above_others(scene *s, status *code, diagnostic *why, const char
     put(s, code, why, name, "priority", "%lld", (long long)priority);
 }
 
-/* A floor under what is looked at; or, where there is one, a wall behind it. */
+/* A floor below the view's target; or, if there is one, a wall behind it. */
 static void put_plane(scene *s, status *code, diagnostic *why, const char *name, const placement *where)
 {
     double y;
@@ -105,7 +105,7 @@ static void put_plane(scene *s, status *code, diagnostic *why, const char *name,
                          placement_round(at.z, where->size)));
 }
 
-/* A shape of a size, written with no more digits than it needs. */
+/* A shape of a given size, with no more digits than necessary. */
 static void put_sizes(scene *s, status *code, diagnostic *why, const char *name, const placement *where)
 {
     solid fitted = s->solids[s->solid_count - 1];
@@ -126,7 +126,7 @@ static void put_sizes(scene *s, status *code, diagnostic *why, const char *name,
     put_vector(s, code, why, name, "position", vec3_sub(low, vec3_make(0, rule->extent(&fitted.shape).box.low.y, 0)));
 }
 
-/* A mesh and the solid that shows it. */
+/* A mesh and a solid that uses it. */
 static status add_mesh_solid(scene *s, const char *solid_name, object_name mesh_name, diagnostic *why)
 {
     object_name base;
@@ -163,7 +163,7 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
     if (rule->triangles) {
         code = new_mesh(s, name, &where, why);
     } else if ((code = scene_add_solid(s, name, shape, NULL, why)) == STATUS_OK) {
-        s->solids[s->solid_count - 1].visible = 0; /* it is not in its own way */
+        s->solids[s->solid_count - 1].visible = 0; /* it does not obstruct itself */
         if (rule->unbounded)
             put_plane(s, &code, why, name, &where);
         else
@@ -182,7 +182,7 @@ status new_light(scene *s, const char *wanted, object_name name, diagnostic *why
     const placement where = placement_of(s);
     status code = name_for(s, wanted, "lamp", name, why);
     THEN(code, scene_add(s, PARAM_LIGHT, name, NULL, why));
-    /* To the left and in front of it, alternately to the right, so that two do not shine from one point. */
+    /* To the left and in front of it, alternately to the right, so that two lights are not at one point. */
     const double side = s->light_count % 2 ? 0.5 : -0.5;
     vec3 at = vec3_add(where.looked_at, vec3_scale(where.right, side * where.distance));
     at = vec3_add(at, vec3_scale(where.away, -0.4 * where.distance));
@@ -215,8 +215,8 @@ status new_slime(scene *s, const char *wanted, object_name name, diagnostic *why
     TRY(name_for(s, wanted, "slime", name, why));
     TRY(add_mesh_solid(s, name, mesh_name, why));
     status code = STATUS_OK;
-    /* Its motion is that of the default, a ball of radius 1 on a floor at 0, whatever its size in the picture:
-     * stiffness and steps go with that one. */
+    /* Its simulation has the default size, a ball of radius 1 on a floor at 0, whatever its size in the scene:
+     * stiffness and steps fit that size. */
     put(s, &code, why, mesh_name, "generate", "slime");
     put_vector(s, &code, why, name, "scale", vec3_make(radius, radius, radius));
     put_vector(s, &code, why, name, "position", low);
@@ -284,7 +284,7 @@ status new_model(scene *s, const scene *loaded, const char *path, const char *wa
     char *row = code == STATUS_OK ? text_format("%s.file", mesh_name) : NULL;
     THEN(code, row ? scene_set(s, row, path, why) : out_of_memory(why));
     free(row);
-    /* Four digits, so that it does not stand deep in the ground or above it. */
+    /* Four digits, so that it is neither visibly below the ground nor above it. */
     const double scale = placement_round(where.size / longest, 0.01 * where.size / longest);
     put_vector(s, &code, why, name, "scale", vec3_make(scale, scale, scale));
     put_vector(s, &code, why, name, "position",

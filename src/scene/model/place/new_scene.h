@@ -1,5 +1,4 @@
-/* The scene to begin with: a room with a floor, a light and a camera, and nothing in it. Ownership: the scene is the
- * caller's. */
+/* The initial scene: a floor, a light and a camera. Ownership: the scene is the caller's. */
 #pragma once
 
 #include "scene/model/open.h"

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A floor's normal is steeper than this. */
+/* Minimum y of the normal of a floor. */
 static const double FLOOR_Y = 0.9;
 
 double placement_round(double value, double size)
@@ -38,8 +38,8 @@ bool placement_ground(const scene *s, double x, double z, double *y)
     return found;
 }
 
-/* The solid's shape with a mesh that has bounds: of one that is not loaded, those of a slime's ball, or of one about
- * the origin. */
+/* The solid's shape with a mesh that has bounds: for a mesh that is not loaded, those of a slime's ball, or of one
+ * about the origin. */
 static solid_shape with_bounds(const scene *s, const solid *of, mesh *guess)
 {
     solid_shape shape = scene_loaded_shape(s, of);
@@ -76,7 +76,7 @@ double placement_half_size(const scene *s, const solid *of, vec3 along)
                                        : 0.5 * (shape_reach(&shape, d) + shape_reach(&shape, vec3_scale(d, -1.0)));
 }
 
-/* How far away is what the camera looks at that is not aimed at a point? */
+/* The assumed distance of the view's target for a camera without one. */
 static double distance_ahead(const scene *s, vec3 eye, vec3 forward)
 {
     double nearest = INFINITY, y;
@@ -111,7 +111,7 @@ placement placement_of(const scene *s)
     return where;
 }
 
-/* How deep a ball would lie in the balls of all that can be seen, together; 0 where it is free. */
+/* Total depth of a ball in the bounding balls of all visible solids; 0 if it is free. */
 static double overlap(const scene *s, vec3 centre, double radius)
 {
     double sum = 0.0;
