@@ -1,6 +1,7 @@
+/* The colour maps viridis and magma. */
 #include "image/color_map.h"
 
-/* Every fifth of the maps' 256 colours; straight lines between them stay within 1/255 of the rest. */
+/* Every fifth of the maps' 256 colours; linear interpolation reproduces the others to within 1/255. */
 enum { KNOTS = 52 };
 static const unsigned char maps[][KNOTS][3] = {
     [VIRIDIS] =

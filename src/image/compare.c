@@ -1,3 +1,4 @@
+/* The per-pixel measures of compare.h, and the call of those that use neighbours. */
 #include "image/compare.h"
 
 #include "image/codec.h"
@@ -39,7 +40,7 @@ static double luma(const double encoded[3])
     return 0.299 * encoded[0] + 0.587 * encoded[1] + 0.114 * encoded[2];
 }
 
-/* What can be said of each pixel by itself; the lumas are kept for the structural similarity. */
+/* Computes the measures that need no neighbours; the lumas are stored for the structural similarity. */
 static void compare_pixels(const image *a, const image *b, double *luma_a, double *luma_b, image_comparison *out)
 {
     size_t count = pixels_of(a), differing = 0;

@@ -1,8 +1,8 @@
-/* FLIP, the difference that a viewer sees who alternates between two pictures: Andersson, Nilsson, Akenine-Moller,
+/* FLIP, the difference that a viewer perceives when alternating between two images: Andersson, Nilsson, Akenine-Moller,
  * Oskarsson, Astrom, Fairchild, FLIP: A Difference Evaluator for Alternating Images, Proceedings of the ACM on Computer
- * Graphics and Interactive Techniques 3(2), 2020, for low dynamic range, with the paper's constants. Its viewer sits
- * 0.7 m before a display 0.7 m and 3840 pixels wide: 67.02 pixels a degree. Its filters are sums of separable ones, so
- * that they run along rows and columns; where they reach over the border, the border pixels go on. */
+ * Graphics and Interactive Techniques 3(2), 2020, for low dynamic range, with the paper's constants. The viewer sits
+ * 0.7 m from a display 0.7 m and 3840 pixels wide: 67.02 pixels a degree. The filters are sums of separable ones and
+ * are applied along rows and columns; beyond the border, the border pixels are repeated. */
 #include "image/compare_parts.h"
 
 #include "base/elementary.h"
@@ -13,13 +13,14 @@
 #define PI 3.14159265358979323846
 #define PIXELS_PER_DEGREE (3840.0 * PI / 180.0)
 
-/* What a viewer gets of a picture, a plane each: the filtered opponent colours, how strong edges and points are. */
+/* What a viewer perceives of an image, a plane each: the filtered opponent colours, the strength of edges and
+ * points. */
 enum { LUMINANCE, RED_GREEN, YELLOW_BLUE, EDGES, POINTS, SEEN };
 typedef struct sight {
     double *plane[SEEN];
 } sight;
 
-/* Planes to work in, all of one size. */
+/* Work memory: planes of one size. */
 typedef struct work_planes {
     int width, height;
     size_t count;
@@ -47,8 +48,8 @@ static status lay_out_planes(work_planes *d, const image *img, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Contrast sensitivity as Gaussians, section 4.1.1 with table 1: exp(-pi^2 x^2 / b) at x degrees is one of sigma
- * sqrt(b / 2) / pi, here in pixels. All reach as far as three sigmas of the widest. */
+/* Contrast sensitivity as a Gaussian, section 4.1.1 with table 1: exp(-pi^2 x^2 / b) at x degrees has the sigma
+ * sqrt(b / 2) / pi, here in pixels. All filters extend to three sigmas of the widest. */
 static convolve_taps sensitivity(double b)
 {
     const double widest = 0.04;
@@ -56,7 +57,8 @@ static convolve_taps sensitivity(double b)
     return convolve_gaussian(2 * radius + 1, sqrt(b / 2.0) / PI * PIXELS_PER_DEGREE);
 }
 
-/* The middle of a Gaussian of sum 1 is the inverse of its sum before: what a peak of 1 weighs in the plane. */
+/* The sum over the plane of a Gaussian with peak 1, which is the inverse of the squared central weight of the Gaussian
+ * with sum 1. */
 static double weight_of_peak(const convolve_taps *gaussian)
 {
     double middle = gaussian->weight[gaussian->before];
@@ -78,7 +80,7 @@ static void filter_colors(const work_planes *d, const sight *s)
                  s->plane[YELLOW_BLUE]);
 }
 
-/* Positive weights get the sum 1, negative ones -1. */
+/* Scales the positive weights to the sum 1, the negative ones to -1. */
 static void balance(convolve_taps *taps)
 {
     double positive = 0.0, negative = 0.0;
@@ -90,8 +92,8 @@ static void balance(convolve_taps *taps)
         taps->weight[i] /= taps->weight[i] > 0 ? positive : negative;
 }
 
-/* Section 4.2: first and second derivatives of a Gaussian whose sigma is half of 0.082 degrees, the width of the edges
- * that the eye detects. */
+/* Section 4.2: the first and second derivatives of a Gaussian whose sigma is half of 0.082 degrees, the width of the
+ * edges that the eye detects. */
 static void make_detectors(convolve_taps *smooth, convolve_taps *edge, convolve_taps *point)
 {
     const double sigma = 0.5 * 0.082 * PIXELS_PER_DEGREE;
@@ -106,7 +108,7 @@ static void make_detectors(convolve_taps *smooth, convolve_taps *edge, convolve_
     balance(point);
 }
 
-/* The length of the gradient by a detector. across and down are overwritten. */
+/* Writes the length of a detector's gradient to a plane. across and down are overwritten. */
 static void detect(const work_planes *d, const convolve_taps *detector, const convolve_taps *smooth, double *across,
                    double *down, double *strength)
 {
@@ -129,7 +131,7 @@ static void look_at(const work_planes *d, const image *img, const sight *s)
     filter_colors(d, s);
     convolve_taps smooth, edge, point;
     make_detectors(&smooth, &edge, &point);
-    detect(d, &edge, &smooth, d->opponent[1], d->opponent[2], s->plane[EDGES]); /* the colours have been filtered */
+    detect(d, &edge, &smooth, d->opponent[1], d->opponent[2], s->plane[EDGES]); /* the colours were filtered before */
     detect(d, &point, &smooth, d->opponent[1], d->opponent[2], s->plane[POINTS]);
 }
 
@@ -139,7 +141,7 @@ static void lab_at(const sight *s, size_t at, double lab[3])
     flip_hunt_lab(opponent, lab);
 }
 
-/* Section 4.3: a difference of features raises that of colours. */
+/* Section 4.3: the difference of features amplifies the difference of colours. */
 static double error_at(const sight *a, const sight *b, size_t at, double farthest)
 {
     double lab_a[3], lab_b[3];

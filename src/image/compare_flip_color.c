@@ -1,20 +1,20 @@
-/* The colours of FLIP: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, FLIP: A Difference Evaluator
- * for Alternating Images, Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020,
+/* The colour space of FLIP: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, FLIP: A Difference
+ * Evaluator for Alternating Images, Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020,
  * section 4.1. */
 #include "image/compare_parts.h"
 
 #include "base/elementary.h"
 #include <math.h>
 
-/* Linear sRGB to XYZ relative to its own white (D65), a row over the sum of its numerators: each row sums to 1. The
- * fractions follow from the primaries of IEC 61966-2-1 and are the ones that the authors' implementation uses. */
+/* Linear sRGB to XYZ relative to its own white (D65). Each row is divided by the sum of its numerators and so sums to
+ * 1. The fractions follow from the primaries of IEC 61966-2-1; the authors' implementation uses the same. */
 static const double XYZ_OF_RGB[3][3] = {
     {10135552.0 / 23359437, 8788810.0 / 23359437, 4435075.0 / 23359437},
     {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
     {1425312.0 / 80288307, 8788810.0 / 80288307, 70074185.0 / 80288307},
 };
 
-/* Its inverse, from exact fractions. */
+/* The inverse, from exact fractions. */
 static const double RGB_OF_XYZ[3][3] = {
     {3.0803419882804608, -1.5373989694887855, -0.54294301879167506},
     {-0.92117839616512365, 1.8759299836951759, 0.045248412469947583},
@@ -41,7 +41,7 @@ void flip_opponent(const float rgb[3], double opponent[3])
     opponent[2] = xyz[1] - xyz[2];
 }
 
-/* CIE 15, the cube root with its straight foot. */
+/* CIE 15: the cube root, linear near 0. */
 static double lab_root(double t)
 {
     const double delta = 6.0 / 29.0;
@@ -57,12 +57,12 @@ void flip_hunt_lab(const double opponent[3], double lab[3])
     multiply(XYZ_OF_RGB, rgb, xyz);
     double x = lab_root(xyz[0]), y = lab_root(xyz[1]), z = lab_root(xyz[2]);
     lab[0] = 116.0 * y - 16.0;
-    lab[1] = 0.01 * lab[0] * 500.0 * (x - y); /* Hunt: the lighter, the more colourful */
+    lab[1] = 0.01 * lab[0] * 500.0 * (x - y); /* Hunt effect: lighter colours look more colourful */
     lab[2] = 0.01 * lab[0] * 200.0 * (y - z);
 }
 
-/* HyAB (Abasi, Tehran, Fairchild 2020), for large distances: city blocks in lightness, Euclid in colour; to the power
- * 0.7. */
+/* HyAB (Abasi, Tehran, Fairchild 2020), a distance for large colour differences: city-block in lightness, Euclidean in
+ * chroma; to the power 0.7. */
 static double hyab_power(const double a[3], const double b[3])
 {
     double d1 = a[1] - b[1], d2 = a[2] - b[2];
@@ -82,7 +82,8 @@ double flip_farthest(void)
 
 double flip_color_error(const double a[3], const double b[3], double farthest)
 {
-    const double share = 0.95; /* p_t, of the scale for distances below the knee, p_c = 0.4 of the farthest */
+    const double share =
+        0.95; /* p_t: share of the range for distances below the knee, p_c = 0.4 of the largest distance */
     double distance = hyab_power(a, b), knee = 0.4 * farthest;
     return distance < knee ? share * distance / knee : share + (1.0 - share) * (distance - knee) / (farthest - knee);
 }

@@ -1,10 +1,11 @@
+/* The FLIP error as a false-colour image. */
 #include "image/compare.h"
 
 #include "image/color_map.h"
 #include "image/compare_parts.h"
 #include <stdlib.h>
 
-/* The map's colour for 0..1 in linear light. */
+/* The colour of t, 0..1, in linear light. */
 static void magma(double t, float linear[3])
 {
     double rgb[3];

@@ -1,8 +1,8 @@
-/* Structural similarity: Wang, Bovik, Sheikh, Simoncelli, Image Quality Assessment: From Error Visibility to Structural
- * Similarity, IEEE Transactions on Image Processing 13(4), 2004: eq. 13 with the statistics of eqs. 14 to 16 under
- * their 11 x 11 Gaussian of sigma 1.5, K1 = 0.01, K2 = 0.03, L = 1, and the mean of eq. 17 over all windows that lie
- * within the picture. Along a side shorter than 11 pixels the window is as long as that side, its Gaussian centred and
- * of sum 1. */
+/* Structural similarity (SSIM): Wang, Bovik, Sheikh, Simoncelli, Image Quality Assessment: From Error Visibility to
+ * Structural Similarity, IEEE Transactions on Image Processing 13(4), 2004: eq. 13 with the statistics of eqs. 14 to 16
+ * under their 11 x 11 Gaussian of sigma 1.5, K1 = 0.01, K2 = 0.03, L = 1, and the mean of eq. 17 over all windows
+ * inside the image. Along a side shorter than 11 pixels the window is as long as that side, with a centred Gaussian of
+ * sum 1. */
 #include "image/compare_parts.h"
 
 #include "image/convolve.h"
@@ -10,7 +10,7 @@
 
 enum { WINDOW = 11, MEAN_A = 0, MEAN_B, SQUARE_A, SQUARE_B, PRODUCT, SUMS };
 
-/* Where each sum has its plane, and a scratch plane. */
+/* A plane for each sum, one for its terms, and a scratch plane. */
 typedef struct statistics {
     int width, height;
     size_t count;
@@ -29,7 +29,7 @@ static void gather(statistics *s, const double *a, const double *b, const convol
     }
 }
 
-/* Eq. 13 at one window. */
+/* Eq. 13 for the window at index `at`. */
 static double similarity(const statistics *s, size_t at)
 {
     const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;

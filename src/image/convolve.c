@@ -1,3 +1,4 @@
+/* Convolution with separable filters. */
 #include "image/convolve.h"
 
 #include "base/elementary.h"
@@ -25,7 +26,7 @@ static int within(int i, int count)
     return i < 0 ? 0 : i < count ? i : count - 1;
 }
 
-/* out += weight * row shifted, its ends prolonged. */
+/* Adds weight times the shifted row to out; the row's end pixels are repeated. */
 static void add_shifted_row(const double *restrict row, int width, int shift, double weight, double *restrict out)
 {
     int first = shift < 0 ? within(-shift, width + 1) : 0;

@@ -1,3 +1,4 @@
+/* Heat maps: the range of the values, the pixels, and the key. */
 #include "image/heatmap.h"
 
 #include "base/number.h"
@@ -15,15 +16,15 @@ static const unsigned char PAPER[3] = {255, 255, 255}, INK[3] = {34, 34, 34}, FR
 
 enum { WIDTH_MIN = 240, SCALE_MAX = 16 };
 
-/* Sizes of the key in pixels; scale is how many pixels a dot of the font is wide. */
+/* Sizes of the key in pixels; scale is the width of a dot of the font. */
 typedef struct key_layout {
     int scale, margin, bar_x, bar_width, bar_y, bar_height, tick, numbers_y, title_y, height;
 } key_layout;
 
-/* What the colours stand for. */
+/* The range of values that the colours cover. */
 typedef struct key_scale {
     double end; /* value of the last colour; the first one is 0 */
-    bool cut;   /* values above end were drawn in its colour */
+    bool cut;   /* there are values above end, drawn in its colour */
     bool whole; /* all values are integers */
 } key_scale;
 
@@ -35,7 +36,7 @@ void heatmap_color(double t, unsigned char rgb[3])
         rgb[channel] = (unsigned char)floor(exact[channel] + 0.5);
 }
 
-/* A picture and the linear light of the 256 encoded values. */
+/* An image and the linear light of the 256 encoded values. */
 typedef struct canvas {
     image *img;
     const float *decoded;
@@ -68,7 +69,7 @@ static void draw_text(const canvas *on, int x, int y, int scale, const char *tex
     }
 }
 
-/* A number of the key: four digits, and a prefix of the SI where it would be long: 0, 29.5, 118, 3.086M. */
+/* Formats a number of the key with four digits, and with an SI prefix where it would be long: 0, 29.5, 118, 3.086M. */
 static void format_key(double value, double largest, char text[NUMBER_TEXT_MAX + 2])
 {
     static const struct {
@@ -103,7 +104,7 @@ static key_layout lay_out_key(int width)
     return key;
 }
 
-/* At most as many characters as fit; the last three are dots when the title does not. */
+/* Draws the title, or as many of its characters as fit, with "..." at the end. */
 static void draw_title(const canvas *on, const key_layout *key, int top, const char *title)
 {
     char shown[256];
@@ -125,7 +126,7 @@ static void draw_number(const canvas *on, const key_layout *key, int top, int ce
     draw_text(on, x < 2 * key->scale ? 2 * key->scale : x, top + key->numbers_y, key->scale, text);
 }
 
-/* A tick and its number, at its place in the bar. */
+/* Draws the tick of a value below the bar, and its number. */
 static void draw_tick(const canvas *on, const key_layout *key, int top, double value, const key_scale *scale)
 {
     int line = (key->scale + 1) / 2;
@@ -158,7 +159,7 @@ static void draw_key(const canvas *on, const key_layout *key, int top, const key
     draw_title(on, key, top, title);
 }
 
-/* Checks every value; on success *largest is the largest, and *whole says whether all are integers. */
+/* Checks every value; on success *largest is the largest, and *whole is true if all are integers. */
 static status inspect(const double *values, size_t count, double *largest, bool *whole, diagnostic *why)
 {
     *largest = 0.0;
@@ -173,8 +174,8 @@ static status inspect(const double *values, size_t count, double *largest, bool 
     return STATUS_OK;
 }
 
-/* The value that rank others stand before in ascending order. Doubles that are not negative are ordered as their bits
- * are (IEEE 754), so a radix selection finds it byte by byte, without a copy. */
+/* The value at index rank in ascending order. Non-negative doubles have the order of their bits (IEEE 754), so a radix
+ * selection finds the value byte by byte, without a copy. */
 static double nth_smallest(const double *values, size_t count, size_t rank)
 {
     uint64_t found = 0;
@@ -202,7 +203,7 @@ static status find_scale(const double *values, size_t count, key_scale *out, dia
     double largest;
     TRY(inspect(values, count, &largest, &out->whole, why));
     double percentile = nth_smallest(values, count, count - 1 - count / 200); /* the 99.5th, by nearest rank */
-    out->cut = percentile > 0 && largest > 2 * percentile; /* of little but zeros the percentile says nothing */
+    out->cut = percentile > 0 && largest > 2 * percentile;                    /* a percentile of 0 is no useful end */
     out->end = out->cut ? percentile : largest;
     return STATUS_OK;
 }
