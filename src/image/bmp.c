@@ -1,7 +1,7 @@
-/* Uncompressed BMP of 24 bits: a file header of 14 bytes, a header of 40 (BITMAPINFOHEADER, Windows 3) to 124 bytes
- * (BITMAPV5HEADER), and from the file header's offset on rows of blue, green, red, each padded to a multiple of 4
- * bytes; from the bottom, or from the top where the height is negative. Microsoft, Windows GDI, "Bitmap Storage".
- * Numbers are little-endian. */
+/* The reader of uncompressed 24-bit BMP files: a file header of 14 bytes, a header of 40 (BITMAPINFOHEADER, Windows 3)
+ * to 124 bytes (BITMAPV5HEADER), and, from the offset in the file header, rows of blue, green, red, each padded to a
+ * multiple of 4 bytes; from the bottom, or from the top if the height is negative. Microsoft, Windows GDI, "Bitmap
+ * Storage". Numbers are little-endian. */
 #include "image/codec.h"
 
 #include <stdint.h>
@@ -35,14 +35,14 @@ static int64_t signed_at(const unsigned char *b)
     return value >= INT64_C(0x80000000) ? value - INT64_C(0x100000000) : value;
 }
 
-/* width and height in pixels; rows from the top where the file says so. */
+/* Width and height in pixels, offset and row_bytes in bytes; from_top: the rows begin at the top. */
 typedef struct bmp_header {
     int64_t width, height;
     size_t offset, row_bytes;
     bool from_top;
 } bmp_header;
 
-/* Only what the rows below read is believed; the file's own size is often wrong, and is not looked at. */
+/* Checks only the fields that the decoder uses; the file size in the header is often wrong and is ignored. */
 static status check_kind(const unsigned char *bytes, size_t size, diagnostic *why)
 {
     const uint32_t header = size >= FILE_HEADER + 4 ? number_at(bytes + FILE_HEADER, 4) : 0;

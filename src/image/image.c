@@ -1,3 +1,4 @@
+/* Images: memory, and reading and writing files in the format of each codec. */
 #include "image/image.h"
 
 #include "base/file.h"
@@ -9,7 +10,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* The largest file that can hold a picture of CODEC_PIXELS_MAX pixels: a PFM of 12 bytes a pixel and its header. */
+/* The largest file of an image with CODEC_PIXELS_MAX pixels: a PFM of 12 bytes a pixel and its header. */
 #define FILE_BYTES_MAX ((size_t)CODEC_PIXELS_MAX * 12 + 4096)
 
 status image_create(int width, int height, image **out, diagnostic *why)
@@ -40,7 +41,7 @@ void image_destroy(image *img)
 
 image *image_share(const image *img)
 {
-    image *own = (image *)(uintptr_t)img; /* the count alone changes */
+    image *own = (image *)(uintptr_t)img; /* only the count of owners changes */
     __atomic_add_fetch(&own->owners, 1, __ATOMIC_RELAXED);
     return own;
 }
@@ -125,7 +126,7 @@ status image_write(const image *img, const char *path, int bits, diagnostic *why
     TRY(file_writer_open(&writer, path, why));
     status code = write_as(img, format, writer.stream, bits, false, why);
     if (code == STATUS_OK || ferror(writer.stream))
-        return file_writer_commit(&writer, why); /* knows best why the stream failed */
+        return file_writer_commit(&writer, why); /* reports why the stream failed */
     file_writer_abandon(&writer);
     diagnostic_locate(why, path, 0, 0);
     return code;

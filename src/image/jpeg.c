@@ -1,5 +1,5 @@
-/* JPEG through libjpeg-turbo. Whatever outlives a longjmp stands in a job, which belongs to a function that does
- * not call setjmp; the function that does has no variable of its own that changes. */
+/* The JPEG codec, with libjpeg-turbo. Values that must survive a longjmp are in a job, which belongs to a function that
+ * does not call setjmp; the function that calls it changes no local variable. */
 #include "image/codec.h"
 
 #include <jpeglib.h>
@@ -28,7 +28,8 @@ static _Noreturn void on_error(j_common_ptr cinfo)
     longjmp(job->escape, 1);
 }
 
-/* libjpeg calls damage a warning and invents the missing pixels: here it is an error, unless no pixel is concerned. */
+/* libjpeg reports damage as a warning and fills in the missing pixels: here it is an error, unless no pixel is
+ * affected. */
 static void on_message(j_common_ptr cinfo, int level)
 {
     int message = cinfo->err->msg_code;
@@ -112,7 +113,7 @@ status codec_jpeg_write(const image *img, FILE *stream, diagnostic *why)
 
 /* ---- reading ---- */
 
-/* A small progressive file can ask for scan after scan over a huge picture. */
+/* Limits the scans: a small progressive file can require very many over a huge image. */
 static void limit_scans(j_common_ptr cinfo)
 {
     if (((j_decompress_ptr)cinfo)->input_scan_number > SCANS_MAX)
@@ -159,7 +160,7 @@ static bool read_rows(jpeg_job *job, j_decompress_ptr cinfo, struct jpeg_progres
         for (size_t i = 0; i < width * 3; i++)
             pixel[i] = job->linear[job->row[channels == 3 ? i : i / 3]];
     }
-    jpeg_finish_decompress(cinfo); /* reads on to the end of the image, which must be there */
+    jpeg_finish_decompress(cinfo); /* reads to the end of the image, which must be present */
     return true;
 }
 

@@ -1,6 +1,6 @@
-/* PFM, Paul Debevec's portable float map: "PF" (colour) or "Pf" (grey), width height, a scale whose sign tells the
- * byte order (negative: little-endian), one blank, then floats, rows from the bottom. The scale's size only names a
- * unit and is not applied, as in other readers. */
+/* The codec of PFM, Paul Debevec's portable float map: "PF" (colour) or "Pf" (grey), width, height, a scale whose sign
+ * is the byte order (negative: little-endian), one blank, then floats, rows from the bottom. The absolute value of the
+ * scale is only a unit and is not applied, as in other readers. */
 #include "image/codec.h"
 
 #include "base/number.h"
@@ -26,7 +26,7 @@ status codec_pfm_write(const image *img, FILE *stream, diagnostic *why)
                 row[4 * i + (size_t)byte] = (unsigned char)(word >> 8 * byte);
         }
         if (fwrite(row, 4, count, stream) != count)
-            break; /* the stream remembers */
+            break; /* the stream's error flag is set */
     }
     free(row);
     return STATUS_OK;
@@ -41,7 +41,7 @@ static bool is_blank(unsigned char c)
     return c == ' ' || c == '\n' || c == '\r' || c == '\t';
 }
 
-/* The next word of the header, without the blanks before it; false when it is missing or too long. */
+/* Reads the next word of the header, without the blanks before it; false if it is missing or too long. */
 static bool read_word(cursor *c, char word[NUMBER_TEXT_MAX])
 {
     size_t length = 0;

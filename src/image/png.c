@@ -1,5 +1,5 @@
-/* PNG through libpng. Whatever outlives a longjmp stands in a job, which belongs to a function that does not call
- * setjmp; the function that does has no variable of its own that changes. */
+/* The PNG codec, with libpng. Values that must survive a longjmp are in a job, which belongs to a function that does
+ * not call setjmp; the function that calls it changes no local variable. */
 #include "image/codec.h"
 
 #include <png.h>
@@ -10,15 +10,15 @@
 typedef struct png_job {
     png_structp png;
     png_infop info;
-    char message[256];          /* libpng's, when it gives up */
-    unsigned char *raw;         /* one row, or the whole picture when it is interlaced */
-    const unsigned char *bytes; /* reading: the file and how much is consumed */
+    char message[256];          /* libpng's error */
+    unsigned char *raw;         /* one row, or the whole image if it is interlaced */
+    const unsigned char *bytes; /* reading: the file, its size, and the bytes consumed so far */
     size_t size, used;
     image *img;
     float *linear; /* reading: sRGB decoding table */
     int bits;
-    bool fast;   /* writing: a larger file, sooner */
-    status code; /* of what went wrong beside libpng */
+    bool fast;   /* writing: less effort, larger file */
+    status code; /* of errors outside libpng */
     diagnostic *why;
 } png_job;
 
@@ -103,7 +103,7 @@ static void take_bytes(png_structp png, png_bytep to, size_t count)
     job->used += count;
 }
 
-/* Asks libpng for RGB or RGBA of 8 or 16 bits, whatever the file has. */
+/* Makes libpng convert any format to RGB or RGBA of 8 or 16 bits. */
 static void normalize(png_job *job)
 {
     job->bits = png_get_bit_depth(job->png, job->info) == 16 ? 16 : 8;
@@ -116,7 +116,7 @@ static unsigned sample(const png_job *job, const unsigned char *row, size_t inde
     return job->bits == 8 ? row[index] : (unsigned)row[2 * index] << 8 | row[2 * index + 1];
 }
 
-/* Linear light, blended over black with alpha, which is linear itself (PNG specification 13.16). */
+/* Stores a row as linear light, blended over black with alpha, which is linear itself (PNG specification 13.16). */
 static void store_row(png_job *job, const unsigned char *row, int y, size_t channels)
 {
     float *pixel = job->img->pixel + (size_t)y * (size_t)job->img->width * 3;
@@ -136,7 +136,7 @@ static bool allocate(png_job *job, long long width, long long height, bool inter
     job->code = codec_begin(width, height, job->size, job->bits == 8 ? 255 : 65535, &job->img, &job->linear, job->why);
     if (job->code != STATUS_OK)
         return false;
-    /* Zeroed, because an interlaced picture is read by combining with what was there. */
+    /* Zeroed, because libpng combines each pass of an interlaced image with the previous content. */
     job->raw = calloc(interlaced ? (size_t)height : 1, png_get_rowbytes(job->png, job->info));
     if (!job->raw)
         job->code = out_of_memory(job->why);
@@ -167,7 +167,7 @@ static bool read_rows(png_job *job)
                 store_row(job, row, y, channels);
         }
     }
-    png_read_end(job->png, NULL); /* the rest must be whole too */
+    png_read_end(job->png, NULL); /* the chunks after the pixels must be complete too */
     return true;
 }
 

@@ -1,3 +1,4 @@
+/* The sRGB transfer function and its tables. */
 #include "image/codec.h"
 
 #include "base/elementary.h"
@@ -6,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* IEC 61966-2-1, the standard's own rounded constants. */
+/* IEC 61966-2-1, with the standard's rounded constants. */
 double srgb_encode(double linear)
 {
     if (!(linear > 0.0)) /* NaN too */
@@ -26,7 +27,7 @@ unsigned codec_quantize(float linear, unsigned maximum)
     return (unsigned)floor(srgb_encode(linear) * maximum + 0.5);
 }
 
-/* Positive floats are ordered as their bits are, so the threshold is found by halving the range of the bits. */
+/* Positive floats have the order of their bits, so the threshold is found by bisection of the bits. */
 static float least_value(unsigned byte)
 {
     uint32_t under = 0, enough = 0x3f800000; /* 0.0f and 1.0f */

@@ -1,9 +1,9 @@
-/* Textures: pictures that are looked up by surface coordinates. u runs to the right and v upwards; the picture covers
- * the unit square, (0, 0) is its lower left corner and the lowest row's lower edge, and the centre of texel x of a row
- * of w is u = (x + 1/2) / w. All filtering is done in linear light, in doubles with + - * / and floor alone: the same
- * bits everywhere. Alpha is what image_read makes of it: blended over black, then dropped. A texture is not changed
- * once it is made, and is shared: texture_retain and texture_release count its owners (from any thread); sampling needs
- * no lock. It keeps nothing of the picture that it was made from. */
+/* Textures: images that are sampled by surface coordinates. u runs to the right and v upwards; the image covers the
+ * unit square, (0, 0) is its lower left corner at the lower edge of the lowest row, and the centre of texel x in a row
+ * of w texels is u = (x + 1/2) / w. Filtering is done in linear light, in doubles with only + - * / and floor: the same
+ * bits on every machine. image_read blends alpha over black and drops it. A texture is immutable and can be shared:
+ * texture_retain and texture_release count its owners (from any thread); sampling needs no lock. It copies the pixels
+ * of its image. */
 #pragma once
 
 #include "base/status.h"
@@ -11,43 +11,42 @@
 #include "image/image.h"
 #include <stdint.h>
 
-/* What the numbers in a PNG, JPEG or BMP file stand for. image_read takes all of them for sRGB: with TEXTURE_SRGB they
- * stay the linear light that it made of them; with TEXTURE_LINEAR the file's own numbers (0 to 1) are restored, exactly
- * to the file's 8 or 16 bits where no alpha was blended. Pictures that were never coded (PFM, rendered) are taken as
- * they are in both. */
+/* The meaning of the values in a PNG, JPEG or BMP file. image_read decodes all of them from sRGB: with TEXTURE_SRGB the
+ * decoded linear light is used; with TEXTURE_LINEAR the file's own values (0 to 1) are restored, exactly to the file's
+ * 8 or 16 bits if no alpha was blended. Images that were never encoded (PFM, rendered) are used unchanged with both. */
 typedef enum texture_space { TEXTURE_SRGB, TEXTURE_LINEAR } texture_space;
 
-/* What lies beyond the unit square: the picture again, its mirror image (and so on in turn, period 2), or its edge. */
+/* The texture outside the unit square: the image repeated, mirrored at each edge (period 2), or its edge texels. */
 typedef enum texture_wrap { TEXTURE_REPEAT, TEXTURE_MIRROR, TEXTURE_CLAMP } texture_wrap;
 
-/* The texel that the point lies in; between the four nearest centres; or that in the two nearest levels of a pyramid
- * of ever smaller pictures, too, and between these by log2 of the footprint (Williams, "Pyramidal parametrics",
- * SIGGRAPH 1983). */
+/* Nearest: the texel that contains the point. Bilinear: interpolation between the four nearest texel centres.
+ * Trilinear: bilinear in the two nearest levels of a mipmap, and interpolation between these by log2 of the footprint
+ * (Williams, "Pyramidal parametrics", SIGGRAPH 1983). */
 typedef enum texture_filter { TEXTURE_NEAREST, TEXTURE_BILINEAR, TEXTURE_TRILINEAR } texture_filter;
 
-enum { TEXTURE_LEVELS_MAX = 17 }; /* 65536 = 2^16 texels a side, and 1 */
+enum { TEXTURE_LEVELS_MAX = 17 }; /* from 65536 = 2^16 texels a side to 1 */
 
 typedef struct texture texture;
 
-/* The caller is the one owner. STATUS_BAD_INPUT when a pixel is not finite or a size not image_create's, STATUS_FAILURE
- * when memory is out. */
+/* Creates a texture, whose only owner is the caller. STATUS_BAD_INPUT if a pixel is not finite or the size is not
+ * allowed by image_create, STATUS_FAILURE when out of memory. */
 status texture_create(const image *img, texture_space space, texture_wrap wrap_u, texture_wrap wrap_v,
                       texture_filter filter, texture **out, diagnostic *why);
 
-/* The same from a file that lies below root (base/below.h; NULL: anywhere): image_read's diagnostics and limits. */
+/* The same from a file that must be below root (base/below.h; NULL: anywhere), with image_read's diagnostics and
+ * limits. */
 status texture_read_below(const char *path, const char *root, texture_space space, texture_wrap wrap_u,
                           texture_wrap wrap_v, texture_filter filter, texture **out, diagnostic *why);
 
 void texture_retain(const texture *t);
 void texture_release(const texture *t); /* NULL is allowed */
 
-/* The texture at (u, v). footprint is how far a pixel reaches in u or in v, whichever is more; it matters to
- * TEXTURE_TRILINEAR alone, whose level is log2(footprint * larger side in texels), from 0 (bilinear in the picture
- * itself: a pixel covers at most a texel) to the last (one texel, the picture's mean). The result is finite, within the
- * range of the texels but for rounding, and continuous in all three except where TEXTURE_NEAREST goes from texel to
- * texel. Never fails: a coordinate that is not a number, or is infinite where the picture repeats or mirrors, counts as
- * 0, and so does a footprint that is negative or not a number. */
+/* The texture at (u, v). footprint is the extent of a pixel in u or v, whichever is larger. Only TEXTURE_TRILINEAR uses
+ * it: the level is log2(footprint * larger side in texels), from 0 (bilinear in the image itself: a pixel covers at
+ * most a texel) to the last (one texel, the mean of the image). The result is finite, within the range of the texels up
+ * to rounding, and, except with TEXTURE_NEAREST, continuous in all three arguments. Never fails: a coordinate that is
+ * NaN, or infinite with TEXTURE_REPEAT or TEXTURE_MIRROR, counts as 0, as does a footprint that is negative or NaN. */
 vec3 texture_sample(const texture *t, double u, double v, double footprint);
 
-/* Goes into a fingerprint (base/hash.h): size and texels of the picture itself. */
+/* Adds the size and the texels of level 0 to a hash (base/hash.h). */
 uint64_t texture_hash(const texture *t, uint64_t hash);

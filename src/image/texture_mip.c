@@ -1,9 +1,9 @@
-/* The pyramid of a texture: each level is the box filter of the one before, with the exact share of each texel's area
- * where a side is odd (Guthe and Heckbert, "Non-power-of-two mipmap creation", NVIDIA TR-01838-001, 2005). */
+/* The mipmap of a texture: each level is the box-filtered previous level, with the exact area of each texel where a
+ * side is odd (Guthe and Heckbert, "Non-power-of-two mipmap creation", NVIDIA TR-01838-001, 2005). */
 #include "image/texture_parts.h"
 
-/* Which texels of a row of `from` one texel of the next smaller row covers, and what share of it each has: a texel of
- * the smaller row is n/m = 2 + 1/m texels wide when n = 2m + 1. */
+/* The texels of a row that one texel of the next smaller row covers, and the share of each: a texel of the smaller row
+ * is n/m = 2 + 1/m texels wide when n = 2m + 1. */
 typedef struct cover {
     int first, count;
     double share[3];

@@ -1,15 +1,15 @@
-/* What the files of image/texture.h share: how a texture lies in memory. Nobody else includes it.
- * Ownership: all texels of all levels are one block, which belongs to the texture. */
+/* Internals of image/texture.h, included only by its files: the memory layout of a texture. Ownership: the texels of
+ * all levels are one block, which belongs to the texture. */
 #pragma once
 
 #include "image/texture.h"
 
-/* Padded to 16 bytes: one load brings a texel, and none straddles two cache lines. */
+/* Padded to 16 bytes: one load reads a texel, and no texel straddles two cache lines. */
 typedef struct texel {
     float r, g, b, unused;
 } texel;
 
-/* Rows from below, as v runs: texels[y * width + x]. */
+/* Rows from the bottom, in the direction of v: texels[y * width + x]. */
 typedef struct texture_level {
     int width, height;
     texel *texels;
@@ -25,5 +25,5 @@ struct texture {
     size_t owners; /* changed atomically */
 };
 
-/* Fills level 1 and those above it from level 0; sizes and memory are there. Cannot fail. */
+/* Computes level 1 and the levels above it from level 0. Their sizes and memory must be set. Cannot fail. */
 void texture_build_pyramid(texture *t);

@@ -1,14 +1,15 @@
+/* Sampling of a texture: nearest, bilinear, trilinear. */
 #include "image/texture_parts.h"
 
 #include "base/elementary_inline.h"
 #include <math.h>
 
-/* The place in the picture, 0 to 1, that a coordinate stands for; the comparisons send NaN to 0. */
+/* Wraps a coordinate to 0..1; the comparisons map NaN to 0. */
 static inline double fold(double c, texture_wrap wrap)
 {
     double place = 0.0, away;
     switch (wrap) {
-    /* 1 for the last numbers under 0. */
+    /* The result rounds to 1 for the largest numbers below 0. */
     case TEXTURE_REPEAT: place = c - floor(c); break;
     case TEXTURE_MIRROR:
         away = magnitude(c);
@@ -20,7 +21,7 @@ static inline double fold(double c, texture_wrap wrap)
     return place > 0.0 ? place : 0.0;
 }
 
-/* The two texels of an axis whose centres a place lies between, and how far it is from the first. */
+/* The two texels of an axis whose centres enclose a position, and its distance from the first, in texels. */
 typedef struct between {
     size_t low, high;
     double part;
@@ -34,7 +35,7 @@ static inline between locate(double place, int size, texture_wrap wrap)
     int high = low + 1;
     between b;
     b.part = x - (double)low;
-    /* the picture begins again, or the edge texel goes on: which is its mirror image too */
+    /* At an edge the neighbour is the opposite texel, or the edge texel itself, which is also its mirror image. */
     b.low = (size_t)(low >= 0 ? low : wrap == TEXTURE_REPEAT ? size - 1 : 0);
     b.high = (size_t)(high < size ? high : wrap == TEXTURE_REPEAT ? 0 : size - 1);
     return b;
@@ -84,10 +85,10 @@ static inline vec3 trilinear(const texture *t, double u, double v, double footpr
         return bilinear(t, 0, u, v);
     if (texels >= (double)(1 << last))
         return bilinear(t, last, u, v);
-    /* Williams 1983: the level at which a texel is as wide as the pixel. */
+    /* Williams 1983: the level whose texels are as wide as the pixel. */
     double height = elementary_log2_inline(texels);
     int level = (int)height;
-    level = level < last ? level : last - 1; /* the logarithm may round up to the last */
+    level = level < last ? level : last - 1; /* the logarithm may round up to the last level */
     return mix_colors(bilinear(t, level, u, v), bilinear(t, level + 1, u, v), height - level);
 }
 

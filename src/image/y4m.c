@@ -1,5 +1,6 @@
-/* The header's text is that of y4m(5); luma and chroma are ITU-R BT.601-7, 2.5, and BT.709-6, 3 and 4, quantised to 8
- * bits in limited range: Y' = 16 + 219 E_Y, C_B = 128 + 224 (E_B - E_Y) / (2 (1 - K_B)), C_R likewise. */
+/* The writer of YUV4MPEG2. The header follows y4m(5); luma and chroma follow ITU-R BT.601-7, 2.5, and BT.709-6, 3 and
+ * 4, quantised to 8 bits in limited range: Y' = 16 + 219 E_Y, C_B = 128 + 224 (E_B - E_Y) / (2 (1 - K_B)), C_R
+ * likewise. */
 #include "image/y4m.h"
 
 #include "image/codec.h"
@@ -8,7 +9,7 @@
 
 enum { HIGH_DEFINITION_LINES = 720, TEN_THOUSAND = 10000 };
 
-/* Shares of red, green and blue in the luma, in ten thousandths: K_R, K_G, K_B. */
+/* The weights of red, green and blue in the luma, K_R, K_G, K_B, in units of 1/10000. */
 typedef struct luma_shares {
     int64_t red, green, blue;
 } luma_shares;
@@ -19,16 +20,16 @@ static luma_shares shares_for(int height)
                                           : (luma_shares){2126, 7152, 722}; /* BT.709 */
 }
 
-/* The integer nearest to a / b, b > 0; halves go up. */
+/* The integer nearest to a / b, b > 0; halves are rounded up. */
 static int64_t nearest(int64_t a, int64_t b)
 {
     int64_t doubled = 2 * a + b, quotient = doubled / (2 * b);
     return quotient - (doubled % (2 * b) < 0);
 }
 
-/* A frame's bytes, 4:2:0: all of luma, then chroma a quarter as large. */
+/* The bytes of a 4:2:0 frame: the luma plane, then two chroma planes, each a quarter as large. */
 typedef struct planes {
-    unsigned char *rgb; /* three a pixel */
+    unsigned char *rgb; /* three bytes a pixel */
     unsigned char *y, *cb, *cr;
     size_t wide, high, chroma_wide, chroma_high;
 } planes;
@@ -38,7 +39,7 @@ static size_t plane_bytes(const planes *p)
     return p->wide * p->high + 2 * p->chroma_wide * p->chroma_high;
 }
 
-/* E_Y of a pixel times 255 * 10000. */
+/* E_Y of a pixel, times 255 * 10000. */
 static int64_t luma(const luma_shares *k, const unsigned char rgb[3])
 {
     return k->red * rgb[0] + k->green * rgb[1] + k->blue * rgb[2];
@@ -50,7 +51,8 @@ static void put_luma(const planes *p, const luma_shares *k)
         p->y[i] = (unsigned char)(16 + nearest(219 * luma(k, p->rgb + 3 * i), 255 * TEN_THOUSAND));
 }
 
-/* Of the pixels 2 x, 2 y and what is there of their right and lower neighbours. */
+/* Writes the chroma of the pixel at 2 x, 2 y and of those of its right and lower neighbours that are inside the
+ * image. */
 static void put_chroma_at(const planes *p, const luma_shares *k, size_t x, size_t y)
 {
     int64_t blue = 0, red = 0, count = 0; /* sums of 10000 (B - Y), 10000 (R - Y) */
