@@ -1,8 +1,8 @@
-/* The program cuvette-import: reads one mesh file with assimp under limits that it sets itself, and writes the
- * triangles on standard output as import/mesh_wire.h says. It is a program of its own so that a file that crashes
- * or fills a reader takes nothing else down. Its parts, one file each. Ownership: what is allocated is never given
- * back; the process ends as soon as the mesh is written, and with it all of it goes. Errors: STATUS_BAD_INPUT and the
- * reason in the diagnostic; memory that is not there is the file's fault, too, because the limit on it is ours. */
+/* The parts of the program cuvette-import, one file each. It reads one mesh file with assimp under resource limits that
+ * it sets itself, and writes the triangles to standard output in the format of import/mesh_wire.h. It is a separate
+ * program so that a file that crashes assimp or exhausts its memory affects nothing else. Ownership: memory is never
+ * freed; the process ends as soon as the mesh is written. Errors: STATUS_BAD_INPUT and the reason in the diagnostic,
+ * also when out of memory, because the program sets the memory limit itself. */
 #pragma once
 
 #include "base/status.h"
@@ -19,44 +19,44 @@ typedef enum file_kind { FILE_OBJ, FILE_PLY, FILE_STL, FILE_GLTF, FILE_GLB, FILE
 
 typedef struct request {
     const char *path;
-    file_kind kind;               /* by the ending of its name */
+    file_kind kind;               /* by the file's extension */
     uint64_t memory_mib, seconds; /* limits on this process */
     uint64_t triangles, vertices; /* limits on the mesh */
-    const char *root;             /* all that is opened lies below it (base/below.h); "": anywhere */
+    const char *root;             /* all files that are opened must be below it (base/below.h); "": anywhere */
 } request;
 
 /* ---- files.c ---- */
 
-/* How assimp opens files, here and all that they name: regular ones below the root, for reading, without waiting.
- * Counts the ones that are named and not there. */
+/* The file access of assimp, for the mesh file and all files that it names: only regular files below the root, read
+ * only, without waiting. Records the first file that cannot be opened. */
 typedef struct file_access {
     struct aiFileIO io;
     const char *root;
-    char missing[512];  /* the first one that could not be opened; "" */
-    const char *reason; /* the system's word on it, or ours */
-    bool outside;       /* that it is not below the root */
+    char missing[512];  /* the first file that could not be opened; "": none */
+    const char *reason; /* why it could not be opened */
+    bool outside;       /* it is not below the root */
 } file_access;
 
-void files_prepare(file_access *access, const request *asked);
-/* The file itself as such a stream, NULL where it cannot be opened any more. */
-FILE *files_open(const request *asked);
-/* That it is a regular file with something in it, or why not. */
-status files_check(const request *asked, diagnostic *why);
+void files_prepare(file_access *access, const request *req);
+/* Opens the mesh file itself; NULL if that fails. */
+FILE *files_open(const request *req);
+/* Checks that the mesh file is a regular file and not empty. */
+status files_check(const request *req, diagnostic *why);
 
 /* ---- whole.c ---- */
 
-/* That a PLY or STL file is as long as it says it is. */
-status check_whole(const request *asked, diagnostic *why);
+/* Checks that a PLY or STL file has the length that its header implies. */
+status check_whole(const request *req, diagnostic *why);
 
 /* ---- read.c ---- */
 
-/* The scene of the file, triangulated; every file that it needs was there. */
-status read_scene(const request *asked, const struct aiScene **out, diagnostic *why);
-status no_memory_for(const request *asked, diagnostic *why);
+/* Reads the file and triangulates it. Fails if a file that it names cannot be opened. */
+status read_scene(const request *req, const struct aiScene **out, diagnostic *why);
+status no_memory_for(const request *req, diagnostic *why);
 
 /* ---- flatten.c ---- */
 
-/* One mesh in world coordinates. Vertices that are equal in every number that they carry are one. */
+/* One mesh in world coordinates. Vertices that are equal in position, normal and texture coordinates are joined. */
 typedef struct flat_mesh {
     size_t vertex_count, triangle_count;
     vec3 *positions, *normals;
@@ -66,14 +66,14 @@ typedef struct flat_mesh {
     uint32_t (*triangles)[3];
     uint8_t *slots;
     bool with_normals, with_uvs;
-    unsigned material_count, materials[256]; /* by slot: index into the scene's */
+    unsigned material_count, materials[256]; /* by slot: index into the scene's materials */
 } flat_mesh;
 
-status flatten(const request *asked, const struct aiScene *scene, flat_mesh *flat, diagnostic *why);
+status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat, diagnostic *why);
 
 /* ---- join.c ---- */
 
-/* Adds a vertex to flat, or finds the one that equals it. */
+/* A hash table of the vertices of flat. join_vertex finds the vertex with these numbers or adds it. */
 typedef struct joiner {
     uint32_t *table;
     size_t size;
@@ -84,4 +84,4 @@ enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double
 
 /* ---- write.c ---- */
 
-status write_mesh(const request *asked, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why);
+status write_mesh(const request *req, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why);
