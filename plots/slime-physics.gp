@@ -1,4 +1,4 @@
-# A slime's motion beside mechanics: energy and momentum that a free one loses, orders, the fall, and the longest stable step.
+# A slime's motion compared with mechanics: energy and momentum that a free one loses, orders, the fall, and the longest stable step.
 # needs: tables/slime-physics-motion.tsv
 width = 1000; height = 760
 load "plots/style.gp"
