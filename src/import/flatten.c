@@ -12,7 +12,7 @@ typedef struct affine {
 } affine;
 
 typedef struct walk {
-    const request *asked;
+    const request *req;
     const struct aiScene *scene;
     flat_mesh *flat;
     joiner join;
@@ -66,9 +66,9 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
     uint64_t before = w->triangles;
     for (unsigned i = 0; i < mesh->mNumFaces; i++)
         w->triangles += mesh->mFaces[i].mNumIndices == 3;
-    if (w->triangles > w->asked->triangles)
+    if (w->triangles > w->req->triangles)
         return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail", "more triangles than the limit of %llu",
-                        (unsigned long long)w->asked->triangles);
+                        (unsigned long long)w->req->triangles);
     if (w->triangles == before)
         return STATUS_OK;
     if (mesh->mMaterialIndex >= w->scene->mNumMaterials ||
@@ -174,12 +174,12 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
         if (index[i] == UNUSED)
             continue;
         gather(w, mesh, at, i, numbers);
-        switch (join_vertex(&w->join, w->flat, w->asked->vertices, numbers, &index[i])) {
+        switch (join_vertex(&w->join, w->flat, w->req->vertices, numbers, &index[i])) {
         case JOINED: break;
-        case JOIN_NO_MEMORY: return no_memory_for(w->asked, w->why);
+        case JOIN_NO_MEMORY: return no_memory_for(w->req, w->why);
         case JOIN_TOO_MANY:
             return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail",
-                            "more vertices than the limit of %llu", (unsigned long long)w->asked->vertices);
+                            "more vertices than the limit of %llu", (unsigned long long)w->req->vertices);
         }
     }
     return STATUS_OK;
@@ -192,7 +192,7 @@ static status take_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
     at.mirrored = determinant < 0;
     uint32_t *index = calloc((size_t)mesh->mNumVertices + 1, sizeof *index);
     if (!index)
-        return no_memory_for(w->asked, w->why);
+        return no_memory_for(w->req, w->why);
     status code = take_vertices(w, mesh, &at, index);
     for (unsigned f = 0; f < mesh->mNumFaces && code == STATUS_OK; f++) {
         const unsigned *corner = mesh->mFaces[f].mIndices;
@@ -208,10 +208,10 @@ static status take_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
     return code;
 }
 
-status flatten(const request *asked, const struct aiScene *scene, flat_mesh *flat, diagnostic *why)
+status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat, diagnostic *why)
 {
-    walk w = {.asked = asked, .scene = scene, .flat = flat, .why = why};
-    diagnostic_locate(why, asked->path, 0, 0);
+    walk w = {.req = req, .scene = scene, .flat = flat, .why = why};
+    diagnostic_locate(why, req->path, 0, 0);
     status code = scene->mRootNode ? visit_all(&w, count_mesh) : STATUS_OK;
     if (code == STATUS_OK && w.triangles == 0)
         code = diagnose(why, STATUS_BAD_INPUT, "points and lines are ignored; use a file with faces",
@@ -221,5 +221,5 @@ status flatten(const request *asked, const struct aiScene *scene, flat_mesh *fla
         return code;
     flat->triangles = malloc((size_t)w.triangles * sizeof *flat->triangles);
     flat->slots = malloc((size_t)w.triangles);
-    return flat->triangles && flat->slots ? visit_all(&w, take_mesh) : no_memory_for(asked, why);
+    return flat->triangles && flat->slots ? visit_all(&w, take_mesh) : no_memory_for(req, why);
 }

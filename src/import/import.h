@@ -69,7 +69,7 @@ typedef struct flat_mesh {
     unsigned material_count, materials[256]; /* by slot: index of the scene's material */
 } flat_mesh;
 
-status flatten(const request *asked, const struct aiScene *scene, flat_mesh *flat, diagnostic *why);
+status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat, diagnostic *why);
 
 /* ---- join.c ---- */
 
@@ -84,4 +84,4 @@ enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double
 
 /* ---- write.c ---- */
 
-status write_mesh(const request *asked, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why);
+status write_mesh(const request *req, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why);

@@ -8,7 +8,7 @@
  * - uvs, with MESH_WIRE_UVS: vertex_count x 2 doubles;
  * - triangles: triangle_count x 3 uint32;
  * - slots: triangle_count x 1 byte, the index of the material;
- * - materials: material_count of record, name, texture (texts without a final 0, of the lengths in the record);
+ * - materials: material_count times record, name, texture (texts without a final 0, of the lengths in the record);
  * - MESH_WIRE_END. */
 #pragma once
 
@@ -24,7 +24,7 @@ typedef struct mesh_wire_header {
     char magic[8];
     uint32_t version, flags;
     uint64_t vertex_count, triangle_count;
-    uint32_t material_count, reserved; /* 1 to MESH_SLOTS_MAX; 0 */
+    uint32_t material_count, reserved; /* 1 to MESH_SLOTS_MAX; reserved is 0 */
 } mesh_wire_header;
 
 /* As in the file, linear RGB. */

@@ -236,21 +236,21 @@ static status check_stl(const char *bytes, size_t size, diagnostic *why)
     return size > needed ? STATUS_OK : truncated(why, "facet", (size - 84) / 50, count);
 }
 
-status check_whole(const request *asked, diagnostic *why)
+status check_whole(const request *req, diagnostic *why)
 {
-    if (asked->kind != FILE_PLY && asked->kind != FILE_STL)
+    if (req->kind != FILE_PLY && req->kind != FILE_STL)
         return STATUS_OK;
     struct stat about;
-    int fd = below_open(asked->path, asked->root);
+    int fd = below_open(req->path, req->root);
     void *bytes = fd >= 0 && fstat(fd, &about) == 0 ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, fd, 0)
                                                     : MAP_FAILED;
     if (fd >= 0)
         close(fd);
     if (bytes == MAP_FAILED)
-        return no_memory_for(asked, why);
+        return no_memory_for(req, why);
     ply p = {.at = bytes, .end = (const char *)bytes + about.st_size, .why = why};
-    diagnostic_locate(why, asked->path, 0, 0);
-    status code = asked->kind == FILE_PLY ? check_ply(&p) : check_stl(bytes, (size_t)about.st_size, why);
+    diagnostic_locate(why, req->path, 0, 0);
+    status code = req->kind == FILE_PLY ? check_ply(&p) : check_stl(bytes, (size_t)about.st_size, why);
     munmap(bytes, (size_t)about.st_size);
     return code;
 }

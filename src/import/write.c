@@ -1,3 +1,4 @@
+/* The writer of the wire format, and the conversion of assimp materials. */
 #include "import/import.h"
 
 #include <assimp/material.h>
@@ -24,12 +25,12 @@ static void get_number(const struct aiMaterial *material, const char *key, doubl
  * glTF file the last one. */
 static bool is_given(const request *asked, const struct aiScene *scene, unsigned index, const struct aiString *name)
 {
-    bool gltf = asked->kind == FILE_GLTF || asked->kind == FILE_GLB;
+    bool gltf = req->kind == FILE_GLTF || req->kind == FILE_GLB;
     return !(gltf && index + 1 == scene->mNumMaterials) && strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0 &&
-           (name->length > 0 || asked->kind != FILE_PLY);
+           (name->length > 0 || req->kind != FILE_PLY);
 }
 
-static mesh_wire_material describe(const request *asked, const struct aiScene *scene, unsigned index,
+static mesh_wire_material describe(const request *req, const struct aiScene *scene, unsigned index,
                                    struct aiString *name, struct aiString *texture)
 {
     const struct aiMaterial *material = scene->mMaterials[index];
@@ -65,18 +66,18 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
     return m;
 }
 
-static void write_materials(const request *asked, const struct aiScene *scene, const flat_mesh *flat, FILE *to)
+static void write_materials(const request *req, const struct aiScene *scene, const flat_mesh *flat, FILE *to)
 {
     for (unsigned i = 0; i < flat->material_count; i++) {
         struct aiString name, texture;
-        mesh_wire_material record = describe(asked, scene, flat->materials[i], &name, &texture);
+        mesh_wire_material record = describe(req, scene, flat->materials[i], &name, &texture);
         fwrite(&record, sizeof record, 1, to);
         fwrite(name.data, 1, record.name_length, to);
         fwrite(texture.data, 1, record.texture_length, to);
     }
 }
 
-status write_mesh(const request *asked, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why)
+status write_mesh(const request *req, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why)
 {
     mesh_wire_header header = {
         .magic = MESH_WIRE_MAGIC,
@@ -94,7 +95,7 @@ status write_mesh(const request *asked, const struct aiScene *scene, const flat_
         fwrite(flat->uvs, sizeof *flat->uvs, flat->vertex_count, to);
     fwrite(flat->triangles, sizeof *flat->triangles, flat->triangle_count, to);
     fwrite(flat->slots, 1, flat->triangle_count, to);
-    write_materials(asked, scene, flat, to);
+    write_materials(req, scene, flat, to);
     fwrite(MESH_WIRE_END, 1, sizeof MESH_WIRE_END - 1, to);
     if (fflush(to) != 0 || ferror(to)) {
         const char *reason = strerrordesc_np(errno);
