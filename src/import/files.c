@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A regular file as a stream, or NULL and the reason. Does not block on a FIFO. */
+/* Opens a regular file; NULL and the reason on failure. Does not wait for the writer of a FIFO. */
 static FILE *open_regular(const char *path, const char *root, const char **reason, bool *outside)
 {
     int fd = below_open(path, root);

@@ -1,11 +1,11 @@
-/* Traverses the nodes of a scene and transforms every mesh to world coordinates, in double precision. A mesh without a
+/* Flattening of an assimp scene: every mesh is transformed to world coordinates, in double precision. A mesh without a
  * transform keeps the exact numbers of the file. */
 #include "import/import.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEPTH_MAX = 1000 }; /* depth of nested nodes */
+enum { DEPTH_MAX = 1000 }; /* nesting of nodes */
 
 typedef struct affine {
     double m[3][4];
@@ -17,7 +17,7 @@ typedef struct walk {
     flat_mesh *flat;
     joiner join;
     uint64_t triangles;      /* counted by the first traversal */
-    uint16_t slot_of[65536]; /* by material: slot + 1 */
+    uint16_t slot_of[65536]; /* by material: slot + 1, or 0 if unused */
     diagnostic *why;
     status (*visit)(struct walk *w, const struct aiMesh *mesh, const affine *place);
 } walk;
@@ -58,7 +58,7 @@ static status visit_all(walk *w, status (*visit)(walk *, const struct aiMesh *, 
     return visit_node(w, w->scene->mRootNode, &identity, 0);
 }
 
-/* ---- first traversal: counts ---- */
+/* ---- first traversal: count triangles, find materials and attributes ---- */
 
 static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
 {
@@ -77,9 +77,9 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
                         "a part refers to a missing material");
     }
     w->slot_of[mesh->mMaterialIndex] = 1;
-    /* The normals of an STL file are those of its facets, which the triangles determine; with them no two facets would
-     * share a vertex. */
-    w->flat->with_normals |= mesh->mNormals != NULL && w->asked->kind != FILE_STL;
+    /* The normals of an STL file are those of the facets, which follow from the triangles; with them no two facets
+     * would share a vertex. */
+    w->flat->with_normals |= mesh->mNormals != NULL && w->req->kind != FILE_STL;
     w->flat->with_uvs |= mesh->mTextureCoords[0] != NULL;
     return STATUS_OK;
 }
@@ -98,7 +98,7 @@ static status number_slots(walk *w)
     return STATUS_OK;
 }
 
-/* ---- second traversal: data ---- */
+/* ---- second traversal: copy vertices and triangles ---- */
 
 static bool is_identity(const affine *a)
 {
@@ -106,8 +106,8 @@ static bool is_identity(const affine *a)
     return memcmp(a, &identity, sizeof identity) == 0;
 }
 
-/* The transformation of normals: the inverse transpose, up to a positive factor. It is the matrix of cofactors divided
- * by the determinant, of which only the sign matters. */
+/* The transform of normals: the inverse transpose, up to a positive factor. The inverse transpose is the matrix of
+ * cofactors divided by the determinant, of which only the sign matters. */
 static affine normal_transform(const affine *a, double *determinant)
 {
     affine c = {0};
@@ -153,10 +153,10 @@ static void gather(const walk *w, const struct aiMesh *mesh, const placed *at, u
         numbers[7] = (double)mesh->mTextureCoords[0][i].y;
     }
     for (int k = 0; k < 8; k++)
-        numbers[k] += 0.0; /* -0 becomes 0, so that both are merged */
+        numbers[k] += 0.0; /* -0 becomes 0, so that vertices with either are joined */
 }
 
-/* index[i] is the new index of vertex i; unused vertices are dropped. */
+/* Joins the vertices that a triangle uses; index[i] is set to the new index of vertex i. */
 static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at, uint32_t *index)
 {
     enum { UNUSED = 0, USED = 1 };
@@ -199,7 +199,8 @@ static status take_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
         if (mesh->mFaces[f].mNumIndices == 3) {
             size_t t = w->flat->triangle_count++;
             w->flat->triangles[t][0] = index[corner[0]];
-            w->flat->triangles[t][1] = index[corner[at.mirrored ? 2 : 1]]; /* a reflection swaps front and back faces */
+            w->flat->triangles[t][1] =
+                index[corner[at.mirrored ? 2 : 1]]; /* a mirrored transform reverses the winding */
             w->flat->triangles[t][2] = index[corner[at.mirrored ? 1 : 2]];
             w->flat->slots[t] = (uint8_t)(w->slot_of[mesh->mMaterialIndex] - 1);
         }

@@ -1,5 +1,5 @@
-/* cuvette-import FILE: see import.h. Exit codes 0, 1 (failure of the machine) and 2 (error in the file), one line on
- * standard error. */
+/* The command line of cuvette-import (import.h). Exit codes: 0, 1 (the machine failed), 2 (the file is wrong), with one
+ * line on standard error. */
 #include "import/import.h"
 
 #include "base/float_environment.h"
@@ -63,7 +63,7 @@ static const struct argp_option options[] = {
     {0},
 };
 
-/* A lower limit set by the system stays. */
+/* Lowers a resource limit; never raises it. */
 static void limit(__rlimit_resource_t what, rlim_t value)
 {
     struct rlimit now;
@@ -74,8 +74,8 @@ static void limit(__rlimit_resource_t what, rlim_t value)
     }
 }
 
-/* From here on the process cannot create or modify files, dump its memory, open many files, or outlive its parent. */
-static void limit_all(const request *asked)
+/* After this the process cannot create or change a file, dump its memory, open many files, or outlive its parent. */
+static void limit_all(const request *req)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     prctl(PR_SET_DUMPABLE, 0);
@@ -117,5 +117,5 @@ int main(int count, char **arguments)
         char text[DIAGNOSTIC_TEXT_MAX];
         fprintf(stderr, "cuvette-import: %s\n", diagnostic_text(&why, text, sizeof text));
     }
-    _exit((int)code); /* skips the destructors of a possibly invalid scene */
+    _exit((int)code); /* without destructors: the scene may be damaged */
 }

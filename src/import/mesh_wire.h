@@ -1,5 +1,5 @@
-/* The bytes that cuvette-import writes to standard output for its parent, both of one build and on
- * one machine: numbers in native byte order, no padding. The reader does not trust them
+/* The wire format that cuvette-import writes to standard output for the program that started it. Both are of the same
+ * build on the same machine: numbers are in the machine's byte order, without padding. The reader checks everything
  * (scene/assets/mesh_stream.h). In this order:
  *
  * - the header;
@@ -27,7 +27,7 @@ typedef struct mesh_wire_header {
     uint32_t material_count, reserved; /* 1 to MESH_SLOTS_MAX; reserved is 0 */
 } mesh_wire_header;
 
-/* As in the file, linear RGB. */
+/* A material with the values of the file, colours in linear RGB. */
 typedef struct mesh_wire_material {
     double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;
     uint32_t flags, name_length, texture_length, reserved;

@@ -13,8 +13,8 @@ status no_memory_for(const request *req, diagnostic *why)
                        "the file requires more memory than the limit of %llu MiB", (unsigned long long)req->memory_mib);
 }
 
-/* Locates a syntax error in JSON, for which assimp gives no position. True if there is one. */
-static bool locate_json(const request *asked, diagnostic *why)
+/* Reports the position of a JSON error, which assimp does not. True if the file has one. */
+static bool locate_json(const request *req, diagnostic *why)
 {
     json_error_t error;
     FILE *stream = files_open(req);
@@ -29,8 +29,8 @@ static bool locate_json(const request *asked, diagnostic *why)
     return !root;
 }
 
-/* assimp's error messages, shortened to be understood alone. */
-static status explain(const request *asked, const file_access *access, const char *said, diagnostic *why)
+/* Converts an error message of assimp to a diagnostic. */
+static status explain(const request *req, const file_access *access, const char *message, diagnostic *why)
 {
     static const char *const names[] = {"OBJ", "PLY", "STL", "glTF 2.0", "binary glTF 2.0 (glb)"};
     diagnostic_locate(why, req->path, 0, 0);
@@ -60,9 +60,9 @@ status read_scene(const request *req, const struct aiScene **out, diagnostic *wh
     if (req->kind == FILE_UNKNOWN)
         return diagnose(why, STATUS_BAD_INPUT, "use a file that ends in .obj, .ply, .stl, .gltf or .glb",
                         "unknown mesh format");
-    TRY(check_whole(asked, why));
-    files_prepare(&access, asked);
-    /* Equal vertices are merged in join.c: assimp's own step merges vertices within 1e-5. */
+    TRY(check_whole(req, why));
+    files_prepare(&access, req);
+    /* Equal vertices are joined in join.c: assimp's own step also joins vertices that differ by up to 1e-5. */
     const struct aiScene *scene =
         aiImportFileEx(req->path, aiProcess_ValidateDataStructure | aiProcess_Triangulate, &access.io);
     if (!scene || access.missing[0]) {

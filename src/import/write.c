@@ -21,9 +21,9 @@ static void get_number(const struct aiMaterial *material, const char *key, doubl
         *to = (double)value;
 }
 
-/* The name that assimp gives to the material of triangles without one; in a PLY file a material without a name; in a
- * glTF file the last one. */
-static bool is_given(const request *asked, const struct aiScene *scene, unsigned index, const struct aiString *name)
+/* True if the material is one of the file's own. For triangles without a material assimp adds a default one: of the
+ * name below; in a PLY file without a name; in a glTF file after all others. */
+static bool is_given(const request *req, const struct aiScene *scene, unsigned index, const struct aiString *name)
 {
     bool gltf = req->kind == FILE_GLTF || req->kind == FILE_GLB;
     return !(gltf && index + 1 == scene->mNumMaterials) && strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0 &&
@@ -39,7 +39,7 @@ static mesh_wire_material describe(const request *req, const struct aiScene *sce
     double strength = 1; /* glTF's KHR_materials_emissive_strength */
     *name = *texture = (struct aiString){0};
     if (aiGetMaterialString(material, AI_MATKEY_NAME, name) != aiReturn_SUCCESS)
-        *name = (struct aiString){0}; /* undefined in assimp */
+        *name = (struct aiString){0}; /* assimp leaves it undefined on failure */
     get_color(material, "$clr.diffuse", m.diffuse, &alpha);
     get_color(material, "$clr.ambient", m.ambient, &unused);
     get_color(material, "$clr.specular", m.specular, &unused);
@@ -54,8 +54,8 @@ static mesh_wire_material describe(const request *req, const struct aiScene *sce
     if (aiGetMaterialTexture(material, aiTextureType_DIFFUSE, 0, texture, NULL, NULL, NULL, NULL, NULL, NULL) !=
         aiReturn_SUCCESS)
         *texture = (struct aiString){0};
-    m.flags = is_given(asked, scene, index, name) ? MESH_WIRE_GIVEN : 0;
-    if (texture->data[0] == '*') { /* the index of an embedded image */
+    m.flags = is_given(req, scene, index, name) ? MESH_WIRE_GIVEN : 0;
+    if (texture->data[0] == '*') { /* the index of an image inside the file */
         m.flags |= MESH_WIRE_TEXTURE_INSIDE;
         *texture = (struct aiString){0};
     }
