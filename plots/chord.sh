@@ -3,7 +3,7 @@
 # the ball covers the length
 # of the chord, 2 sqrt(1 - b^2) with b the distance of the chord from the center; then red, green and
 # blue, linear; tab separated.
-#   plots/chord.sh PICTURE.pfm DISTANCE FOV_DEG        fov: vertical
+#   plots/chord.sh IMAGE.pfm DISTANCE FOV_DEG        fov: vertical
 export LC_ALL=C
 set -eu
 

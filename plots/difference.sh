@@ -2,7 +2,7 @@
 # Luminance of one PFM minus that of another, one line per pixel: x, y from the bottom, difference; then that of red,
 # green
 # and blue.
-#   plots/difference.sh PICTURE FROM
+#   plots/difference.sh IMAGE FROM
 # Luminance: Y = 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of the linear values of PFM.
 export LC_ALL=C
 set -eu

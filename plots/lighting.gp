@@ -6,7 +6,7 @@ load "plots/style.gp"
 
 load "plots/image_panels.gp"
 rows = table("lighting")
-names = "'Lambert: diffuse light' 'Phong: highlights too' 'Whitted: reflection and refraction too' 'random paths: the reference'"
+names = "'Lambert: diffuse light' 'Phong: highlights too' 'Whitted: reflection and refraction too' 'path tracing: the reference'"
 set title offset 0,-0.7
 about(i) = sprintf("%.3f s / frame, FLIP %.3f, PSNR %.1f dB", cell_value(rows, i, "wall_s_median"), \
     cell_value(rows, i, "flip"), cell_value(rows, i, "psnr_db"))

@@ -1,6 +1,6 @@
 #!/bin/sh
 # One pixel of a PFM image, by default the middle one: red, green and blue, linear, tab separated.
-#   plots/pixel.sh PICTURE.pfm [X Y]        X from the left, Y from the bottom, both from 0
+#   plots/pixel.sh IMAGE.pfm [X Y]        X from the left, Y from the bottom, both from 0
 export LC_ALL=C
 set -eu
 

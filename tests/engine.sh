@@ -1,7 +1,7 @@
 #!/bin/bash
 # The engine as other programs meet it: installed, found by pkg-config, linked shared and statically, from C and C++;
 # its names, its
-# version; the example programs' pictures and memory. BUILD names the build folder, CONFIG its configuration.
+# version; the example programs' images and memory. BUILD names the build folder, CONFIG its configuration.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 build=${BUILD:-build} config=${CONFIG:-release} cc=${CC:-gcc}
@@ -65,12 +65,12 @@ empty "the shared library shows what the header declares, and nothing else" \
 empty "so does the static one" \
     "$(diff <(echo "$declared") <(nm -g --defined-only "$prefix/lib/libcuvette.a" | awk 'NF == 3 {print $3}' | sort))"
 empty "its soname is libcuvette.so.0" "$(readelf -d "$library" | grep SONAME | grep -v '\[libcuvette.so.0\]')"
-empty "it asks for no stack that runs code" "$(readelf -lW "$library" | awk '/GNU_STACK/ && /RWE/')"
+empty "it needs no executable stack" "$(readelf -lW "$library" | awk '/GNU_STACK/ && /RWE/')"
 empty "it neither prints nor ends the program" \
     "$(nm -D --undefined-only "$library" | awk '{print $2}' | sed 's/@.*//' |
         grep -x -e exit -e _exit -e abort -e printf -e puts -e putchar -e perror -e stderr)"
 
-# --- the examples, in four ways
+# --- the examples, with four combinations of library and language
 warnings=(-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
 read -ra shared <<<"$(flags --cflags --libs)"
 read -ra static <<<"$(flags --cflags --static --libs)"
@@ -95,18 +95,18 @@ under_valgrind() { # NAME
         --show-leak-kinds=definite,indirect,possible \
         --errors-for-leak-kinds=definite,indirect,possible "$work/$1" 2>&1 >"$work/valgrind.ppm")
     verdict $? "valgrind finds no fault in it, and no leak" "$(grep '^==' <<<"$said")"
-    empty "and it sees the same picture" "$(cmp "$work/$1.ppm" "$work/valgrind.ppm" 2>&1)"
+    empty "and it sees the same image" "$(cmp "$work/$1.ppm" "$work/valgrind.ppm" 2>&1)"
 }
 try_example() { # NAME WIDTH HEIGHT WHAT_IS_SAID: what of its words is the same in every run
     local name=$1 width=$2 height=$3 what_is_said=$4 source=experiments/engine/$1.c way
     empty "$name has fewer than 100 lines" "$(awk 'END {if (NR >= 100) print NR}' "$source")"
     LD_LIBRARY_PATH=$prefix/lib build_and_run "$name-shared-c" "$cc" -std=c17 "$source" "${shared[@]}"
     build_and_run "$name-static-c" "$cc" -std=c17 "$source" "${static[@]}"
-    local ways=(static-c)
+    local variants=(static-c)
     if have "$cxx"; then
         LD_LIBRARY_PATH=$prefix/lib build_and_run "$name-shared-c++" "$cxx" -std=c++17 -x c++ "$source" "${shared[@]}"
         build_and_run "$name-static-c++" "$cxx" -std=c++17 -x c++ "$source" "${static[@]}"
-        ways+=(shared-c++ static-c++)
+        variants+=(shared-c++ static-c++)
     else
         skip "$name as C++: no $cxx"
     fi
@@ -117,16 +117,16 @@ try_example() { # NAME WIDTH HEIGHT WHAT_IS_SAID: what of its words is the same 
             readelf -d "$work/$name-static-c" | grep 'NEEDED.*libcuvette'
         )"
     empty "it says what it did" "$([[ -s $work/$name-shared-c.said ]] || echo nothing)"
-    for way in "${ways[@]}"; do
-        empty "$name-$way makes the same picture, films and counts" \
+    for variant in "${variants[@]}"; do
+        empty "$name-$variant gives the same image, films and counts" \
             "$(
-                cmp "$work/$name-shared-c.ppm" "$work/$name-$way.ppm" 2>&1
+                cmp "$work/$name-shared-c.ppm" "$work/$name-$variant.ppm" 2>&1
                 diff "$work/$name-shared-c.said" \
-                    "$work/$name-$way.said"
+                    "$work/$name-$variant.said"
             )"
     done
     local head="P6 $width $height 255 "
-    empty "the picture is a PPM of $width x $height" \
+    empty "the image is a PPM of $width x $height" \
         "$([[ $(head -c ${#head} "$work/$name-shared-c.ppm" | tr '\n' ' ') == "$head" &&
         $(wc -c <"$work/$name-shared-c.ppm") == $((${#head} + 3 * width * height)) ]] ||
             wc -c <"$work/$name-shared-c.ppm")"

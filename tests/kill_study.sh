@@ -122,6 +122,6 @@ while ((killed < kills)); do
 done
 result $lost "$killed kills: no row is lost"
 result $torn "after each kill no whole line is torn and none stands twice"
-result $rounds_bad "$round studies went on to the end: same cells, same pictures, every row with its worker rows"
+result $rounds_bad "$round studies went on to the end: same cells, same images, every row with its worker rows"
 echo "1..$case"
 exit $bad

@@ -2,7 +2,7 @@
 # A file under src/ includes only from its own room and from floors below it, written from src/. Reads the #include
 # lines; then plants bad ones in a copy, to see that they are caught.
 #
-# One door leads sideways: cli/lab.c includes web/lab.h, since `cuvette lab` starts the laboratory, which stands beside
+# One door leads sideways: cli/lab.c includes web/lab.h, since `cuvette lab` starts the laboratory, which is next to
 # the program's other commands. No other file of cli may look into web, and none of web into cli.
 set -uo pipefail
 cd "$(dirname "$0")/.."

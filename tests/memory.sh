@@ -112,7 +112,7 @@ fan=(fan rod.yaml --from=-3,1.5,0 --to=3,1.5,0 --width 1.5 --rays 5 -o drawing.s
 walk "fan -o" cgp 1 drawing.svg "${fan[@]}"
 walk "fan -o" mcgsp 23 drawing.svg "${fan[@]}"
 
-# A picture that is decoded, a mesh that is bisected, a slime whose parameters are kept as text.
+# An image that is decoded, a mesh that is bisected, a slime whose parameters are kept as text.
 walk "trace -o of a slime" cgp 3 tree.json trace "$root/experiments/scenes/slime.yaml" --pixel 400,300 --depth 1 \
     --set toy.level=1 --set toy.time_s=0.01 -o tree.json
 

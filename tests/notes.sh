@@ -39,7 +39,7 @@ study() { # study GRID: what running it says
     "$cuvette" study run --results "$folder/$RANDOM" "$folder/t.study" ${2-} 2>&1
 }
 expect 'a render notes it' 1 "$("$cuvette" render tests/data/lint/shallow.yaml -o "$folder/a.png" 2>&1)"
-expect 'not beside JSON' 0 "$("$cuvette" render tests/data/lint/shallow.yaml --json 2>&1)"
+expect 'not with JSON' 0 "$("$cuvette" render tests/data/lint/shallow.yaml --json 2>&1)"
 expect 'a study notes it' 1 "$(study 'render.threads: [1, 2]')"
 expect 'not one that varies it' 0 "$(study 'render.depth: [1, 2]')"
 expect 'nor a quiet one' 0 "$(study 'render.threads: [1, 2]' -q)"

@@ -89,6 +89,6 @@ if [[ -n ${SOURCES:-} ]]; then
         [[ -r $SOURCES/$(text_of "$key") ]] || echo "$SOURCES/$(text_of "$key")"
     done)"
 else
-    echo "ok $((count + 1)) # SKIP quotes beside the texts: set SOURCES to their folder"
+    echo "ok $((count + 1)) # SKIP comparison of quotes with the texts: set SOURCES to their folder"
 fi
 ((failed == 0))

@@ -26,7 +26,7 @@ empty() { # WHAT TEXT: passes when the text, what is wrong, is empty
     verdict $? "$1" "$2"
 }
 
-# --- files that are named: links and pictures from the page's folder, `src/...` and the like from the root
+# --- files that are named: links and images from the page's folder, `src/...` and the like from the root
 links() { # PAGE: their targets without those on the web and within the page
     grep -o '](\([^)]*\))' "$1" | sed 's/^](//; s/[)#].*$//' | grep -v -e '^[a-z]*:' -e '^$' | sort -u
 }
@@ -94,7 +94,7 @@ while read -r line; do
     try "$line"
 done < <(block 2)
 name=$(sed -n 's/^study: //p' "$file")
-empty "its pictures are in images/index.tsv" \
+empty "its images are in images/index.tsv" \
     "$({ cd "results/$name/images" && diff <(tail -n +2 index.tsv | cut -f1 |
         sort) <(find . -name '*.png' -printf '%f\n' | sort); } 2>&1)"
 cells=$(cuvette study list experiments | awk -v f="$file" '$1 == f {print $2}')

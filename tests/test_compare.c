@@ -259,9 +259,9 @@ static void a_nan_pixel_is_refused_and_located(void **state)
     diagnostic why = {0};
     b->pixel[3 * (7 * 16 + 5) + 2] = NAN;
     assert_int_equal(image_compare(a, b, &c, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "pixel 5,7 of the second picture is not a number");
+    assert_string_equal(why.what, "pixel 5,7 of the second image is not a number");
     assert_int_equal(image_compare(b, a, &c, &why), STATUS_BAD_INPUT);
-    assert_string_equal(why.what, "pixel 5,7 of the first picture is not a number");
+    assert_string_equal(why.what, "pixel 5,7 of the first image is not a number");
     assert_int_equal(image_compare_map(a, b, &map, NULL), STATUS_BAD_INPUT);
     assert_null(map);
     image_destroy(a);
@@ -315,5 +315,5 @@ int main(void)
         cmocka_unit_test(a_nan_pixel_is_refused_and_located),
         cmocka_unit_test(the_error_map_has_magma_colors),
     };
-    return cmocka_run_group_tests_name("comparison of pictures", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("comparison of images", tests, NULL, NULL);
 }

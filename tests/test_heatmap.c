@@ -273,7 +273,7 @@ static void a_long_title_is_truncated(void **state)
 {
     (void)state;
     double *values = make_values(240, 3, 1.0);
-    image *img = draw(values, 240, 3, "a title that is much longer than the picture is wide");
+    image *img = draw(values, 240, 3, "a title that is much longer than the image is wide");
     assert_true(shows(img, 3, "a title that is much longer than t..."));
     image_destroy(img);
     char huge[2000];

@@ -1,4 +1,4 @@
-/* Tests of random paths against Whitted's trees where both compute the same light, and elsewhere against closed
+/* Tests of random paths against Whitted ray tracing where both compute the same light, and elsewhere against closed
  * forms. */
 #include <math.h>
 #include <setjmp.h>

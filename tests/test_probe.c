@@ -260,7 +260,7 @@ static void faces_of_a_cups_hollow_have_their_own_numbers(void **state)
     static const struct {
         vec3 from, to;
         int face;
-    } ways[] = {{{5, 1, 0}, {0, 1, 0}, 0},
+    } rays[] = {{{5, 1, 0}, {0, 1, 0}, 0},
                 {{0, -5, 0}, {0, 0, 0}, 1},
                 {{0, 1, 0}, {1, 1, 0}, HOLLOW_FACES},
                 {{0, 5, 0}, {0, 0, 0}, HOLLOW_FACES + 1}};
@@ -268,9 +268,9 @@ static void faces_of_a_cups_hollow_have_their_own_numbers(void **state)
                           "3, floor: 0.1}}\n");
     probe *p = probe_of(s);
     ray_tree tree = {0};
-    for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
-        worked(probe_ray(p, ways[i].from, vec3_sub(ways[i].to, ways[i].from), &tree, NULL), NULL);
-        assert_int_equal(tree.node[0].hit.face, ways[i].face);
+    for (size_t i = 0; i < sizeof rays / sizeof rays[0]; i++) {
+        worked(probe_ray(p, rays[i].from, vec3_sub(rays[i].to, rays[i].from), &tree, NULL), NULL);
+        assert_int_equal(tree.node[0].hit.face, rays[i].face);
     }
     ray_tree_release(&tree);
     probe_destroy(p);

@@ -52,12 +52,12 @@ static void the_sky_from_under_water_has_the_square_of_the_index(void **state)
     static const struct {
         double n, n_around;
     } media[] = {{1.333, 1.0}, {1.5, 1.0}, {1.8, 1.2}, {1.0, 1.5}, {1.0, 1.0}};
-    static const char *const ways[] = {"", "render.polarisation=on", "render.samples=4"};
+    static const char *const modes[] = {"", "render.polarisation=on", "render.samples=4"};
     for (size_t k = 0; k < COUNT(media); k++)
         for (int degrees = 0; degrees <= 80; degrees += 8)
-            for (size_t w = 0; w < COUNT(ways); w++) {
+            for (size_t w = 0; w < COUNT(modes); w++) {
                 const double n = media[k].n, n_around = media[k].n_around, T = through(degrees * DEGREE, n, n_around);
-                scene *s = diver_at(degrees, n, n_around, ways[w]);
+                scene *s = diver_at(degrees, n, n_around, modes[w]);
                 assert_true(fabs(see(s) - T) < 1e-5 * T + NEAR); /* a pixel has a width */
                 set(s, "render.radiance=basic");
                 assert_true(fabs(see(s) - n * n / (n_around * n_around) * T) < 2e-5 * T + NEAR);
@@ -120,17 +120,17 @@ static const char furnace[] =
 static void a_furnace_shows_only_the_cameras_own_medium(void **state)
 {
     (void)state;
-    static const char *const ways[] = {"", "render.polarisation=on", "render.integrator=path render.paths=16",
-                                       "render.depth=1"};
+    static const char *const modes[] = {"", "render.polarisation=on", "render.integrator=path render.paths=16",
+                                        "render.depth=1"};
     static const struct {
         const char *pose;
         double n;
     } eyes[] = {
         {"", 1.0}, {"camera.position=0.25,0.9,0.01", 2.42}, {"camera.position=0,-3,0 background.ior=1.2", 1.3 / 1.2}};
-    for (size_t w = 0; w < COUNT(ways); w++)
+    for (size_t w = 0; w < COUNT(modes); w++)
         for (size_t k = 0; k < COUNT(eyes); k++) {
             scene *s = scene_from(furnace);
-            set_all(s, ways[w]);
+            set_all(s, modes[w]);
             set_all(s, eyes[k].pose);
             render_result *r = render(s);
             for (int i = 0; i < 12 * 9; i++)
@@ -167,11 +167,11 @@ static scene *pond_from_above(double degrees, double n, const char *settings, do
 static void radiance_of_a_floor_decreases_on_leaving_water(void **state)
 {
     (void)state;
-    static const char *const ways[] = {"", "render.polarisation=on", "render.spectrum=spectral render.wavelengths=64"};
+    static const char *const modes[] = {"", "render.polarisation=on", "render.spectrum=spectral render.wavelengths=64"};
     for (int degrees = 0; degrees <= 80; degrees += 10)
-        for (size_t w = 0; w < COUNT(ways); w++) {
+        for (size_t w = 0; w < COUNT(modes); w++) {
             double at;
-            scene *s = pond_from_above(degrees, 1.333, ways[w], &at);
+            scene *s = pond_from_above(degrees, 1.333, modes[w], &at);
             set(s, degrees % 20 ? "floor.ambient=1" : "floor.emission=1");
             const double T = through(degrees * DEGREE, 1.0, 1.333), seen = look(s).y;
             assert_true(fabs(seen - T / (1.333 * 1.333)) < (w == 2 ? 1e-6 : 1e-9));
@@ -185,13 +185,13 @@ static void radiance_of_a_floor_decreases_on_leaving_water(void **state)
 static void in_one_medium_nothing_changes(void **state)
 {
     (void)state;
-    static const char *const ways[] = {"whitted", "raycast"};
-    for (size_t w = 0; w < COUNT(ways); w++) {
+    static const char *const modes[] = {"whitted", "raycast"};
+    for (size_t w = 0; w < COUNT(modes); w++) {
         scene *s = scene_from(pond);
-        char way[64];
-        snprintf(way, sizeof way, "render.integrator=%s", ways[w]);
+        char mode[64];
+        snprintf(mode, sizeof mode, "render.integrator=%s", modes[w]);
         set_all(s, "camera.position=0,0.5,0 camera.target=0.1,0,0 floor.ambient=0.7 water.ior=1.6");
-        set(s, way);
+        set(s, mode);
         assert_true(fabs(see(s) - 0.7) < NEAR);
         scene_destroy(s);
     }
@@ -437,13 +437,13 @@ static void without_refraction_the_film_is_the_classic_one(void **state)
 static void the_film_is_the_same_for_any_threads(void **state)
 {
     (void)state;
-    static const char *const ways[] = {"", "camera.position=0,1.2,0", "render.spectrum=spectral",
-                                       "render.integrator=path render.paths=16"};
-    for (size_t k = 0; k < COUNT(ways); k++) {
+    static const char *const modes[] = {"", "camera.position=0,1.2,0", "render.spectrum=spectral",
+                                        "render.integrator=path render.paths=16"};
+    for (size_t k = 0; k < COUNT(modes); k++) {
         char one[160], many[160];
-        snprintf(one, sizeof one, "render.radiance=basic render.threads=1 %s", ways[k]);
+        snprintf(one, sizeof one, "render.radiance=basic render.threads=1 %s", modes[k]);
         snprintf(many, sizeof many, "render.radiance=basic render.threads=5 render.schedule=tiles render.tile=7 %s",
-                 ways[k]);
+                 modes[k]);
         assert_true(hash_of(one) == hash_of(many));
     }
 }

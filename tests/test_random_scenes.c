@@ -142,7 +142,7 @@ static void look_at_scene(uint64_t *seed, int number, bool lit, renderer *r, sur
             ask_media(&sum->media, g.probe, tree);
             for (int c = 0; c < 3; c++) {
                 if (tree->radiance[c] != film_value(img->img, x, y, c))
-                    fail_msg("scene %d, pixel %d,%d: the probe and the picture differ", number, x, y);
+                    fail_msg("scene %d, pixel %d,%d: the probe and the image differ", number, x, y);
                 /* each contribution is rounded to a unit of the film */
                 sum->brightest = fmax(sum->brightest, tree->radiance[c] - (double)tree->count / FILM_ONE);
             }

@@ -10,7 +10,7 @@
 #include "reversal_fixture.h"
 
 typedef struct tally {
-    int ways, crossings, other_media, reflected;
+    int paths, crossings, other_media, reflected;
     double farthest, unequal;
 } tally;
 
@@ -21,7 +21,7 @@ static void take(tally *sum, reversal r)
     assert_true(r.same_surfaces && r.from_closed_form <= 1e-9 && r.direction <= 1e-9);
     sum->farthest = fmax(sum->farthest, r.farthest);
     sum->unequal = fmax(sum->unequal, r.unequal);
-    sum->ways++;
+    sum->paths++;
     sum->crossings += r.crossings;
     sum->other_media += r.other_media;
     sum->reflected += r.reflected;
@@ -51,7 +51,7 @@ static void a_reversed_path_has_the_same_points_and_throughput(void **state)
     (void)state;
     const tally sum = many_ways(1, false);
     assert_true(sum.farthest <= 1e-9 && sum.unequal <= 1e-12);
-    assert_true(sum.ways > 2000 && sum.crossings > 6000 && sum.other_media > 500 && sum.reflected > 500);
+    assert_true(sum.paths > 2000 && sum.crossings > 6000 && sum.other_media > 500 && sum.reflected > 500);
 }
 
 static void absorption_is_equal_in_both_directions(void **state)
@@ -59,7 +59,7 @@ static void absorption_is_equal_in_both_directions(void **state)
     (void)state;
     const tally sum = many_ways(2, true);
     assert_true(sum.farthest <= 1e-9 && sum.unequal <= 1e-12);
-    assert_true(sum.ways > 2000);
+    assert_true(sum.paths > 2000);
 }
 
 int main(void)

@@ -182,7 +182,7 @@ static void an_image_sky_looks_like_in_rgb(void **state)
             fail_msg("texel %d: CIEDE2000 %g", k, l.largest);
         largest = fmax(largest, l.largest);
     }
-    print_message("picture: CIEDE2000 at most %.3g\n", largest);
+    print_message("image: CIEDE2000 at most %.3g\n", largest);
     scene_destroy(s);
 }
 

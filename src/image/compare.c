@@ -18,7 +18,7 @@ static status check_numbers(const image *img, const char *which, diagnostic *why
         if (isnan(img->pixel[i])) {
             size_t pixel = i / 3, width = (size_t)img->width;
             return diagnose(why, STATUS_BAD_INPUT, "use images with finite values",
-                            "pixel %zu,%zu of the %s picture is not a number", pixel % width, pixel / width, which);
+                            "pixel %zu,%zu of the %s image is not a number", pixel % width, pixel / width, which);
         }
     }
     return STATUS_OK;

@@ -12,7 +12,7 @@
 
 #define REVERSAL_TOLERANCE 1e-9
 #define LEAST_COSINE 0.1
-enum { WAYS = 2000, HITS_MAX = 12 };
+enum { PATHS = 2000, HITS_MAX = 12 };
 
 typedef struct test_path {
     vec3 from, along;
@@ -90,7 +90,7 @@ status realism_reversal(const metrics *m, diagnostic *why)
     worst_pair ratio = {NAN, NAN, false}, miss = {NAN, NAN, false};
     status code = trial_start(&forth, arrange_vessel(m->supposed, &m->theory_at), m->level, why);
     THEN(code, trial_start(&back, arrange_vessel(m->traced, &m->at), m->level, why));
-    for (uint32_t i = 0; i < WAYS && code == STATUS_OK; i++) {
+    for (uint32_t i = 0; i < PATHS && code == STATUS_OK; i++) {
         round_trip r;
         code = trace_back(&forth, &back, &m->theory_at, i, &r, why);
         if (r.done && r.forth > 0.0) {

@@ -9,7 +9,7 @@
  *     - {liquid.ior: {from: 1.0, to: 2.0, steps: 5}}   evenly spaced, both ends included
  *     - name: pair                   or several together
  *       points: [{vessel.ior: 1.0, liquid.ior: 1.5}, {vessel.ior: 1.3, liquid.ior: 1.0}]
- *   reference: {render.depth: 40}    each cell's picture is compared with the one that these make of it
+ *   reference: {render.depth: 40}    parameters of the reference image of each cell
  *   repetitions: 10                  or {min: 6, max: 20, relative_width: 0.02}
  *   warmups: 1
  *   order: {shuffle: on, seed: 1}

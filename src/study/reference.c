@@ -31,10 +31,9 @@ static status check_cell(void *context, const study *s, size_t cell, scene *own,
     if (code == STATUS_OK && (code = scene_check(other, why)) != STATUS_OK)
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
     if (code == STATUS_OK && (own->render.width != other->render.width || own->render.height != other->render.height)) {
-        code =
-            diagnose(why, STATUS_BAD_INPUT, "give them the same size",
-                     "the reference has %" PRId64 "x%" PRId64 " pixels, the picture of cell %zu %" PRId64 "x%" PRId64,
-                     other->render.width, other->render.height, cell, own->render.width, own->render.height);
+        code = diagnose(why, STATUS_BAD_INPUT, "give them the same size",
+                        "the reference has %" PRId64 "x%" PRId64 " pixels, the image of cell %zu %" PRId64 "x%" PRId64,
+                        other->render.width, other->render.height, cell, own->render.width, own->render.height);
         diagnostic_locate(why, s->path, s->reference.line, s->reference.column);
     }
     scene_destroy(other);

@@ -322,7 +322,7 @@ export const cases = {
     await screen.setNumber('liquid.ior', 1.45);
     const film = await shownFilm(screen);
     const [download] = await Promise.all([screen.page.waitForEvent('download'), screen.button('Save PNG').click()]);
-    t.equal(download.suggestedFilename(), 'rod.png', 'the name of the picture');
+    t.equal(download.suggestedFilename(), 'rod.png', 'the name of the image');
     const saved = readPng(await readFile(await download.path()));
     t.equal(difference(saved, await screen.served()), 0, "share of pixels that are not the server's");
     await screen.button('Copy render command').click();

@@ -97,7 +97,7 @@ export const cases = {
     );
     const after = await screen.pixels();
     const different = before.data.filter((value, i) => Math.abs(value - after.data[i]) > 2).length;
-    t.check(different < 4 * 50, `the picture is the same: ${different} values differ`);
+    t.check(different < 4 * 50, `the image is the same: ${different} values differ`);
     await screen.page.getByRole('checkbox', { name: 'Solids' }).uncheck();
     await screen.page.getByRole('checkbox', { name: 'Camera' }).uncheck();
     const [stays] = await values();

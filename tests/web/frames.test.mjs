@@ -38,7 +38,7 @@ async function checkLast(t, screen, scene, what) {
   t.equal(
     difference(await screen.pixels(), await screen.served()),
     0,
-    `${what}: share of pixels that are not the server's picture`,
+    `${what}: share of pixels that are not the server's image`,
   );
 }
 
@@ -91,6 +91,6 @@ export const cases = {
     t.match(await banner.innerText(), /address/i, 'the banner says that another address was printed');
     await screen.load();
     t.equal(await banner.isVisible(), false, 'no banner at the new address');
-    t.check(await screen.page.evaluate(() => window.lab.picture.final), 'and the picture is there');
+    t.check(await screen.page.evaluate(() => window.lab.picture.final), 'and the image is there');
   },
 };

@@ -60,12 +60,12 @@ async function checkBack(t, lab, screen, rest) {
   const now = silhouette(await screen.pixels());
   // It may have rolled nearer or farther and onto another side, which affects its shape; the tolerance is below half of
   // the effect of lifting.
-  t.near(now.wide / now.high, rest.wide / rest.high, 0.1, 'let go, how wide it is by how high');
+  t.near(now.wide / now.high, rest.wide / rest.high, 0.1, 'released, how wide it is by how high');
   t.near(
     now.count / (now.wide * now.high),
     rest.count / (rest.wide * rest.high),
     0.03,
-    'let go, its share of its frame',
+    'released, its share of its frame',
   );
   const { slime } = await lab.get('/api/state');
   t.near(slime.volume / slime.volume_at_rest, 1, 0.03, 'its volume, of that at rest');
@@ -75,7 +75,7 @@ async function checkBack(t, lab, screen, rest) {
 export const cases = {
   'lifted by the mouse': async (t) => {
     const { lab, screen, rest } = await fallen(t);
-    t.more(rest.count, 10000, 'the body is in the picture, pixels');
+    t.more(rest.count, 10000, 'the body is in the image, pixels');
     const [a, b] = [
       await screen.place(rest.middle, rest.top + IN),
       await screen.place(rest.middle, rest.top + IN - LIFT),
@@ -119,11 +119,11 @@ export const cases = {
     await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
     const { slime, picture } = await lab.get('/api/state');
     const own = JSON.parse(await lab.run('render', 'tests/slime.yaml', '--json')).film_hash;
-    t.check(picture.film_hash !== own, 'the picture shows where it is, not where the scene has it');
+    t.check(picture.film_hash !== own, 'the image shows where it is, not where the scene has it');
     t.equal((await lab.get('/api/state')).slime.time_s, slime.time_s, 'its time stands still');
     await screen.button('Off').click();
     await screen.until((hash) => window.lab.picture.film_hash === hash, own);
-    t.equal((await lab.get('/api/state')).slime.on, false, 'it is off, and the picture is that of cuvette render');
+    t.equal((await lab.get('/api/state')).slime.on, false, 'it is off, and the image is that of cuvette render');
   },
 
   'a scene without one': async (t) => {

@@ -43,7 +43,7 @@ export const cases = {
     t.more(Math.hypot(...after.lamp.map((v, i) => v - before.lamp[i])), 0.2, 'the lamp has moved');
     t.more(Math.hypot(after.x - before.x, after.y - before.y), 10, 'and its shadow, pixels');
     const there = view.project(after.lamp);
-    t.near(there.x, handle.x - 60, 2, 'the lamp is where the pointer let go of it, x');
-    t.near(there.y, handle.y + 40, 2, 'the lamp is where the pointer let go of it, y');
+    t.near(there.x, handle.x - 60, 2, 'the lamp is where the pointer was released, x');
+    t.near(there.y, handle.y + 40, 2, 'the lamp is where the pointer was released, y');
   },
 };

@@ -32,7 +32,7 @@ export const cases = {
     await t.picture(screen, 'slime-drawn');
     await screen.page.mouse.up();
     await until(screen, () => window.lab.slime.held === 0);
-    t.equal(await screen.page.locator('.layer-grab circle').count(), 0, 'marks when it let go');
+    t.equal(await screen.page.locator('.layer-grab circle').count(), 0, 'marks after the release');
     t.equal((await slime(lab)).trouble, null, 'it holds together');
   },
 
@@ -50,7 +50,7 @@ export const cases = {
     await until(screen, () => window.lab.slime.held > 0);
     await screen.chooseTool('Orbit');
     await until(screen, () => window.lab.slime.held === 0);
-    t.check(true, 'another tool lets go');
+    t.check(true, 'another tool releases it');
   },
 
   'colours change while it moves, and a change of its body restarts it': async (t) => {

@@ -72,7 +72,7 @@ export const cases = {
 
     await screen.showPanel('Parameters');
     await screen.settled();
-    t.check(await screen.page.evaluate(() => window.lab.picture.final), 'afterwards the picture is rendered again');
+    t.check(await screen.page.evaluate(() => window.lab.picture.final), 'afterwards the image is rendered again');
   },
 
   'a change during a measurement is rendered afterwards': async (t) => {

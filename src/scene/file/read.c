@@ -10,7 +10,7 @@
  *   lights: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
- * A background with a picture is of the kind picture, which need not be said. Switches are on or off, also written
+ * Giving a picture sets the kind of the background to picture. Switches are on or off, also written
  * yes or no, true or false. SHAPE is the word of a rule in geometry/shapes/. The parameters are the rows of the table
  * (scene/model/params.h); a solid also takes those of a material, for itself alone. Vectors and colours are lists:
  * [0, 1, 2]. The file's order is kept. Sections and objects may be empty. */

@@ -110,15 +110,15 @@ export function objectTool(lab, choice, mark) {
   }
 
   function key(event) {
-    const ways = { ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX] };
+    const arrows = { ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX] };
     if (!choice.name) return false;
     if (event.key === 'Escape') choice.choose('');
     else if (event.key === 'Delete') choice.remove();
-    else if (ways[event.key] && moves(choice.object) && mark.at()) {
+    else if (arrows[event.key] && moves(choice.object) && mark.at()) {
       if (!keys || event.timeStamp - keys.at > PAUSE_MS) keys = { gesture: gesture('object') };
       keys.at = event.timeStamp;
       const fine = event.shiftKey ? 0.1 : 1;
-      const [dx, dy] = ways[event.key];
+      const [dx, dy] = arrows[event.key];
       choice.move(
         offset((dx * fine) / view.scale, (dy * fine) / view.scale, Math.max(depthOf(mark.at()), 0)),
         keys.gesture,
