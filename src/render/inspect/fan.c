@@ -90,7 +90,7 @@ static void read_exit(const fan *f, fan_ray *ray)
         cross_axis(f, ray);
 }
 
-/* True if two rays crossed the same surfaces. */
+/* True if two rays hit the same surfaces in the same order. */
 static bool same_direction(const fan *f, const fan_ray *a, const fan_ray *b)
 {
     if (a->count != b->count || !a->leaves || !b->leaves)

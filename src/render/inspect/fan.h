@@ -33,7 +33,7 @@ typedef struct fan_ray {
     vec3 axis_point;
 } fan_ray;
 
-/* The crossing of the last segments of rays `ray` and `ray` + 1, of neighbours that crossed the same surfaces. */
+/* The crossing of the last segments of rays `ray` and `ray` + 1, which hit the same surfaces in the same order. */
 typedef struct fan_crossing {
     int ray;
     vec3 at;
