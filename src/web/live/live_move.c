@@ -10,7 +10,7 @@
  * at 60 Hz. */
 static const double max_gap_s = 0.25, first_s = 1.0 / 60.0;
 
-void live_stand_still(live *l)
+void live_reset_clock(live *l)
 {
     l->moved_at_s = NAN;
     l->realtime = 0.0;
