@@ -1,5 +1,5 @@
 # Cuvette. `make help` lists the targets.
-#   make config=debug|release|sanitize|tsan|coverage|nocounters [CC=clang] [target]    each has a build folder of its own
+#   make config=debug|release|sanitize|tsan|coverage|nocounters [CC=clang] [target]    each with its own build folder
 MAKEFLAGS += --no-builtin-rules
 SHELL := /bin/bash
 config ?= release
@@ -30,15 +30,15 @@ endif
 
 PACKAGES := libpng libjpeg hwloc yaml-0.1 jansson
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla
-# A user's newer compiler may warn of more: warnings end a build in CI (STRICT=1) and in the tests' own programs alone.
+# A user's newer compiler may give more warnings: they are errors only in CI (STRICT=1) and in test programs.
 STRICT ?=
-# A function that is called undeclared is an error everywhere: its pointers would be cut.
+# An undeclared function is always an error: its pointer arguments would be truncated.
 errors := -Werror=implicit-function-declaration $(if $(STRICT),-Werror)
-# Instrumented code hides from gcc which values a number can take; its guess about printf's output is then wrong.
+# In instrumented code gcc does not know the ranges of values, and its estimate of printf's output is wrong.
 ifneq ($(filter sanitize tsan,$(config)),)
 warnings += $(if $(clang),,-Wno-format-truncation)
 endif
-# Bits must not depend on the compiler: no contraction to FMA, and only the loosenings that change no result.
+# Bits must not depend on the compiler: no contraction to FMA, and only relaxations that do not change results.
 arithmetic := -ffp-contract=off -fno-math-errno -fno-trapping-math
 optimize_release    := -O3
 optimize_nocounters := -O3 -DCUVETTE_COUNTERS=0
@@ -51,27 +51,27 @@ optimize_fuzz       := -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sani
 optimize := $(optimize_$(config))
 $(if $(optimize),,$(error config=$(config) is not one of debug, release, sanitize, tsan, fuzz, coverage, nocounters))
 
-# The library says which version it is in its header.
+# The library's version is in its header.
 version := $(shell awk '/^.define CUVETTE_VERSION_/ {printf "%s%s", dot, $$3; dot = "."}' src/cuvette.h)
 soname := libcuvette.so.$(firstword $(subst ., ,$(version)))
-# pkg-config is asked at its first use, not when this file is read: `make setup all` installs the libraries first.
+# pkg-config runs at its first use, not when this file is read: `make setup all` installs the libraries first.
 pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
 pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
 import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson) -lm)$(import_libs)
-# For src/web alone.
+# Only for src/web.
 web_libs = $(eval web_libs := $$(shell pkg-config --libs libmicrohttpd))$(web_libs)
 # Valgrind of Debian 12 cannot read the DWARF 5 that clang writes.
 CFLAGS ?= -g$(if $(clang),dwarf-4)
-# One set of objects for the program and both libraries: on the machines that run it, position-independent code whose names are hidden
-# is as fast. Of a shared library only what cuvette.h marks is seen.
+# One set of objects for the program and both libraries: on the supported machines, position-independent code with hidden symbols
+# is as fast. A shared library exports only what cuvette.h marks.
 linkage := -fPIC -fvisibility=hidden
-# What may change a result; the rest is about warnings and paths.
+# Flags that may change a result; the others are for warnings and paths.
 code_flags = -std=gnu17 -D_GNU_SOURCE $(linkage) $(arithmetic) $(optimize) $(CFLAGS) -Isrc -pthread
 all_cflags = $(code_flags) -DCUVETTE_VERSION='"$(version)"' \
   -DCUVETTE_COMPILER_FLAGS='"$(config): $(optimize) $(arithmetic)"' $(warnings) $(errors)
 all_libs = $(pkg_libs) $(embree_libs) -lm -pthread
 
-# Embree 3 is a yardstick, used where it is there: one file knows it. Asked for at its first use, as above.
+# Embree 3 is a reference for benchmarks, used if installed, in one file. Detected at its first use, as above.
 embree = $(eval embree := $$(shell $$(CC) -E -include embree3/rtcore.h -x c /dev/null >/dev/null 2>&1 && echo yes))$(embree)
 embree_cflags = $(if $(embree),-DCUVETTE_EMBREE=1)
 embree_libs = $(if $(embree),-lembree3)
@@ -110,7 +110,7 @@ $(build)/cuvette: $(program_objects) $(build)/libweb.a $(build)/libcuvette.a
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(web_libs) $(all_libs)
 
-# What commands and the laboratory's page say alike, the page's server and the page itself: for the program, never for the library.
+# Reports shared by commands and the laboratory's page, the page's server and the page itself: only for the program, not for the library.
 $(build)/libweb.a: $(web_objects)
 	@rm -f $@
 	$(quiet)ar rcs $@ $^
@@ -121,8 +121,8 @@ $(build)/web/page_files.o: $(build)/web/page_files.c $(build)/flags
 	$(call say,$(CC) $<)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -MMD -MP -c -o $@ $<
 
-# The one program that assimp is linked to: it reads mesh files for the other. Never with sanitizers, which need more addresses than
-# the limit that it sets itself.
+# The mesh importer, the only program linked to assimp. Built without sanitizers, which need more address space than the limit that it
+# sets itself.
 plain_cflags = $(filter-out -fsanitize% -fno-sanitize%,$(all_cflags))
 $(build)/cuvette-import: $(importer_objects)
 	$(call say,link $@)
@@ -132,21 +132,21 @@ $(build)/plain/%.o: src/%.c $(build)/flags
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(plain_cflags) -MMD -MP -c -o $@ $<
 
-# Where it looks last; not part of the flags, which a PREFIX for `make install` alone must not change.
+# The last place where the importer is looked for; not part of the flags, which a PREFIX only for `make install` must not change.
 $(build)/obj/scene/assets/mesh_program.o: private all_cflags += -DCUVETTE_LIBEXEC='"$(PREFIX)/libexec/cuvette"'
 
 $(build)/libcuvette.a: $(library_objects)
 	@rm -f $@
 	$(quiet)ar rcs $@ $^
 
-# For other programs: as above without the library's own names, which are the kind that others use too (a static library hides none by itself).
+# For other programs: as above without internal symbols, which could clash with the program's own (a static library does not hide any itself).
 $(build)/engine/libcuvette.a: $(library_objects)
 	$(call say,link $@)
 	@mkdir -p $(@D) && rm -f $@
 	$(quiet)$(CC) -r -nostdlib -o $(@D)/cuvette.o $^ && objcopy --localize-hidden $(@D)/cuvette.o && ar rcs $@ $(@D)/cuvette.o
 	@rm $(@D)/cuvette.o
 
-# Instrumented code leaves the instruments' names to the program.
+# Instrumented code leaves the symbols of the instrumentation to the program.
 $(build)/$(soname): $(library_objects)
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -shared -Wl,-soname,$(soname) $(if $(filter sanitize tsan fuzz,$(config)),,-Wl,-z,defs) -o $@ $^ $(LDFLAGS) $(all_libs)
@@ -185,19 +185,19 @@ $(build)/tests/bench_%: tests/bench_%.c $(build)/libcuvette.a $(build)/flags
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
 
-# Rebuilds everything when the compiler or its flags change. Everything that is compiled depends on it, so that it is
-# also the place to wait for setup when both are asked for.
+# Rebuilds everything when the compiler or its flags change. Everything that is compiled depends on it, so that it
+# also waits for setup when both are requested.
 .PHONY: always
 flags_text = $(subst ','\'',$(filter-out -Werror,$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags)))
 $(build)/flags: always | $(filter setup setup-peers,$(MAKECMDGOALS))
 	@mkdir -p $(@D)
 	@echo '$(flags_text)' | cmp -s - $@ || echo '$(flags_text)' >$@
 
-# What the benches compare with: the report's algorithm, which needs a compiler alone, and Embree where it is there.
-# Embree's rays are made by the program that hands them over, for the machine that it runs on.
+# The programs that the benchmarks compare with: the report's algorithm, which needs only a compiler, and Embree if installed.
+# The program that calls Embree is compiled for the machine that it runs on.
 report_sources := $(wildcard experiments/peers/report/*.[ch])
 .PHONY: peers
-peers: $(build)/peers/report $(build)/libcuvette.a ## build what the benches compare with (experiments/peers)
+peers: $(build)/peers/report $(build)/libcuvette.a ## build the programs that the benchmarks compare with (experiments/peers)
 	@$(if $(embree),$(MAKE) --no-print-directory build=$(build) $(build)/peers/embree)
 $(build)/peers/report: $(report_sources) $(build)/flags
 	$(call say,$(CC) experiments/peers/report)
@@ -212,16 +212,16 @@ $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)
 -include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
 
 .PHONY: setup
-setup: ## install what is needed (Debian 12); does nothing when it is there
+setup: ## install the required packages (Debian 12); does nothing if they are installed
 	@.ci/setup
 
 .PHONY: setup-peers
-setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install what the benches compare with: POV-Ray, Tachyon, Embree
+setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install the programs that the benchmarks compare with: POV-Ray, Tachyon, Embree
 	@.ci/setup-peers
 
 # --- tests ---
 
-# Checks that read the sources; one run of them is enough, whatever the configuration.
+# Checks of the sources, run in one configuration only.
 source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
   tests/compile_commands.sh
 scripts := $(filter-out $(source_checks),$(wildcard tests/*.sh))
@@ -234,17 +234,17 @@ selected_scripts := $(if $(only),,$(scripts))
 
 kernel_environment = KERNEL_FLAGS='$(code_flags)' $(foreach i,$(isas),KERNEL_FLAGS_$(i)='$(isa_flags_$(i))')
 
-# Random scenes of tests/test_laws.c; fewer under instruments.
+# Number of random scenes of tests/test_laws.c; fewer with instrumentation.
 test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverage,$(config)),20,$(if $(filter release,$(config)),10000,500)))
 
 .PHONY: test
-# What scripts of tests run.
+# Programs that test scripts run.
 tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh peers
 test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c alone
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
-# What people read of the list of quantities (src/job/quantities.c) and of the table of parameters; tests compare them.
+# Documents generated from the list of quantities (src/job/quantities.c) and the table of parameters; tests compare them.
 .PHONY: dictionary
 dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables of results/README.md and the manual's parameters and account
 	@$(build)/cuvette params --man >$(build)/parameters.roff
@@ -252,22 +252,22 @@ dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables 
 	  -e '/^\.\\" begin parameters/r $(build)/parameters.roff' src/cli/cuvette.1
 	@CUVETTE_RENEW=1 $< >/dev/null 2>&1 && $<
 
-# The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for pictures of every view. After what else
-# installs or measures.
+# The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view. Runs after everything
+# that installs or measures.
 .PHONY: test-web setup-web
 setup-web: | $(filter setup setup-peers,$(MAKECMDGOALS))
 	@.ci/setup-web $(build)/web-tests
-test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, which it installs with node where there is none; only=NAME for one file
+test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file
 	@tests/format.sh --check $(build)/web-tests
 	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
 	  $(if $(screenshots),--screenshots '$(abspath $(screenshots))') $(only)
 
 .PHONY: layers headers vectorise
-layers: ## check that includes stay on their floors
+layers: ## check the layers of includes
 	@tests/run tests/layers.sh
 headers: $(build)/flags ## check that every header compiles alone, as C17 and as C++17
 	@CC='$(CC)' tests/run tests/headers.sh
-vectorise: $(build)/flags ## report which loops of the kernels are vectorised; fail for one that must be and is not
+vectorise: $(build)/flags ## report which kernel loops are vectorised; fail if a required one is not
 	@$(kernel_environment) bash tests/vectorise.sh | sed -n 's/^# //p; /^not ok/p'; exit $${PIPESTATUS[0]}
 
 .PHONY: sanitize tsan valgrind clang
@@ -281,14 +281,14 @@ valgrind: ## run the test programs under valgrind
 clang: ## build and test with clang
 	@$(MAKE) STRICT=1 CC=clang build=$(build)/clang test
 
-# Random scenes in runs of 10 000, one run a processing unit at a time; LAWS_SCENES of each law in all, from LAWS_SEED on.
+# Random scenes in runs of 10 000, one run per processing unit at a time; LAWS_SCENES in total for each law, starting with LAWS_SEED.
 .PHONY: laws law-faults
 laws: LAWS_SCENES ?= 1000000
 laws: LAWS_SEED ?= 1
-laws: $(build)/tests/test_laws ## try the laws that every scene keeps on a million random scenes
+laws: $(build)/tests/test_laws ## test the laws on a million random scenes
 	@seq $(LAWS_SEED) $$(($(LAWS_SEED) + ($(LAWS_SCENES) + 9999) / 10000 - 1)) | \
 	  LAWS_SCENES=10000 xargs -P "$$(nproc)" -I SEED tests/faults/run_seed.sh $(build)/tests/test_laws SEED
-law-faults: ## put known faults into the sources, one after the other: the laws must catch each
+law-faults: ## insert known faults into the sources, one at a time: the laws must detect each
 	@tests/faults/laws.sh
 
 # Lines of src that the tests run; made by gcc. The counts of an earlier run are dropped. The report is written after tests
@@ -320,22 +320,22 @@ run_fuzzers: $(fuzzers)
 # --- studies, figures, paper ---
 
 .PHONY: experiments tables figures paper bench
-# Nothing runs beside a measurement, whatever is asked for together.
-asked = $(filter $(1),$(MAKECMDGOALS))
-experiments: | $(call asked,test)
-bench: | $(call asked,test experiments)
-paper: | $(call asked,experiments figures)
+# Nothing runs in parallel with a measurement.
+requested = $(filter $(1),$(MAKECMDGOALS))
+experiments: | $(call requested,test)
+bench: | $(call requested,test experiments)
+paper: | $(call requested,experiments figures)
 experiments: $(build)/cuvette-import
-experiments: $(build)/cuvette ## run the studies (goes on where it stopped), make tables and figures
+experiments: $(build)/cuvette ## run the studies (resumes), make tables and figures
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
 	@$(MAKE) --no-print-directory build=$(build) tables figures
 
-# A study's summary, when its rows are newer.
+# A study's summary, if its rows are newer.
 studies := $(patsubst experiments/%.study,%,$(wildcard experiments/*.study))
 measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s)))
-# What is kept of each cell as a table of its own, all cells of a study one below the other.
+# Tables of single cells, concatenated for a study.
 strung = $(patsubst $(RESULTS)/%/images/0000-$(1).tsv,$(RESULTS)/tables/%-$(1).tsv,$(wildcard $(RESULTS)/*/images/0000-$(1).tsv))
-tables: $(measured:%=$(RESULTS)/tables/%.tsv) $(foreach kind,metrics curves motion,$(call strung,$(kind))) ## summarise the rows that are there
+tables: $(measured:%=$(RESULTS)/tables/%.tsv) $(foreach kind,metrics curves motion,$(call strung,$(kind))) ## summarise the existing rows
 define strung_rule
 $(RESULTS)/tables/%-$(1).tsv: $(RESULTS)/%/images/index.tsv
 	@mkdir -p $$(@D)
@@ -351,7 +351,7 @@ figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg ## draw 
 	@mkdir -p $(RESULTS)
 	plots/draw.sh --results $(RESULTS)
 
-# Light through the filled vessel, its focus and its caustic; and one ray of it, taken apart.
+# Rays through the filled vessel with focus and caustic; and the ray tree of one ray.
 $(RESULTS)/figures/fan.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 	@mkdir -p $(@D)
 	$(build)/cuvette fan $< --from -3,1.5,0 --to 3,1.5,0 --width 1.9 --rays 41 --set rod.visible=off -o $@
@@ -359,10 +359,10 @@ $(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 	@mkdir -p $(@D)
 	$(build)/cuvette trace $< --ray=-3,1.5,0.6,1,0,0 --depth 5 --set rod.visible=off -o $@
 
-paper: ## rebuild the report from the rows that are there; measures nothing
+paper: ## rebuild the report from existing rows, without measuring
 	$(MAKE) -C paper
 
-bench: all peers $(build)/tests/bench_mesh ## measure frames and rays as ratios to other programs; REPS=7 rounds
+bench: all peers $(build)/tests/bench_mesh ## benchmark frames and rays as ratios to other programs; REPS=7 rounds
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters $(build)/nocounters/cuvette
 	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' experiments/bench.sh
 	@echo
@@ -393,12 +393,12 @@ install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/en
 	install -D -m 644 README.md $(DESTDIR)$(PREFIX)/share/doc/cuvette/README.md
 	find experiments plots -type f -exec sh -c 'for f; do test -x "$$f" && mode=755 || mode=644; \
 	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
-uninstall: ## remove what install put there
+uninstall: ## remove the installed files
 	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(DESTDIR)$(PREFIX)/include/cuvette.h $(man) $(completion)
 	rm -f $(libraries)/libcuvette.a $(libraries)/libcuvette.so $(libraries)/$(soname) $(libraries)/libcuvette.so.$(version) $(description)
 	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette
 
-# For clangd and other tools that parse C. Everything that is compiled anywhere, with the flags of this configuration.
+# For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
 by_scripts := tests/fail_allocation.c tests/json_get.c $(wildcard experiments/engine/*.c)
 compiled: all peers $(test_programs) $(benches) $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
@@ -410,11 +410,11 @@ compile_commands.json: ## write the compilation database for clangd
 	@MAKE='$(MAKE)' .ci/compile_commands $@ build=$(build) compiled
 
 .PHONY: format format-check clean distclean help
-format: ## lay out the sources: clang-format, shfmt and, once setup-web has fetched it, prettier
+format: ## format the sources: clang-format, shfmt and, after setup-web, prettier
 	@tests/format.sh --write $(build)/web-tests
-format-check: ## check the sources' layout; part of make test
+format-check: ## check the format of the sources; part of make test
 	@tests/run tests/format.sh
-clean: ## remove everything that was built
+clean: ## remove the build folder
 	rm -rf $(build)
 distclean: clean ## also remove tables and figures; measured rows stay in results/
 	rm -rf build $(RESULTS)/tables $(RESULTS)/figures

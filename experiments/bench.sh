@@ -1,11 +1,11 @@
 #!/bin/bash
-# bench.sh - how fast, as ratios of things measured in turn in one run; medians of REPS rounds.
+# bench.sh - measure speed as ratios of contestants that take turns in one run; medians of REPS rounds.
 #   experiments/bench.sh CUVETTE [CUVETTE_WITHOUT_COUNTERS]
-# Environment: REPS=7 (rounds), SIZE=800x600. One round runs every contestant once, so that drift of the machine falls
-# on all alike: the report's algorithm (peers/report next to CUVETTE; make peers) and, where it is installed, POV-Ray
-# (make setup-peers) with peers/rod.pov. Pruned: branches of less than 1/255 of a camera ray's weight are not followed.
-# CPU seconds are of the tracing alone, for POV-Ray its own figure. POV-Ray follows the whole tree in the first three
-# rounds only: it takes a quarter of a minute each time.
+# Environment: REPS=7 (rounds), SIZE=800x600. One round runs every contestant once, so that drift of the machine affects
+# all equally: the report's algorithm (peers/report next to CUVETTE; make peers) and, if it is installed, POV-Ray
+# (make setup-peers) with peers/rod.pov. Pruned: branches with less than 1/255 of a camera ray's weight are not
+# followed. CPU seconds cover only the tracing; POV-Ray reports its own. POV-Ray traces the whole tree only in the first
+# three rounds, because it takes a quarter of a minute each time.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
@@ -29,10 +29,10 @@ fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# field NAME < JSON: the first number under that name
+# field NAME < JSON: the first number with that name
 field() { sed -n "s/^ *\"$1\": *\([-0-9.eE+]*\),*$/\1/p" | head -n 1; }
 note() { printf '%s\t%s\n' "$2" "$3" >>"$work/$1"; } # note CONTESTANT seconds rays
-# frame CONTESTANT PROGRAM CLOCK [set...]: the median of five frames in a pool that the first ones start
+# frame CONTESTANT PROGRAM CLOCK [set...]: the median of five frames in one worker pool
 frame() {
     local who=$1 program=$2 clock=$3 json
     shift 3
@@ -40,7 +40,7 @@ frame() {
         "render.height=${size#*x}" "${@/#/--set=}")
     note "$who" "$(field "$clock" <<<"$json")" "$(field total <<<"$json")"
 }
-pov() { # pov CONTESTANT depth adc; the ground is unbounded, so its tests count the rays that were followed
+pov() { # pov CONTESTANT depth adc; the ground is unbounded, so the number of its tests is the number of rays
     povray "+I$here/peers/rod.pov" "+O$work/pov.png" "+W${size%x*}" "+H${size#*x}" -D -A -V +WT1 \
         "Declare=DEPTH=$2" "Declare=ADC=$3" >"$work/log" 2>&1 ||
         {
@@ -64,9 +64,9 @@ for ((round = 0; round < reps; round++)); do
     frame "depth 8, pruned" "$ours" cpu_s render.depth=8 render.min_weight=0.00392156862745098
     for threads in 1 2 16 128 1024; do frame "wall, depth 8, $threads threads" "$ours" wall_s render.depth=8 \
         render.threads=$threads; done
-    # What the machine has to give: its units may share a core, a cache, or a host.
-    frame "beside another" "$ours" wall_s render.depth=8 &
-    frame "wall, depth 8, 1 thread beside another" "$ours" wall_s render.depth=8
+    # The limit of the machine itself: its processing units may share a core, a cache, or a host.
+    frame "other process" "$ours" wall_s render.depth=8 &
+    frame "wall, depth 8, 1 thread next to another" "$ours" wall_s render.depth=8
     wait
     for depth in 0 4 8; do report_frame "the report's algorithm, depth $depth" $depth; done
     [ -n "$with_pov" ] || continue
@@ -75,7 +75,7 @@ for ((round = 0; round < reps; round++)); do
 done
 
 median() { awk -F'\t' -v c="$2" "$(<"$here/order.awk")"'{ list = list " " $c } END { print median(list) }' "$work/$1"; }
-# The ratio of two contestants, round by round, then the median.
+# The median, over the rounds, of the ratio of two contestants.
 ratio() {
     [ -s "$work/$1" ] && [ -s "$work/$2" ] || return 0
     paste "$work/$1" "$work/$2" | awk -F'\t' -v what="$3" "$(<"$here/order.awk")"'
@@ -86,7 +86,7 @@ ratio() {
         }'
 }
 printf '%-40s %10s %12s %10s\n' "rod.yaml, $size" seconds rays "M rays/s"
-rm -f "$work/beside another"
+rm -f "$work/other process"
 for f in "$work"/*\ *; do
     who=${f##*/}
     awk -v who="$who" -v s="$(median "$who" 1)" -v n="$(median "$who" 2)" \
@@ -97,8 +97,8 @@ echo
 ratio "depth 4" "depth 4, no counters" "counters, depth 4: time with / without"
 ratio "depth 8" "depth 8, no counters" "counters, depth 8: time with / without"
 ratio "wall, depth 8, 1 threads" "wall, depth 8, 2 threads" "two threads, depth 8: wall of one / wall of two"
-ratio "wall, depth 8, 1 thread beside another" "wall, depth 8, 1 threads" \
-    "one thread beside another process: wall / wall of one alone"
+ratio "wall, depth 8, 1 thread next to another" "wall, depth 8, 1 threads" \
+    "one thread next to another process: wall / wall of one alone"
 ratio "wall, depth 8, 1024 threads" "wall, depth 8, 2 threads" "1024 threads, depth 8: wall / wall of two"
 ratio "the report's algorithm, depth 0" "depth 0" "the report's algorithm / ours, depth 0 (it casts no shadow rays)"
 ratio "the report's algorithm, depth 4" "depth 4" "the report's algorithm / ours, depth 4"

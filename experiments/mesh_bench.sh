@@ -1,12 +1,12 @@
 #!/bin/bash
-# mesh_bench.sh - camera and shadow rays a second through the mesh hierarchies, one thread, and through Embree's on the
-# same triangles in the same rounds.
+# mesh_bench.sh - camera and shadow rays a second, on one thread, with Cuvette's mesh hierarchies and with Embree's, on
+# the same triangles in the same rounds.
 #   experiments/mesh_bench.sh [BENCH_MESH]
-# Environment: REPS=5 (rounds), SETS="sparse:10000 ...", ACCEL=bvh. Embree's bench is peers/embree next to BENCH_MESH's
-# folder: make setup-peers installs Embree, make peers builds the bench; without it the table has our columns alone. A
-# round runs every contestant once on each set, all on processor 0, so that drift of the machine falls on all alike.
-# Rates are of CPU time, medians; ratios are taken round by round: median (lowest to highest). Hits of the two differ by
-# rays along edges, which single precision decides otherwise.
+# Environment: REPS=5 (rounds), SETS="sparse:10000 ...", ACCEL=bvh. Embree's bench is peers/embree next to the folder of
+# BENCH_MESH: make setup-peers installs Embree, make peers builds the bench; without it the table has only our columns.
+# A round runs every contestant once on each set, all on processor 0, so that drift of the machine affects all equally.
+# Rates are per CPU time, medians; ratios are computed for each round: median (lowest to highest). The hits of the two
+# differ for rays along edges, because Embree uses single precision.
 set -euo pipefail
 export LC_ALL=C
 ours=${1:-build/tests/bench_mesh} reps=${REPS:-5} accel=${ACCEL:-bvh}

@@ -1,11 +1,11 @@
 #!/bin/bash
-# mesh_frames.sh - whole frames of the triangle sets, one thread, 800x600, camera and shadow rays, beside POV-Ray's and
-# Tachyon's in the same rounds.
+# mesh_frames.sh - whole frames of the triangle sets, one thread, 800x600, camera and shadow rays, compared with POV-Ray
+# and Tachyon in the same rounds.
 #   experiments/mesh_frames.sh
 # Environment: CUVETTE (the program), REPS=5 (rounds), SETS="sparse:50000 ...".
 # Needs povray and tachyon (make setup-peers).
-# Each says itself how long it traced; reading, building and writing are not in it. Ratios are taken round by round,
-# medians and spread of them.
+# Each program reports its own time of tracing, without reading, building and writing. Ratios are computed for each
+# round; the table has their medians and ranges.
 set -euo pipefail
 export LC_ALL=C
 cuvette=${CUVETTE:-build/cuvette} reps=${REPS:-5}

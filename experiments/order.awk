@@ -1,4 +1,5 @@
-# Order statistics for the benches' tables. A list is numbers in a text, with spaces between; out gets them sorted, from 1.
+# Order statistics for the tables of the benches. A list is a text of numbers separated by spaces; sorted() stores them
+# in out in ascending order, from index 1, and returns their count.
 function sorted(list, out,   n, i, j, t) {
     n = split(list, out, " ")
     for (i = 2; i <= n; i++)
@@ -11,7 +12,7 @@ function median(list,   n, v) {
     n = sorted(list, v)
     return n ? (v[int((n + 1) / 2)] + v[int((n + 2) / 2)]) / 2 : 0
 }
-# "median (lowest to highest)"; form is that of one number, such as "%.2f"
+# "median (lowest to highest)"; form is the format of one number, such as "%.2f"
 function spread(list, form,   n, v) {
     n = sorted(list, v)
     return sprintf(form " (" form " to " form ")", median(list), v[1], v[n])

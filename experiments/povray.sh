@@ -1,15 +1,12 @@
 #!/bin/bash
-# povray.sh - our picture of rod.yaml beside POV-Ray's of the same scene, as 8-bit sRGB, depth 8: PSNR, and how many
-# pixels differ by
-# more than 8 of 255, above and below row 424, where the vessel's base begins.
+# povray.sh - compare our image of rod.yaml with POV-Ray's of the same scene, as 8-bit sRGB, depth 8: PSNR, and the
+# number of pixels that differ by more than 8 of 255, above and below row 424, where the vessel's base begins.
 #   experiments/povray.sh [CUVETTE]
 # Needs povray (make setup-peers) and gnuplot; the scene is peers/rod.pov. OUT=DIR keeps the images.
-# POV-Ray shows black beyond its last depth, so render.beyond is black here. It knows no priorities: rod.pov lets the
-# liquid overlap
-# the glass, and where the two meet at the base it shows the ground, though total reflection is certain there. With both
-# indices at 1.5, vessel and liquid are one body, which POV-Ray can have without any overlap, as a vessel filled with
-# glass ("one body"):
-# this tells whose picture the overlap spoils.
+# POV-Ray returns black at its depth limit, so render.beyond is black here. It has no priorities: in rod.pov the liquid
+# overlaps the glass, and where the two meet at the base POV-Ray shows the ground, although total reflection is certain
+# there. With both indices at 1.5, vessel and liquid are one medium, which POV-Ray can also render without any overlap,
+# as a vessel filled with glass ("one body"): this shows which of the two images is wrong because of the overlap.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)

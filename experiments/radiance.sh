@@ -1,15 +1,15 @@
 #!/bin/bash
-# radiance.sh - render.radiance beside random paths, which carry no approximation where eye and lamp are in one
-# medium: a matte floor under flat water, a lamp of radius 150 at 500 above the floor.
+# radiance.sh - compare render.radiance with path tracing, which is exact if eye and lamp are in one medium: a matte
+# floor under flat water, a lamp of radius 150 at 500 above the floor.
 #   experiments/radiance.sh [CUVETTE]
-# 1. Whitted's light over the paths' light, for a floor of albedo 0.01 that is 1 under water, seen from air at 21.8
-#    degrees. Bar: basic is 1.00 +- 0.01.
-# 2. The sky of radiance 1 from under water, straight up, beside n^2 T and T.
-# 3. Deeper water: a shadow ray goes straight and knows nothing of how the surface bends light together. Beside it
-#    (h + d / n)^2 / (h + d)^2, the same by closed form for a lamp h above water of depth d, near the axis.
-# 4. Brighter floors: light goes back and forth between floor and surface, by random paths alone. Beside it
-#    1 - albedo r, with r what the surface reflects of diffuse light from below.
-# 3 and 4 have no bar. The figure behind +- is the standard error of the mean over pixels.
+# 1. The ratio of Whitted's radiance to that of path tracing, for a floor of albedo 0.01 that is 1 under water, seen
+#    from air at 21.8 degrees. Required: basic is 1.00 +- 0.01.
+# 2. The sky of radiance 1 seen from under water, straight up, compared with n^2 T and T.
+# 3. Deeper water: a shadow ray is straight and ignores that the surface focuses light. Compared with
+#    (h + d / n)^2 / (h + d)^2, the closed form for a lamp at the height h above water of depth d, near the axis.
+# 4. Brighter floors: only path tracing follows light that is reflected between floor and surface. Compared with
+#    1 - albedo r, where r is the reflectance of the surface for diffuse light from below.
+# 3 and 4 have no required value. The figure after +- is the standard error of the mean over pixels.
 # PATHS=N: paths a pixel of 256; 40960 unless given.
 set -euo pipefail
 export LC_ALL=C
@@ -49,7 +49,7 @@ mean() { # mean ASSIGNMENT...
                    printf "%.9g %.2g\n", mean, sqrt((spread > 0 ? spread : 0) / (n - 1)) }'
 }
 
-ratios() { # ratios ASSIGNMENT... - Whitted's over the paths', classic and basic, and the paths' relative standard error
+ratios() { # ratios ASSIGNMENT... - Whitted / paths, classic and basic, and the relative standard error of the paths
     local random classic basic
     random=$(mean "$@" render.integrator=path "render.paths=$paths" lamp.radius=150 render.radiance=basic)
     classic=$(mean "$@") basic=$(mean "$@" render.radiance=basic)
@@ -57,14 +57,14 @@ ratios() { # ratios ASSIGNMENT... - Whitted's over the paths', classic and basic
 }
 
 indices='1 1.333 1.5 1.8'
-echo '1. Whitted over paths, dark floor 1 under water'
+echo '1. Whitted / paths, dark floor 1 under water'
 printf '%8s %10s %10s %10s\n' n classic basic +-
 for n in $indices; do
     read -r classic basic error < <(ratios "${from_air[@]}" "water.ior=$n")
     printf '%8s %10s %10s %10s\n' "$n" "$classic" "$basic" "$error"
 done
 
-echo '2. The sky from under water'
+echo '2. The sky seen from under water'
 printf '%8s %10s %10s %10s %10s\n' n classic T basic 'n^2 T'
 for n in $indices; do
     sky=(camera.position=0,0.5,0 camera.target=0,1,0 render.depth=1 background.color=1,1,1 floor.visible=off
@@ -75,7 +75,7 @@ for n in $indices; do
         awk '{ T = 4 * $1 / ($1 + 1)^2; printf "%8s %10.6f %10.6f %10.6f %10.6f\n", $1, $2, T, $3, $1 * $1 * T }'
 done
 
-echo '3. Deeper water, dark floor: Whitted with basic radiance over paths'
+echo '3. Deeper water, dark floor: Whitted with basic radiance / paths'
 printf '%8s %10s %10s %10s %10s\n' n 'd/(h+d)' basic form +-
 for n in 1.333 1.5 1.8; do
     for depth in 1 10 50 150; do
@@ -85,7 +85,7 @@ for n in 1.333 1.5 1.8; do
     done
 done
 
-echo '4. Brighter floors, 1 under water: Whitted with basic radiance over paths'
+echo '4. Brighter floors, 1 under water: Whitted with basic radiance / paths'
 printf '%8s %10s %10s %10s %10s\n' n albedo basic form +-
 for n in 1.333 1.5 1.8; do
     for albedo in 0.01 0.1 0.5 0.9; do

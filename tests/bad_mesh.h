@@ -202,7 +202,7 @@ static const bad_mesh bad_meshes[] = {
     {"collada.dae", "<COLLADA/>"},
 };
 
-/* Files that assimp accepts and repairs into a sound mesh: it drops references to missing normals and texture
+/* Files that assimp accepts and repairs into a valid mesh: it drops references to missing normals and texture
  * coordinates, and replaces a NaN texture coordinate by 0. */
 static const bad_mesh tolerated_meshes[] = {
     {"uv_past_the_end.obj", THREE "vt 0 0\nf 1/1 2/9 3/1\n"},

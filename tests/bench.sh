@@ -87,7 +87,7 @@ for wrong in '-d x' '-d 25' '-t 0' '-s 32' '-z' '-d' 'more'; do
 done
 text=$(REPS=1 SIZE=32x24 FOVS=45 THREADS='1 4' experiments/peers/growth.sh "$report" 2>&1) &&
     grep -qE '^ *8 .* \| +24\.7554 +9\.14$' <<<"$text" && grep -qE '^ *4 .* \| +2\.2734 +2\.25$' <<<"$text"
-verdict $? 'its growth is set beside the published tables' "$text"
+verdict $? 'its growth is compared with the published tables' "$text"
 
 # --- triangles
 text=$(REPS=1 SETS=sphere:320 experiments/mesh_bench.sh "$build/tests/bench_mesh" 2>&1)

@@ -77,7 +77,7 @@ static inline void scale_lengths(scene *s, double f)
 }
 
 /* Does a segment of the line intersect a solid, in quadruple precision? For a mesh, its bounding ball. */
-static inline bool meets(const law_solid *s, vec3 origin, vec3 direction, double length)
+static inline bool intersects(const law_solid *s, vec3 origin, vec3 direction, double length)
 {
     const reference_line line = {quad3_from(origin), quad3_from(direction)};
     quad t[REFERENCE_CROSSINGS_MAX];
@@ -105,33 +105,33 @@ static inline const law_solid *solid_numbered(const law_scene *w, int number)
 }
 
 /* Does any ray of the first scene's image, traced by the Whitted integrator, cross all these solids? */
-static inline bool some_ray_meets(const law_scene *w, const law_solid *const *solids, int count, int most_rays)
+static inline bool some_ray_hits(const law_scene *w, const law_solid *const *solids, int count, int most_rays)
 {
     stage g = {.setting = law_load(w)};
     g.setting->render.integrator = INTEGRATOR_WHITTED;
     stage_look(&g);
-    bool met = false;
+    bool found = false;
     int rays = 0;
-    for (int y = 0; y < LAW_HEIGHT && !met && rays < most_rays; y++)
-        for (int x = 0; x < LAW_WIDTH && !met && rays < most_rays; x++) {
+    for (int y = 0; y < LAW_HEIGHT && !found && rays < most_rays; y++)
+        for (int x = 0; x < LAW_WIDTH && !found && rays < most_rays; x++) {
             const ray_tree *tree = stage_pixel(&g, (x * 7) % LAW_WIDTH, (y * 5) % LAW_HEIGHT);
-            for (size_t i = 0; i < tree->count && !met && rays < most_rays; i++, rays++) {
+            for (size_t i = 0; i < tree->count && !found && rays < most_rays; i++, rays++) {
                 int together = 0;
                 for (int k = 0; k < count; k++)
                     together +=
-                        meets(solids[k], tree->node[i].origin, tree->node[i].direction, length_of(&tree->node[i]));
-                met = together == count;
+                        intersects(solids[k], tree->node[i].origin, tree->node[i].direction, length_of(&tree->node[i]));
+                found = together == count;
             }
         }
     stage_close(&g);
-    return met;
+    return found;
 }
 
 /* Did a ray reach the part of the scene that the law changes? */
 static inline bool law_was_tried(const law_pair *p)
 {
     const law_solid *solids[2] = {solid_numbered(&p->b, LAW_ADDED), solid_numbered(&p->b, LAW_ADDED + 1)};
-    return some_ray_meets(&p->a, solids, p->which == LAW_CUT ? 2 : 1, 400);
+    return some_ray_hits(&p->a, solids, p->which == LAW_CUT ? 2 : 1, 400);
 }
 
 /* Largest difference of two films, relative to the larger value where that is above 1. */
@@ -160,11 +160,11 @@ static inline uint64_t hits_of_added(const scene *s, const render_result *r)
 /* The change of the scene's pixels when the eye moves by a few roundings along each axis. */
 static inline void add_swing(judge *j, const scene *s, const film *plain, double swing[LAW_WIDTH * LAW_HEIGHT * 3])
 {
-    static const vec3 beside[] = {{2e-15, 0.0, 0.0}, {0.0, 2e-15, 0.0}, {0.0, 0.0, 2e-15}};
-    for (size_t k = 0; k < COUNT(beside); k++) {
+    static const vec3 displacements[] = {{2e-15, 0.0, 0.0}, {0.0, 2e-15, 0.0}, {0.0, 0.0, 2e-15}};
+    for (size_t k = 0; k < COUNT(displacements); k++) {
         scene *other = scene_clone(s);
         assert_non_null(other);
-        other->camera.position = vec3_add(other->camera.position, beside[k]);
+        other->camera.position = vec3_add(other->camera.position, displacements[k]);
         render_result *r = law_render(j, other);
         for (int i = 0; i < LAW_WIDTH * LAW_HEIGHT * 3; i++) {
             const int x = i / 3 % LAW_WIDTH, y = i / 3 / LAW_WIDTH;
@@ -255,8 +255,8 @@ static inline verdict same_radiance(judge *j, const law_pair *p)
             if (!(j->difference <= allowed))
                 result = BROKEN;
         }
-        ray_tree gone = plain;
-        ray_tree_release(&gone);
+        ray_tree owned = plain;
+        ray_tree_release(&owned);
     }
     stage_close(&a);
     stage_close(&b);
@@ -287,7 +287,7 @@ static inline verdict unmet_changes_nothing(judge *j, const law_pair *p)
 {
     const law_solid *added = solid_numbered(&p->b, LAW_ADDED);
     const verdict result = same_films(j, p, true);
-    return result == BROKEN && (j->added_hits > 0 || some_ray_meets(&p->a, &added, 1, INT_MAX)) ? SKIPPED : result;
+    return result == BROKEN && (j->added_hits > 0 || some_ray_hits(&p->a, &added, 1, INT_MAX)) ? SKIPPED : result;
 }
 
 static inline verdict law_judge(judge *j, const law_pair *p)
@@ -309,21 +309,21 @@ static inline verdict law_judge(judge *j, const law_pair *p)
 
 static inline void remove_solid(law_scene *w, int number)
 {
-    int kept = 0, gone = -1;
+    int remaining = 0, removed = -1;
     for (int i = 0; i < w->solid_count; i++)
         if (w->solid[i].number == number)
-            gone = i;
+            removed = i;
         else
-            w->solid[kept++] = w->solid[i];
-    if (gone < 0)
+            w->solid[remaining++] = w->solid[i];
+    if (removed < 0)
         return;
     int order = 0;
     for (int i = 0; i < w->solid_count; i++) {
         const int at = w->material_order[i];
-        if (at != gone)
-            w->material_order[order++] = at - (at > gone);
+        if (at != removed)
+            w->material_order[order++] = at - (at > removed);
     }
-    w->solid_count = kept;
+    w->solid_count = remaining;
 }
 
 /* Reduces a fault to as few solids as possible, without removing the law's own, and without lights if they are not

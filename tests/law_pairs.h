@@ -66,8 +66,8 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
     const bool far = random_below(seed, 3) != 0;
     const double power = far ? random_real(seed, 1.0, 5.9) : random_real(seed, -6.0, -3.0);
     const double distance = pow(10.0, power), largest = fmax(s.shape.scale.x, s.shape.scale.y),
-                 wanted = far ? fmin(0.002 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance,
-                 size = fmin(wanted, 1e6 / largest); /* the limit of a mesh's scale */
+                 expected = far ? fmin(0.002 * distance, pow(10.0, random_real(seed, -3.0, 3.0))) : distance,
+                 size = fmin(expected, 1e6 / largest); /* the limit of a mesh's scale */
     s.shape.position = far ? vec3_scale(random_direction(seed), distance) : random_point(seed, 1.5);
     s.shape.radius *= size, s.shape.inner_radius *= size, s.shape.height *= size, s.shape.floor *= size;
     s.shape.tube_radius *= size, s.shape.top_radius *= size;
@@ -78,7 +78,7 @@ static inline void add_unmet(law_scene *w, uint64_t *seed)
 }
 
 /* Does a come before b where they overlap, in ascending priority index? */
-static inline bool ranks_below(const law_scene *w, int a, int b)
+static inline bool has_lower_priority_index(const law_scene *w, int a, int b)
 {
     return w->solid[a].priority != w->solid[b].priority ? w->solid[a].priority < w->solid[b].priority : a > b;
 }
@@ -95,7 +95,7 @@ static inline void shuffle(const law_scene *w, bool all_pairs, uint64_t *seed, i
             for (int j = 0; j < w->solid_count; j++)
                 if (j != i && !taken[j] && (all_pairs || w->solid[i].priority == w->solid[j].priority) &&
                     may_touch(&w->solid[i], &w->solid[j]))
-                    first &= ranks_below(w, i, j);
+                    first &= has_lower_priority_index(w, i, j);
             if (first)
                 allowed[count++] = i;
         }

@@ -54,16 +54,17 @@ typedef struct layers {
  * and n sin(angle) is invariant (Hecht, 4.4.1; Born and Wolf, Principles of Optics, 7th ed., 1.6). */
 static inline known_way way_through_layers(const layers *l, double angle_i, vec3 position, vec3 rotation_deg)
 {
-    const double kept = l->outside * sin(angle_i);
+    const double invariant = l->outside * sin(angle_i);
     known_way w = {.count = l->count + 1};
     w.direction = turned(vec3_make(sin(angle_i), -cos(angle_i), 0.0), rotation_deg);
     w.origin = vec3_sub(position, w.direction);
     double x = 0.0, y = 0.0, n_from = l->outside;
     for (int j = 0; j <= l->count; j++) {
-        const double n_to = j < l->count ? l->n[j] : l->outside, sine = kept / n_to, cosine = sqrt(1.0 - sine * sine);
+        const double n_to = j < l->count ? l->n[j] : l->outside, sine = invariant / n_to,
+                     cosine = sqrt(1.0 - sine * sine);
         w.at[j] = (crossing){.point = vec3_add(position, turned(vec3_make(x, y, 0.0), rotation_deg)),
                              .direction = turned(vec3_make(sine, -cosine, 0.0), rotation_deg),
-                             .angle_i = asin(kept / n_from),
+                             .angle_i = asin(invariant / n_from),
                              .n_from = n_from,
                              .n_to = n_to};
         if (j < l->count)

@@ -52,7 +52,7 @@ wrongs() { # CODE OUTPUT
     fi
 }
 
-# Fails allocations of some kinds, each or every so many: walk WHAT KINDS STEP OUTPUT ARGUMENT...
+# Fails allocations of some kinds, each one or at a step: walk WHAT KINDS STEP OUTPUT ARGUMENT...
 walk() {
     local what=$1 kinds=$2 step=$3 output=$4 sites tried=0 told=0 bad=0 wrong at code
     shift 4
@@ -83,7 +83,7 @@ EOF
 "${CC:-gcc}" -O0 -o all all.c
 failing 1 m ./all
 (($? == 7))
-verdict $? "an allocation fails when it is told to"
+verdict $? "an allocation fails on request"
 
 mkdir -p deep/below
 cp "$root/experiments/scenes/chequer.png" deep/below/

@@ -32,10 +32,10 @@ static inline estimate look_by_chance(const scene *s, int channel)
     return e;
 }
 
-static inline void expect_estimate(estimate e, double wanted)
+static inline void expect_estimate(estimate e, double expected)
 {
-    if (!(fabs(e.value - wanted) <= T7_9999 * e.standard_error + ROUNDINGS))
-        fail_msg("%.9g +- %.2g instead of %.9g", e.value, e.standard_error, wanted);
+    if (!(fabs(e.value - expected) <= T7_9999 * e.standard_error + ROUNDINGS))
+        fail_msg("%.9g +- %.2g instead of %.9g", e.value, e.standard_error, expected);
 }
 
 /* Statistics over many values: the number inside their own 95% interval, and the mean deviation of all in units of its
@@ -47,16 +47,16 @@ typedef struct agreement {
 
 /* unseen: the tolerance for a value whose layers do not differ: ROUNDINGS where nothing is random, otherwise the weight
  * of rare events none of which was sampled, about 10 / paths. */
-static inline void agreement_add(agreement *a, estimate e, double wanted, double unseen)
+static inline void agreement_add(agreement *a, estimate e, double expected, double unseen)
 {
     if (e.standard_error < 1e-9) {
-        if (!(fabs(e.value - wanted) <= unseen))
-            fail_msg("%.9g for certain instead of %.9g", e.value, wanted);
+        if (!(fabs(e.value - expected) <= unseen))
+            fail_msg("%.9g for certain instead of %.9g", e.value, expected);
         return;
     }
     a->count++;
-    a->inside += fabs(e.value - wanted) <= T7_95 * e.standard_error;
-    a->off += e.value - wanted;
+    a->inside += fabs(e.value - expected) <= T7_95 * e.standard_error;
+    a->off += e.value - expected;
     a->variance += e.standard_error * e.standard_error;
 }
 

@@ -126,15 +126,15 @@ static inline quad_rotation quad_rotation_make(vec3 degrees)
 /* Caches the last few rotations, because their sines cost much more than applying them. */
 static inline const quad_rotation *quad_rotation_of(vec3 degrees)
 {
-    enum { KEPT = 16 };
-    static _Thread_local quad_rotation kept[KEPT];
+    enum { CACHE_SIZE = 16 };
+    static _Thread_local quad_rotation cache[CACHE_SIZE];
     static _Thread_local int count;
-    const int known = count < KEPT ? count : KEPT;
+    const int known = count < CACHE_SIZE ? count : CACHE_SIZE;
     for (int k = 0; k < known; k++)
-        if (kept[k].degrees.x == degrees.x && kept[k].degrees.y == degrees.y && kept[k].degrees.z == degrees.z)
-            return &kept[k];
-    quad_rotation *next = &kept[count % KEPT];
-    count = count < 2 * KEPT - 1 ? count + 1 : KEPT;
+        if (cache[k].degrees.x == degrees.x && cache[k].degrees.y == degrees.y && cache[k].degrees.z == degrees.z)
+            return &cache[k];
+    quad_rotation *next = &cache[count % CACHE_SIZE];
+    count = count < 2 * CACHE_SIZE - 1 ? count + 1 : CACHE_SIZE;
     *next = quad_rotation_make(degrees);
     return next;
 }

@@ -103,12 +103,12 @@ static inline vec3 on_floats(vec3 p, size_t vertex, uint64_t *seed)
     return vec3_make(single_round(q.x), single_round(q.y), single_round(q.z));
 }
 
-static inline void deform(mesh *m, const vec3 *rest, deformation *way, uint64_t *seed)
+static inline void deform(mesh *m, const vec3 *rest, deformation *displace, uint64_t *seed)
 {
     vec3 *to = malloc(m->vertex_count * sizeof *to);
     assert_non_null(to);
     for (size_t i = 0; i < m->vertex_count; i++)
-        to[i] = way(rest[i], i, seed);
+        to[i] = displace(rest[i], i, seed);
     move(m, to);
     free(to);
 }
@@ -168,7 +168,7 @@ static inline long compare(const mesh *m, const hierarchy *refitted, int batches
 {
     static collected all[2];
     hierarchy *const none = built(m, HIERARCHY_NONE), *const fresh = built(m, HIERARCHY_BVH);
-    long met = 0;
+    long hit_count = 0;
     for (int batch = 0; batch < batches; batch++) {
         const hierarchy_kernels *kernel = kernels[(unsigned)batch % (unsigned)(isa_best() + 1)];
         mesh_ray r[BATCH];
@@ -188,7 +188,7 @@ static inline long compare(const mesh *m, const hierarchy *refitted, int batches
             kernel->nearest(fresh, &r[i], &one);
             same_hit(&one, &expected[i]);
             assert_int_equal(kernel->any(refitted, &r[i]), hit);
-            met += hit;
+            hit_count += hit;
         }
         for (int i = 0; i < 8; i++) {
             memset(all, 0, sizeof all);
@@ -201,5 +201,5 @@ static inline long compare(const mesh *m, const hierarchy *refitted, int batches
     }
     hierarchy_destroy(fresh);
     hierarchy_destroy(none);
-    return met;
+    return hit_count;
 }

@@ -20,19 +20,19 @@ enum { BOUNCES_MAX = 12 };
  * throughput per unit of length. */
 static const double SWAY = 100.0;
 
-static inline bool is_tame(const ray_tree *way)
+static inline bool is_tame(const ray_tree *tree)
 {
-    if (way->count > BOUNCES_MAX + 1)
+    if (tree->count > BOUNCES_MAX + 1)
         return false;
-    for (size_t j = 0; j + 1 < way->count; j++) {
-        const ray_hit *h = &way->node[j].hit;
+    for (size_t j = 0; j + 1 < tree->count; j++) {
+        const ray_hit *h = &tree->node[j].hit;
         const double sine = h->n_from / h->n_to * sqrt(1.0 - h->cos_i * h->cos_i);
         if (h->cos_i < STEEP || (h->tir ? sine * sine - 1.0 < STEEP * STEEP : h->cos_t < STEEP))
             return false;
-        if (way->node[j + 1].kind == RAY_REFLECT && h->R < 1e-4)
+        if (tree->node[j + 1].kind == RAY_REFLECT && h->R < 1e-4)
             return false;
     }
-    return way->node[way->count - 1].end == RAY_END_SKY;
+    return tree->node[tree->count - 1].end == RAY_END_SKY;
 }
 
 /* The transmittance of power by Hecht's eqs. 4.61, 4.32 and 4.38, the mean of both polarisations, times the share that
@@ -83,18 +83,18 @@ static inline reversal there_and_back(stage *g, vec3 origin, vec3 direction, int
     const vec3 end = vec3_add(last->origin, vec3_scale(last->direction, 3.0));
     path = stage_way(g, end, vec3_scale(last->direction, -1.0), r.reflected ? n - 1 - reflect_at : -1);
     r.same_surfaces = (int)path->count > n;
-    double known = 1.0, kept = 1.0;
+    double known = 1.0, transmittance = 1.0;
     for (int j = 0; j < n && r.same_surfaces; j++) {
         const ray_hit *h = &there[j].hit, *same = &path->node[n - 1 - j].hit;
         r.farthest = fmax(r.farthest, apart(h->point, same->point));
         r.same_surfaces = h->face_solid == same->face_solid && there[j + 1].kind == path->node[n - j].kind;
         known *= share_of(h, g->setting->solids[h->solid].surface.reflectivity, there[j + 1].kind);
-        kept *= h->transmittance[1];
+        transmittance *= h->transmittance[1];
     }
     if (!r.same_surfaces)
         return r;
     r.unequal = unequal_throughput(there, path->node, n) - SWAY * r.farthest;
-    r.from_closed_form = fabs(there[n].throughput[1] / (kept * known) - 1.0);
+    r.from_closed_form = fabs(there[n].throughput[1] / (transmittance * known) - 1.0);
     r.direction = apart(path->node[n].direction, vec3_scale(there[0].direction, -1.0));
     return r;
 }

@@ -14,11 +14,11 @@
 #include <string.h>
 #include <cmocka.h>
 
-#define assert_near(got, wanted, within) assert_near_at(got, wanted, within, __FILE__, __LINE__)
-static inline void assert_near_at(double got, double wanted, double within, const char *file, int line)
+#define assert_near(got, expected, within) assert_near_at(got, expected, within, __FILE__, __LINE__)
+static inline void assert_near_at(double got, double expected, double within, const char *file, int line)
 {
-    if (!(fabs(got - wanted) <= within)) {
-        print_error("%.17g is not within %g of %.17g\n", got, within, wanted);
+    if (!(fabs(got - expected) <= within)) {
+        print_error("%.17g is not within %g of %.17g\n", got, within, expected);
         _fail(file, line);
     }
 }

@@ -1,6 +1,6 @@
-/* Solids in quadruple precision as a reference for tests, from the definitions at the head of geometry/solid.h alone:
- * every crossing of a line with every surface of a shape, containment, and distance to the surface. Between two
- * crossings the midpoint decides. Pure; ownership: values. */
+/* Solids in quadruple precision as a reference for tests, only from the definitions at the head of geometry/solid.h:
+ * every crossing of a line with every surface of a shape, containment, and distance to the surface. Each segment
+ * between two crossings is classified at its midpoint. Pure; ownership: values. */
 #pragma once
 
 #include "geometry/solid.h"

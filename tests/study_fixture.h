@@ -101,25 +101,25 @@ __attribute__((unused)) static int fixture_teardown(void **state)
 /* Reads a study from this text, which must be valid; its scene is scene.yaml of the folder. */
 __attribute__((unused)) static study *fixture_study(const fixture *f, const char *text)
 {
-    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    char path[400], message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     study *s = NULL;
     fixture_write(f, "test.study", text);
     fixture_path(f, "test.study", path);
     if (study_read(path, &s, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return s;
 }
 
 /* Runs the study without a shard, which must succeed; returns the number of rows written. */
 __attribute__((unused)) static size_t fixture_run(const fixture *f, const study *s)
 {
-    char said[DIAGNOSTIC_TEXT_MAX];
+    char message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     size_t ran = 0;
     study_options options = {.results = f->results};
     if (study_run(s, &options, &ran, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return ran;
 }
 

@@ -45,21 +45,21 @@ static void a_slab_transmits_the_series_cut_at_the_depth(void **state)
     for (int depth = 0; depth <= 41; depth++) {
         for (double angle = 0.0; angle < 1.3; angle += 0.4) {
             stage g = slab(n, d, depth, "render.beyond=black");
-            const double R = reflectance_of_angles(angle, 1.0, n).mean, way = d / sqrt(1.0 - pow(sin(angle) / n, 2.0));
+            const double R = reflectance_of_angles(angle, 1.0, n).mean, path = d / sqrt(1.0 - pow(sin(angle) / n, 2.0));
             const vec3 to = turned(vec3_make(sin(angle), -cos(angle), 0.0), askew);
             const ray_tree *tree = stage_ray(&g, vec3_scale(to, -2.0), to);
             for (int c = 0; c < 3; c++) {
-                const double kept = exp(-a_per_m[c] * way), q = R * R * kept * kept;
+                const double transmitted = exp(-a_per_m[c] * path), q = R * R * transmitted * transmitted;
                 double through = 0.0, back = depth >= 1 ? R : 0.0;
                 for (int k = 0; 2 * k + 2 <= depth; k++)
-                    through += (1.0 - R) * (1.0 - R) * kept * pow(q, k);
+                    through += (1.0 - R) * (1.0 - R) * transmitted * pow(q, k);
                 for (int k = 0; 2 * k + 3 <= depth; k++)
-                    back += (1.0 - R) * (1.0 - R) * R * kept * kept * pow(q, k);
+                    back += (1.0 - R) * (1.0 - R) * R * transmitted * transmitted * pow(q, k);
                 assert_true(fabs(leaving(tree, down, c) - through) <= 1e-13);
                 assert_true(fabs(leaving(tree, vec3_scale(down, -1.0), c) - back) <= 1e-13);
                 assert_true(fabs(tree->radiance[c] - through - back) <= 1e-12); /* the sky is 1 */
                 if (depth >= 40)
-                    assert_true(fabs(through - (1.0 - R) * (1.0 - R) * kept / (1.0 - q)) <= 1e-13);
+                    assert_true(fabs(through - (1.0 - R) * (1.0 - R) * transmitted / (1.0 - q)) <= 1e-13);
             }
             stage_close(&g);
         }
@@ -78,8 +78,10 @@ static void the_scene_sets_the_length_of_a_unit(void **state)
         const vec3 seen = look(g.setting);
         const double seen_by[3] = {seen.x, seen.y, seen.z}, R = 0.04;
         for (int c = 0; c < 3; c++) {
-            const double kept = exp(-a_per_m[c] * 0.4), q = R * R * kept * kept, T2 = (1.0 - R) * (1.0 - R);
-            assert_true(fabs(seen_by[c] - (R + T2 * (kept + R * kept * kept) / (1.0 - q))) <= 1e-12);
+            const double transmitted = exp(-a_per_m[c] * 0.4), q = R * R * transmitted * transmitted,
+                         T2 = (1.0 - R) * (1.0 - R);
+            assert_true(fabs(seen_by[c] - (R + T2 * (transmitted + R * transmitted * transmitted) / (1.0 - q))) <=
+                        1e-12);
         }
         stage_close(&g);
     }
@@ -105,9 +107,9 @@ static void a_solid_without_refraction_still_absorbs(void **state)
         assert_int_equal((int)tree->count, 3);
         assert_true(fabs(tree->node[1].hit.path_length_m - 1.0) <= 1e-12);
         for (int c = 0; c < 3; c++) {
-            const double kept = exp(-liquid[c] * (2.0 - chord) - ball[c] * chord);
-            assert_true(fabs(tree->node[1].hit.transmittance[c] - kept) <= 1e-12);
-            assert_true(fabs(tree->node[2].throughput[c] - T2 * kept) <= 1e-12);
+            const double transmitted = exp(-liquid[c] * (2.0 - chord) - ball[c] * chord);
+            assert_true(fabs(tree->node[1].hit.transmittance[c] - transmitted) <= 1e-12);
+            assert_true(fabs(tree->node[2].throughput[c] - T2 * transmitted) <= 1e-12);
         }
     }
     stage_close(&g);
@@ -176,9 +178,9 @@ static void check_lit_ground(const char *assignments, double light_path, double 
         assert_int_equal((int)tree->count, 2);
         assert_int_equal(tree->node[1].kind, RAY_SHADOW);
         for (int c = 0; c < 3; c++) {
-            const double wanted = n_l * exp(-a_per_m[c] * (light_path / n_l + eye_path)) * pow(0.9, faces);
-            assert_true(fabs(tree->radiance[c] - wanted) <= 1e-12);
-            assert_true(fabs(tree->node[1].brought[c] - wanted) <= 1e-12);
+            const double expected = n_l * exp(-a_per_m[c] * (light_path / n_l + eye_path)) * pow(0.9, faces);
+            assert_true(fabs(tree->radiance[c] - expected) <= 1e-12);
+            assert_true(fabs(tree->node[1].brought[c] - expected) <= 1e-12);
         }
         g.setting->camera.aimed = 1;
         g.setting->camera.position = at, g.setting->camera.target = vec3_make(x, 0.0, 0.0);

@@ -21,7 +21,7 @@ enum { RULES_MAX = 300, JOBS_MAX = 96, TEXT_MAX = 1 << 14 };
 /* How often each condition was reported for a parameter of this name, and how often its remedy proved it. */
 typedef struct rule_count {
     const char *rule, *name;
-    int said, proved;
+    int reported, proved;
     char where[240];
 } rule_count;
 
@@ -110,7 +110,7 @@ static void judge_note(visitor *x, const char *path, const param *row, acts_valu
     const acts_outcome o = acts_try(x->a, path, v, 0, 1);
     rule_count *rule = count_of(x->out, answer->rule, row->name);
     x->out->noted++;
-    rule->said++;
+    rule->reported++;
     if (o.changed > 0)
         complain(x->out, path, "acts, and yet a note says that it does not",
                  note_line(&answer->note, line, sizeof line));
@@ -402,7 +402,7 @@ static void try_condition(int number, account *out)
     else {
         rule_count *rule = count_of(out, k->rule, row->name);
         const bool helped = k->works && remedy_works(&a, k->path, row, &answer);
-        rule->said++, rule->proved += helped;
+        rule->reported++, rule->proved += helped;
         snprintf(rule->where, sizeof rule->where, "%s %s, %s", k->scene, k->assignments, k->path);
         drop_special_indices(&answer, row, &v);
         if (acts_try(&a, k->path, &v, 0, 1).changed > 0)
@@ -440,7 +440,7 @@ static void add_rules(const account *one)
 {
     for (int i = 0; i < one->rule_count; i++) {
         rule_count *r = count_of(&all, one->rules[i].rule, one->rules[i].name);
-        r->said += one->rules[i].said;
+        r->reported += one->rules[i].reported;
         r->proved += one->rules[i].proved;
         if (one->rules[i].proved && !r->where[0])
             memcpy(r->where, one->rules[i].where, sizeof r->where);
@@ -515,7 +515,7 @@ static void applying_the_remedy_of_each_note_makes_the_parameter_effective(void 
     add_jobs(try_counterpart, sizeof counterparts / sizeof *counterparts);
     for (int i = 0; i < all.rule_count; i++) {
         const rule_count *r = &all.rules[i];
-        printf("# %-16s %-16s said %3d, proved in %s\n", r->rule, r->name, r->said, r->where);
+        printf("# %-16s %-16s said %3d, proved in %s\n", r->rule, r->name, r->reported, r->where);
         if (r->proved == 0)
             printf("# %s of %s is not proved: give it a remedy that is an assignment, or add it to the counterparts\n",
                    r->rule, r->name);

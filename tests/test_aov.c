@@ -45,8 +45,9 @@ static vec3 direction(int x, int y)
 
 static double distance_to_sphere(vec3 d, vec3 center, double radius)
 {
-    const vec3 way = vec3_sub(center, vec3_make(0.0, EYE, 0.0));
-    const double along = vec3_dot(way, d), rest = radius * radius - vec3_dot(way, way) + along * along;
+    const vec3 to_center = vec3_sub(center, vec3_make(0.0, EYE, 0.0));
+    const double along = vec3_dot(to_center, d),
+                 rest = radius * radius - vec3_dot(to_center, to_center) + along * along;
     return rest > 0.0 ? along - sqrt(rest) : (double)HUGE_VAL;
 }
 
@@ -83,26 +84,26 @@ static int check_pixel(const render_result *r, int x, int y)
 {
     const vec3 d = direction(x, y), eye = vec3_make(0.0, EYE, 0.0);
     double t = d.y < 0.0 ? -EYE / d.y : (double)HUGE_VAL;
-    const ball *met = NULL;
+    const ball *hit_ball = NULL;
     for (size_t i = 0; i < sizeof balls / sizeof *balls; i++) {
         const double at = distance_to_sphere(d, balls[i].center, balls[i].radius);
         if (at < t)
-            t = at, met = &balls[i];
+            t = at, hit_ball = &balls[i];
     }
     if (isinf(t)) {
         for (int i = 0; i < LAYER_COUNT; i++)
             near(value(r, (layer_rule)i, x, y), vec3_make(0.0, 0.0, 0.0), 0.0);
         return 0;
     }
-    const vec3 p = vec3_add(eye, vec3_scale(d, t)), wanted = {t, 0.0, 0.0};
-    near(value(r, LAYER_DEPTH, x, y), wanted, 2e-6 * t);
+    const vec3 p = vec3_add(eye, vec3_scale(d, t)), expected = {t, 0.0, 0.0};
+    near(value(r, LAYER_DEPTH, x, y), expected, 2e-6 * t);
     near(value(r, LAYER_POSITION, x, y), p, 2e-6 * t);
-    if (met) {
-        near(value(r, LAYER_NORMAL, x, y), vec3_scale(vec3_sub(p, met->center), 1.0 / met->radius), 1e-5);
-        near(value(r, LAYER_ALBEDO, x, y), met->color, 1e-6);
-        near(value(r, LAYER_SOLID, x, y), vec3_make(met->solid, 0.0, 0.0), 0.0);
-        near(value(r, LAYER_MATERIAL, x, y), vec3_make(met->material, 0.0, 0.0), 0.0);
-        return 1 << (int)met->solid;
+    if (hit_ball) {
+        near(value(r, LAYER_NORMAL, x, y), vec3_scale(vec3_sub(p, hit_ball->center), 1.0 / hit_ball->radius), 1e-5);
+        near(value(r, LAYER_ALBEDO, x, y), hit_ball->color, 1e-6);
+        near(value(r, LAYER_SOLID, x, y), vec3_make(hit_ball->solid, 0.0, 0.0), 0.0);
+        near(value(r, LAYER_MATERIAL, x, y), vec3_make(hit_ball->material, 0.0, 0.0), 0.0);
+        return 1 << (int)hit_ball->solid;
     }
     const bool even = ((int)floor(p.x / 0.5) + (int)floor(p.z / 0.5)) % 2 == 0;
     near(value(r, LAYER_NORMAL, x, y), vec3_make(0.0, 1.0, 0.0), 0.0);
@@ -160,9 +161,9 @@ static void the_view_of_normals_is_encoded_as_a_normal_map(void **state)
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             const vec3 n = value(r, LAYER_NORMAL, x, y);
-            const double wanted[3] = {0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z};
+            const double expected[3] = {0.5 + 0.5 * n.x, 0.5 + 0.5 * n.y, 0.5 + 0.5 * n.z};
             for (int c = 0; c < 3 && value(r, LAYER_SOLID, x, y).x > 0.0; c++)
-                assert_true(fabs(srgb_encode(film_value(r->img, x, y, c)) - wanted[c]) < 1e-6);
+                assert_true(fabs(srgb_encode(film_value(r->img, x, y, c)) - expected[c]) < 1e-6);
         }
     render_result_destroy(r);
     scene_destroy(s);
@@ -183,15 +184,15 @@ static void layers_are_bit_identical_for_any_threads_and_instruction_set(void **
     for (int layer = 0; layer < LAYER_COUNT; layer++) {
         s->render.layer = layer;
         s->render.threads = 1;
-        render_result *wanted = layers_at(s, ISA_SSE2);
+        render_result *expected = layers_at(s, ISA_SSE2);
         for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
             s->render.threads = 8;
             s->render.schedule = SCHEDULE_DYNAMIC, s->render.tile = 8;
             render_result *r = layers_at(s, (isa)level);
-            same(r, wanted);
+            same(r, expected);
             render_result_destroy(r);
         }
-        render_result_destroy(wanted);
+        render_result_destroy(expected);
     }
     scene_destroy(s);
 }

@@ -63,7 +63,7 @@ static void refuse_bytes(const char *name, bytes b, const char *pattern)
     refuse_within(name, &limits, pattern);
 }
 
-static void small_bad_files_are_refused(void **state)
+static void small_invalid_files_are_refused(void **state)
 {
     (void)state;
     char *path = in_folder("folder"), *fifo = in_folder("fifo");
@@ -151,7 +151,7 @@ static void an_stl_with_a_wrong_facet_count_is_refused(void **state)
     refuse_bytes("nan_binary.stl", b, "nan");
 }
 
-static void a_ply_with_bad_lists_is_refused(void **state)
+static void a_ply_with_invalid_lists_is_refused(void **state)
 {
     (void)state;
     static const unsigned char lengths[] = {0, 1, 2, 255};
@@ -407,18 +407,18 @@ static void all_refusals_kept_the_limits_of_time_and_memory(void **state)
     if (!getenv("RUNNER")) /* valgrind has its own memory */
         assert_true(ours.ru_maxrss < 256 << 10);
 #endif
-    assert_true(theirs.ru_maxrss < (long)(limits.memory_bytes >> 10)); /* it is built without sanitizers */
+    assert_true(theirs.ru_maxrss < (long)(limits.memory_bytes >> 10)); /* the importer is built without sanitizers */
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(small_bad_files_are_refused),
+        cmocka_unit_test(small_invalid_files_are_refused),
         cmocka_unit_test(tolerated_files_give_a_valid_mesh),
         cmocka_unit_test(truncated_binary_files_are_refused),
         cmocka_unit_test(noise_is_refused_in_every_format),
         cmocka_unit_test(an_stl_with_a_wrong_facet_count_is_refused),
-        cmocka_unit_test(a_ply_with_bad_lists_is_refused),
+        cmocka_unit_test(a_ply_with_invalid_lists_is_refused),
         cmocka_unit_test(a_glb_with_wrong_lengths_is_refused),
         cmocka_unit_test(deep_nesting_is_refused),
         cmocka_unit_test(exponentially_shared_nodes_are_refused),

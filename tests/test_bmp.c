@@ -106,12 +106,12 @@ static void refused(const unsigned char *bytes, size_t size, const char *word, c
 {
     image *img = (image *)1;
     diagnostic why = {0};
-    char said[DIAGNOSTIC_TEXT_MAX];
+    char message[DIAGNOSTIC_TEXT_MAX];
     assert_int_equal(codec_bmp_read(bytes, size, &img, &why), STATUS_BAD_INPUT);
     assert_null(img);
-    diagnostic_text(&why, said, sizeof said);
-    if (!strstr(said, word) || !strstr(said, remedy) || strchr(said, '\n'))
-        fail_msg("'%s' has no '%s' or '%s'", said, word, remedy);
+    diagnostic_text(&why, message, sizeof message);
+    if (!strstr(message, word) || !strstr(message, remedy) || strchr(message, '\n'))
+        fail_msg("'%s' has no '%s' or '%s'", message, word, remedy);
 }
 
 static void unsupported_kinds_are_refused_with_a_remedy(void **state)

@@ -46,13 +46,13 @@ static void assemble(assembly *m, vec3 turn)
 }
 
 /* The media in order along the line, as digits: "01230". */
-static void expect_media(const assembly *m, one_ray r, const char *wanted)
+static void expect_media(const assembly *m, one_ray r, const char *expected)
 {
-    for (int k = 0; wanted[k + 1]; k++) {
+    for (int k = 0; expected[k + 1]; k++) {
         const one_hit h = nearest_interface(m->solids, r);
         assert_true(h.hit_primitive >= 0);
-        assert_int_equal(m->solids->regions[h.before].medium, wanted[k] - '0');
-        assert_int_equal(m->solids->regions[h.after].medium, wanted[k + 1] - '0');
+        assert_int_equal(m->solids->regions[h.before].medium, expected[k] - '0');
+        assert_int_equal(m->solids->regions[h.after].medium, expected[k + 1] - '0');
         r = (one_ray){h.point, r.d, h.face, h.inside_after};
     }
     assert_int_equal(nearest_interface(m->solids, r).hit_primitive, -1);
@@ -72,7 +72,7 @@ static const vec3 turns[] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 13.7}, {17.3, -33.1, 71
 
 typedef assembly assembly_maker(void);
 
-static void through_the_contact(assembly_maker *make, const char *wanted)
+static void through_the_contact(assembly_maker *make, const char *expected)
 {
     uint64_t seed = 31;
     for (size_t k = 0; k < sizeof turns / sizeof *turns; k++) {
@@ -80,7 +80,7 @@ static void through_the_contact(assembly_maker *make, const char *wanted)
         assemble(&m, turns[k]);
         for (int i = 0; i < 4000; i++) {
             vec3 contact = vec3_make(random_real(&seed, -0.4, 0.4), 0.3, random_real(&seed, -0.4, 0.4));
-            expect_media(&m, line_through(&m, contact, 5.0, &seed), wanted);
+            expect_media(&m, line_through(&m, contact, 5.0, &seed), expected);
         }
         scene_geometry_destroy(m.solids);
     }

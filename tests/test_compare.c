@@ -281,7 +281,7 @@ static void assert_color(const image *map, int x, int y, int red, int green, int
 
 /* Colours of matplotlib 3.6.3's magma at 255 times the error, interpolated linearly between the two nearest, to one
  * step; the error, in the comment of each line, is by the implementation of FLIP above. */
-static void the_map_shows_the_error_in_magma(void **state)
+static void the_error_map_has_magma_colors(void **state)
 {
     (void)state;
     image *a = make(97, 61, disc, 0), *b = make(97, 61, disc, 1), *map;
@@ -313,7 +313,7 @@ int main(void)
         cmocka_unit_test(values_beyond_the_displays_range_are_clamped),
         cmocka_unit_test(different_sizes_are_refused),
         cmocka_unit_test(a_nan_pixel_is_refused_and_located),
-        cmocka_unit_test(the_map_shows_the_error_in_magma),
+        cmocka_unit_test(the_error_map_has_magma_colors),
     };
     return cmocka_run_group_tests_name("comparison of pictures", tests, NULL, NULL);
 }

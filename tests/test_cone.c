@@ -25,7 +25,7 @@ static void a_cone_with_equal_radii_is_a_cylinder(void **state)
 {
     (void)state;
     uint64_t seed = 1;
-    int met = 0;
+    int hits = 0;
     for (int trial = 0; trial < 20000; trial++) {
         solid_shape cone = cone_of(0.8, 0.8, 1.3);
         cone.rotation_deg = trial % 2 ? vec3_make(17.0, -33.0, 71.0) : vec3_make(0.0, 0.0, 0.0);
@@ -38,14 +38,14 @@ static void a_cone_with_equal_radii_is_a_cylinder(void **state)
         const one_hit h = nearest_interface(a, r), k = nearest_interface(b, r);
         assert_int_equal(h.hit_primitive, k.hit_primitive);
         if (h.hit_primitive >= 0) {
-            met++;
+            hits++;
             assert_int_equal(h.face, k.face);
             assert_true(fabs(h.t - k.t) <= (h.error + k.error) / h.cos_i);
             assert_true(vec3_length(vec3_sub(h.normal, k.normal)) <= 4e-14);
         }
         scene_geometry_destroy(a), scene_geometry_destroy(b);
     }
-    assert_true(met > 5000);
+    assert_true(hits > 5000);
 }
 
 /* pi h (R^2 + R r + r^2) / 3 */
@@ -134,11 +134,11 @@ static void a_conical_liquid_overlaps_the_wall_only_where_it_is_wide_enough(void
     static const int high[4] = {0, 1, 0, -1}, low[6] = {0, -1, 1, -1, 0, -1};
     for (int k = 0; k < 2; k++) {
         one_ray r = {{-3.0, k ? 0.5 : 1.8, 0.0}, {1.0, 0.0, 0.0}, FACE_NONE, 0};
-        const int *wanted = k ? low : high;
+        const int *expected = k ? low : high;
         int n = 0;
         for (one_hit h = nearest_interface(a, r); h.hit_primitive >= 0; h = nearest_interface(a, r)) {
             assert_true(n < (k ? 6 : 4));
-            assert_int_equal(a->regions[h.after].solid, wanted[n++]);
+            assert_int_equal(a->regions[h.after].solid, expected[n++]);
             r = (one_ray){h.point, r.d, h.face, h.inside_after};
         }
         assert_int_equal(n, k ? 6 : 4);

@@ -61,8 +61,8 @@ static double narrowest_gap(double x, double angle, bool upper_wins, bool far_so
 /* The sum of magnitudes that a box's error bound is computed from. */
 static double magnitudes(double x, double middle, double size, double angle)
 {
-    const double start = 0.5 - middle, way = 0.5 + 0.5 * fabs(tan(angle));
-    return fabs(start) + way + fmax(fabs(x), fabs(middle)) + size;
+    const double start = 0.5 - middle, path = 0.5 + 0.5 * fabs(tan(angle));
+    return fabs(start) + path + fmax(fabs(x), fabs(middle)) + size;
 }
 
 static void the_narrowest_resolved_gap_is_that_of_the_manual(void **state)

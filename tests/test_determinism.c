@@ -66,10 +66,10 @@ static void the_film_is_the_same_for_every_instruction_set(void **state)
         " render.samples=4 render.min_weight=0.01 clear.shininess=80.5 rod.rotation=5,7,-18 ground.rotation=1,2,1"};
     for (size_t v = 0; v < COUNT(variants); v++) {
         scene *s = rod_scene(variants[v]);
-        const fingerprint wanted = fingerprint_at(s, ISA_SSE2, NULL);
+        const fingerprint expected = fingerprint_at(s, ISA_SSE2, NULL);
         for (int level = ISA_AVX2; level <= (int)isa_best(); level++) {
             const fingerprint f = fingerprint_at(s, (isa)level, NULL);
-            expect_same(&f, &wanted);
+            expect_same(&f, &expected);
         }
         scene_destroy(s);
     }
@@ -80,7 +80,7 @@ static void the_film_is_the_same_for_all_threads_schedules_tiles_and_pool(void *
     (void)state;
     static const int threads[] = {1, 2, 3, 7, 64}, tiles[] = {1, 8, 64};
     scene *s = rod_scene(SMALL);
-    const fingerprint wanted = fingerprint_at(s, isa_best(), NULL);
+    const fingerprint expected = fingerprint_at(s, isa_best(), NULL);
     renderer *r = NULL;
     assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
     for (size_t t = 0; t < COUNT(threads); t++)
@@ -95,7 +95,7 @@ static void the_film_is_the_same_for_all_threads_schedules_tiles_and_pool(void *
                 render_result *result = NULL;
                 assert_int_equal(renderer_render(r, s, NULL, &result, NULL), STATUS_OK);
                 const fingerprint f = {film_hash(result->img), result->counters};
-                expect_same(&f, &wanted);
+                expect_same(&f, &expected);
                 render_result_destroy(result);
             }
     renderer_destroy(r);
@@ -107,13 +107,13 @@ static void the_film_is_the_same_with_1024_threads(void **state)
 {
     (void)state;
     scene *s = rod_scene(SMALL " render.tile=8");
-    const fingerprint wanted = fingerprint_at(s, isa_best(), NULL);
+    const fingerprint expected = fingerprint_at(s, isa_best(), NULL);
     set(s, "render.threads=1024");
     for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++) {
         s->render.schedule = rule;
         s->render.pool = rule % 2;
         const fingerprint f = fingerprint_at(s, rule == SCHEDULE_ROWS ? ISA_SSE2 : isa_best(), NULL);
-        expect_same(&f, &wanted);
+        expect_same(&f, &expected);
     }
     scene_destroy(s);
 }
@@ -123,11 +123,11 @@ static void additional_outputs_do_not_change_the_film(void **state)
 {
     (void)state;
     scene *s = rod_scene(SMALL " render.threads=3");
-    const fingerprint wanted = fingerprint_at(s, isa_best(), NULL);
+    const fingerprint expected = fingerprint_at(s, isa_best(), NULL);
     const render_options options = {.pixel_rays = true, .pixel_time = true, .timeline = true};
     render_result *result = render_at(s, isa_best(), &options);
     const fingerprint f = {film_hash(result->img), result->counters};
-    expect_same(&f, &wanted);
+    expect_same(&f, &expected);
     double rays = 0.0, pixels = 0.0;
     for (int i = 0; i < 160 * 120; i++) {
         assert_true(result->pixel_rays[i] >= 1.0 && result->pixel_ns[i] >= 0.0);

@@ -215,7 +215,7 @@ static void picks_agree_with_ray_hits(void **state)
     unsigned copies = 0;
     for (int moment = 0; moment < 2; moment++) {
         cuvette_query *q;
-        int met = 0;
+        int hits = 0;
         fine(cuvette_query_create(s, NULL, &q, &why), &why);
         for (int i = 0; i < 40 * 30; i++) {
             cuvette_ray ray;
@@ -225,14 +225,14 @@ static void picks_agree_with_ray_hits(void **state)
             fine(cuvette_query_nearest(q, &ray, 1, &hit, &why), &why);
             if (hit.solid != 1 && hit.solid != 2 && hit.solid != 3)
                 continue;
-            met++;
+            hits++;
             copies |= hit.solid == 2 ? 1U << hit.copy : 0;
             const double distance = distance_to(m, cuvette_scene_name(s, CUVETTE_SOLID, (size_t)hit.solid), ray, where);
             assert_true(fabs(distance - hit.distance) < 1e-12 * hit.distance);
             for (int k = 0; k < 3; k++)
                 assert_true(fabs(where[k] - hit.point[k]) < 1e-12 * hit.distance);
         }
-        assert_true(met > 50);
+        assert_true(hits > 50);
         cuvette_query_destroy(q);
         const int hand = grab(m, "far", ray_of(1.5, 9, 2.5, 0, -1, 0), 0.3);
         if (hand >= 0)

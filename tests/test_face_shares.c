@@ -72,11 +72,11 @@ static scene *view(const char *more, const char *assignments)
     return s;
 }
 
-static void expect_seen(scene *s, double wanted, double tolerance)
+static void expect_seen(scene *s, double expected, double tolerance)
 {
     const double seen = look(s).x;
-    if (!(fabs(seen - wanted) <= tolerance))
-        fail_msg("%.12g instead of %.12g", seen, wanted);
+    if (!(fabs(seen - expected) <= tolerance))
+        fail_msg("%.12g instead of %.12g", seen, expected);
 }
 
 static void each_face_transmits_its_own_share(void **state)
@@ -161,15 +161,15 @@ static void keep_last(void *context, const scene_note *note)
 static void a_note_names_the_solid_whose_shares_are_ignored(void **state)
 {
     (void)state;
-    char said[NOTE_LINE_MAX] = "";
-    const note_taker taker = {keep_last, said};
+    char note[NOTE_LINE_MAX] = "";
+    const note_taker taker = {keep_last, note};
     scene *s = view("solids:\n  pane: {shape: mesh, mesh: sheet}\n", "");
     scene_hints(s, &taker);
-    assert_string_equal(said, "");
+    assert_string_equal(note, "");
     set(s, "render.transmission=refract");
     scene_hints(s, &taker);
     assert_non_null(
-        strstr(said, "pane.transparency: the transparency and reflectivity of the faces of pane have no effect"));
+        strstr(note, "pane.transparency: the transparency and reflectivity of the faces of pane have no effect"));
     scene_destroy(s);
 }
 

@@ -173,7 +173,7 @@ static void the_plane_of_a_fan_is_horizontal_vertical_or_given(void **state)
     scene_destroy(s);
 }
 
-static void bad_rules_are_refused(void **state)
+static void invalid_fan_rules_are_refused(void **state)
 {
     (void)state;
     scene *s = scene_from(ball_text);
@@ -210,7 +210,7 @@ int main(void)
         cmocka_unit_test(only_deflected_rays_count_for_the_focus),
         cmocka_unit_test(rays_cross_only_where_both_are_unblocked),
         cmocka_unit_test(the_plane_of_a_fan_is_horizontal_vertical_or_given),
-        cmocka_unit_test(bad_rules_are_refused),
+        cmocka_unit_test(invalid_fan_rules_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -102,7 +102,7 @@ static void constant_weights_conserve_energy(void **state)
 
 /* From inside each medium, and in surroundings that are not a vacuum: throughput is of power, so there is no factor
  * n^2. */
-static void a_camera_in_any_medium_sees_the_furnace(void **state)
+static void a_camera_in_any_medium_has_radiance_1_in_the_furnace(void **state)
 {
     (void)state;
     static const char *const places[] = {"camera.position=0,1,0.7",    "camera.position=0.2,0.9,0.01",
@@ -116,7 +116,7 @@ static void a_camera_in_any_medium_sees_the_furnace(void **state)
 }
 
 /* Faint branches that render.min_weight cuts off are missing in the same way. */
-static void cut_faint_branches_are_accounted_for(void **state)
+static void radiance_plus_cut_faint_branches_is_1(void **state)
 {
     (void)state;
     stage g = stage_of(furnace, "render.depth=12 render.min_weight=0.001");
@@ -135,8 +135,8 @@ int main(void)
         cmocka_unit_test(fresnel_weights_conserve_energy),
         cmocka_unit_test(polarised_light_conserves_energy),
         cmocka_unit_test(constant_weights_conserve_energy),
-        cmocka_unit_test(a_camera_in_any_medium_sees_the_furnace),
-        cmocka_unit_test(cut_faint_branches_are_accounted_for),
+        cmocka_unit_test(a_camera_in_any_medium_has_radiance_1_in_the_furnace),
+        cmocka_unit_test(radiance_plus_cut_faint_branches_is_1),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

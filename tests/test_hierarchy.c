@@ -132,7 +132,7 @@ static void batches_of_coherent_rays_have_the_hits_of_single_rays(void **state)
 {
     (void)state;
     uint64_t seed = 7;
-    long met = 0;
+    long hit_count = 0;
     for (int scene = 0; scene < effort(200); scene++) {
         mesh *m = random_mesh(&seed, 1 + random_below(&seed, random_below(&seed, 4) ? 60 : 500));
         hierarchy *h = NULL;
@@ -150,13 +150,13 @@ static void batches_of_coherent_rays_have_the_hits_of_single_rays(void **state)
                 kernels[ISA_SSE2]->nearest(h, &r[i], &expected);
                 same_hit(&hits[i], &expected);
                 assert_int_equal(shadowed[i], expected.triangle != TRIANGLE_NONE);
-                met += shadowed[i];
+                hit_count += shadowed[i];
             }
         }
         hierarchy_destroy(h);
         mesh_release(m);
     }
-    assert_true(met > 1000);
+    assert_true(hit_count > 1000);
 }
 
 static void instruction_sets_give_the_same_hits(void **state)

@@ -15,10 +15,10 @@
 /* The results of a walk over a tree. */
 typedef struct walk {
     const fixture *f;
-    uint8_t *met; /* the number of leaves that contain each triangle */
+    uint8_t *leaf_count; /* the number of leaves that contain each triangle */
     size_t nodes, leaves, blocks;
     int depth;
-    double nodes_met, leaves_met, blocks_met; /* sums of areas */
+    double node_area, leaf_area, block_area; /* sums of areas */
 } walk;
 
 typedef struct box {
@@ -61,7 +61,7 @@ static void walk_block(walk *w, size_t block, bool last, uint32_t *before, box *
         assert_true(triangle < m->triangle_count);
         assert_true(previous == TRIANGLE_NONE || triangle > previous || (last && triangle == previous));
         if (triangle != previous)
-            w->met[triangle]++;
+            w->leaf_count[triangle]++;
         previous = triangle;
         for (int corner = 0; corner < 3; corner++)
             for (int axis = 0; axis < 3; axis++) {
@@ -83,8 +83,8 @@ static box walk_leaf(walk *w, uint32_t child, double area)
         walk_block(w, first + i, i + 1 == count, &before, &b);
     w->blocks += count;
     w->leaves++;
-    w->leaves_met += area;
-    w->blocks_met += area * count;
+    w->leaf_area += area;
+    w->block_area += area * count;
     return b;
 }
 
@@ -95,7 +95,7 @@ static box walk_node(walk *w, uint32_t number, int depth, double area)
     assert_true(depth <= BVH_DEPTH_MAX);
     assert_true(n->child_count <= WIDTH);
     w->nodes++;
-    w->nodes_met += area;
+    w->node_area += area;
     w->depth = depth > w->depth ? depth : w->depth;
     box all = nothing();
     for (uint32_t i = 0; i < WIDTH; i++) {
@@ -122,15 +122,15 @@ static box walk_node(walk *w, uint32_t number, int depth, double area)
 /* Walks the whole tree; each triangle must be in one leaf, except for `left_out` of them. */
 static walk walk_tree(const fixture *f, size_t left_out)
 {
-    walk w = {.f = f, .met = calloc(f->m.triangle_count + 1, 1)};
-    assert_non_null(w.met);
+    walk w = {.f = f, .leaf_count = calloc(f->m.triangle_count + 1, 1)};
+    assert_non_null(w.leaf_count);
     walk_node(&w, 0, 1, 0.0);
-    size_t met = 0;
+    size_t leaf_count = 0;
     for (size_t i = 0; i < f->m.triangle_count; i++) {
-        assert_true(w.met[i] <= 1);
-        met += w.met[i];
+        assert_true(w.leaf_count[i] <= 1);
+        leaf_count += w.leaf_count[i];
     }
-    assert_int_equal(met, f->m.triangle_count - left_out);
+    assert_int_equal(leaf_count, f->m.triangle_count - left_out);
     assert_int_equal(w.nodes, f->h.node_count);
     assert_int_equal(w.blocks, f->h.block_count);
     assert_int_equal(w.nodes, f->h.report.nodes);
@@ -138,7 +138,7 @@ static walk walk_tree(const fixture *f, size_t left_out)
     assert_int_equal(w.depth, f->h.report.depth);
     size_t block = f->h.single ? sizeof(block_single) : sizeof(block_double);
     assert_true(f->h.report.bytes >= w.nodes * sizeof(bvh_node) + w.blocks * block);
-    free(w.met);
+    free(w.leaf_count);
     return w;
 }
 
@@ -312,9 +312,9 @@ static void leaves_of_a_plane_do_not_overlap(void **state)
     fixture_build(&f, 1);
     walk w = walk_tree(&f, 0);
     const double plane = 64.0 * 64.0;
-    assert_true(w.leaves_met == plane);
-    assert_true(w.blocks_met <= 1.5 * plane);
-    assert_true(w.nodes_met <= 4.0 * plane);
+    assert_true(w.leaf_area == plane);
+    assert_true(w.block_area <= 1.5 * plane);
+    assert_true(w.node_area <= 4.0 * plane);
     assert_true(w.blocks <= 2 * 64 * 64 / 2);
     fixture_free(&f);
 }
@@ -328,7 +328,7 @@ static void leaves_hold_neighbouring_triangles(void **state)
     fixture f = soup(1000, 1.0, 0.001, false, 41);
     fixture_build(&f, 1);
     walk w = walk_tree(&f, 0);
-    assert_true(w.leaves_met <= 12.0 * 6.3);
+    assert_true(w.leaf_area <= 12.0 * 6.3);
     fixture_free(&f);
 }
 

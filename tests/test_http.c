@@ -266,7 +266,7 @@ static void every_reply_has_security_headers(void **state)
 {
     static const struct {
         const char *method, *target, *heads;
-    } asked[] = {
+    } requests[] = {
         {"GET", "/", ""},
         {"GET", "/hello", ""},
         {"GET", "/../x", ""},
@@ -285,8 +285,8 @@ static void every_reply_has_security_headers(void **state)
                                         "Cache-Control: no-store",
                                         "Cross-Origin-Opener-Policy: same-origin",
                                         "Cross-Origin-Resource-Policy: same-origin"};
-    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
-        char *reply = client_ask(*state, asked[i].method, asked[i].target, asked[i].heads, NULL);
+    for (size_t i = 0; i < sizeof requests / sizeof *requests; i++) {
+        char *reply = client_ask(*state, requests[i].method, requests[i].target, requests[i].heads, NULL);
         for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
             assert_true(reply_has(reply, lines[k]));
         if (reply_code(reply) >= 400) { /* with an error and a remedy */

@@ -45,17 +45,17 @@ static bool read_until(int fd, const char *end)
     enum { BLOCK = 65536, KEEP = 256 };
     static char block[KEEP + BLOCK]; /* the last bytes read before, and the new ones */
     const size_t length = strlen(end);
-    size_t kept = 0;
+    size_t overlap = 0;
     assert_true(length <= KEEP);
-    for (ssize_t got; (got = recv(fd, block + kept, BLOCK, MSG_PEEK)) > 0;) {
-        const char *at = memmem(block, kept + (size_t)got, end, length);
-        const size_t here = at ? (size_t)(at + length - block) - kept : (size_t)got;
-        assert_int_equal(recv(fd, block + kept, here, MSG_WAITALL), here);
+    for (ssize_t got; (got = recv(fd, block + overlap, BLOCK, MSG_PEEK)) > 0;) {
+        const char *at = memmem(block, overlap + (size_t)got, end, length);
+        const size_t here = at ? (size_t)(at + length - block) - overlap : (size_t)got;
+        assert_int_equal(recv(fd, block + overlap, here, MSG_WAITALL), here);
         if (at)
             return true;
-        const size_t all = kept + here;
-        kept = all < length - 1 ? all : length - 1;
-        memmove(block, block + all - kept, kept);
+        const size_t all = overlap + here;
+        overlap = all < length - 1 ? all : length - 1;
+        memmove(block, block + all - overlap, overlap);
     }
     return false;
 }

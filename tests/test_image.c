@@ -385,7 +385,7 @@ static void pfm_is_read_in_either_byte_order(void **state)
     image_destroy(img);
 }
 
-static void bad_pfm_is_refused(void **state)
+static void invalid_pfm_is_refused(void **state)
 {
     (void)state;
 #define bad(text)             \
@@ -921,11 +921,11 @@ static void a_full_disk_keeps_the_old_image(void **state)
         assert_int_equal(code, STATUS_FAILURE);
         assert_string_equal(why.file, path);
         assert_true(strstr(why.what, "cannot write") == why.what);
-        blob kept = get(path);
-        assert_int_equal(old.size, kept.size);
-        assert_memory_equal(old.bytes, kept.bytes, old.size);
+        blob after = get(path);
+        assert_int_equal(old.size, after.size);
+        assert_memory_equal(old.bytes, after.bytes, old.size);
         free(old.bytes);
-        free(kept.bytes);
+        free(after.bytes);
         assert_int_equal(empty_folder(), 1);
         free(path);
     }
@@ -951,7 +951,7 @@ int main(void)
         file_test(jpeg_is_close_to_the_original),
         file_test(pfm_keeps_every_bit),
         file_test(pfm_is_read_in_either_byte_order),
-        file_test(bad_pfm_is_refused),
+        file_test(invalid_pfm_is_refused),
         file_test(png_of_every_kind_is_read),
         file_test(huge_png_is_refused),
         file_test(decompression_bombs_are_refused),

@@ -20,7 +20,7 @@ static stage half_space(double outside, double inside, vec3 rotation_deg, const 
 }
 
 /* The first hit of a ray on the half-space's surface at the origin, at an angle. */
-static const ray_tree *meet(stage *g, double angle, vec3 rotation_deg)
+static const ray_tree *hit_at(stage *g, double angle, vec3 rotation_deg)
 {
     const vec3 d = turned(vec3_make(sin(angle), -cos(angle), 0.0), rotation_deg);
     return stage_ray(g, vec3_scale(d, -2.0), d);
@@ -41,7 +41,7 @@ static void reflectances_equal_the_textbooks_values(void **state)
     };
     for (size_t k = 0; k < COUNT(known); k++) {
         stage g = half_space(known[k].n_from, known[k].n_to, turns[1], "");
-        const ray_hit *h = &meet(&g, known[k].angle_deg * DEGREE, turns[1])->node[0].hit;
+        const ray_hit *h = &hit_at(&g, known[k].angle_deg * DEGREE, turns[1])->node[0].hit;
         assert_true(fabs(h->R_s - known[k].R_s) <= 5.1e-5 && fabs(h->R_p - known[k].R_p) <= 5.1e-5);
         stage_close(&g);
     }
@@ -58,7 +58,7 @@ static void reflectances_follow_the_sine_and_tangent_laws(void **state)
             stage g = half_space(n_from, n_to, turns[turn], "");
             const double angles[] = {0.0, 45.0 * DEGREE, brewster, 80.0 * DEGREE};
             for (size_t a = 0; a < COUNT(angles); a++) {
-                const ray_tree *tree = meet(&g, angles[a], turns[turn]);
+                const ray_tree *tree = hit_at(&g, angles[a], turns[turn]);
                 const ray_hit *h = &tree->node[0].hit;
                 const ray_node *back = child_of(tree, &tree->node[0], RAY_REFLECT),
                                *on = child_of(tree, &tree->node[0], RAY_REFRACT);
@@ -90,8 +90,8 @@ static void the_reflectance_is_the_same_from_both_sides(void **state)
         stage there = half_space(pairs[k][0], pairs[k][1], turns[1], ""),
               back = half_space(pairs[k][1], pairs[k][0], turns[1], "");
         for (double angle = 0.0; angle < 1.55; angle += 0.05) {
-            const ray_hit a = meet(&there, angle, turns[1])->node[0].hit;
-            const ray_hit b = meet(&back, asin(pairs[k][0] / pairs[k][1] * sin(angle)), turns[1])->node[0].hit;
+            const ray_hit a = hit_at(&there, angle, turns[1])->node[0].hit;
+            const ray_hit b = hit_at(&back, asin(pairs[k][0] / pairs[k][1] * sin(angle)), turns[1])->node[0].hit;
             assert_true(fabs(a.R_s - b.R_s) <= 1e-13 && fabs(a.R_p - b.R_p) <= 1e-13 &&
                         fabs(a.cos_i - b.cos_t) <= 1e-13);
         }
@@ -109,7 +109,7 @@ static const cell cells[] = {{"box", "shape: box, size: [1, 1, 1]", 0.0}, {"sphe
 
 /* From the box's centre the angle at its upper face is that of the direction; in a sphere sin i = offset sin(direction)
  * by the law of sines. */
-static const ray_tree *meet_inside(stage *g, const cell *c, double angle_i, vec3 rotation_deg)
+static const ray_tree *hit_inside(stage *g, const cell *c, double angle_i, vec3 rotation_deg)
 {
     const bool ball = c->offset > 0.0;
     const double angle = ball ? asin(sin(angle_i) / c->offset) : angle_i;
@@ -132,19 +132,19 @@ static void total_reflection_begins_at_the_critical_angle(const cell *c, const c
             double low = critical - 0.05, high = critical + 0.05;
             while (high - low > 1e-12) {
                 const double middle = 0.5 * (low + high);
-                *(meet_inside(&g, c, middle, turns[turn])->node[0].hit.tir ? &high : &low) = middle;
+                *(hit_inside(&g, c, middle, turns[turn])->node[0].hit.tir ? &high : &low) = middle;
             }
             assert_true(fabs(0.5 * (low + high) - critical) <= 1e-9);
             for (double above = critical + 1e-9; above < 0.97 * asin(c->offset > 0.0 ? c->offset : 1.0);
                  above += 0.01) {
-                const ray_tree *tree = meet_inside(&g, c, above, turns[turn]);
+                const ray_tree *tree = hit_inside(&g, c, above, turns[turn]);
                 const ray_node *root = &tree->node[0], *back = child_of(tree, root, RAY_REFLECT);
                 assert_true(root->hit.tir && !child_of(tree, root, RAY_REFRACT) && back && back->next == RAY_NONE);
                 for (int channel = 0; channel < 3; channel++)
                     assert_true(back->throughput[channel] ==
                                 root->throughput[channel] * root->hit.transmittance[channel]);
             }
-            assert_false(meet_inside(&g, c, critical - 1e-9, turns[turn])->node[0].hit.tir);
+            assert_false(hit_inside(&g, c, critical - 1e-9, turns[turn])->node[0].hit.tir);
             assert_non_null(child_of(&g.tree, &g.tree.node[0], RAY_REFRACT));
             stage_close(&g);
         }

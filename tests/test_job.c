@@ -33,14 +33,14 @@ static job *job_with(job_settings settings)
 
 typedef struct caller {
     job *of;
-    int asked, limit; /* stops at this call */
+    int calls, limit; /* the call that stops */
     double share;
 } caller;
 
 static bool has_enough(void *context)
 {
     caller *c = context;
-    return ++c->asked >= c->limit;
+    return ++c->calls >= c->limit;
 }
 
 /* Cancels from within the frame, as another thread would. */
@@ -48,7 +48,7 @@ static bool cancel_soon(void *context, double share_done)
 {
     caller *c = context;
     c->share = share_done;
-    if (++c->asked == c->limit)
+    if (++c->calls == c->limit)
         job_cancel(c->of);
     return true;
 }
@@ -56,7 +56,7 @@ static bool cancel_soon(void *context, double share_done)
 static bool refuse(void *context, double share_done)
 {
     (void)share_done;
-    return ++((caller *)context)->asked < 1;
+    return ++((caller *)context)->calls < 1;
 }
 
 static void a_cancelled_job_starts_no_work(void **state)
@@ -128,7 +128,7 @@ static void a_stop_request_is_obeyed(void **state)
     const render_options options = {.progress_s = 0.001};
     job_account made;
     assert_int_equal(job_render(j, s, &options, &made, NULL), STATUS_INTERRUPTED);
-    assert_true(c.asked >= 3); /* workers may still be finishing at the next check */
+    assert_true(c.calls >= 3); /* workers may still be finishing at the next check */
     job_account_release(&made);
     job_destroy(j);
     scene_destroy(s);
@@ -299,12 +299,12 @@ static void all_callers_of_a_job_get_the_same_film(void **state)
     cuvette_engine *engine;
     cuvette_scene *handle;
     cuvette_frame *frame;
-    cuvette_diagnostic said;
-    assert_int_equal(cuvette_engine_create(NULL, &engine, &said), CUVETTE_OK);
-    assert_int_equal(cuvette_scene_read(path, &handle, &said), CUVETTE_OK);
-    assert_int_equal(cuvette_scene_set(handle, "render.width", "60", &said), CUVETTE_OK);
-    assert_int_equal(cuvette_scene_set(handle, "render.height", "40", &said), CUVETTE_OK);
-    assert_int_equal(cuvette_engine_render(engine, handle, NULL, &frame, &said), CUVETTE_OK);
+    cuvette_diagnostic failure;
+    assert_int_equal(cuvette_engine_create(NULL, &engine, &failure), CUVETTE_OK);
+    assert_int_equal(cuvette_scene_read(path, &handle, &failure), CUVETTE_OK);
+    assert_int_equal(cuvette_scene_set(handle, "render.width", "60", &failure), CUVETTE_OK);
+    assert_int_equal(cuvette_scene_set(handle, "render.height", "40", &failure), CUVETTE_OK);
+    assert_int_equal(cuvette_engine_render(engine, handle, NULL, &frame, &failure), CUVETTE_OK);
     for (int keeps = 0; keeps < 2; keeps++) {
         job *j = job_with((job_settings){.keeps_meshes = keeps, .measured = keeps});
         for (int times = 0; times < 2; times++) {

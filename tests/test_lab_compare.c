@@ -154,7 +154,7 @@ static void check_map(const lab_room *room, const image *a, const image *b)
     image_destroy(map);
 }
 
-static void numbers_and_map_are_those_of_the_images(void **state)
+static void numbers_and_map_equal_those_of_image_compare(void **state)
 {
     pin(*state);
     change(*state, "\"ball.ior\": 1.7");
@@ -295,7 +295,7 @@ static void added_and_removed_objects_have_one_side(void **state)
     json_decref(json);
 }
 
-static void images_of_two_sizes_have_no_comparison(void **state)
+static void images_of_different_sizes_have_no_comparison(void **state)
 {
     pin(*state);
     change(*state, "\"render.width\": 32");
@@ -322,16 +322,16 @@ static void a_cleared_reference_image_is_removed(void **state)
     json_decref(json);
 }
 
-typedef struct asker {
+typedef struct client {
     const lab_room *room;
     pthread_t thread;
     char *text;
     int rounds, code;
-} asker;
+} client;
 
 static void *ask(void *context)
 {
-    asker *a = context;
+    client *a = context;
     char *reply = client_ask(a->room->server, "GET", "/api/compare?wait=1", "", NULL);
     a->code = reply_code(reply);
     a->text = strdup(reply_body(reply));
@@ -341,29 +341,29 @@ static void *ask(void *context)
 
 static void concurrent_comparisons_return_the_same_result(void **state)
 {
-    asker askers[10];
+    client clients[10];
     pin(*state);
     change(*state, "\"ball.ior\": 1.3");
     for (size_t i = 0; i < 10; i++) {
-        askers[i] = (asker){.room = *state};
-        assert_int_equal(pthread_create(&askers[i].thread, NULL, ask, &askers[i]), 0);
+        clients[i] = (client){.room = *state};
+        assert_int_equal(pthread_create(&clients[i].thread, NULL, ask, &clients[i]), 0);
     }
     for (size_t i = 0; i < 10; i++)
-        pthread_join(askers[i].thread, NULL);
-    assert_non_null(strstr(askers[0].text, "\"comparison\":{"));
+        pthread_join(clients[i].thread, NULL);
+    assert_non_null(strstr(clients[0].text, "\"comparison\":{"));
     for (size_t i = 0; i < 10; i++) {
-        assert_int_equal(askers[i].code, 200);
-        assert_string_equal(askers[i].text, askers[0].text);
+        assert_int_equal(clients[i].code, 200);
+        assert_string_equal(clients[i].text, clients[0].text);
     }
     for (size_t i = 0; i < 10; i++)
-        free(askers[i].text);
+        free(clients[i].text);
 }
 
 static void *ask_often(void *context)
 {
     static const char *const targets[] = {"/api/compare", "/api/compare.png", "/api/pin.png", "/api/compare?wait=1",
                                           "/api/trace?x=30&y=20"};
-    asker *a = context;
+    client *a = context;
     for (int k = 0; k < a->rounds; k++) {
         char *reply = client_ask(a->room->server, "GET", targets[k % 5], "", NULL);
         a->code = reply_code(reply);
@@ -377,10 +377,10 @@ static void *ask_often(void *context)
 /* Reference images are replaced while other threads compare. */
 static void reference_images_may_change_during_comparisons(void **state)
 {
-    asker askers[6];
+    client clients[6];
     for (size_t i = 0; i < 6; i++) {
-        askers[i] = (asker){.room = *state, .rounds = 25};
-        assert_int_equal(pthread_create(&askers[i].thread, NULL, ask_often, &askers[i]), 0);
+        clients[i] = (client){.room = *state, .rounds = 25};
+        assert_int_equal(pthread_create(&clients[i].thread, NULL, ask_often, &clients[i]), 0);
     }
     for (int k = 0; k < 8; k++) {
         char *values = text_format("\"ball.ior\": %g", 1.2 + 0.05 * k);
@@ -391,9 +391,9 @@ static void reference_images_may_change_during_comparisons(void **state)
             json_decref(room_ask(*state, "DELETE", "/api/pin", "{}", 200));
     }
     for (size_t i = 0; i < 6; i++)
-        pthread_join(askers[i].thread, NULL);
+        pthread_join(clients[i].thread, NULL);
     for (size_t i = 0; i < 6; i++)
-        assert_true(askers[i].code == 200 || askers[i].code == 404 || askers[i].code == 409);
+        assert_true(clients[i].code == 200 || clients[i].code == 404 || clients[i].code == 409);
 }
 
 int main(void)
@@ -401,13 +401,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(comparing_requires_a_reference_image, open_ball, close_room),
         cmocka_unit_test_setup_teardown(equal_images_have_no_difference, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(numbers_and_map_are_those_of_the_images, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(numbers_and_map_equal_those_of_image_compare, open_ball, close_room),
         cmocka_unit_test_setup_teardown(an_unfinished_image_is_not_compared, open_ball, close_room),
         cmocka_unit_test_setup_teardown(the_reference_image_is_kept_across_changes, open_ball, close_room),
         cmocka_unit_test_setup_teardown(changed_parameters_are_listed, open_ball, close_room),
         cmocka_unit_test_setup_teardown(a_material_is_listed_once, open_ball, close_room),
         cmocka_unit_test_setup_teardown(added_and_removed_objects_have_one_side, open_ball, close_room),
-        cmocka_unit_test_setup_teardown(images_of_two_sizes_have_no_comparison, open_ball, close_room),
+        cmocka_unit_test_setup_teardown(images_of_different_sizes_have_no_comparison, open_ball, close_room),
         cmocka_unit_test_setup_teardown(a_cleared_reference_image_is_removed, open_ball, close_room),
         cmocka_unit_test_setup_teardown(concurrent_comparisons_return_the_same_result, open_ball, close_room),
         cmocka_unit_test_setup_teardown(reference_images_may_change_during_comparisons, open_ball, close_room),

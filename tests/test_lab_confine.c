@@ -59,7 +59,7 @@ static void put_everywhere(const room *r, const char *name, const void *bytes, s
     free(inside);
 }
 
-static void take_away(const room *r, const char *name)
+static void remove_file(const room *r, const char *name)
 {
     char *path = text_format("%s/%s", r->inside, name);
     unlink(path);
@@ -69,7 +69,7 @@ static void take_away(const room *r, const char *name)
 /* Replaces a file of the folder by a link. */
 static void put_link(const room *r, const char *name, const char *target)
 {
-    take_away(r, name);
+    remove_file(r, name);
     char *path = text_format("%s/%s", r->inside, name);
     assert_int_equal(symlink(target, path), 0);
     free(path);
@@ -318,7 +318,7 @@ static void files_replaced_by_links_after_the_check_are_refused(void **state)
         is_refused(r, cases[i].scene, cases[i].file);
         is_refused_for_the_file_itself(r);
         free(target);
-        take_away(r, cases[i].file);
+        remove_file(r, cases[i].file);
         put_files(r);
         room_post(&r->lab, "/api/open", "{\"new\": true}");
         room_post(&r->lab, "/api/undo", "{}");
@@ -335,7 +335,7 @@ static void new_scenes_are_confined_to_the_folder(void **state)
     for (int opened = 0; opened < 2; opened++) { /* the first scene, then an opened one */
         if (opened)
             room_post(&r->lab, "/api/open", "{\"new\": true}");
-        take_away(r, "p.png");
+        remove_file(r, "p.png");
         put_images(r);
         render_worker_suspend(r->lab.lab->render_worker, "a file is exchanged");
         room_post(&r->lab, "/api/set", change);
@@ -434,7 +434,7 @@ static void meshes_are_dropped_when_their_sum_exceeds_the_triangle_limit(void **
         SCENE("meshes: {one: {file: plain.obj}, two: {file: plain.obj}, more: {generate: box}}\n");
     char *name = text_format("%s/any.yaml", r->inside);
     const struct {
-        size_t limit, kept;
+        size_t limit, loaded;
         const char *word;
     } cases[] = {{0, 3, NULL}, {14, 3, NULL}, {13, 2, "14 triangles"}, {1, 1, "2 triangles"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -444,10 +444,10 @@ static void meshes_are_dropped_when_their_sum_exceeds_the_triangle_limit(void **
         assert_int_equal(scene_limit(s, NULL, cases[i].limit, NULL), STATUS_OK);
         scene *copy = scene_clone(s); /* has the same limit */
         assert_int_equal(scene_load(copy, &why), cases[i].word ? STATUS_BAD_INPUT : STATUS_OK);
-        size_t kept = 0;
+        size_t loaded = 0;
         for (size_t k = 0; k < copy->mesh_count; k++)
-            kept += copy->meshes[k].data != NULL;
-        assert_int_equal(kept, cases[i].kept);
+            loaded += copy->meshes[k].data != NULL;
+        assert_int_equal(loaded, cases[i].loaded);
         assert_true(!cases[i].word || (strstr(why.what, cases[i].word) && why.remedy[0]));
         scene_destroy(copy);
         scene_destroy(s);

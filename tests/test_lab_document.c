@@ -133,7 +133,7 @@ static status ask_for_much(void *of, scene *s, diagnostic *why)
     return code;
 }
 
-static void work_and_memory_are_bounded(void **state)
+static void work_and_memory_are_limited(void **state)
 {
     (void)state;
     static const char *const work[] = {"render.width=4096", "render.height=4096", "render.integrator=path",
@@ -166,7 +166,7 @@ static void a_gesture_is_one_undo_step(void **state)
     assert_value(d, "ball.ior", "1.29");
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
     assert_value(d, "ball.ior", "1.5");
-    apply_as(d, "ball.ior=1.2", "drag 2"); /* after an undo it is a step of its own */
+    apply_as(d, "ball.ior=1.2", "drag 2"); /* after an undo the change is a separate step */
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
     assert_value(d, "ball.ior", "1.5");
     scene_document_destroy(d);
@@ -307,7 +307,7 @@ int main(void)
     const struct CMUnitTest cases[] = {
         cmocka_unit_test(each_change_increments_the_generation_and_can_be_undone),
         cmocka_unit_test(a_refused_change_has_no_effect),
-        cmocka_unit_test(work_and_memory_are_bounded),
+        cmocka_unit_test(work_and_memory_are_limited),
         cmocka_unit_test(a_gesture_is_one_undo_step),
         cmocka_unit_test(the_undo_history_has_a_limit),
         cmocka_unit_test(resets_restore_the_opened_scene),

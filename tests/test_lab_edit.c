@@ -118,7 +118,7 @@ static json_t *ask(const room *r, int code, const char *method, const char *targ
     return reply;
 }
 
-static void tell(const room *r, int code, const char *method, const char *target, const char *body)
+static void expect(const room *r, int code, const char *method, const char *target, const char *body)
 {
     json_decref(ask(r, code, method, target, body));
 }
@@ -196,7 +196,7 @@ static void files_of_the_folder_are_listed(void **state)
     assert_string_equal(json_string_value(json_object_get(files, "prefix")), "../");
     json_decref(files);
     /* `prefix` + name is a path relative to the scene's file. */
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
+    expect(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
     char hash[64];
     film(r, hash);
     json_t *media = ask(r, 200, "GET", "/api/media", NULL);
@@ -225,8 +225,8 @@ static void opening_refuses_invalid_requests_and_files(void **state)
         "{\"file\"",
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        tell(r, 400, "POST", "/api/open", bad[i]);
-    tell(r, 404, "POST", "/api/open", "{\"file\": \"none.yaml\"}");
+        expect(r, 400, "POST", "/api/open", bad[i]);
+    expect(r, 404, "POST", "/api/open", "{\"file\": \"none.yaml\"}");
     json_t *why = ask(r, 400, "POST", "/api/open", "{\"file\": \"wrong.yaml\"}");
     assert_int_equal(json_integer_value(json_object_get(why, "line")), 2);
     json_decref(why);
@@ -238,18 +238,18 @@ static void opening_a_scene_can_be_undone(void **state)
     const room *r = *state;
     char first[64], hash[64], text[256];
     film(r, first);
-    tell(r, 200, "POST", "/api/open", "{\"new\": true}");
+    expect(r, 200, "POST", "/api/open", "{\"new\": true}");
     assert_string_equal(state_text(r, "file", text), "");
     assert_string_equal(state_text(r, "title", text), "A new scene");
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"render.width\": 40, \"render.height\": 30}}");
+    expect(r, 200, "POST", "/api/set", "{\"set\": {\"render.width\": 40, \"render.height\": 30}}");
     film(r, hash);
     assert_string_not_equal(hash, first);
-    tell(r, 200, "POST", "/api/undo", "{}");
-    tell(r, 200, "POST", "/api/undo", "{}");
+    expect(r, 200, "POST", "/api/undo", "{}");
+    expect(r, 200, "POST", "/api/undo", "{}");
     assert_string_equal(state_text(r, "file", text), "deep/ball.yaml");
     film(r, hash);
     assert_string_equal(hash, first);
-    tell(r, 200, "POST", "/api/open", "{\"file\": \"deep/ball.yaml\"}");
+    expect(r, 200, "POST", "/api/open", "{\"file\": \"deep/ball.yaml\"}");
     film(r, hash);
     assert_string_equal(hash, first);
 }
@@ -269,19 +269,19 @@ static void a_saved_scene_reopens_with_the_same_film_and_invalid_names_are_refus
                                       "{\"file\": \"new.yaml\", \"replace\": \"yes\"}",
                                       "{\"file\": \"deep\", \"replace\": true}"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        tell(r, 400, "POST", "/api/save", bad[i]);
+        expect(r, 400, "POST", "/api/save", bad[i]);
     assert_false(is_there(r, "new.yaml"));
     char before[64], after[64], text[256];
-    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\"}");
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\"}");
+    expect(r, 200, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../picture.png\"}}");
     film(r, before);
-    tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
-    tell(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
+    expect(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
+    expect(r, 409, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": false}");
     /* Its paths are relative to another folder now. */
-    tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": true}");
+    expect(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\", \"replace\": true}");
     assert_string_equal(state_text(r, "file", text), "wrong.yaml");
-    tell(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
-    tell(r, 200, "POST", "/api/save", "{\"file\": \"deep/Another \\u00fc.yml\"}");
+    expect(r, 200, "POST", "/api/save", "{\"file\": \"wrong.yaml\"}");
+    expect(r, 200, "POST", "/api/save", "{\"file\": \"deep/Another \\u00fc.yml\"}");
     assert_true(is_there(r, "lab/deep/Another \xc3\xbc.yml"));
     char *path = text_format("%s/wrong.yaml", r->inside), *saved = NULL;
     size_t size;
@@ -290,10 +290,10 @@ static void a_saved_scene_reopens_with_the_same_film_and_invalid_names_are_refus
     assert_non_null(strstr(saved, "deep/Two sides.obj"));
     free(saved);
     free(path);
-    tell(r, 200, "POST", "/api/open", "{\"new\": true}");
+    expect(r, 200, "POST", "/api/open", "{\"new\": true}");
     static const char *const again[] = {"{\"file\": \"wrong.yaml\"}", "{\"file\": \"deep/Another \\u00fc.yml\"}"};
     for (size_t i = 0; i < 2; i++) {
-        tell(r, 200, "POST", "/api/open", again[i]);
+        expect(r, 200, "POST", "/api/open", again[i]);
         film(r, after);
         assert_string_equal(before, after);
     }
@@ -305,9 +305,9 @@ static void saving_does_not_follow_links_out_of_the_folder(void **state)
     char *link_path = text_format("%s/link.yaml", r->inside), *gone = text_format("%s/gone.yaml", r->inside);
     assert_int_equal(symlink("../outside.yaml", link_path), 0);
     assert_int_equal(symlink("../fresh.yaml", gone), 0);
-    tell(r, 400, "POST", "/api/save", "{\"file\": \"link.yaml\", \"replace\": true}");
-    tell(r, 400, "POST", "/api/save", "{\"file\": \"gone.yaml\", \"replace\": true}");
-    tell(r, 400, "POST", "/api/open", "{\"file\": \"link.yaml\"}");
+    expect(r, 400, "POST", "/api/save", "{\"file\": \"link.yaml\", \"replace\": true}");
+    expect(r, 400, "POST", "/api/save", "{\"file\": \"gone.yaml\", \"replace\": true}");
+    expect(r, 400, "POST", "/api/open", "{\"file\": \"link.yaml\"}");
     assert_false(is_there(r, "fresh.yaml"));
     free(link_path);
     free(gone);
@@ -316,16 +316,17 @@ static void saving_does_not_follow_links_out_of_the_folder(void **state)
 static void path_parameters_are_confined_to_the_folder(void **state)
 {
     const room *r = *state;
-    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
-    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
+    expect(r, 200, "POST", "/api/objects",
+           "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
     const json_int_t before = generation(r);
-    tell(r, 400, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../../outside.png\"}}");
-    tell(r, 400, "POST", "/api/set", "{\"set\": {\"cloth.file\": \"../../outside.png\"}}");
-    tell(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.file\": \"../../outside.obj\"}}");
-    tell(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.script\": \"/etc/passwd\"}}");
+    expect(r, 400, "POST", "/api/set", "{\"set\": {\"background.picture\": \"../../outside.png\"}}");
+    expect(r, 400, "POST", "/api/set", "{\"set\": {\"cloth.file\": \"../../outside.png\"}}");
+    expect(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.file\": \"../../outside.obj\"}}");
+    expect(r, 400, "POST", "/api/set", "{\"set\": {\"body-mesh.script\": \"/etc/passwd\"}}");
     assert_int_equal(generation(r), before);
-    tell(r, 200, "POST", "/api/objects/body/rename", "{\"to\": \"cut\"}");
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"stone.texture\": \"cloth\"}}");
+    expect(r, 200, "POST", "/api/objects/body/rename", "{\"to\": \"cut\"}");
+    expect(r, 200, "POST", "/api/set", "{\"set\": {\"stone.texture\": \"cloth\"}}");
     char hash[64];
     film(r, hash);
 }
@@ -346,7 +347,7 @@ static void each_added_solid_is_visible(void **state)
         film(r, after);
         assert_string_not_equal(before, after);
         if (i < ALONE)
-            tell(r, 200, "POST", "/api/undo", "{}");
+            expect(r, 200, "POST", "/api/undo", "{}");
         else
             memcpy(before, after, sizeof before);
         json_decref(reply);
@@ -368,10 +369,10 @@ static void lights_materials_models_and_slimes_are_added(void **state)
     const room *r = *state;
     char hash[64], next[64];
     film(r, hash);
-    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"light\"}");
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"light\"}");
     film(r, next);
     assert_string_not_equal(hash, next);
-    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"material\"}");
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"material\"}");
     assert_true(has_object(r, "lamp2") && has_object(r, "paint"));
     json_t *model = ask(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\"}");
     assert_string_equal(json_string_value(json_object_get(model, "name")), "Two-sides");
@@ -380,11 +381,11 @@ static void lights_materials_models_and_slimes_are_added(void **state)
     assert_float_equal(value(r, "Two-sides.scale", 0), 0.05, 1e-9); /* the model's edges are 20 long, scaled to 1 */
     film(r, hash);
     assert_string_not_equal(hash, next);
-    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"slime\"}");
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"slime\"}");
     film(r, next);
     assert_string_not_equal(hash, next);
     /* A slime, whose simulation takes time to load. */
-    tell(r, 200, "POST", "/api/set", "{\"set\": {\"slime-mesh.time_s\": 0.3}}");
+    expect(r, 200, "POST", "/api/set", "{\"set\": {\"slime-mesh.time_s\": 0.3}}");
     film(r, hash);
     assert_string_not_equal(hash, next);
     static const char *const bad[] = {"{\"kind\": \"solid\"}",
@@ -402,8 +403,8 @@ static void lights_materials_models_and_slimes_are_added(void **state)
                                       "{\"kind\": \"model\", \"file\": \"none.obj\"}"};
     const json_int_t before = generation(r);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        tell(r, 400, "POST", "/api/objects", bad[i]);
-    tell(r, 409, "POST", "/api/objects", "{\"kind\": \"material\", \"name\": \"ball\"}");
+        expect(r, 400, "POST", "/api/objects", bad[i]);
+    expect(r, 409, "POST", "/api/objects", "{\"kind\": \"material\", \"name\": \"ball\"}");
     assert_int_equal(generation(r), before);
 }
 
@@ -411,30 +412,30 @@ static void objects_are_moved_turned_scaled_renamed_and_copied(void **state)
 {
     const room *r = *state;
     char word[64], text[256];
-    tell(r, 200, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, -0.5], \"gesture\": \"a\"}");
-    tell(r, 200, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, -0.5], \"gesture\": \"a\"}");
+    expect(r, 200, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, -0.5], \"gesture\": \"a\"}");
+    expect(r, 200, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, -0.5], \"gesture\": \"a\"}");
     assert_float_equal(value(r, "ball.position", 0), 2.0, 1e-12);
     assert_string_equal(state_text(r, "undo", text), "move ball");
-    tell(r, 200, "POST", "/api/undo", "{}");
+    expect(r, 200, "POST", "/api/undo", "{}");
     assert_float_equal(value(r, "ball.position", 0), 0.0, 1e-12); /* one gesture is one undo step */
-    tell(r, 200, "POST", "/api/objects/ball/turn", "{\"by\": [0, 90, 0]}");
+    expect(r, 200, "POST", "/api/objects/ball/turn", "{\"by\": [0, 90, 0]}");
     assert_float_equal(value(r, "ball.rotation", 1), 90.0, 1e-9);
-    tell(r, 200, "POST", "/api/objects/beam/turn", "{\"by\": [0, 0, 30]}");
-    tell(r, 200, "POST", "/api/objects/camera/move", "{\"by\": [0, 0, 1]}");
+    expect(r, 200, "POST", "/api/objects/beam/turn", "{\"by\": [0, 0, 30]}");
+    expect(r, 200, "POST", "/api/objects/camera/move", "{\"by\": [0, 0, 1]}");
     assert_float_equal(value(r, "camera.position", 2), -5.0, 1e-12);
     const double radius = value(r, "ball.radius", 0);
-    tell(r, 200, "POST", "/api/objects/ball/scale", "{\"factor\": 2, \"gesture\": \"b\"}");
-    tell(r, 200, "POST", "/api/objects/ball/scale", "{\"factor\": 2, \"gesture\": \"b\"}");
+    expect(r, 200, "POST", "/api/objects/ball/scale", "{\"factor\": 2, \"gesture\": \"b\"}");
+    expect(r, 200, "POST", "/api/objects/ball/scale", "{\"factor\": 2, \"gesture\": \"b\"}");
     assert_true(fabs(value(r, "ball.radius", 0) - (4.0 * radius)) < 1e-12);
-    tell(r, 200, "POST", "/api/undo", "{}");
+    expect(r, 200, "POST", "/api/undo", "{}");
     assert_true(fabs(value(r, "ball.radius", 0) - (radius)) < 1e-12);
-    tell(r, 200, "POST", "/api/objects/ball/rename", "{\"to\": \"globe\"}");
+    expect(r, 200, "POST", "/api/objects/ball/rename", "{\"to\": \"globe\"}");
     assert_true(has_object(r, "globe") && !has_object(r, "ball"));
-    tell(r, 200, "POST", "/api/objects/globe/material", "{\"material\": \"stone\"}");
+    expect(r, 200, "POST", "/api/objects/globe/material", "{\"material\": \"stone\"}");
     assert_string_equal(word_of(r, "globe", "material", word), "stone");
-    tell(r, 200, "POST", "/api/objects/globe/material", "{\"material\": null}");
+    expect(r, 200, "POST", "/api/objects/globe/material", "{\"material\": null}");
     assert_string_equal(word_of(r, "globe", "material", word), "");
-    assert_float_equal(value(r, "globe.diffuse", 0), 0.7, 1e-12); /* it keeps the stone's values */
+    assert_float_equal(value(r, "globe.diffuse", 0), 0.7, 1e-12); /* the solid keeps the stone's values */
     static const char *const copied[][2] = {
         {"globe", "globe2"}, {"lamp", "lamp2"}, {"stone", "stone2"}, {"lamp2", "lamp3"}, {"ground", "ground2"}};
     for (size_t i = 0; i < sizeof copied / sizeof *copied; i++) {
@@ -488,9 +489,9 @@ static void copies_of_a_rod_are_visible_and_disjoint(void **state)
     const room *r = *state;
     static const char *const rods[] = {"rod", "rod2", "rod3", "rod4"};
     put(r, "lab/rod.yaml", rod_scene);
-    tell(r, 200, "POST", "/api/open", "{\"file\": \"rod.yaml\"}");
+    expect(r, 200, "POST", "/api/open", "{\"file\": \"rod.yaml\"}");
     for (size_t i = 1; i < sizeof rods / sizeof *rods; i++) {
-        tell(r, 200, "POST", "/api/objects/rod/copy", "{}");
+        expect(r, 200, "POST", "/api/objects/rod/copy", "{}");
         assert_true(is_seen(r, rods[i]));
         for (size_t k = 0; k < i; k++)
             assert_true(apart(r, rods[i], rods[k], 0) > 0.25 || apart(r, rods[i], rods[k], 2) > 0.25 ||
@@ -503,24 +504,25 @@ static void meshes_and_textures_are_copied_and_removed(void **state)
 {
     const room *r = *state;
     char hash[64], next[64];
-    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
-    tell(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
+    expect(r, 200, "POST", "/api/objects",
+           "{\"kind\": \"model\", \"file\": \"deep/Two sides.obj\", \"name\": \"body\"}");
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\", \"name\": \"cloth\"}");
     film(r, hash);
-    tell(r, 200, "POST", "/api/objects/body-mesh/copy", "{}");
-    tell(r, 200, "POST", "/api/objects/cloth/copy", "{}");
+    expect(r, 200, "POST", "/api/objects/body-mesh/copy", "{}");
+    expect(r, 200, "POST", "/api/objects/cloth/copy", "{}");
     assert_true(has_object(r, "body-mesh2") && has_object(r, "cloth2"));
     film(r, next);
     assert_string_equal(hash, next);
-    tell(r, 200, "POST", "/api/objects/body/copy", "{}");
+    expect(r, 200, "POST", "/api/objects/body/copy", "{}");
     film(r, next);
     assert_string_not_equal(hash, next);
-    tell(r, 409, "DELETE", "/api/objects/body-mesh", "{}");
-    tell(r, 200, "DELETE", "/api/objects/body", "{}");
-    tell(r, 200, "DELETE", "/api/objects/body2", "{}");
-    tell(r, 200, "DELETE", "/api/objects/body-mesh", "{}");
-    tell(r, 200, "POST", "/api/undo", "{}");
-    tell(r, 200, "POST", "/api/undo", "{}");
-    tell(r, 200, "POST", "/api/undo", "{}");
+    expect(r, 409, "DELETE", "/api/objects/body-mesh", "{}");
+    expect(r, 200, "DELETE", "/api/objects/body", "{}");
+    expect(r, 200, "DELETE", "/api/objects/body2", "{}");
+    expect(r, 200, "DELETE", "/api/objects/body-mesh", "{}");
+    expect(r, 200, "POST", "/api/undo", "{}");
+    expect(r, 200, "POST", "/api/undo", "{}");
+    expect(r, 200, "POST", "/api/undo", "{}");
     film(r, hash);
     assert_string_equal(hash, next);
 }
@@ -531,21 +533,21 @@ static void groups_of_objects_are_moved_scaled_and_turned(void **state)
     const double lamp = value(r, "lamp.position", 0), ball = value(r, "ball.position", 0),
                  eye = value(r, "camera.position", 0);
     char text[256];
-    tell(r, 200, "POST", "/api/objects/all/move", "{\"by\": [1, 0, 0]}");
+    expect(r, 200, "POST", "/api/objects/all/move", "{\"by\": [1, 0, 0]}");
     assert_true(fabs(value(r, "lamp.position", 0) - (lamp + 1.0)) < 1e-12);
     assert_true(fabs(value(r, "ball.position", 0) - (ball + 1.0)) < 1e-12);
     assert_true(fabs(value(r, "camera.position", 0) - (eye)) < 1e-12);
     assert_string_equal(state_text(r, "undo", text), "move all");
-    tell(r, 200, "POST", "/api/objects/solids%2Bcamera/move", "{\"by\": [-1, 0, 0]}");
+    expect(r, 200, "POST", "/api/objects/solids%2Bcamera/move", "{\"by\": [-1, 0, 0]}");
     assert_true(fabs(value(r, "lamp.position", 0) - (lamp + 1.0)) < 1e-12);
     assert_true(fabs(value(r, "ball.position", 0) - (ball)) < 1e-12);
     assert_true(fabs(value(r, "camera.position", 0) - (eye - 1.0)) < 1e-12);
-    tell(r, 200, "POST", "/api/objects/lights/scale", "{\"factor\": 3}");
+    expect(r, 200, "POST", "/api/objects/lights/scale", "{\"factor\": 3}");
     assert_true(fabs(value(r, "lamp.position", 0) - (3.0 * (lamp + 1.0))) < 1e-12);
-    tell(r, 200, "POST", "/api/objects/all%2Bcamera/turn", "{\"by\": [0, 0, 90]}");
+    expect(r, 200, "POST", "/api/objects/all%2Bcamera/turn", "{\"by\": [0, 0, 90]}");
     assert_true(fabs(value(r, "lamp.position", 1) - (3.0 * (lamp + 1.0))) < 1e-12);
     for (int i = 0; i < 4; i++)
-        tell(r, 200, "POST", "/api/undo", "{}");
+        expect(r, 200, "POST", "/api/undo", "{}");
     assert_true(fabs(value(r, "lamp.position", 0) - (lamp)) < 1e-12);
 }
 
@@ -595,7 +597,7 @@ static void invalid_object_changes_are_refused(void **state)
         {404, "POST", "/api/objects/none/copy", "{}"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
-        tell(r, bad[i].code, bad[i].method, bad[i].target, bad[i].body);
+        expect(r, bad[i].code, bad[i].method, bad[i].target, bad[i].body);
     assert_int_equal(generation(r), before);
 }
 
@@ -610,11 +612,11 @@ static void the_number_of_objects_is_limited(void **state)
         assert_string_equal(json_string_value(json_object_get(reply, "name")), name);
         json_decref(reply);
     }
-    tell(r, 400, "POST", "/api/objects", "{\"kind\": \"light\"}");
+    expect(r, 400, "POST", "/api/objects", "{\"kind\": \"light\"}");
     for (int i = 1; i <= 62; i++)
-        tell(r, 200, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\"}");
-    tell(r, 400, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\"}");
-    tell(r, 400, "POST", "/api/objects/ball/copy", "{}");
+        expect(r, 200, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\"}");
+    expect(r, 400, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\"}");
+    expect(r, 400, "POST", "/api/objects/ball/copy", "{}");
 }
 
 typedef struct visitor {
@@ -631,12 +633,12 @@ static void *visit(void *of)
     char *body = text_format("{\"kind\": \"solid\", \"shape\": \"box\", \"name\": \"mine%d\"}", v->number),
          *move = text_format("%s/move", target);
     for (int i = 0; i < 5; i++) {
-        tell(v->r, 200, "POST", "/api/objects", body);
-        tell(v->r, 200, "POST", move, "{\"by\": [0.1, 0, 0], \"gesture\": \"drag\"}");
-        tell(v->r, 200, "POST", "/api/save", save);
-        tell(v->r, 200, "GET", "/api/files", NULL);
-        tell(v->r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\"}");
-        tell(v->r, 200, "DELETE", target, "{}");
+        expect(v->r, 200, "POST", "/api/objects", body);
+        expect(v->r, 200, "POST", move, "{\"by\": [0.1, 0, 0], \"gesture\": \"drag\"}");
+        expect(v->r, 200, "POST", "/api/save", save);
+        expect(v->r, 200, "GET", "/api/files", NULL);
+        expect(v->r, 200, "POST", "/api/objects", "{\"kind\": \"texture\", \"file\": \"picture.png\"}");
+        expect(v->r, 200, "DELETE", target, "{}");
     }
     free(save);
     free(target);

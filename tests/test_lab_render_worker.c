@@ -327,28 +327,28 @@ static void long_loads_do_not_delay_newer_changes(void **state)
     close_studio(&s);
 }
 
-typedef struct looker {
+typedef struct reader {
     studio *s;
     atomic_bool *ends;
-    int looks, bare;
-} looker;
+    int reads, unloaded;
+} reader;
 
-static status look_at_meshes(void *of, scene *s, diagnostic *why)
+static status check_meshes(void *of, scene *s, diagnostic *why)
 {
     (void)why;
-    looker *l = of;
-    l->looks++;
+    reader *l = of;
+    l->reads++;
     for (size_t i = 0; i < s->mesh_count; i++)
-        l->bare += s->meshes[i].data == NULL;
+        l->unloaded += s->meshes[i].data == NULL;
     return STATUS_OK;
 }
 
-static void *look_repeatedly(void *of)
+static void *read_repeatedly(void *of)
 {
-    looker *l = of;
+    reader *l = of;
     diagnostic why;
     while (!atomic_load(l->ends))
-        render_worker_with_scene(l->s->p, look_at_meshes, l, &why);
+        render_worker_with_scene(l->s->p, check_meshes, l, &why);
     return NULL;
 }
 
@@ -356,18 +356,18 @@ static void *look_repeatedly(void *of)
 static void readers_get_only_loaded_scenes(void **state)
 {
     (void)state;
-    enum { LOOKERS = 6, CHANGES = 300 };
+    enum { READERS = 6, CHANGES = 300 };
     static const char ring[] = "render: {width: 8, height: 8}\ncamera: {position: [0, 0, -5], target: [0, 0, 0]}\n"
                                "meshes: {ring: {generate: torus}}\nsolids: {body: {shape: mesh, mesh: ring}}\n";
     studio s;
     atomic_bool ends = false;
-    pthread_t thread[LOOKERS];
-    looker look[LOOKERS];
+    pthread_t thread[READERS];
+    reader readers[READERS];
     open_studio(&s, scene_from(ring));
     final_film(&s);
-    for (int i = 0; i < LOOKERS; i++) {
-        look[i] = (looker){.s = &s, .ends = &ends};
-        assert_int_equal(pthread_create(&thread[i], NULL, look_repeatedly, &look[i]), 0);
+    for (int i = 0; i < READERS; i++) {
+        readers[i] = (reader){.s = &s, .ends = &ends};
+        assert_int_equal(pthread_create(&thread[i], NULL, read_repeatedly, &readers[i]), 0);
     }
     for (int i = 0; i < CHANGES; i++) {
         const shared_image *shown;
@@ -381,10 +381,10 @@ static void readers_get_only_loaded_scenes(void **state)
         final_film(&s);
     }
     atomic_store(&ends, true);
-    for (int i = 0; i < LOOKERS; i++) {
+    for (int i = 0; i < READERS; i++) {
         pthread_join(thread[i], NULL);
-        assert_int_equal(look[i].bare, 0);
-        assert_true(look[i].looks > 0);
+        assert_int_equal(readers[i].unloaded, 0);
+        assert_true(readers[i].reads > 0);
     }
     close_studio(&s);
 }

@@ -114,22 +114,22 @@ static void a_hand_drags_the_slime_through_the_image(void **state)
     assert_true(hand > 0 && json(&room, "held") > 0);
     assert_true(fabs(where[0]) < 1e-6 && where[2] < -0.8 && where[2] > -1.2); /* the grab point is on its front */
     const double then_s = json(&room, "time_s");
-    char *way = text_format("{\"hand\": %d, \"x\": 10, \"y\": 24, \"depth\": -0.5}", hand);
-    json_decref(room_ask(&room, "POST", "/api/slime/move", way, 200));
+    char *move = text_format("{\"hand\": %d, \"x\": 10, \"y\": 24, \"depth\": -0.5}", hand);
+    json_decref(room_ask(&room, "POST", "/api/slime/move", move, 200));
     wait_for_time(&room, then_s + 0.4);
     /* The slime is on now. */
     json_t *there = room_ask(&room, "POST", "/api/slime/grab", "{\"x\": 10, \"y\": 24, \"reach\": 0.01}", 200);
     json_decref(there);
     char *let_go = text_format("{\"hand\": %d}", hand);
     json_decref(room_ask(&room, "POST", "/api/slime/release", let_go, 200));
-    refused(&room, "/api/slime/move", way, 409);
+    refused(&room, "/api/slime/move", move, 409);
     refused(&room, "/api/slime/release", let_go, 409);
     json_decref(room_ask(&room, "POST", "/api/slime/release", "{}", 200));
     while (json(&room, "held") > 0)
         ;
     room_post(&room, "/api/set", "{\"set\": {\"body.color\": [1, 0, 0]}}");
     assert_true(json(&room, "time_s") > then_s);
-    free(way);
+    free(move);
     free(let_go);
     room_close(&room);
 }
@@ -171,9 +171,9 @@ static void pages_receive_events_while_the_slime_moves(void **state)
     lab_room room;
     room_open(&room, TOY_SCENE);
     const int fd = client_connect(http_port(room.server));
-    char *asked = text_format("GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
-                              http_port(room.server), http_token(room.server));
-    client_send(fd, asked, strlen(asked));
+    char *request = text_format("GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
+                                http_port(room.server), http_token(room.server));
+    client_send(fd, request, strlen(request));
     send_command(&room, "{\"do\": \"play\"}");
     char *heard = calloc(ROOM, 1);
     size_t size = 0;
@@ -184,7 +184,7 @@ static void pages_receive_events_while_the_slime_moves(void **state)
     }
     close(fd);
     free(heard);
-    free(asked);
+    free(request);
     room_close(&room);
 }
 

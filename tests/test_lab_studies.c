@@ -202,9 +202,9 @@ static void one_study_runs_at_a_time(void **state)
     room_write(room, "tiny.study", ENDLESS);
     room_write(room, "other.study", "study: other\nscene: scene.yaml\n");
     json_decref(room_ask(room, "POST", "/api/studies/tiny/run", "{}", 200));
-    char *said = room_refused(room, "POST", "/api/studies/other/run", "{}", 409);
-    assert_non_null(strstr(said, "tiny"));
-    free(said);
+    char *refusal = room_refused(room, "POST", "/api/studies/other/run", "{}", 409);
+    assert_non_null(strstr(refusal, "tiny"));
+    free(refusal);
     free(room_refused(room, "POST", "/api/studies/tiny/run", "{}", 409));
     free(room_refused(room, "POST", "/api/studies/tiny/draw", "{}", 409)); /* drawing would disturb the running study */
     free(room_refused(room, "POST", "/api/studies/other/stop", "{}", 409));
@@ -269,9 +269,10 @@ static void files_outside_the_folder_are_not_read(void **state)
     inner.server = lab_server(inner.lab);
     static const char *const names[] = {"far", "sky", "away"};
     for (size_t i = 0; i < 3; i++) {
-        char *run = text_format("/api/studies/%s/run", names[i]), *said = room_refused(&inner, "POST", run, "{}", 400);
-        assert_non_null(strstr(said, "out"));
-        free(said);
+        char *run = text_format("/api/studies/%s/run", names[i]),
+             *refusal = room_refused(&inner, "POST", run, "{}", 400);
+        assert_non_null(strstr(refusal, "out"));
+        free(refusal);
         free(run);
     }
     json_t *json = room_get(&inner, "/api/studies"), *list = json_object_get(json, "studies");

@@ -178,33 +178,33 @@ static void large_trees_are_refused(void **state)
     free(text);
 }
 
-typedef struct asker {
+typedef struct client {
     const lab_room *room;
     pthread_t thread;
     char *text;
-} asker;
+} client;
 
 static void *ask_once(void *context)
 {
-    asker *a = context;
+    client *a = context;
     a->text = ask_at(a->room, "", 40, 40);
     return NULL;
 }
 
 static void concurrent_traces_return_the_same_text(void **state)
 {
-    asker askers[10];
+    client clients[10];
     for (size_t i = 0; i < 10; i++) {
-        askers[i].room = *state;
-        assert_int_equal(pthread_create(&askers[i].thread, NULL, ask_once, &askers[i]), 0);
+        clients[i].room = *state;
+        assert_int_equal(pthread_create(&clients[i].thread, NULL, ask_once, &clients[i]), 0);
     }
     for (size_t i = 0; i < 10; i++)
-        pthread_join(askers[i].thread, NULL);
-    assert_non_null(strstr(askers[0].text, "\"root\":"));
+        pthread_join(clients[i].thread, NULL);
+    assert_non_null(strstr(clients[0].text, "\"root\":"));
     for (size_t i = 1; i < 10; i++)
-        assert_string_equal(askers[i].text, askers[0].text);
+        assert_string_equal(clients[i].text, clients[0].text);
     for (size_t i = 0; i < 10; i++)
-        free(askers[i].text);
+        free(clients[i].text);
 }
 
 /* "scene" is the name under which the scene was last opened or saved. */

@@ -26,7 +26,7 @@ static const char floor_scene[] =
 static const double ambient = 0.1 * 0.5 * 0.9, diffuse = 0.7 * 2.0 * 0.9 * 0.8,
                     highlight = 0.5 * 2.0 * 0.48 * 0.48 * 0.48, mirrored = 0.25;
 
-static void each_lighting_adds_to_the_previous_one(void **state)
+static void each_lighting_model_adds_a_term_to_the_previous_one(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -110,13 +110,13 @@ static void light_falls_off_with_the_squared_distance(void **state)
         s->lights[0].reach = 0.0;
         assert_near(look(s).x, diffuse + highlight, 1e-12);
         for (size_t k = 0; k < COUNT(reaches); k++) {
-            const double share = reaches[k] * reaches[k] / (d * d), wanted = (diffuse + highlight) * share;
+            const double share = reaches[k] * reaches[k] / (d * d), expected = (diffuse + highlight) * share;
             s->lights[0].reach = reaches[k];
             for (int path = 0; path <= 1; path++) { /* a point light is the same with random paths, under a black sky */
                 s->render.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
                 s->render.beyond = DEPTH_LIMIT_BLACK;
                 s->background.color = vec3_make(0.0, 0.0, 0.0);
-                assert_near(look(s).x, wanted, 1e-12 + 1e-12 * wanted);
+                assert_near(look(s).x, expected, 1e-12 + 1e-12 * expected);
             }
             s->render.integrator = INTEGRATOR_WHITTED;
         }
@@ -138,7 +138,7 @@ static void a_lights_radius_affects_only_random_paths(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_lighting_adds_to_the_previous_one),
+        cmocka_unit_test(each_lighting_model_adds_a_term_to_the_previous_one),
         cmocka_unit_test(raycasting_shades_only_the_first_surface),
         cmocka_unit_test(only_whitteds_lighting_traces_secondary_rays),
         cmocka_unit_test(mirrors_and_glass_are_black_without_branches),

@@ -68,7 +68,7 @@ static void a_soft_cone_falls_with_the_cosine(void **state)
             aim(s, angle_deg, 3.0 * angle_deg);
             assert_near(look(s).x, irradiance * soft_share(angle_deg, half_deg), 1e-12);
         }
-    set(s, "lamp.half_angle_deg=60"); /* cos 60 = 1/2; half way from 1 in the cosine is 3/4 */
+    set(s, "lamp.half_angle_deg=60"); /* cos 60 = 1/2; halfway from 1 in the cosine is 3/4 */
     aim(s, acos(0.75) / DEGREE, 20.0);
     assert_near(look(s).x, irradiance / 2.0, 1e-12);
     /* so narrow that 1 - cos a is 1.5e-10: by the squares of the angles, whose error is of order a^2 */
@@ -212,10 +212,10 @@ static void irradiance_by_a_soft_sphere_equals_its_integral(void **state)
     const vec3 u = vec3_normalize(vec3_sub(s->lights[0].position, s->lights[0].target));
     const double first = pi * 4.0 / 25.0 * vec3_dot(n, w),
                  second = A * vec3_dot(n, u) + B * vec3_dot(n, w) * vec3_dot(w, u);
-    const double radiance = 25.0 / 4.0, wanted = radiance / pi * ((1.0 - 1.0 / q) * first + second / q);
-    assert_near(look(s).x, wanted, 0.002 * wanted);
-    assert_true(fabs(wanted - irradiance * soft_share(30.0, 70.0)) >
-                0.005 * wanted); /* not the value of a point light */
+    const double radiance = 25.0 / 4.0, expected = radiance / pi * ((1.0 - 1.0 / q) * first + second / q);
+    assert_near(look(s).x, expected, 0.002 * expected);
+    assert_true(fabs(expected - irradiance * soft_share(30.0, 70.0)) >
+                0.005 * expected); /* not the value of a point light */
     scene_destroy(s);
 }
 

@@ -15,8 +15,8 @@
 static int walk_agrees(const room *m, vec3 from, vec3 direction)
 {
     const reference_line line = {quad3_from(from), quad3_from(direction)};
-    change wanted[SOLIDS_MAX * REFERENCE_CROSSINGS_MAX];
-    const int n = changes_of(m, &line, wanted);
+    change expected[SOLIDS_MAX * REFERENCE_CROSSINGS_MAX];
+    const int n = changes_of(m, &line, expected);
     if (n < 0)
         return 0;
     one_ray r = {from, direction, FACE_NONE, scene_geometry_inside(m->solids, from)};
@@ -26,14 +26,14 @@ static int walk_agrees(const room *m, vec3 from, vec3 direction)
         const one_hit h = nearest_interface(m->solids, r);
         assert_true(h.hit_primitive >= 0);
         gone += h.t;
-        assert_true(quad_abs(wanted[k].t - gone) < (quad)1e-8);
-        assert_int_equal(solid_of(m, h.before), wanted[k].before);
-        assert_int_equal(solid_of(m, h.after), wanted[k].after);
-        assert_int_equal(solid_of(m, h.surface), owner_of_surface(m, wanted[k].before, wanted[k].after));
-        assert_true(quad3_length(quad3_sub(quad3_from(h.point), reference_at(&line, wanted[k].t))) < (quad)1e-8);
+        assert_true(quad_abs(expected[k].t - gone) < (quad)1e-8);
+        assert_int_equal(solid_of(m, h.before), expected[k].before);
+        assert_int_equal(solid_of(m, h.after), expected[k].after);
+        assert_int_equal(solid_of(m, h.surface), owner_of_surface(m, expected[k].before, expected[k].after));
+        assert_true(quad3_length(quad3_sub(quad3_from(h.point), reference_at(&line, expected[k].t))) < (quad)1e-8);
         /* the sets on both sides are those of the points there */
-        assert_true(h.inside_before == scene_geometry_inside(m->solids, point_at(&line, wanted[k].t - (quad)1e-7)));
-        assert_true(h.inside_after == scene_geometry_inside(m->solids, point_at(&line, wanted[k].t + (quad)1e-7)));
+        assert_true(h.inside_before == scene_geometry_inside(m->solids, point_at(&line, expected[k].t - (quad)1e-7)));
+        assert_true(h.inside_after == scene_geometry_inside(m->solids, point_at(&line, expected[k].t + (quad)1e-7)));
         r = (one_ray){h.point, direction, h.face, h.inside_after};
     }
     assert_int_equal(nearest_interface(m->solids, r).hit_primitive, -1);

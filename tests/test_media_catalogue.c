@@ -32,7 +32,7 @@ static void indices_at_spectral_lines_and_abbe_numbers_equal_computed_values(voi
     static const struct {
         const char *name;
         double n_d, n_F, n_C, V_d;
-    } wanted[] = {
+    } expected[] = {
         {"air", 1.00027717, 1.00027936, 1.00027625, 89.3013},
         {"water", 1.33340334, 1.33749186, 1.33151260, 55.7600},
         {"ethanol", 1.36168149, 1.36595638, 1.35986264, 59.3530},
@@ -48,12 +48,12 @@ static void indices_at_spectral_lines_and_abbe_numbers_equal_computed_values(voi
         {"sapphire", 1.76817209, 1.77550751, 1.76488399, 72.3086},
         {"diamond", 2.41748587, 2.43553792, 2.40990556, 55.3006},
     };
-    assert_int_equal(COUNT(wanted) + 1, media_count()); /* olive oil has no dispersion */
-    for (size_t k = 0; k < COUNT(wanted); k++) {
-        assert_near(published(wanted[k].name, 587.5618), wanted[k].n_d, 6e-9);
-        assert_near(published(wanted[k].name, 486.1327), wanted[k].n_F, 6e-9);
-        assert_near(published(wanted[k].name, 656.2725), wanted[k].n_C, 6e-9);
-        assert_near(dispersion_abbe_number(&the(wanted[k].name)->law), wanted[k].V_d, 6e-5);
+    assert_int_equal(COUNT(expected) + 1, media_count()); /* olive oil has no dispersion */
+    for (size_t k = 0; k < COUNT(expected); k++) {
+        assert_near(published(expected[k].name, 587.5618), expected[k].n_d, 6e-9);
+        assert_near(published(expected[k].name, 486.1327), expected[k].n_F, 6e-9);
+        assert_near(published(expected[k].name, 656.2725), expected[k].n_C, 6e-9);
+        assert_near(dispersion_abbe_number(&the(expected[k].name)->law), expected[k].V_d, 6e-5);
     }
 }
 

@@ -42,7 +42,7 @@ static void bounds_include_only_vertices_of_triangles(void **state)
     mesh_release(m);
 }
 
-static void a_missing_triangle_is_a_hole_named_by_an_edge_of_its_neighbour(void **state)
+static void a_missing_triangle_is_reported_by_an_edge_of_its_neighbour(void **state)
 {
     (void)state;
     mesh *m = cubes(1);
@@ -56,7 +56,7 @@ static void a_missing_triangle_is_a_hole_named_by_an_edge_of_its_neighbour(void 
     mesh_release(m);
 }
 
-static void an_edge_of_three_triangles_is_named(void **state)
+static void an_edge_of_three_triangles_is_reported(void **state)
 {
     (void)state;
     mesh *m = NULL;
@@ -72,7 +72,7 @@ static void an_edge_of_three_triangles_is_named(void **state)
     mesh_release(m);
 }
 
-static void vertices_at_equal_positions_are_one_and_so_are_the_zeros(void **state)
+static void vertices_at_equal_positions_are_merged_whatever_the_sign_of_zero(void **state)
 {
     (void)state;
     mesh *m = NULL, *cube = cubes(1);
@@ -95,7 +95,7 @@ static void vertices_at_equal_positions_are_one_and_so_are_the_zeros(void **stat
     mesh_release(m);
 }
 
-static void triangles_with_two_equal_corners_join_nothing(void **state)
+static void triangles_with_two_equal_corners_are_ignored_for_closedness(void **state)
 {
     (void)state;
     mesh *m = NULL;
@@ -110,7 +110,7 @@ static void triangles_with_two_equal_corners_join_nothing(void **state)
     mesh_release(m);
 }
 
-static void each_wrong_triangle_is_turned_round(void **state)
+static void each_inverted_triangle_is_reoriented(void **state)
 {
     (void)state;
     for (size_t wrong = 0; wrong < 12; wrong++) {
@@ -124,7 +124,7 @@ static void each_wrong_triangle_is_turned_round(void **state)
     }
 }
 
-static void an_inside_out_cube_is_turned(void **state)
+static void an_inside_out_cube_is_reoriented(void **state)
 {
     (void)state;
     mesh *m = cubes(1);
@@ -137,7 +137,7 @@ static void an_inside_out_cube_is_turned(void **state)
     mesh_release(m);
 }
 
-/* A cube of edge 2 with a hollow of edge 1, whose fronts face into it. */
+/* A cube of edge 2 with a hollow of edge 1, whose normals point into the hollow. */
 static mesh *hollow_cube(void)
 {
     mesh *m = cubes(2);
@@ -147,7 +147,7 @@ static mesh *hollow_cube(void)
     return m;
 }
 
-static void a_hollow_keeps_its_direction(void **state)
+static void a_hollow_keeps_its_orientation(void **state)
 {
     (void)state;
     mesh *m = hollow_cube();
@@ -156,7 +156,7 @@ static void a_hollow_keeps_its_direction(void **state)
     assert_near(mesh_volume(m), 8.0 - 1.0, 1e-14);
     mesh_release(m);
     m = hollow_cube();
-    turn_triangle(m, 12); /* one wrong triangle in the hollow, the first that is visited; one outside */
+    turn_triangle(m, 12); /* one inverted triangle in the hollow, the first that is visited; one outside */
     turn_triangle(m, 5);
     assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
     assert_near(mesh_volume(m), 8.0 - 1.0, 1e-14);
@@ -169,13 +169,13 @@ static void a_hollow_keeps_its_direction(void **state)
     mesh_release(m);
 }
 
-static void parts_of_no_direction_come_to_look_outwards(void **state)
+static void inconsistently_oriented_parts_are_oriented_outwards(void **state)
 {
     (void)state;
     mesh *m = cubes(3);
     for (size_t t = 0; t < 36; t++) {
         const size_t at =
-            t % 12; /* the first half of the first and the last, the other half and one more of the second */
+            t % 12; /* the first half of the first and the last cube, the other half and one more of the second */
         if (t / 12 == 1 ? at >= 5 : at < 6)
             turn_triangle(m, t);
     }
@@ -200,8 +200,8 @@ static void a_one_sided_surface_is_not_closed(void **state)
     mesh_release(m);
 }
 
-/* Two cones over a polygon of many corners: an apex shared by thousands of edges. */
-static void many_triangles_around_one_vertex(void **state)
+/* Two cones over a polygon with many corners: thousands of edges share an apex. */
+static void many_triangles_may_share_a_vertex(void **state)
 {
     (void)state;
     enum { CORNERS = 5000 };
@@ -224,7 +224,7 @@ static void many_triangles_around_one_vertex(void **state)
     mesh_release(m);
 }
 
-static void wrong_numbers_are_refused_by_name(void **state)
+static void invalid_indices_and_coordinates_are_refused_and_named(void **state)
 {
     (void)state;
     diagnostic why = {0};
@@ -267,7 +267,7 @@ static void too_large_meshes_are_refused(void **state)
     assert_null(m);
 }
 
-static void normals_become_unit_vectors_and_missing_ones_the_triangles(void **state)
+static void normals_are_normalised_and_missing_ones_are_the_triangles(void **state)
 {
     (void)state;
     const vec3 at[4] = {{0, 0, 0}, {1e-200, 0, 0}, {0, 1e-200, 0}, {5, 5, 5}};
@@ -286,7 +286,7 @@ static void normals_become_unit_vectors_and_missing_ones_the_triangles(void **st
     mesh_release(m);
 }
 
-static void *own_and_let_go(void *shared)
+static void *retain_and_release(void *shared)
 {
     for (int k = 0; k < 20000; k++) {
         mesh_retain(shared);
@@ -303,7 +303,7 @@ static void destroy(hierarchy *h)
     destroyed++;
 }
 
-static void the_last_of_many_owners_takes_the_hierarchies_along(void **state)
+static void the_last_owner_frees_the_hierarchies(void **state)
 {
     (void)state;
     mesh *m = cubes(1);
@@ -313,7 +313,7 @@ static void the_last_of_many_owners_takes_the_hierarchies_along(void **state)
     pthread_t threads[2];
     for (int k = 0; k < 2; k++) {
         mesh_retain(m);
-        assert_int_equal(pthread_create(&threads[k], NULL, own_and_let_go, m), 0);
+        assert_int_equal(pthread_create(&threads[k], NULL, retain_and_release, m), 0);
     }
     for (int k = 0; k < 2; k++)
         pthread_join(threads[k], NULL);
@@ -329,20 +329,20 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_cube_is_closed_and_has_its_volume_and_area),
         cmocka_unit_test(bounds_include_only_vertices_of_triangles),
-        cmocka_unit_test(a_missing_triangle_is_a_hole_named_by_an_edge_of_its_neighbour),
-        cmocka_unit_test(an_edge_of_three_triangles_is_named),
-        cmocka_unit_test(vertices_at_equal_positions_are_one_and_so_are_the_zeros),
-        cmocka_unit_test(triangles_with_two_equal_corners_join_nothing),
-        cmocka_unit_test(each_wrong_triangle_is_turned_round),
-        cmocka_unit_test(an_inside_out_cube_is_turned),
-        cmocka_unit_test(a_hollow_keeps_its_direction),
-        cmocka_unit_test(parts_of_no_direction_come_to_look_outwards),
+        cmocka_unit_test(a_missing_triangle_is_reported_by_an_edge_of_its_neighbour),
+        cmocka_unit_test(an_edge_of_three_triangles_is_reported),
+        cmocka_unit_test(vertices_at_equal_positions_are_merged_whatever_the_sign_of_zero),
+        cmocka_unit_test(triangles_with_two_equal_corners_are_ignored_for_closedness),
+        cmocka_unit_test(each_inverted_triangle_is_reoriented),
+        cmocka_unit_test(an_inside_out_cube_is_reoriented),
+        cmocka_unit_test(a_hollow_keeps_its_orientation),
+        cmocka_unit_test(inconsistently_oriented_parts_are_oriented_outwards),
         cmocka_unit_test(a_one_sided_surface_is_not_closed),
-        cmocka_unit_test(many_triangles_around_one_vertex),
-        cmocka_unit_test(wrong_numbers_are_refused_by_name),
+        cmocka_unit_test(many_triangles_may_share_a_vertex),
+        cmocka_unit_test(invalid_indices_and_coordinates_are_refused_and_named),
         cmocka_unit_test(too_large_meshes_are_refused),
-        cmocka_unit_test(normals_become_unit_vectors_and_missing_ones_the_triangles),
-        cmocka_unit_test(the_last_of_many_owners_takes_the_hierarchies_along),
+        cmocka_unit_test(normals_are_normalised_and_missing_ones_are_the_triangles),
+        cmocka_unit_test(the_last_owner_frees_the_hierarchies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,15 +32,15 @@ static void copies_equal_separate_solids(void **state)
 {
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
-    static const char look[] =
+    static const char keys[] =
         "shape: mesh, mesh: ring, transparency: 1, ior: 1.5, shading: smooth, scale: [0.5, 0.75, 0.5]";
     add(&a,
         "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n  rings: {%s, copies: [3, 2, 2], spacing: "
         "[1.5, 1, 2], position: [-1.5, 0, -1]}\n",
-        FRAME, look);
+        FRAME, keys);
     add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids:\n", FRAME);
     for (int k = 0; k < 12; k++) /* one medium for all, as for copies */
-        add(&b, "  r%d: {%s, position: [%g, %g, %g]}\n", k, look, -1.5 + 1.5 * (k % 3), 1.0 * (k / 3 % 2),
+        add(&b, "  r%d: {%s, position: [%g, %g, %g]}\n", k, keys, -1.5 + 1.5 * (k % 3), 1.0 * (k / 3 % 2),
             -1.0 + 2.0 * (k / 6));
     assert_true(hash_of(a.at, "", isa_best()) == hash_of(b.at, "", isa_best()));
 }
@@ -74,12 +74,12 @@ static void placed_copies_equal_transformed_vertices(void **state)
 {
     (void)state;
     scene_text a = {.length = 0}, b = {.length = 0};
-    static const char look[] = "shape: mesh, transparency: 1, ior: 1.5, specular: 0.5, shading: smooth";
+    static const char keys[] = "shape: mesh, transparency: 1, ior: 1.5, specular: 0.5, shading: smooth";
     add(&a,
         "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring, scale: [1.25, 2, "
         "0.75], rotation: [30, 40, 50], position: [0.2, 0.4, 0.1]}}\n",
-        FRAME, look);
-    add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring}}\n", FRAME, look);
+        FRAME, keys);
+    add(&b, "%smeshes: {ring: {generate: torus, around: 24, tube: 12}}\nsolids: {r: {%s, mesh: ring}}\n", FRAME, keys);
     scene *placed = scene_with_meshes(a.at, ""), *moved = scene_with_meshes(b.at, "");
     const mesh *from = moved->meshes[0].data;
     mesh *m = NULL;
@@ -146,20 +146,20 @@ static const char gallery[] = FRAME
 static void the_film_is_the_same_for_all_threads_schedules_and_hierarchies(void **state)
 {
     (void)state;
-    static const char *const ways[] = {"render.threads=1",
-                                       "render.threads=2 render.schedule=rows",
-                                       "render.threads=7 render.schedule=dynamic render.tile=8",
-                                       "render.threads=3 render.schedule=tiles render.tile=16 render.pool=off",
-                                       "render.accel=none",
-                                       "render.accel=sphere",
-                                       "render.accel=octant render.threads=2",
-                                       "render.accel=bvh render.keep=off"};
-    const uint64_t wanted = hash_of(gallery, "", isa_best());
-    for (size_t k = 0; k < COUNT(ways); k++)
-        if (hash_of(gallery, ways[k], isa_best()) != wanted)
-            fail_msg("another film with %s", ways[k]);
+    static const char *const settings[] = {"render.threads=1",
+                                           "render.threads=2 render.schedule=rows",
+                                           "render.threads=7 render.schedule=dynamic render.tile=8",
+                                           "render.threads=3 render.schedule=tiles render.tile=16 render.pool=off",
+                                           "render.accel=none",
+                                           "render.accel=sphere",
+                                           "render.accel=octant render.threads=2",
+                                           "render.accel=bvh render.keep=off"};
+    const uint64_t expected = hash_of(gallery, "", isa_best());
+    for (size_t k = 0; k < COUNT(settings); k++)
+        if (hash_of(gallery, settings[k], isa_best()) != expected)
+            fail_msg("another film with %s", settings[k]);
     for (int level = ISA_SSE2; level < (int)isa_best(); level++)
-        assert_true(hash_of(gallery, "", (isa)level) == wanted);
+        assert_true(hash_of(gallery, "", (isa)level) == expected);
 }
 
 /* Shadow rays through two hundred absorbing beads each: more media than the list of a batch can hold. */
@@ -174,9 +174,9 @@ static void light_through_many_media_is_the_same_in_any_batch(void **state)
         "  ground: {shape: plane, diffuse: 0.9, ambient: 0, specular: 0}\n"
         "  slats: {shape: mesh, mesh: cube, transparency: 1, ior: 1, absorb_per_m: [0.01, 0.05, 0.1], copies: [1, 1, "
         "200], spacing: [1, 1, 0.25], position: [0, 1, 1], priority: -1}\n");
-    const uint64_t wanted = hash_of(t.at, "", isa_best());
-    assert_true(hash_of(t.at, "render.threads=3 render.schedule=tiles render.tile=8", isa_best()) == wanted);
-    assert_true(hash_of(t.at, "render.schedule=columns render.threads=24", isa_best()) == wanted);
+    const uint64_t expected = hash_of(t.at, "", isa_best());
+    assert_true(hash_of(t.at, "render.threads=3 render.schedule=tiles render.tile=8", isa_best()) == expected);
+    assert_true(hash_of(t.at, "render.schedule=columns render.threads=24", isa_best()) == expected);
     stage g = stage_with_meshes(t.at, "");
     const ray_tree *tree = stage_pixel(&g, 12, 8);
     assert_int_equal(tree->node[1].kind, RAY_SHADOW);

@@ -19,8 +19,8 @@ static void walk_agrees(const mesh_room *m, vec3 from, vec3 direction, walks *su
 {
     const reference_line line = {quad3_from(from), quad3_from(direction)};
     const scene_geometry *a = m->r.solids;
-    change wanted[ROOM_CROSSINGS_MAX];
-    const int n = changes_in_room(m, &line, wanted);
+    change expected[ROOM_CROSSINGS_MAX];
+    const int n = changes_in_room(m, &line, expected);
     if (n < 0) {
         sum->skipped++;
         return;
@@ -32,13 +32,13 @@ static void walk_agrees(const mesh_room *m, vec3 from, vec3 direction, walks *su
         const one_hit h = nearest_interface(a, r);
         assert_true(h.hit_primitive >= 0);
         gone += h.t;
-        assert_true(quad_abs(wanted[k].t - gone) < (quad)1e-8);
-        assert_int_equal(solid_of(&m->r, h.before), wanted[k].before);
-        assert_int_equal(solid_of(&m->r, h.after), wanted[k].after);
-        assert_int_equal(solid_of(&m->r, h.surface), owner_of_surface(&m->r, wanted[k].before, wanted[k].after));
-        assert_true(quad3_length(quad3_sub(quad3_from(h.point), reference_at(&line, wanted[k].t))) < (quad)1e-8);
-        assert_true(h.inside_before == scene_geometry_inside(a, point_at(&line, wanted[k].t - (quad)1e-7)));
-        assert_true(h.inside_after == scene_geometry_inside(a, point_at(&line, wanted[k].t + (quad)1e-7)));
+        assert_true(quad_abs(expected[k].t - gone) < (quad)1e-8);
+        assert_int_equal(solid_of(&m->r, h.before), expected[k].before);
+        assert_int_equal(solid_of(&m->r, h.after), expected[k].after);
+        assert_int_equal(solid_of(&m->r, h.surface), owner_of_surface(&m->r, expected[k].before, expected[k].after));
+        assert_true(quad3_length(quad3_sub(quad3_from(h.point), reference_at(&line, expected[k].t))) < (quad)1e-8);
+        assert_true(h.inside_before == scene_geometry_inside(a, point_at(&line, expected[k].t - (quad)1e-7)));
+        assert_true(h.inside_after == scene_geometry_inside(a, point_at(&line, expected[k].t + (quad)1e-7)));
         sum->seen_meshes += is_mesh_face(h.face);
         r = (one_ray){h.point, direction, h.face, h.inside_after};
     }
@@ -128,7 +128,7 @@ static bool is_clear_of_surfaces(const mesh_room *m, vec3 at)
 }
 
 /* Reflects or refracts at random at every interface: halfway to the next one the ray is in the medium of its set. */
-static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *asked)
+static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *checked)
 {
     const scene_geometry *a = m->r.solids;
     for (int step = 0; step < 60; step++) {
@@ -138,7 +138,7 @@ static void walk_at_random(const mesh_room *m, one_ray r, uint64_t *seed, int *a
         const vec3 middle = vec3_add(r.o, vec3_scale(r.d, 0.5 * h.t));
         if (is_clear_of_surfaces(m, middle)) {
             assert_int_equal(medium_of(&m->r, winner_in_room(m, middle)), a->regions[h.before].medium);
-            ++*asked;
+            ++*checked;
         }
         const fresnel f = fresnel_dielectric(h.cos_i, 1.0 + 0.2 * h.before, 1.0 + 0.2 * h.after);
         if (f.total || random_below(seed, 2))
@@ -152,18 +152,18 @@ static void region_sets_stay_correct_on_long_walks_among_meshes(void **state)
 {
     (void)state;
     uint64_t seed = 44;
-    int asked = 0;
+    int checked = 0;
     for (int trial = 0; trial < 600; trial++) {
         mesh_room m;
         mesh_room_fill(&m, &seed, trial % 2 == 0);
         for (int k = 0; k < 8; k++) {
             const vec3 o = random_point(&seed, 1.5);
             walk_at_random(&m, (one_ray){o, random_direction(&seed), FACE_NONE, scene_geometry_inside(m.r.solids, o)},
-                           &seed, &asked);
+                           &seed, &checked);
         }
         mesh_room_empty(&m);
     }
-    assert_true(asked > 10000);
+    assert_true(checked > 10000);
 }
 
 /* By definition: the product of the higher solid's transmittance at each change of medium, and 0 through opaque
@@ -197,10 +197,10 @@ static void shadow_rays_among_meshes_agree_with_brute_force(void **state)
                 continue;
             const one_ray r = {o, d, FACE_NONE, scene_geometry_inside(m.r.solids, o)};
             for (int solid = 0; solid < 2; solid++) {
-                const double wanted = light_by_definition(&m, changes, n, 1, start, solid),
+                const double expected = light_by_definition(&m, changes, n, 1, start, solid),
                              got = light_through(m.r.solids, r, solid);
-                assert_true(fabs(wanted - got) < 1e-12);
-                lit += wanted == 1.0, dark += wanted == 0.0, between += wanted > 0.0 && wanted < 1.0;
+                assert_true(fabs(expected - got) < 1e-12);
+                lit += expected == 1.0, dark += expected == 0.0, between += expected > 0.0 && expected < 1.0;
             }
         }
         mesh_room_empty(&m);

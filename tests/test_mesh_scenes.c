@@ -151,7 +151,7 @@ static void a_mesh_with_the_liquids_index_is_invisible(void **state)
 /* A glass ball in front of a uniform sky, so that only the ball's outline is an edge. Its vertices are on the sphere,
  * so the error of its radius and of interpolated normals is h^2, that of flat normals h, where h is the length of an
  * edge, halved at each level. */
-static double error_at_level(int level, bool smooth, const film *wanted)
+static double error_at_level(int level, bool smooth, const film *expected)
 {
     scene_text t = {.length = 0};
     add(&t,
@@ -161,7 +161,7 @@ static double error_at_level(int level, bool smooth, const film *wanted)
         FRAME, level, smooth ? "smooth" : "flat");
     scene *s = scene_with_meshes(t.at, "render.width=120 render.height=90 render.depth=6");
     render_result *r = render(s);
-    const double rms = rms_between(r->img, wanted);
+    const double rms = rms_between(r->img, expected);
     render_result_destroy(r);
     scene_destroy(s);
     return rms;
@@ -174,15 +174,15 @@ static void a_glass_mesh_sphere_converges_to_the_sphere(void **state)
     scene_text t = {.length = 0};
     add(&t, "%ssolids:\n  ball: {shape: sphere, radius: 1, transparency: 1, ior: 1.5, position: [0, 0.4, 0]}\n", FRAME);
     scene *s = scene_with_meshes(t.at, "render.width=120 render.height=90 render.depth=6");
-    render_result *wanted = render(s);
+    render_result *expected = render(s);
     double smooth[LEVELS], flat[LEVELS];
     for (int level = 0; level < LEVELS; level++) {
-        smooth[level] = error_at_level(level, true, wanted->img);
-        flat[level] = error_at_level(level, false, wanted->img);
+        smooth[level] = error_at_level(level, true, expected->img);
+        flat[level] = error_at_level(level, false, expected->img);
         print_message("level %d: smooth %.3e (%.1f dB), flat %.3e (%.1f dB)\n", level, smooth[level],
                       psnr(smooth[level]), flat[level], psnr(flat[level]));
     }
-    render_result_destroy(wanted);
+    render_result_destroy(expected);
     scene_destroy(s);
     const double order_smooth = log2(smooth[2] / smooth[LEVELS - 1]) / (LEVELS - 3),
                  order_flat = log2(flat[2] / flat[LEVELS - 1]) / (LEVELS - 3);
@@ -205,15 +205,15 @@ static render_result *glass(const char *meshes, const char *shape)
 }
 
 /* %d: segments. */
-static double error_of_mesh(const char *generated, const char *look, int segments, const film *wanted)
+static double error_of_mesh(const char *generated, const char *keys, int segments, const film *expected)
 {
     scene_text t = {.length = 0}, body = {.length = 0};
     add(&t, "meshes: {triangles: {");
     add(&t, generated, segments, segments);
     add(&t, "}}\n");
-    add(&body, "shape: mesh, mesh: triangles, %s", look);
+    add(&body, "shape: mesh, mesh: triangles, %s", keys);
     render_result *r = glass(t.at, body.at);
-    const double rms = rms_between(r->img, wanted);
+    const double rms = rms_between(r->img, expected);
     render_result_destroy(r);
     return rms;
 }
@@ -234,16 +234,16 @@ static void glass_meshes_converge_to_torus_cone_and_frustum(void **state)
          "generate: lathe, profile: [0, 0, 0.9, 0, 0.4, 1, 0, 1], around: %d"},
     };
     for (size_t k = 0; k < COUNT(body); k++) {
-        render_result *wanted = glass("", body[k].solid);
-        double coarse = error_of_mesh(body[k].mesh, TURNED, 16, wanted->img), fine = 0.0;
+        render_result *expected = glass("", body[k].solid);
+        double coarse = error_of_mesh(body[k].mesh, TURNED, 16, expected->img), fine = 0.0;
         const double first = coarse;
         for (int segments = 64; segments <= 1024; segments *= 4, coarse = fine) {
-            fine = error_of_mesh(body[k].mesh, TURNED, segments, wanted->img);
+            fine = error_of_mesh(body[k].mesh, TURNED, segments, expected->img);
             print_message("%s: %d segments, %.3e (%.1f dB)\n", body[k].solid, segments, fine, psnr(fine));
             assert_true(fine < coarse);
         }
         assert_true(fine < first / 10.0 && psnr(fine) > 50.0);
-        render_result_destroy(wanted);
+        render_result_destroy(expected);
     }
 }
 
@@ -254,12 +254,12 @@ static void a_lathe_of_few_segments_looks_like_a_prism(void **state)
     for (int sides = 3; sides <= 8; sides++) {
         scene_text t = {.length = 0};
         add(&t, "shape: prism, radius: 0.8, height: 1.1, rotation: [0, 10, 15], sides: %d", sides);
-        render_result *wanted = glass("", t.at);
+        render_result *expected = glass("", t.at);
         const double rms = error_of_mesh("generate: lathe, profile: [0, 0, 0.8, 0, 0.8, 1.1, 0, 1.1], around: %d",
-                                         "shading: flat, rotation: [0, 190, 15]", sides, wanted->img);
+                                         "shading: flat, rotation: [0, 190, 15]", sides, expected->img);
         print_message("%d sides: rms %.3e\n", sides, rms);
         assert_true(rms < 1e-6);
-        render_result_destroy(wanted);
+        render_result_destroy(expected);
     }
 }
 

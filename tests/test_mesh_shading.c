@@ -87,20 +87,20 @@ static void phongs_sum_has_its_known_values(void **state)
             const double third = fabs(x - y) / 2.0, second = x > y ? (1.0 + y) / 2.0 : (1.0 + x) / 2.0,
                          first = 1.0 - second - third;
             const int other = x > y ? 1 : 3;
-            double wanted;
+            double expected;
             if (rule == 0)
-                wanted = phong(vec3_make(0, 0, -1), at, eye, 0.5, 0.25, 5.0);
+                expected = phong(vec3_make(0, 0, -1), at, eye, 0.5, 0.25, 5.0);
             else if (rule == 1)
-                wanted = phong(
+                expected = phong(
                     vec3_normalize(vec3_add(vec3_scale(normal[0], first),
                                             vec3_add(vec3_scale(normal[2], second), vec3_scale(normal[other], third)))),
                     at, eye, 0.5, 0.25, 5.0);
             else
-                wanted = first * phong(normal[0], corner[0], eye, 0.5, 0.25, 5.0) +
-                         second * phong(normal[2], corner[2], eye, 0.5, 0.25, 5.0) +
-                         third * phong(normal[other], corner[other], eye, 0.5, 0.25, 5.0);
-            assert_true(fabs(tree->radiance[0] - (0.125 + wanted)) < 1e-8);
-            assert_true(fabs(tree->radiance[2] - (0.125 + 0.25 * wanted)) < 1e-8);
+                expected = first * phong(normal[0], corner[0], eye, 0.5, 0.25, 5.0) +
+                           second * phong(normal[2], corner[2], eye, 0.5, 0.25, 5.0) +
+                           third * phong(normal[other], corner[other], eye, 0.5, 0.25, 5.0);
+            assert_true(fabs(tree->radiance[0] - (0.125 + expected)) < 1e-8);
+            assert_true(fabs(tree->radiance[2] - (0.125 + 0.25 * expected)) < 1e-8);
         }
         stage_close(&g);
     }
@@ -150,8 +150,8 @@ static void coincident_sheets_have_no_self_shadow_and_no_light_leaks(void **stat
             const vec3 n = turned(vec3_make(0, 0, -1), vec3_make(31, 17, 5)),
                        eye = vec3_make(random_real(&seed, -2, 2), 0.3, -5.0);
             const vec3 l = vec3_normalize(vec3_sub(vec3_make(1, 2, -30), world));
-            const double wanted = 0.125 + 0.5 * vec3_dot(n, l);
-            assert_true(fabs(stage_ray(&g, eye, vec3_sub(world, eye))->radiance[0] - wanted) < 1e-8);
+            const double expected = 0.125 + 0.5 * vec3_dot(n, l);
+            assert_true(fabs(stage_ray(&g, eye, vec3_sub(world, eye))->radiance[0] - expected) < 1e-8);
         }
         stage_close(&g);
     }

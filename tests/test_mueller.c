@@ -153,7 +153,8 @@ static void reflection_at_brewsters_angle_is_fully_polarised_along_s(void **stat
         assert_near(s.i, 0.5 * R_s, 1e-15);
         assert_near(s.q / s.i, 1.0, 1e-15);
         assert_true(s.u == 0.0 && s.v == 0.0);
-        for (int i = 0; i < 1000; i++) { /* the eye sees all of it through a filter along s, none through one along p */
+        for (int i = 0; i < 1000;
+             i++) { /* the eye receives all of it through a filter along s and none through one along p */
             vec3 d = random_direction(&seed), normal = normal_at(d, cos_i, random_real(&seed, 0.0, 360.0));
             vec3 s_axis = vec3_cross(d, normal), child = direction_reflect(d, normal, cos_i);
             stokes open = stokes_linear(d, s_axis), closed = stokes_linear(d, vec3_cross(d, s_axis));
@@ -439,7 +440,7 @@ static void the_analysers_row_equals_the_forward_product(void **state)
     for (int i = 0; i < 10000; i++) {
         chain_step steps[CHAIN];
         chain_random(&seed, steps, CHAIN);
-        stokes light = random_light(&seed), row = random_light(&seed); /* the eye behind any filter */
+        stokes light = random_light(&seed), row = random_light(&seed); /* the eye with any filter in front of it */
         if (chain_grazes(steps, CHAIN))
             continue;
         compared++;

@@ -1,4 +1,4 @@
-/* The parameter table: its rows, setting and getting by path, what it says when something is wrong. */
+/* Tests of the parameter table: its rows, setting and getting by path, diagnostics. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -49,7 +49,7 @@ static void assert_value(const scene *s, const char *path, const char *value)
     free(text);
 }
 
-/* A value as text whose number is near; for angles that were derived. */
+/* A value as text with a number close to the expected one; for derived angles. */
 static void assert_value_near(const scene *s, const char *path, double value)
 {
     char *text;
@@ -119,8 +119,7 @@ static status same_as_fallback(void *context, const char *path, const param *row
     return STATUS_OK;
 }
 
-/* So a scene that prints its parameters prints the table's defaults, and the defaults are written the way values
- * are printed. */
+/* So a scene prints its defaults in the same form as the table. */
 static void an_empty_scene_is_the_defaults(void **state)
 {
     (void)state;
@@ -189,11 +188,11 @@ static void a_material_is_set_for_all_and_a_solid_for_itself(void **state)
     (void)state;
     scene *s = make();
     assert_value(s, "vessel.ior", "1.5");
-    assert_value(s, "lens.ior", "1.7"); /* its own in the file */
+    assert_value(s, "lens.ior", "1.7"); /* overridden in the file */
     set(s, "vessel.ior", "1.4");
     assert_value(s, "glass.ior", "1.5");
     assert_value(s, "lens.ior", "1.7");
-    set(s, "glass.ior", "1.6"); /* the last one wins, everywhere */
+    set(s, "glass.ior", "1.6"); /* the last setting wins, for all solids */
     assert_value(s, "vessel.ior", "1.6");
     assert_value(s, "lens.ior", "1.6");
     assert_value(s, "block.ior", "1");
@@ -216,12 +215,12 @@ static void target_and_angles_take_each_others_place(void **state)
     assert_true(fabs(s->camera.yaw_deg - 45) < 1e-12);
     assert_value_near(s, "camera.target.y", 2.5); /* one unit ahead */
     assert_value_near(s, "camera.target.x", 1 + sqrt(0.375));
-    set(s, "camera.position", "0,0,0"); /* the direction stays */
+    set(s, "camera.position", "0,0,0"); /* the direction is unchanged */
     assert_value(s, "camera.pitch_deg", "30");
     set(s, "camera.yaw_deg", "-90");
     set(s, "camera.pitch_deg", "0");
     assert_value(s, "camera.target", "-1,0,0");
-    set(s, "camera.target.y", "1"); /* the other elements are where it looked */
+    set(s, "camera.target.y", "1"); /* the other elements are those of the current direction */
     assert_int_equal(s->camera.aimed, 1);
     assert_value_near(s, "camera.pitch_deg", 45);
     assert_value_near(s, "camera.yaw_deg", -90);
@@ -278,7 +277,7 @@ static void what_is_printed_makes_the_same_scene(void **state)
     (void)state;
     scene *s = make();
     expect_reproduced(s);
-    set(s, "glass.ior", "1.1"); /* before the solid's own, against the order of printing */
+    set(s, "glass.ior", "1.1"); /* before the solid's own values, unlike the order of printing */
     set(s, "lens.ior", "1.33333333333333333");
     set(s, "vessel.reflectivity", "0.1");
     set(s, "glass.reflectivity", "0.3");
@@ -286,7 +285,7 @@ static void what_is_printed_makes_the_same_scene(void **state)
     set(s, "background.picture", "a b.png");
     set(s, "camera.target", "0.1,0.2,0.30000000000000004");
     expect_reproduced(s);
-    set(s, "background.kind", "gradient"); /* beside a picture that is not shown */
+    set(s, "background.kind", "gradient"); /* while an image that is not shown is set */
     expect_reproduced(s);
     set(s, "camera.pitch_deg", "-12.3");
     expect_reproduced(s);
@@ -311,7 +310,7 @@ static void a_visit_stops_when_told(void **state)
     scene_destroy(s);
 }
 
-/* ---- what is wrong ---- */
+/* ---- errors ---- */
 
 static void wrong_paths_and_values_say_what_is_right(void **state)
 {

@@ -1,4 +1,5 @@
-/* Scenes: reading, copying, checking, and the geometry of the reference scene. Run from the repository root. */
+/* Tests of scenes: reading, copying, checking, and the geometry of the reference scene. Run from the repository root.
+ * */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -47,7 +48,7 @@ static const solid *find(const scene *s, const char *name)
     return &s->solids[index];
 }
 
-/* ---- the reference scene: shared with the renderers that ours is compared with ---- */
+/* ---- the reference scene, which other renderers in the comparison use as well ---- */
 
 static void rod_has_the_reference_camera_and_light(void **state)
 {
@@ -145,7 +146,7 @@ static void every_scene_of_the_project_is_right(void **state)
     for (size_t i = 0; i < solids->solid_count; i++)
         shapes |= 1u << solids->solids[i].shape.kind;
     assert_int_equal(shapes, (1u << SHAPE_MESH) - 1); /* all analytic ones */
-    /* The leaning rod stays clear of the vessel. */
+    /* The leaning rod does not touch the vessel. */
     const solid *rod = find(leaning, "rod"), *vessel = find(leaning, "vessel");
     mat3 turn = rotation_from_deg(rod->shape.rotation_deg);
     for (int corner = 0; corner < 8; corner++) {
@@ -196,7 +197,7 @@ static void what_is_left_out_keeps_its_default(void **state)
     scene_destroy(s);
 }
 
-/* The angle that a file leaves out is 0, in whatever order its keys stand. */
+/* A missing angle is 0, whatever the order of the keys. */
 static void angles_do_not_depend_on_the_order_of_keys(void **state)
 {
     (void)state;
@@ -210,7 +211,7 @@ static void angles_do_not_depend_on_the_order_of_keys(void **state)
     }
 }
 
-/* ---- copies, checks, pictures ---- */
+/* ---- copies, checks, images ---- */
 
 static status compare(void *context, const char *path, const param *row, const char *value)
 {
@@ -233,11 +234,11 @@ static void a_copy_is_equal_and_independent(void **state)
     assert_int_equal(scene_each_param(s, compare, c), STATUS_OK);
     assert_string_equal(c->path, SCENES "rod.yaml");
     assert_string_equal(c->title, s->title);
-    /* One sky for both: it is never changed once it is loaded. */
+    /* Both share one sky, which is constant after loading. */
     assert_ptr_equal(c->background.img, s->background.img);
     assert_int_equal(scene_set(c, "clear.ior", "3", NULL), STATUS_OK);
     assert_true(find(s, "vessel")->surface.ior == 1.5 && find(c, "vessel")->surface.ior == 3);
-    scene_destroy(s); /* the copy outlives it */
+    scene_destroy(s); /* the copy outlives the original */
     assert_true(c->background.img->pixel[5] == 0.25f);
     assert_string_equal(c->solids[1].name, "vessel");
     assert_int_equal(scene_check(c, NULL), STATUS_OK);
@@ -330,7 +331,7 @@ static void a_sky_picture_is_found_beside_its_scene(void **state)
     assert_int_equal(scene_load(s, NULL), STATUS_OK);
     assert_ptr_equal(s->background.img, loaded); /* once */
     assert_int_equal(scene_set(s, "background.picture", "other.pfm", NULL), STATUS_OK);
-    assert_null(s->background.img); /* another path, another picture */
+    assert_null(s->background.img); /* another path, another image */
     diagnostic why = {.what = ""};
     assert_int_equal(scene_load(s, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.file, "other.pfm"));
@@ -339,10 +340,10 @@ static void a_sky_picture_is_found_beside_its_scene(void **state)
     assert_non_null(s->background.img);
     assert_int_equal(scene_set(s, "background.picture", "none.png", NULL), STATUS_OK);
     assert_int_equal(scene_set(s, "background.kind", "uniform", NULL), STATUS_OK);
-    assert_int_equal(scene_load(s, NULL), STATUS_OK); /* not wanted, not read */
+    assert_int_equal(scene_load(s, NULL), STATUS_OK); /* unused, not read */
     scene_destroy(s);
     unlink(image_path);
-    s = read_file(scene_path); /* which names a picture that is no more */
+    s = read_file(scene_path); /* refers to a missing image */
     scene *c = scene_clone(s);
     char where[200], text[DIAGNOSTIC_TEXT_MAX];
     snprintf(where, sizeof where, "%s:1:23: background.picture: %s: ", scene_path, image_path);

@@ -1,5 +1,5 @@
-/* Edits of a scene: what is added is as a file has it, turns are rotations, and what goes wrong changes nothing. Run
- * from the repository root. */
+/* Tests of edits: new objects have the defaults of a file, rotations are correct, and a failed edit changes nothing.
+ * Run from the repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,7 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The expected rotations are made of libm's sines, multiplied out below. */
+/* The expected rotations use libm's sines, multiplied below. */
 #define RADIANS (3.14159265358979323846 / 180.0)
 
 static const char small_scene[] = "materials: {glass: {ior: 1.5, transparency: 1}, clay: {diffuse: 0.5}, spare: {}}\n"
@@ -70,7 +70,7 @@ static void what_is_added_is_as_a_file_has_it(void **state)
     }
 }
 
-/* Does the call refuse, for that reason, and leave the scene as it was? */
+/* Asserts that the call fails for that reason and does not change the scene. */
 #define assert_refused(s, call, reason)           \
     do {                                          \
         char *before_ = text_of(s);               \
@@ -115,12 +115,12 @@ static void a_material_in_use_is_not_removed(void **state)
     assert_int_equal(scene_remove(s, "a", NULL), STATUS_OK);
     assert_int_equal(scene_remove(s, "glass", NULL), STATUS_OK);
     assert_true(s->material_count == 1 && s->solid_count == 2 && s->light_count == 2);
-    assert_string_equal(s->materials[s->solids[0].material_index].name, "clay"); /* whose index changed */
+    assert_string_equal(s->materials[s->solids[0].material_index].name, "clay"); /* its index changed */
     assert_string_equal(s->solids[1].name, "c");
     assert_int_equal(scene_remove(s, "lamp", NULL), STATUS_OK);
     assert_true(s->light_count == 1);
     assert_string_equal(s->lights[0].name, "other");
-    set(s, "clay.diffuse=0.75"); /* still reaches its solids */
+    set(s, "clay.diffuse=0.75"); /* its solids still use it */
     assert_true(s->solids[0].surface.diffuse == 0.75);
     scene_destroy(s);
 }
@@ -172,7 +172,7 @@ static void what_refers_to_a_name_follows_it(void **state)
     scene *s = scene_from(small_scene);
     assert_int_equal(scene_rename(s, "clay", "mud", NULL), STATUS_OK);
     assert_int_equal(scene_rename(s, "a", "a", NULL), STATUS_OK);
-    assert_int_equal(scene_rename(s, "lamp", "clay", NULL), STATUS_OK); /* free now */
+    assert_int_equal(scene_rename(s, "lamp", "clay", NULL), STATUS_OK); /* unused now */
     char *text = NULL;
     assert_int_equal(scene_write_text(s, "", false, &text, NULL), STATUS_OK);
     assert_non_null(strstr(text, "  b:\n    shape: sphere\n    material: mud\n"));
@@ -186,7 +186,7 @@ static void a_material_is_given_whole(void **state)
     (void)state;
     scene *s = scene_from(small_scene);
     assert_true(s->solids[2].surface.diffuse == 0.25);
-    assert_int_equal(scene_put(s, "c.material", "clay", NULL), STATUS_OK); /* what it had for itself is gone */
+    assert_int_equal(scene_put(s, "c.material", "clay", NULL), STATUS_OK); /* its own values are discarded */
     assert_true(s->solids[2].surface.diffuse == 0.5);
     assert_int_equal(scene_put(s, "c.material", "glass", NULL), STATUS_OK);
     assert_true(s->solids[2].surface.ior == 1.5 && s->solids[2].surface.diffuse == 0.0 &&
@@ -214,7 +214,7 @@ static void a_scene_has_its_limits(void **state)
     }
     assert_refused(s, scene_add(s, PARAM_LIGHT, "more", NULL, &why), "more than 64 lights");
     assert_refused(s, scene_add_solid(s, "more", SHAPE_PLANE, NULL, &why), "more than 64 solids");
-    assert_refused(s, scene_put(s, "s5.shape", "cup", &why), "more than 64 solids"); /* which is two */
+    assert_refused(s, scene_put(s, "s5.shape", "cup", &why), "more than 64 solids"); /* which counts as two */
     assert_int_equal(scene_remove(s, "s0", NULL), STATUS_OK);
     assert_int_equal(scene_put(s, "s5.shape", "cup", NULL), STATUS_OK);
     scene_destroy(s);
@@ -280,12 +280,12 @@ static void turns_are_rotations_about_the_axes_of_the_world(void **state)
     scene *s = scene_from(small_scene);
     solid_shape *shape = &s->solids[0].shape;
     for (int i = 0; i < 20000; i++) {
-        const bool straight = i % 2 == 0; /* upright axes, where x and z turn about one line, included */
+        const bool straight = i % 2 == 0; /* including a vertical axis, where x and z rotate about the same line */
         const vec3 turn =
             vec3_make(random_angle(&seed, straight), random_angle(&seed, straight), random_angle(&seed, straight));
         vec3 from =
             vec3_make(random_angle(&seed, straight), random_angle(&seed, straight), random_angle(&seed, straight));
-        if (i % 5 == 0) /* nearly upright */
+        if (i % 5 == 0) /* nearly vertical */
             from.y = 90.0 + random_real(&seed, -1.0, 1.0) * pow(10.0, -(double)random_below(&seed, 14));
         shape->rotation_deg = from;
         diagnostic why = {0};

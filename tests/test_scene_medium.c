@@ -49,7 +49,7 @@ static void laws_by_name_and_by_coefficients(void **state)
     scene_destroy(s);
 }
 
-/* The last one that is set wins; what is printed makes the same scene again. */
+/* The last setting wins; printed parameters give the same scene. */
 static void an_index_takes_the_place_of_a_medium_and_back(void **state)
 {
     (void)state;

@@ -10,13 +10,13 @@
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
 
-/* A whole scene moves, turns and is scaled: with its camera the film is the same up to rounding; of its parts only
- * those that are named change; and when one of them would leave its range, nothing does. */
+/* Tests that a whole scene can be moved, rotated and scaled: with its camera the film is the same up to rounding; only
+ * the named parts change; and nothing changes if one of them would leave its range. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-/* One of everything that has a length: ellipses, absorption, copies, checkers, textures of faces, of planes and by
- * size, lights with reach, cones. */
+/* A scene with every kind of length: ellipses, absorption, copies, checkers, textures of faces, of planes and by size,
+ * lights with reach, spotlights. */
 static const char everything[] =
     "render: {width: 60, height: 45, depth: 6, unit_m: 0.5}\n"
     "camera: {position: [1, 3, -7], target: [0, 0.8, 0], fov_deg: 40, roll_deg: 10}\n"
@@ -88,10 +88,10 @@ static void apply(scene *s, const char *name, const change *c)
 static const change changes[] = {
     {{3.3, -2.1, 0.7}, {0, 0, 0}, 1.0}, {{0, 0, 0}, {0, 90, 0}, 1.0},  {{0, 0, 0}, {33, -71, 117}, 1.0},
     {{0, 0, 0}, {0, 0, 0}, 2.0},        {{0, 0, 0}, {0, 0, 0}, 0.037}, {{1, 2, 3}, {-17, 140, 62}, 7.3},
-    {{0, 0, 0}, {0, 0, 180}, 1.0}, /* upside down: all of it is roll */
+    {{0, 0, 0}, {0, 0, 180}, 1.0}, /* upside down: only roll */
 };
 
-/* Not more than a few pixels whose ray meets the other side of an edge. */
+/* At most a few pixels whose ray hits the other side of an edge. */
 static void with_its_camera_the_film_is_the_same(void **state)
 {
     (void)state;
@@ -117,7 +117,7 @@ static void with_its_camera_the_film_is_the_same(void **state)
     }
 }
 
-/* Lamps of a size, whose radiance goes with (reach / radius)^2; paths draw the same numbers. */
+/* Area lights, whose radiance is proportional to (reach / radius)^2; path tracing uses the same random numbers. */
 static void paths_see_the_same(void **state)
 {
     (void)state;
@@ -226,7 +226,7 @@ static void what_cannot_be_changes_nothing(void **state)
     scene_destroy(s);
 }
 
-/* A solid that was called "all" before the word meant anything moves alone, as it did. */
+/* A solid named "all" in an old scene moves alone, as before. */
 static void an_object_of_that_name_comes_first(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Scenes as text: what is written reads back as the same scene, and is written again in the same bytes. Run from the
+/* Tests of scenes as text: reading the text gives the same scene, and writing that gives the same bytes. Run from the
  * repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -33,7 +33,7 @@ static status add_line(void *context, const char *path, const param *row, const 
     return STATUS_OK;
 }
 
-/* Every parameter in use but those that another may set aside, every shape, every material. */
+/* Every parameter in use except those that another one would override, every shape, every material. */
 static char *account(const scene *s)
 {
     char *text = NULL;
@@ -47,7 +47,7 @@ static char *account(const scene *s)
     return text;
 }
 
-/* Writes, reads, compares, writes again; gives what was read. */
+/* Writes, reads, compares, writes again; returns the scene that was read. */
 static scene *there_and_back(const scene *s, bool all)
 {
     char *first = written(s, "", all);
@@ -67,7 +67,7 @@ static void assert_same_scene(const scene *a, const scene *b)
     free(second);
 }
 
-/* Both ways of writing keep the scene. */
+/* Both forms of writing preserve the scene. */
 static void assert_survives(const scene *s)
 {
     for (int all = 0; all < 2; all++) {
@@ -131,7 +131,7 @@ static const char one_of_each[] =
     "  sphere1: {shape: sphere}, mesh1: {shape: mesh, mesh: model}, painted: {shape: box, material: paint},\n"
     "  cone1: {shape: cone}, torus1: {shape: torus}, prism1: {shape: prism}}\n";
 
-/* Values to try, some of which are right for a row; NULL at the end. */
+/* Values to try, some of which are valid for a row; NULL at the end. */
 static size_t candidates(const param *row, char text[][100], size_t room)
 {
     size_t count = 0;
@@ -152,7 +152,7 @@ static size_t candidates(const param *row, char text[][100], size_t room)
     case PARAM_VECTOR:
     case PARAM_COLOR:
         snprintf(text[0], 100, "%.17g,%.17g,%.17g", low + (high - low) / 3, low + (high - low) / 7, high);
-        snprintf(text[1], 100, "2,3,1"); /* where only whole numbers are right */
+        snprintf(text[1], 100, "2,3,1"); /* where only certain integers are valid */
         return 2;
     case PARAM_LIST: snprintf(text[0], 100, "[400,0.1,500,%.17g]", 1.0 / 3.0); return 1;
     case PARAM_PATH: snprintf(text[0], 100, "pictures/it's: a sky #1.png"); return 1;
@@ -170,7 +170,7 @@ static bool is_right(const scene *s, const char *path, const char *value)
     return right;
 }
 
-/* How many values of the row that are not its own were carried there and back. */
+/* The number of values other than the current one that round-trip. */
 static size_t carry_row(const scene *s, const char *owner, const param *row)
 {
     char text[64][100], path[200];
@@ -219,10 +219,9 @@ static void every_parameter_survives_away_from_its_default(void **state)
             if (at.object_group == PARAM_MESH && strcmp(owners[o], at.row->makers               ? "toy"
                                                                    : at.row->type == PARAM_PATH ? "model"
                                                                                                 : "body") != 0)
-                continue; /* a file takes the place of what is generated, which a mesh that has a file is not; a slime's
-                             rows are a slime's */
+                continue; /* skipped: a file replaces a generator, and slimes have rows of their own */
             if (at.object_group == PARAM_SOLID && at.row->group == PARAM_MATERIAL && strcmp(owners[o], "painted") != 0)
-                continue; /* one solid's will do */
+                continue; /* one solid is sufficient */
             if (carry_row(s, owners[o], param_at(i)) == 0)
                 fail_msg("%s was not changed", path);
             seen[i] = true;
@@ -316,8 +315,8 @@ static void one_medium_is_written_where_an_index_was_set_aside(void **state)
                           "materials: {wet: {ior: 1.7}, plain: {ior: 1.5}}\n"
                           "solids: {a: {shape: box, material: wet}, b: {shape: box, material: wet, ior: 1.25},\n"
                           "  c: {shape: box, material: plain, medium: water}}\n");
-    set(s, "wet.medium=water"); /* of a, and of b too */
-    set(s, "a.ior=1.7");        /* as was the material's, which has no effect any more */
+    set(s, "wet.medium=water"); /* of a, and also of b */
+    set(s, "a.ior=1.7");        /* as is the material's, which has no effect any more */
     assert_written(s, "background:\n  medium: air\n\n"
                       "materials:\n  wet:\n    medium: water\n  plain:\n    ior: 1.5\n\n"
                       "solids:\n  a:\n    shape: box\n    material: wet\n    ior: 1.7\n    medium: ior\n"
@@ -421,7 +420,7 @@ static void text_that_is_not_utf8_is_refused(void **state)
     }
 }
 
-/* What picture becomes when a scene of from is written to to. */
+/* The text of the path picture when a scene with the path from is written to the path to. */
 static void assert_moved(const char *from, const char *img, const char *to, const char *expected)
 {
     scene *s = NULL;
@@ -461,10 +460,10 @@ static void paths_follow_the_file_into_another_folder(void **state)
     assert_moved("a/b/s.yaml", "../../c/sky.png", "", "c/sky.png");
     assert_moved("a/s.yaml", "sky.png", "ab/t.yaml", "../a/sky.png");
     assert_moved("a/b/s.yaml", "sky.png", "a/t.yaml", "b/sky.png");
-    assert_moved("link/s.yaml", "../sky.png", "t.yaml", "a/sky.png"); /* a link's .. is where it leads */
+    assert_moved("link/s.yaml", "../sky.png", "t.yaml", "a/sky.png"); /* .. of a link refers to its target */
     assert_moved("s.yaml", "sky.png", "link/t.yaml", "../../sky.png");
     assert_moved("s.yaml", absolute, "a/t.yaml", absolute);
-    assert_moved("c/s.yaml", "sky.png", "/dev/t.yaml", absolute); /* nothing is shared */
+    assert_moved("c/s.yaml", "sky.png", "/dev/t.yaml", absolute); /* nothing in common */
     assert_moved("", "c/sky.png", "a/t.yaml", "../c/sky.png");
     assert_moved("none/s.yaml", "sky.png", "a/t.yaml", "../none/sky.png");
     assert_int_equal(unlink("link") | rmdir("a/b") | rmdir("a") | rmdir("ab") | rmdir("c"), 0);

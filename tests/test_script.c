@@ -1,5 +1,5 @@
-/* Script files: what a good one says, and that every file of tests/bad-scripts ends in STATUS_BAD_INPUT with the one
- * line that expected.txt says. Run from the repository root. */
+/* Tests of script files: the contents of a valid one, and that each file of tests/bad-scripts gives STATUS_BAD_INPUT
+ * with its line of expected.txt. Run from the repository root. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -79,13 +79,13 @@ static void every_bad_script_has_its_located_line(void **state)
     assert_bad_files(FOLDER, read_bad_script, 50);
 }
 
-/* A script that was cut anywhere is a script or is refused with a place. */
+/* A truncated script is valid or refused with a location. */
 static void every_cut_of_a_good_script_is_a_script_or_refused(void **state)
 {
     (void)state;
     size_t refused = 0;
     for (size_t cut = 0; cut < sizeof good - 1; cut++) {
-        char *exact = malloc(cut + 1); /* of its own size, for the address sanitizer */
+        char *exact = malloc(cut + 1); /* exact size, for the address sanitizer */
         assert_non_null(exact);
         memcpy(exact, good, cut);
         diagnostic why = {.what = ""};

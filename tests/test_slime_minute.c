@@ -1,6 +1,6 @@
-/* A minute of the default toy, with the recorded grab of experiments/hands/tug.yaml: it rests, is drawn out, let go,
- * and comes back. Under its own weight the toy is no sphere but a drop on a floor, so "back" is the shape of one that
- * no hand has touched; without weight it is the sphere. */
+/* A minute of the default toy with the recorded grab of experiments/hands/tug.yaml: it rests, is stretched, released,
+ * and recovers. Its rest shape is not a sphere but a drop on a floor, so it recovers to the shape of an untouched toy;
+ * without gravity, to the sphere. */
 #include "scene/motion/script.h"
 #include "softbody_fixture.h"
 
@@ -8,7 +8,7 @@ typedef struct extent {
     double tall, wide, nearest, farthest, turned_over;
 } extent;
 
-/* Of the body about its centre of mass, in radii; turned_over: faces that look inwards. */
+/* Shape of the body about its centre of mass, in radii; turned_over: inverted faces. */
 static extent extent_of(const softbody *b)
 {
     const softbody_account a = softbody_measure(b);
@@ -45,7 +45,7 @@ static hand_script *recorded_grab(void)
     return script;
 }
 
-/* Runs a toy through the script to a minute; before: as it lay after a second, stretched: while it is drawn out. */
+/* Simulates a toy with the script for a minute; before: its state after a second, stretched: during the pull. */
 static softbody *after_a_minute(const softbody_settings *s, extent *before, extent *stretched)
 {
     hand_script *script = recorded_grab();
@@ -66,7 +66,7 @@ static softbody *after_a_minute(const softbody_settings *s, extent *before, exte
     return b;
 }
 
-/* The same toy that no hand touches. */
+/* The same toy without a script. */
 static extent left_alone(const softbody_settings *s)
 {
     softbody *b = toy_of(s);

@@ -1,4 +1,4 @@
-/* Slimes in scene files: the mesh is the surface of the body that the parameters and the script say, and nothing else. */
+/* Tests of slimes in scene files: the mesh is exactly the surface of a body with these parameters and this script. */
 #include "study_fixture.h"
 
 #include "scene/model/params.h"
@@ -65,7 +65,7 @@ static void set(scene *s, const char *assignment)
     worked(scene_set_assignment(s, assignment, &why), &why);
 }
 
-/* The body that a scene says, made without it. */
+/* The body of a scene, made without the scene. */
 static mesh *skin_of(const mesh_entry *m, const hand_script *script, softbody_account *account)
 {
     const softbody_settings settings = slime_settings(m);
@@ -97,7 +97,7 @@ static void expect_skin(const mesh_entry *m, const hand_script *script)
     mesh_release(surface);
 }
 
-/* Semi-implicit Euler after n steps: y0 + v n dt - g dt^2 n (n + 1) / 2, of the centre whatever the springs do. */
+/* Semi-implicit Euler after n steps: y0 + v n dt - g dt^2 n (n + 1) / 2 for the centre, independent of the springs. */
 static void a_slime_that_falls_is_where_its_steps_say(void **state)
 {
     scene *s = loaded(*state, falling);
@@ -108,7 +108,7 @@ static void a_slime_that_falls_is_where_its_steps_say(void **state)
     assert_int_equal(m->data->triangle_count, 20 * 16);
     assert_true(fabs(m->account.center.x - n * dt) < 1e-12 && fabs(m->account.center.z - 3.0 * n * dt) < 1e-12);
     assert_true(fabs(m->account.center.y - (1.0 + 2.0 * n * dt - 9.81 * dt * dt * n * (n + 1.0) / 2.0)) < 1e-12);
-    vec3 sum = {0.0, 0.0, 0.0}; /* of the surface, whose every vertex is a mass */
+    vec3 sum = {0.0, 0.0, 0.0}; /* of the surface, whose vertices are all masses */
     for (size_t i = 0; i < m->data->vertex_count; i++)
         sum = vec3_add(sum, m->data->vertices[i]);
     if (m->data->vertex_count == 10 * 16 + 2)
@@ -132,7 +132,7 @@ static void a_script_lies_beside_its_scene_and_moves_the_slime(void **state)
     scene_destroy(s);
 }
 
-/* Loading ends with this diagnostic, in a file of the fixture. */
+/* Asserts that loading fails with this diagnostic, located in a file of the fixture. */
 static void refused_at(const fixture *f, const char *text, const char *file, long line, long column, const char *what)
 {
     char path[400];
@@ -181,7 +181,7 @@ static void settings_that_make_no_body_are_refused(void **state)
     refused_to_read("meshes: {toy: {generate: slime, time_s: 0, dt_s: 9e-10}}\n", "toy.dt_s");
     refused_to_read("meshes: {toy: {generate: slime, file: a.obj}}\n", "both a file and a generator");
     scene *s = NULL;
-    const char sphere[] = "meshes: {ball: {generate: icosphere, level: 8}}\n"; /* of which there may be more */
+    const char sphere[] = "meshes: {ball: {generate: icosphere, level: 8}}\n"; /* which can be repeated */
     assert_int_equal(scene_read_text("ball.yaml", sphere, strlen(sphere), &s, NULL), STATUS_OK);
     scene_destroy(s);
 }
@@ -224,7 +224,7 @@ static void slimes_are_borrowed_only_where_meshes_are_kept(void **state)
     scene_destroy(from);
 }
 
-/* Two rows of one cell: one simulation, or one each. */
+/* Two rows of one cell: one shared simulation, or one each. */
 static void a_study_s_rows_simulate_where_nothing_is_kept(void **state)
 {
     for (int keep = 0; keep < 2; keep++) {
@@ -259,7 +259,7 @@ static bool wait(void *context, double share_done)
     return ++w->asked < w->patience;
 }
 
-/* Days of motion, and the one who waits leaves at the first question. */
+/* Days of motion, interrupted at the first poll. */
 static void a_load_that_is_stopped_leaves_the_slime_as_it_was(void **state)
 {
     scene *s = read_scene(
@@ -280,7 +280,7 @@ static void a_load_that_is_stopped_leaves_the_slime_as_it_was(void **state)
     scene_destroy(s);
 }
 
-/* Two slimes share the whole; who waits changes nothing. */
+/* Progress covers both slimes; watching changes nothing. */
 static void a_load_that_is_watched_is_the_same(void **state)
 {
     static const char two[] = "meshes:\n  a: {generate: slime, level: 4, time_s: 0.31}\n  b: {generate: slime, level: "

@@ -1,4 +1,4 @@
-/* Masses and springs against closed forms of mechanics. */
+/* Tests of masses and springs against closed forms of mechanics. */
 #include "softbody_fixture.h"
 
 static const softbody_integrator all[] = {SOFTBODY_EULER, SOFTBODY_VERLET, SOFTBODY_IMPLICIT};
@@ -31,7 +31,7 @@ static void a_spring_swings_as_its_integrator_says(void **state)
     }
 }
 
-/* Largest distance from cos(omega t) over one second, place and speed. */
+/* Largest error against cos(omega t) over one second, in position and velocity. */
 static double distance_from_swing(softbody_integrator integrator, double dt)
 {
     const double k = 40.0, omega = sqrt(k / 0.5), drawn = 0.01;
@@ -60,7 +60,7 @@ static void orders_are_one_two_and_one(void **state)
     }
 }
 
-/* A damped swing: exp(-gamma t / 2) cos + ..., gamma = k_d / m_reduced (Landau and Lifshitz, 25.4). */
+/* Damped oscillation: exp(-gamma t / 2) cos + ..., gamma = k_d / m_reduced (Landau and Lifshitz, 25.4). */
 static void damping_takes_what_it_should(void **state)
 {
     (void)state;
@@ -75,8 +75,8 @@ static void damping_takes_what_it_should(void **state)
     }
 }
 
-/* -g t^2 / 2; the report's step, which adds a dt^2 where that has half of it, falls through -g t (t + dt) / 2, and so
- * does backward Euler. */
+/* -g t^2 / 2; semi-implicit Euler, which adds a dt^2 instead of half of that, falls by -g t (t + dt) / 2, and so does
+ * backward Euler. */
 static void free_fall_is_the_closed_form(void **state)
 {
     (void)state;
@@ -96,8 +96,7 @@ static void free_fall_is_the_closed_form(void **state)
     }
 }
 
-/* A mass that falls from h comes back to e^2 h; each step may take or give the height of one step at the floor's speed.
- */
+/* A mass that falls from h bounces to e^2 h, up to the height of one step at the speed of impact. */
 static void a_bounce_comes_back_to_e2_h(void **state)
 {
     (void)state;
@@ -143,8 +142,8 @@ static void friction_stops_a_mass(void **state)
     softbody_destroy(b);
 }
 
-/* Coulomb's impulse goes with all of the speed that the floor turns round, (1 + e) v: a mass that strikes it aslant
- * loses mu (1 + e) v along it. */
+/* Coulomb's impulse is proportional to the change of normal speed, (1 + e) v: an oblique impact loses mu (1 + e) v of
+ * tangential speed. */
 static void a_bounce_rubs_by_its_whole_turn(void **state)
 {
     (void)state;
@@ -161,7 +160,7 @@ static void a_bounce_rubs_by_its_whole_turn(void **state)
     softbody_destroy(b);
 }
 
-/* Dampers alone: what they take they do not give back, at any step that is stable. */
+/* Dampers alone: energy never increases, at any stable step. */
 static void damping_never_adds_energy(void **state)
 {
     (void)state;
@@ -214,13 +213,13 @@ static void speeds_that_no_body_has_are_named(void **state)
     assert_non_null(strstr(why.what, step));
     assert_non_null(strstr(why.what, "speed of mass"));
     assert_non_null(strstr(why.remedy, "adaptive"));
-    assert_int_equal(softbody_step(b, NULL), STATUS_BAD_INPUT); /* and it stays so */
+    assert_int_equal(softbody_step(b, NULL), STATUS_BAD_INPUT); /* and stays 0 */
     free(at);
     free(v);
     softbody_destroy(b);
 }
 
-/* What explodes at its step holds when steps are split, and under backward Euler. */
+/* A step that diverges is stable with splitting, and with backward Euler. */
 static void stiff_springs_hold_when_they_are_helped(void **state)
 {
     (void)state;
@@ -246,8 +245,8 @@ static void stiff_springs_hold_when_they_are_helped(void **state)
     }
 }
 
-/* A damper's rate gamma holds semi-implicit Euler to gamma dt < 2 and Verlet, which guesses the velocity, to gamma dt <
- * 1: split steps stay under both. */
+/* A damper's rate gamma limits semi-implicit Euler to gamma dt < 2 and Verlet, which predicts the velocity, to gamma dt
+ * < 1: substeps are below both. */
 static void split_steps_hold_strong_dampers(void **state)
 {
     (void)state;
@@ -264,8 +263,8 @@ static void split_steps_hold_strong_dampers(void **state)
     }
 }
 
-/* Backward Euler of springs that are pushed to half their length, and of a pressure a thousand times as stiff as the
- * toy's: energy only falls. */
+/* Backward Euler with springs compressed to half their length, and with a pressure a thousand times as stiff as the
+ * toy's: energy only decreases. */
 static void backward_euler_holds_what_is_pushed_together(void **state)
 {
     (void)state;
@@ -290,9 +289,8 @@ static void backward_euler_holds_what_is_pushed_together(void **state)
     softbody_destroy(b);
 }
 
-/* Across itself a pushed spring would push further apart what has left its line: the solver takes it for none (Choi and
- * Ko), so that a speed across stays as it is for a step, where the true stiffness, -k dt^2 > m / 2 here, would turn it
- * round. */
+/* A compressed spring has negative stiffness across its axis: the solver omits it (Choi and Ko), so that a speed across
+ * stays unchanged for a step, whereas the true stiffness, -k dt^2 > m / 2 here, would reverse it. */
 static void backward_euler_leaves_out_what_would_buckle(void **state)
 {
     (void)state;
@@ -304,13 +302,12 @@ static void backward_euler_leaves_out_what_would_buckle(void **state)
     steps_of(b, 1);
     softbody_velocities(b, v);
     assert_near(v[1].y - v[0].y, 0.02, 1e-14);
-    /* along itself: dv = dt f / (m / 2 + dt^2 k), f = k (1 - 1/2) on each of the reduced mass */
+    /* along the axis: dv = dt f / (m / 2 + dt^2 k), f = k (1 - 1/2) on each of the reduced mass */
     assert_near(v[1].x - v[0].x, 0.1 * 400.0 * 0.5 / (0.5 + 0.01 * 400.0), 1e-9);
     softbody_destroy(b);
 }
 
-/* What flies as a whole does not come apart, however far it goes in a step; and what is no number is said to be none.
- */
+/* A body that moves fast as a whole has not diverged, however far it moves in a step; and NaN is reported. */
 static void a_fast_body_is_no_burst_one(void **state)
 {
     (void)state;

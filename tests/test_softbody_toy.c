@@ -1,5 +1,5 @@
-/* The toy as a whole: its net, what it conserves, its volume, its hands; and the same bits from all ways of working
- * them out. */
+/* Tests of the whole toy: its net, conserved quantities, volume, hands; and bit-identical results of all threads and
+ * instruction sets. */
 #include "softbody_fixture.h"
 
 static double sum_of_lengths(const vec3 *v, size_t count)
@@ -10,7 +10,7 @@ static double sum_of_lengths(const vec3 *v, size_t count)
     return sum;
 }
 
-/* A smooth wobble and a spin: u = a (x, -2 y, z) + w x r. */
+/* A smooth deformation and a rotation: u = a (x, -2 y, z) + w x r. */
 static void stir(softbody *b, double wobble, vec3 spin)
 {
     const size_t count = softbody_mass_count(b);
@@ -26,7 +26,7 @@ static void stir(softbody *b, double wobble, vec3 spin)
     free(v);
 }
 
-/* 12, 42, 162 .. masses; by Euler's formula 3 (V - 2) edges, as many springs across, and one for each two masses. */
+/* 12, 42, 162 .. masses; by Euler's formula 3 (V - 2) edges, as many springs across, and one per two masses. */
 static void its_net_has_as_many_springs_as_euler_says(void **state)
 {
     (void)state;
@@ -47,8 +47,8 @@ static void its_net_has_as_many_springs_as_euler_says(void **state)
     }
 }
 
-/* Newton's third law, each force against its counterpart and around each ring: 10^5 steps of a body that wobbles, spins
- * and flies, damped. What rounding can do: a random walk of 10^5 steps, each of some 1e-16 of all that moves. */
+/* Newton's third law, for each pair of forces and around each ring: 10^5 steps of a damped body that deforms, rotates
+ * and moves. The rounding error is a random walk of 10^5 steps, each about 1e-16 of the total. */
 static void momenta_stay_to_rounding(void **state)
 {
     (void)state;
@@ -68,9 +68,8 @@ static void momenta_stay_to_rounding(void **state)
     }
 }
 
-/* Backward Euler's matrix has no row that does not sum to the mass, and the solver starts from zero: momentum stays,
- * and on a long way it does not drift. Its angular momentum is not kept: the places at which forces act are those of
- * the step's beginning. */
+/* Each row of backward Euler's matrix sums to the mass, and the solver starts from zero: momentum is conserved without
+ * drift. Angular momentum is not: forces act at the positions of the start of the step. */
 static void backward_euler_keeps_momentum(void **state)
 {
     (void)state;
@@ -84,8 +83,8 @@ static void backward_euler_keeps_momentum(void **state)
     softbody_destroy(b);
 }
 
-/* Semi-implicit Euler and Verlet swing about a conserved energy (Hairer, Lubich and Wanner, IX); the swing falls with
- * dt and dt^2. */
+/* The energy of semi-implicit Euler and Verlet oscillates about a conserved one (Hairer, Lubich and Wanner, IX); the
+ * amplitude decreases as dt and dt^2. */
 static double energy_swing(softbody_integrator integrator, double dt)
 {
     softbody_settings s = settings_in_space(integrator, dt);
@@ -111,7 +110,7 @@ static void energy_swings_less_with_shorter_steps(void **state)
     assert_true(energy_swing(SOFTBODY_VERLET, 0.001) < 1e-3);
 }
 
-/* A damped toy loses energy; by more, between two steps, than the swing that semi-implicit Euler has. */
+/* A damped toy loses energy, by more between two samples than semi-implicit Euler's oscillation. */
 static void a_damped_toy_loses_energy(void **state)
 {
     (void)state;
@@ -133,8 +132,8 @@ static void a_damped_toy_loses_energy(void **state)
     }
 }
 
-/* Pressure alone, on a sphere that is blown up: the force on all is p times the area around each, so the first step's
- * speeds are p A / 3m outwards, p = K (V0 - V) / V0 with V = f^3 V0. */
+/* Pressure alone, on an inflated sphere: the force on each mass is p times its area, so the first step's velocities are
+ * p A / 3m outwards, p = K (V0 - V) / V0 with V = f^3 V0. */
 static void pressure_pushes_along_the_area(void **state)
 {
     (void)state;
@@ -158,7 +157,7 @@ static void pressure_pushes_along_the_area(void **state)
         outwards += s.mass_kg / (double)count * vec3_dot(v[i], at[i]);
         sum = vec3_add(sum, v[i]);
     }
-    /* sum of force . place is 3 p V (the volume is of degree 3) */
+    /* sum of force . position is 3 p V (the volume is homogeneous of degree 3) */
     const double p = s.pressure * (1.0 - 0.95 * 0.95 * 0.95);
     assert_near(outwards / s.dt_s, 3.0 * p * a.volume, 1e-9 * p);
     assert_near(vec3_length(sum), 0.0, 1e-12 * sum_of_lengths(v, count));
@@ -167,7 +166,7 @@ static void pressure_pushes_along_the_area(void **state)
     softbody_destroy(b);
 }
 
-/* The force of a displaced mass is minus the gradient of the energies, by differences. */
+/* The force on a displaced mass is minus the gradient of the energy, by finite differences. */
 static void forces_are_the_gradient_of_the_energy(void **state)
 {
     (void)state;
@@ -201,7 +200,7 @@ static void forces_are_the_gradient_of_the_energy(void **state)
     softbody_destroy(b);
 }
 
-/* A hand that reaches for a corner or an edge does not fall through between the faces. */
+/* A grab ray through a vertex or an edge does not miss. */
 static void no_ray_falls_between_faces(void **state)
 {
     (void)state;
@@ -223,7 +222,7 @@ static void no_ray_falls_between_faces(void **state)
                 const vec3 direction = vec3_sub(ends[k], eyes[e]);
                 vec3 where;
                 if (vec3_dot(surface->normals[face->corner[i % 3]], direction) > -0.2 * vec3_length(direction))
-                    continue; /* not towards the eye */
+                    continue; /* not towards the camera */
                 assert_true(softbody_pick(b, eyes[e], direction, &where));
                 reached++;
             }
@@ -279,7 +278,7 @@ static hand_key key_of(hand_act act, double time_s, vec3 by)
         .time_s = time_s, .act = act, .origin = {0.0, 1.0, -6.0}, .direction = {0.0, 0.0, 1.0}, .reach = 0.2, .by = by};
 }
 
-/* The middle of the held masses, against where it was when the hand came. */
+/* The mean position of the held masses, relative to that at the grab. */
 static vec3 held_at(const softbody *b, const vec3 *first, size_t count)
 {
     vec3 *at = malloc(count * sizeof *at), sum = {0.0, 0.0, 0.0};
@@ -287,7 +286,7 @@ static vec3 held_at(const softbody *b, const vec3 *first, size_t count)
     softbody_positions(b, at);
     for (size_t i = 0; i < count; i++)
         if (vec3_length(vec3_sub(first[i], vec3_make(0.0, 1.0, -1.0))) <
-            0.15) { /* well within reach of where the ray meets the surface */
+            0.15) { /* well within reach of the ray's hit */
             sum = vec3_add(sum, vec3_sub(at[i], first[i]));
             held++;
         }
@@ -296,8 +295,8 @@ static vec3 held_at(const softbody *b, const vec3 *first, size_t count)
     return vec3_scale(sum, 1.0 / (double)held);
 }
 
-/* Taken hold of at 0.01 s and drawn by 2 until 0.05 s: after each step the masses are where a straight way at one speed
- * has them; a step in which a hand is fast is split when that is asked for, the first one too. */
+/* Grabbed at 0.01 s and moved by 2 until 0.05 s: after each step the masses are on a straight line at constant speed; a
+ * step with a fast hand is split if requested, including the first one. */
 static void a_script_is_followed_to_the_step(void **state)
 {
     (void)state;
@@ -333,7 +332,7 @@ static void a_script_is_followed_to_the_step(void **state)
     softbody_destroy(b);
 }
 
-/* A hand that finds all that it could hold in others' says so. */
+/* A hand that finds only masses held by others is reported. */
 static void a_hand_that_holds_nothing_is_named(void **state)
 {
     (void)state;
@@ -366,7 +365,7 @@ static void threads_and_instructions_change_no_bit(void **state)
                                   isa_best() < ISA_AVX2 ? ISA_SSE2 : ISA_AVX2};
             const int threads[] = {1, 2, 7, 3, 1};
             softbody_settings s = default_toy();
-            s.level = 6; /* enough for all the threads to be started */
+            s.level = 6; /* enough to start all threads */
             s.dt_s = 5e-5;
             s.integrator = integrator;
             s.threads = threads[run];
@@ -388,7 +387,7 @@ static void threads_and_instructions_change_no_bit(void **state)
     }
 }
 
-/* Faces that leave a hole, and springs that join nothing. */
+/* Faces with a hole, and springs without two ends. */
 static void bad_nets_are_refused(void **state)
 {
     (void)state;

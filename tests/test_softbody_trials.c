@@ -1,5 +1,5 @@
-/* The trials of a soft body's motion against their theory. Tolerances come from the methods' orders; angle is omega dt
- * throughout. */
+/* Tests of the trials of a soft body's motion against their theory. Tolerances follow from the methods' orders; angle
+ * is omega dt throughout. */
 #include "softbody_fixture.h"
 
 #include "softbody/trials.h"
@@ -32,8 +32,7 @@ static softbody_trial value_of(const softbody_trial_report *r, const char *name)
     return (softbody_trial){0};
 }
 
-/* Three integrators, level 1, 1 ms and a quarter of that: made once, since each costs as much as the slower ones of the
- * tests. */
+/* Three integrators, level 1, 1 ms and a quarter of that: computed once, since they are slow. */
 typedef struct reports {
     softbody_settings set[3];
     softbody_trial_report whole[3], quarter[3];
@@ -68,9 +67,9 @@ static double angle_of(const softbody_settings *s)
     return sqrt(2.0 * s->stiffness * 42.0 / s->mass_kg) * s->dt_s; /* 42 masses at level 1 */
 }
 
-/* Against each integrator's own closed form to rounding: of a swing of 1e-3 the place is known to 1e-13. Against
- * mechanics to the first term of the closed form: asin and atan are x (1 + x^2 / 6) and x (1 - x^2 / 3), so periods
- * differ by -angle^2 / 24 and angle^2 / 3. */
+/* Against each integrator's own closed form to rounding: with an amplitude of 1e-3 the position is known to 1e-13.
+ * Against mechanics to the first term of the closed form: asin and atan are x (1 + x^2 / 6) and x (1 - x^2 / 3), so
+ * periods differ by -angle^2 / 24 and angle^2 / 3. */
 static void a_spring_swings_as_its_integrator_says(void **state)
 {
     (void)state;
@@ -88,8 +87,8 @@ static void a_spring_swings_as_its_integrator_says(void **state)
     }
 }
 
-/* A step is 1/64 of a quarter swing, h = 0.025: an error c h^p (1 + d h) shows the order p + d h / (2 log 2), with d of
- * about 1; verlet's next term is h^2. */
+/* A step is 1/64 of a quarter period, h = 0.025: an error c h^p (1 + d h) gives the order p + d h / (2 log 2), with d
+ * of about 1; verlet's next term is h^2. */
 static void the_order_shows(void **state)
 {
     (void)state;
@@ -111,9 +110,9 @@ static void a_fall_is_that_of_the_integrator(void **state)
     }
 }
 
-/* The floor is met up to v dt too deep, v = sqrt(2 g h), which lengthens the fall and is then taken back; and of the
- * way up, e v / (g dt) steps, each is up to g dt^2 / 2 too long or too short. So the height is off by at most e^2 v dt
- * + e v dt / 2, and less with shorter steps. */
+/* The mass enters the floor by up to v dt, v = sqrt(2 g h), which lengthens the fall and is then removed; and each of
+ * the e v / (g dt) steps upwards is wrong by up to g dt^2 / 2. So the error of the height is at most e^2 v dt + e v dt
+ * / 2, and smaller with shorter steps. */
 static void a_bounce_has_restitution_squared(void **state)
 {
     (void)state;
@@ -127,9 +126,9 @@ static void a_bounce_has_restitution_squared(void **state)
     }
 }
 
-/* Symplectic methods' energy swings by O(dt^p) and does not drift (Hairer, Lubich, Wanner, IX.8): a quarter of the step
- * gives 4^-p of it. Backward Euler only loses: it damps every mode by omega^2 dt / 2, which is proportional to dt as
- * long as little is lost. With damping nothing rises, but for what euler's swings do in one step. */
+/* The energy of symplectic methods oscillates by O(dt^p) without drift (Hairer, Lubich, Wanner, IX.8): a quarter of the
+ * step gives 4^-p of it. Backward Euler only loses: it damps every mode by omega^2 dt / 2, proportional to dt for small
+ * losses. With damping nothing increases, except by euler's oscillation in one step. */
 static void energy_is_kept_in_the_methods_order(void **state)
 {
     (void)state;
@@ -148,9 +147,9 @@ static void energy_is_kept_in_the_methods_order(void **state)
     assert_true(measured(&all.whole[2], "energy.rise") == 0.0);
 }
 
-/* Forces come in pairs along their springs, and the explicit methods' steps add a multiple of them where the body lies:
- * both momenta stay, but for rounding, 1000 steps of 1e-16. Backward Euler adds forces of where the body will lie at
- * places where it lies now: they have a torque, and angular momentum is kept to the method's order; momentum to the
+/* Forces are pairs along springs, and the explicit methods add a multiple of them at the current positions: both
+ * momenta are conserved up to rounding, 1000 steps of 1e-16. Backward Euler adds forces of the next positions at the
+ * current ones: they have a torque, so angular momentum is conserved to the method's order, and momentum to the
  * solver's residual of 1e-10. */
 static void momenta_stay(void **state)
 {
@@ -165,8 +164,8 @@ static void momenta_stay(void **state)
     assert_true(turned > 2.5 && turned < 5.5);
 }
 
-/* The body's weight presses it, by about m g / A over the pressure's K, of A = 2 pi r^2 at most. A larger pressure
- * holds more of the volume. */
+/* The body's weight compresses it, by about m g / A over the pressure's K, with A = 2 pi r^2 at most. A larger K
+ * preserves more of the volume. */
 static void a_stiff_pressure_holds_the_volume(void **state)
 {
     (void)state;
@@ -192,9 +191,9 @@ static double speed_of_rest(double dt_s)
     return speed;
 }
 
-/* Of the spring to 1e-5, as trials_stable.c derives. Of the toy not below the bound, but for the bisection's 1/512; and
- * a toy at rest, which rounding alone moves, stays so with steps shorter by a tenth, and blows up with longer ones: by
- * exp(2 acosh 1.1) = 2.4 a step. */
+/* For the spring to 1e-5, as derived in trials_stable.c. For the toy at least the bound, up to the bisection's 1/512;
+ * and a toy at rest, excited only by rounding, stays so with steps shorter by a tenth, and diverges with longer ones:
+ * by exp(2 acosh 1.1) = 2.4 per step. */
 static void the_longest_step_is_found(void **state)
 {
     (void)state;
@@ -259,7 +258,7 @@ static void names_are_unique_and_have_units(void **state)
     }
 }
 
-/* With 0.1 s a step is six times the spring's limit. */
+/* A step of 0.1 s is six times the spring's limit. */
 static void what_blows_up_has_no_value(void **state)
 {
     (void)state;
@@ -276,7 +275,7 @@ static void what_blows_up_has_no_value(void **state)
     assert_near(measured(&r, "stable_dt.toy_s"), measured(&all.whole[0], "stable_dt.toy_s"), 0.0);
 }
 
-/* No stiffness, pressure or weight: no spring to measure, no bounce, and no error. */
+/* Without stiffness, pressure or gravity: no spring to measure, no bounce, and no error. */
 static void a_slime_without_forces_is_no_error(void **state)
 {
     (void)state;

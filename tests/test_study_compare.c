@@ -6,7 +6,7 @@
 #include "study/summary.h"
 #include <dirent.h>
 
-/* Depths 0 and 2 with one and two threads, all against depth 2. */
+/* Depths 0 and 2 with one and two threads, all compared with depth 2. */
 static const char depth_text[] = "study: test\n"
                                  "scene: scene.yaml\n"
                                  "grid:\n"
@@ -26,7 +26,7 @@ static csv *read_table(const fixture *f, const char *name)
     return table;
 }
 
-/* The row of a cell, which must be there once. */
+/* The row of a cell, which must occur once. */
 static size_t row_of(const csv *table, int cell)
 {
     size_t found = SIZE_MAX;
@@ -65,7 +65,7 @@ static size_t files_in(const fixture *f, const char *name, const char *ending)
     return count;
 }
 
-/* The picture of the fixture's scene at that depth, without a study. */
+/* The image of the fixture's scene at that depth, without a study. */
 static image *image_at(const fixture *f, const char *depth)
 {
     char path[400];
@@ -108,7 +108,7 @@ static void a_picture_does_not_differ_from_itself(void **state)
     study_destroy(s);
 }
 
-/* The measures of two films that were rendered without a study; the rms from the sum that defines it. */
+/* The measures of two films rendered without a study; the rms by its definition. */
 static void another_depth_differs_as_the_films_do(void **state)
 {
     const fixture *f = *state;
@@ -149,7 +149,7 @@ static void cells_share_the_reference_of_one_scene(void **state)
         assert_string_equal(text_of(table, cell, "reference"), text_of(table, 0, "reference"));
     csv_destroy(table);
     study_destroy(s);
-    /* The axis of the ball says what the scene is: a reference each. */
+    /* The axis changes the ball, so each value has its own reference. */
     s = fixture_study(f, "study: balls\nscene: scene.yaml\ngrid: [{ball.ior: [1.2, 1.4]}, {render.threads: [1, 2]}]\n"
                          "reference: {render.depth: 3}\nrepetitions: 1\nwarmups: 0\nkeep: {image: on}\n");
     fixture_run(f, s);
@@ -168,7 +168,8 @@ static void what_is_compared_is_not_compared_again(void **state)
     char *again = fixture_text(f, "results/test/compare.csv");
     assert_string_equal(whole, again);
     free(again);
-    /* The first cell's row and a torn one are left: the rest is made, the rows stay, and no reference is rendered. */
+    /* With the first cell's row and an incomplete one left, the others are made, the rows stay, and no reference is
+     * rendered. */
     char reference_path[400], cut[4096];
     struct stat before, after;
     char *line = strchr(strchr(whole, '\n') + 1, '\n') + 1;
@@ -222,7 +223,7 @@ static void a_damaged_reference_is_found(void **state)
     study_destroy(s);
 }
 
-/* Rows of another reference are refused; without them the pictures are compared anew, and the rows stay. */
+/* Rows of another reference are refused; without them the images are compared again, and the rows stay. */
 static void another_reference_measures_nothing_again(void **state)
 {
     const fixture *f = *state;
@@ -292,7 +293,7 @@ static void a_summary_has_time_and_error_on_one_line(void **state)
     assert_string_equal(line + strlen(line) - strlen(values), values);
     free(text);
     csv_destroy(table);
-    /* Without comparisons the columns are there, and empty. */
+    /* Without comparisons the columns exist and are empty. */
     fixture_path(f, "results/test/compare.csv", compare);
     assert_int_equal(remove(compare), 0);
     text = summary_of(f, s);
@@ -301,7 +302,7 @@ static void a_summary_has_time_and_error_on_one_line(void **state)
     study_destroy(s);
 }
 
-/* Four times the paths halve the standard error, and with it the distance from a reference of many. */
+/* Four times the paths halve the standard error, and so the error against a reference of many paths. */
 static void noise_says_how_far_random_paths_lie(void **state)
 {
     const fixture *f = *state;

@@ -38,7 +38,7 @@ static void fields_are_written_and_read_back(void **state)
     csv_destroy(table);
 }
 
-/* What the file holds -> rows read, or -1 for an error, and its line. */
+/* Contents of the file -> number of rows, or -1 for an error, and its line. */
 static int rows_of(const fixture *f, const char *text, long *line)
 {
     char path[400];

@@ -129,7 +129,7 @@ static void what_tells_a_machine_is_taken_out(void **state)
     provenance_anonymize(NULL);
 }
 
-/* A checkout of its own with one commit; quiet where there is no git. */
+/* A repository with one commit; silent without git. */
 static void commits_are_found(void **state)
 {
     const fixture *f = *state;

@@ -65,14 +65,14 @@ static void merging_loses_nothing(void **state)
                       fixture_text(f, "results/test/rows.shard-1-of-2.csv")};
     assert_int_equal(merge(f, s), 18);
     char *joined = fixture_text(f, "results/test/rows.csv");
-    /* Header and lines, each as it was. */
+    /* Header and lines, unchanged. */
     const char *second = strchr(parts[1], '\n') + 1;
     assert_int_equal(strlen(joined), strlen(parts[0]) + strlen(second));
     assert_memory_equal(joined, parts[0], strlen(parts[0]));
     assert_string_equal(joined + strlen(parts[0]), second);
     char *workers = fixture_text(f, "results/test/workers.csv");
     assert_int_equal(fixture_count(workers, "\n"), 19);
-    /* Again: nothing twice, and the study is complete for everybody. */
+    /* Again: no duplicates, and the study is complete for every process. */
     assert_int_equal(merge(f, s), 18);
     char *again = fixture_text(f, "results/test/rows.csv");
     assert_string_equal(joined, again);
@@ -86,7 +86,7 @@ static void merging_loses_nothing(void **state)
     study_destroy(s);
 }
 
-/* A run without shards does what the shards that ran have left. */
+/* A run without shards measures what the shards left. */
 static void runs_see_the_shards_rows(void **state)
 {
     const fixture *f = *state;
@@ -111,7 +111,7 @@ static void torn_shards_are_cut(void **state)
     free(part);
     assert_int_equal(merge(f, s), 17);
     assert_true(fixture_has(f, "results/test/rows.shard-1-of-2.torn.csv"));
-    /* The worker rows of the torn row are still there, but it is measured again and they must not stand twice. */
+    /* The worker rows of the incomplete row still exist, but it is measured again, and they must not be duplicated. */
     assert_int_equal(run_shard(f, s, 1, 2), 1);
     assert_int_equal(merge(f, s), 18);
     study_destroy(s);
@@ -138,7 +138,7 @@ static void contradictions_are_errors(void **state)
     study_destroy(s);
 }
 
-/* One repetition twice in one file is never right, alike or not. */
+/* One repetition twice in one file is always an error. */
 static void rows_twice_in_a_file_are_errors(void **state)
 {
     const fixture *f = *state;

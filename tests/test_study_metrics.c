@@ -28,8 +28,8 @@ static size_t lines_of(const char *text)
     return fixture_count(text, "\n");
 }
 
-/* One line a metric with the cell's values in front, the same names whatever the cell; no frame of it changes when it
- * is kept. */
+/* One line per metric, preceded by the cell's values, with the same names for every cell; keeping it does not change a
+ * frame. */
 static void metrics_and_curves_lie_beside_the_pictures(void **state)
 {
     const fixture *f = *state;
@@ -58,7 +58,7 @@ static void metrics_and_curves_lie_beside_the_pictures(void **state)
     study_destroy(s);
 }
 
-/* The scene of the fixture has no vessel: that is said before anything is measured. */
+/* The scene of the fixture has no vessel, which is reported before anything is measured. */
 static void a_scene_without_metrics_is_refused(void **state)
 {
     const fixture *f = *state;
@@ -83,7 +83,7 @@ static const char slime_scene[] = "render: {width: 24, height: 18, depth: 2}\n"
                                   "solids:\n"
                                   "  body: {shape: mesh, mesh: toy, diffuse: 1}\n";
 
-/* A line a value of each slime, and none of other meshes; what does not depend on time is what the trials say of the
+/* One line per value of each slime, and none for other meshes; values other than times are those of the trials with the
  * cell's settings. */
 static void motion_lies_beside_the_pictures(void **state)
 {

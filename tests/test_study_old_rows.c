@@ -1,6 +1,5 @@
-/* Rows outlive versions: what other versions of the program wrote, under other columns and definitions, stays readable,
- * and what cannot be verified to mean the same does not. tests/old-rows holds rows of before definitions left out what
- * is at its default. */
+/* Tests of rows of other versions: rows with other columns and definitions remain readable, and rows whose meaning
+ * cannot be verified are refused. tests/old-rows has rows of definitions that included defaults. */
 #include "study_fixture.h"
 #include "base/hash.h"
 #include "scene/model/params_path.h"
@@ -54,7 +53,7 @@ static study *read_study(const char *path)
     return s;
 }
 
-/* --- rows that are there --- */
+/* --- existing rows --- */
 
 static void the_reference_run_is_read(void **state)
 {
@@ -76,12 +75,12 @@ static void the_reference_run_is_read(void **state)
         read++;
     }
     closedir(folder);
-    assert_true(read >= 34); /* as many as there were when definitions changed */
+    assert_true(read >= 34); /* at least as many as when definitions changed */
 }
 
 static const char old_study[] = "tests/old-rows/old-rows.study", old_results[] = "tests/old-rows/results";
 
-/* All shapes, files and a slime of the first definition, and the summary that its own program made. */
+/* All shapes, files and a slime of the first definition, and the summary made by the old program. */
 static void rows_of_the_first_definition_are_read(void **state)
 {
     (void)state;
@@ -101,7 +100,7 @@ static void rows_of_the_first_definition_are_read(void **state)
     study_destroy(s);
 }
 
-/* The first definition counted every parameter: what differs by one of them is not taken for the same. */
+/* The first definition included every parameter: a difference in one of them is detected. */
 static void the_first_definition_tells_differences(void **state)
 {
     (void)state;
@@ -123,7 +122,7 @@ static void the_first_definition_tells_differences(void **state)
     study_destroy(s);
 }
 
-/* Nothing that its program could not have set is of the first definition. */
+/* A study with newer parameters has no first definition. */
 static void the_first_definition_ends_with_its_parameters(void **state)
 {
     (void)state;
@@ -136,14 +135,14 @@ static void the_first_definition_ends_with_its_parameters(void **state)
     study_destroy(s);
 }
 
-/* --- what a definition is made of --- */
+/* --- content of a definition --- */
 
 static bool is_path_of(const scene *s, const char *name, param_place *at)
 {
     return strchr(name, '.') && !strchr(name, ' ') && param_place_find(s, name, at, NULL) == STATUS_OK;
 }
 
-/* A parameter that a later version adds is at its default in every scene of before. */
+/* A parameter added by a later version is at its default in every older scene. */
 static void defaults_enter_no_definition(void **state)
 {
     (void)state;
@@ -169,7 +168,7 @@ static void defaults_enter_no_definition(void **state)
     study_destroy(s);
 }
 
-/* Of a parameter that stands anywhere in the table, and whose default is said or not. */
+/* For a parameter anywhere in the table, with and without an explicit default. */
 static void order_and_defaults_are_the_same_meaning(void **state)
 {
     const fixture *f = *state;
@@ -193,7 +192,7 @@ static void order_and_defaults_are_the_same_meaning(void **state)
     study_destroy(other);
 }
 
-/* The order of solids decides between equal priorities, and a solid all at its defaults is there. */
+/* The order of solids decides between equal priorities, and a solid with only defaults is part of it. */
 static void objects_count(void **state)
 {
     const fixture *f = *state;
@@ -229,7 +228,7 @@ static size_t split(char *line, char **fields)
     return count;
 }
 
-/* The file's columns in the opposite order, `without` taken out, `with` put in front. */
+/* The file's columns in reverse order, `without` removed, `with` prepended. */
 static void rearrange(const fixture *f, const char *name, const char *without, const char *with)
 {
     char *text = fixture_text(f, name), *rest = text;
@@ -254,7 +253,7 @@ static void rearrange(const fixture *f, const char *name, const char *without, c
     free(text);
 }
 
-/* Summaries under a permuted header, with one column less and one more; a missing one is not known. */
+/* Summaries under a permuted header, with one column less and one more; a missing one is unknown. */
 static void columns_are_known_by_name(void **state)
 {
     const fixture *f = *state;
@@ -295,7 +294,7 @@ static void expect(const csv *table, size_t row, const char *column, const char 
     assert_string_equal(csv_field(table, row, csv_column(table, column)), value);
 }
 
-/* A study goes on in a file of other columns: none is lost, none is ragged, and old rows keep what they said. */
+/* A study resumes in a file with other columns: none is lost, every row is complete, and old rows keep their values. */
 static void a_study_goes_on_under_other_columns(void **state)
 {
     const fixture *f = *state;
@@ -318,7 +317,7 @@ static void a_study_goes_on_under_other_columns(void **state)
         assert_int_equal(strcmp(csv_field(workers, i, csv_column(workers, "waiting_s")), "NA") == 0, i < 4);
         assert_true(csv_field_real(rows, i, csv_column(rows, "rays_camera")) == 24 * 18);
         assert_true(csv_field_real(rows, i, csv_column(rows, "order")) == (double)i);
-        if (i < 4) /* old rows are there as they were, and only went on */
+        if (i < 4) /* old rows are unchanged except for appended columns */
             assert_memory_equal(rows->raw + rows->start[i], line, strcspn(line, "\n"));
         line += i < 4 ? strcspn(line, "\n") + 1 : 0;
     }
@@ -332,7 +331,7 @@ static void a_study_goes_on_under_other_columns(void **state)
     study_destroy(s);
 }
 
-/* Who adds no row leaves the file as it is. */
+/* Without new rows the file does not change. */
 static void a_complete_study_is_left_alone(void **state)
 {
     const fixture *f = *state;
@@ -348,7 +347,7 @@ static void a_complete_study_is_left_alone(void **state)
     study_destroy(s);
 }
 
-/* Shards of different versions, the rows of one of them in two files with different columns. */
+/* Shards of different versions, one of them with rows in two files with different columns. */
 static void shards_of_other_columns_are_joined(void **state)
 {
     const fixture *f = *state;
@@ -401,7 +400,7 @@ static void columns_that_a_row_needs_are_named(void **state)
 
 /* --- other definitions --- */
 
-/* Puts `with` in the place of every `what`, which must be as long. */
+/* Replaces every `what` by `with`, which must have the same length. */
 static void replace(const fixture *f, const char *name, const char *what, const char *with)
 {
     char *text = fixture_text(f, name);
@@ -422,7 +421,7 @@ static void make_old(const fixture *f, const study *s)
     replace(f, rows_name, own, unknown);
     replace(f, workers_name, own, unknown);
     replace(f, manifest_name, own, unknown);
-    /* A comparison's is made of the definition and of the reference. */
+    /* The definition of a comparison includes the reference. */
     const int64_t words[] = {(int64_t)UINT64_C(0x0123456789abcdef)};
     uint64_t hash = hash_words(HASH_START, words, 1);
     grid_hash_point(&hash, &s->reference);
@@ -431,7 +430,7 @@ static void make_old(const fixture *f, const study *s)
     replace(f, compare_name, compared, unknown_compared);
 }
 
-/* The manifest's texts mean the same: the rows are read, and the study goes on. */
+/* The manifest's texts have the same meaning: the rows are read, and the study resumes. */
 static void recorded_texts_that_mean_the_same_are_believed(void **state)
 {
     const fixture *f = *state;
@@ -440,7 +439,7 @@ static void recorded_texts_that_mean_the_same_are_believed(void **state)
     char *before = summary_of(s, f->results);
     make_old(f, s);
     study_destroy(s);
-    /* Said in other words since. */
+    /* The text has changed since, but not its meaning. */
     char *scene_text = malloc(sizeof fixture_scene + 100);
     sprintf(scene_text, "# the same\n%s", fixture_scene);
     fixture_write(f, "scene.yaml", scene_text);
@@ -500,7 +499,7 @@ static void what_cannot_be_verified_is_refused(void **state)
     study_destroy(s);
 }
 
-/* Comparisons against another reference are refused, with the rows' own definition accepted. */
+/* Comparisons with another reference are refused even if the rows' own definition is accepted. */
 static void comparisons_know_their_reference(void **state)
 {
     const fixture *f = *state;
@@ -519,7 +518,7 @@ static void comparisons_know_their_reference(void **state)
     study_destroy(s);
 }
 
-/* Of what files held only their fingerprint tells, which the manifest must have. */
+/* The contents of files are known only by their hash, which the manifest must have. */
 static void contents_of_files_are_verified(void **state)
 {
     const fixture *f = *state;

@@ -40,7 +40,7 @@ static void seed_and_stream_decide(void **state)
     }
 }
 
-/* The order of a published study must never change: these were written down once. */
+/* The order of a published study must never change: expected values recorded once. */
 static void orders_stay_what_they_were(void **state)
 {
     (void)state;
@@ -50,7 +50,7 @@ static void orders_stay_what_they_were(void **state)
     assert_memory_equal(order, known, sizeof known);
 }
 
-/* 4! orders, 24000 draws: chi squared with 23 degrees of freedom is over 49.7 once in 1000 fair seeds. */
+/* 4! orders, 24000 draws: chi squared with 23 degrees of freedom exceeds 49.7 for one in 1000 seeds. */
 static void orders_are_drawn_evenly(void **state)
 {
     (void)state;

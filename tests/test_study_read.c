@@ -45,7 +45,7 @@ static void the_whole_grammar(void **state)
     assert_int_equal(s->axis_count, 2);
     assert_string_equal(s->axes[0].name, "render.depth");
     assert_string_equal(s->axes[1].name, "pair");
-    /* The last axis runs fastest; values are as scene_get writes them; paths stand in the first point's order. */
+    /* The last axis runs fastest; values are as written by scene_get; paths are in the order of the first point. */
     assert_string_equal(axis_value(s, 0, 0, 0), "0");
     assert_string_equal(axis_value(s, 2, 0, 0), "0");
     assert_string_equal(axis_value(s, 3, 0, 0), "4");
@@ -102,7 +102,7 @@ static uint64_t hash_of(const fixture *f, const char *text)
     return hash;
 }
 
-/* The definition is what a row means, not how the file is written nor how often it is measured. */
+/* The definition depends on the meaning of a row, not on the form of the file or the number of repetitions. */
 static void what_is_the_same_definition(void **state)
 {
     const fixture *f = *state;
@@ -131,7 +131,7 @@ static void what_is_the_same_definition(void **state)
         hash_of(f, "study: x\nscene: scene.yaml\nset: {render.width: 32}\ngrid:\n  - {ball.ior: [1.0, 1.5]}\n"), hash);
 }
 
-/* The same names with other contents are another definition: of a mesh's places, colours and normals. */
+/* The same names with other contents are another definition: for a mesh's positions, colours and normals. */
 static void what_files_hold_is_defined_too(void **state)
 {
     const fixture *f = *state;
@@ -206,7 +206,7 @@ static void check_bad(const char *name, long line, long column, const char *what
         fail_msg("%s: status %d, %s:%ld:%ld: %s", name, code, why.file, why.line, why.column, why.what);
 }
 
-/* tests/bad-studies/expected.tsv names every file there and what is said about it. */
+/* tests/bad-studies/expected.tsv lists every file of the folder with its diagnostic. */
 static void bad_studies_are_located(void **state)
 {
     (void)state;
@@ -238,7 +238,7 @@ static void bad_studies_are_located(void **state)
     assert_true(listed >= 25);
 }
 
-/* A file that was cut off anywhere is an error or a smaller study, never a crash. */
+/* A truncated file is an error or a smaller study, never a crash. */
 static void cut_off_anywhere(void **state)
 {
     const fixture *f = *state;
@@ -280,7 +280,7 @@ static void the_studies_of_the_house(void **state)
 }
 
 typedef struct guard_notes {
-    int opens, loads, refuse_open, refuse_load; /* the how manyeth is refused; 0: none */
+    int opens, loads, refuse_open, refuse_load; /* which call is refused, from 1; 0: none */
     bool seen_image;
 } guard_notes;
 
@@ -301,7 +301,7 @@ static status note_load(void *context, const scene *setting, diagnostic *why)
                                         : STATUS_OK;
 }
 
-/* Files are named by the scene, by cells and by the reference: each is asked about before any is read. */
+/* Files of the scene, the cells and the reference: access to each is checked before any is read. */
 static void a_guard_is_asked_first(void **state)
 {
     const fixture *f = *state;

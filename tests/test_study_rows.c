@@ -10,7 +10,7 @@ static const char grid_text[] =
     "  - name: pair\n"
     "    points: [{ball.ior: 1.5, lamp.position: [0, 9, 0]}, {lamp.position: [1, 9, 0], ball.ior: 1.25}]\n";
 
-/* A row whose every number is known. */
+/* A row with known numbers. */
 static char *write_row(const study *s, const scene *setting, bool workers)
 {
     worker_report reports[3] = {

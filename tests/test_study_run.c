@@ -16,7 +16,7 @@ static const char study_text[] = "study: test\n"
                                  "warmups: 1\n"
                                  "keep: {workers: on}\n";
 
-/* The rows, read back; how many of each cell are warm-ups and measured ones. */
+/* The rows, read back: the numbers of warm-ups and measured repetitions of each cell. */
 typedef struct tally {
     size_t rows, warmups[8], counted[8], marked;
 } tally;
@@ -48,7 +48,7 @@ static tally tally_rows(const fixture *f, const char *name)
     return t;
 }
 
-/* Is the earlier text still there, byte for byte, at the beginning? */
+/* Whether the file still starts with the earlier text, byte for byte. */
 static void expect_begins(const fixture *f, const char *name, const char *earlier)
 {
     char *now = fixture_text(f, name);
@@ -100,7 +100,7 @@ static void a_complete_study_costs_nothing(void **state)
     study_destroy(s);
 }
 
-/* Warm-ups come right before the first repetition of their cell, and rounds are whole: no cell gets its second
+/* Warm-ups come immediately before the first repetition of their cell, and rounds are complete: no cell gets its second
  * repetition before all have their first. */
 static void rounds_are_shuffled_blocks(void **state)
 {
@@ -146,7 +146,7 @@ static void without_shuffling_cells_go_in_order(void **state)
     study_destroy(s);
 }
 
-/* Asked before and during each frame: stops the run after a while. */
+/* Polled before and during each frame: stops the run after a while. */
 static bool stop_soon(void *context)
 {
     int *left = context;
@@ -199,7 +199,7 @@ static void look(void *context, const study_moment *now)
     assert_true(now->share >= 0 && now->share <= 1);
     if (w->calls++ == 0) {
         assert_true(now->stage == STUDY_MEASURING);
-        assert_true(isnan(now->left_s)); /* no frame has told yet how long one takes */
+        assert_true(isnan(now->left_s)); /* no estimate before the first frame */
         assert_int_equal(now->frames_done, 0);
         assert_int_equal(now->frames_all, 4 * 4000);
     }
@@ -223,7 +223,7 @@ static bool stop_when_known(void *context)
     return w->stop && w->knew_left;
 }
 
-/* Who asked is told in the same breath as the terminal, and the same. */
+/* The callback and the terminal get the same progress at the same time. */
 static void whoever_asks_is_told(void **state)
 {
     const fixture *f = *state;
@@ -250,7 +250,7 @@ static void whoever_asks_is_told(void **state)
     study_destroy(s);
 }
 
-/* Alone, the pictures of a study whose rows are all there. */
+/* Only the kept images of a study with complete rows. */
 static void pictures_are_told_too(void **state)
 {
     const fixture *f = *state;
@@ -269,7 +269,7 @@ static void pictures_are_told_too(void **state)
     study_destroy(s);
 }
 
-/* What a kill inside the write leaves: half a row, and the worker rows of a frame whose row was never written. */
+/* What a kill during the write leaves: half a row, and the worker rows of a frame whose row was never written. */
 static void torn_rows_are_measured_again(void **state)
 {
     const fixture *f = *state;
@@ -286,7 +286,7 @@ static void torn_rows_are_measured_again(void **state)
         assert_int_equal(t.counted[cell], 3);
     assert_true(fixture_has(f, "results/test/rows.torn.csv"));
     assert_true(fixture_has(f, "results/test/workers.torn.csv"));
-    /* Every row has its workers' rows, once. */
+    /* Every row has its worker rows, once. */
     char *now = fixture_text(f, "results/test/workers.csv"), *aside = fixture_text(f, "results/test/workers.torn.csv");
     size_t cut = fixture_count(aside, "\n");
     assert_true(cut == 1 || cut == 2);
@@ -334,7 +334,7 @@ static void other_definitions_are_refused(void **state)
     free(after);
 }
 
-/* More repetitions, other order, more kept: the study goes on. */
+/* More repetitions, another order, more kept files: the study resumes. */
 static void studies_may_grow(void **state)
 {
     const fixture *f = *state;
@@ -353,7 +353,7 @@ static void studies_may_grow(void **state)
     study_destroy(s);
 }
 
-/* Any interval is narrow enough at twice the mean, and none at a millionth: min and max rule. */
+/* Any interval is narrow enough at twice the mean, and none at a millionth: min and max apply. */
 static void repetitions_follow_the_interval(void **state)
 {
     const fixture *f = *state;
@@ -370,7 +370,7 @@ static void repetitions_follow_the_interval(void **state)
     study_destroy(s);
 }
 
-/* Leaves one row of rows.csv, which then says that it saw another film. */
+/* Keeps one row of rows.csv, with another film hash. */
 static void leave_row_of_another_film(const fixture *f, size_t row)
 {
     char *rows = fixture_text(f, "results/test/rows.csv"), path[400];
@@ -388,7 +388,7 @@ static void leave_row_of_another_film(const fixture *f, size_t row)
     free(hash);
 }
 
-/* A row that says it saw another picture is marked, not dropped, and counts as a repetition. */
+/* A row with another film is marked, not dropped, and counts as a repetition. */
 static void wrong_films_are_marked(void **state)
 {
     const fixture *f = *state;
@@ -405,7 +405,7 @@ static void wrong_films_are_marked(void **state)
     study_destroy(s);
 }
 
-/* Threads and schedules make no other film, so the cells of a grid over them vouch for one another. */
+/* Threads and schedules do not change the film, so the cells of a grid over them check one another. */
 static void cells_of_one_film_are_compared(void **state)
 {
     const fixture *f = *state;
@@ -472,7 +472,7 @@ static void pictures_and_maps_are_kept(void **state)
     char *timeline = fixture_text(f, "results/test/images/0000-timeline.json");
     assert_true(fixture_count(timeline, "\"ph\"") >= 3 * 3);
     free(timeline);
-    /* One that got lost is made again, without a row. */
+    /* A missing file is made again, without a row. */
     fixture_path(f, "results/test/images/0001.png", path);
     assert_int_equal(unlink(path), 0);
     assert_int_equal(fixture_run(f, s), 0);
@@ -528,7 +528,7 @@ static void a_full_disk_keeps_whole_rows(void **state)
     assert_true(ran >= 1);
     assert_non_null(strstr(why.what, "File too large"));
     expect_begins(f, "results/test/rows.csv", earlier);
-    tally_rows(f, "results/test/rows.csv"); /* no torn end */
+    tally_rows(f, "results/test/rows.csv"); /* no incomplete row */
     fixture_run(f, s);
     assert_int_equal(tally_rows(f, "results/test/rows.csv").counted[0], 40);
     free(earlier);

@@ -68,7 +68,7 @@ static char *summary_of(const fixture *f, const study *s)
     return text;
 }
 
-/* The field of a line (0: header) under a name; static storage. */
+/* The field of a line (0: header) in a named column; static storage. */
 static const char *field(const char *text, int line, const char *name)
 {
     static char value[256];
@@ -95,7 +95,7 @@ static void medians_and_intervals(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
-    /* Cell 0: a warm-up and a marked row far off, six measured 1 to 6. Cell 2: three rows. Cell 1: none. */
+    /* Cell 0: a warm-up and a marked outlier, six measured rows 1 to 6. Cell 2: three rows. Cell 1: none. */
     static const written rows[] = {
         {0, 0, 1, 0, 99}, {0, 1, 0, 0, 6}, {0, 2, 0, 0, 1}, {0, 3, 0, 1, 50}, {0, 4, 0, 0, 2}, {2, 0, 0, 0, 1},
         {0, 5, 0, 0, 5},  {0, 6, 0, 0, 3}, {2, 1, 0, 0, 2}, {0, 7, 0, 0, 4},  {2, 2, 0, 0, 3},
@@ -119,7 +119,7 @@ static void medians_and_intervals(void **state)
     assert_string_equal(field(text, 1, "rays_total"), "1000");
     assert_string_equal(field(text, 1, "first_hits.ball"), "1000");
     assert_string_equal(field(text, 1, "first_hits.ground"), "NA");
-    /* A cell without rows has its line. */
+    /* A cell without rows has a line. */
     assert_string_equal(field(text, 2, "render.depth"), "1");
     assert_string_equal(field(text, 2, "n"), "0");
     assert_string_equal(field(text, 2, "wall_s_median"), "NA");
@@ -160,7 +160,7 @@ static void columns_keep_their_order(void **state)
     study_destroy(s);
 }
 
-/* A summary of a real run, in a locale with a decimal comma where the system has one. */
+/* The summary of a real run, in a locale with a decimal comma if the system has one. */
 static void points_stay_points(void **state)
 {
     const fixture *f = *state;

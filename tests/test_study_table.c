@@ -67,7 +67,7 @@ static void torn_headers_are_written_again(void **state)
     expect(f, "rows.torn.csv", "a,\n");
 }
 
-/* Longer than the blocks in which the end is looked for. */
+/* Longer than the blocks in which the end is searched. */
 static void long_torn_ends(void **state)
 {
     const fixture *f = *state;
@@ -111,7 +111,7 @@ static void one_writer_at_a_time(void **state)
     table_close(open_table(f));
 }
 
-/* A file as large as it may be stands in for a full disk: a write comes back short, then fails. */
+/* A file size limit simulates a full disk: a write is short, then fails. */
 static void a_full_disk_leaves_rows_whole(void **state)
 {
     const fixture *f = *state;

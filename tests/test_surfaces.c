@@ -10,7 +10,7 @@
 #include "ray_fixture.h"
 #include "solid_reference.h"
 
-/* Rays that start on a surface: its own root is exact, so that nothing escapes, sticks or drifts. */
+/* Tests of rays that start on a surface: its own root is exact, so that rays neither escape nor stick nor drift. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(quad_abs((quad)(a) - (quad)(b)) <= (quad)(tolerance))
@@ -30,13 +30,13 @@ static quad apart(vec3 a, vec3 b)
     return quad3_length(quad3_sub(quad3_from(a), quad3_from(b)));
 }
 
-/* The mirrored ray, on the side that it came from. */
+/* The reflected ray, on the side of the incident one. */
 static one_ray mirrored(one_ray r, const one_hit *h)
 {
     return (one_ray){h->point, direction_reflect(r.d, h->normal, h->cos_i), h->face, h->inside_before};
 }
 
-/* Mirrored inside over and over; returns the number of chords. Every one ends on the surface, at a distance ahead. */
+/* Repeated reflection inside; returns the number of chords. Every one ends on the surface, at a positive distance. */
 static int bounce_inside(const solid_shape *s, scene_geometry *a, one_ray r, int bounces, double loosest)
 {
     for (int i = 0; i < bounces; i++) {
@@ -51,7 +51,7 @@ static int bounce_inside(const solid_shape *s, scene_geometry *a, one_ray r, int
     return bounces;
 }
 
-/* Mirror in a sphere: all chords are 2 r cos_i, in one plane, for ever. */
+/* Reflection in a sphere: all chords are 2 r cos_i, in one plane, for any number of reflections. */
 static void chords_of_a_sphere(void **state)
 {
     (void)state;
@@ -79,7 +79,7 @@ static void chords_of_a_sphere(void **state)
     }
 }
 
-/* In a round cylinder the chords between two meetings with the side are 2 r cos_i / sin^2 of the angle to the axis. */
+/* In a round cylinder the chords between two hits with the side are 2 r cos_i / sin^2 of the angle to the axis. */
 static void chords_of_a_cylinder(void **state)
 {
     (void)state;
@@ -105,7 +105,7 @@ static void chords_of_a_cylinder(void **state)
             assert_near(quad_sqrt((quad)h.point.x * h.point.x + (quad)h.point.z * h.point.z), radius, 5e-16 * radius);
             length += h.t;
         }
-        assert_near(h.point.y - level, length * rise, 2e-9); /* the slope is kept */
+        assert_near(h.point.y - level, length * rise, 2e-9); /* the slope is constant */
         scene_geometry_destroy(a);
     }
 }
@@ -135,14 +135,14 @@ static void nothing_escapes_from_a_closed_mirror(void **state)
                          .d = random_direction(&seed),
                          .start = FACE_NONE,
                          .inside = 1};
-            /* 1e-15 of the coordinates' size: their own rounding */
+            /* 1e-15 of the coordinates' magnitude: their own rounding */
             assert_int_equal(bounce_inside(&s, a, r, 10000, 1e-15 * (1.0 + vec3_length(s.position))), 10000);
             scene_geometry_destroy(a);
         }
     }
 }
 
-/* Whispering: at grazing incidence the chords are as short as 2e-9 radii and must still be ahead. */
+/* Whispering gallery: at grazing incidence the chords are as short as 2e-9 radii and must still be positive. */
 static void grazing_chords_do_not_stick(void **state)
 {
     (void)state;
@@ -163,8 +163,8 @@ static void grazing_chords_do_not_stick(void **state)
     scene_geometry_destroy(a);
 }
 
-/* What leaves a convex solid, by reflection or refraction, never meets it again; what enters leaves on the far side,
- * and the chord is that of quadruple precision. */
+/* A ray that leaves a convex solid, by reflection or refraction, never hits it again; a ray that enters leaves on the
+ * far side, with the chord of quadruple precision. */
 static void convex_solids_are_met_twice_and_no_more(void **state)
 {
     (void)state;
@@ -204,10 +204,10 @@ static void convex_solids_are_met_twice_and_no_more(void **state)
     assert_true(entered > 8000);
 }
 
-/* Of a ray on a face of solid a at h: what it does that runs along the face and leans outwards by a little. */
+/* For a ray on a face of solid a at h: the next event of a ray along the face that leans slightly outwards. */
 typedef void face_check(const scene_geometry *a, const one_hit *h, vec3 along, vec3 outward, double lean);
 
-/* Every face of every convex shape, upright and turned. */
+/* Every face of every convex shape, with and without rotation. */
 static void on_all_faces(face_check *check)
 {
     static const solid_shape shapes[] = {
@@ -249,8 +249,8 @@ static void leaves_at_once(const scene_geometry *a, const one_hit *h, vec3 along
     assert_true(out.t == 0.0 && out.after == 0);
 }
 
-/* A ray that is inside, on a face, and leans outwards by however little leaves there and then: the root of the face
- * that it starts on is zero, not nearly. */
+/* A ray inside, on a face, that leans outwards by any amount leaves immediately: the root of its own face is exactly
+ * zero. */
 static void the_root_of_the_starting_face_is_zero(void **state)
 {
     (void)state;
@@ -263,7 +263,7 @@ static void stays_outside(const scene_geometry *a, const one_hit *h, vec3 along,
     assert_int_equal(nearest_interface(a, (one_ray){h->point, d, h->face, 0}).hit_primitive, -1);
 }
 
-/* A ray that is outside, on a face, does not enter there, though roundings lean it inwards: its set is believed. */
+/* A ray outside, on a face, does not enter there, even if rounding turns it inwards: its set decides. */
 static void who_has_left_by_a_face_does_not_come_back(void **state)
 {
     (void)state;
@@ -288,15 +288,15 @@ static void is_on_one_side_or_the_other(const scene_geometry *a, const one_hit *
     }
 }
 
-/* A ray that starts in the open, on a surface but for rounding, as from an eye that was placed there: by its set it is
- * inside or outside, and inwards it enters there and then or has entered. It cannot slip through. */
+/* A ray that starts on a surface up to rounding, as from a camera: its set defines whether it is inside or outside, and
+ * inwards it enters immediately or is inside already. It cannot pass without an event. */
 static void a_start_at_the_edge_is_on_one_side_or_the_other(void **state)
 {
     (void)state;
     on_all_faces(is_on_one_side_or_the_other);
 }
 
-/* A mirrored ray on the wall of a cup's hollow crosses it to the other side, and leaves it by the open top. */
+/* A reflected ray on the wall of a cup's hollow crosses it to the other side, and leaves it by the open top. */
 static void a_cup_is_met_again_through_its_hollow(void **state)
 {
     (void)state;
@@ -313,7 +313,7 @@ static void a_cup_is_met_again_through_its_hollow(void **state)
     assert_int_equal(h.face, FACES_MAX); /* the hollow's side */
     assert_true(h.before == 0 && h.after == 1 && h.normal.x == -1.0);
     r = mirrored(r, &h);
-    assert_int_equal(nearest_interface(a, r).hit_primitive, -1); /* it rises 2.4 on its way across */
+    assert_int_equal(nearest_interface(a, r).hit_primitive, -1); /* it rises by 2.4 while crossing */
     r.d = vec3_make(-0.8, 0.6, 0.0);
     r.o.y = 0.5;
     h = nearest_interface(a, r);

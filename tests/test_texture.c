@@ -1,4 +1,4 @@
-/* Textures against closed forms: texels at their centres, ramps between them, the box-filtered pyramid, and IEC
+/* Tests of textures against closed forms: texels at their centres, ramps between them, the box-filtered mipmap, and IEC
  * 61966-2-1. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -64,7 +64,7 @@ static texture *textured(const image *img, texture_wrap wrap, texture_filter fil
     return t;
 }
 
-/* And the picture is not needed any more. */
+/* The image is no longer needed. */
 static texture *owned(image *img, texture_wrap wrap, texture_filter filter)
 {
     texture *t = textured(img, wrap, filter);
@@ -89,7 +89,7 @@ static void texel_centres_return_the_texels_the_lowest_row_first(void **state)
                     int x = i % width, y = i / width;
                     const float *p = img->pixel + ((height - 1 - y) * width + x) * 3;
                     vec3 c = texture_sample(t, (x + 0.5) / width, (y + 0.5) / height, 0.0);
-                    /* a centre is a double exactly where the size is a power of two; else off by some 1e-16 of it */
+                    /* a centre is exact if the size is a power of two; otherwise its error is about 1e-16 */
                     int exact =
                         filters[f] == TEXTURE_NEAREST || ((width & (width - 1)) == 0 && (height & (height - 1)) == 0);
                     assert_same(c, vec3_make((double)p[0], (double)p[1], (double)p[2]), exact ? 0.0 : 1e-13);
@@ -158,7 +158,7 @@ static void a_linear_ramp_is_reproduced_between_the_outer_centres_and_is_flat_be
     texture_release(t);
 }
 
-/* Which texel of four lies under cell k of the endless row: worked out by hand. */
+/* The texel of four at cell k of the infinite row, by hand. */
 static const struct {
     texture_wrap wrap;
     int first, texels[14];
@@ -309,8 +309,8 @@ static void write_then_read(const image *img, const char *ending, int bits, text
     unlink(path);
 }
 
-/* IEC 61966-2-1: half the light of white is the sRGB value 1.055 (1/2)^(1/2.4) - 0.055 = 0.7354; a picture averaged as
- * it is coded would have 1/2, the light ((0.5 + 0.055) / 1.055)^2.4 = 0.2140. */
+/* IEC 61966-2-1: half the light of white is the sRGB value 1.055 (1/2)^(1/2.4) - 0.055 = 0.7354; averaging encoded
+ * values would give 1/2, the light ((0.5 + 0.055) / 1.055)^2.4 = 0.2140. */
 static void a_checkerboard_from_far_is_half_the_light_of_white(void **state)
 {
     (void)state;
@@ -325,7 +325,7 @@ static void a_checkerboard_from_far_is_half_the_light_of_white(void **state)
         assert_same(texture_sample(t, 0.3, 0.7, footprint), vec3_make(0.5, 0.5, 0.5), 0.0);
     assert_near(srgb_encode(texture_sample(t, 0.1, 0.2, 1.0).x), 1.055 * pow(0.5, 1.0 / 2.4) - 0.055, 1e-12);
     texture_release(t);
-    /* the byte 128 as light, and as a number */
+    /* the byte 128 as linear light, and as a plain number */
     set(grey, 0, 0, pow((128.0 / 255.0 + 0.055) / 1.055, 2.4), 0.0, 1.0);
     write_then_read(grey, ".png", 8, TEXTURE_SRGB, TEXTURE_BILINEAR, &t);
     assert_same(texture_sample(t, 0.1, 0.2, 0.0), vec3_make(pow((128.0 / 255.0 + 0.055) / 1.055, 2.4), 0.0, 1.0), 1e-8);
@@ -368,7 +368,7 @@ static void a_linear_picture_gives_back_the_numbers_in_its_file(void **state)
     texture *grey;
     image *middle = blank(8, 8);
     for (int i = 0; i < 192; i++)
-        middle->pixel[i] = (float)pow((128.0 / 255.0 + 0.055) / 1.055, 2.4); /* JPEG keeps a plain grey to the byte */
+        middle->pixel[i] = (float)pow((128.0 / 255.0 + 0.055) / 1.055, 2.4); /* JPEG preserves a uniform grey exactly */
     write_then_read(middle, ".jpg", 0, TEXTURE_LINEAR, TEXTURE_TRILINEAR, &grey);
     assert_near(texture_sample(grey, 0.5, 0.5, 1.0).x, (double)(float)(128.0 / 255.0), 0.0);
     texture_release(grey);
@@ -377,7 +377,7 @@ static void a_linear_picture_gives_back_the_numbers_in_its_file(void **state)
     image_destroy(middle);
 }
 
-/* One column of eight is white; at the edge beside it the levels 0 to 3 show 1, 1/2, 1/4 and 1/8. */
+/* One column of eight is white; at its edge the levels 0 to 3 have the values 1, 1/2, 1/4 and 1/8. */
 static void the_level_is_the_logarithm_of_the_footprint_in_texels(void **state)
 {
     (void)state;
@@ -411,7 +411,7 @@ static void trilinear_has_no_step_where_the_level_changes(void **state)
             assert_same(texture_sample(t, u, v, footprint * (1.0 + 1e-12)), here, 1e-11);
         }
     }
-    /* nor anywhere else: a level has a slope of at most 1, the range of the texels */
+    /* nor elsewhere: the slope of a level is at most 1, the range of the texels */
     for (double footprint = 0.01; footprint < 2.0; footprint *= 1.001)
         assert_same(texture_sample(t, 0.4, 0.6, footprint * 1.001), texture_sample(t, 0.4, 0.6, footprint), 1.5e-3);
     texture_release(t);
@@ -421,7 +421,7 @@ static void a_larger_footprint_never_shows_more_contrast(void **state)
 {
     (void)state;
     image *img = blank(64, 64);
-    set(img, 20, 41, 1, 1, 1); /* one bright texel: what is seen at its centre can only fall */
+    set(img, 20, 41, 1, 1, 1); /* one bright texel: the value at its centre can only decrease */
     texture *t = owned(img, TEXTURE_REPEAT, TEXTURE_TRILINEAR);
     double before = 2.0;
     for (double footprint = 0.001; footprint < 3.0; footprint *= 1.01) {
@@ -549,7 +549,7 @@ static void *take_and_leave(void *shared)
     return NULL;
 }
 
-/* The sanitizers see a block that is released too early, twice or never. */
+/* The sanitizers detect a block that is released too early, twice or never. */
 static void owners_share_a_texture_and_the_last_one_releases_it(void **state)
 {
     (void)state;

@@ -140,5 +140,5 @@ int main(void)
         cmocka_unit_test(counts_last_for_one_frame),
         cmocka_unit_test(workers_share_tracers),
     };
-    return cmocka_run_group_tests_name("tracer_set", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("tracer_pool", tests, NULL, NULL);
 }

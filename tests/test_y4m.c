@@ -1,5 +1,5 @@
-/* YUV4MPEG2: the header's text, the frame's bytes, and colours against Y'CbCr worked out by hand from the coefficients
- * of BT.601 and BT.709. */
+/* Tests of YUV4MPEG2: the header's text, the frame's bytes, and colours against Y'CbCr values computed by hand from the
+ * coefficients of BT.601 and BT.709. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,7 +15,7 @@ typedef struct stream_bytes {
     size_t size;
 } stream_bytes;
 
-/* One frame of that picture. */
+/* One frame of that image. */
 static stream_bytes frame_of(const image *img)
 {
     stream_bytes out = {0};
@@ -48,7 +48,7 @@ static void fill(image *img, double r, double g, double b)
             put(img, x, y, r, g, b);
 }
 
-/* Every byte of a picture of one colour. */
+/* Every byte of an image of one colour. */
 static void check_colour(int width, int height, double r, double g, double b, int luma, int blue, int red)
 {
     image *img = image_of(width, height);
@@ -97,8 +97,8 @@ static void colours_of_high_pictures_are_bt709(void **state)
     check_colour(2, 720, 0, 0, 1, 32, 240, 118);
 }
 
-/* Linear light is sRGB-coded first: 0.2140411 is the byte 127.5 of 255, so 0.214 is 127; grey of that is Y = 16 + 219
- * 127 / 255 = 125.07. Out of range is clamped, no number is black. */
+/* Linear values are sRGB-encoded first: 0.2140411 is the byte 127.5 of 255, so 0.214 is 127; its grey is Y = 16 + 219
+ * 127 / 255 = 125.07. Values out of range are clamped, NaN is black. */
 static void pixels_are_coded_first(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* A glass ball on a chequered ground, by the engine alone: the scene from calls, the picture as it comes, into a PPM on
- * standard output, and what was traced on standard error.
+/* An example of the engine: a glass ball on a chequered ground. The scene is built by calls, the image is written to
+ * standard output as a PPM, and the counts of rays to standard error.
  *
  *   cc -o glass_ball glass_ball.c $(pkg-config --cflags --libs cuvette) && ./glass_ball >ball.ppm */
 #include <cuvette.h>
@@ -8,7 +8,7 @@
 
 enum { WIDTH = 320, HEIGHT = 240 };
 
-/* Each path and its value. */
+/* Parameters, each a path and its value. */
 static const char *const settings[] = { // clang-format off
     "render.width", "320", "render.height", "240", "render.depth", "6", "render.threads", "2",
     "camera.position", "0,2,-6", "camera.target", "0,1,0", "background.color", "0.5,0.7,0.9",
@@ -17,7 +17,7 @@ static const char *const settings[] = { // clang-format off
     "glass.medium", "bk7", "glass.specular", "0.6", "glass.shininess", "80", "ball.position", "0,1.01,0"
 }; // clang-format on
 
-/* Ends the program with the library's own words. */
+/* Ends the program with the library's diagnostic unless the status is CUVETTE_OK. */
 static void need(cuvette_status status, const cuvette_diagnostic *why)
 {
     char text[CUVETTE_DIAGNOSTIC_TEXT_MAX];
@@ -42,7 +42,7 @@ static cuvette_scene *make_scene(void)
     return scene;
 }
 
-/* A program with a window would draw the rectangle now. */
+/* Called for each finished piece; a program with a window would draw the rectangle now. */
 static void show(void *context, const cuvette_piece *piece)
 {
     size_t *pieces = (size_t *)context;
@@ -53,7 +53,7 @@ static bool report(void *context, double share)
 {
     (void)context;
     fprintf(stderr, "%3.0f%%\n", 100.0 * share);
-    return true; /* false would stop it */
+    return true; /* false would cancel the render */
 }
 
 int main(void)

@@ -1,5 +1,5 @@
-/* A slime that is taken hold of under a pixel, drawn aside and let go, by the engine alone: five moments side by side
- * in a PPM on standard output, and what became of the slime on standard error.
+/* An example of the engine: a slime that is grabbed under a pixel, drawn aside and released. Five moments are written
+ * side by side to standard output as a PPM, and the state of the slime to standard error.
  *   cc -o slime slime.c $(pkg-config --cflags --libs cuvette) && ./slime >slime.ppm */
 #include <cuvette.h>
 #include <stdio.h>
@@ -7,7 +7,7 @@
 
 enum { WIDTH = 160, HEIGHT = 120, FRAMES = 5, ROW = 3 * WIDTH * FRAMES };
 
-/* Each path and its value. */
+/* Parameters, each a path and its value. */
 static const char *const settings[] = { // clang-format off
     "render.width", "160", "render.height", "120", "render.depth", "6", "render.threads", "2",
     "camera.position", "0,2,-6", "camera.target", "0,0.9,0", "background.color", "0.5,0.7,0.9",
@@ -17,7 +17,7 @@ static const char *const settings[] = { // clang-format off
     "body.absorb_per_m", "2.2,0.25,1.8"
 }; // clang-format on
 
-/* Ends the program with the library's own words. */
+/* Ends the program with the library's diagnostic unless the status is CUVETTE_OK. */
 static void need(cuvette_status status, const cuvette_diagnostic *why)
 {
     char text[CUVETTE_DIAGNOSTIC_TEXT_MAX];
@@ -41,7 +41,7 @@ static cuvette_scene *make_scene(void)
     return scene;
 }
 
-/* What a mouse would do: the ray of a pixel, and whatever it meets first. */
+/* Grabs the slime as a mouse would: at the first hit of a pixel's ray. */
 static int grab_under(cuvette_motion *motion, const cuvette_scene *scene, double x, double y)
 {
     cuvette_diagnostic why;

@@ -36,7 +36,7 @@ typedef struct tally {
     double total_t;
 } tally;
 
-/* CPU time: what others do on the machine does not count. */
+/* CPU time, because wall time includes other processes. */
 static double cpu_s(void)
 {
     struct timespec t;
@@ -84,7 +84,7 @@ static void trace_ray(RTCScene scene, int x, int y, tally *a)
     rtcOccluded1(scene, &context, &s);
     a->hits++;
     a->total_t += (double)t;
-    a->blocked += s.tfar < 0.0f; /* Embree's mark of a blocked ray: tfar is -infinity */
+    a->blocked += s.tfar < 0.0f; /* Embree sets tfar of a blocked ray to -infinity */
 }
 
 /* --- packets of 16 --- */
@@ -108,7 +108,7 @@ static void packet_of_camera_rays(int x, int y, struct RTCRayHit16 *r)
     }
 }
 
-/* Those of `valid` lanes; the others' numbers mean nothing, but are numbers. */
+/* The shadow rays of the `valid` lanes; the other lanes hold arbitrary finite numbers. */
 static void packet_of_shadow_rays(const struct RTCRayHit16 *r, const int *valid, struct RTCRay16 *s)
 {
     for (int i = 0; i < PACKET; i++) {
@@ -151,8 +151,7 @@ static void trace_packet(RTCScene scene, int x, int y, tally *a)
         a->blocked += valid[i] && s.tfar[i] < 0.0f;
 }
 
-/* Tiles as in Cuvette's bench, for both sizes: rays that are neighbours in the image follow each other through the
- * caches. */
+/* Traces in tiles as in Cuvette's bench, for both packet sizes, so that neighbouring rays share the caches. */
 static tally frame(RTCScene scene, int size)
 {
     const int step = size == SINGLE ? 1 : PACKET_EDGE;
@@ -168,7 +167,7 @@ static tally frame(RTCScene scene, int size)
 
 /* --- the scene --- */
 
-/* The mesh's corners as Embree's buffers, which it owns. False when it has no memory. */
+/* Copies the mesh to buffers that Embree owns. False when out of memory. */
 static bool fill(RTCGeometry geometry, const mesh *m)
 {
     float *vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
@@ -187,7 +186,7 @@ static bool fill(RTCGeometry geometry, const mesh *m)
     return true;
 }
 
-/* Built on one thread, by Embree's defaults. NULL if it fails. */
+/* Builds the scene on one thread, with Embree's defaults. NULL on failure. */
 static RTCScene build(RTCDevice device, const mesh *m)
 {
     RTCScene scene = rtcNewScene(device);

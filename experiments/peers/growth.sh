@@ -1,5 +1,5 @@
 #!/bin/bash
-# growth.sh - do the report's published times by depth (table 4) and by threads (table 5) follow from its algorithm?
+# growth.sh - compare the report's published times by depth (table 4) and by threads (table 5) with its algorithm.
 #   experiments/peers/growth.sh [REPORT]      REPORT: the program of peers/report, build/peers/report (make peers)
 # Environment: REPS=5 (rounds), SIZE=800x600, THREADS="1 4 8 ..." (table 5's), FOVS="45 110" (fields of view, degrees).
 # Every round renders each depth, and then each number of threads, once. The published figures are read from
@@ -17,8 +17,8 @@ threads=${THREADS:-1 4 8 16 32 64 128 256 512 1024}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# column FILE.csv KEY VALUE: "key value" by the names in its first line; what the two hold is numbers, to the left of
-# any quoted text
+# column FILE.csv KEY VALUE: prints "key value" of each row, columns by their names in the first line; both must be
+# numbers, to the left of any quoted text
 column() {
     awk -F, -v key="$2" -v value="$3" '
         NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i
@@ -34,7 +34,7 @@ library=$(<"$here/../order.awk")
 for fov in $fovs; do
     "$report" -d 0,1,2,3,4,5,6,7,8 -s "$size" -f "$fov" -r "$reps" >"$work/rows"
     awk -v fov="$fov" "$library"'
-        # T = offset + scale x, which minimises the sum of (fitted / T - 1)^2; offset 0 where none is wanted.
+        # Fits T = offset + scale x, minimising the sum of (fitted / T - 1)^2; without an offset, it is 0.
         function fit(what, x, free,   d, w, s0, sx, sy, sxx, sxy, scale, offset, off, worst, text) {
             for (d = 0; d <= 8; d++) {
                 w = 1 / (T[d] * T[d])
@@ -56,7 +56,7 @@ for fov in $fovs; do
         { d = $at["depth"]; cpu[d] = cpu[d] " " $at["cpu_s"]; rays[d] = $at["rays"]; sky[d] = $at["sky"]
           shaded[d] = $at["sky"] - $at["camera"]; glass = ($at["vessel"] + $at["liquid"]) / $at["camera"] }
         END {
-            printf "field of view %g degrees: %.1f %% of the camera rays meet the glass\n", fov, 100 * glass
+            printf "field of view %g degrees: %.1f %% of the camera rays hit the glass\n", fov, 100 * glass
             printf "%5s %12s %12s %12s  %-28s | %7s %7s %7s | %10s %7s\n",
                 "depth", "rays", "hits", "sky", "CPU s", "x rays", "x sky", "x CPU", "table 4", "growth"
             for (d = 0; d <= 8; d++) {
@@ -67,7 +67,7 @@ for fov in $fovs; do
             }
             printf "table 4 by                     offset        scale    worst    deviation by depth, %%\n"
             for (free = 0; free <= 1; free++) {
-                fit("our CPU time", s, free); fit("rays", rays, free); fit("colours of the sky", sky, free)
+                fit("our CPU time", s, free); fit("rays", rays, free); fit("sky colours", sky, free)
             }
             print ""
         }' "$work/depth" FS='\t' "$work/rows"

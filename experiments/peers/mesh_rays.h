@@ -1,6 +1,6 @@
 /* The rays of the mesh benches, the same for Cuvette (tests/bench_mesh.c) and for Embree (embree.c): a camera of 800 x
- * 600 before the sets of triangles, and from each point that it sees a ray to a point light. Single precision, so that
- * both start from the same bits. Pure; cannot fail. */
+ * 600 pixels in front of the sets of triangles, and a shadow ray to a point light from each hit. Single precision, so
+ * that both start from the same bits. Pure functions; cannot fail. */
 #pragma once
 
 #include <math.h>
@@ -11,12 +11,12 @@ enum {
     MESH_RAYS_TILE_ROWS = 8
 }; /* the order in which pixels are visited; the frame is whole tiles */
 
-/* The camera looks along +z; y up, x to the right. A shadow ray is the way from the hit to the light, from
- * `shadow_near` of it to all of it. */
+/* The camera looks along +z; y up, x to the right. A shadow ray is the segment from the hit to the light; its range is
+ * `shadow_near` to 1 of the segment's length. */
 static const float mesh_rays_eye[3] = {0.0f, 0.0f, -3.0f}, mesh_rays_light[3] = {2.0f, 3.0f, -4.0f},
                    mesh_rays_shadow_near = 1e-3f;
 
-/* Through the centre of pixel x, y (0, 0: upper left); 45 degrees from the lower to the upper edge. A unit vector. */
+/* The unit vector through the centre of pixel x, y (0, 0: upper left); 45 degrees from the lower to the upper edge. */
 static inline void mesh_rays_direction(int x, int y, float out[3])
 {
     const float s = (float)0.41421356237309503; /* tan(22.5 degrees) */

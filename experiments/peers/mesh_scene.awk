@@ -1,7 +1,7 @@
-# mesh_scene.awk - the scene of the speed study for another program, around a mesh that `cuvette mesh -f obj` wrote.
+# mesh_scene.awk - write the scene of the speed study for another program, with a mesh from `cuvette mesh -f obj`.
 #   awk -v peer=povray -f experiments/peers/mesh_scene.awk mesh.obj >mesh.pov     # POV-Ray 3.7
 #   awk -v peer=tachyon -f experiments/peers/mesh_scene.awk mesh.obj >mesh.dat
-# Camera and light are those of scenes/soup.yaml. POV-Ray gets the numbers as they stand, Tachyon 9 decimals.
+# Camera and light are those of scenes/soup.yaml. Numbers are passed to POV-Ray unchanged, to Tachyon with 9 decimals.
 $1 == "v" { place[vertices++] = "<" $2 "," $3 "," $4 ">"; corner[vertices] = sprintf("%.9f %.9f %.9f", $2, $3, $4) }
 $1 == "f" { face[faces++] = $2 " " $3 " " $4 }
 END {

@@ -1,17 +1,17 @@
 // rod.pov - experiments/scenes/rod.yaml for POV-Ray 3.7: the same lengths, eye, lamp, colours and highlights.
 //   povray +Irod.pov +Orod.png +W800 +H600 -D -A +WT1 Declare=DEPTH=8 Declare=ADC=0
-// No anti-aliasing, no radiosity, no photons: camera rays through pixel centres, and the rays that they spawn.
+// No antialiasing, no radiosity, no photons: camera rays through pixel centres, and their secondary rays.
 //
 // Parameters, by Declare=NAME=VALUE:
 //   DEPTH       reflections and refractions after the camera ray, as render.depth (max_trace_level counts that ray too)
-//   ADC         a branch of less weight than this is not followed, as render.min_weight; 0 follows the whole tree
+//   ADC         a branch of less weight than this is pruned, as render.min_weight; 0 traces the whole tree
 //   IOR_GLASS   index of the vessel, as vessel.ior
 //   IOR_LIQUID  index of the liquid, as liquid.ior
-//   ONE_BODY    1: a vessel filled with its own glass, one solid without any overlap; IOR_LIQUID then means nothing
+//   ONE_BODY    1: a vessel filled with its own glass, one solid without any overlap; IOR_LIQUID is then ignored
 //
-// POV-Ray knows no priorities. The liquid reaches by OVERLAP into the glass: a ray from the glass meets the liquid's
-// surface first, from index IOR_GLASS to IOR_LIQUID, and then leaves the glass within the liquid, where POV-Ray lets it
-// pass straight on.
+// POV-Ray has no priorities. The liquid overlaps the glass by OVERLAP: a ray from the glass hits the liquid's surface
+// first, from index IOR_GLASS to IOR_LIQUID, and then leaves the glass within the liquid, where POV-Ray does not refract
+// it.
 #version 3.7;
 
 #ifndef (DEPTH)      #declare DEPTH = 4;         #end
@@ -20,8 +20,8 @@
 #ifndef (IOR_LIQUID) #declare IOR_LIQUID = 1.33; #end
 #ifndef (ONE_BODY)   #declare ONE_BODY = 0;      #end
 
-#declare BASE = 0.001;              // the vessel stands just above the ground
-#declare BOTTOM = BASE + 0.1;       // of its hollow
+#declare BASE = 0.001;              // the vessel's base, just above the ground
+#declare BOTTOM = BASE + 0.1;       // of the vessel's hollow
 #declare SURFACE = BASE + 2;        // of the liquid
 #declare RIM = BASE + 3;
 #declare OVERLAP = 0.001;
@@ -55,7 +55,7 @@ plane {
   finish { Tiles }
 }
 
-// The vessel. Its hollow is cut through the rim, so that no two surfaces coincide there.
+// The vessel. Its hollow extends through the rim, so that no two surfaces coincide there.
 difference {
   cylinder { y*BASE, y*RIM, 1 }
   cylinder { y*HOLLOW_FROM, y*(RIM + 1), 0.9 }
@@ -73,7 +73,7 @@ cylinder {
 }
 #end
 
-// The rod: 0.25 x 3 x 0.25 about its centre.
+// The rod: 0.25 x 3 x 0.25 around its centre.
 box {
   <-0.125, -1.5, -0.125>, <0.125, 1.5, 0.125>
   translate <0.2, BASE + 2.1, 0>

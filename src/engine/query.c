@@ -1,5 +1,6 @@
 /* Queries: a scene prepared for the caller's rays. A query is immutable; the scratch memory of a call (a bench) is
- * taken from a shelf and put back, so that any number of threads may query, and a single ray costs no allocation. */
+ * taken from a free list and returned to it, so that any number of threads may query, and a single ray costs no
+ * allocation. */
 #include "engine/query_private.h"
 #include "scene/model/scene.h"
 
@@ -11,9 +12,9 @@ void cuvette_query_destroy(cuvette_query *query)
 {
     if (!query)
         return;
-    while (query->shelf) {
-        bench *b = query->shelf;
-        query->shelf = b->next;
+    while (query->free_benches) {
+        bench *b = query->free_benches;
+        query->free_benches = b->next;
         free(b);
     }
     plan_destroy(query->ready);
@@ -70,9 +71,9 @@ bench *query_take_bench(const cuvette_query *query)
 {
     cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
     pthread_mutex_lock(&q->lock);
-    bench *b = q->shelf;
+    bench *b = q->free_benches;
     if (b)
-        q->shelf = b->next;
+        q->free_benches = b->next;
     pthread_mutex_unlock(&q->lock);
     if (!b && (b = aligned_alloc(64, (sizeof *b + 63) / 64 * 64))) {
         b->scratch.segments = NULL;
@@ -85,8 +86,8 @@ void query_give_bench(const cuvette_query *query, bench *b)
 {
     cuvette_query *q = (cuvette_query *)(uintptr_t)query;
     pthread_mutex_lock(&q->lock);
-    b->next = q->shelf;
-    q->shelf = b;
+    b->next = q->free_benches;
+    q->free_benches = b;
     pthread_mutex_unlock(&q->lock);
 }
 

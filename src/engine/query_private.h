@@ -32,9 +32,9 @@ struct cuvette_query {
     plan *ready;
     const geometry_kernels *kernels;
     pthread_mutex_t lock;
-    bench *shelf;
+    bench *free_benches;
 };
 
-/* Takes a bench from the shelf, or a new one; NULL when out of memory. */
+/* Takes a bench from the free list, or allocates one; NULL when out of memory. */
 bench *query_take_bench(const cuvette_query *query);
 void query_give_bench(const cuvette_query *query, bench *b);

@@ -26,10 +26,10 @@ status codec_check_size(long long width, long long height, size_t file_bytes, di
 status codec_begin(long long width, long long height, size_t file_bytes, unsigned maximum, image **img, float **linear,
                    diagnostic *why);
 
-/* sRGB-encoded and correctly rounded to 0..maximum; NaN is 0. */
+/* The sRGB-encoded value, correctly rounded to 0..maximum; 0 for NaN. */
 unsigned codec_quantize(float linear, unsigned maximum);
 
-/* The same for 0..255, faster: least[b] is the least linear value that becomes the byte b or a greater one. */
+/* The same for 0..255, faster: least[b] is the least linear value that is encoded as the byte b or a greater one. */
 typedef struct codec_bytes {
     float least[256];
 } codec_bytes;

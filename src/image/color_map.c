@@ -1,3 +1,4 @@
+/* The colour maps viridis and magma. */
 #include "image/color_map.h"
 
 /* Every fifth of the maps' 256 colours; linear interpolation between them is within 1/255 of the others. */

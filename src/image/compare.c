@@ -1,3 +1,4 @@
+/* The per-pixel measures of compare.h, and the call of those that use neighbours. */
 #include "image/compare.h"
 
 #include "image/codec.h"

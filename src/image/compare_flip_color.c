@@ -1,20 +1,20 @@
-/* The colours of FLIP: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, FLIP: A Difference Evaluator
- * for Alternating Images, Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020,
+/* The colour space of FLIP: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, FLIP: A Difference
+ * Evaluator for Alternating Images, Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020,
  * section 4.1. */
 #include "image/compare_parts.h"
 
 #include "base/elementary.h"
 #include <math.h>
 
-/* Linear sRGB to XYZ relative to its own white (D65), a row over the sum of its numerators: each row sums to 1. The
- * fractions follow from the primaries of IEC 61966-2-1 and are the ones that the authors' implementation uses. */
+/* Linear sRGB to XYZ relative to its own white (D65). Each row is divided by the sum of its numerators and so sums to
+ * 1. The fractions follow from the primaries of IEC 61966-2-1; the authors' implementation uses the same. */
 static const double XYZ_OF_RGB[3][3] = {
     {10135552.0 / 23359437, 8788810.0 / 23359437, 4435075.0 / 23359437},
     {2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897},
     {1425312.0 / 80288307, 8788810.0 / 80288307, 70074185.0 / 80288307},
 };
 
-/* Its inverse, from exact fractions. */
+/* The inverse, from exact fractions. */
 static const double RGB_OF_XYZ[3][3] = {
     {3.0803419882804608, -1.5373989694887855, -0.54294301879167506},
     {-0.92117839616512365, 1.8759299836951759, 0.045248412469947583},

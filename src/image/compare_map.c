@@ -1,3 +1,4 @@
+/* The FLIP error as a false-colour image. */
 #include "image/compare.h"
 
 #include "image/color_map.h"

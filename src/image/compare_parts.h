@@ -10,7 +10,7 @@ status compare_check(const image *a, const image *b, diagnostic *why);
 /* Mean structural similarity of two planes of encoded luma, 0..1. */
 status compare_ssim(const double *a, const double *b, int width, int height, double *mean, diagnostic *why);
 
-/* FLIP error of each pixel, 0..1, into errors, width * height of them. */
+/* Writes the FLIP error of each pixel, 0..1, to errors, width * height values. */
 status compare_flip(const image *a, const image *b, double *errors, diagnostic *why);
 
 /* The colour space of FLIP: conversion relative to white, and distance. */

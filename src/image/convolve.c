@@ -1,3 +1,4 @@
+/* Convolution with separable filters. */
 #include "image/convolve.h"
 
 #include "base/elementary.h"

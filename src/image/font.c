@@ -1,3 +1,4 @@
+/* The glyphs of the 5 by 7 font. */
 #include "image/font.h"
 
 /* Columns from the left, lowest bit on top: the usual letter forms of 5 by 7 character displays. */

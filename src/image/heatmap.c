@@ -1,3 +1,4 @@
+/* Heat maps: the range of the values, the pixels, and the key. */
 #include "image/heatmap.h"
 
 #include "base/number.h"

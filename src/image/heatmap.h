@@ -11,5 +11,5 @@
  * by the key. */
 status heatmap_create(const double *values, int width, int height, const char *title, image **out, diagnostic *why);
 
-/* The map's colour for 0..1, sRGB-encoded 0..255. */
+/* The colour of t, 0..1, sRGB-encoded to 0..255. */
 void heatmap_color(double t, unsigned char rgb[3]);

@@ -1,3 +1,4 @@
+/* Images: memory, and reading and writing files in the format of each codec. */
 #include "image/image.h"
 
 #include "base/file.h"

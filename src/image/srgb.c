@@ -1,3 +1,4 @@
+/* The sRGB transfer function and its tables. */
 #include "image/codec.h"
 
 #include "base/elementary.h"
@@ -6,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* IEC 61966-2-1, the standard's own rounded constants. */
+/* IEC 61966-2-1, with the standard's rounded constants. */
 double srgb_encode(double linear)
 {
     if (!(linear > 0.0)) /* NaN too */

@@ -1,3 +1,4 @@
+/* Textures: creation, reading, ownership, hash. */
 #include "image/texture_parts.h"
 
 #include "base/hash.h"
@@ -22,7 +23,7 @@ static status check(const image *img, diagnostic *why)
     return STATUS_OK;
 }
 
-/* The sizes of all levels, and memory for them. */
+/* Sets the sizes of all levels and allocates their memory. */
 static bool allocate(texture *t, int width, int height)
 {
     size_t count = 0, start[TEXTURE_LEVELS_MAX];
@@ -50,7 +51,7 @@ static float restore(const codec_bytes *bytes, int coded_bits, float linear)
                               : linear;
 }
 
-/* Level 0, upside down. */
+/* Copies the image to level 0, whose rows begin at the bottom. */
 static void copy_pixels(texture *t, const image *img, int coded_bits)
 {
     codec_bytes bytes;

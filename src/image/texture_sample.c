@@ -1,3 +1,4 @@
+/* Sampling of a texture: nearest, bilinear, trilinear. */
 #include "image/texture_parts.h"
 
 #include "base/elementary_inline.h"

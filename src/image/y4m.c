@@ -38,7 +38,7 @@ static size_t plane_bytes(const planes *p)
     return p->wide * p->high + 2 * p->chroma_wide * p->chroma_high;
 }
 
-/* E_Y of a pixel times 255 * 10000. */
+/* E_Y of a pixel, times 255 * 10000. */
 static int64_t luma(const luma_shares *k, const unsigned char rgb[3])
 {
     return k->red * rgb[0] + k->green * rgb[1] + k->blue * rgb[2];

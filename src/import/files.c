@@ -1,3 +1,4 @@
+/* File access for assimp: regular files below the root, read only. */
 #include "import/import.h"
 
 #include "base/below.h"
@@ -7,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A regular file as a stream, or NULL and the reason. Does not block on a FIFO. */
+/* Opens a regular file; NULL and the reason on failure. Does not wait for the writer of a FIFO. */
 static FILE *open_regular(const char *path, const char *root, const char **reason, bool *outside)
 {
     int fd = below_open(path, root);
@@ -29,19 +30,19 @@ static FILE *open_regular(const char *path, const char *root, const char **reaso
     return stream;
 }
 
-FILE *files_open(const request *asked)
+FILE *files_open(const request *req)
 {
     const char *reason;
     bool outside;
-    return open_regular(asked->path, asked->root, &reason, &outside);
+    return open_regular(req->path, req->root, &reason, &outside);
 }
 
-status files_check(const request *asked, diagnostic *why)
+status files_check(const request *req, diagnostic *why)
 {
     const char *reason = NULL;
     bool outside;
-    diagnostic_locate(why, asked->path, 0, 0);
-    FILE *stream = open_regular(asked->path, asked->root, &reason, &outside);
+    diagnostic_locate(why, req->path, 0, 0);
+    FILE *stream = open_regular(req->path, req->root, &reason, &outside);
     if (outside)
         return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, BELOW_WHAT);
     if (!stream)
@@ -124,7 +125,7 @@ static void on_close(struct aiFileIO *io, struct aiFile *file)
     }
 }
 
-void files_prepare(file_access *access, const request *asked)
+void files_prepare(file_access *access, const request *req)
 {
-    *access = (file_access){.io = {on_open, on_close, (char *)(void *)access}, .root = asked->root};
+    *access = (file_access){.io = {on_open, on_close, (char *)(void *)access}, .root = req->root};
 }

@@ -1,23 +1,23 @@
-/* Traverses the nodes of a scene and transforms every mesh to world coordinates, in double precision. A mesh without a
+/* Flattening of an assimp scene: every mesh is transformed to world coordinates, in double precision. A mesh without a
  * transform keeps the exact numbers of the file. */
 #include "import/import.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEPTH_MAX = 1000 }; /* depth of nested nodes */
+enum { DEPTH_MAX = 1000 }; /* nesting of nodes */
 
 typedef struct affine {
     double m[3][4];
 } affine;
 
 typedef struct walk {
-    const request *asked;
+    const request *req;
     const struct aiScene *scene;
     flat_mesh *flat;
     joiner join;
     uint64_t triangles;      /* counted by the first traversal */
-    uint16_t slot_of[65536]; /* by material: slot + 1 */
+    uint16_t slot_of[65536]; /* by material: slot + 1, or 0 if unused */
     diagnostic *why;
     status (*visit)(struct walk *w, const struct aiMesh *mesh, const affine *place);
 } walk;
@@ -58,7 +58,7 @@ static status visit_all(walk *w, status (*visit)(walk *, const struct aiMesh *, 
     return visit_node(w, w->scene->mRootNode, &identity, 0);
 }
 
-/* ---- first traversal: counts ---- */
+/* ---- first traversal: count triangles, find materials and attributes ---- */
 
 static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
 {
@@ -66,9 +66,9 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
     uint64_t before = w->triangles;
     for (unsigned i = 0; i < mesh->mNumFaces; i++)
         w->triangles += mesh->mFaces[i].mNumIndices == 3;
-    if (w->triangles > w->asked->triangles)
+    if (w->triangles > w->req->triangles)
         return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail", "more triangles than the limit of %llu",
-                        (unsigned long long)w->asked->triangles);
+                        (unsigned long long)w->req->triangles);
     if (w->triangles == before)
         return STATUS_OK;
     if (mesh->mMaterialIndex >= w->scene->mNumMaterials ||
@@ -77,9 +77,9 @@ static status count_mesh(walk *w, const struct aiMesh *mesh, const affine *place
                         "a part refers to a missing material");
     }
     w->slot_of[mesh->mMaterialIndex] = 1;
-    /* The normals of an STL file are those of its facets, which the triangles determine; with them no two facets would
-     * share a vertex. */
-    w->flat->with_normals |= mesh->mNormals != NULL && w->asked->kind != FILE_STL;
+    /* The normals of an STL file are those of the facets, which follow from the triangles; with them no two facets
+     * would share a vertex. */
+    w->flat->with_normals |= mesh->mNormals != NULL && w->req->kind != FILE_STL;
     w->flat->with_uvs |= mesh->mTextureCoords[0] != NULL;
     return STATUS_OK;
 }
@@ -98,7 +98,7 @@ static status number_slots(walk *w)
     return STATUS_OK;
 }
 
-/* ---- second traversal: data ---- */
+/* ---- second traversal: copy vertices and triangles ---- */
 
 static bool is_identity(const affine *a)
 {
@@ -106,8 +106,8 @@ static bool is_identity(const affine *a)
     return memcmp(a, &identity, sizeof identity) == 0;
 }
 
-/* The transformation of normals: the inverse transpose, up to a positive factor. It is the matrix of cofactors divided
- * by the determinant, of which only the sign matters. */
+/* The transform of normals: the inverse transpose, up to a positive factor. The inverse transpose is the matrix of
+ * cofactors divided by the determinant, of which only the sign matters. */
 static affine normal_transform(const affine *a, double *determinant)
 {
     affine c = {0};
@@ -153,10 +153,10 @@ static void gather(const walk *w, const struct aiMesh *mesh, const placed *at, u
         numbers[7] = (double)mesh->mTextureCoords[0][i].y;
     }
     for (int k = 0; k < 8; k++)
-        numbers[k] += 0.0; /* -0 becomes 0, so that both are merged */
+        numbers[k] += 0.0; /* -0 becomes 0, so that vertices with either are joined */
 }
 
-/* index[i] is the new index of vertex i; unused vertices are dropped. */
+/* Joins the vertices that a triangle uses; index[i] is set to the new index of vertex i. */
 static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at, uint32_t *index)
 {
     enum { UNUSED = 0, USED = 1 };
@@ -174,12 +174,12 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
         if (index[i] == UNUSED)
             continue;
         gather(w, mesh, at, i, numbers);
-        switch (join_vertex(&w->join, w->flat, w->asked->vertices, numbers, &index[i])) {
+        switch (join_vertex(&w->join, w->flat, w->req->vertices, numbers, &index[i])) {
         case JOINED: break;
-        case JOIN_NO_MEMORY: return no_memory_for(w->asked, w->why);
+        case JOIN_NO_MEMORY: return no_memory_for(w->req, w->why);
         case JOIN_TOO_MANY:
             return diagnose(w->why, STATUS_BAD_INPUT, "use a mesh of less detail",
-                            "more vertices than the limit of %llu", (unsigned long long)w->asked->vertices);
+                            "more vertices than the limit of %llu", (unsigned long long)w->req->vertices);
         }
     }
     return STATUS_OK;
@@ -192,14 +192,15 @@ static status take_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
     at.mirrored = determinant < 0;
     uint32_t *index = calloc((size_t)mesh->mNumVertices + 1, sizeof *index);
     if (!index)
-        return no_memory_for(w->asked, w->why);
+        return no_memory_for(w->req, w->why);
     status code = take_vertices(w, mesh, &at, index);
     for (unsigned f = 0; f < mesh->mNumFaces && code == STATUS_OK; f++) {
         const unsigned *corner = mesh->mFaces[f].mIndices;
         if (mesh->mFaces[f].mNumIndices == 3) {
             size_t t = w->flat->triangle_count++;
             w->flat->triangles[t][0] = index[corner[0]];
-            w->flat->triangles[t][1] = index[corner[at.mirrored ? 2 : 1]]; /* a reflection swaps front and back faces */
+            w->flat->triangles[t][1] =
+                index[corner[at.mirrored ? 2 : 1]]; /* a mirrored transform reverses the winding */
             w->flat->triangles[t][2] = index[corner[at.mirrored ? 1 : 2]];
             w->flat->slots[t] = (uint8_t)(w->slot_of[mesh->mMaterialIndex] - 1);
         }
@@ -208,10 +209,10 @@ static status take_mesh(walk *w, const struct aiMesh *mesh, const affine *place)
     return code;
 }
 
-status flatten(const request *asked, const struct aiScene *scene, flat_mesh *flat, diagnostic *why)
+status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat, diagnostic *why)
 {
-    walk w = {.asked = asked, .scene = scene, .flat = flat, .why = why};
-    diagnostic_locate(why, asked->path, 0, 0);
+    walk w = {.req = req, .scene = scene, .flat = flat, .why = why};
+    diagnostic_locate(why, req->path, 0, 0);
     status code = scene->mRootNode ? visit_all(&w, count_mesh) : STATUS_OK;
     if (code == STATUS_OK && w.triangles == 0)
         code = diagnose(why, STATUS_BAD_INPUT, "points and lines are ignored; use a file with faces",
@@ -221,5 +222,5 @@ status flatten(const request *asked, const struct aiScene *scene, flat_mesh *fla
         return code;
     flat->triangles = malloc((size_t)w.triangles * sizeof *flat->triangles);
     flat->slots = malloc((size_t)w.triangles);
-    return flat->triangles && flat->slots ? visit_all(&w, take_mesh) : no_memory_for(asked, why);
+    return flat->triangles && flat->slots ? visit_all(&w, take_mesh) : no_memory_for(req, why);
 }

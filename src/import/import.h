@@ -1,8 +1,8 @@
-/* The program cuvette-import: reads one mesh file with assimp under resource limits that it sets itself, and writes the
- * triangles to standard output in the format of import/mesh_wire.h. It is a separate program so that a file that
- * crashes the reader or exhausts memory affects nothing else. One file per part. Ownership: memory is never freed; the
- * process exits as soon as the mesh is written. Errors: STATUS_BAD_INPUT with the reason in the diagnostic; running out
- * of memory counts as an error of the file, because the limit is ours. */
+/* The parts of the program cuvette-import, one file each. It reads one mesh file with assimp under resource limits that
+ * it sets itself, and writes the triangles to standard output in the format of import/mesh_wire.h. It is a separate
+ * program so that a file that crashes assimp or exhausts its memory affects nothing else. Ownership: memory is never
+ * freed; the process ends as soon as the mesh is written. Errors: STATUS_BAD_INPUT and the reason in the diagnostic,
+ * also when out of memory, because the program sets the memory limit itself. */
 #pragma once
 
 #include "base/status.h"
@@ -19,44 +19,44 @@ typedef enum file_kind { FILE_OBJ, FILE_PLY, FILE_STL, FILE_GLTF, FILE_GLB, FILE
 
 typedef struct request {
     const char *path;
-    file_kind kind;               /* by file name extension */
+    file_kind kind;               /* by the file's extension */
     uint64_t memory_mib, seconds; /* limits on this process */
     uint64_t triangles, vertices; /* limits on the mesh */
-    const char *root;             /* all files are opened below this folder (base/below.h); "": anywhere */
+    const char *root;             /* all files that are opened must be below it (base/below.h); "": anywhere */
 } request;
 
 /* ---- files.c ---- */
 
-/* How assimp opens the file and all files that it refers to: regular files below the root, for reading, without
- * blocking. Missing files are counted. */
+/* The file access of assimp, for the mesh file and all files that it names: only regular files below the root, read
+ * only, without waiting. Records the first file that cannot be opened. */
 typedef struct file_access {
     struct aiFileIO io;
     const char *root;
-    char missing[512];  /* the first file that could not be opened; "" */
-    const char *reason; /* the system's error message, or our own */
+    char missing[512];  /* the first file that could not be opened; "": none */
+    const char *reason; /* why it could not be opened */
     bool outside;       /* it is not below the root */
 } file_access;
 
-void files_prepare(file_access *access, const request *asked);
-/* The file itself as such a stream, NULL if it can no longer be opened. */
-FILE *files_open(const request *asked);
-/* Checks that it is a regular file that is not empty. */
-status files_check(const request *asked, diagnostic *why);
+void files_prepare(file_access *access, const request *req);
+/* Opens the mesh file itself; NULL if that fails. */
+FILE *files_open(const request *req);
+/* Checks that the mesh file is a regular file and not empty. */
+status files_check(const request *req, diagnostic *why);
 
 /* ---- whole.c ---- */
 
-/* Checks that a PLY or STL file is as long as its header implies. */
-status check_whole(const request *asked, diagnostic *why);
+/* Checks that a PLY or STL file has the length that its header implies. */
+status check_whole(const request *req, diagnostic *why);
 
 /* ---- read.c ---- */
 
-/* The scene of the file, triangulated; all files that it needs existed. */
-status read_scene(const request *asked, const struct aiScene **out, diagnostic *why);
-status no_memory_for(const request *asked, diagnostic *why);
+/* Reads the file and triangulates it. Fails if a file that it names cannot be opened. */
+status read_scene(const request *req, const struct aiScene **out, diagnostic *why);
+status no_memory_for(const request *req, diagnostic *why);
 
 /* ---- flatten.c ---- */
 
-/* One mesh in world coordinates. Vertices that are equal in all their numbers are merged. */
+/* One mesh in world coordinates. Vertices that are equal in position, normal and texture coordinates are joined. */
 typedef struct flat_mesh {
     size_t vertex_count, triangle_count;
     vec3 *positions, *normals;
@@ -66,14 +66,14 @@ typedef struct flat_mesh {
     uint32_t (*triangles)[3];
     uint8_t *slots;
     bool with_normals, with_uvs;
-    unsigned material_count, materials[256]; /* by slot: index of the scene's material */
+    unsigned material_count, materials[256]; /* by slot: index into the scene's materials */
 } flat_mesh;
 
-status flatten(const request *asked, const struct aiScene *scene, flat_mesh *flat, diagnostic *why);
+status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat, diagnostic *why);
 
 /* ---- join.c ---- */
 
-/* Adds a vertex to flat, or finds an equal one. */
+/* A hash table of the vertices of flat. join_vertex finds the vertex with these numbers or adds it. */
 typedef struct joiner {
     uint32_t *table;
     size_t size;
@@ -84,4 +84,4 @@ enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double
 
 /* ---- write.c ---- */
 
-status write_mesh(const request *asked, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why);
+status write_mesh(const request *req, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why);

@@ -1,4 +1,4 @@
-/* A hash table of vertices by their bits: open addressing with linear probing, at most half full. */
+/* The hash table of vertices, keyed by their bits: open addressing with linear probing, at most half full. */
 #include "import/import.h"
 
 #include <stdlib.h>
@@ -14,7 +14,7 @@ static void vertex_numbers(const flat_mesh *flat, uint32_t index, double numbers
     memcpy(numbers, (double[NUMBERS]){p.x, p.y, p.z, n.x, n.y, n.z, u, v}, NUMBERS * sizeof *numbers);
 }
 
-/* The entry of the vertex with these numbers, or the empty one for it. Entries are index + 1; 0 is empty. */
+/* The table index of the vertex with these numbers, or of the empty entry for it. Entries are index + 1; 0 is empty. */
 static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[NUMBERS])
 {
     uint64_t hash = 0x9e3779b97f4a7c15u;

@@ -1,5 +1,5 @@
-/* cuvette-import FILE: see import.h. Exit codes 0, 1 (failure of the machine) and 2 (error in the file), one line on
- * standard error. */
+/* The command line of cuvette-import (import.h). Exit codes: 0, 1 (the machine failed), 2 (the file is wrong), with one
+ * line on standard error. */
 #include "import/import.h"
 
 #include "base/float_environment.h"
@@ -25,14 +25,14 @@ static file_kind kind_of(const char *path)
 
 static error_t parse_option(int key, char *value, struct argp_state *state)
 {
-    request *asked = state->input;
-    uint64_t *number = key == 'm'   ? &asked->memory_mib
-                       : key == 's' ? &asked->seconds
-                       : key == 't' ? &asked->triangles
-                                    : &asked->vertices;
+    request *req = state->input;
+    uint64_t *number = key == 'm'   ? &req->memory_mib
+                       : key == 's' ? &req->seconds
+                       : key == 't' ? &req->triangles
+                                    : &req->vertices;
     int64_t got;
     switch (key) {
-    case 'r': asked->root = value; return 0;
+    case 'r': req->root = value; return 0;
     case 'm':
     case 's':
     case 't':
@@ -42,9 +42,9 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
         *number = (uint64_t)got;
         return 0;
     case ARGP_KEY_ARG:
-        if (asked->path)
+        if (req->path)
             argp_error(state, "unexpected argument '%s'", value);
-        asked->path = value;
+        req->path = value;
         return 0;
     case ARGP_KEY_NO_ARGS: argp_error(state, "no file is given"); return 0;
     default: return ARGP_ERR_UNKNOWN;
@@ -52,18 +52,18 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
 }
 
 static const struct argp_option options[] = {
-    {.name = "memory", .key = 'm', .arg = "MIB", .doc = "Address space of this process (4096)"},
-    {.name = "seconds", .key = 's', .arg = "N", .doc = "Processor time (60)"},
-    {.name = "triangles", .key = 't', .arg = "N", .doc = "Most triangles (33554432)"},
-    {.name = "vertices", .key = 'v', .arg = "N", .doc = "Most vertices (67108864)"},
+    {.name = "memory", .key = 'm', .arg = "MIB", .doc = "Limit of this process's address space (4096)"},
+    {.name = "seconds", .key = 's', .arg = "N", .doc = "Limit of processor time (60)"},
+    {.name = "triangles", .key = 't', .arg = "N", .doc = "Limit of triangles (33554432)"},
+    {.name = "vertices", .key = 'v', .arg = "N", .doc = "Limit of vertices (67108864)"},
     {.name = "root",
      .key = 'r',
      .arg = "FOLDER",
-     .doc = "Only files below this folder are opened: its path from / without links"},
+     .doc = "Open only files below this folder, an absolute path without links"},
     {0},
 };
 
-/* A lower limit set by the system stays. */
+/* Lowers a resource limit; never raises it. */
 static void limit(__rlimit_resource_t what, rlim_t value)
 {
     struct rlimit now;
@@ -74,25 +74,25 @@ static void limit(__rlimit_resource_t what, rlim_t value)
     }
 }
 
-/* From here on the process cannot create or modify files, dump its memory, open many files, or outlive its parent. */
-static void limit_all(const request *asked)
+/* After this the process cannot create or change a file, dump its memory, open many files, or outlive its parent. */
+static void limit_all(const request *req)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     prctl(PR_SET_DUMPABLE, 0);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_FSIZE, 0);
     limit(RLIMIT_NOFILE, 16);
-    limit(RLIMIT_CPU, (rlim_t)asked->seconds);
-    limit(RLIMIT_AS, (rlim_t)asked->memory_mib << 20);
+    limit(RLIMIT_CPU, (rlim_t)req->seconds);
+    limit(RLIMIT_AS, (rlim_t)req->memory_mib << 20);
 }
 
-static status convert(const request *asked, diagnostic *why)
+static status convert(const request *req, diagnostic *why)
 {
     const struct aiScene *scene;
     flat_mesh flat = {0};
-    TRY(read_scene(asked, &scene, why));
-    TRY(flatten(asked, scene, &flat, why));
-    return write_mesh(asked, scene, &flat, stdout, why);
+    TRY(read_scene(req, &scene, why));
+    TRY(flatten(req, scene, &flat, why));
+    return write_mesh(req, scene, &flat, stdout, why);
 }
 
 int main(int count, char **arguments)
@@ -101,22 +101,21 @@ int main(int count, char **arguments)
         .options = options,
         .parser = parse_option,
         .args_doc = "FILE",
-        .doc = "Reads a triangle mesh (OBJ, PLY, STL, glTF, glb) and writes it to standard output, a pipe, in the form "
-               "that the "
-               "program cuvette, which starts this one, reads.",
+        .doc = "Read a triangle mesh (OBJ, PLY, STL, glTF, glb) and write it to standard output, a pipe, in the wire "
+               "format of the program cuvette, which starts this one.",
     };
-    request asked = {
+    request req = {
         .memory_mib = 4096, .seconds = 60, .triangles = (uint64_t)1 << 25, .vertices = (uint64_t)1 << 26, .root = ""};
     float_environment_set();
     argp_err_exit_status = STATUS_BAD_INPUT;
-    argp_parse(&parser, count, arguments, 0, NULL, &asked);
-    asked.kind = kind_of(asked.path);
-    limit_all(&asked);
+    argp_parse(&parser, count, arguments, 0, NULL, &req);
+    req.kind = kind_of(req.path);
+    limit_all(&req);
     diagnostic why = {0};
-    status code = convert(&asked, &why);
+    status code = convert(&req, &why);
     if (code != STATUS_OK) {
         char text[DIAGNOSTIC_TEXT_MAX];
         fprintf(stderr, "cuvette-import: %s\n", diagnostic_text(&why, text, sizeof text));
     }
-    _exit((int)code); /* skips the destructors of a possibly invalid scene */
+    _exit((int)code); /* without destructors: the scene may be damaged */
 }

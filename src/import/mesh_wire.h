@@ -1,5 +1,5 @@
-/* The bytes that cuvette-import writes to standard output for its parent, both of one build and on
- * one machine: numbers in native byte order, no padding. The reader does not trust them
+/* The wire format that cuvette-import writes to standard output for the program that started it. Both are of the same
+ * build on the same machine: numbers are in the machine's byte order, without padding. The reader checks everything
  * (scene/assets/mesh_stream.h). In this order:
  *
  * - the header;
@@ -8,7 +8,7 @@
  * - uvs, with MESH_WIRE_UVS: vertex_count x 2 doubles;
  * - triangles: triangle_count x 3 uint32;
  * - slots: triangle_count x 1 byte, the index of the material;
- * - materials: material_count of record, name, texture (texts without a final 0, of the lengths in the record);
+ * - materials: material_count times record, name, texture (texts without a final 0, of the lengths in the record);
  * - MESH_WIRE_END. */
 #pragma once
 
@@ -24,10 +24,10 @@ typedef struct mesh_wire_header {
     char magic[8];
     uint32_t version, flags;
     uint64_t vertex_count, triangle_count;
-    uint32_t material_count, reserved; /* 1 to MESH_SLOTS_MAX; 0 */
+    uint32_t material_count, reserved; /* 1 to MESH_SLOTS_MAX; reserved is 0 */
 } mesh_wire_header;
 
-/* As in the file, linear RGB. */
+/* A material with the values of the file, colours in linear RGB. */
 typedef struct mesh_wire_material {
     double diffuse[3], ambient[3], specular[3], emissive[3], shininess, opacity, ior;
     uint32_t flags, name_length, texture_length, reserved;

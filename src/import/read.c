@@ -1,3 +1,4 @@
+/* Reading of a mesh file with assimp, and the explanation of its errors. */
 #include "import/import.h"
 
 #include "base/below.h"
@@ -6,34 +7,33 @@
 #include <jansson.h>
 #include <string.h>
 
-status no_memory_for(const request *asked, diagnostic *why)
+status no_memory_for(const request *req, diagnostic *why)
 {
-    return diagnose_at(why, asked->path, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
-                       "the file asks for more memory than the limit of %llu MiB",
-                       (unsigned long long)asked->memory_mib);
+    return diagnose_at(why, req->path, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
+                       "the file requires more memory than the limit of %llu MiB", (unsigned long long)req->memory_mib);
 }
 
-/* Locates a syntax error in JSON, for which assimp gives no position. True if there is one. */
-static bool locate_json(const request *asked, diagnostic *why)
+/* Reports the position of a JSON error, which assimp does not. True if the file has one. */
+static bool locate_json(const request *req, diagnostic *why)
 {
     json_error_t error;
-    FILE *stream = files_open(asked);
+    FILE *stream = files_open(req);
     if (!stream)
         return false;
     json_t *root = json_loadf(stream, JSON_REJECT_DUPLICATES, &error);
     fclose(stream);
     if (!root) {
-        diagnostic_locate(why, asked->path, error.line, error.column);
+        diagnostic_locate(why, req->path, error.line, error.column);
         diagnose(why, STATUS_BAD_INPUT, "a .gltf file is a JSON text, a binary one ends in .glb", "%s", error.text);
     }
     return !root;
 }
 
-/* assimp's error messages, shortened to be understood alone. */
-static status explain(const request *asked, const file_access *access, const char *said, diagnostic *why)
+/* Converts an error message of assimp to a diagnostic. */
+static status explain(const request *req, const file_access *access, const char *message, diagnostic *why)
 {
     static const char *const names[] = {"OBJ", "PLY", "STL", "glTF 2.0", "binary glTF 2.0 (glb)"};
-    diagnostic_locate(why, asked->path, 0, 0);
+    diagnostic_locate(why, req->path, 0, 0);
     if (access->outside)
         return diagnose(why, STATUS_BAD_INPUT, BELOW_REMEDY, "needs the file '%s', which %s", access->missing,
                         access->reason);
@@ -41,33 +41,33 @@ static status explain(const request *asked, const file_access *access, const cha
         return diagnose(
             why, STATUS_BAD_INPUT, "put the image where the mesh file expects it, or remove the line that names it",
             "needs the file '%s': %s", access->missing, access->reason ? access->reason : "cannot be opened");
-    if (strstr(said, "bad_alloc") || strstr(said, "length_error") || strstr(said, "bad_array_new_length") ||
-        strstr(said, "_M_") || strstr(said, "max_size"))
-        return no_memory_for(asked, why);
-    if (asked->kind == FILE_GLTF && locate_json(asked, why))
+    if (strstr(message, "bad_alloc") || strstr(message, "length_error") || strstr(message, "bad_array_new_length") ||
+        strstr(message, "_M_") || strstr(message, "max_size"))
+        return no_memory_for(req, why);
+    if (req->kind == FILE_GLTF && locate_json(req, why))
         return STATUS_BAD_INPUT;
-    if (!*said || strstr(said, "No suitable reader"))
+    if (!*message || strstr(message, "No suitable reader"))
         return diagnose(why, STATUS_BAD_INPUT, "check that the file is complete and has the right ending",
-                        "this is not a file of format %s", names[asked->kind]);
-    return diagnose(why, STATUS_BAD_INPUT, "repair the file or export it again", "cannot read: %.300s", said);
+                        "this is not a file of format %s", names[req->kind]);
+    return diagnose(why, STATUS_BAD_INPUT, "repair the file or export it again", "cannot read: %.300s", message);
 }
 
-status read_scene(const request *asked, const struct aiScene **out, diagnostic *why)
+status read_scene(const request *req, const struct aiScene **out, diagnostic *why)
 {
     file_access access;
-    diagnostic_locate(why, asked->path, 0, 0);
-    TRY(files_check(asked, why));
-    if (asked->kind == FILE_UNKNOWN)
+    diagnostic_locate(why, req->path, 0, 0);
+    TRY(files_check(req, why));
+    if (req->kind == FILE_UNKNOWN)
         return diagnose(why, STATUS_BAD_INPUT, "use a file that ends in .obj, .ply, .stl, .gltf or .glb",
                         "unknown mesh format");
-    TRY(check_whole(asked, why));
-    files_prepare(&access, asked);
-    /* Equal vertices are merged in join.c: assimp's own step merges vertices within 1e-5. */
+    TRY(check_whole(req, why));
+    files_prepare(&access, req);
+    /* Equal vertices are joined in join.c: assimp's own step also joins vertices that differ by up to 1e-5. */
     const struct aiScene *scene =
-        aiImportFileEx(asked->path, aiProcess_ValidateDataStructure | aiProcess_Triangulate, &access.io);
+        aiImportFileEx(req->path, aiProcess_ValidateDataStructure | aiProcess_Triangulate, &access.io);
     if (!scene || access.missing[0]) {
-        const char *said = scene ? "" : aiGetErrorString();
-        return explain(asked, &access, said ? said : "", why);
+        const char *message = scene ? "" : aiGetErrorString();
+        return explain(req, &access, message ? message : "", why);
     }
     *out = scene;
     return STATUS_OK;

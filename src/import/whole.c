@@ -1,7 +1,7 @@
-/* Checks that a PLY or STL file is as long as its header implies: assimp fills missing data with zeros or old memory,
- * reads headers without an end for minutes, and allocates memory for impossible counts. OBJ has no counts and no end;
- * assimp checks glTF's lengths itself. PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80 bytes, a count, 50
- * bytes per facet; or a text from solid to endsolid. */
+/* The check that a PLY or STL file has the length that its header implies: assimp fills missing data with zeros or
+ * uninitialised memory, reads headers without an end for minutes, and allocates memory by counts that no file can hold.
+ * OBJ has no counts and no end; assimp checks the lengths of glTF itself. PLY: Greg Turk, "The PLY Polygon File
+ * Format", 1994. STL: 80 bytes, a count, 50 bytes a facet; or a text from solid to endsolid. */
 #include "import/import.h"
 
 #include "base/below.h"
@@ -17,7 +17,7 @@ enum { PROPERTIES_MAX = 64, WORD_MAX = 63 };
 
 typedef struct property {
     int count_bytes, bytes;
-} property; /* count_bytes: size of a list's length; 0: no list */
+} property; /* count_bytes: size of a list's length; 0: not a list */
 
 typedef struct ply {
     const char *at, *end;
@@ -93,7 +93,7 @@ static status take_element(ply *p, const char *name, const char *number)
     return STATUS_OK;
 }
 
-/* The words of the next line; their number, -1 if there is no complete line. */
+/* Reads the words of the next line; returns their number, -1 if there is no complete line. */
 static int next_line(ply *p, char words[6][WORD_MAX + 1])
 {
     const char *end = p->at < p->end ? memchr(p->at, '\n', (size_t)(p->end - p->at)) : NULL;
@@ -147,7 +147,7 @@ static status read_header(ply *p)
 
 /* ---- body ---- */
 
-/* Skips that many words; the last one is stored in number. False at the end of the file. */
+/* Skips `count` words and stores the last one in number. False at the end of the file. */
 static bool skip_words(ply *p, uint64_t count, double *number)
 {
     for (; count > 0; count--) {
@@ -174,7 +174,8 @@ static bool skip_bytes(ply *p, uint64_t count)
     return there;
 }
 
-/* The length of a list, at most eight bytes; a float or double is invalid and counts as too long. */
+/* Reads the length of a list, an integer of at most eight bytes. A float or double makes no sense here; its bits are
+ * read as an integer, which is too large. */
 static bool read_length(ply *p, int bytes, uint64_t *length)
 {
     if (p->end - p->at < bytes)
@@ -219,7 +220,7 @@ static status check_stl(const char *bytes, size_t size, diagnostic *why)
 {
     uint32_t count = 0;
     if (size >= 84)
-        memcpy(&count, bytes + 80, sizeof count); /* little-endian, like this machine */
+        memcpy(&count, bytes + 80, sizeof count); /* little-endian, as this machine */
     uint64_t needed = 84 + 50 * (uint64_t)count;
     if (size >= 84 && size == needed)
         return STATUS_OK;
@@ -236,21 +237,21 @@ static status check_stl(const char *bytes, size_t size, diagnostic *why)
     return size > needed ? STATUS_OK : truncated(why, "facet", (size - 84) / 50, count);
 }
 
-status check_whole(const request *asked, diagnostic *why)
+status check_whole(const request *req, diagnostic *why)
 {
-    if (asked->kind != FILE_PLY && asked->kind != FILE_STL)
+    if (req->kind != FILE_PLY && req->kind != FILE_STL)
         return STATUS_OK;
     struct stat about;
-    int fd = below_open(asked->path, asked->root);
+    int fd = below_open(req->path, req->root);
     void *bytes = fd >= 0 && fstat(fd, &about) == 0 ? mmap(NULL, (size_t)about.st_size, PROT_READ, MAP_PRIVATE, fd, 0)
                                                     : MAP_FAILED;
     if (fd >= 0)
         close(fd);
     if (bytes == MAP_FAILED)
-        return no_memory_for(asked, why);
+        return no_memory_for(req, why);
     ply p = {.at = bytes, .end = (const char *)bytes + about.st_size, .why = why};
-    diagnostic_locate(why, asked->path, 0, 0);
-    status code = asked->kind == FILE_PLY ? check_ply(&p) : check_stl(bytes, (size_t)about.st_size, why);
+    diagnostic_locate(why, req->path, 0, 0);
+    status code = req->kind == FILE_PLY ? check_ply(&p) : check_stl(bytes, (size_t)about.st_size, why);
     munmap(bytes, (size_t)about.st_size);
     return code;
 }

@@ -1,3 +1,4 @@
+/* The writer of the wire format, and the conversion of assimp materials. */
 #include "import/import.h"
 
 #include <assimp/material.h>
@@ -20,16 +21,16 @@ static void get_number(const struct aiMaterial *material, const char *key, doubl
         *to = (double)value;
 }
 
-/* The name that assimp gives to the material of triangles without one; in a PLY file a material without a name; in a
- * glTF file the last one. */
-static bool is_given(const request *asked, const struct aiScene *scene, unsigned index, const struct aiString *name)
+/* True if the material is one of the file's own. For triangles without a material assimp adds a default one: of the
+ * name below; in a PLY file without a name; in a glTF file after all others. */
+static bool is_given(const request *req, const struct aiScene *scene, unsigned index, const struct aiString *name)
 {
-    bool gltf = asked->kind == FILE_GLTF || asked->kind == FILE_GLB;
+    bool gltf = req->kind == FILE_GLTF || req->kind == FILE_GLB;
     return !(gltf && index + 1 == scene->mNumMaterials) && strcmp(name->data, AI_DEFAULT_MATERIAL_NAME) != 0 &&
-           (name->length > 0 || asked->kind != FILE_PLY);
+           (name->length > 0 || req->kind != FILE_PLY);
 }
 
-static mesh_wire_material describe(const request *asked, const struct aiScene *scene, unsigned index,
+static mesh_wire_material describe(const request *req, const struct aiScene *scene, unsigned index,
                                    struct aiString *name, struct aiString *texture)
 {
     const struct aiMaterial *material = scene->mMaterials[index];
@@ -38,7 +39,7 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
     double strength = 1; /* glTF's KHR_materials_emissive_strength */
     *name = *texture = (struct aiString){0};
     if (aiGetMaterialString(material, AI_MATKEY_NAME, name) != aiReturn_SUCCESS)
-        *name = (struct aiString){0}; /* undefined in assimp */
+        *name = (struct aiString){0}; /* assimp leaves it undefined on failure */
     get_color(material, "$clr.diffuse", m.diffuse, &alpha);
     get_color(material, "$clr.ambient", m.ambient, &unused);
     get_color(material, "$clr.specular", m.specular, &unused);
@@ -53,8 +54,8 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
     if (aiGetMaterialTexture(material, aiTextureType_DIFFUSE, 0, texture, NULL, NULL, NULL, NULL, NULL, NULL) !=
         aiReturn_SUCCESS)
         *texture = (struct aiString){0};
-    m.flags = is_given(asked, scene, index, name) ? MESH_WIRE_GIVEN : 0;
-    if (texture->data[0] == '*') { /* the index of an embedded image */
+    m.flags = is_given(req, scene, index, name) ? MESH_WIRE_GIVEN : 0;
+    if (texture->data[0] == '*') { /* the index of an image inside the file */
         m.flags |= MESH_WIRE_TEXTURE_INSIDE;
         *texture = (struct aiString){0};
     }
@@ -65,18 +66,18 @@ static mesh_wire_material describe(const request *asked, const struct aiScene *s
     return m;
 }
 
-static void write_materials(const request *asked, const struct aiScene *scene, const flat_mesh *flat, FILE *to)
+static void write_materials(const request *req, const struct aiScene *scene, const flat_mesh *flat, FILE *to)
 {
     for (unsigned i = 0; i < flat->material_count; i++) {
         struct aiString name, texture;
-        mesh_wire_material record = describe(asked, scene, flat->materials[i], &name, &texture);
+        mesh_wire_material record = describe(req, scene, flat->materials[i], &name, &texture);
         fwrite(&record, sizeof record, 1, to);
         fwrite(name.data, 1, record.name_length, to);
         fwrite(texture.data, 1, record.texture_length, to);
     }
 }
 
-status write_mesh(const request *asked, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why)
+status write_mesh(const request *req, const struct aiScene *scene, const flat_mesh *flat, FILE *to, diagnostic *why)
 {
     mesh_wire_header header = {
         .magic = MESH_WIRE_MAGIC,
@@ -94,7 +95,7 @@ status write_mesh(const request *asked, const struct aiScene *scene, const flat_
         fwrite(flat->uvs, sizeof *flat->uvs, flat->vertex_count, to);
     fwrite(flat->triangles, sizeof *flat->triangles, flat->triangle_count, to);
     fwrite(flat->slots, 1, flat->triangle_count, to);
-    write_materials(asked, scene, flat, to);
+    write_materials(req, scene, flat, to);
     fwrite(MESH_WIRE_END, 1, sizeof MESH_WIRE_END - 1, to);
     if (fflush(to) != 0 || ferror(to)) {
         const char *reason = strerrordesc_np(errno);

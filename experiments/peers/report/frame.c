@@ -15,7 +15,7 @@ typedef struct block {
     tally counted;
 } block;
 
-/* Pixels walk down the columns. Counts are kept on the thread's own stack until it ends. */
+/* Renders column by column. Counts are on the thread's own stack until it ends. */
 static void *render_block(void *argument)
 {
     block *b = argument;
@@ -50,7 +50,7 @@ void room_frame(const room *in, const setting *of, rgb *pixels, tally *counted)
     const int columns = (of->width + of->threads - 1) / of->threads;
     block *blocks = allocate((size_t)of->threads * sizeof *blocks);
     for (int i = 0; i < of->threads; i++) {
-        /* Where threads outnumber columns, the last ones have none: the listing starts them all the same. */
+        /* If there are more threads than columns, the last ones have none; the listing starts them nevertheless. */
         const int begin = i * columns < of->width ? i * columns : of->width;
         const int end = begin + columns < of->width ? begin + columns : of->width;
         blocks[i] = (block){.in = in, .of = of, .pixels = pixels, .begin = begin, .end = end};

@@ -1,10 +1,10 @@
 /* report - the rod scene by the report's algorithm (see report.h), timed and counted.
  *   report [-d DEPTH,...] [-t THREADS,...] [-r ROUNDS] [-s WIDTHxHEIGHT] [-f FOV_DEG] [-g INDEX] [-l INDEX] [-o
- * FILE.ppm] Every round renders each depth with each number of threads once, so that drift of the machine falls on all
- * alike; a line a frame is printed with its times and exact counts of rays. CPU time is clock()'s, which adds up all
- * threads, as in the report. -f is the field of view over the shorter edge; -g and -l are the refractive indices of
- * glass and liquid; -o keeps the last frame. Counting is always on; it is a few additions a ray, next to a dozen heap
- * allocations. */
+ * FILE.ppm] Every round renders each depth with each number of threads once, so that drift of the machine affects all
+ * equally; a line a frame is printed with its times and exact counts of rays. CPU time is that of clock(), which adds
+ * up all threads, as in the report. -f is the field of view over the shorter edge; -g and -l are the refractive indices
+ * of glass and liquid; -o writes the last frame. Counting is always on; it costs a few additions a ray, compared with a
+ * dozen heap allocations. */
 #include "report.h"
 
 #include <errno.h>
@@ -30,7 +30,7 @@ typedef struct order {
     const char *image;
 } order;
 
-/* Whole numbers between separators; false if there is anything else. */
+/* Reads integers between separators; false if there is anything else. */
 static bool read_list(const char *text, char separator, int low, int high, list *out)
 {
     out->count = 0;
@@ -89,7 +89,7 @@ static double wall_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The mean of all values tells images apart, so that equal ones are seen to be equal. */
+/* The mean of all values, printed as a checksum to compare images. */
 static double mean(const rgb *pixels, size_t count)
 {
     double sum = 0.0;
@@ -126,7 +126,7 @@ static unsigned char encoded(float value)
     return (unsigned char)(sqrtf(fminf(1.0f, fmaxf(0.0f, value))) * 255.0f + 0.5f);
 }
 
-/* Binary PPM, gamma 2. */
+/* Writes a binary PPM with gamma 2. */
 static bool write_image(const order *o, const rgb *pixels)
 {
     FILE *file = fopen(o->image, "wb");

@@ -1,12 +1,11 @@
 /* The rod scene by the algorithm of the report on the rod in the vessel (course work, Bauman Moscow State Technical
- * University, 2024): its listings 1 to 3 in C, with their errors, as the yardstick that Cuvette is measured against.
- * What the listings do at a cost is done here at the same cost: a heap allocation for each intersection and each hit,
- * and a call through a pointer for each shape.
+ * University, 2024): its listings 1 to 3 in C, with their errors, for comparison with Cuvette. It has the costs of the
+ * listings: a heap allocation for each intersection and each hit, and a call through a pointer for each shape.
  *
  * What the report does not print is ours: the sizes (those of experiments/scenes/rod.yaml), the colours, the plane, the
- * normals and the nearest hit. One thing differs on purpose: camera rays go through the centres of pixels, as in every
- * other program that is compared, and not through their upper left corners. Single precision throughout, as in the
- * listings. A program of its own: when memory fails it ends with a message. */
+ * normals and the nearest hit. One difference is intended: camera rays go through the centres of pixels, as in all
+ * programs of the comparison, and not through their upper left corners. Single precision throughout, as in the
+ * listings. The program ends with a message when out of memory. */
 #pragma once
 
 #include <math.h>
@@ -23,13 +22,13 @@ typedef struct ray {
     vec3f origin, direction;
 } ray;
 
-/* What was done for a frame: rays followed, by kind; camera rays by the shape that they met first; how often the sky's
- * colour was taken instead of a hit. Private to a thread until it is joined. */
+/* The counts of a frame: rays, by kind; camera rays, by the shape that they hit first; rays without a hit, which take
+ * the colour of the sky. Private to a thread until it is joined. */
 enum { SHAPE_GROUND, SHAPE_VESSEL, SHAPE_LIQUID, SHAPE_ROD, SHAPE_COUNT };
 typedef struct tally {
     uint64_t camera, secondary, shadow, sky;
     uint64_t first_hits[SHAPE_COUNT];
-    uint64_t busiest, busiest_sky; /* of a frame: the most rays, and the most colours of the sky, of one thread */
+    uint64_t busiest, busiest_sky; /* of a frame: the most rays, and the most sky colours, of one thread */
 } tally;
 
 static inline uint64_t tally_rays(const tally *t)
@@ -40,10 +39,10 @@ static inline uint64_t tally_rays(const tally *t)
 typedef struct shape shape;
 struct shape {
     vec3f *(*intersect)(const shape *s, const ray *r); /* the nearest point, allocated; NULL if there is none */
-    vec3f (*normal)(const shape *s, vec3f at);         /* outwards */
-    vec3f position;                                    /* of a cylinder its centre, of a plane any point */
-    float radius, half_height;                         /* of a cylinder */
-    vec3f low, high;                                   /* of a box */
+    vec3f (*normal)(const shape *s, vec3f at);         /* points outwards */
+    vec3f position;                                    /* cylinder: its centre; plane: any point */
+    float radius, half_height;                         /* cylinder */
+    vec3f low, high;                                   /* box */
     rgb color;
     float reflectivity, transparency, index, emission;
 };
@@ -64,7 +63,7 @@ typedef struct setting {
 typedef struct room {
     shape shapes[SHAPE_COUNT];
     vec3f light, eye;
-    float pitch, distance; /* radians, downwards; of the image, whose shorter edge is 2 */
+    float pitch, distance; /* pitch: radians, downwards; distance of the image plane, whose shorter edge is 2 */
     int depth;             /* the listings' MAX_BOUNCES */
 } room;
 
@@ -89,7 +88,7 @@ static inline vec3f unit(vec3f a)
     return scale(a, 1.0f / sqrtf(dot(a, a)));
 }
 
-/* std::min and std::max: one comparison each, where fminf and fmaxf are calls because of NaN. */
+/* std::min and std::max: one comparison each, whereas fminf and fmaxf are calls because of NaN. */
 static inline float least(float a, float b)
 {
     return b < a ? b : a;
@@ -101,15 +100,15 @@ static inline float most(float a, float b)
 
 void room_fill(room *out, const setting *of);
 
-/* The nearest hit of all shapes, allocated: the caller frees it. NULL if there is none. */
+/* The nearest hit of all shapes, which the caller frees. NULL if there is none. */
 hit *room_cast(const room *in, const ray *r);
 
-/* A pixel's colour; u to the right and v upwards, -1 to 1 over the shorter edge. Counts what it does. */
+/* The colour of a pixel; u to the right and v upwards, -1 to 1 over the shorter edge. Adds its rays to `counted`. */
 rgb room_pixel(const room *in, float u, float v, tally *counted);
 
-/* One frame in threads that are started for it, a block of columns each; pixels line by line from the top. Adds to what
- * was counted. */
+/* Renders a frame with threads that are started for it, a block of columns each; pixels line by line from the top. Adds
+ * its rays to `counted`. */
 void room_frame(const room *in, const setting *of, rgb *pixels, tally *counted);
 
-/* Memory that is there: without it the program ends with exit status 1. */
+/* Allocates memory; when out of memory, ends the program with exit status 1. */
 void *allocate(size_t bytes);

@@ -17,7 +17,7 @@ static rgb rgb_add(rgb a, rgb b)
     return (rgb){a.r + b.r, a.g + b.g, a.b + b.b};
 }
 
-/* Lines 14 to 20. Total reflection answers with a fixed direction. */
+/* Lines 14 to 20. Total reflection returns a fixed direction. */
 static vec3f refracted(vec3f incident, vec3f normal, float cosine, float from, float to)
 {
     if (cosine < 0.0f)
@@ -28,11 +28,11 @@ static vec3f refracted(vec3f incident, vec3f normal, float cosine, float from, f
     return add(scale(incident, eta), scale(normal, eta * cosine - sqrtf(most(0.0f, 1.0f - sine * sine))));
 }
 
-/* How a step of the shadow ray ends. */
+/* The result of a step of the shadow ray. */
 typedef enum passage { PASSAGE_ON, PASSAGE_LIT, PASSAGE_DARK } passage;
 
-/* Lines 28 to 51: one cast of the shadow ray, and what the blocker makes of it. Clear shapes weaken and bend it; one
- * beyond the light blocks, too. */
+/* Lines 28 to 51: one cast of the shadow ray, and the effect of the blocker. Clear shapes attenuate and refract it; a
+ * shape beyond the light blocks it, too. */
 static passage shadow_step(const room *in, vec3f to_light, ray *shadow, const shape **leaving, float *passed)
 {
     hit *blocker = room_cast(in, shadow);
@@ -61,7 +61,7 @@ static passage shadow_step(const room *in, vec3f to_light, ray *shadow, const sh
     return PASSAGE_ON;
 }
 
-/* Lines 21 to 55. A shadow ray takes as many steps as the recursion has levels: at depth 0 none is cast at all. */
+/* Lines 21 to 55. A shadow ray takes as many steps as the recursion has levels: at depth 0 none is cast. */
 static float diffuse(const room *in, const hit *at, tally *counted)
 {
     const vec3f to_light = unit(sub(in->light, at->position));
@@ -78,7 +78,7 @@ static float diffuse(const room *in, const hit *at, tally *counted)
     return most(global_illumination, least(1.0f, dot(at->normal, to_light)) * passed);
 }
 
-/* Lines 56 to 60, where the light's position is normalised instead of the difference. */
+/* Lines 56 to 60, which normalise the light's position instead of the difference. */
 static float specular(const room *in, const hit *at)
 {
     const vec3f from_light = unit(sub(at->position, unit(in->light)));
@@ -88,7 +88,7 @@ static float specular(const room *in, const hit *at)
 
 static rgb shade(const room *in, const hit *at, int limit, tally *counted);
 
-/* Lines 76 to 83: one branch. Both are followed at every hit, opaque ones too, whatever they weigh. */
+/* Lines 76 to 83: one branch. Both are traced at every hit, also on opaque shapes, whatever their weight. */
 static rgb branch(const room *in, const hit *at, vec3f direction, int limit, tally *counted)
 {
     hit *next = NULL;

@@ -1,4 +1,4 @@
-/* The report's listings 1 (cylinder) and 2 (box), a plane, and the nearest hit of all. */
+/* The report's listings 1 (cylinder) and 2 (box), a plane, and the nearest hit of all shapes. */
 #include "report.h"
 
 #include <stdbool.h>
@@ -18,7 +18,7 @@ void *allocate(size_t bytes)
     return memory;
 }
 
-/* A point on the heap, as the listings return one. */
+/* A point on the heap, as in the listings. */
 static vec3f *point(const ray *r, float t)
 {
     vec3f *p = allocate(sizeof *p);
@@ -26,14 +26,14 @@ static vec3f *point(const ray *r, float t)
     return p;
 }
 
-/* A cap's plane meets the ray within the cap. */
+/* True if the ray hits the plane of a cap within the cap. */
 static bool cap_covers(const shape *s, const ray *r, float t)
 {
     const vec3f p = add(sub(r->origin, s->position), scale(r->direction, t));
     return p.x * p.x + p.z * p.z - s->radius * s->radius < epsilon;
 }
 
-/* In front of the origin and between the caps; false for NaN. */
+/* True if the point at t is in front of the origin and between the caps; false for NaN. */
 static bool side_reaches(const shape *s, const ray *r, float t)
 {
     return !(fabsf(r->origin.y + t * r->direction.y - s->position.y) > s->half_height) && t > 0.0f;
@@ -65,7 +65,7 @@ static vec3f *cylinder_intersect(const shape *s, const ray *r)
     return capped && side_reaches(s, r, cap) ? point(r, cap) : NULL;
 }
 
-/* Of the two surfaces that which lies nearer: the listings do not print it. */
+/* The normal of the nearer of the two surfaces; the listings do not print it. */
 static vec3f cylinder_normal(const shape *s, vec3f at)
 {
     const vec3f d = sub(at, s->position);
@@ -97,7 +97,7 @@ static vec3f *box_intersect(const shape *s, const ray *r)
     return met ? point(r, near) : NULL;
 }
 
-/* Of the six faces the nearest. */
+/* The normal of the nearest of the six faces. */
 static vec3f box_normal(const shape *s, vec3f at)
 {
     const float from[6] = {fabsf(at.x - s->low.x),  fabsf(at.x - s->high.x), fabsf(at.y - s->low.y),
@@ -123,8 +123,8 @@ static vec3f plane_normal(const shape *s, vec3f at)
     return (vec3f){0.0f, 1.0f, 0.0f};
 }
 
-/* The report's constant weights, for both clear bodies. Its vessel is a full cylinder, and the liquid another one
- * within. */
+/* The report's constant weights, for both clear shapes. Its vessel is a solid cylinder, and the liquid another cylinder
+ * inside. */
 static shape clear_cylinder(float base, float height, float radius, float index, rgb color)
 {
     return (shape){.intersect = cylinder_intersect,

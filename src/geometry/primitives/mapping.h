@@ -1,6 +1,6 @@
 /* Texture coordinates on surfaces: u to the right and v up as seen from outside, in units of the texture image;
  * per_length is the number of repetitions of the texture per scene unit, in the direction where they are closer. size
- * is the extent of the texture image in scene units; 0 fits one image to a face. Pure; cannot fail. */
+ * is the extent of the texture image in scene units; 0 scales one image to a face. Pure; cannot fail. */
 #pragma once
 
 #include "base/elementary.h"
