@@ -42,7 +42,7 @@ static void a_thin_pencil_converges_at_the_focus_of_a_ball_lens(void **state)
         assert_true(fabs(ray->offset - 1e-3 * (i / 10.0 - 0.5)) < 1e-18);
         assert_true(ray->leaves && ray->count == 3 && fabs(ray->weight - 0.96 * 0.96) < 1e-6);
         if (i != 5)
-            assert_true(ray->meets_axis && fabs(ray->axis_at - 6.5) < 1e-5);
+            assert_true(ray->crosses_axis && fabs(ray->axis_at - 6.5) < 1e-5);
     }
     fan_release(&f);
     scene_destroy(s);
@@ -99,7 +99,7 @@ static void a_slab_shifts_the_virtual_image_of_a_point(void **state)
     fan f = follow(s, &rule);
     assert_true(f.has_focus && f.is_virtual && fabs(f.focus.x - (-5.0 + 1.0)) < 1e-5);
     assert_int_equal(f.crossing_count, 0);
-    assert_true(f.ray[6].exit_point.x == 1.5 && !f.ray[6].meets_axis && f.ray[6].deviation_deg < 1e-9);
+    assert_true(f.ray[6].exit_point.x == 1.5 && !f.ray[6].crosses_axis && f.ray[6].deviation_deg < 1e-9);
     fan_release(&f);
     scene_destroy(s);
 }
@@ -139,12 +139,12 @@ static void rays_cross_only_where_both_are_unblocked(void **state)
     const double i = asin(0.9), at = 0.9 / sin(2.0 * (i - asin(0.6)));
     assert_true(f.ray[0].leaves && fabs(f.ray[0].reach - 0.204 - 0.020) < 1e-3 &&
                 fabs(f.ray[1].reach - 0.204 + 0.177) < 1e-3);
-    assert_true(f.ray[0].meets_axis && fabs(f.ray[0].axis_at - 5.0 - at) < 1e-12 && !f.ray[1].meets_axis);
+    assert_true(f.ray[0].crosses_axis && fabs(f.ray[0].axis_at - 5.0 - at) < 1e-12 && !f.ray[1].crosses_axis);
     assert_int_equal(f.crossing_count, 0);
     fan_release(&f);
     set(s, "stone.visible=off");
     f = follow(s, &rule);
-    assert_true(f.ray[0].meets_axis && f.ray[1].meets_axis);
+    assert_true(f.ray[0].crosses_axis && f.ray[1].crosses_axis);
     assert_true(f.crossing_count == 1 && fabs(f.crossing[0].at.x - at) < 1e-12);
     fan_release(&f);
     scene_destroy(s);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DIGITS_MAX = 18 };
+enum { DIGITS_MAX = 18 }; /* such a number fits into 64 bits */
 
 static status wrong(const char *pattern, const char *remedy, const char *what, diagnostic *why)
 {

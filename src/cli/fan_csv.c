@@ -36,8 +36,8 @@ status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
         add_vector(&line, ray->leaves, ray->exit_direction);
         csv_real(&line, ray->leaves ? ray->deviation_deg : (double)NAN);
         csv_real(&line, ray->leaves ? ray->weight : (double)NAN);
-        csv_real(&line, ray->meets_axis ? ray->axis_at : (double)NAN);
-        add_vector(&line, ray->meets_axis, ray->axis_point);
+        csv_real(&line, ray->crosses_axis ? ray->axis_at : (double)NAN);
+        add_vector(&line, ray->crosses_axis, ray->axis_point);
         csv_end(&line);
     }
     const bool failed = line.failed;

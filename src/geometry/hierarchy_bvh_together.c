@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-/* References per task of a large range. */
+/* References per task of a large range: twice a range that a single thread builds (TASK_TRIANGLES). */
 enum { PIECE = 16384 };
 
 typedef struct piece {

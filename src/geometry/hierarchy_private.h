@@ -7,6 +7,8 @@
 
 #include "geometry/hierarchy.h"
 
+/* Triangles per block, children per node, blocks per leaf (four bits of a child), and the levels of nodes, which size
+ * the stacks of the traversals. */
 enum { BLOCK = 4, WIDTH = 8, LEAF_BLOCKS_MAX = 16, BVH_DEPTH_MAX = 64, SPHERES_DEPTH_MAX = 64 };
 
 typedef struct block_single {

@@ -252,5 +252,5 @@ void KERNEL(walk_bvh)(const hierarchy *h, ray_query *q, enum query_mode mode);
 void KERNEL(walk_spheres)(const hierarchy *h, ray_query *q, enum query_mode mode);
 
 /* Traverses the hierarchy `bvh` with several started rays at once, as far as they are coherent. Nearest or any. */
-enum { TOGETHER = 128 };
+enum { TOGETHER = 128 }; /* a batch: BATCH in rays.h */
 void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int count, enum query_mode mode);

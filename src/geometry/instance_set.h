@@ -120,8 +120,8 @@ typedef struct instance_kernels {
     void (*nearest)(const instance_set *f, const instance_ray *rays, int count, instance_hit *hits);
     /* Returns whether any mesh of the wanted set blocks the ray. Closed meshes as above, but regardless of hiding. */
     void (*any)(const instance_set *f, const instance_ray *rays, int count, bool *blocked);
-    /* The set of primitives after all crossings of wanted meshes in t_min < t <= t_max; the bits of crossed open
-     * surfaces are set. */
+    /* The set of primitives after all crossings of wanted meshes in t_min < t <= t_max; an open surface in between has
+     * its bit set, too. */
     uint64_t (*cross)(const instance_set *f, const instance_ray *ray);
     /* Calls `found` for every crossing of wanted meshes in t_min < t <= t_max, hidden or not, in no particular
      * order. */

@@ -282,7 +282,7 @@ static void each(const instance_set *f, const instance_ray *ray, instance_found 
     ask(&q);
 }
 
-/* The last crossings of a ray with each mesh's fronts and backs, and the extents of the crossed copies. */
+/* The last crossings of a ray with each mesh's fronts and backs, and the extents of those copies. */
 typedef struct last_crossings {
     const instance_set *f;
     double front[PRIMITIVES_MAX], back[PRIMITIVES_MAX], front_extent[PRIMITIVES_MAX], back_extent[PRIMITIVES_MAX];
@@ -323,7 +323,7 @@ static bool is_in(const instance_set *f, const instance_ray *ray, const last_cro
         const double front = last->front[number], back = last->back[number], first = lesser(front, back);
         const double tie =
             ray->tie + ray->tie_by_extent * greater(last->front_extent[number], last->back_extent[number]);
-        if (greater(front, back) < 0.0 && front == back) /* nothing was crossed */
+        if (greater(front, back) < 0.0 && front == back) /* no crossing */
             return (ray->inside & bit) != 0;
         if (front - back > tie || back - front > tie)
             return front > back;

@@ -19,7 +19,7 @@ status generate_dense_soup(size_t count, mesh **out, diagnostic *why);
 status generate_sphere(size_t count, mesh **out, diagnostic *why);
 
 /* Icosahedron refined by bisection of its edges `level` times, 20 * 4^level triangles, on the unit sphere; doubles.
- * Vertices as above. */
+ * Vertices as above. A level of 12 would exceed MESH_TRIANGLES_MAX. */
 enum { ICOSPHERE_LEVEL_MAX = 11 };
 status generate_icosphere(int level, mesh **out, diagnostic *why);
 

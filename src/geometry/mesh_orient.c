@@ -2,7 +2,7 @@
  * opposite directions. */
 #include "geometry/mesh_parts.h"
 
-enum { UNSEEN = 2 };
+enum { UNSEEN = 2 }; /* in mesh_neighbours.turned: not reached yet; otherwise 1 if flipped, else 0 */
 
 void mesh_turn(mesh *m, size_t triangle)
 {

@@ -164,7 +164,7 @@ static void mark_attention(const scene_geometry *a, int n, const ray_scratch *re
     for (int i = 0; i < n; i++) {
         const int64_t hit = -(int64_t)(c->hit_primitive[i] >= 0);
         const uint64_t changed = c->inside_before[i] ^ c->inside_after[i];
-        /* 0 if the sets differ only in the crossed primitive's bit; gcc vectorises variable shifts to the right only */
+        /* 0 if the sets differ only in the hit primitive's bit; gcc vectorises variable shifts to the right only */
         const uint64_t shifted = changed >> (uint64_t)(c->hit_primitive[i] & hit);
         const uint64_t others = (s->near[i] ^ changed) | (changed & (changed - 1)) | (shifted ^ 1);
         attention[i] = (~mask_same((int64_t)others, 0) | mask_same(c->before[i], c->after[i]) | doubt) & hit;

@@ -55,7 +55,7 @@ typedef struct mesh_scratch {
      * boundary is close to it. */
     double until[ROW];
     int64_t last[ROW];  /* the mesh face at `from`, or the one that the ray starts on */
-    uint64_t near[ROW]; /* meshes with a boundary close to the column's crossing, other than the copy that is crossed */
+    uint64_t near[ROW]; /* meshes with a boundary close to the column's crossing, other than the copy that is hit */
 } mesh_scratch;
 
 /* The most segments of a batch with analytic solids alone. Rays through many meshes may have more: a full list is

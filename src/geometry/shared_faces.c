@@ -10,7 +10,7 @@ typedef struct flat {
     double at;
 } flat;
 
-enum { COMPARED_MAX = 1000000 };
+enum { COMPARED_MAX = 1000000 }; /* pairs of faces; for more, the answer is "perhaps" */
 
 static bool flat_at(const solid_shape *s, size_t i, flat *out)
 {

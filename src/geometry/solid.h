@@ -43,7 +43,8 @@ typedef struct solid_shape {
     vec3 spacing;            /* between copies, in the local frame */
 } solid_shape;
 
-/* The most copies of one mesh, and of all meshes together. */
+/* The most copies of one mesh, and of all meshes together: a face number has 22 bits for the copy
+ * (mesh_face_number). */
 enum { COPIES_MAX = 1 << 22 };
 
 /* The rule of the shape's kind: geometry/shapes/shape.h. */

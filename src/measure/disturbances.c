@@ -46,7 +46,7 @@ static bool reads_as(const report *from, const char *path, const char *expected)
  * reported. */
 static void check_governor(const report *to)
 {
-    enum { POLICY_MAX = 1024 };
+    enum { POLICY_MAX = 1024 }; /* of policy0, policy1, ..., which are not contiguous */
     for (int i = 0; i < POLICY_MAX; i++) {
         char path[96], governor[64];
         snprintf(path, sizeof path, "/sys/devices/system/cpu/cpufreq/policy%d/scaling_governor", i);

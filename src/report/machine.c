@@ -4,7 +4,7 @@
 #include "measure/usage.h"
 #include <stdlib.h>
 
-#define LOAD_SAMPLE_S 0.5
+#define LOAD_SAMPLE_S 0.5 /* 50 ticks of /proc/stat */
 
 static void add_disturbance(void *context, const char *text)
 {

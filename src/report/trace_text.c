@@ -51,11 +51,11 @@ static void write_line(const traced *t, FILE *out, const ray_node *node, int ind
         fprintf(out, "  to %s at %.9g", scene_light_name(t->s, node->light), node->light_distance);
     fprintf(out, "  %s", trace_end_words[node->end]);
     if (node->end == RAY_END_LIT)
-        fprintf(out, ", let through %.6g", node->let_through);
+        fprintf(out, ", transmittance %.6g", node->let_through);
     if (node->end == RAY_END_HIT)
         write_hit(t, out, &node->hit);
     if (node->brought[0] > 0.0 || node->brought[1] > 0.0 || node->brought[2] > 0.0) {
-        fputs("  brings ", out);
+        fputs("  contributes ", out);
         write_channels(out, node->brought);
     }
     fputc('\n', out);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROOM_MIN = 24, INDENT_BELOW = 4 };
+enum { ROOM_MIN = 24, INDENT_BELOW = 4 }; /* characters: see wrap_row in wrap.h */
 
 static bool starts_character(char byte)
 {

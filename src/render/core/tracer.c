@@ -189,7 +189,7 @@ static void trace_batch(tracer *t, int depth)
     t->rule->intersect(t, q, first, depth, &rays);
     visibility_ends(t, began_ns);
     if (t->batch.scratch.segments) {
-        absorption_spare_sky(t);
+        absorption_exempt_sky(t);
         absorption_dim(t, q, first, rays.count);
     }
     sort_by_primitive(t, rays.count);

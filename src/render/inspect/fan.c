@@ -71,7 +71,7 @@ static void cross_axis(const fan *f, fan_ray *ray)
     const double off = vec3_dot(from_axis, f->across), slope = vec3_dot(ray->exit_direction, f->across);
     /* A smaller slope is rounding noise of a ray parallel to the axis. */
     const double t = fabs(slope) > 1e-12 ? -off / slope : -1.0;
-    ray->meets_axis = t > 0.0 && t <= ray->reach;
+    ray->crosses_axis = t > 0.0 && t <= ray->reach;
     ray->axis_point = vec3_add(ray->exit_point, vec3_scale(ray->exit_direction, t));
     ray->axis_at = vec3_dot(vec3_sub(ray->axis_point, f->from), f->axis);
 }
@@ -90,7 +90,7 @@ static void read_exit(const fan *f, fan_ray *ray)
         cross_axis(f, ray);
 }
 
-/* True if two rays crossed the same surfaces. */
+/* True if two rays hit the same surfaces in the same order. */
 static bool same_direction(const fan *f, const fan_ray *a, const fan_ray *b)
 {
     if (a->count != b->count || !a->leaves || !b->leaves)

@@ -28,12 +28,12 @@ typedef struct fan_ray {
     double reach;                    /* length of the last segment; infinite into the sky */
     double deviation_deg;            /* between the first direction and the last */
     double weight;                   /* throughput of the last segment, mean of the channels */
-    bool meets_axis;                 /* the last segment crosses the axis, in projection along the plane's normal */
+    bool crosses_axis;               /* the last segment crosses the axis, in projection along the plane's normal */
     double axis_at;                  /* position of this crossing: distance from `from` along the axis */
     vec3 axis_point;
 } fan_ray;
 
-/* The crossing of the last segments of rays `ray` and `ray` + 1, of neighbours that crossed the same surfaces. */
+/* The crossing of the last segments of rays `ray` and `ray` + 1, which hit the same surfaces in the same order. */
 typedef struct fan_crossing {
     int ray;
     vec3 at;

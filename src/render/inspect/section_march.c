@@ -136,10 +136,10 @@ void section_march(cutter *c, int i, int j)
 {
     const int corner[4] = {label(c, i, j), label(c, i + 1, j), label(c, i + 1, j + 1), label(c, i, j + 1)};
     const int side[4] = {edge_across(c, i, j), edge_up(c, i + 1, j), edge_across(c, i, j + 1), edge_up(c, i, j)};
-    int crossed[4], count = 0;
+    int cut[4], count = 0;
     for (int k = 0; k < 4; k++)
         if (corner[k] != corner[(k + 1) % 4])
-            crossed[count++] = k;
+            cut[count++] = k;
     if (count == 0)
         return;
     if (count == 4)
@@ -147,5 +147,5 @@ void section_march(cutter *c, int i, int j)
     else if (count == 3)
         join_all(c, i, j, side, corner);
     else
-        add_piece(c, side[crossed[0]], side[crossed[1]], corner[crossed[0]], corner[(crossed[0] + 1) % 4]);
+        add_piece(c, side[cut[0]], side[cut[1]], corner[cut[0]], corner[(cut[0] + 1) % 4]);
 }

@@ -96,7 +96,7 @@ static raster_hit hit_depth(const zbuffer *z, const screen_triangle *s, int x, i
     return (raster_hit){.t = 1.0 / (near * vec3_dot(z->frame_plan->view.forward, d))};
 }
 
-static void note_nothing(tracer *t, int i)
+static void record_miss(tracer *t, int i)
 {
     t->batch.hits.t[i] = HUGE_VAL;
     t->batch.hits.hit_primitive[i] = -1;
@@ -110,7 +110,7 @@ static raster_hit hit_part(const zbuffer *z, const screen_triangle *s, vec3 d)
                     : hit_triangle(p, s, &z->frame_plan->view, d);
 }
 
-static void note_hit(tracer *t, int i, const screen_triangle *s, raster_hit m)
+static void record_hit(tracer *t, int i, const screen_triangle *s, raster_hit m)
 {
     const zbuffer *z = t->target.state;
     const rasterised_part *p = &z->parts[s->part];
@@ -178,7 +178,7 @@ static inline raster_hit hit_layer(const tracer *t, int i, const rasterised_laye
 /* Records the hit of ray `at` on the next interface of its point's list, at `place` or behind layers that are no
  * interface: at the point of the undeflected view, but along the ray's own direction, as if it had started towards that
  * point. The position in the list is stored as its set of primitives. */
-static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
+static void record_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
 {
     const zbuffer *z = t->target.state;
     const plan *p = z->frame_plan;
@@ -195,7 +195,7 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     w->number[i] = l->number - 1;
     if (l->number == 0) {
         const double infinite_length = 1e100; /* finite, so that a coefficient of 0 gives 0 and not NaN */
-        note_nothing(t, i);
+        record_miss(t, i);
         dim(p, q, at, l->before, infinite_length);
         return;
     }
@@ -207,9 +207,9 @@ static void note_layer(tracer *t, ray_queue *q, int at, int i, uint32_t place)
     if (s->curved)
         q->dx[at] = view.x, q->dy[at] = view.y, q->dz[at] = view.z;
     m.t = length;
-    const vec3 set_out = vec3_sub(point, vec3_scale(vec3_make(q->dx[at], q->dy[at], q->dz[at]), length));
-    q->ox[at] = set_out.x, q->oy[at] = set_out.y, q->oz[at] = set_out.z;
-    note_hit(t, i, s, m);
+    const vec3 origin = vec3_sub(point, vec3_scale(vec3_make(q->dx[at], q->dy[at], q->dz[at]), length));
+    q->ox[at] = origin.x, q->oy[at] = origin.y, q->oz[at] = origin.z;
+    record_hit(t, i, s, m);
     t->batch.hits.before[i] = l->before;
     t->batch.hits.after[i] = l->after;
     t->batch.hits.surface[i] = l->surface;
@@ -234,16 +234,16 @@ static void find_hits(tracer *t, ray_queue *q, int first, int depth, const ray_b
         if (t->meshes)
             t->meshes->scratch.hit[i].face = FACE_NONE;
         if (z->layered && seen[i] & SEEN_LAYERS) {
-            note_layer(t, q, first + i, i, depth == 0 ? seen[i] & ~SEEN_LAYERS : (uint32_t)q->inside[first + i]);
+            record_layer(t, q, first + i, i, depth == 0 ? seen[i] & ~SEEN_LAYERS : (uint32_t)q->inside[first + i]);
             continue;
         }
         w->number[i] = seen[i] - 1;
         w->straight[i] = false;
         if (seen[i]) {
             const screen_triangle *s = &z->triangles[seen[i] - 1];
-            note_hit(t, i, s, hit_part(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
+            record_hit(t, i, s, hit_part(z, s, vec3_make(w->vx[i], w->vy[i], w->vz[i])));
         } else {
-            note_nothing(t, i);
+            record_miss(t, i);
         }
     }
 }

@@ -83,7 +83,7 @@ static void absorption_shares(tracer *t, int count)
 
 /* A path to the sky has no finite length: its light is taken to arrive unattenuated at the surface where the path
  * starts. */
-void absorption_spare_sky(tracer *t)
+void absorption_exempt_sky(tracer *t)
 {
     const plan *p = t->target.frame_plan;
     for (int k = 0; p->geometry->regions[0].attenuates && k < t->batch.scratch.segments->count; k++) {

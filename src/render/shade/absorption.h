@@ -16,9 +16,9 @@ bool absorption_begin(tracer *t, bool absorbs);
 void absorption_end(tracer *t);
 
 /* absorption_announce: called before a batch is traced, turns on the recording of its medium segments.
- * absorption_spare_sky: after a search for nearest interfaces, removes absorption by the surrounding medium from paths
+ * absorption_exempt_sky: after a search for nearest interfaces, removes absorption by the surrounding medium from paths
  * to the sky. absorption_dim: multiplies the batch's throughput by the transmittance. */
 void absorption_announce(tracer *t, const int64_t *sample_keys, int count);
-void absorption_spare_sky(tracer *t);
+void absorption_exempt_sky(tracer *t);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
 double absorption_left(double optical_depth);

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Surfaces whose depths differ by less than this relative difference are crossed together, as at a contact. */
+/* Surfaces whose depths differ by less than this relative difference are in contact: the column enters or leaves their
+ * regions in one step. */
 #define TOGETHER 1e-9
 
 void zbuffer_square_begin(zbuffer_square *s)
@@ -123,7 +124,7 @@ static int cross(const zbuffer *z, const rasterised_fragment *f, int count, uint
     return n;
 }
 
-/* The layer for surfaces that are crossed together: that of the region whose surface it is. */
+/* The layer for surfaces in contact: that of the region that owns the surface. */
 static inline rasterised_layer layer_of(const zbuffer *z, const rasterised_fragment *f, int count, uint64_t inside,
                                         int before, int after)
 {

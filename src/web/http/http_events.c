@@ -10,6 +10,7 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+/* A client may leave an event unread for this multiple of timeout_s. */
 enum { NAME_MAX_LENGTH = 63, SLOW_CLIENT_TIMEOUTS = 6 };
 
 /* Reference-counted under event_lock. */

@@ -24,6 +24,8 @@ static void go(adaptive_resolution *p, int step)
 
 void adaptive_resolution_update(adaptive_resolution *p, double wall_s, double wanted_s)
 {
+    /* The weight of the newest frame; the share of the wanted time above which the resolution drops, and the predicted
+     * share below which it rises. The gap between both prevents oscillation. */
     const double recent = 0.3, late = 1.3, early = 0.8;
     p->frame_s = p->frame_s > 0.0 ? p->frame_s + recent * (wall_s - p->frame_s) : wall_s;
     if (p->frame_s > late * wanted_s && p->step < STEPS - 1)

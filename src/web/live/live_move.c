@@ -6,10 +6,11 @@
 #include "scene/model/scene.h"
 #include <math.h>
 
-/* A pause without rendering is not caught up with. */
+/* The most that one call simulates, so that a pause without rendering is not made up for; and the first call, one frame
+ * at 60 Hz. */
 static const double max_gap_s = 0.25, first_s = 1.0 / 60.0;
 
-void live_stand_still(live *l)
+void live_reset_clock(live *l)
 {
     l->moved_at_s = NAN;
     l->realtime = 0.0;
@@ -32,7 +33,8 @@ static double longest_step_s(const live *l)
 /* The simulated time before the clock is read again. */
 static double slice_s(const live *l, double most_s, double left_s)
 {
-    const double slices = 8.0, step_s = longest_step_s(l);
+    const double slices = 8.0 /* of the time budget, which is exceeded by about one of them at most */,
+                 step_s = longest_step_s(l);
     const double affordable_s = l->cost > 0.0 ? most_s / slices / l->cost : step_s;
     return fmin(left_s, fmax(step_s, affordable_s));
 }

@@ -73,4 +73,4 @@ struct live {
  * lock. STATUS_BAD_INPUT: the body diverged. */
 status live_move_on(live *l, double most_s, diagnostic *why);
 /* Resets the motion's clock and rates. */
-void live_stand_still(live *l);
+void live_reset_clock(live *l);

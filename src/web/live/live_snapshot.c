@@ -35,7 +35,7 @@ static void forget_motion(live *l)
     l->hands = NULL;
     l->time_s = 0.0;
     l->cost = 0.0;
-    live_stand_still(l);
+    live_reset_clock(l);
     l->moved = l->changed = true;
     pthread_mutex_lock(&l->lock);
     forget_hands(l);
@@ -260,7 +260,7 @@ status live_advance(live *l, double most_s, bool *state_changed, diagnostic *why
     if (code == STATUS_OK && live_is_moving(l) && l->motion)
         code = live_move_on(l, most_s, &bad);
     else
-        live_stand_still(l);
+        live_reset_clock(l);
     if (code != STATUS_OK)
         stop(l, &bad);
     pthread_mutex_lock(&l->lock);

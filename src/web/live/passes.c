@@ -6,7 +6,7 @@
 /* The rate before any measurement: a scene of moderate depth on one slow core. */
 static const double rate_unknown = 1e6;
 
-enum { SHRINK_MAX = 32, STEP = 4 };
+enum { SHRINK_MAX = 32, STEP = 4 }; /* of the coarsest pass; from one pass to the next */
 
 render_settings passes_settings(const render_settings *r, int shrink, bool single)
 {

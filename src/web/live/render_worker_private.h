@@ -43,7 +43,7 @@ struct render_worker {
     adaptive_resolution traced, raster; /* of the frames of the live slime */
 };
 
-/* Time limit of the first pass. */
+/* Time limit of the first pass, so that the image follows a dragged slider at about 25 frames a second. */
 #define RENDER_WORKER_FIRST_S 0.04
 
 /* --- for the thread alone --- */

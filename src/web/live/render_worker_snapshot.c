@@ -8,8 +8,8 @@
 /* The share of a live frame that the motion may take. */
 static const double move_s = 0.02;
 
-/* After this number of interruptions by newer changes one first pass may finish, so that a viewer of somebody else's drag
- * sees an image; but only for let_through_s, so that a slow pass does not delay newer changes. */
+/* After this number of interruptions by newer changes, one first pass may finish, so that a viewer of somebody else's
+ * drag sees an image; but only for let_through_s, so that a slow pass does not delay newer changes. */
 enum { INTERRUPTED_MAX = 12 };
 static const double let_through_s = 0.5;
 

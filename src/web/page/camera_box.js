@@ -183,7 +183,7 @@ function createFields(root, lab) {
 }
 
 function createKeys(lab, settings) {
-  const keys = { a: [-1, 0, 0], d: [1, 0, 0], e: [0, 1, 0], q: [0, -1, 0], w: [0, 0, 1], s: [0, 0, -1] };
+  const steps = { a: [-1, 0, 0], d: [1, 0, 0], e: [0, 1, 0], q: [0, -1, 0], w: [0, 0, 1], s: [0, 0, -1] };
   const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
   let held = null;
   lab.view.stage.addEventListener('keyup', () => {
@@ -194,7 +194,7 @@ function createKeys(lab, settings) {
     const letter = event.key.toLowerCase();
     let body = null;
     if (arrows[event.key]) body = { orbit: arrows[event.key].map((x) => x * (event.shiftKey ? FINE_ORBIT : ORBIT)) };
-    else if (keys[letter]) body = { step: keys[letter].map((x) => x * settings.length * (event.shiftKey ? 0.1 : 1)) };
+    else if (steps[letter]) body = { step: steps[letter].map((x) => x * settings.length * (event.shiftKey ? 0.1 : 1)) };
     else if (event.key === 'PageUp' || event.key === 'PageDown') {
       const distance = (lab.state?.camera?.distance || 1) * 0.1;
       body = { step: [0, 0, event.key === 'PageUp' ? distance : -distance] };

@@ -6,8 +6,8 @@
 import { gesture } from './ui.js';
 import { add, dot, minus, times } from './ray_vectors.js';
 
-const STILL_PX = 3;
-const KEY_PX = 8;
+const STILL_PX = 3; /* a shorter drag is a click */
+const KEY_PX = 8; /* CSS pixels per key press */
 const PAUSE_MS = 600;
 
 export function objectTool(lab, choice, mark) {
@@ -110,15 +110,15 @@ export function objectTool(lab, choice, mark) {
   }
 
   function key(event) {
-    const arrows = { ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX] };
+    const steps = { ArrowLeft: [-KEY_PX, 0], ArrowRight: [KEY_PX, 0], ArrowUp: [0, -KEY_PX], ArrowDown: [0, KEY_PX] };
     if (!choice.name) return false;
     if (event.key === 'Escape') choice.choose('');
     else if (event.key === 'Delete') choice.remove();
-    else if (arrows[event.key] && moves(choice.object) && mark.at()) {
+    else if (steps[event.key] && moves(choice.object) && mark.at()) {
       if (!keys || event.timeStamp - keys.at > PAUSE_MS) keys = { gesture: gesture('object') };
       keys.at = event.timeStamp;
       const fine = event.shiftKey ? 0.1 : 1;
-      const [dx, dy] = arrows[event.key];
+      const [dx, dy] = steps[event.key];
       choice.move(
         offset((dx * fine) / view.scale, (dy * fine) / view.scale, Math.max(depthOf(mark.at()), 0)),
         keys.gesture,

@@ -4,7 +4,7 @@ import { button, choice, element, empty, notice, replace, slider } from './ui.js
 import { changes, costs, similarity, sizes } from './compare_numbers.js';
 import { createCompareView } from './compare_view.js';
 
-const CLOSE_UP = 12;
+const CLOSE_UP = 12; /* CSS pixels per image pixel */
 const writes = (target) =>
   target.closest?.(
     'input:not([type=range]):not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable]',

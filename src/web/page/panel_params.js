@@ -8,7 +8,7 @@ import { hasLaw } from './param_laws.js';
 
 const FOUND_MAX = 80;
 const LATER_MS = 300; /* the list is not rebuilt while one of its controls is dragged */
-const MANY = 36;
+const MANY = 36; /* with more main parameters, only the first groups and Rendering start unfolded */
 const LAST = ['camera', 'background', 'render'];
 const TITLES = { camera: 'Camera', background: 'Background', render: 'Rendering' };
 

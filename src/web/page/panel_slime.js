@@ -17,7 +17,7 @@ function slimes(lab) {
 }
 
 function stateText(slime) {
-  if (!slime.on) return 'Off: the image shows the slime at the scene\'s time_s';
+  if (!slime.on) return "Off: the image shows the slime at the scene's time_s";
   if (slime.trouble) return 'Stopped';
   if (!slime.playing) return 'Paused: full render';
   return slime.resting ? 'At rest: full render' : 'Moving: previews';
@@ -32,7 +32,7 @@ function controls(lab) {
   const restart = button('Restart', () => order({ do: 'restart' }), { icon: 'reset' });
   const off = button('Off', () => order({ do: 'off' }), {
     icon: 'stop',
-    title: 'Show the slime at the scene\'s time_s',
+    title: "Show the slime at the scene's time_s",
   });
   const grab = button(
     'Grab in the image',

@@ -6,7 +6,7 @@
  *   whyUnused(lab, object, name)        why that parameter has no effect now; '' if it has one
  *   withMedium(lab, object, medium)     {path: value} to set for that medium: a law requires coefficients */
 
-const ABBE_NM = [486.1, 587.6, 656.3];
+const ABBE_NM = [486.1, 587.6, 656.3]; /* the lines F, d and C of the Abbe number */
 const SPREAD = 0.004; /* um^2: close to that of water and crown glass */
 
 const round = (x) => Number(x.toPrecision(6));

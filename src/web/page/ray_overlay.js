@@ -12,9 +12,9 @@ import { svg } from './ui.js';
 import { lineClass } from './ray_tree.js';
 import { add, dot, length, minus, times } from './ray_vectors.js';
 
-const LIGHTEST = 0.002;
+const LIGHTEST = 0.002; /* weight below which rays are not drawn */
 const LINES_MAX = 1500;
-const NEAR_PX = 8;
+const NEAR_PX = 8; /* distance at which the pointer marks a ray */
 
 export function drawn(tree) {
   const heavy = tree.rays.filter((ray) => ray.weight >= LIGHTEST);

@@ -99,8 +99,8 @@ function windowOf(rays, outlines, flat) {
   const take = ([u, v], into = box) =>
     into.splice(0, 4, Math.min(into[0], u), Math.min(into[1], v), Math.max(into[2], u), Math.max(into[3], v));
   const size = (of) => (of[0] <= of[2] ? Math.hypot(of[2] - of[0], of[3] - of[1]) : 0);
-  const met = new Set(rays.filter((ray) => ray.node.hit).flatMap(({ node }) => [node.hit.solid, node.hit.surface_of]));
-  for (const solid of outlines) if (met.has(solid.name)) solid.parts.flat().forEach((point) => take(point));
+  const hit = new Set(rays.filter((ray) => ray.node.hit).flatMap(({ node }) => [node.hit.solid, node.hit.surface_of]));
+  for (const solid of outlines) if (hit.has(solid.name)) solid.parts.flat().forEach((point) => take(point));
   const near = size(box);
   for (const ray of rays) {
     if (ray.node.hit && (near === 0 || within(flat(ray.to), box, near))) take(flat(ray.to));

@@ -6,7 +6,7 @@
 
 import { add } from './ray_vectors.js';
 
-const RIM = 48;
+const RIM = 48; /* corners that draw a circle */
 
 /* A ring of the API's outlines: height, half axes, number of corners (0: round) and angle of the first corner. */
 function ring([y, x, z, corners, from]) {

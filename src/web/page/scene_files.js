@@ -4,7 +4,7 @@
 
 import { ask, button, dialog, element, empty, notice, replace, unique } from './ui.js';
 
-const MANY = 8;
+const MANY = 8; /* longer lists get a search field */
 
 export function createFiles(lab, choice) {
   const ours = new Set(); /* files written by this page since they were opened; overwriting them loses nothing */

@@ -1,4 +1,5 @@
-/* The status line: properties and cost of the displayed image, the last message, and the live region for screen readers.
+/* The status line: properties and cost of the displayed image, the last message; and the live region for screen
+ * readers.
  * exports: createStatus(root, live, lab); sets lab.say and lab.fail */
 
 import { button, copy, count, digits, element, icon, replace, seconds } from './ui.js';

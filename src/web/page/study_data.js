@@ -11,7 +11,7 @@
  *   categorical
  *                                     axis; left: number of lines omitted */
 
-const SERIES_MAX = 14;
+const SERIES_MAX = 14; /* lines of one chart */
 const FINGERPRINTS = /(^|_)(hash|definition|reference|film_expected|reference_film)$/;
 const NAMES = {
   wall_s: 'wall time per frame',

@@ -5,7 +5,7 @@
 import { digits, element, gesture, icon } from './ui.js';
 
 const EDGE = 30;
-const KEY_PX = 12;
+const KEY_PX = 12; /* CSS pixels per key press */
 const PAUSE_MS = 600;
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

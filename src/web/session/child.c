@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { OUTPUT_MAX = 16384, LOOK_MS = 100 };
+enum { OUTPUT_MAX = 16384, POLL_MS = 100 /* how often stop is checked */ };
 
 typedef struct child {
     pid_t pid;
@@ -63,7 +63,7 @@ static bool wait_child(child *c, double limit_s, const atomic_bool *stop)
     bool open = true;
     while (clock_wall_s() < deadline_s && !atomic_load(stop)) {
         struct pollfd both[] = {{.fd = open ? c->out : -1, .events = POLLIN}, {.fd = c->pidfd, .events = POLLIN}};
-        poll(both, 2, LOOK_MS);
+        poll(both, 2, POLL_MS);
         if (both[0].revents)
             open = read_output(c);
         siginfo_t ended = {.si_pid = 0};

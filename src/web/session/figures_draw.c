@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double draw_limit_s = 50;
+static const double draw_limit_s = 50; /* below the minute that a page waits for a reply */
 enum { PART_MAX = 64 << 20 };
 
 /* --- tables, made as by the Makefile's rules --- */

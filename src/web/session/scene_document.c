@@ -150,7 +150,7 @@ static status push_version(scene_document *d, scene *next, const char *file, ori
         free(words);
         return out_of_memory(why);
     }
-    const bool goes_on = gesture && d->gesture[0] && strcmp(gesture, d->gesture) == 0;
+    const bool continues = gesture && d->gesture[0] && strcmp(gesture, d->gesture) == 0;
     snprintf(d->gesture, sizeof d->gesture, "%s", gesture ? gesture : "");
     version before = d->now;
     d->now = (version){.s = next, .file = name, .number = ++d->numbers, .from = from ? from : before.from};
@@ -158,7 +158,7 @@ static status push_version(scene_document *d, scene *next, const char *file, ori
         from->number = d->now.number;
     else
         before.from->owners++;
-    if (goes_on) {
+    if (continues) {
         free(words);
         version_clear(&before);
     } else {
