@@ -246,7 +246,7 @@ test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and 
 dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables of results/README.md and the manual's parameters and account
 	@$(build)/cuvette params --man >$(build)/parameters.roff
 	@sed -i -e '/^\.\\" begin parameters/,/^\.\\" end parameters/{//!d}' \
-	  -e '/^\.\\" begin parameters/r $(build)/parameters.roff' src/cli/cuvette.1
+	  -e '/^\.\\" begin parameters/r $(build)/parameters.roff' manual/man1/cuvette.1
 	@CUVETTE_RENEW=1 $< >/dev/null 2>&1 && $<
 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for pictures of every view. After what else
@@ -354,7 +354,8 @@ bench: all peers $(build)/tests/bench_mesh ## measure frames and rays as ratios 
 # --- installation, upkeep ---
 
 .PHONY: install uninstall
-man := $(DESTDIR)$(PREFIX)/share/man/man1/cuvette.1
+man := $(DESTDIR)$(PREFIX)/share/man
+pages := $(patsubst manual/%,%,$(wildcard manual/man?/*))
 completion := $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cuvette
 shared := $(DESTDIR)$(PREFIX)/share/cuvette
 libexec := $(DESTDIR)$(PREFIX)/libexec/cuvette
@@ -370,14 +371,14 @@ install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/en
 	ln -sf $(soname) $(libraries)/libcuvette.so
 	@mkdir -p $(libraries)/pkgconfig
 	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(description)
-	install -D -m 644 src/cli/cuvette.1 $(man)
+	for page in $(pages); do install -D -m 644 manual/$$page $(man)/$$page || exit 1; done
 	install -D -m 644 src/cli/cuvette.bash $(completion)
 	install -D -m 644 LICENSE $(DESTDIR)$(PREFIX)/share/doc/cuvette/LICENSE
 	install -D -m 644 README.md $(DESTDIR)$(PREFIX)/share/doc/cuvette/README.md
 	find experiments plots -type f -exec sh -c 'for f; do test -x "$$f" && mode=755 || mode=644; \
 	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
 uninstall: ## remove what install put there
-	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(DESTDIR)$(PREFIX)/include/cuvette.h $(man) $(completion)
+	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(DESTDIR)$(PREFIX)/include/cuvette.h $(pages:%=$(man)/%) $(completion)
 	rm -f $(libraries)/libcuvette.a $(libraries)/libcuvette.so $(libraries)/$(soname) $(libraries)/libcuvette.so.$(version) $(description)
 	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette
 

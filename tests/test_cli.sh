@@ -6,7 +6,7 @@ set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
 scene=$root/experiments/scenes/rod.yaml
-page=$root/src/cli/cuvette.1
+page=$root/manual/man1/cuvette.1
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-cli.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
