@@ -241,13 +241,16 @@ test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and 
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
-# What people read of the list of quantities (src/job/quantities.c) and of the table of parameters; tests compare them.
+# What people read of the list of quantities (src/job/quantities.c), of the table of parameters and of results/README.md;
+# tests compare them. A generated part of a page is between its comments "begin NAME" and "end NAME".
+renew = sed -i -e '/^\.\\" begin $(1)/,/^\.\\" end $(1)/{//!d}' -e '/^\.\\" begin $(1)/r $(build)/$(1).roff' $(2)
 .PHONY: dictionary
-dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables of results/README.md and the manual's parameters and account
+dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables of results/README.md and the generated parts of the manual
 	@$(build)/cuvette params --man >$(build)/parameters.roff
-	@sed -i -e '/^\.\\" begin parameters/,/^\.\\" end parameters/{//!d}' \
-	  -e '/^\.\\" begin parameters/r $(build)/parameters.roff' manual/man1/cuvette.1
+	@$(call renew,parameters,manual/man5/cuvette-scene.5)
 	@CUVETTE_RENEW=1 $< >/dev/null 2>&1 && $<
+	@awk -f manual/results.awk results/README.md >$(build)/results.roff
+	@$(call renew,results,manual/man5/cuvette-results.5)
 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for pictures of every view. After what else
 # installs or measures.

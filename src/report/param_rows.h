@@ -35,5 +35,5 @@ status param_rows_print(FILE *stream, const scene *s, const char *filter, int co
 /* The same as JSON; the caller's. */
 status param_rows_json(const scene *s, const char *filter, json_t **out, diagnostic *why);
 
-/* The parameter part of cuvette.1. */
+/* The generated part of cuvette-scene(5). */
 void param_rows_manual(FILE *stream);

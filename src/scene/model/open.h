@@ -13,8 +13,8 @@ scene *scene_create(void);
 scene *scene_clone(const scene *original);
 void scene_destroy(scene *s);
 
-/* Reads a scene file (YAML; grammar in scene/file/read.c's head and the manual). Pictures, textures and meshes are not
- * loaded yet. */
+/* Reads a scene file (YAML; grammar in scene/file/read.c's head and cuvette-scene(5)). Pictures, textures and meshes
+ * are not loaded yet. */
 status scene_read(const char *path, scene **out, diagnostic *why);
 /* The same of a file that lies below root (base/below.h), which is the root of its limits, too. */
 status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why);
