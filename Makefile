@@ -244,13 +244,16 @@ test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and 
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
 
-# Documents generated from the list of quantities (src/job/quantities.c) and the table of parameters; tests compare them.
+# Documents generated from the list of quantities (src/job/quantities.c), the table of parameters and results/README.md;
+# tests compare them. A generated part of a page is between its comments "begin NAME" and "end NAME".
+renew = sed -i -e '/^\.\\" begin $(1)/,/^\.\\" end $(1)/{//!d}' -e '/^\.\\" begin $(1)/r $(build)/$(1).roff' $(2)
 .PHONY: dictionary
-dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables of results/README.md and the manual's parameters and account
+dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables of results/README.md and the generated parts of the manual
 	@$(build)/cuvette params --man >$(build)/parameters.roff
-	@sed -i -e '/^\.\\" begin parameters/,/^\.\\" end parameters/{//!d}' \
-	  -e '/^\.\\" begin parameters/r $(build)/parameters.roff' src/cli/cuvette.1
+	@$(call renew,parameters,manual/man5/cuvette-scene.5)
 	@CUVETTE_RENEW=1 $< >/dev/null 2>&1 && $<
+	@awk -f manual/results.awk results/README.md >$(build)/results.roff
+	@$(call renew,results,manual/man5/cuvette-results.5)
 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view. Runs after everything
 # that installs or measures.
@@ -371,7 +374,8 @@ bench: all peers $(build)/tests/bench_mesh ## benchmark frames and rays as ratio
 # --- installation, upkeep ---
 
 .PHONY: install uninstall
-man := $(DESTDIR)$(PREFIX)/share/man/man1/cuvette.1
+man := $(DESTDIR)$(PREFIX)/share/man
+pages := $(patsubst manual/%,%,$(wildcard manual/man?/*))
 completion := $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cuvette
 shared := $(DESTDIR)$(PREFIX)/share/cuvette
 libexec := $(DESTDIR)$(PREFIX)/libexec/cuvette
@@ -387,14 +391,14 @@ install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/en
 	ln -sf $(soname) $(libraries)/libcuvette.so
 	@mkdir -p $(libraries)/pkgconfig
 	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(description)
-	install -D -m 644 src/cli/cuvette.1 $(man)
+	for page in $(pages); do install -D -m 644 manual/$$page $(man)/$$page || exit 1; done
 	install -D -m 644 src/cli/cuvette.bash $(completion)
 	install -D -m 644 LICENSE $(DESTDIR)$(PREFIX)/share/doc/cuvette/LICENSE
 	install -D -m 644 README.md $(DESTDIR)$(PREFIX)/share/doc/cuvette/README.md
 	find experiments plots -type f -exec sh -c 'for f; do test -x "$$f" && mode=755 || mode=644; \
 	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
 uninstall: ## remove the installed files
-	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(DESTDIR)$(PREFIX)/include/cuvette.h $(man) $(completion)
+	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(DESTDIR)$(PREFIX)/include/cuvette.h $(pages:%=$(man)/%) $(completion)
 	rm -f $(libraries)/libcuvette.a $(libraries)/libcuvette.so $(libraries)/$(soname) $(libraries)/libcuvette.so.$(version) $(description)
 	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette
 

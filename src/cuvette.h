@@ -5,8 +5,9 @@
  * There are five handles. A cuvette_scene is a scene description, with the content of a scene file. A cuvette_engine
  * owns worker threads and their memory; it renders scenes, one at a time. A cuvette_frame is the result of a render:
  * film, ray counts, times. A cuvette_query is a snapshot of a scene, prepared for the caller's rays. A cuvette_motion
- * advances the slimes of a scene in time and has hands that grab them. cuvette(1) is the manual of scenes, parameters
- * and models; `cuvette params` lists every parameter with its range, unit and default.
+ * advances the slimes of a scene in time and has hands that grab them. cuvette-scene(5) is the manual of scenes and
+ * parameters, cuvette-optics(7) that of the models; `cuvette params` lists every parameter with its range, unit and
+ * default.
  *
  * Ownership. The caller owns what a function whose name ends in _create, _read, _clone or _render returns; the function
  * that ends in _destroy releases it, and accepts NULL. Arguments are borrowed for the call only: the library keeps no
@@ -189,7 +190,7 @@ typedef enum cuvette_object {
 
 CUVETTE_API cuvette_status cuvette_scene_add_light(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_add_material(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
-/* shape: "sphere" or another shape of cuvette(1), which describes the position of each. material: the name of a
+/* shape: "sphere" or another shape of cuvette-scene(5), which describes the position of each. material: the name of a
  * material, or NULL for a surface of the solid's own. All other parameters have their defaults; set them by path. */
 CUVETTE_API cuvette_status cuvette_scene_add_solid(cuvette_scene *scene, const char *name, const char *shape,
                                                    const char *material, cuvette_diagnostic *why);

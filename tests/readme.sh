@@ -61,9 +61,9 @@ empty "the README names the two commands" \
         echo "$line"; done)"
 
 # --- a folder as a reader has it: the studies and scenes, the program on the path
-mkdir -p "$work/bin" "$work/lab/src/cli"
+mkdir -p "$work/bin" "$work/lab"
 ln -s "$program" "$work/bin/cuvette"
-ln -s "$root/src/cli/cuvette.1" "$work/lab/src/cli/"
+ln -s "$root/manual" "$work/lab/"
 cp -r "$root/experiments" "$work/lab/"
 "${CC:-gcc}" -std=gnu17 -o "$work/bin/json_get" "$root/tests/json_get.c" $(pkg-config --cflags --libs jansson)
 verdict $? "tests/json_get.c compiles"

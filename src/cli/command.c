@@ -19,8 +19,7 @@ static char *table_text(const command *table, size_t count, const char *about, c
     }
     if (!text)
         return NULL;
-    char *whole = text_format("%s\n'%s COMMAND --help' prints the help of a command. The manual page is cuvette(1).",
-                              text, program);
+    char *whole = text_format("%s\n'%s COMMAND --help' prints the help of a command.", text, program);
     free(text);
     return whole;
 }

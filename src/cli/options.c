@@ -171,6 +171,17 @@ static error_t take_key(int key, char *value, struct argp_state *state)
     return ARGP_ERR_UNKNOWN;
 }
 
+/* The help text with the manual page at its end: cuvette-study(1) for the program "cuvette study run". argp prints what
+ * follows a '\v' after the options. */
+static char *about_with_page(const char *about, const char *program)
+{
+    const size_t command = strcspn(program, " ");
+    const char *word = program + command + strspn(program + command, " ");
+    const int length = (int)strcspn(word, " ");
+    return text_format("%s%cThe manual page is %.*s%s%.*s(1).", about, strchr(about, '\v') ? '\n' : '\v', (int)command,
+                       program, length > 0 ? "-" : "", length, word);
+}
+
 status command_form_read(const command_form *form, int argc, char **argv, void *request, diagnostic *why)
 {
     struct argp_option options[OPTIONS_MAX + 1] = {{0}};
@@ -180,9 +191,14 @@ status command_form_read(const command_form *form, int argc, char **argv, void *
         const command_option *o = &form->options[i];
         options[i] = (struct argp_option){o->name, o->letter ? o->letter : KEY_FIRST + i, o->form, 0, o->purpose, 0};
     }
-    const struct argp argp = {.options = options, .parser = take_key, .args_doc = form->synopsis, .doc = form->about};
+    struct argp argp = {.options = options, .parser = take_key, .args_doc = form->synopsis};
     TRY(check(&argp, flags, argc, argv, why));
+    char *about = about_with_page(form->about, argv[0]);
+    if (!about)
+        return out_of_memory(why);
+    argp.doc = about;
     const error_t error = argp_parse(&argp, argc, argv, flags, NULL, &reading);
+    free(about);
     if (error == EINVAL)
         return reading.wrong;
     if (error == ENOMEM)

@@ -17,7 +17,7 @@ typedef struct params_request {
 
 static const command_option options[] = {
     {"json", 0, NULL, "print JSON", OPTION_FILLS(option_flag, params_request, json)},
-    {"man", 0, NULL, "print the parameter section of the manual page as roff",
+    {"man", 0, NULL, "print the parameter reference of cuvette-scene(5) as roff",
      OPTION_FILLS(option_flag, params_request, manual)},
     {0},
 };

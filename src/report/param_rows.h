@@ -36,5 +36,5 @@ status param_rows_print(FILE *stream, const scene *s, const char *filter, int co
 /* The same as JSON; the caller owns *out. */
 status param_rows_json(const scene *s, const char *filter, json_t **out, diagnostic *why);
 
-/* Prints the parameters' section of cuvette.1. */
+/* Prints the generated part of cuvette-scene(5). */
 void param_rows_manual(FILE *stream);

@@ -1,5 +1,5 @@
 /* The JSON account of a render, built from the list of job/quantities.h: the output of `cuvette render --json`, and the
- * numbers of an image on the laboratory's page. The manual page documents the keys. Ownership: new references, NULL
+ * numbers of an image on the laboratory's page. cuvette-account(5) documents the keys. Ownership: new references, NULL
  * when memory is out. */
 #pragma once
 

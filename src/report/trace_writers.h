@@ -16,6 +16,6 @@ extern const char *const trace_kind_words[]; /* by ray_kind */
 extern const char *const trace_end_words[];  /* by ray_end */
 
 status trace_write_text(const traced *t, FILE *out, diagnostic *why);
-/* The manual page documents the fixed schema in THE JSON TREE. */
+/* cuvette-trace(1) documents the fixed schema in JSON OUTPUT. */
 status trace_write_json(const traced *t, FILE *out, diagnostic *why);
 status trace_write_drawing(const traced *t, FILE *out, diagnostic *why);

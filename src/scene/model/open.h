@@ -13,8 +13,8 @@ scene *scene_create(void);
 scene *scene_clone(const scene *original);
 void scene_destroy(scene *s);
 
-/* Reads a scene file (YAML; grammar at the top of scene/file/read.c and in the manual). Images, textures and meshes are
- * not loaded yet. */
+/* Reads a scene file (YAML; grammar at the top of scene/file/read.c and in cuvette-scene(5)). Images, textures and
+ * meshes are not loaded yet. */
 status scene_read(const char *path, scene **out, diagnostic *why);
 /* The same for a file below root (base/below.h), which becomes the root of its limits. */
 status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why);

@@ -1,0 +1,145 @@
+#!/bin/bash
+# The manual against the program: every command has a page with its options, the pages are clean roff, refer to pages
+# that exist, and their examples work. tests/manual.sh [PROGRAM]. One line a check ("ok ...", "not ok ...").
+set -uo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
+manual=$root/manual
+work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-manual.XXXXXX") || exit 1
+trap 'rm -rf "$work"' EXIT
+unset CUVETTE_ISA NO_COLOR
+
+count=0 failed=0
+verdict() { # STATUS WHAT [WHY]
+    count=$((count + 1))
+    if (($1 == 0)); then
+        echo "ok $count - $2"
+    else
+        failed=$((failed + 1))
+        echo "not ok $count - $2"
+        [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3"
+    fi
+}
+empty() { # WHAT TEXT: passes when the text, the list of mistakes, is empty
+    [[ -z $2 ]]
+    verdict $? "$1" "$2"
+}
+
+commands() { # WORD...: the commands that `cuvette WORD... --help` lists
+    "$program" "$@" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'
+}
+# --help, --usage and --version are those of every command; cuvette(1) describes them.
+common='--help|--usage|--version'
+help_options() { # WORD...: the options of a command and of its subcommands
+    "$program" "$@" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | grep -vxE -- "$common"
+    local word
+    if [[ $1 != help ]]; then
+        for word in $(commands "$@"); do help_options "$@" "$word"; done
+    fi
+}
+section() { # TITLE PAGE: the lines of that section, or all lines without a title
+    awk -v title="$1" '/^\.SH / {on = title == "" || $0 == ".SH " title; next} on' "$2"
+}
+page_options() { # PAGE: the options that are tags of its section OPTIONS
+    section OPTIONS "$1" | awk '/^\.T[PQ]/ {getline; print}' | sed 's/\\-/-/g' | grep -oE -- '--[a-z][a-z-]*'
+}
+plain() { sed "s/\\\\f[BIR]//g; s/\\\\-/-/g; s/\\\\&//g; s/\\\\(aq/'/g"; } # without fonts and escapes
+
+# --- a page a command, with the purpose and the options of its help
+"$program" --help >"$work/help"
+for command in $(commands); do
+    page=$manual/man1/cuvette-$command.1
+    [[ -f $page ]]
+    verdict $? "cuvette-$command(1) exists" || continue
+    [[ -f $page ]] || continue
+    purpose=$(sed -n "s/^  $command  *//p" "$work/help")
+    empty "cuvette-$command(1) has the purpose of the help" \
+        "$(diff <(echo "cuvette-$command - $purpose") <(section NAME "$page" | plain))"
+    empty "cuvette-$command(1) has the options of the help" \
+        "$(diff <(help_options "$command" | sort -u) <(page_options "$page" | sort -u))"
+    "$program" "$command" --help | grep -qE "cuvette(-$command)?\(1\)"
+    verdict $? "cuvette $command --help names its page"
+    for title in SYNOPSIS DESCRIPTION EXAMPLES "EXIT STATUS" "SEE ALSO"; do
+        grep -qx "\.SH $title" "$page"
+        verdict $? "cuvette-$command(1) has the section $title"
+    done
+done
+for page in "$manual"/man1/cuvette-*.1; do
+    command=$(basename "$page" .1)
+    commands | grep -qx "${command#cuvette-}"
+    verdict $? "$command(1) is the page of a command"
+done
+listed() { # the commands of cuvette(1) with their purposes
+    section COMMANDS "$manual/man1/cuvette.1" | plain |
+        awk '/^\.TP/ {getline tag; getline; gsub(/^cuvette-|\(1\)$/, "", tag); print tag, $0}'
+}
+empty "cuvette(1) lists the commands and their purposes" \
+    "$(diff <(sed -n '/^Commands:/,/^$/s/^  \([a-z]*\)  */\1 /p' "$work/help") <(listed))"
+
+# --- every page: clean roff, the program's version, references that lead somewhere
+version=$("$program" --version | cut -d' ' -f2)
+for page in "$manual"/man?/*; do
+    file=$(basename "$page")
+    name=${file%.*}
+    label="$name(${file##*.})"
+    title="^\.TH ${name^^} ${file##*.} [0-9-]{10} \"Cuvette ${version//./\\.}\" \"Cuvette Manual\"$"
+    empty "$label has a title with its name, section and the version" \
+        "$(grep -qE "$title" "$page" || grep '^\.TH' "$page")"
+    if command -v groff >/dev/null; then
+        empty "$label is clean for groff" "$(groff -man -Tutf8 -ww -z "$page" 2>&1)"
+    fi
+    if command -v mandoc >/dev/null; then
+        empty "$label is clean for mandoc" "$(mandoc -Tlint -Wwarning "$page" 2>&1 | grep -v 'mandoc: outdated')"
+    fi
+    empty "the pages that $label names exist" "$(plain <"$page" | grep -oE 'cuvette(-[a-z]+)?\([1-8]\)' | sort -u |
+        while IFS='()' read -r other number; do
+            [[ -f $manual/man$number/$other.$number ]] || echo "$other($number)"
+        done)"
+    empty "$label has no line over 120 columns" \
+        "$(plain <"$page" | awk '/^\.\\" begin/ {made = 1} /^\.\\" end/ {made = 0} !made && length > 120')"
+done
+empty "cuvette-results(5) has the text of results/README.md (to renew: make dictionary)" \
+    "$(diff <(awk -f "$manual/results.awk" "$root/results/README.md") \
+        <(sed '/^\.\\" begin results/,/^\.\\" end results/!d' "$manual/man5/cuvette-results.5" | sed '1d;$d'))"
+
+# --- the examples, in a folder as a reader has it, with small images and short studies
+mkdir -p "$work/bin" "$work/lab"
+ln -s "$program" "$work/bin/cuvette"
+cp -r "$root/experiments" "$work/lab/"
+cp -r "$manual" "$work/lab/"
+export PATH=$work/bin:$PATH
+cd "$work/lab" || exit 1
+cat >experiments/depth.study <<'END'
+study: depth
+scene: scenes/rod.yaml
+set: {render.width: 16, render.height: 12}
+grid: [{render.depth: [0, 1]}]
+repetitions: 6
+END
+blocks() { # FILE: the lines of its examples, continued lines joined
+    awk '/^\.EE/ {on = 0} on; /^\.EX/ {on = 1}' | plain | sed 's/\\e$/\\/' |
+        sed -e ':a' -e '/\\$/{N; s/ *\\\n */ /; ba' -e '}'
+}
+small() { # a command line with images that are done in a moment
+    sed -E "s/^cuvette (render|animate) /cuvette \1 --set=render.width=80 --set=render.height=60 /
+        s/^(cuvette animate .*)/\1 --duration 0.08/; s/ \| (jq|ffmpeg) .*//"
+}
+try() { # COMMAND LINE
+    bash -c "set -e -o pipefail; $1" >said 2>&1 </dev/null
+    verdict $? "$1" "$(<said)"
+}
+# The study that cuvette-tour(7) lets the reader save.
+sed 's/\\-/-/g' "$manual/man7/cuvette-tour.7" | awk '/^study: / {on = 1} /^\.EE/ {on = 0} on' >experiments/oils.study
+for page in "$manual"/man[157]/*; do
+    title=EXAMPLES
+    [[ $page == */cuvette-tour.7 ]] && title=
+    while read -r line; do
+        try "$line"
+    done < <(section "$title" "$page" | blocks | grep -E '^(cuvette|cat|awk) ' | grep -v '^cuvette lab' | small)
+done
+empty "the study of cuvette-tour(7) kept an image of each of its eight cells" \
+    "$(tail -n +2 results/oils/images/index.tsv | wc -l | grep -vx 8)"
+
+echo "$((count - failed)) passed, $failed failed"
+((failed == 0))
