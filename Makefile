@@ -250,10 +250,10 @@ renew = sed -i -e '/^\.\\" begin $(1)/,/^\.\\" end $(1)/{//!d}' -e '/^\.\\" begi
 .PHONY: dictionary
 dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables of results/README.md and the generated parts of the manual
 	@$(build)/cuvette params --man >$(build)/parameters.roff
-	@$(call renew,parameters,manual/man5/cuvette-scene.5)
+	@$(call renew,parameters,src/manual/man5/cuvette-scene.5)
 	@CUVETTE_RENEW=1 $< >/dev/null 2>&1 && $<
-	@awk -f manual/results.awk results/README.md >$(build)/results.roff
-	@$(call renew,results,manual/man5/cuvette-results.5)
+	@awk -f src/manual/results.awk results/README.md >$(build)/results.roff
+	@$(call renew,results,src/manual/man5/cuvette-results.5)
 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view. Runs after everything
 # that installs or measures.
@@ -375,7 +375,7 @@ bench: all peers $(build)/tests/bench_mesh ## benchmark frames and rays as ratio
 
 .PHONY: install uninstall
 man := $(DESTDIR)$(PREFIX)/share/man
-pages := $(patsubst manual/%,%,$(wildcard manual/man?/*))
+pages := $(patsubst src/manual/%,%,$(wildcard src/manual/man?/*))
 completion := $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cuvette
 shared := $(DESTDIR)$(PREFIX)/share/cuvette
 libexec := $(DESTDIR)$(PREFIX)/libexec/cuvette
@@ -391,7 +391,7 @@ install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/en
 	ln -sf $(soname) $(libraries)/libcuvette.so
 	@mkdir -p $(libraries)/pkgconfig
 	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(description)
-	for page in $(pages); do install -D -m 644 manual/$$page $(man)/$$page || exit 1; done
+	for page in $(pages); do install -D -m 644 src/manual/$$page $(man)/$$page || exit 1; done
 	install -D -m 644 src/cli/cuvette.bash $(completion)
 	install -D -m 644 LICENSE $(DESTDIR)$(PREFIX)/share/doc/cuvette/LICENSE
 	install -D -m 644 README.md $(DESTDIR)$(PREFIX)/share/doc/cuvette/README.md

@@ -311,7 +311,7 @@ check "a closed pipe ends it without a message" eval '[[ ${PIPESTATUS[0]} != 0 |
 animate -o one/%05d.png --duration 0.6 --json
 check "--json is one object" eval '[[ $(./json_get out @type) == object && ! -s err ]]'
 check "with frames, kept and rate" is "$(./json_get out frames kept rendered 'fps[]' | tr '\n' ' ')" "15 15 0 25 1 "
-check "0.56 s with time steps of 1 ms" is "$(./json_get out steps simulated_s wall_s_mean | tr '\n' ' ')" "560 0.56 null "
+check "0.56 s in steps of 1 ms" is "$(./json_get out steps simulated_s wall_s_mean | tr '\n' ' ')" "560 0.56 null "
 check "and the definition of the rows" is "$(./json_get out definition)" "$(sed -n 2p late.csv | cut -d, -f1)"
 
 # --- invalid command lines

@@ -209,7 +209,7 @@ refused "a hand that misses" "^cuvette: slimes/tug.yaml:3:7: .*nothing" render s
 refused "trace over the script" "the scene is read from this file" \
     trace slimes/toy.yaml --pixel 1,1 --text -o slimes/tug.yaml
 refused "scene over the script" "a script of the scene is read from this file" scene slimes/toy.yaml -o slimes/tug.yaml
-refused "a slime whose simulation diverges" "^cuvette: slimes/toy.yaml:3:19: toy: " render slimes/toy.yaml --json --set \
+refused "a diverging slime" "^cuvette: slimes/toy.yaml:3:19: toy: " render slimes/toy.yaml --json --set \
     toy.script= --set toy.stiffness=1e9
 refused "too fine a slime" "toy: .*level" render slimes/toy.yaml --json --set toy.level=8
 refused "a scene as a script" "unknown key 'render'" render slimes/toy.yaml --json --set toy.script=toy.yaml

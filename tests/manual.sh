@@ -5,7 +5,7 @@ set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
-manual=$root/manual
+manual=$root/src/manual
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-manual.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 unset CUVETTE_ISA NO_COLOR
@@ -107,7 +107,7 @@ empty "cuvette-results(5) has the text of results/README.md (to renew: make dict
 mkdir -p "$work/bin" "$work/lab"
 ln -s "$program" "$work/bin/cuvette"
 cp -r "$root/experiments" "$work/lab/"
-cp -r "$manual" "$work/lab/"
+mkdir -p "$work/lab/src" && cp -r "$manual" "$work/lab/src/"
 export PATH=$work/bin:$PATH
 cd "$work/lab" || exit 1
 cat >experiments/depth.study <<'END'

@@ -36,7 +36,7 @@ words() { # PAGE
 }
 has_reference=0
 for file in "$root"/results/reference/*; do [[ -e $file ]] && has_reference=1; done
-for page in README.md CONTRIBUTING.md results/README.md experiments/published/README.md paper/claims.md; do
+for page in README.md CONTRIBUTING.md src/web/README.md results/README.md experiments/published/README.md paper/claims.md; do
     lost=
     while read -r target; do
         [[ -e $root/$(dirname "$page")/$target ]] && continue
@@ -50,8 +50,7 @@ for page in README.md CONTRIBUTING.md results/README.md experiments/published/RE
     empty "the links of $page lead to files" "$lost"
     lost=
     while read -r target; do
-        # The example study is yours to write.
-        [[ -e $root/$target || $target == experiments/oils.study ]] || lost+="${lost:+$'\n'}$target"
+        [[ -e $root/$target ]] || lost+="${lost:+$'\n'}$target"
     done < <(words "$root/$page")
     empty "the files that $page names are there" "$lost"
 done
@@ -60,10 +59,9 @@ empty "the README names the two commands" \
     "$(for line in 'make setup experiments' 'make setup test'; do grep -qE "^    $line( |$)" "$root/README.md" ||
         echo "$line"; done)"
 
-# --- a folder as a reader has it: the studies and scenes, the program on the path
+# --- a folder like the reader's: studies and scenes, the program on the path
 mkdir -p "$work/bin" "$work/lab"
 ln -s "$program" "$work/bin/cuvette"
-ln -s "$root/manual" "$work/lab/"
 cp -r "$root/experiments" "$work/lab/"
 "${CC:-gcc}" -std=gnu17 -o "$work/bin/json_get" "$root/tests/json_get.c" $(pkg-config --cflags --libs jansson)
 verdict $? "tests/json_get.c compiles"
@@ -74,38 +72,13 @@ try() { # COMMAND LINE: its words in said
     bash -c "set -e -o pipefail; $1" >said 2>&1 </dev/null
     verdict $? "$1" "$(<said)"
 }
-# The commands of the tour that are done in a moment. What follows a | may need a program that is not installed.
+# The quick commands of README.md. A program after a | may not be installed.
 while read -r line; do
     try "${line%% | *}"
 done < <(sed -n \
-    's/^    \(cuvette \(render\|params\|media\|trace\|fan\|compare\|realism\|motion\|machine\|study list\).*\)/\1/p' \
+    's/^    \(cuvette \(render\|fan\|realism\).*\)/\1/p' \
     "$root/README.md" | sed 's/ *#.*//' |
     sed "s/ render / render --set=render.width=160 --set=render.height=120 /")
-
-# --- the example study, as it stands: the first block is the file, the second how to run it
-section() { awk '/^\*\*A study of your own/ {on = 1; print; next} on && /^\*\*/ {exit} on' "$root/README.md"; }
-block() { # N: the Nth indented block of the section
-    section | awk -v n="$1" '/^    / {if (!inside) k++; inside = 1; if (k == n) print substr($0, 5); next} {inside = 0}'
-}
-file=$(section | sed -n '1s/.*`\([^`]*\)`.*/\1/p')
-block 1 >"$file"
-verdict $? "the README's study goes into $file"
-while read -r line; do
-    try "$line"
-done < <(block 2)
-name=$(sed -n 's/^study: //p' "$file")
-empty "its images are in images/index.tsv" \
-    "$({ cd "results/$name/images" && diff <(tail -n +2 index.tsv | cut -f1 |
-        sort) <(find . -name '*.png' -printf '%f\n' | sort); } 2>&1)"
-cells=$(cuvette study list experiments | awk -v f="$file" '$1 == f {print $2}')
-empty "as many as it has cells" \
-    "$(awk -v n="$cells" 'END {if (NR != n + 1) print NR - 1, "for", n}' "results/$name/images/index.tsv" 2>&1)"
-empty "index.tsv has the range's ends" \
-    "$(awk -F'\t' 'NR == 2 {from = $3} {to = $3} END {if (from != 1 || to != 1.6) print from, to}' \
-        "results/$name/images/index.tsv" 2>&1)"
-empty "its summary has a line a cell, and intervals" \
-    "$(cuvette study summary "$file" | awk -F'\t' -v n="$cells" \
-        'NR > 1 && !($6 < $7) {print} END {if (NR != n + 1) print NR}')"
 
 # --- the dictionary against what a study writes; a name with <...> stands for several
 cat >experiments/columns.study <<'END'

@@ -6,7 +6,7 @@ set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
 scene=$root/experiments/scenes/rod.yaml
-manual=$root/manual
+manual=$root/src/manual
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-cli.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1

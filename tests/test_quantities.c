@@ -280,7 +280,7 @@ static void the_manual_is_the_list(void **state)
     fputs(".PP\nAnd in each object of the list\n.BR threads ,\none a worker, of the last frame:\n", out);
     print_keys(out, worker_quantities, worker_quantity_count, "threads[].");
     fclose(out);
-    expect_part("manual/man5/cuvette-account.5", ".SH KEYS", ".\\\" begin account\n", ".\\\" end account\n", text,
+    expect_part("src/manual/man5/cuvette-account.5", ".SH KEYS", ".\\\" begin account\n", ".\\\" end account\n", text,
                 size);
     free(text);
 }

@@ -6,7 +6,7 @@ set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 program=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
-page=$root/manual/man7/cuvette-tutorial.7
+page=$root/src/manual/man7/cuvette-tutorial.7
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-tutorial.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 unset CUVETTE_ISA NO_COLOR

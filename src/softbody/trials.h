@@ -1,5 +1,5 @@
 /* Measured properties of the motion and their theory: the behaviour of a spring, a fall, a bounce and a free toy with
- * the integrator, step and stiffness of the settings, as a list of named values. Each trial uses a part of the settings:
+ * the integrator, step and stiffness of the settings, as a list of named values. Each trial uses some of the settings:
  *   spring.*, stable_dt.spring_s  two masses of the toy (mass_kg over their number), one spring of `stiffness` and no
  *                                 damping, integrator, dt_s
  *   fall.*, bounce.height         one mass; gravity's y, restitution, integrator, dt_s

@@ -1,4 +1,4 @@
-# The part of cuvette-results(5) that results/README.md holds, as roff: awk -f manual/results.awk results/README.md
+# The part of cuvette-results(5) that results/README.md holds, as roff: awk -f src/manual/results.awk results/README.md
 # (make dictionary). A row of a table becomes a tagged paragraph, a section a .SS.
 
 function escaped(text, hyphens) {
