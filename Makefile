@@ -223,7 +223,7 @@ setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install the programs that the 
 
 # Checks of the sources, run in one configuration only.
 source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
-  tests/compile_commands.sh
+  tests/compile_commands.sh tests/words.sh
 scripts := $(filter-out $(source_checks),$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
