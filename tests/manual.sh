@@ -37,9 +37,9 @@ commands() { # WORD...: the commands that `cuvette WORD... --help` lists
     "$program" "$@" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'
 }
 # --help, --usage and --version are those of every command; cuvette(1) describes them.
-common='--help|--usage|--version'
-help_options() { # WORD...: the options of a command and of its subcommands
-    "$program" "$@" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | grep -vxE -- "$common"
+help_options() { # WORD...: the options of a command and of its subcommands, such as "-o, --output=FILE"
+    "$program" "$@" --help | grep -E '^(  -., |      )--' | grep -vE -- '--(help|usage|version) ' |
+        sed -E 's/^ *//; s/(--[^ ]*).*/\1/'
     local word
     if [[ $1 != help ]]; then
         for word in $(commands "$@"); do help_options "$@" "$word"; done
@@ -48,8 +48,8 @@ help_options() { # WORD...: the options of a command and of its subcommands
 section() { # TITLE PAGE: the lines of that section, or all lines without a title
     awk -v title="$1" '/^\.SH / {on = title == "" || $0 == ".SH " title; next} on' "$2"
 }
-page_options() { # PAGE: the options that are tags of its section OPTIONS
-    section OPTIONS "$1" | awk '/^\.T[PQ]/ {getline; print}' | sed 's/\\-/-/g' | grep -oE -- '--[a-z][a-z-]*'
+page_options() { # PAGE: the tags of its section OPTIONS
+    section OPTIONS "$1" | awk '/^\.T[PQ]/ {getline; print}' | plain
 }
 plain() { sed "s/\\\\f[BIR]//g; s/\\\\-/-/g; s/\\\\&//g; s/\\\\(aq/'/g"; } # without fonts and escapes
 
