@@ -37,9 +37,9 @@ commands() { # WORD...: the commands that `cuvette WORD... --help` lists
     "$program" "$@" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'
 }
 # --help, --usage and --version are those of every command; cuvette(1) describes them.
-common='--help|--usage|--version'
-help_options() { # WORD...: the options of a command and of its subcommands
-    "$program" "$@" --help | grep -oE '^ {2,6}(-., )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | grep -vxE -- "$common"
+help_options() { # WORD...: the options of a command and of its subcommands, such as "-o, --output=FILE"
+    "$program" "$@" --help | grep -E '^(  -., |      )--' | grep -vE -- '--(help|usage|version) ' |
+        sed -E 's/^ *//; s/(--[^ ]*).*/\1/'
     local word
     if [[ $1 != help ]]; then
         for word in $(commands "$@"); do help_options "$@" "$word"; done
@@ -48,8 +48,8 @@ help_options() { # WORD...: the options of a command and of its subcommands
 section() { # TITLE PAGE: the lines of that section, or all lines without a title
     awk -v title="$1" '/^\.SH / {on = title == "" || $0 == ".SH " title; next} on' "$2"
 }
-page_options() { # PAGE: the options that are tags of its section OPTIONS
-    section OPTIONS "$1" | awk '/^\.T[PQ]/ {getline; print}' | sed 's/\\-/-/g' | grep -oE -- '--[a-z][a-z-]*'
+page_options() { # PAGE: the tags of its section OPTIONS
+    section OPTIONS "$1" | awk '/^\.T[PQ]/ {getline; print}' | plain
 }
 plain() { sed "s/\\\\f[BIR]//g; s/\\\\-/-/g; s/\\\\&//g; s/\\\\(aq/'/g"; } # without fonts and escapes
 
@@ -65,7 +65,7 @@ for command in $(commands); do
         "$(diff <(echo "cuvette-$command - $purpose") <(section NAME "$page" | plain))"
     empty "cuvette-$command(1) has the options of the help" \
         "$(diff <(help_options "$command" | sort -u) <(page_options "$page" | sort -u))"
-    "$program" "$command" --help | grep -E "cuvette(-$command)?\(1\)"
+    "$program" "$command" --help | grep -E "cuvette(-$command)?\(1\)" >/dev/null
     verdict $? "cuvette $command --help names its page"
     for title in SYNOPSIS DESCRIPTION EXAMPLES "EXIT STATUS" "SEE ALSO"; do
         grep -qx "\.SH $title" "$page"
@@ -74,7 +74,7 @@ for command in $(commands); do
 done
 for page in "$manual"/man1/cuvette-*.1; do
     command=$(basename "$page" .1)
-    commands | grep -x "${command#cuvette-}"
+    commands | grep -x "${command#cuvette-}" >/dev/null
     verdict $? "$command(1) is the page of a command"
 done
 listed() { # the commands of cuvette(1) with their purposes
@@ -137,9 +137,10 @@ try() { # COMMAND LINE
     verdict $? "$1" "$(<said)"
 }
 # --- cuvette(1) leads to every page
-empty "cuvette(1) names every page" "$(for page in "$manual"/man?/*; do
+named=$(plain <"$manual/man1/cuvette.1")
+empty "cuvette(1) names every page" "$(for page in "$manual"/man?/cuvette-*; do
     file=$(basename "$page")
-    plain <"$manual/man1/cuvette.1" | grep -F "${file%.*}(${file##*.})" || [[ $file == cuvette.1 ]] || echo "$file"
+    [[ $named == *"${file%.*}(${file##*.})"* ]] || echo "$file"
 done)"
 
 # The study that cuvette-tour(7) lets the reader save.
