@@ -1,4 +1,4 @@
-# A liquid in five concentrations, and the light that passes a slab of one beside the law of Beer and Lambert.
+# A liquid in five concentrations, and the light transmitted by a slab, compared with the Beer-Lambert law.
 # needs: tables/absorption.tsv absorption/images/*.png tables/absorber.tsv absorber/images/*.pfm
 width = 1000; height = 640
 load "plots/style.gp"
@@ -19,17 +19,17 @@ set key at screen 0.765,0.5 left top Left reverse samplen 2 spacing 1.25
 # thickness, red, green, blue of the pixel in the middle.
 measured = "< awk -f plots/select.awk -v columns='cell liquid.size.z' '".slab."' | while read -r cell d; do " \
     ."printf '%s\t' $d; plots/pixel.sh $(printf '".results."/absorber/images/%04d.pfm' $cell); done"
-# Power that a face reflects at normal incidence (Fresnel); the slab with all that goes to and fro inside, intensities.
+# R: reflectance of a face at normal incidence (Fresnel); through(): transmittance of the slab with all internal reflections.
 R = (0.33/2.33)**2
 through(a, d) = (1 - R)**2*exp(-a*d*1e-3)/(1 - R**2*exp(-2*a*d*1e-3))
 worst = number(system(measured[3:*].sprintf(" | awk -f plots/slab.awk -v R=%.17g -v absorb='200 60 10'", R)))
 set label 1 sprintf("largest deviation from the\nslab's law: %.0e", worst) at screen 0.77,0.125 left font ",9" textcolor rgb ink
 plot through(200, x) with lines lt 2 notitle, through(60, x) with lines lt 3 notitle, through(10, x) with lines lt 1 notitle, \
-     exp(-0.2*x) with lines lt 7 title "exp(-ad) alone", exp(-0.06*x) with lines lt 7 notitle, exp(-0.01*x) with lines lt 7 notitle, \
+     exp(-0.2*x) with lines lt 7 title "exp(-ad), without faces", exp(-0.06*x) with lines lt 7 notitle, exp(-0.01*x) with lines lt 7 notitle, \
      measured using 1:4 with points lt 1 title "blue, a = 10 / m", \
      measured using 1:3 with points lt 3 title "green, a = 60 / m", \
      measured using 1:2 with points lt 2 title "red, a = 200 / m", \
-     NaN with lines lc rgb ink lw 1.6 title "with both faces"
+     NaN with lines lc rgb ink lw 1.6 title "exp(-ad), with both faces"
 
 unset xlabel; unset ylabel; unset label 1
 set xrange [*:*]

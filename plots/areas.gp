@@ -1,4 +1,4 @@
-# Straight lines through the times of the coverage study, T = a + b pixels: of the tree of spheres, of boxes, and of the published
+# Straight lines fitted to the times of the coverage study, T = a + b pixels: of the octant tree, of the BVH, and of the published
 # series. line_off is the root of the mean squared relative deviation; figures draw them, the paper prints them.
 areas(i) = i < 3 ? select(table("coverage"), "render.accel=".word("octant bvh", i), "first_hits.model cpu_s_median cpu_s_min cpu_s_max") : \
     select("experiments/published/coverage.csv", "", "pixels time_s")

@@ -1,14 +1,14 @@
-# What hierarchies take to build, with one thread and with two, their memory, and the rays that they give a second.
+# Build times of the hierarchies, with one thread and with two, their memory, and the rays traced a second with each.
 # needs: tables/build.tsv
 width = 1000; height = 700
 load "plots/style.gp"
 
 rows = table("build")
 hierarchies = "none sphere octant bvh"
-names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'boxes'"
+names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'BVH of boxes'"
 sets = "sparse dense sphere sparse dense sphere"
 counts = "50000 50000 50000 500000 500000 500000"
-# What a bar stands for; NaN where there is no such cell.
+# The value of a bar; NaN if there is no such cell.
 bar(i, set, threads, column) = first(rows, sprintf("render.accel=%s soup.generate=%s soup.count=%s render.build_threads=%d", \
     word(hierarchies, i), word(sets, int(set)), word(counts, int(set)), threads), column)
 half = 0.09

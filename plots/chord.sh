@@ -1,9 +1,8 @@
 #!/bin/sh
-# The middle row of a PFM picture of a ball of radius 1, seen from a distance towards its middle: for each pixel that
-# the ball covers the length
-# of the straight way through the ball, 2 sqrt(1 - b^2) with b the way's distance from the middle; then red, green and
-# blue, linear; tab separated.
-#   plots/chord.sh PICTURE.pfm DISTANCE FOV_DEG        fov: vertical
+# The middle row of a PFM image of a ball of radius 1, seen from a distance, centred: for each pixel that the ball
+# covers, the length of the chord through the ball, 2 sqrt(1 - b^2) with b its distance from the centre; then red, green
+# and blue, linear; tab separated.
+#   plots/chord.sh IMAGE.pfm DISTANCE FOV_DEG        fov: vertical
 export LC_ALL=C
 set -eu
 

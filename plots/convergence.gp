@@ -1,5 +1,5 @@
-# Error against the reference, the light that is cut, and time, by recursion depth. The rule for where more depth stops paying:
-# the first depth whose mean FLIP error is under 0.01.
+# Error against the reference, the light cut off, and time, by recursion depth. The rule for a sufficient depth:
+# the first depth with a mean FLIP error under 0.01.
 # needs: tables/convergence.tsv
 width = 1000; height = 480
 load "plots/style.gp"
@@ -17,7 +17,7 @@ set mxtics 4
 set logscale y
 set format y "10^{%T}"
 
-# Depths that are enough, in both panels.
+# The sufficient depths, in both panels.
 do for [i=1:2] {
     depth = enough(word(words_of, i))
     if (depth == depth) {
@@ -26,24 +26,24 @@ do for [i=1:2] {
     }
 }
 set title "Error, and light cut at the depth limit"
-set ylabel "error, or share of light cut / camera ray"
+set ylabel "error, or light cut off a camera ray"
 set yrange [1e-3:1]
 set arrow 3 from graph 0, first 0.01 to graph 1, first 0.01 nohead dt (2,3) lc rgb grey back
-set label 3 "FLIP 0.01: enough" at graph 0.99, first 0.0113 right font ",8" textcolor rgb grey
+set label 3 "FLIP 0.01: sufficient" at graph 0.99, first 0.0113 right font ",8" textcolor rgb grey
 set key top right Right noreverse samplen 2.6
-plot of("black", "error_rms") using 1:2 with linespoints lt 1 pt 6 dt (6,3) title "rms, black beyond the depth", \
-     of("sky", "error_rms") using 1:2 with linespoints lt 1 title "rms, sky beyond it", \
+plot of("black", "error_rms") using 1:2 with linespoints lt 1 pt 6 dt (6,3) title "rms, fallback black", \
+     of("sky", "error_rms") using 1:2 with linespoints lt 1 title "rms, fallback sky", \
      of("black", "flip") using 1:2 with linespoints lt 2 pt 4 dt (6,3) title "FLIP, black", \
      of("sky", "flip") using 1:2 with linespoints lt 2 title "FLIP, sky", \
-     of("sky", "cut_depth_throughput rays_camera") using 1:($2/$3) with linespoints lt 3 title "light cut"
+     of("sky", "cut_depth_throughput rays_camera") using 1:($2/$3) with linespoints lt 3 title "light cut off"
 
 unset label 100
 unset arrow 3
 unset label 3
 set title "Time of a frame"
-set ylabel "wall time (median, least and most) / s"
+set ylabel "wall time (median, minimum, maximum) / s"
 set yrange [1e-3:10]
 set key top left Left reverse
-plot of("sky", "wall_s_median wall_s_min wall_s_max") using 1:2:3:4 with yerrorlines lt 1 title "sky beyond the depth", \
-     of("black", "wall_s_median wall_s_min wall_s_max") using 1:2:3:4 with yerrorlines lt 1 pt 6 dt (6,3) title "black"
+plot of("sky", "wall_s_median wall_s_min wall_s_max") using 1:2:3:4 with yerrorlines lt 1 title "fallback sky", \
+     of("black", "wall_s_median wall_s_min wall_s_max") using 1:2:3:4 with yerrorlines lt 1 pt 6 dt (6,3) title "fallback black"
 unset multiplot

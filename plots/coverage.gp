@@ -1,10 +1,10 @@
-# Time by the area that a model covers, with straight lines fitted (areas.gp), beside the published times and their line.
+# Time by the area that a model covers, with fitted straight lines (areas.gp); the published times with theirs.
 # needs: tables/coverage.tsv
 width = 1000; height = 470
 load "plots/style.gp"
 
 load "plots/areas.gp"
-names = "'octant tree of spheres' 'boxes'"
+names = "'octant tree of spheres' 'BVH of boxes'"
 set label 100 disturbed("coverage") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.075,0.985,0.13,0.92 spacing 0.1
 set xlabel "covered pixels / 1000"
@@ -23,8 +23,8 @@ unset offsets
 set title "Published: 40000 triangles, 800 by 600 pixels"
 set ylabel "time / s"
 set yrange [0:8]
-set label 1 "0: nothing covered (our reading)" at 12, line_a[3] - 0.35 left font ",8" textcolor rgb grey
-set label 2 "480: all of the picture " \
+set label 1 "0: nothing covered (our interpretation)" at 12, line_a[3] - 0.35 left font ",8" textcolor rgb grey
+set label 2 "480: the whole image " \
     at 480, line(480e3, line_a[3], line_b[3]) + 0.4 right font ",8" textcolor rgb grey
 plot areas(3) using ($1/1e3):2 with points lt 7 \
          title sprintf("published:\n%.2f s + %.2f ms a 1000 pixels, off by %.1f %%", \

@@ -1,4 +1,4 @@
-# The picture by recursion depth.
+# The image by recursion depth.
 # needs: depth/images/*.png tables/depth.tsv
 width = 1000; height = 790
 load "plots/style.gp"

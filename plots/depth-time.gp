@@ -1,4 +1,4 @@
-# Time by recursion depth with 95% intervals, rays on the second axis; beside it the growth since depth 0 and the published one.
+# Time by recursion depth with 95% intervals, rays on the second axis; right, the growth from depth 0 on and the published one.
 # needs: tables/depth.tsv
 width = 1000; height = 430
 load "plots/style.gp"
@@ -31,12 +31,12 @@ unset label 100
 unset y2tics
 unset y2label
 set border 3
-set title "Growth since depth 0"
+set title "Growth from depth 0 on"
 set ylabel "relative to depth 0"
 set logscale y
 set yrange [0.9:*]
 plot times("cpu_s") using 1:($2/cpu_0):($3/cpu_0):($4/cpu_0) with yerrorlines lt 2 title "CPU time", \
      select(rows, "", "render.depth rays_total") using 1:($2/rays_0) with linespoints lt 3 title "rays", \
      select(published."depth.csv", "", "depth cpu_s") using 1:($2/published_0) with linespoints lt 7 \
-         title "CPU time, published (threads not said)"
+         title "CPU time, published (unknown threads)"
 unset multiplot

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Luminance of one PFM less that of another, a line a pixel: x, y from the bottom, difference; then that of red, green
-# and blue.
-#   plots/difference.sh PICTURE FROM
-# Luminance: Y = 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of linear light as PFM holds it.
+# The luminance of one PFM minus that of another, one line a pixel: x, y from the bottom, difference; then the
+# differences of red, green and blue.
+#   plots/difference.sh IMAGE FROM
+# Luminance: Y = 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of the linear light in a PFM.
 export LC_ALL=C
 set -eu
 

@@ -1,4 +1,4 @@
-# Colours by refraction: a prism's least deviation and the first rainbow by wavelength on their closed forms, and the pictures.
+# Dispersion: a prism's least deviation and the primary rainbow by wavelength, compared with their closed forms, and images.
 # needs: tables/dispersion-metrics.tsv tables/rainbow-metrics.tsv prism-portrait/images/0000.png rainbow-portrait/images/0000.png
 width = 1000; height = 860
 load "plots/style.gp"
@@ -14,7 +14,7 @@ set xrange [390:720]
 set xtics 50
 set xlabel "wavelength / nm"
 set border 3
-# Fraunhofer's lines.
+# Fraunhofer lines.
 fraunhofer = "F:486.1327 d:587.5618 C:656.2725"
 do for [i=1:3] {
     line = word(fraunhofer, i)
@@ -44,8 +44,8 @@ set lmargin at screen 0.07
 set rmargin at screen 0.49
 set tmargin at screen 0.445
 set bmargin at screen 0.065
-set title "Angle of the first rainbow"
-set ylabel "angle from the point opposite the lamp / deg"
+set title "Angle of the primary rainbow"
+set ylabel "angle from the antisolar point / deg"
 set yrange [36:43]
 set key at graph 0.99,0.64 right top
 set label 1 sprintf("largest error %.0e deg", worst(bow, "rainbow.own"))
@@ -60,7 +60,7 @@ unset arrow; unset label; unset xlabel; unset ylabel
 set xtics autofreq
 load "plots/picture.gp"
 
-# Of the prism's picture the part where something is; by pixels from the left and from the bottom.
+# The part of the prism's image with content, in pixels from the left and from the bottom.
 picture = image("prism-portrait", 0)
 set lmargin at screen 0.525
 set rmargin at screen 0.995
@@ -75,7 +75,7 @@ set label 3 "mirrored by\nthe base" at 449,185 left font ",9" textcolor rgb "whi
 plot picture binary filetype=png with rgbimage notitle
 unset label
 
-# The drops: a pixel's height in the picture is its angle above the point opposite the lamp.
+# The drops: a pixel's height in the image is its angle above the antisolar point.
 picture = image("rainbow-portrait", 0)
 centre = 41.4; field = 2.9
 angle(row) = centre + atan((2.0*row/png_height(picture) - 1)*tan(field/2*pi/180))*180/pi
@@ -95,8 +95,8 @@ plot picture binary filetype=png with rgbimage notitle
 unset border; unset ytics
 unset label 30
 
-# The glint of each enlarged, from the uppermost drop down. Drops stand 0.3 deg apart; a glint is at the lower edge, 0.866 of the
-# radius under the middle and a little less.
+# The enlarged glint of each drop, from the top. Drops are 0.3 deg apart; a glint is at the lower edge, 0.866 of the
+# radius below the centre and a little less.
 first_drop = 42.6; step = 0.3; below = 0.127
 half_width = 14; half_height = 4.5
 centre_of(i) = i % 3 == 0 ? 221 : i % 3 == 1 ? 150 : 79

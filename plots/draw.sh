@@ -1,10 +1,9 @@
 #!/bin/bash
-# Draws the figures whose rows exist and are newer than the figure, as PNG and SVG.
+# Draw the figures whose rows exist and are newer than the figure, as PNG and SVG.
 #   plots/draw.sh [--results DIR] [--out DIR] [--format png,svg] [FIGURE...]
-# DIR is results unless told; figures go to DIR/figures. A figure named on the command line is always drawn.
-# A figure says in its head what it needs (`# needs:`, paths below DIR, * allowed); without that it is skipped with one
-# line.
-# The same rows give the same bytes: no figure holds a time or a name of the machine.
+# DIR is results by default; figures are written to DIR/figures. A figure named on the command line is always drawn.
+# The head of a figure lists the files that it requires (`# needs:`, paths below DIR, * allowed); if one is missing, the
+# figure is skipped with one line. The same rows give the same bytes: no figure contains a time or a machine's name.
 set -euo pipefail
 export LC_ALL=C.UTF-8
 
@@ -46,13 +45,13 @@ command -v gnuplot >/dev/null || fail "gnuplot is missing; apt-get install --no-
 gnuplot -e 'set terminal pngcairo' 2>/dev/null || fail \
     "this gnuplot has no pngcairo; apt-get install --no-install-recommends gnuplot-nox"
 
-# Does a table hold a measured cell? One without counts, of metrics or curves, needs a line.
+# True if a table has a measured cell; for a table without counts, of metrics or curves, if it has a line.
 has_rows() {
     awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "n") n = i }
         NR > 1 && (!n || $n > 0) { found = 1 } END { exit !found }' "$1"
 }
 
-# Sets `missing` to the first thing that a figure lacks, or to nothing, and `inputs` to the files that it is drawn from.
+# Sets `missing` to the first file that a figure lacks, or to nothing, and `inputs` to the files that it is drawn from.
 look_for_inputs() {
     local pattern found needs
     missing=
@@ -79,7 +78,7 @@ is_fresh() {
     done
 }
 
-# The processing units of the machine that measured, 0 if no manifest tells.
+# The processing units of the measured machine, 0 if no manifest has them.
 units() {
     { cat "$results"/{threads,profile,depth,pool}/manifest.json 2>/dev/null || true; } |
         sed -n 's/.*"processing_units": *\([0-9][0-9]*\).*/\1/p' | sed -n 1p
@@ -109,7 +108,7 @@ drawn=0 fresh=0 failed=0
 for figure in "${figures[@]}"; do
     look_for_inputs "$figure"
     if [ -n "$missing" ]; then
-        echo "$figure: skipped, no $missing (make experiments makes it)"
+        echo "$figure: skipped, no $missing (run make experiments)"
     elif [ "$named" -eq 0 ] && is_fresh "$figure"; then
         fresh=$((fresh + 1))
     elif draw "$figure"; then

@@ -1,4 +1,4 @@
-# Bodies of polygons by each method, of ten thousand polygons and of two hundred thousand: pictures, time and memory.
+# Polygonal models by each method, with ten thousand and with two hundred thousand polygons: images, time and memory.
 # needs: tables/hidden.tsv hidden/images/*.png
 width = 1000; height = 625
 load "plots/style.gp"
@@ -9,12 +9,12 @@ methods = "zbuffer raycast whitted"
 names = "'depth buffer' 'ray casting' 'Whitted'"
 levels = "3 6"
 of(level, method, column) = first(rows, sprintf("ball.level=%s render.integrator=%s", word(levels, level), word(methods, method)), column)
-# Of hierarchies, or of the depth buffer and the triangles that it drew.
+# Memory of the hierarchies, or of the depth buffer and the rasterised triangles.
 drawn(bytes) = bytes == bytes ? bytes : 0
 memory(l, m) = of(l, m, "accel_bytes") + drawn(of(l, m, "drawn_bytes"))
 about(l, m) = sprintf("%.0f ms, %.1f MiB, FLIP %.3f", of(l, m, "cpu_s_median")*1e3, memory(l, m)/1048576, of(l, m, "flip"))
 set title offset 0,-0.7
-said = "time of a frame on one thread, memory beside triangles and film, distance from Whitted's picture"
+said = "time of a frame on one thread, memory in addition to triangles and film, error against Whitted's image"
 set label 2 said at screen 0.5,0.02 center font ",9" textcolor rgb grey
 set multiplot layout 2,words(methods) margins 0.005,0.995,0.085,0.955 spacing 0.01,0.11
 do for [l=1:2] {

@@ -1,4 +1,4 @@
-# What the indices change: luminance of each pair's picture less that of pair 1, which has no interface at all.
+# The effect of the indices: the luminance of each pair's image minus that of pair 1, which has no interface.
 # needs: tables/ior.tsv ior/images/0000.pfm ior/images/*.pfm
 width = 1000; height = 345
 load "plots/style.gp"
@@ -13,7 +13,7 @@ set palette defined @signed
 set cbrange [-1.0/amplified:1.0/amplified]
 set cbtics 1.0/amplified/2 format "%+.3f" scale 0.4 textcolor rgb ink
 unset colorbox
-# Shown of each picture: the vessel and its shadow, by shares of the width from the left and of the height from the bottom.
+# The part shown of each image: the vessel and its shadow, as shares of the width from the left and of the height from the bottom.
 set xrange [0.12*side(1):0.74*side(1)]
 set yrange [0.10*side(2):0.98*side(2)]
 set border 15 lc rgb pale
@@ -23,7 +23,7 @@ do for [i=1:3] {
     set title sprintf("vessel %.2f, liquid %.2f", cell_value(rows, i, "vessel.ior"), cell_value(rows, i, "liquid.ior"))
     if (i == 3) {
         set colorbox user origin 0.9,0.08 size 0.013,0.76
-        set cblabel "luminance less that of pair 1\n(white = 1)" offset 1.2,0
+        set cblabel "luminance minus that of pair 1\n(white = 1)" offset 1.2,0
     }
     if (readable(float_image(i))) {
         plot sprintf("< plots/difference.sh '%s' '%s'", float_image(i), float_image(0)) using 1:2:3 with image notitle

@@ -1,4 +1,4 @@
-# Pictures over the grid of the vessel's and the liquid's refractive index; each shows the vessel alone.
+# Images over the grid of the refractive indices of vessel and liquid; each shows only the vessel.
 # needs: tables/ior-grid.tsv ior-grid/images/*.png
 width = 800; height = 1150
 load "plots/style.gp"
@@ -8,7 +8,7 @@ rows = table("ior-grid")
 vessel = system(select(rows, "", "vessel.ior")[3:*]." | sort -gu | tr '\\n' ' '")
 liquid = system(select(rows, "", "liquid.ior")[3:*]." | sort -gu | tr '\\n' ' '")
 set multiplot layout words(vessel),words(liquid) margins 0.085,0.995,0.005,0.953 spacing 0.006,0.004
-# Shown of each picture: the vessel, by shares of the width from the left and of the height from the bottom.
+# The part shown of each image: the vessel, as shares of the width from the left and of the height from the bottom.
 set label 1 "refractive index of the liquid" at screen 0.54,0.983 center font ",12"
 set label 2 "refractive index of the vessel" at screen 0.018,0.48 center rotate font ",12"
 do for [i=1:words(vessel)] {

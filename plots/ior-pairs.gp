@@ -1,5 +1,5 @@
-# The pictures of the four pairs of refractive indices, and under each what optics measures in it.
-# Rows from before studies kept metrics give the pictures alone.
+# The images of the four pairs of refractive indices, and below each its metrics.
+# Rows of versions that kept no metrics give only the images.
 # needs: tables/ior.tsv tables/ior[.-]*tsv ior/images/*.png
 width = 1000; height = 940
 load "plots/style.gp"
@@ -7,17 +7,17 @@ load "plots/style.gp"
 load "plots/picture.gp"
 rows = table("ior")
 metric(cell, name) = first(table("ior-metrics"), sprintf("cell=%d metric=%s", cell, name), "measured")
-# Zeros without a sign, and a minus as long as a plus.
+# Zeros without a sign, and a minus sign instead of a hyphen.
 signed_number(value) = abs(value) < 5e-3 ? "0" : (value < 0 ? "−" : "+").sprintf("%.2f", abs(value))
 plain(value) = value < 0.05 ? "0" : sprintf("%.1f", value)
 edges(cell) = sprintf("Rod's edges moved by %s px and %s px, rod %.3f times as wide\nA leaning rod breaks by %s° at the liquid's surface", \
     signed_number(metric(cell, "edges.left_shift")), signed_number(metric(cell, "edges.right_shift")), \
     metric(cell, "edges.magnification"), plain(abs(metric(cell, "water_line.break"))))
-# A scene without a lens has no focal length: NaN, which is not itself.
+# A scene without a lens has no focal length: NaN, which is not equal to itself.
 focal(cell) = metric(cell, "lens.focal_length")
 lens(cell) = focal(cell) == focal(cell) ? \
     sprintf("As a lens: focal length %s scene units", signed_number(focal(cell))) : "No lens: light goes straight on"
-# Of light that falls in at right angles, by Fresnel, in percent.
+# The reflectance at normal incidence, by Fresnel, in percent.
 normal(n_1, n_2) = 100*((n_1 - n_2)/(n_1 + n_2))**2
 reflected(vessel, liquid) = sprintf("Reflected at normal incidence: vessel %.1f %%, liquid %.1f %%, wall to liquid %.1f %%", \
     normal(1, vessel), normal(1, liquid), normal(vessel, liquid))

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Lines of a table that agree in one column, side by side: those of one choice, then those of another.
+# Join lines of a table by one column: the lines of one selection with those of another.
 #   plots/join.sh TABLE COLUMN WHERE WHERE COLUMNS        prints COLUMN, COLUMNS of the first, COLUMNS of the second
 export LC_ALL=C
 set -eu

@@ -1,9 +1,9 @@
-# Two laws of speed-up fitted to the threads study, schedule by schedule; the figure draws them, the paper prints them.
+# Two laws of speed-up fitted to the threads study, for each schedule; the figure draws them, the paper prints them.
 #   Amdahl 1967:   S = p / (1 + σ (p - 1)),                 σ: the serial share
-#   Gunther 1993:  S = p / (1 + σ (p - 1) + κ n (n - 1)),   κ: the exchange of each thread with each other one
-# n threads on u processing units run p = min(n, u) at a time; so the serial share acts on p, while every thread
-# made takes part in the exchange. For n <= u both are the laws as published. κ is held in millionths.
-# Needs at least two units, and one row more than parameters; `amdahl_fits` and `gunther_fits` say where there was enough.
+#   Gunther 1993:  S = p / (1 + σ (p - 1) + κ n (n - 1)),   κ: the cost of the exchange of each thread with each other
+# Of n threads on u processing units p = min(n, u) run at a time; so the serial share acts on p, while every thread
+# takes part in the exchange. For n <= u both are the laws as published. κ is stored in millionths.
+# A fit requires at least two units, and one row more than parameters; `amdahl_fits` and `gunther_fits` are 1 if there were enough.
 rows = table("threads")
 schedules = "columns rows tiles dynamic"
 times(schedule) = select(rows, "render.schedule=".schedule, "render.threads wall_s_median wall_s_low wall_s_high")

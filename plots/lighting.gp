@@ -1,11 +1,12 @@
-# One scene under three models of light and by random paths, where table 2 of the rod's report has words (Gouraud's model is in shading.gp); under each picture its time and its distance from the last.
+# One scene by three lighting models and by path tracing, which table 2 of the rod's report rates in words (Gouraud's model
+# is in shading.gp); below each image its time and its error against the last.
 # needs: tables/lighting.tsv lighting/images/*.png lighting/references/*.png
 width = 1000; height = 880
 load "plots/style.gp"
 
 load "plots/picture.gp"
 rows = table("lighting")
-names = "'Lambert: diffuse light' 'Phong: highlights too' 'Whitted: reflection and refraction too' 'random paths: the reference'"
+names = "'Lambert: diffuse light' 'Phong: and highlights' 'Whitted: and reflection and refraction' 'path tracing: the reference'"
 set title offset 0,-0.7
 about(i) = sprintf("%.3f s a frame, FLIP %.3f, PSNR %.1f dB", cell_value(rows, i, "wall_s_median"), \
     cell_value(rows, i, "flip"), cell_value(rows, i, "psnr_db"))

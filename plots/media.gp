@@ -1,5 +1,5 @@
-# Refractive indices of four media against vacuum, L the wavelength in nm, and the angles that follow from an index, in degrees.
-# Written from their sources, apart from the program's catalogue, so that points on these lines mean something.
+# Refractive indices of four media against vacuum, L the wavelength in nm, and the angles computed from an index, in degrees.
+# Written from their sources, independently of the program's catalogue, so that the comparison is a test.
 # Ciddor, Appl. Opt. 35, 1566 (1996); glass catalogues state their indices against air.
 n_air(L) = 1 + 0.05792105/(238.0185 - 1e6/L**2) + 0.00167917/(57.362 - 1e6/L**2)
 sellmeier(L, B1, C1, B2, C2, B3, C3) = sqrt(1 + (B1/(L**2 - C1) + B2/(L**2 - C2) + B3/(L**2 - C3))*L**2)
@@ -15,5 +15,5 @@ n_water(L) = sqrt(sellmeier(L/1e3, 0.5684027565, 0.005101829712, 0.1726177391, 0
 n_ethanol(L) = n_air(L)*(1.35265 + 0.00306/(L/1e3)**2 + 0.00002/(L/1e3)**4)
 # Least deviation of a prism of 60 degrees: Hecht, Optics, 5.5.1.
 least_deviation(n) = (2*asin(n/2) - pi/3)*180/pi
-# The first rainbow, Descartes, Les Meteores (1637): 4 t - 2 i where cos^2 i = (n^2 - 1)/3, sin i = n sin t.
+# The primary rainbow, Descartes, Les Meteores (1637): 4 t - 2 i where cos^2 i = (n^2 - 1)/3, sin i = n sin t.
 rainbow(n) = (4*asin(sqrt((4 - n**2)/3)/n) - 2*asin(sqrt((4 - n**2)/3)))*180/pi

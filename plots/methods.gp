@@ -1,4 +1,4 @@
-# Error against time of ray casting, Whitted's tree and random paths, on logarithmic axes.
+# Error against time of ray casting, Whitted's tree and path tracing, on logarithmic axes.
 # needs: tables/methods.tsv
 width = 760; height = 560
 load "plots/style.gp"
@@ -7,7 +7,7 @@ rows = table("methods")
 noise = first(rows, "cell=0", "reference_noise_rms")
 method(name) = select(rows, "render.integrator=".name, "wall_s_median error_rms render.paths")
 times(name) = select(rows, "render.integrator=".name, "wall_s_median wall_s_min wall_s_max error_rms")
-# The law of random paths: error^2 times time is one number, here the geometric mean.
+# The law of path tracing: error^2 times time is constant, here the geometric mean.
 stats method("path") using (log($2*sqrt($1))) nooutput name "law"
 law(t) = exp(law_mean)/sqrt(t)
 set margins screen 0.11, screen 0.97, screen 0.115, screen 0.925
@@ -26,7 +26,7 @@ set arrow 1 from graph 0, first noise to graph 1, first noise nohead dt (2,3) lc
 set label 100 disturbed("methods") at screen 0.015,0.022 left font ",8" textcolor rgb grey
 set label 1 sprintf("noise of the reference, %.2g", noise) at graph 0.015, first noise*1.13 left font ",8" textcolor rgb grey
 plot [1e-3:20] law(x) with lines lt 8 lw 1.2 title "1 / √N", \
-     times("path") using 1:4:2:3 with xerrorlines lt 1 title "random paths, N a pixel", \
+     times("path") using 1:4:2:3 with xerrorlines lt 1 title "path tracing, N paths a pixel", \
      times("whitted") using 1:4:2:3 with xerrorbars lt 2 ps 1.3 title "Whitted's tree, depth 8", \
      times("raycast") using 1:4:2:3 with xerrorbars lt 3 ps 1.3 title "ray casting", \
      method("path") using 1:2:(sprintf("N = %d", $3)) with labels left offset 0.9,0.5 font ",9" textcolor rgb blue notitle

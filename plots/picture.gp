@@ -1,4 +1,4 @@
-# What figures made of pictures share: no axes, the picture's own proportions, labels above.
+# The shared style of figures of images: no axes, the image's aspect ratio, titles above.
 unset border
 unset tics
 unset grid
@@ -8,7 +8,7 @@ set autoscale xfix
 set autoscale yfix
 set title offset 0,-0.9
 cell_value(rows, cell, column) = first(rows, sprintf("cell=%d", cell), column)
-# A panel whose picture is missing.
+# The panel of a missing image.
 empty = "plot [0:1] [0:1] NaN notitle"
 # Size of a PNG, from its header.
 png_side(path, at) = int(system(sprintf("od -An -tu1 -j %d -N 4 '%s' | awk '{ print (($1*256 + $2)*256 + $3)*256 + $4 }'", at, path)))

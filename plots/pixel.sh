@@ -1,11 +1,11 @@
 #!/bin/sh
-# One pixel of a PFM picture, the one in its middle unless told: red, green and blue, linear, tab separated.
-#   plots/pixel.sh PICTURE.pfm [X Y]        X from the left, Y from the bottom, both from 0
+# Print one pixel of a PFM image, by default the middle one: red, green and blue, linear, tab separated.
+#   plots/pixel.sh IMAGE.pfm [X Y]        X from the left, Y from the bottom, both from 0
 export LC_ALL=C
 set -eu
 
 [ "$(head -c 2 "$1")" = PF ] || {
-    echo "$0: $1 is no PFM in colour" >&2
+    echo "$0: $1 is not a colour PFM" >&2
     exit 1
 }
 read -r width height <<END

@@ -1,12 +1,12 @@
-# What polarisation is worth: light through a stack of two plates by angle, with s and p going their own ways or as their mean at every
-# interface, and the rod in the vessel with polarisation less without.
+# The effect of polarisation: light through a stack of two plates by angle, with s and p traced separately or as their mean at every
+# interface, and the rod in the vessel with polarisation minus without.
 # needs: tables/polarisation-metrics.tsv tables/polarised.tsv polarised/images/0000.pfm polarised/images/0001.pfm
 width = 1000; height = 820
 load "plots/style.gp"
 
 rows = table("polarisation-metrics")
 n = 1.5
-# Power reflectances of an interface, Hecht, Optics, 4.6.2; i and t are the angles of incidence and of refraction, x is i in deg.
+# Reflectances of an interface, Hecht, Optics, 4.6.2; i and t are the angles of incidence and of refraction, x is i in deg.
 i(x) = x*pi/180
 t(x) = asin(sin(i(x))/n)
 R_s(x) = ((cos(i(x)) - n*cos(t(x)))/(cos(i(x)) + n*cos(t(x))))**2
@@ -35,7 +35,7 @@ set title "Straight through two plates, n = 1.5"
 set label 1 sprintf("largest error %.0e", larger(worst("on", "stack.straight"), worst("off", "stack.straight"))) at graph 0.03,0.4 left font ",9"
 set samples 400
 plot (straight(R_s(x)) + straight(R_p(x)))/2 with lines lt 1 notitle, \
-     traced("on", "stack.straight") using 1:2 with points lt 1 title "polarisation on: s and p apart", \
+     traced("on", "stack.straight") using 1:2 with points lt 1 title "polarisation on: s and p separately", \
      straight(R(x)) with lines lt 2 notitle, \
      traced("off", "stack.straight") using 1:2 with points lt 2 title "off: their mean at every interface", \
      NaN with lines lc rgb ink dt solid title "theory"
@@ -45,7 +45,7 @@ set xrange [60:90]
 set xtics 5
 set yrange [0:0.8]
 set title "With all reflections between the faces"
-set label 1 "bars: plus all that\ndepth 16 cut off" at graph 0.03,0.42 left font ",9"
+set label 1 "bars: plus the light\ncut off at depth 16" at graph 0.03,0.42 left font ",9"
 plot (whole(R_s(x)) + whole(R_p(x)))/2 with lines lt 1 notitle, \
      traced("on", "stack.whole") using 1:2:2:($2 + $3) with yerrorbars lt 1 title "polarisation on", \
      whole(R(x)) with lines lt 2 notitle, \
@@ -61,19 +61,19 @@ side(axis) = real(word(pfm_line(float_image(0)), axis))
 unset xlabel; unset ylabel
 set xrange [*:*]; set yrange [*:*]
 load "plots/picture.gp"
-# The vessel and its shadow, by shares of the width from the left and of the height from the bottom.
+# The vessel and its shadow, as shares of the width from the left and of the height from the bottom.
 set xrange [0.12*side(1):0.76*side(1)]
 set yrange [0.10*side(2):0.98*side(2)]
 set tmargin at screen 0.49
 set bmargin at screen 0.012
 set lmargin at screen 0.045
 set rmargin at screen 0.43
-set title "The rod in the vessel by polarised light"
+set title "The rod in the vessel, polarised light"
 plot image("polarised", cell_of("on")) binary filetype=png with rgbimage notitle
 
 set lmargin at screen 0.445
 set rmargin at screen 0.83
-set title "less the same without polarisation"
+set title "minus the unpolarised image"
 limit = 0.02
 set palette defined @signed
 set cbrange [-limit:limit]

@@ -1,9 +1,9 @@
-# Laws fitted to the times of the triangles study, hierarchy by hierarchy and to the published series (the last); the figure draws them,
+# Laws fitted to the times of the triangles study, for each hierarchy and for the published series (the last); the figure draws them,
 # the paper prints them.
-#   T = a + b ln(n / 10000)   a is the time at 10000 triangles, b what each factor e adds
+#   T = a + b ln(n / 10000)   a is the time at 10000 triangles, b the increase by each factor e
 #   T = c (n / 10000)^p       fitted to the logarithms
-# Over the report's 10000 to 50000 (log_a, log_b, power_p), and over all from 10000 on (wide_a, wide_b, wide_c, wide_p), each time with
-# weights that make deviations relative; *_off is the root of their mean square. log_fits and wide_fits say where there was enough.
+# Over the report's 10000 to 50000 (log_a, log_b, power_p), and over all numbers from 10000 on (wide_a, wide_b, wide_c, wide_p), each time with
+# weights that make deviations relative; *_off is the root of their mean square. log_fits and wide_fits are 1 if there were enough rows.
 hierarchies = "none sphere octant bvh"
 measured_times(i) = i < 5 ? select(table("triangles"), "model.visible=on render.accel=".word(hierarchies, i), \
     "soup.count cpu_s_median cpu_s_min cpu_s_max") : select("experiments/published/triangles.csv", "", "triangles time_s time_s time_s")

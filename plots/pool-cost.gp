@@ -1,11 +1,11 @@
-# What fresh threads for every frame cost against a pool that was started beforehand.
+# The cost of starting threads for every frame, compared with a pool that is started once.
 # needs: tables/pool.tsv
 width = 1000; height = 430
 load "plots/style.gp"
 
 rows = table("pool")
 times(pool) = select(rows, "render.pool=".pool, "render.threads wall_s_median wall_s_low wall_s_high")
-# Both on one line, by threads.
+# The values of both on one line, by threads.
 both = sprintf("< plots/join.sh '%s' render.threads 'render.pool=off' 'render.pool=on' 'wall_s_median wall_s_low wall_s_high'", rows)
 
 set label 100 disturbed("pool") at screen 0.5,0.015 center font ",8" textcolor rgb grey
@@ -18,11 +18,11 @@ set yrange [0:*]
 set title "Wall time of a frame"
 set ylabel "wall time / ms"
 set key bottom left
-plot times("off") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 2 title "fresh threads", \
+plot times("off") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 2 title "new threads", \
      times("on") using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorlines lt 1 title "pool"
 unset label 100
-set title "What fresh threads add to a frame"
-set ylabel "fresh less pool / ms"
+set title "Time that new threads add to a frame"
+set ylabel "new threads minus pool / ms"
 set autoscale y
 set xzeroaxis lc rgb ink lw 0.8
 unset key

@@ -6,7 +6,7 @@ load "plots/style.gp"
 bars = sprintf("< awk -f plots/workers.awk '%s/profile/workers.csv'", results)
 schedules = "columns rows tiles dynamic"
 pins = "none compact scatter"
-# Which words they are, and where a worker's bar lies: schedules from the top, workers within.
+# The position of a worker's bar: schedules from the top, workers within a schedule.
 place(schedule) = schedule eq "columns" ? 0 : schedule eq "rows" ? 1 : schedule eq "tiles" ? 2 : schedule eq "dynamic" ? 3 : NaN
 middle(schedule, worker, workers) = place(schedule) + 0.1 + 0.8*(worker + 0.5)/workers
 half(workers) = 0.36/workers

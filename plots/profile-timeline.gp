@@ -1,4 +1,4 @@
-# Which worker took which piece of the picture when, for each schedule without pinning.
+# The pieces of the image that each worker rendered, over time, for each schedule without pinning.
 # needs: tables/profile.tsv profile/images/*-timeline.json
 width = 1000; height = 560
 load "plots/style.gp"
@@ -23,7 +23,7 @@ do for [i=1:4] {
 set palette defined @viridis
 set cbrange [0:1]
 set cbtics ("first" 0, "last" 1) scale 0
-set cblabel "piece of the picture, in reading order" offset -2.5,0
+set cblabel "piece of the image, in reading order" offset -2.5,0
 unset key
 unset grid
 set border 1
@@ -38,7 +38,7 @@ set colorbox user origin 0.885,0.09 size 0.014,0.86
 do for [i=1:4] {
     set title word(schedules, i) offset 0,-0.8
     set format x (i == 4 ? "%h" : "")
-    set xlabel (i == 4 ? "time since the frame began / ms" : "")
+    set xlabel (i == 4 ? "time since the frame's start / ms" : "")
     if (readable(timeline(word(schedules, i)))) {
         plot pieces(word(schedules, i)) using (($1 + $2)/2):3:(($2 - $1)/2):(0.4):4 with boxxyerror lw 0.15 fc palette
     } else {

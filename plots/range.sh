@@ -1,7 +1,6 @@
 #!/bin/sh
-# The values between which all but 1 in 100 pixels of a PFM map lie at either end, to 2%: "low high". A pixel during
-# which the
-# thread was put aside by the system is none of the map's business. Values of 0 or less are left out.
+# Print the range "low high" of a PFM map without 1 in 100 pixels at either end, to 2%, because the system may have
+# suspended the thread during a pixel. Values of 0 or less are left out.
 #   plots/range.sh MAP.pfm
 export LC_ALL=C
 set -eu

@@ -1,5 +1,5 @@
-# Where the work lies: rays of all kinds and time by pixel, of one frame.
-# The colours end where all but 1 in 100 pixels lie, at either end.
+# Maps of the work: rays of all kinds and time by pixel, of one frame.
+# The colour scale leaves out 1 in 100 pixels at either end.
 # needs: maps/images/0000-rays.pfm maps/images/0000-ns.pfm
 width = 1000; height = 338
 load "plots/style.gp"

@@ -1,4 +1,4 @@
-# Every metric of optics over the pairs of refractive indices: its error as a share of its tolerance, and whether it passes.
+# All metrics for the pairs of refractive indices: the error as a share of the tolerance, and passed or failed.
 # needs: tables/realism-metrics.tsv
 width = 1000; height = 800
 load "plots/style.gp"
@@ -8,7 +8,7 @@ distinct(column, order) = system(select(rows, "", column)[3:*]." | ".order." | t
 metrics = distinct("metric", "awk '!seen[$0]++'")
 vessels = distinct("vessel.ior", "sort -gu")
 liquids = distinct("liquid.ior", "sort -gu")
-# Line of a metric, from 0; column of a pair, those of one vessel side by side.
+# The line of a metric, from 0; the column of a pair, grouped by vessel.
 place(list, name) = words((" ".list." ")[1:strstrt(" ".list." ", " ".name." ")])
 down(metric) = place(metrics, metric)
 across(vessel, liquid) = place(vessels, vessel)*words(liquids) + place(liquids, liquid)
@@ -38,7 +38,7 @@ set colorbox horizontal user origin 0.2,0.045 size 0.34,0.016
 set cbtics scale 0.3 font ",9" ("exact or ≤ 10^{-6}" lowest, "10^{-4}" -4, "10^{-2}" -2, "1" 0)
 set label 1 "error / tolerance" at screen 0.19,0.053 right font ",9"
 set label 2 "✓ passes    ✗ fails" at screen 0.6,0.053 left font ",9"
-set label 3 "theory has none of it" at screen 0.757,0.053 left font ",9"
+set label 3 "no theoretical value" at screen 0.757,0.053 left font ",9"
 set object 3 rectangle from screen 0.735,0.044 to screen 0.752,0.062 fc rgb pale
 set label 4 "index of the vessel" at screen 0.193,0.952 right font ",9"
 set label 5 "of the liquid" at screen 0.193,0.922 right font ",9"

@@ -1,4 +1,4 @@
-# The rod in the vessel: the picture of the portrait as it is.
+# The rod in the vessel: the image of the portrait study.
 # needs: portrait/images/0000.png
 width = 800; height = 600
 load "plots/style.gp"

@@ -1,4 +1,4 @@
-# How figures and the paper reach what was measured. Given: results, a folder laid out as results/README.md says.
+# Access to the measured rows for figures and the paper. Requires: results, a folder as described in results/README.md.
 set datafile missing "NA"
 set datafile separator tab
 set fit quiet nolog errorvariables
@@ -7,16 +7,16 @@ table(study) = results."/tables/".study.".tsv"
 image(study, cell) = sprintf("%s/%s/images/%04d.png", results, study, int(cell))
 readable(path) = int(system("test -r '".path."' && echo 1 || echo 0"))
 
-# Lines of a table or of rows whose columns have these values, as tab separated numbers; see select.awk.
+# The lines of a table or of rows whose columns have the given values, as tab separated numbers; see select.awk.
 select(file, where, columns) = sprintf("< awk -f plots/select.awk -v where='%s' -v columns='%s' '%s'", where, columns, file)
-# The first one, as text and as a number; the largest one.
+# text(): the first value as text; first(): as a number; largest(): the largest value.
 text(file, where, column) = system(select(file, where, column)[3:*]." | head -n 1")
 largest(file, column) = number(system(select(file, "", column)[3:*]." | sort -g | tail -n 1"))
 number(text) = text eq "" ? NaN : real(text)
 first(file, where, column) = number(text(file, where, column))
-# The share of the machine that other processes used meanwhile, mean over the cells; a disturbed run says so in its figures.
+# The share of the machine used by other processes, mean over the cells; the figures of a disturbed run state it.
 others(study) = number(system(select(table(study), "", "others_share")[3:*]." | awk '{ sum += $1 } END { if (NR) print sum/NR }'"))
-disturbed(study) = others(study) > 0.05 ? sprintf("other processes used %.0f %% of the machine meanwhile", others(study)*100) : ""
+disturbed(study) = others(study) > 0.05 ? sprintf("other processes used %.0f %% of the machine during the run", others(study)*100) : ""
 
 # PFM: three lines of text, then little-endian floats from the bottom row up.
 pfm_start(path) = int(system("head -n 3 '".path."' | wc -c"))

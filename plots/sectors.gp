@@ -1,4 +1,4 @@
-# Wall time and imbalance by the edge of a tile, for tiles dealt out in turn and tiles as threads ask, beside blocks of columns and rows.
+# Wall time and imbalance by the edge of a tile, for static and dynamic tiles, compared with blocks of columns and rows.
 # needs: tables/sectors.tsv
 width = 1000; height = 470
 load "plots/style.gp"
@@ -21,21 +21,21 @@ set yrange [0:*]
 set key top left maxrows 3
 set offsets 0, 0, graph 0.3, 0
 plot for [i=1:3] values("tiles", word(counts, i) + 0, "wall_s_median wall_s_min wall_s_max") using 1:($2*1e3):($3*1e3):($4*1e3) \
-         with yerrorlines lt i pt 6 dt (6,3) title "tiles in turn, ".word(counts, i).(i == 1 ? " thread" : " threads"), \
+         with yerrorlines lt i pt 6 dt (6,3) title "static tiles, ".word(counts, i).(i == 1 ? " thread" : " threads"), \
      for [i=1:3] values("dynamic", word(counts, i) + 0, "wall_s_median wall_s_min wall_s_max") using 1:($2*1e3):($3*1e3):($4*1e3) \
-         with yerrorlines lt i title "as asked, ".word(counts, i).(i == 1 ? " thread" : " threads"), \
+         with yerrorlines lt i title "dynamic tiles, ".word(counts, i).(i == 1 ? " thread" : " threads"), \
      for [i=1:3] for [j=1:2] '+' using (j == 1 ? 500 : 1200):(block(word(label_blocks, j), word(counts, i) + 0, "wall_s_median")*1e3) every ::0::0 \
          with points lt i pt 2 ps 1.2 notitle
 unset label 100
-set title "Longest busy time over the mean one, less 1"
+set title "Longest / mean busy time − 1"
 unset offsets
 set yrange [0:*]
 set ylabel "imbalance / %"
 set key top left maxrows 4
 plot for [i=2:3] values("tiles", word(counts, i) + 0, "imbalance") using 1:($2*100) \
-         with linespoints lt i pt 6 dt (6,3) title "tiles in turn, ".word(counts, i)." threads", \
+         with linespoints lt i pt 6 dt (6,3) title "static tiles, ".word(counts, i)." threads", \
      for [i=2:3] values("dynamic", word(counts, i) + 0, "imbalance") using 1:($2*100) \
-         with linespoints lt i title "as asked, ".word(counts, i)." threads", \
+         with linespoints lt i title "dynamic tiles, ".word(counts, i)." threads", \
      for [i=2:3] for [j=1:2] '+' using (j == 1 ? 500 : 1200):(block(word(label_blocks, j), word(counts, i) + 0, "imbalance")*100) every ::0::0 \
          with points lt i pt 2 ps 1.2 notitle
 unset multiplot

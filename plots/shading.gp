@@ -1,4 +1,5 @@
-# A torus shaded flat, by Gouraud and by Phong, few polygons; what each shading costs, and its share of the frame, beside what the polygons report says.
+# A torus with flat, Gouraud and Phong shading, few polygons; the cost of each shading, and its share of the frame, compared with
+# the statement of the polygons report.
 # needs: tables/shading.tsv shading/images/*.png
 width = 1000; height = 690
 load "plots/style.gp"
@@ -12,7 +13,8 @@ shadows = "off off off opaque"
 at(poly, m, light) = sprintf("soup.around=%s render.integrator=%s render.shadows=%s %s", word(arounds, poly), word(methods, m), word(shadows, m), light)
 unlit(poly, m, column) = first(rows, at(poly, m, "model.diffuse=0"), column)
 lit(poly, m, s, column) = first(rows, at(poly, m, sprintf("model.diffuse=0.6 model.shading=%s", word(shadings, s))), column)
-# A frame less the same one without light and without normals; of frames with shadows the cost is that of those without, whose rays are no shading.
+# A frame minus the same frame without light and without normals; for frames with shadows the cost is that of frames without them,
+# because shadow rays are not shading.
 plain(m) = m == 4 ? 3 : m
 cost(poly, m, s) = lit(poly, plain(m), s, "cpu_s_median") - unlit(poly, plain(m), "cpu_s_median")
 least(poly, m, s) = lit(poly, plain(m), s, "cpu_s_low") - unlit(poly, plain(m), "cpu_s_high")
@@ -20,11 +22,11 @@ most(poly, m, s) = lit(poly, plain(m), s, "cpu_s_high") - unlit(poly, plain(m), 
 share(poly, m, s) = cost(poly, m, s)/lit(poly, m, s, "cpu_s_median")
 half = 0.13
 place(group, s) = group + 2*half*(s - 2)
-# Groups: the methods with few polygons, then with many.
+# The groups of bars: the methods with few polygons, then with many.
 poly_of(group, count) = group > count ? 2 : 1
 method_of(group, count) = int(group > count ? group - count : group)
 
-# Ends of the intervals of the two medians, taken together.
+# The difference of the opposite ends of the intervals of the two medians.
 below(s, group) = least(poly_of(group, 3), method_of(group, 3), s)
 above(s, group) = most(poly_of(group, 3), method_of(group, 3), s)
 
@@ -67,7 +69,7 @@ set label 12 "262144 triangles" at graph 0.75, -0.21 center textcolor rgb ink
 
 set lmargin at screen 0.06
 set rmargin at screen 0.485
-set title "What a shading costs: its frame less the frame without"
+set title "Cost of shading: frame minus unlit frame"
 set ylabel "CPU time a frame / ms"
 set xrange [0.5:6.5]
 set yrange [0:30]
@@ -80,7 +82,7 @@ plot for [s=1:3] [1:6] '+' using (place($1, s)):(cost(poly_of($1, 3), method_of(
 
 set lmargin at screen 0.56
 set rmargin at screen 0.99
-set title "Its share of the whole frame"
+set title "Share of the whole frame"
 set ylabel "share of the CPU time / %"
 set xrange [0.5:8.5]
 set yrange [0:45]
@@ -89,5 +91,5 @@ set xtics ("depth\nbuffer" 1, "rays" 2, "Whitted" 3, "with\nshadows" 4, "depth\n
 set samples 8
 set key top right maxrows 1 samplen 1.5
 plot for [s=1:3] [1:8] '+' using (place($1, s)):(share(poly_of($1, 4), method_of($1, 4), s)*100) with boxes lt s notitle, \
-     3 lt 7 title "the polygons report: Phong takes no more than 3 %"
+     3 lt 7 title "polygons report: Phong takes at most 3 %"
 unset multiplot

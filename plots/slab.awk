@@ -1,4 +1,4 @@
-# How far measured light through a slab lies from the slab's law (plots/absorption.gp), at most.
+# Print the largest deviation of measured light through a slab from the slab's law (plots/absorption.gp).
 #   awk -f slab.awk -v R=0.02 -v absorb='200 60 10' FILE        lines: thickness in mm, then a share for each coefficient in 1/m
 BEGIN { channels = split(absorb, a, " ") }
 {

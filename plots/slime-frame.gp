@@ -1,11 +1,11 @@
-# How long a frame of the slime finds out what rays meet, and which share of the frame that is, by level and hierarchy, as a ball and drawn out.
+# The time of visibility queries in a frame of the slime, and its share of the frame, by level and hierarchy, as a ball and drawn out.
 # needs: tables/slime-frame.tsv
 width = 1000; height = 430
 load "plots/style.gp"
 
 rows = table("slime-frame")
 hierarchies = "none sphere octant bvh"
-names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'boxes'"
+names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'BVH of boxes'"
 moments = "0 0.5"
 frames(i, m) = select(rows, sprintf("render.accel=%s toy.time_s=%s", word(hierarchies, i), word(moments, m)), \
     "triangles visibility_s_sum wall_s_median rays_total")
@@ -16,7 +16,7 @@ set xlabel "triangles n"
 set format x "10^{%T}"
 set xrange [15:5e5]
 set grid xtics ytics lc rgb pale lw 0.5 dt solid
-set title "Finding out what rays meet"
+set title "Visibility queries"
 set ylabel "time a ray / ns"
 set logscale y
 set format y "10^{%T}"
@@ -28,7 +28,7 @@ plot for [i=1:4] frames(i, 1) using 1:($2/$4*1e9) with linespoints lt i title wo
 unset label 100
 unset logscale y
 set format y "%h"
-set title "Its share of the frame"
+set title "Share of the frame"
 set ylabel "share of the wall time / %"
 set yrange [0:100]
 set key off

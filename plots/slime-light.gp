@@ -1,4 +1,5 @@
-# Light through a ball of slime by the length of its way inside, beside Beer's and Lambert's law, and how far the lengths lie from the ball's chords.
+# Light through a ball of slime by the length of its path inside, compared with the Beer-Lambert law, and the rms difference of the
+# lengths from the ball's chords.
 # needs: tables/slime-light.tsv slime-light/images/*.pfm
 width = 1000; height = 430
 load "plots/style.gp"
@@ -6,12 +7,12 @@ load "plots/style.gp"
 rows = table("slime-light")
 chords(level, share) = sprintf("< plots/chord.sh '%s/slime-light/images/%04d.pfm' 6 0.493", results, \
     int(first(rows, sprintf("toy.level=%d jelly.transparency=%g", level, share), "cell")))
-# Root of the mean square over the row: length by the green light, absorbed by 1 / m, less the chord.
+# Root mean square over the row: the length computed from the green light, absorbed by 1 / m, minus the chord.
 off(level) = number(system(chords(level, 1)[3:*]." | awk '{ e = -log($3) - $1; s += e*e } END { print sqrt(s/NR) }'"))
 set multiplot layout 1,2 margins 0.08,0.985,0.135,0.93 spacing 0.1
 set title "Light through the ball, level 7"
-set xlabel "way inside d / m"
-set ylabel "share of the light that passes"
+set xlabel "path length inside d / m"
+set ylabel "transmitted share of the light"
 set logscale y
 set xrange [0:2.05]
 set yrange [1e-3:1.3]
@@ -25,7 +26,7 @@ plot chords(7, 1) using 1:4 every 2 with points lt 1 title "blue, a = 0.25 / m",
      exp(-0.25*x) with lines lt 1 notitle, exp(-x) with lines lt 3 notitle, exp(-2*x) with lines lt 2 notitle, \
      0.8**2*exp(-x) with lines lt 5 notitle, 0.5**2*exp(-x) with lines lt 4 notitle, NaN with lines lc rgb ink lw 1.6 title "t^2 exp(-ad)"
 unset samples
-set title "Way inside by the light, less the ball's chord"
+set title "Path length from the light, minus the chord"
 set xlabel "level"
 set ylabel "rms over the row / m"
 set xrange [1.6:7.4]
@@ -36,5 +37,5 @@ set key top right Right noreverse
 set samples 6
 first_off = off(2)
 plot sample [2:7] '+' using 1:(off($1)) with points lt 1 title "measured", \
-     [2:7] '+' using 1:(first_off*4**(2 - $1)) with lines lt 8 title "a quarter by level: flat faces of a polyhedron"
+     [2:7] '+' using 1:(first_off*4**(2 - $1)) with lines lt 8 title "a quarter each level: flat faces of a polyhedron"
 unset multiplot

@@ -1,4 +1,4 @@
-# A slime's motion compared with mechanics: energy and momentum that a free one loses, orders, the fall, and the longest stable step.
+# A slime's motion compared with mechanics: energy and momentum lost by a free slime, orders, the fall, and the longest stable step.
 # needs: tables/slime-physics-motion.tsv
 width = 1000; height = 760
 load "plots/style.gp"
@@ -26,17 +26,17 @@ plot for [i=1:3] by_step(i, "energy.drift") using ($1*1e3):2 with linespoints lt
      1.1e-2*x with lines lt 8 title "dt", 1.3e-4*x**2 with lines lt 8 dt (6,3) title "dt^2"
 
 set title "Momentum and angular momentum of a free toy, 1 s"
-set ylabel "largest change / sum of sizes"
+set ylabel "largest change / sum of magnitudes"
 set yrange [1e-17:10]
 set key at graph 0.98,0.7 top right Right noreverse
 plot for [i=1:3] by_step(i, "angular_momentum.drift") using ($1*1e3):2 with linespoints lt i title word(names, i).", angular", \
      for [i=1:3] by_step(i, "momentum.drift") using ($1*1e3):2 with points lt i pt 4+2*i title word(names, i)
 
 set title "Fall of 1 s against g t^2 / 2, and a spring's period"
-set ylabel "size of the error, m and s"
+set ylabel "absolute error, m and s"
 set yrange [1e-15:10]
 set key at graph 0.98,0.5 top right Right noreverse
-plot by_step(1, "fall.depth") using ($1*1e3):4 with linespoints lt 1 title "fall, both kinds of Euler", \
+plot by_step(1, "fall.depth") using ($1*1e3):4 with linespoints lt 1 title "fall, both Euler methods", \
      9.81*x*1e-3/2 with lines lt 8 title "g t dt / 2", \
      by_step(2, "fall.depth") using ($1*1e3):4 with linespoints lt 2 title "fall, Verlet", \
      by_step(1, "spring.period_s") using ($1*1e3):4 with linespoints lt 4 title "period, semi-implicit and Verlet", \
@@ -57,5 +57,5 @@ plot by_stiffness(1, "stable_dt.spring_s") using 1:($2*1e3) with points lt 3 tit
      by_stiffness(1, "stable_dt.toy_s") using 1:($2*1e3) with linespoints lt 1 title "the toy, semi-implicit Euler", \
      by_stiffness(2, "stable_dt.toy_s") using 1:($2*1e3) with linespoints lt 2 title "the toy, Verlet", \
      for [i=1:2] by_stiffness(i, "stable_dt.toy_s") using 1:($3*1e3) with lines lt i dt (2,3) notitle, \
-     NaN with lines lc rgb ink dt (2,3) title "Gershgorin's bounds from below"
+     NaN with lines lc rgb ink dt (2,3) title "Gershgorin's lower bounds"
 unset multiplot

@@ -1,4 +1,4 @@
-# What a step of the slime's motion takes, by its masses, its integrator and its threads, and how much time is simulated in a second.
+# The time of a step of the slime's simulation, by its masses, integrator and threads, and the simulated time in a second.
 # needs: tables/slime-step.tsv
 width = 1000; height = 430
 load "plots/style.gp"
@@ -31,6 +31,6 @@ set ylabel "simulated / wall time"
 set yrange [1e-5:1e6]
 set key off
 set arrow 1 from graph 0, first 1 to graph 1, first 1 nohead dt (2,3) lc rgb grey
-set label 1 "as time goes by" at graph 0.985, first 1.8 right font ",8" textcolor rgb grey
+set label 1 "real time" at graph 0.985, first 1.8 right font ",8" textcolor rgb grey
 plot for [i=1:2] for [t=1:words(threads)] steps(i, t) using (masses($1)):($4/$2) with linespoints lt kind(i, t)
 unset multiplot

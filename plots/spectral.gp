@@ -1,4 +1,4 @@
-# The filled vessel, BK7 and water, at one wavelength's indices and at those of each wavelength, and where the two differ.
+# The filled vessel, BK7 and water, with the indices of one wavelength and with those of each wavelength, and their difference.
 # needs: tables/spectral.tsv spectral/images/*.png spectral/images/*.pfm
 width = 1000; height = 790
 load "plots/style.gp"
@@ -12,7 +12,7 @@ float_image(cell) = sprintf("%s/spectral/images/%04d.pfm", results, int(cell))
 amplified = 3
 channel(difference) = difference*amplified > 1 ? 255 : difference*amplified < -1 ? 0 : 127.5*(1 + difference*amplified)
 
-# Parts of the picture, in its pixels from the left and from the bottom: the vessel, and where colours part.
+# Parts of the image, in pixels from the left and from the bottom: the vessel, and two regions with visible dispersion.
 part = "set xrange [120:280]; set yrange [32:252]"
 crop_a = "set xrange [148:204]; set yrange [84:126]"
 crop_b = "set xrange [214:270]; set yrange [134:176]"
@@ -30,7 +30,7 @@ do for [i=0:2] {
     eval panel(i)
     eval part
     if (i < 2) {
-        set title i ? "each wavelength by its own index" : "one wavelength, 587.6 nm"
+        set title i ? "each wavelength with its own index" : "one wavelength, 587.6 nm"
         plot image("spectral", i ? spectral : single) binary filetype=png with rgbimage notitle
     } else {
         set title sprintf("their difference; grey: 0, black and white: ±%.2f", 1.0/amplified)

@@ -1,8 +1,8 @@
-# The look that all figures share. A figure sets `width` and `height` (CSS pixels)
-# and loads this. draw.sh gives: results, output (a path without its ending), format (png or svg), units.
+# The shared style of all figures. A figure sets `width` and `height` (CSS pixels)
+# and loads this file. draw.sh sets: results, output (a path without extension), format (png or svg), units.
 #
-# Colours: Okabe and Ito's eight, told apart with any kind of colour vision; a second sign (point, dash) goes with each.
-# Heat maps: viridis (van der Walt and Smith 2015), even in lightness. Signed maps: blue, white, vermillion.
+# Colours: the eight of Okabe and Ito, distinguishable with any colour vision; point or dash style differs too.
+# Heat maps: viridis (van der Walt and Smith 2015), uniform in lightness. Signed maps: blue, white, vermillion.
 
 if (format eq "png") {
     set terminal pngcairo size 2*width,2*height font "DejaVu Sans,10" fontscale 2 linewidth 2 pointscale 1.6
@@ -24,7 +24,7 @@ set linetype 3 lc rgb green      pt 9  ps 1 lw 1.6
 set linetype 4 lc rgb purple     pt 13 ps 1 lw 1.6
 set linetype 5 lc rgb orange     pt 11 ps 1 lw 1.6
 set linetype 6 lc rgb sky        pt 3  ps 1 lw 1.6
-# Published numbers and references are never in a measured series' colour.
+# Published numbers and references never have the colour of a measured series.
 set linetype 7 lc rgb grey       pt 6  ps 1 lw 1.6 dt (6,3)
 set linetype 8 lc rgb ink        pt 1  ps 1 lw 1.0 dt (2,3)
 

@@ -1,5 +1,5 @@
-# A ground of two triangles, read straight across the picture and with perspective, under each filter, beside 64 samples a pixel; with
-# the time of a frame and the distance from the last.
+# A ground of two triangles, with affine and perspective-correct interpolation, with each filter, compared with 64 samples a pixel; with
+# the time of a frame and the error against the last.
 # needs: tables/texture.tsv texture/images/*.png texture/references/*.png
 width = 1000; height = 625
 load "plots/style.gp"
@@ -8,8 +8,8 @@ load "plots/picture.gp"
 rows = table("texture")
 about(i) = sprintf("%.0f ms, FLIP %.3f, PSNR %.1f dB", cell_value(rows, i, "cpu_s_median")*1e3, cell_value(rows, i, "flip"), \
     cell_value(rows, i, "psnr_db"))
-names = "'straight across, one texel' 'straight across, pyramid' 'with perspective, one texel' " \
-    ."'with perspective, four texels' 'with perspective, pyramid' '64 samples a pixel: the reference'"
+names = "'affine, nearest' 'affine, trilinear' 'perspective-correct, nearest' " \
+    ."'perspective-correct, bilinear' 'perspective-correct, trilinear' '64 samples a pixel: the reference'"
 set title offset 0,-0.7
 set multiplot layout 2,3 margins 0.005,0.995,0.055,0.955 spacing 0.01,0.11
 do for [i=0:5] {

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The pieces of a frame from its timeline (Chrome trace JSON): begin and end in ms, worker, and the piece's
-# place in the picture as a share of all, in reading order (0 first, 1 last).
+# Print the pieces of a frame from its timeline (Chrome trace JSON): begin and end in ms, worker, and the piece's
+# relative position in the image, in reading order (0 first, 1 last).
 #   plots/timeline.sh TIMELINE.json
 export LC_ALL=C
 set -eu
@@ -11,7 +11,7 @@ awk 'function value(name) {
          sub(/.*: */, "", text)
          return text
      }
-     # A piece is named by its corner: "32,64-..." or "tile 32,64".
+     # The name of a piece has its corner: "32,64-..." or "tile 32,64".
      function corner(which) {
          match($0, "\"name\": *\"[^\"]*\"")
          text = substr($0, RSTART + 6, RLENGTH - 6)

@@ -1,4 +1,4 @@
-# Time by the number of triangles for each hierarchy, the law a + b ln n fitted (polygons.gp), the published times, and the time of a ray.
+# Time by the number of triangles for each hierarchy, the fitted law a + b ln n (polygons.gp), the published times, and the time of a ray.
 # needs: tables/triangles.tsv
 width = 1000; height = 790
 load "plots/style.gp"
@@ -6,7 +6,7 @@ load "plots/style.gp"
 load "plots/polygons.gp"
 rows = table("triangles")
 empty_s = first(rows, "model.visible=off", "cpu_s_median")
-names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'boxes'"
+names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'BVH of boxes'"
 
 set label 100 disturbed("triangles") at screen 0.5,0.012 center font ",8" textcolor rgb grey
 set multiplot layout 2,2 margins 0.075,0.935,0.08,0.955 spacing 0.13,0.125
@@ -49,7 +49,7 @@ plot for [i=3:4] few(i) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbar
 unset y2tics; unset y2label; unset offsets
 set border 3
 
-set title "From 10000 on: logarithm and power"
+set title "From 10000 on: logarithm and power law"
 set xlabel "triangles n"
 set ylabel "CPU time of a frame / ms"
 set logscale x
@@ -64,7 +64,7 @@ plot for [i=3:4] wide(i) using 1:($2*1e3):($3*1e3):($4*1e3) with yerrorbars lt i
          title sprintf("n^{%.2f}, off by %.0f %%", wide_p[i], wide_power_off[i]*100)
 unset offsets
 
-set title "Time of a ray, less the empty scene's frame"
+set title "Time of a ray, without the empty scene's frame"
 set ylabel "ns / ray"
 set logscale xy
 set format y "10^{%T}"

@@ -1,5 +1,5 @@
-# Means over the repetitions, by schedule, pinning and worker, from a study's workers.csv; warm-ups are left out. Means, not
-# medians, because busy and waiting time are to add up to the frame's: now one worker waits, now the other.
+# Print means over the repetitions, by schedule, pinning and worker, from a study's workers.csv, without warm-ups. Means, not
+# medians, so that busy and waiting time add up to the frame's time.
 # Prints, tab separated: schedule, pinning, worker, workers, busy_s, waiting_s, cpu_s.
 BEGIN { FS = ","; OFS = "\t" }
 { gsub(/[\r"]/, "") }
