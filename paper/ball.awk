@@ -1,5 +1,5 @@
-# A row of pixels through a ball's middle (plots/chord.sh) as TeX numbers: rms of the way that the green light went, absorbed by 1/m, less the
-# chord; and the light in units of share^2 e^-d.
+# Print TeX numbers of a row of pixels through a ball's centre (plots/chord.sh): the rms difference of the path length of green light,
+# absorbed by 1/m, and the chord; and the deviation of the light from share^2 e^-d.
 #   plots/chord.sh ... | awk -v level=7 -v share=1 -f scientific.awk -f ball.awk
 {
     off = -log($3 / share ^ 2) - $1

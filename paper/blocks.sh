@@ -1,9 +1,7 @@
 #!/bin/sh
-# What fixed blocks can gain at best: all rays of the picture over the rays of its largest block, for columns and rows
-# shared among
-# n threads as the renderer does, ceil(size / n) to each; and for columns where at most four or eight threads run at a
-# time. From a
-# map of rays by pixel (PFM); prints \setval{blocks/...} lines.
+# Print the bound on the speed-up of fixed blocks, as \setval{blocks/...} lines, from a map of rays by pixel (PFM): all rays
+# of the image divided by the rays of its largest block, for columns and rows divided among n threads as in the renderer,
+# ceil(size / n) for each; and for columns if at most four or eight threads run at a time.
 #   paper/blocks.sh MAP-rays.pfm
 export LC_ALL=C
 set -eu

@@ -1,4 +1,4 @@
-# The fitted lines of plots/areas.gp as TeX numbers: in ms, a of the published one in s; b is for 1000 pixels.
+# The fitted lines of plots/areas.gp as TeX numbers, in ms, except that a of the published line is in s; b is for 1000 pixels.
 load "plots/rows.gp"
 load "plots/areas.gp"
 set print "-"

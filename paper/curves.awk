@@ -1,4 +1,4 @@
-# By curve how many points there are and how far they lie from theory at most: awk -v study=NAME -f scientific.awk -f curves.awk TABLE-curves.tsv
+# Print, for each curve, the number of points and their largest deviation from theory: awk -v study=NAME -f scientific.awk -f curves.awk TABLE-curves.tsv
 BEGIN { FS = "\t" }
 NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
 $at["measured"] != "NA" && $at["theory"] != "NA" {

@@ -1,9 +1,9 @@
-# Every metric of a study as TeX numbers, \setval{study/axis values/metric/measured}{text} and theory and error, and by metric and by
-# its first word how many values there are, how many are within tolerance, and the largest error.
+# Print every metric of a study as TeX numbers, \setval{study/axis values/metric/measured}{text} and theory and error, and, by metric and by
+# its first word, the number of values, the number within tolerance, and the largest error.
 #   awk -v study=NAME -f scientific.awk -f metrics.awk TABLE-metrics.tsv
-# Angles in radians become degrees, but an error stays what it was. NA makes no number: the paper then prints n/a.
+# Angles are converted from radians to degrees, errors are not. NA defines no number: the paper then prints n/a.
 function set(key, text) { if (text != "") printf "\\setval{%s}{%s}\n", key, text }
-# A zero has no sign, and a minus is TeX's.
+# A number without the sign of a zero, and with TeX's minus.
 function places(v, count,   text) {
     text = sprintf("%." count "f", v)
     if (text + 0 == 0) sub(/^-/, "", text)
@@ -39,7 +39,7 @@ NR == 1 {
     name = $at["metric"]
     measured = $at["measured"]
     key = study
-    last = study == "polarisation" ? 2 : axes # both plates are turned alike
+    last = study == "polarisation" ? 2 : axes # both plates have the same rotation
     for (i = 3; i <= last + 2; i++) key = key "/" ($i ~ /^[-+0-9.]+$/ ? $i + 0 : $i)
     set(key "/" name "/measured", shown(measured))
     set(key "/" name "/theory", shown($at["theory"]))
@@ -87,7 +87,7 @@ END {
             if (n_F > n_C) set(study "/" m "/abbe", places((n_d - 1) / (n_F - n_C), 2))
         }
     }
-    # What the mean of s and p misses, by angle; and where it misses most, as a difference of shares.
+    # The error of the mean of s and p, by angle; and its largest value, as a difference of shares, with the angle.
     for (t in through) {
         split(t, part, SUBSEP)
         if (part[2] != "on" || !((part[1], "off", part[3]) in through)) continue

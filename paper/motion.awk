@@ -1,9 +1,9 @@
-# What cuvette motion measures in a study's cells as TeX numbers, \setval{study/integrator/step in ms/stiffness/name/measured}{text}, theory, error,
-# and the error over the theory; by name the largest error and the largest relative one over all cells; by integrator the power of the step with
+# Print the values of `cuvette motion` in a study's cells as TeX numbers, \setval{study/integrator/step in ms/stiffness/name/measured}{text}, theory, error,
+# and the relative error; by name the largest error and the largest relative one over all cells; by integrator the power of the step with
 # which a value grows (least squares over the cells of one stiffness that has several steps).
-#   awk -v study=NAME -f scientific.awk -f motion.awk TABLE-motion.tsv          NA makes no number: the paper then prints n/a.
+#   awk -v study=NAME -f scientific.awk -f motion.awk TABLE-motion.tsv          NA defines no number: the paper then prints n/a.
 function set(key, text) { if (text != "") printf "\\setval{%s}{%s}\n", key, text }
-# Three digits, as a power of ten where they would hide the value.
+# Three digits, as a power of ten if plain digits would hide the value.
 function shown(v,   size, places) {
     if (v == "NA") return ""
     if (v == 0) return "0"
@@ -17,7 +17,7 @@ NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
 {
     name = $at["name"]
     key = study "/" $at["toy.integrator"] "/" $at["toy.dt_s"] * 1000 "/" $at["toy.stiffness"] + 0 "/" name
-    # Times in ms, and so are the steps.
+    # Times and steps in ms.
     scale = $at["unit"] == "s" ? 1000 : 1
     set(key "/measured", $at["measured"] == "NA" ? "" : shown($at["measured"] * scale))
     set(key "/theory", $at["theory"] == "NA" ? "" : shown($at["theory"] * scale))

@@ -1,7 +1,7 @@
-# Every value of a study's table as a TeX number, \setval{study/axis values/column}{text}, formatted by what it is:
-# times in ms, rays in millions, shares in percent; and the numbers derived from them. awk -v study=NAME -f numbers.awk TABLE.tsv
-# NA makes no number: the paper then prints n/a.
-# Of a study whose axes all follow from one of them, that one is the key: alias().
+# Print every value of a study's table as a TeX number, \setval{study/axis values/column}{text}, formatted by its kind:
+# times in ms, rays in millions, shares in percent; and numbers derived from them. awk -v study=NAME -f numbers.awk TABLE.tsv
+# NA defines no number: the paper then prints n/a.
+# For a study whose axes all depend on one of them, that one is the key: alias().
 function set(key, text) { if (text != "") printf "\\setval{%s}{%s}\n", key, text }
 
 # About four digits, without an exponent.
@@ -9,7 +9,7 @@ function digits(v,   size) {
     size = v < 0 ? -v : v
     return (v < 0 ? "\\ensuremath{-}" : "") sprintf(size >= 1000 ? "%.0f" : size >= 100 ? "%.1f" : size >= 10 ? "%.2f" : "%.3f", size)
 }
-# A power of ten where plain digits would hide the value.
+# A power of ten if plain digits would hide the value.
 function scientific(v,   exponent) {
     if (v == 0) return "0"
     exponent = 0
@@ -98,7 +98,7 @@ value("n") > 0 {
         if (!($2 in best) || wall < best[$2]) { best[$2] = wall; best_count[$2] = $3 }
         if ($3 == 1024) most[$2] = wall
     }
-    # How deep is deep enough: the rule of plots/convergence.gp.
+    # The sufficient depth, by the rule of plots/convergence.gp.
     if (study == "convergence" && value("flip") != "" && value("flip") < 0.01 && !($2 in enough)) {
         enough[$2] = $3
         set(study "/" $2 "/enough", $3)
@@ -113,7 +113,7 @@ value("n") > 0 {
         if ($2 == "whitted") { rms_whitted = value("error_rms"); flip_whitted = value("flip"); rays_whitted = rays }
         rays_of[key] = rays
     }
-    # Against the first cell.
+    # Relative to the first cell.
     if (study ~ /^(spectral|polarised)$/) {
         if (!first_cpu) { first_cpu = cpu; first_rays = rays }
         set(key "/cpu-ratio", digits(cpu / first_cpu))
@@ -125,10 +125,10 @@ value("n") > 0 {
         build_of[key] = value("build_s")
         if (rays) ray_of[key] = cpu / rays
     }
-    # What a method keeps beside triangles and film: hierarchies, or the depth buffer and what was drawn into it.
+    # The memory of a method in addition to triangles and film: hierarchies, or the depth buffer and its triangles.
     if (study == "hidden" && value("accel_bytes") + value("drawn_bytes") > 0)
         set(key "/memory", sprintf("%.1f", (value("accel_bytes") + value("drawn_bytes")) / 1048576))
-    # One thread: all of its busy time is the frame's.
+    # With one thread, its busy time is the frame's.
     if (study == "slime-frame" && value("visibility_s_sum") && wall && rays) {
         set(key "/visible-share", sprintf("%.0f", value("visibility_s_sum") / wall * 100))
         set(key "/visible-ray", sprintf("%.0f", visible_of[key] = value("visibility_s_sum") / rays * 1e9))
@@ -137,14 +137,14 @@ value("n") > 0 {
             if (value("visibility_s_sum") / wall > most_share) most_share = value("visibility_s_sum") / wall
         }
     }
-    # Microseconds a step, and seconds that are simulated in one.
+    # Microseconds a step, and seconds simulated in a second.
     if (study == "slime-step" && value("motion_steps") && value("motion_s")) {
         step_of[key] = value("motion_s") / value("motion_steps")
         set(key "/step", digits(step_of[key] * 1e6))
         set(key "/simulated", $5 > value("motion_s") ? digits($5 / value("motion_s")) : significant($5 / value("motion_s")))
     }
-    # What a shading costs: its frame less the one without light. Rays to the light are none of it, so that a frame with shadows has the
-    # cost of the one without. Of Phong's the part that is more than flat shading's is that of its normals.
+    # The cost of a shading: its frame minus the one without light. Shadow rays are not part of it, so that a frame with shadows has the
+    # cost of the one without. The excess of Phong shading over flat shading is the cost of its normals.
     if (study == "shading") {
         light_of[key] = cpu
         split(key, part, "/")
@@ -158,7 +158,7 @@ value("n") > 0 {
                 if (least_phong == "" || shading_cost / cpu < least_phong) least_phong = shading_cost / cpu
                 if (shading_cost / cpu > most_phong) most_phong = shading_cost / cpu
             }
-            # Corners of the mesh, each of which Gouraud's own method would light once.
+            # Corners of the mesh, each of which Gouraud's original method would light once.
             if (part[4] == "gouraud" && part[3] == "zbuffer")
                 set(study "/" part[2] "/points-corner", value("first_hits.model") > 10 * $2 * $3 ? \
                     sprintf("%.0f", value("first_hits.model") / ($2 * $3)) : significant(value("first_hits.model") / ($2 * $3)))
@@ -169,7 +169,7 @@ value("n") > 0 {
         if (one[$2, $3]) set(key "/speedup", digits(one[$2, $3] / wall))
     }
 }
-# How often one key's value goes into another's.
+# The ratio of the values of two keys.
 function ratio(result, of, above, below) {
     if (of[below] > 0 && of[above] > 0) set(result, significant(of[above] / of[below]))
 }
@@ -179,7 +179,7 @@ END {
     set(study "/marked", marked + 0)
     if (told) set(study "/others", sprintf("%.0f", others / told * 100))
     for (k in rays_of) if (rays_whitted) set(k "/rays-ratio", digits(rays_of[k] / rays_whitted))
-    # Least squares of log error on log N.
+    # Least-squares fit of log error against log N.
     if (n_xy > 1) set("methods/slope", digits((n_xy * sum_xy - sum_x * sum_y) / (n_xy * sum_xx - sum_x * sum_x)))
     for (s in best) {
         set("threads/" s "/best", best_count[s])
@@ -196,7 +196,7 @@ END {
                 ratio(built "/speedup", build_of, built "/1", built "/2")
             }
     }
-    # After how many rays a build by one thread has paid.
+    # The number of rays after which a build with one thread has paid off.
     for (accel in hierarchy)
         for (i = 1; i <= 3; i++) {
             built = "build/" kind[i] "/50000/" accel "/1"

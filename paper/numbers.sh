@@ -1,5 +1,5 @@
 #!/bin/sh
-# All numbers of the paper, from rows alone: writes OUT/numbers.tex (\setval lines that \val reads) and the tables.
+# Write all numbers of the paper, computed only from rows: OUT/numbers.tex (\setval lines that \val reads) and the tables.
 #   paper/numbers.sh RESULTS OUT        run from the repository's root
 export LC_ALL=C.UTF-8
 set -eu
@@ -14,7 +14,7 @@ fact() { # the first text or number of that name in the study's manifest
         head -n 1
 }
 
-# What TeX reads as commands, as text.
+# Escapes characters that TeX would interpret.
 plain() { sed 's/[\\{}~^]/ /g; s/[_%$#&]/\\&/g'; }
 
 machine() {
@@ -49,7 +49,7 @@ polygons() {
 # Columns of a published series, tab separated.
 series() { awk -f "$here/../plots/select.awk" -v columns="$2" "$published/$1.csv"; }
 
-# What the sources print, and what follows from it.
+# The published numbers, and numbers derived from them.
 published() {
     series triangles 'triangles time_s' | awk '{ printf "\\setval{published/triangles/%d}{%s}\n", $1, $2 }'
     series coverage 'pixels time_s' | awk '{ printf "\\setval{published/coverage/%d}{%s}\n", $1, $2 }'
@@ -70,10 +70,8 @@ published() {
         END { printf "\\setval{published/threads/best}{%s}\n", count }'
 }
 
-# Light through a slab: the middle pixel of each thickness, what the slab's law says, and how far they lie apart at
-# most.
-# Index and coefficients are those of experiments/scenes/absorber.yaml, in 1/m; the law's R is Fresnel's at normal
-# incidence.
+# Light through a slab: the middle pixel of each thickness, the value of the slab's law, and the largest deviation. Index
+# and coefficients are those of experiments/scenes/absorber.yaml, in 1/m; the law's R is Fresnel's at normal incidence.
 slab() {
     [ -r "$results/tables/absorber.tsv" ] || return 0
     lines=$(awk -f "$here/../plots/select.awk" -v columns='cell liquid.size.z' "$results/tables/absorber.tsv" |
@@ -101,9 +99,8 @@ slab() {
         }'
 }
 
-# Light through a ball of slime: how far the way that the green light went inside, absorbed by 1/m, lies from the ball's
-# chord (rms over a row
-# of pixels), and what a surface that passes a share leaves of the light, against that share's square.
+# Light through a ball of slime: the difference of the path length of green light inside, absorbed by 1/m, from the ball's
+# chord (rms over a row of pixels), and the light left by a surface that transmits a share, relative to its square.
 ball() {
     [ -r "$results/tables/slime-light.tsv" ] || return 0
     awk -f "$here/../plots/select.awk" -v columns='cell toy.level jelly.transparency' \

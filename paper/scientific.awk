@@ -1,4 +1,4 @@
-# A positive number as TeX: 1.2 . 10^-5. For metrics.awk and curves.awk.
+# Format a positive number as TeX: 1.2 . 10^-5. Used by metrics.awk and curves.awk.
 function scientific(v,   exponent) {
     if (v == 0) return "0"
     exponent = 0

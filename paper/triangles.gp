@@ -1,4 +1,4 @@
-# The fitted laws of plots/polygons.gp as TeX numbers: in ms, the published ones in s; deviations in percent.
+# The fitted laws of plots/polygons.gp as TeX numbers, in ms, the published ones in s; deviations in percent.
 load "plots/rows.gp"
 load "plots/polygons.gp"
 set print "-"

@@ -25,11 +25,11 @@ through(a, d) = (1 - R)**2*exp(-a*d*1e-3)/(1 - R**2*exp(-2*a*d*1e-3))
 worst = number(system(measured[3:*].sprintf(" | awk -f plots/slab.awk -v R=%.17g -v absorb='200 60 10'", R)))
 set label 1 sprintf("largest deviation from the\nslab's law: %.0e", worst) at screen 0.77,0.125 left font ",9" textcolor rgb ink
 plot through(200, x) with lines lt 2 notitle, through(60, x) with lines lt 3 notitle, through(10, x) with lines lt 1 notitle, \
-     exp(-0.2*x) with lines lt 7 title "exp(-ad) alone", exp(-0.06*x) with lines lt 7 notitle, exp(-0.01*x) with lines lt 7 notitle, \
+     exp(-0.2*x) with lines lt 7 title "exp(-ad), without faces", exp(-0.06*x) with lines lt 7 notitle, exp(-0.01*x) with lines lt 7 notitle, \
      measured using 1:4 with points lt 1 title "blue, a = 10 / m", \
      measured using 1:3 with points lt 3 title "green, a = 60 / m", \
      measured using 1:2 with points lt 2 title "red, a = 200 / m", \
-     NaN with lines lc rgb ink lw 1.6 title "with both faces"
+     NaN with lines lc rgb ink lw 1.6 title "exp(-ad), with both faces"
 
 unset xlabel; unset ylabel; unset label 1
 set xrange [*:*]

@@ -5,7 +5,7 @@ load "plots/style.gp"
 
 rows = table("build")
 hierarchies = "none sphere octant bvh"
-names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'boxes'"
+names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'BVH of boxes'"
 sets = "sparse dense sphere sparse dense sphere"
 counts = "50000 50000 50000 500000 500000 500000"
 # The value of a bar; NaN if there is no such cell.

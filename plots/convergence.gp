@@ -35,7 +35,7 @@ plot of("black", "error_rms") using 1:2 with linespoints lt 1 pt 6 dt (6,3) titl
      of("sky", "error_rms") using 1:2 with linespoints lt 1 title "rms, sky beyond the limit", \
      of("black", "flip") using 1:2 with linespoints lt 2 pt 4 dt (6,3) title "FLIP, black", \
      of("sky", "flip") using 1:2 with linespoints lt 2 title "FLIP, sky", \
-     of("sky", "cut_depth_throughput rays_camera") using 1:($2/$3) with linespoints lt 3 title "light cut"
+     of("sky", "cut_depth_throughput rays_camera") using 1:($2/$3) with linespoints lt 3 title "light cut off"
 
 unset label 100
 unset arrow 3

@@ -4,7 +4,7 @@ width = 1000; height = 470
 load "plots/style.gp"
 
 load "plots/areas.gp"
-names = "'octant tree of spheres' 'boxes'"
+names = "'octant tree of spheres' 'BVH of boxes'"
 set label 100 disturbed("coverage") at screen 0.5,0.015 center font ",8" textcolor rgb grey
 set multiplot layout 1,2 margins 0.075,0.985,0.13,0.92 spacing 0.1
 set xlabel "covered pixels / 1000"

@@ -6,7 +6,7 @@ load "plots/style.gp"
 
 rows = table("crowding")
 hierarchies = "none sphere octant bvh"
-names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'boxes'"
+names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'BVH of boxes'"
 times(i) = select(rows, "render.accel=".word(hierarchies, i), "soup.count cpu_s_median cpu_s_min cpu_s_max")
 first_of(i) = first(rows, "soup.count=10000 render.accel=".word(hierarchies, i), "cpu_s_median")
 published_first = first(published."crowding.csv", "triangles=10000", "time_s")
@@ -24,11 +24,11 @@ plot for [i=1:4] times(i) using ($1/1e3):2:3:4 with yerrorlines lt i title word(
 unset label 100
 unset logscale y
 set format y "%h"
-set title "Growth since 10000"
+set title "Growth from 10000 on"
 set ylabel "relative to 10000 triangles"
 set yrange [0:6]
 plot x/10 with lines lt 8 title "proportional to n", \
      for [i=1:4] times(i) using ($1/1e3):($2/first_of(i)):($3/first_of(i)):($4/first_of(i)) with yerrorlines lt i title word(names, i), \
      select(published."crowding.csv", "", "triangles time_s")." | awk '$1 > 0'" using ($1/1e3):($2/published_first) \
-         with linespoints lt 7 title "published, the octant tree"
+         with linespoints lt 7 title "published, octant tree"
 unset multiplot

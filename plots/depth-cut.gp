@@ -10,7 +10,7 @@ set xrange [-0.5:largest(rows, "render.depth") + 0.5]
 set xtics 1
 
 set title "Light cut off at the depth limit"
-set ylabel "mean throughput cut / camera ray"
+set ylabel "mean throughput cut off / camera ray"
 set logscale y
 set format y "10^{%T}"
 unset key

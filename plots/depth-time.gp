@@ -32,7 +32,7 @@ unset label 100
 unset y2tics
 unset y2label
 set border 3
-set title "Growth since depth 0"
+set title "Growth from depth 0 on"
 set ylabel "relative to depth 0"
 set logscale y
 set yrange [0.9:*]

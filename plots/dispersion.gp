@@ -15,7 +15,7 @@ set xrange [390:720]
 set xtics 50
 set xlabel "wavelength / nm"
 set border 3
-# Fraunhofer's lines.
+# Fraunhofer lines.
 fraunhofer = "F:486.1327 d:587.5618 C:656.2725"
 do for [i=1:3] {
     line = word(fraunhofer, i)

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Draws the figures whose rows exist and are newer than the figure, as PNG and SVG.
+# Draw the figures whose rows exist and are newer than the figure, as PNG and SVG.
 #   plots/draw.sh [--results DIR] [--out DIR] [--format png,svg] [FIGURE...]
 # DIR defaults to results; figures go to DIR/figures. A figure named on the command line is always drawn.
 # The head of a figure lists its inputs (`# needs:`, paths below DIR, * allowed); if one is missing, the figure is
@@ -110,7 +110,7 @@ drawn=0 fresh=0 failed=0
 for figure in "${figures[@]}"; do
     look_for_inputs "$figure"
     if [ -n "$missing" ]; then
-        echo "$figure: skipped, no $missing (make experiments makes it)"
+        echo "$figure: skipped, no $missing (run make experiments)"
     elif [ "$named" -eq 0 ] && is_fresh "$figure"; then
         fresh=$((fresh + 1))
     elif draw "$figure"; then

@@ -16,5 +16,5 @@ n_water(L) = sqrt(sellmeier(L/1e3, 0.5684027565, 0.005101829712, 0.1726177391, 0
 n_ethanol(L) = n_air(L)*(1.35265 + 0.00306/(L/1e3)**2 + 0.00002/(L/1e3)**4)
 # Minimum deviation of a prism of 60 degrees: Hecht, Optics, 5.5.1.
 least_deviation(n) = (2*asin(n/2) - pi/3)*180/pi
-# The first rainbow, Descartes, Les Meteores (1637): 4 t - 2 i where cos^2 i = (n^2 - 1)/3, sin i = n sin t.
+# The primary rainbow, Descartes, Les Meteores (1637): 4 t - 2 i where cos^2 i = (n^2 - 1)/3, sin i = n sin t.
 rainbow(n) = (4*asin(sqrt((4 - n**2)/3)/n) - 2*asin(sqrt((4 - n**2)/3)))*180/pi

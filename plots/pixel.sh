@@ -5,7 +5,7 @@ export LC_ALL=C
 set -eu
 
 [ "$(head -c 2 "$1")" = PF ] || {
-    echo "$0: $1 is no PFM in colour" >&2
+    echo "$0: $1 is not a colour PFM" >&2
     exit 1
 }
 read -r width height <<END

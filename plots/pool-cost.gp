@@ -5,7 +5,7 @@ load "plots/style.gp"
 
 rows = table("pool")
 times(pool) = select(rows, "render.pool=".pool, "render.threads wall_s_median wall_s_low wall_s_high")
-# Both on one line, by threads.
+# The values of both on one line, by threads.
 both = sprintf("< plots/join.sh '%s' render.threads 'render.pool=off' 'render.pool=on' 'wall_s_median wall_s_low wall_s_high'", rows)
 
 set label 100 disturbed("pool") at screen 0.5,0.015 center font ",8" textcolor rgb grey

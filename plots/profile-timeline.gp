@@ -38,7 +38,7 @@ set colorbox user origin 0.885,0.09 size 0.014,0.86
 do for [i=1:4] {
     set title word(schedules, i) offset 0,-0.8
     set format x (i == 4 ? "%h" : "")
-    set xlabel (i == 4 ? "time since the frame began / ms" : "")
+    set xlabel (i == 4 ? "time since the frame's start / ms" : "")
     if (readable(timeline(word(schedules, i)))) {
         plot pieces(word(schedules, i)) using (($1 + $2)/2):3:(($2 - $1)/2):(0.4):4 with boxxyerror lw 0.15 fc palette
     } else {

@@ -9,7 +9,7 @@ where(curve) = sprintf("vessel.ior=%g liquid.ior=%g curve=%s", vessel, liquid, c
 curve(name) = select(rows, where(name), "x theory measured")
 # The largest |measured - theory| of a curve, to one digit.
 residual(name) = number(system(curve(name)[3:*]." | awk '{ e = $3 - $2; if (e < 0) e = -e; if (e > w) w = e } END { printf \"%g\", w }'"))
-said(name, unit) = sprintf("largest error %.0e%s", residual(name), unit)
+largest_error(name, unit) = sprintf("largest error %.0e%s", residual(name), unit)
 metric(name, column) = first(table("realism-metrics"), sprintf("vessel.ior=%g liquid.ior=%g metric=%s", vessel, liquid, name), column)
 
 set multiplot layout 2,3 margins 0.075,0.985,0.08,0.945 spacing 0.08,0.135
@@ -36,7 +36,7 @@ set xlabel "offset from the axis / scene units"
 set ylabel "deviation / deg"
 set xrange [0:1]; set xtics 0.2
 set yrange [0:*]
-set label 1 said("deviation", " deg") at graph 0.97,0.07 right
+set label 1 largest_error("deviation", " deg") at graph 0.97,0.07 right
 power = metric("lens.power", "measured")
 plot curve("deviation") using 1:2 with lines lt 1 title "theory", "" using 1:3 every 10 with points lt 1 title "traced", \
      [0:0.75] power*x*180/pi with lines lt 7 title sprintf("thin lens, focal length %.2f", 1/power)
@@ -46,7 +46,7 @@ set xlabel "refractive index of the liquid"
 set ylabel "displacement / px"
 set xrange [1:1.6]; set xtics 0.1
 set yrange [0:*]
-set label 1 said("edges", " px")
+set label 1 largest_error("edges", " px")
 plot curve("edges") using 1:2 with lines lt 1 title "theory", "" using 1:3 every 3 with points lt 1 title "traced"
 
 set title "Series of a slab, cut at a depth"
@@ -58,7 +58,7 @@ set yrange [1e-15:30]
 set format y "10^{%T}"
 set ytics 1e3
 whole = number(system(curve("depth")[3:*]." | tail -n 1 | cut -f 2"))
-set label 1 said("depth", "") at graph 0.04,0.07 left
+set label 1 largest_error("depth", "") at graph 0.04,0.07 left
 set key top right
 plot curve("depth") using 1:(1 - $2/whole) with steps lt 1 notitle, NaN with lines lt 1 title "theory", \
      "" using 1:(abs(1 - $3/whole)) with points lt 1 title "traced"
@@ -71,7 +71,7 @@ set xlabel "length / m"
 set ylabel "transmittance, red"
 set xrange [0:0.92]; set xtics 0.2
 set yrange [0:1.03]
-set label 1 said("absorption", "")
+set label 1 largest_error("absorption", "")
 plot curve("absorption") using 1:2 with lines lt 2 title "theory, exp(-ad)", "" using 1:3 every 6 with points lt 2 title "traced"
 
 set title "Residuals: |traced − theory|"
@@ -82,7 +82,7 @@ set logscale y
 set yrange [1e-17:1e-6]
 set format y "10^{%T}"
 set ytics 1e2
-set label 1 "where it is not 0" at graph 0.97,0.62 right
+set label 1 "errors other than 0" at graph 0.97,0.62 right
 set key top left maxrows 3 samplen 1 width 1
 # Fraction of the x range, and the error where it is not 0.
 left = "{ x[NR] = $1; e[NR] = $3 < $2 ? $2 - $3 : $3 - $2 } " \

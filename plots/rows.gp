@@ -7,9 +7,9 @@ table(study) = results."/tables/".study.".tsv"
 image(study, cell) = sprintf("%s/%s/images/%04d.png", results, study, int(cell))
 readable(path) = int(system("test -r '".path."' && echo 1 || echo 0"))
 
-# Lines of a table or of rows whose columns have these values, as tab separated numbers; see select.awk.
+# The lines of a table or of rows whose columns have the given values, as tab separated numbers; see select.awk.
 select(file, where, columns) = sprintf("< awk -f plots/select.awk -v where='%s' -v columns='%s' '%s'", where, columns, file)
-# The first one, as text and as a number; the largest one.
+# text(): the first value as text; first(): as a number; largest(): the largest value.
 text(file, where, column) = system(select(file, where, column)[3:*]." | head -n 1")
 largest(file, column) = number(system(select(file, "", column)[3:*]." | sort -g | tail -n 1"))
 number(text) = text eq "" ? NaN : real(text)

@@ -1,11 +1,11 @@
 # Columns by name from a table with a header line (tab separated .tsv, or .csv after RFC 4180, one line per row), for the
 # lines where other columns have given values; tab separated, lines with NA are left out.
 #   awk -f select.awk -v where='render.schedule=rows warmup=0' -v columns='render.threads wall_s_median' FILE
-# A column that the table lacks counts as NA. Values that are numbers are compared as numbers.
+# A column that the table lacks counts as NA. Numbers are compared as numbers.
 function same(a, b) {
     return a == b || (a ~ number && b ~ number && a + 0 == b + 0)
 }
-# The fields of a line of CSV: between quotes a comma is text, and a quote is doubled.
+# Splits a line of CSV: within quotes a comma is text, and a quote is doubled.
 function cut_csv(line, field,   n, text) {
     if (line !~ /"/) return split(line, field, ",")
     split("", field)

@@ -22,7 +22,7 @@ most(poly, m, s) = lit(poly, plain(m), s, "cpu_s_high") - unlit(poly, plain(m), 
 share(poly, m, s) = cost(poly, m, s)/lit(poly, m, s, "cpu_s_median")
 half = 0.13
 place(group, s) = group + 2*half*(s - 2)
-# Groups: the methods with few polygons, then with many.
+# The groups of bars: the methods with few polygons, then with many.
 poly_of(group, count) = group > count ? 2 : 1
 method_of(group, count) = int(group > count ? group - count : group)
 
@@ -91,5 +91,5 @@ set xtics ("depth\nbuffer" 1, "rays" 2, "Whitted" 3, "with\nshadows" 4, "depth\n
 set samples 8
 set key top right maxrows 1 samplen 1.5
 plot for [s=1:3] [1:8] '+' using (place($1, s)):(share(poly_of($1, 4), method_of($1, 4), s)*100) with boxes lt s notitle, \
-     3 lt 7 title "the polygons report: Phong takes no more than 3 %"
+     3 lt 7 title "polygons report: Phong takes at most 3 %"
 unset multiplot

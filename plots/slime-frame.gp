@@ -6,7 +6,7 @@ load "plots/style.gp"
 
 rows = table("slime-frame")
 hierarchies = "none sphere octant bvh"
-names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'boxes'"
+names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'BVH of boxes'"
 moments = "0 0.5"
 frames(i, m) = select(rows, sprintf("render.accel=%s toy.time_s=%s", word(hierarchies, i), word(moments, m)), \
     "triangles visibility_s_sum wall_s_median rays_total")
@@ -29,7 +29,7 @@ plot for [i=1:4] frames(i, 1) using 1:($2/$4*1e9) with linespoints lt i title wo
 unset label 100
 unset logscale y
 set format y "%h"
-set title "Its share of the frame"
+set title "Share of the frame"
 set ylabel "share of the wall time / %"
 set yrange [0:100]
 set key off

@@ -1,11 +1,11 @@
-# The recorded grab, moment by moment.
+# Moments of the recorded grab.
 # needs: tables/slime-grab.tsv slime-grab/images/*.png
 width = 1000; height = 425
 load "plots/style.gp"
 
 load "plots/image_panels.gp"
 rows = table("slime-grab")
-said = "'at rest' 'drawn out' 'drawn out' 'held' 'held' 'let go' 'back' 'at rest again'"
+said = "'at rest' 'drawn out' 'drawn out' 'held' 'held' 'released' 'back' 'at rest again'"
 set title offset 0,-0.7
 set multiplot layout 2,4 margins 0.004,0.996,0.005,0.94 spacing 0.006,0.075
 do for [i=0:7] {

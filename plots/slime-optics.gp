@@ -1,4 +1,4 @@
-# A ball of slime over the grid of transparency and absorption.
+# Images of a ball of slime over the grid of transparency and absorption.
 # needs: tables/slime-optics.tsv slime-optics/images/*.png
 width = 1000; height = 800
 load "plots/style.gp"

@@ -27,7 +27,7 @@ plot for [i=1:3] by_step(i, "energy.drift") using ($1*1e3):2 with linespoints lt
      1.1e-2*x with lines lt 8 title "dt", 1.3e-4*x**2 with lines lt 8 dt (6,3) title "dt^2"
 
 set title "Momentum and angular momentum of a free toy, 1 s"
-set ylabel "largest change / sum of sizes"
+set ylabel "largest change / sum of magnitudes"
 set yrange [1e-17:10]
 set key at graph 0.98,0.7 top right Right noreverse
 plot for [i=1:3] by_step(i, "angular_momentum.drift") using ($1*1e3):2 with linespoints lt i title word(names, i).", angular", \

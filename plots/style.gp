@@ -25,7 +25,7 @@ set linetype 3 lc rgb green      pt 9  ps 1 lw 1.6
 set linetype 4 lc rgb purple     pt 13 ps 1 lw 1.6
 set linetype 5 lc rgb orange     pt 11 ps 1 lw 1.6
 set linetype 6 lc rgb sky        pt 3  ps 1 lw 1.6
-# Published numbers and references are never in a measured series' colour.
+# Published numbers and references never have the colour of a measured series.
 set linetype 7 lc rgb grey       pt 6  ps 1 lw 1.6 dt (6,3)
 set linetype 8 lc rgb ink        pt 1  ps 1 lw 1.0 dt (2,3)
 

@@ -9,8 +9,8 @@ load "plots/image_panels.gp"
 rows = table("texture")
 about(i) = sprintf("%.0f ms, FLIP %.3f, PSNR %.1f dB", cell_value(rows, i, "cpu_s_median")*1e3, cell_value(rows, i, "flip"), \
     cell_value(rows, i, "psnr_db"))
-names = "'straight across, one texel' 'straight across, pyramid' 'with perspective, one texel' " \
-    ."'with perspective, four texels' 'with perspective, pyramid' '64 samples a pixel: the reference'"
+names = "'affine, nearest' 'affine, trilinear' 'perspective-correct, nearest' " \
+    ."'perspective-correct, bilinear' 'perspective-correct, trilinear' '64 samples a pixel: the reference'"
 set title offset 0,-0.7
 set multiplot layout 2,3 margins 0.005,0.995,0.055,0.955 spacing 0.01,0.11
 do for [i=0:5] {

@@ -1,4 +1,4 @@
-# Speed-up by threads for each schedule, with the ideal line, two laws fitted (laws.gp), and the published numbers.
+# Speed-up by threads for each schedule, with the ideal line, two fitted laws (laws.gp), and the published numbers.
 # needs: tables/threads.tsv
 width = 1000; height = 760
 load "plots/style.gp"

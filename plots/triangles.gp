@@ -7,7 +7,7 @@ load "plots/style.gp"
 load "plots/polygons.gp"
 rows = table("triangles")
 empty_s = first(rows, "model.visible=off", "cpu_s_median")
-names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'boxes'"
+names = "'no hierarchy' 'one sphere' 'octant tree of spheres' 'BVH of boxes'"
 
 set label 100 disturbed("triangles") at screen 0.5,0.012 center font ",8" textcolor rgb grey
 set multiplot layout 2,2 margins 0.075,0.935,0.08,0.955 spacing 0.13,0.125
@@ -50,7 +50,7 @@ plot for [i=3:4] few(i) using ($1/1e3):($2*1e3):($3*1e3):($4*1e3) with yerrorbar
 unset y2tics; unset y2label; unset offsets
 set border 3
 
-set title "From 10000 on: logarithm and power"
+set title "From 10000 on: logarithm and power law"
 set xlabel "triangles n"
 set ylabel "CPU time of a frame / ms"
 set logscale x
