@@ -1,7 +1,7 @@
 #!/bin/sh
-# Print the bound on the speed-up of fixed blocks, as \setval{blocks/...} lines, from a map of rays by pixel (PFM): all rays
-# of the image divided by the rays of its largest block, for columns and rows divided among n threads as in the renderer,
-# ceil(size / n) for each; and for columns if at most four or eight threads run at a time.
+# Print the bound on the speed-up of fixed blocks, as \setval{blocks/...} lines, from a map of rays by pixel (PFM):
+# all rays of the image divided by the rays of its largest block, for columns and rows divided among n threads as in
+# the renderer, ceil(size / n) for each; and for columns if at most four or eight threads run at a time.
 #   paper/blocks.sh MAP-rays.pfm
 export LC_ALL=C
 set -eu

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Write all numbers of the paper, computed only from rows: OUT/numbers.tex (\setval lines that \val reads) and the tables.
+# Write all numbers of the paper, computed only from rows: OUT/numbers.tex (\setval lines that \val reads) and the
+# tables.
 #   paper/numbers.sh RESULTS OUT        run from the repository's root
 export LC_ALL=C.UTF-8
 set -eu
@@ -70,7 +71,8 @@ published() {
         END { printf "\\setval{published/threads/best}{%s}\n", count }'
 }
 
-# Light through a slab: the middle pixel of each thickness, the value of the slab's law, and the largest deviation. Index
+# Light through a slab: the middle pixel of each thickness, the value of the slab's law, and the largest deviation.
+# Index
 # and coefficients are those of experiments/scenes/absorber.yaml, in 1/m; the law's R is Fresnel's at normal incidence.
 slab() {
     [ -r "$results/tables/absorber.tsv" ] || return 0
@@ -99,7 +101,8 @@ slab() {
         }'
 }
 
-# Light through a ball of slime: the difference of the path length of green light inside, absorbed by 1/m, from the ball's
+# Light through a ball of slime: the difference of the path length of green light inside, absorbed by 1/m, from the
+# ball's
 # chord (rms over a row of pixels), and the light left by a surface that transmits a share, relative to its square.
 ball() {
     [ -r "$results/tables/slime-light.tsv" ] || return 0
