@@ -202,7 +202,7 @@ refused "rows with other columns are refused, and nothing is removed" 'other col
     --rows foreign.csv --restart
 check "the frames still exist" is "$(frames one)" 15
 described() {
-    awk '/^## / {on = $0 == "## Rows of a film"} on && /^\| `/' "$root/results/README.md" |
+    awk '/^## / {on = $0 == "## Rows of an animation"} on && /^\| `/' "$root/results/README.md" |
         sed -n 's/^| \(`[^|]*\) |.*/\1/p' | tr -d '` ' | tr ',' '\n'
 }
 check "results/README.md has the columns" diff <(described) <(head -1 calm.csv | tr , '\n')
