@@ -49,7 +49,7 @@ static agreement agree(scene *s, const char *settings, double unseen)
 }
 
 /* For rare events the interval covers less often than its nominal probability; hence 90 of 100, not 95. */
-static void paths_through_clear_solids_have_the_trees_mean(void **state)
+static void paths_through_clear_solids_have_the_mean_of_whitted_ray_tracing(void **state)
 {
     (void)state;
     scene *s = scene_from(clear_scene);
@@ -124,7 +124,7 @@ static const char glossy_scene[] = "render: {width: 1, height: 1, depth: 1, inte
 
 /* A sky of h + (s - h) cos theta lights a floor like h + 2/3 (s - h), the mean of cos theta by the cosine law; at 45
  * degrees the mirror reflects it at cos theta = 1 / sqrt 2. The choice of lobe must be independent of the direction. */
-static void a_matte_mirror_has_both_shares_of_the_sky(void **state)
+static void a_matte_mirror_reflects_the_diffuse_and_the_specular_share(void **state)
 {
     (void)state;
     static const double high[3] = {1.0, 0.2, 0.5}, low[3] = {0.0, 0.8, 0.1}, color[3] = {0.9, 0.6, 0.3};
@@ -188,7 +188,7 @@ static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
 /* Lamps in the direction (0, 0.6, 0.8), into which the view ray is reflected: R.V is the cosine of the angle from the
  * lamp's middle, so that Phong's highlight is k_s times the light, 2 L times the integral of cos^n over the cosines of
  * the cone, from sqrt(1 - s^2) to 1. */
-static void a_sphere_has_a_highlight(void **state)
+static void a_sphere_light_has_phongs_highlight(void **state)
 {
     (void)state;
     static const double shares[] = {0.05, 0.3, 0.55}, shininess[] = {1.0, 2.5, 40.0};
@@ -213,7 +213,7 @@ static void a_sphere_has_a_highlight(void **state)
 /* In the same place, on a floor that is also a mirror: the lamp itself, of radiance L, with the mirror's share; and
  * with the matte share Lambert's law of spheres, once, because the random continuation does not count the lamp
  * again. */
-static void a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once(void **state)
+static void a_matte_mirror_counts_a_visible_lamp_once_per_lobe(void **state)
 {
     (void)state;
     scene *s = scene_from(lamp_scene);
@@ -283,7 +283,7 @@ static void lamps_are_sampled_independently(void **state)
 
 /* Only the upper half of a lamp whose middle is on the horizon contributes. B-24's other case, theta = 90 degrees: E /
  * (pi L) = (asin(s) - s sqrt(1 - s^2)) / pi with s = r / d. */
-static void the_horizon_cuts_a_lamp(void **state)
+static void only_the_part_of_a_lamp_above_the_horizon_contributes(void **state)
 {
     (void)state;
     scene *s = scene_from(lamp_scene);
@@ -295,7 +295,7 @@ static void the_horizon_cuts_a_lamp(void **state)
 
 /* A thin screen over x < 0 at height 1, the lamp above its edge at height 5: the planes through the edge that touch the
  * lamp intersect the floor at x = -+1 r / sqrt(4^2 - r^2), by similar triangles. The penumbra is between them. */
-static void a_penumbra_is_as_wide_as_similar_triangles_require(void **state)
+static void the_width_of_a_penumbra_follows_from_similar_triangles(void **state)
 {
     (void)state;
     const double r = 1.5, edge = r / sqrt(16.0 - r * r);
@@ -470,7 +470,7 @@ static uint64_t rays_of(const scene *s)
 
 /* The wall is also a mirror, which light from the middle does not show: of each channel k_d C continues, and by the
  * mirror k_r. The end of a path must not depend on the choice between the two. */
-static void roulette_does_not_choose_between_matte_and_mirror(void **state)
+static void roulette_is_independent_of_the_choice_between_matte_and_mirror(void **state)
 {
     (void)state;
     scene *s = scene_from(hollow_scene);
@@ -520,7 +520,7 @@ static void a_light_sphere_in_a_hollow_ball_is_a_geometric_series(void **state)
 }
 
 /* The medium before a lamp absorbs by exp(-a d), and the medium behind the lamp does not. */
-static void only_the_medium_before_a_lamp_absorbs(void **state)
+static void the_medium_before_a_lamp_absorbs_and_the_one_behind_does_not(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -609,7 +609,7 @@ static void check_spread(const char *settings)
     scene_destroy(s);
 }
 
-static void the_reported_standard_error_is_that_over_seeds(void **state)
+static void the_reported_standard_error_equals_that_over_seeds(void **state)
 {
     (void)state;
     check_spread("render.paths=64");
@@ -661,7 +661,7 @@ static void any_number_of_paths_is_valid(void **state)
 }
 
 /* Shares are n values of a sum; by hand: 1, 2 and 6 add up to 9, their variance is 7, and that of the sum 3 x 7. */
-static void shares_add_up(void **state)
+static void the_sum_and_variance_of_shares(void **state)
 {
     (void)state;
     film *f = NULL;
@@ -686,29 +686,29 @@ static void shares_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(paths_through_clear_solids_have_the_trees_mean),
+        cmocka_unit_test(paths_through_clear_solids_have_the_mean_of_whitted_ray_tracing),
         cmocka_unit_test(deterministic_light_is_exact),
         cmocka_unit_test(paths_have_highlights_under_every_lighting),
-        cmocka_unit_test(a_matte_mirror_has_both_shares_of_the_sky),
+        cmocka_unit_test(a_matte_mirror_reflects_the_diffuse_and_the_specular_share),
         cmocka_unit_test(a_sphere_lights_a_floor_by_lamberts_law),
-        cmocka_unit_test(a_sphere_has_a_highlight),
-        cmocka_unit_test(a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once),
+        cmocka_unit_test(a_sphere_light_has_phongs_highlight),
+        cmocka_unit_test(a_matte_mirror_counts_a_visible_lamp_once_per_lobe),
         cmocka_unit_test(with_a_light_sphere_clear_solids_block_point_lights),
         cmocka_unit_test(lamps_are_sampled_independently),
-        cmocka_unit_test(the_horizon_cuts_a_lamp),
-        cmocka_unit_test(a_penumbra_is_as_wide_as_similar_triangles_require),
+        cmocka_unit_test(only_the_part_of_a_lamp_above_the_horizon_contributes),
+        cmocka_unit_test(the_width_of_a_penumbra_follows_from_similar_triangles),
         cmocka_unit_test(a_slab_reduces_the_lamps_light_by_its_reflections),
         cmocka_unit_test(a_lamp_behind_a_glass_ball_has_the_balls_transmittance),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(light_in_a_hollow_ball_is_a_geometric_series),
         cmocka_unit_test(roulette_keeps_the_mean_and_saves_rays),
-        cmocka_unit_test(roulette_does_not_choose_between_matte_and_mirror),
+        cmocka_unit_test(roulette_is_independent_of_the_choice_between_matte_and_mirror),
         cmocka_unit_test(a_light_sphere_in_a_hollow_ball_is_a_geometric_series),
-        cmocka_unit_test(only_the_medium_before_a_lamp_absorbs),
-        cmocka_unit_test(the_reported_standard_error_is_that_over_seeds),
+        cmocka_unit_test(the_medium_before_a_lamp_absorbs_and_the_one_behind_does_not),
+        cmocka_unit_test(the_reported_standard_error_equals_that_over_seeds),
         cmocka_unit_test(the_reported_standard_error_of_a_spectral_film_is_a_bound),
         cmocka_unit_test(any_number_of_paths_is_valid),
-        cmocka_unit_test(shares_add_up),
+        cmocka_unit_test(the_sum_and_variance_of_shares),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

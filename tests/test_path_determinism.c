@@ -45,7 +45,7 @@ static fingerprint fingerprint_at(const scene *s, isa level)
     return f;
 }
 
-static void instruction_sets(void **state)
+static void films_are_bit_identical_on_all_instruction_sets(void **state)
 {
     (void)state;
     for (size_t v = 0; v < COUNT(variants); v++) {
@@ -59,7 +59,7 @@ static void instruction_sets(void **state)
     }
 }
 
-static void threads_schedules_and_tiles(void **state)
+static void films_are_bit_identical_for_threads_schedules_and_tiles(void **state)
 {
     (void)state;
     static const int threads[] = {1, 2, 7}, tiles[] = {1, 8, 64};
@@ -103,8 +103,8 @@ static void the_seed_changes_only_random_choices(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(instruction_sets),
-        cmocka_unit_test(threads_schedules_and_tiles),
+        cmocka_unit_test(films_are_bit_identical_on_all_instruction_sets),
+        cmocka_unit_test(films_are_bit_identical_for_threads_schedules_and_tiles),
         cmocka_unit_test(the_seed_changes_only_random_choices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -215,7 +215,7 @@ static double share_by_fields(const ray_tree *tree, size_t last)
     return sum;
 }
 
-static void the_weight_of_any_path_is_that_of_its_fields(void **state)
+static void the_weight_of_any_path_equals_that_of_its_fields(void **state)
 {
     (void)state;
     scene *s = scene_from(solids_scene);
@@ -249,7 +249,7 @@ static void the_weight_of_any_path_is_that_of_its_fields(void **state)
 }
 
 /* Inside a block, at 45 degrees to four faces, no light leaves: each reflection is total and loses nothing. */
-static void total_reflections_lose_no_light(void **state)
+static void total_internal_reflections_lose_no_light(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 30}\n"
@@ -329,7 +329,7 @@ static void matched_media_are_invisible(void **state)
 
 /* At normal incidence there is no plane of incidence, and both polarisations behave alike, however many interfaces
  * there are. */
-static void at_normal_incidence_polarisation_changes_nothing(void **state)
+static void polarisation_has_no_effect_at_normal_incidence(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 12, shadows: off}\n"
@@ -353,11 +353,11 @@ int main(void)
         cmocka_unit_test(two_reflections_at_brewsters_angle_obey_malus),
         cmocka_unit_test(direct_transmission_keeps_polarisations_separate),
         cmocka_unit_test(a_pile_of_plates_obeys_stokes_formula),
-        cmocka_unit_test(the_weight_of_any_path_is_that_of_its_fields),
-        cmocka_unit_test(total_reflections_lose_no_light),
+        cmocka_unit_test(the_weight_of_any_path_equals_that_of_its_fields),
+        cmocka_unit_test(total_internal_reflections_lose_no_light),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(matched_media_are_invisible),
-        cmocka_unit_test(at_normal_incidence_polarisation_changes_nothing),
+        cmocka_unit_test(polarisation_has_no_effect_at_normal_incidence),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -170,7 +170,7 @@ static survey look_at_scenes(uint64_t seed, bool lit)
 }
 
 /* No interface and no opaque surface creates light: R + T <= 1, k_a + k_r <= 1. */
-static void under_a_sky_of_one_nothing_is_brighter(void **state)
+static void no_pixel_exceeds_a_sky_of_one(void **state)
 {
     (void)state;
     assert_true(look_at_scenes(5, false).brightest <= 1.0 + 1e-12);
@@ -220,7 +220,7 @@ static void rays_through_corners_and_along_edges_are_valid(void **state)
 
 /* A ray in the plane of a face that contains its origin leaves the solid there, or later, but never through the
  * opposite face. The sign of a zero component decides its half-space. */
-static void a_ray_within_a_face_does_not_leave_by_the_opposite_one(void **state)
+static void a_ray_within_a_face_does_not_leave_through_the_opposite_face(void **state)
 {
     (void)state;
     static const char *const shapes[] = {"shape: box, size: [1, 1, 1], position: [0, 0.5, 0]",
@@ -244,9 +244,9 @@ static void a_ray_within_a_face_does_not_leave_by_the_opposite_one(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(under_a_sky_of_one_nothing_is_brighter),
+        cmocka_unit_test(no_pixel_exceeds_a_sky_of_one),
         cmocka_unit_test(rays_through_corners_and_along_edges_are_valid),
-        cmocka_unit_test(a_ray_within_a_face_does_not_leave_by_the_opposite_one),
+        cmocka_unit_test(a_ray_within_a_face_does_not_leave_through_the_opposite_face),
         cmocka_unit_test(with_lights_the_probe_equals_the_image),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -81,7 +81,7 @@ static void check_slab(scene *s, double R, double T, double lost_share)
     }
 }
 
-static void slab_under_fresnel_weights(void **state)
+static void a_slab_with_fresnel_weights_equals_the_series(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_scene);
@@ -94,7 +94,7 @@ static void slab_under_fresnel_weights(void **state)
     scene_destroy(s);
 }
 
-static void slab_under_constant_weights(void **state)
+static void a_slab_with_constant_weights_equals_the_series(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_scene);
@@ -124,7 +124,7 @@ static void branches_below_the_minimum_weight_are_cut(void **state)
 
 /* In a slab that transmits one channel only: a branch continues as long as that channel has enough weight, whichever it
  * is. R is reflected, and T^2 and T^2 R of the clear channel; its next branch has weight 0.96 R^2. */
-static void a_branchs_weight_is_its_largest_channel(void **state)
+static void the_weight_of_a_branch_is_its_largest_channel(void **state)
 {
     (void)state;
     static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9",
@@ -146,7 +146,7 @@ static void a_branchs_weight_is_its_largest_channel(void **state)
 /* In a slab of unit thickness that transmits exp(-a) of each channel. The first branches have weights R and T; the one
  * inside yields T exp(-a) (R + T) at the other side, all of which depth 1 cuts off; a min_weight of 0.5 cuts the
  * smaller of each pair. */
-static void cut_throughput_is_counted_by_channel(void **state)
+static void terminated_throughput_is_counted_by_channel(void **state)
 {
     (void)state;
     need_counters();
@@ -221,7 +221,7 @@ static void a_furnace_under_constant_weights_is_white(void **state)
 }
 
 /* The difference from white was cut off, by depth or by weight, and is counted. */
-static void cut_light_is_accounted_for(void **state)
+static void terminated_light_is_counted(void **state)
 {
     (void)state;
     need_counters();
@@ -318,7 +318,7 @@ static void solids_of_index_one_are_invisible(void **state)
 }
 
 /* The counts of POV-Ray and a third program for this scene. */
-static void first_hits_of_the_rod_scene(void **state)
+static void first_hits_of_the_rod_scene_equal_those_of_other_renderers(void **state)
 {
     (void)state;
     need_counters();
@@ -334,7 +334,7 @@ static void first_hits_of_the_rod_scene(void **state)
 
 /* Neighbouring rays leave a slab through one face, some into an opaque box, some into the open: the surface belongs to
  * different regions. */
-static void neighbours_may_hit_different_regions_on_one_face(void **state)
+static void neighbouring_rays_hit_different_regions_on_one_face(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -360,19 +360,19 @@ static void neighbours_may_hit_different_regions_on_one_face(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slab_under_fresnel_weights),
-        cmocka_unit_test(slab_under_constant_weights),
+        cmocka_unit_test(a_slab_with_fresnel_weights_equals_the_series),
+        cmocka_unit_test(a_slab_with_constant_weights_equals_the_series),
         cmocka_unit_test(branches_below_the_minimum_weight_are_cut),
-        cmocka_unit_test(a_branchs_weight_is_its_largest_channel),
-        cmocka_unit_test(cut_throughput_is_counted_by_channel),
+        cmocka_unit_test(the_weight_of_a_branch_is_its_largest_channel),
+        cmocka_unit_test(terminated_throughput_is_counted_by_channel),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(a_furnace_under_constant_weights_is_white),
-        cmocka_unit_test(cut_light_is_accounted_for),
+        cmocka_unit_test(terminated_light_is_counted),
         cmocka_unit_test(four_samples_are_the_mean_of_four_pixels),
         cmocka_unit_test(objects_on_the_right_are_on_the_right_of_the_image),
         cmocka_unit_test(solids_of_index_one_are_invisible),
-        cmocka_unit_test(first_hits_of_the_rod_scene),
-        cmocka_unit_test(neighbours_may_hit_different_regions_on_one_face),
+        cmocka_unit_test(first_hits_of_the_rod_scene_equal_those_of_other_renderers),
+        cmocka_unit_test(neighbouring_rays_hit_different_regions_on_one_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

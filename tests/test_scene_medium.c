@@ -37,7 +37,7 @@ static const char three_laws[] =
 
 /* Catalogue glasses are measured in air; Schott gives N-BK7 n_d = 1.51680, and dry air has n_d = 1.000277 (Ciddor
  * 1996). */
-static void laws_by_name_and_by_coefficients(void **state)
+static void indices_by_name_and_by_coefficients_equal_published_values(void **state)
 {
     (void)state;
     scene *s = scene_from(three_laws);
@@ -50,7 +50,7 @@ static void laws_by_name_and_by_coefficients(void **state)
 }
 
 /* The last setting wins; printed parameters give the same scene. */
-static void an_index_takes_the_place_of_a_medium_and_back(void **state)
+static void the_last_of_index_and_medium_applies(void **state)
 {
     (void)state;
     scene *s = scene_from(three_laws);
@@ -74,7 +74,7 @@ static void an_index_takes_the_place_of_a_medium_and_back(void **state)
     scene_destroy(s);
 }
 
-static void absorption_by_channel_and_by_wavelength(void **state)
+static void absorption_is_given_by_channel_or_by_wavelength(void **state)
 {
     (void)state;
     scene *s = scene_from("solids:\n"
@@ -103,7 +103,7 @@ static void expect_error(const char *text, const char *wanted)
     assert_string_equal(diagnostic_text(&why, line, sizeof line), wanted);
 }
 
-static void what_makes_no_medium_is_refused_where_it_stands(void **state)
+static void invalid_media_are_refused_with_a_location(void **state)
 {
     (void)state;
     expect_error("solids:\n  a: {shape: sphere, ior: 1.5, medium: water}\n",
@@ -140,10 +140,10 @@ static void what_makes_no_medium_is_refused_where_it_stands(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(laws_by_name_and_by_coefficients),
-        cmocka_unit_test(an_index_takes_the_place_of_a_medium_and_back),
-        cmocka_unit_test(absorption_by_channel_and_by_wavelength),
-        cmocka_unit_test(what_makes_no_medium_is_refused_where_it_stands),
+        cmocka_unit_test(indices_by_name_and_by_coefficients_equal_published_values),
+        cmocka_unit_test(the_last_of_index_and_medium_applies),
+        cmocka_unit_test(absorption_is_given_by_channel_or_by_wavelength),
+        cmocka_unit_test(invalid_media_are_refused_with_a_location),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -118,7 +118,7 @@ static void check_color_checker(const char *lit_by, int wavelengths, double limi
     scene_destroy(s);
 }
 
-static void the_color_checker_looks_like_in_rgb(void **state)
+static void the_color_checker_has_its_rgb_colours(void **state)
 {
     (void)state;
     check_color_checker("patch.ambient=1", 32, 1.0);
@@ -128,7 +128,7 @@ static void the_color_checker_looks_like_in_rgb(void **state)
 }
 
 /* A checker's second colour has its own spectrum. */
-static void both_colours_of_a_checker_look_like_in_rgb(void **state)
+static void both_colours_of_a_checker_have_their_rgb_values(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 16, height: 16, depth: 0}\n"
@@ -143,7 +143,7 @@ static void both_colours_of_a_checker_look_like_in_rgb(void **state)
 
 /* --- skies --- */
 
-static void gradient_and_coloured_skies_look_like_in_rgb(void **state)
+static void gradient_and_coloured_skies_have_their_rgb_colours(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 24, height: 24}\n"
@@ -160,7 +160,7 @@ static void gradient_and_coloured_skies_look_like_in_rgb(void **state)
 
 /* White, grey, each primary and secondary, and two mixtures (a sum of spectra has the sum of their colours), next to
  * each other around the horizon, each 3 texels wide. */
-static void an_image_sky_looks_like_in_rgb(void **state)
+static void an_image_sky_has_its_rgb_colours(void **state)
 {
     (void)state;
     static const float texels[][3] = {{1, 1, 1}, {0.3F, 0.3F, 0.3F}, {1, 0, 0}, {0, 1, 0},          {0, 0, 1},
@@ -189,7 +189,7 @@ static void an_image_sky_looks_like_in_rgb(void **state)
 /* --- glass --- */
 
 /* With grey light and grey walls each wavelength has the rgb values. */
-static void glass_of_one_index_is_as_bright_as_in_rgb(void **state)
+static void glass_of_constant_index_has_the_values_of_rgb(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=40 render.height=30 background.kind=gradient background.color=0.2,0.2,0.2 "
@@ -344,7 +344,7 @@ static void a_prism_separates_red_and_blue(void **state)
 
 /* A pane of index 1 in white light, 0.1 m thick, that absorbs 500 to 600 nm: the light outside the band remains, by the
  * observer's weights and daylight, summed by the midpoint rule at every 0.05 nm. */
-static void an_absorbed_band_is_missing(void **state)
+static void light_of_an_absorbed_band_is_removed(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 16, height: 16, spectrum: spectral, wavelengths: 1024}\n"
@@ -419,7 +419,7 @@ static void sphere_lights_have_their_colour(void **state)
  * lower at longer wavelengths, is one medium with them only at that wavelength. At 85 degrees it reflects everything
  * above 525 nm, where sin 85 > n / 1.5: red sees the sky, sin 5 of its brightness up there, and blue the black
  * below. */
-static void media_with_equal_index_at_one_wavelength_are_two(void **state)
+static void media_with_equal_index_at_one_wavelength_stay_distinct(void **state)
 {
     (void)state;
     scene *s =
@@ -439,18 +439,18 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_white_sky_is_white),
-        cmocka_unit_test(the_color_checker_looks_like_in_rgb),
-        cmocka_unit_test(both_colours_of_a_checker_look_like_in_rgb),
-        cmocka_unit_test(gradient_and_coloured_skies_look_like_in_rgb),
-        cmocka_unit_test(an_image_sky_looks_like_in_rgb),
-        cmocka_unit_test(glass_of_one_index_is_as_bright_as_in_rgb),
+        cmocka_unit_test(the_color_checker_has_its_rgb_colours),
+        cmocka_unit_test(both_colours_of_a_checker_have_their_rgb_values),
+        cmocka_unit_test(gradient_and_coloured_skies_have_their_rgb_colours),
+        cmocka_unit_test(an_image_sky_has_its_rgb_colours),
+        cmocka_unit_test(glass_of_constant_index_has_the_values_of_rgb),
         cmocka_unit_test(the_weight_limit_does_not_depend_on_the_number_of_wavelengths),
         cmocka_unit_test(a_spectral_furnace_is_white_in_every_pixel),
         cmocka_unit_test(a_prism_separates_red_and_blue),
-        cmocka_unit_test(an_absorbed_band_is_missing),
+        cmocka_unit_test(light_of_an_absorbed_band_is_removed),
         cmocka_unit_test(random_paths_have_the_same_colours),
         cmocka_unit_test(sphere_lights_have_their_colour),
-        cmocka_unit_test(media_with_equal_index_at_one_wavelength_are_two),
+        cmocka_unit_test(media_with_equal_index_at_one_wavelength_stay_distinct),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

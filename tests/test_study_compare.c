@@ -87,7 +87,7 @@ static image *image_at(const fixture *f, const char *depth)
     return img;
 }
 
-static void a_picture_does_not_differ_from_itself(void **state)
+static void an_image_does_not_differ_from_itself(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
@@ -109,7 +109,7 @@ static void a_picture_does_not_differ_from_itself(void **state)
 }
 
 /* The measures of two films rendered without a study; the rms by its definition. */
-static void another_depth_differs_as_the_films_do(void **state)
+static void differences_equal_those_of_the_films(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
@@ -158,7 +158,7 @@ static void cells_share_the_reference_of_one_scene(void **state)
     study_destroy(s);
 }
 
-static void what_is_compared_is_not_compared_again(void **state)
+static void existing_comparisons_are_not_repeated(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
@@ -197,7 +197,7 @@ static void what_is_compared_is_not_compared_again(void **state)
     study_destroy(s);
 }
 
-static void a_damaged_reference_is_found(void **state)
+static void a_damaged_reference_image_is_detected(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
@@ -224,7 +224,7 @@ static void a_damaged_reference_is_found(void **state)
 }
 
 /* Rows of another reference are refused; without them the images are compared again, and the rows stay. */
-static void another_reference_measures_nothing_again(void **state)
+static void a_changed_reference_repeats_comparisons_but_no_measurements(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
@@ -303,7 +303,7 @@ static void a_summary_has_time_and_error_on_one_line(void **state)
 }
 
 /* Four times the paths halve the standard error, and so the error against a reference of many paths. */
-static void noise_says_how_far_random_paths_lie(void **state)
+static void the_error_of_random_paths_decreases_with_their_number(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: test\nscene: scene.yaml\nset: {render.integrator: path, render.depth: 6}\n"
@@ -324,7 +324,7 @@ static void noise_says_how_far_random_paths_lie(void **state)
     study_destroy(s);
 }
 
-static void without_a_reference_nothing_is_compared(void **state)
+static void a_study_without_reference_compares_nothing(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\n");
@@ -340,16 +340,18 @@ static void without_a_reference_nothing_is_compared(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_picture_does_not_differ_from_itself, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(another_depth_differs_as_the_films_do, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(an_image_does_not_differ_from_itself, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(differences_equal_those_of_the_films, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(cells_share_the_reference_of_one_scene, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(what_is_compared_is_not_compared_again, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_damaged_reference_is_found, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(another_reference_measures_nothing_again, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(existing_comparisons_are_not_repeated, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_damaged_reference_image_is_detected, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_changed_reference_repeats_comparisons_but_no_measurements, fixture_setup,
+                                        fixture_teardown),
         cmocka_unit_test_setup_teardown(shards_compare_their_cells, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(a_summary_has_time_and_error_on_one_line, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(noise_says_how_far_random_paths_lie, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(without_a_reference_nothing_is_compared, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(the_error_of_random_paths_decreases_with_their_number, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_study_without_reference_compares_nothing, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests_name("compare of studies", tests, NULL, NULL);
 }

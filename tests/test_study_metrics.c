@@ -30,7 +30,7 @@ static size_t lines_of(const char *text)
 
 /* One line per metric, preceded by the cell's values, with the same names for every cell; keeping it does not change a
  * frame. */
-static void metrics_and_curves_lie_beside_the_pictures(void **state)
+static void metrics_and_curves_are_written_next_to_the_images(void **state)
 {
     const fixture *f = *state;
     fixture_write(f, "vessel.yaml", vessel_scene);
@@ -59,7 +59,7 @@ static void metrics_and_curves_lie_beside_the_pictures(void **state)
 }
 
 /* The scene of the fixture has no vessel, which is reported before anything is measured. */
-static void a_scene_without_metrics_is_refused(void **state)
+static void realism_metrics_without_a_vessel_are_refused(void **state)
 {
     const fixture *f = *state;
     char path[400], said[DIAGNOSTIC_TEXT_MAX];
@@ -85,7 +85,7 @@ static const char slime_scene[] = "render: {width: 24, height: 18, depth: 2}\n"
 
 /* One line per value of each slime, and none for other meshes; values other than times are those of the trials with the
  * cell's settings. */
-static void motion_lies_beside_the_pictures(void **state)
+static void motion_metrics_are_written_next_to_the_images(void **state)
 {
     const fixture *f = *state;
     fixture_write(f, "slime.yaml", slime_scene);
@@ -115,7 +115,7 @@ static void motion_lies_beside_the_pictures(void **state)
     study_destroy(s);
 }
 
-static void a_scene_where_nothing_moves_is_refused(void **state)
+static void motion_metrics_without_a_slime_are_refused(void **state)
 {
     const fixture *f = *state;
     char path[400], said[DIAGNOSTIC_TEXT_MAX];
@@ -131,10 +131,11 @@ static void a_scene_where_nothing_moves_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(metrics_and_curves_lie_beside_the_pictures, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_scene_without_metrics_is_refused, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(motion_lies_beside_the_pictures, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_scene_where_nothing_moves_is_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(metrics_and_curves_are_written_next_to_the_images, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(realism_metrics_without_a_vessel_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(motion_metrics_are_written_next_to_the_images, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(motion_metrics_without_a_slime_are_refused, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -91,7 +91,7 @@ static const char *field(const char *text, int line, const char *name)
     return value;
 }
 
-static void medians_and_intervals(void **state)
+static void a_summary_has_medians_and_their_intervals(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -134,7 +134,7 @@ static void medians_and_intervals(void **state)
     study_destroy(s);
 }
 
-static void columns_keep_their_order(void **state)
+static void columns_are_in_the_expected_order(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -161,7 +161,7 @@ static void columns_keep_their_order(void **state)
 }
 
 /* The summary of a real run, in a locale with a decimal comma if the system has one. */
-static void points_stay_points(void **state)
+static void decimal_points_do_not_depend_on_the_locale(void **state)
 {
     const fixture *f = *state;
     setlocale(LC_ALL, "de_DE.UTF-8");
@@ -187,9 +187,9 @@ static void points_stay_points(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(medians_and_intervals, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(columns_keep_their_order, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(points_stay_points, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_summary_has_medians_and_their_intervals, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(columns_are_in_the_expected_order, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(decimal_points_do_not_depend_on_the_locale, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests_name("study_summary", tests, NULL, NULL);
 }

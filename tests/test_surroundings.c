@@ -31,7 +31,7 @@ static void expect(vec3 seen, double full, double way)
     assert_near(seen.z, full * exp(-a_per_m[2] * way), 1e-12);
 }
 
-static void paths_to_the_camera_and_to_the_light_both_count(void **state)
+static void paths_to_the_camera_and_to_the_light_are_both_attenuated(void **state)
 {
     (void)state;
     static const double distances[] = {0.5, 1.0, 5.0, 20.0, 100.0};
@@ -112,7 +112,7 @@ static void a_spectral_film_uses_the_coefficient_by_wavelength(void **state)
     scene_destroy(s);
 }
 
-static void the_sky_is_as_bright_as_given(void **state)
+static void the_sky_is_not_attenuated(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -194,12 +194,12 @@ static void the_probe_uses_the_coefficient_at_its_wavelength(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(paths_to_the_camera_and_to_the_light_both_count),
+        cmocka_unit_test(paths_to_the_camera_and_to_the_light_are_both_attenuated),
         cmocka_unit_test(the_scene_sets_the_length_of_a_unit),
         cmocka_unit_test(without_shadow_rays_the_path_to_the_light_is_not_absorbed),
         cmocka_unit_test(the_inside_of_solids_is_not_part_of_the_surroundings),
         cmocka_unit_test(a_spectral_film_uses_the_coefficient_by_wavelength),
-        cmocka_unit_test(the_sky_is_as_bright_as_given),
+        cmocka_unit_test(the_sky_is_not_attenuated),
         cmocka_unit_test(the_reflected_path_is_attenuated_too),
         cmocka_unit_test(the_refracted_path_is_attenuated_too),
         cmocka_unit_test(the_path_to_a_visible_light_is_attenuated),

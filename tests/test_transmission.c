@@ -141,7 +141,7 @@ static void under_simple_transmission_equal_indices_are_two_surfaces(void **stat
 
 /* Every integrator with branches: the sky through a ball, constant r and t at two surfaces, to 1e-9 of the whole
  * series. */
-static void simple_transmission_with_spectra_and_random_paths(void **state)
+static void simple_transmission_conserves_light_with_spectra_and_random_paths(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 60, transmission: simple, beyond: black}\n"
@@ -212,7 +212,7 @@ static void an_index_above_ten_thousand_is_a_mirror(void **state)
 }
 
 /* At 10000 itself Fresnel still transmits some light. */
-static void an_index_of_ten_thousand_is_not_a_mirror_yet(void **state)
+static void an_index_of_ten_thousand_still_transmits(void **state)
 {
     (void)state;
     stage g = stage_of(mirror_scene, "pane.ior=10000 pane.reflectivity=0");
@@ -228,7 +228,7 @@ static void an_index_of_ten_thousand_is_not_a_mirror_yet(void **state)
 }
 
 /* It is a mirror at any priority: under glass that overlaps it all light is reflected; and it casts a shadow. */
-static void a_mirror_by_index_is_opaque_to_glass_and_light(void **state)
+static void an_index_mirror_reflects_under_glass_and_casts_shadows(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 12}\n"
@@ -262,11 +262,11 @@ int main(void)
         cmocka_unit_test(simple_transmission_is_not_refracted),
         cmocka_unit_test(simple_transmission_has_no_total_reflection),
         cmocka_unit_test(under_simple_transmission_equal_indices_are_two_surfaces),
-        cmocka_unit_test(simple_transmission_with_spectra_and_random_paths),
+        cmocka_unit_test(simple_transmission_conserves_light_with_spectra_and_random_paths),
         cmocka_unit_test(weights_above_one_and_polarisation_are_refused),
         cmocka_unit_test(an_index_above_ten_thousand_is_a_mirror),
-        cmocka_unit_test(an_index_of_ten_thousand_is_not_a_mirror_yet),
-        cmocka_unit_test(a_mirror_by_index_is_opaque_to_glass_and_light),
+        cmocka_unit_test(an_index_of_ten_thousand_still_transmits),
+        cmocka_unit_test(an_index_mirror_reflects_under_glass_and_casts_shadows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,7 +61,7 @@ static void proc_stat_of_other_machines(void **state)
     assert_false(proc_stat_parse("cpu  1 2 3 4\n", 0.0, &machine));
 }
 
-static void fields_are_found(void **state)
+static void fields_of_proc_files_are_found(void **state)
 {
     (void)state;
     static const char text[] = "Name:\tcuvette\nVmHWM:\t    1234 kB\nVmHWMx:\t 9 kB\nEmpty:\n";
@@ -76,7 +76,7 @@ static void fields_are_found(void **state)
     assert_int_equal(strlen(read), sizeof read - 1);
 }
 
-static void share_of_others(void **state)
+static void the_share_of_other_processes_is_computed(void **state)
 {
     (void)state;
     /* 2 s on 4 units are 8 s; 3 of the 5 busy seconds belong to other processes */
@@ -101,7 +101,7 @@ static void *burn(void *context)
     return NULL;
 }
 
-static void usage_counts_all_threads(void **state)
+static void cpu_time_includes_all_threads(void **state)
 {
     (void)state;
     usage before = usage_now();
@@ -122,7 +122,7 @@ static void usage_counts_all_threads(void **state)
     assert_true(isnan(share) || (share >= 0.0 && share <= 1.0));
 }
 
-static void absent_switches_stay_absent(void **state)
+static void missing_values_stay_missing_in_a_difference(void **state)
 {
     (void)state;
     usage before = usage_now();
@@ -133,7 +133,7 @@ static void absent_switches_stay_absent(void **state)
     assert_true(isnan(d.machine_busy_s));
 }
 
-static void peak_memory_is_remembered(void **state)
+static void peak_memory_does_not_decrease_after_freeing(void **state)
 {
     (void)state;
     enum { BYTES = 48 << 20 };
@@ -154,7 +154,7 @@ static void assert_grows(int64_t first, int64_t second)
     assert_true((first == -1 && second == -1) || (first >= 0 && second > first));
 }
 
-static void hardware_counts_grow_or_are_absent(void **state)
+static void hardware_counters_increase_or_are_unavailable(void **state)
 {
     (void)state;
     hardware_counter *counter = hardware_counter_create();
@@ -214,7 +214,7 @@ static char *make_root(char *root, size_t size)
     return root;
 }
 
-static void a_disturbed_machine_is_described(void **state)
+static void disturbances_of_the_machine_are_reported(void **state)
 {
     (void)state;
     char root[256], said[2048] = "";
@@ -238,7 +238,7 @@ static void a_disturbed_machine_is_described(void **state)
     assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
 }
 
-static void a_quiet_machine_reports_nothing(void **state)
+static void no_disturbances_are_reported_for_a_quiet_machine(void **state)
 {
     (void)state;
     char root[256], said[2048] = "";
@@ -258,7 +258,7 @@ static void a_quiet_machine_reports_nothing(void **state)
     assert_string_equal(said, "");
 }
 
-static void this_machine_is_examined(void **state)
+static void disturbances_of_this_machine_are_reported_as_lines(void **state)
 {
     (void)state;
     char said[4096] = "";
@@ -271,15 +271,15 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(proc_stat_is_read),
         cmocka_unit_test(proc_stat_of_other_machines),
-        cmocka_unit_test(fields_are_found),
-        cmocka_unit_test(share_of_others),
-        cmocka_unit_test(usage_counts_all_threads),
-        cmocka_unit_test(absent_switches_stay_absent),
-        cmocka_unit_test(peak_memory_is_remembered),
-        cmocka_unit_test(hardware_counts_grow_or_are_absent),
-        cmocka_unit_test(a_disturbed_machine_is_described),
-        cmocka_unit_test(a_quiet_machine_reports_nothing),
-        cmocka_unit_test(this_machine_is_examined),
+        cmocka_unit_test(fields_of_proc_files_are_found),
+        cmocka_unit_test(the_share_of_other_processes_is_computed),
+        cmocka_unit_test(cpu_time_includes_all_threads),
+        cmocka_unit_test(missing_values_stay_missing_in_a_difference),
+        cmocka_unit_test(peak_memory_does_not_decrease_after_freeing),
+        cmocka_unit_test(hardware_counters_increase_or_are_unavailable),
+        cmocka_unit_test(disturbances_of_the_machine_are_reported),
+        cmocka_unit_test(no_disturbances_are_reported_for_a_quiet_machine),
+        cmocka_unit_test(disturbances_of_this_machine_are_reported_as_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,7 +77,7 @@ static double share_beyond(const char *text, const char *assignments, double muc
     return share;
 }
 
-static void flat_solids_match_ray_casting_except_at_edges(void **state)
+static void flat_solids_equal_ray_casting_except_at_edges(void **state)
 {
     (void)state;
     static const char *const variants[] = {"",
@@ -101,7 +101,7 @@ static void flat_solids_match_ray_casting_except_at_edges(void **state)
 /* Shading uses the solid itself: the remaining differences are where the chord is hit instead of the arc, and outlines.
  * A chord's height is under 2e-4 of the radius; it moves a point along the surface by that over the cosine of
  * incidence, and changes light by about as much. */
-static void round_solids_match_ray_casting_except_at_outlines(void **state)
+static void round_solids_equal_ray_casting_except_at_outlines(void **state)
 {
     (void)state;
     static const char *const variants[] = {"",
@@ -119,7 +119,7 @@ static void round_solids_match_ray_casting_except_at_outlines(void **state)
 }
 
 /* As for overlapping solids: the one with the higher priority is visible. */
-static void the_higher_priority_is_visible_where_solids_coincide(void **state)
+static void the_surface_of_higher_priority_is_visible(void **state)
 {
     (void)state;
     static const char text[] = HEAD "meshes: {one: {generate: box}}\n"
@@ -365,7 +365,7 @@ static void texture_interpolation_is_perspective_correct(void **state)
     assert_true(expect_texture("render.texturing=perspective", in_perspective, straight) > 0.2);
 }
 
-static void affine_texture_interpolation(void **state)
+static void affine_texture_interpolation_equals_its_closed_form(void **state)
 {
     (void)state;
     assert_true(expect_texture("render.texturing=affine", straight, in_perspective) > 0.2);
@@ -373,7 +373,7 @@ static void affine_texture_interpolation(void **state)
 
 /* Where all corners are equally far both are correct; elsewhere analytic solids show the difference too, and the ray
  * caster is correct. */
-static void boxes_have_both_texture_interpolations(void **state)
+static void boxes_support_both_texture_interpolations(void **state)
 {
     (void)state;
     static const char text[] = "render: {width: 60, height: 60, depth: 0, integrator: zbuffer, shadows: off}\n"
@@ -405,7 +405,7 @@ static void boxes_have_both_texture_interpolations(void **state)
 }
 
 /* The last scene has an affine texture on triangles that the near plane clips. */
-static void the_film_does_not_depend_on_order(void **state)
+static void the_film_does_not_depend_on_the_order_of_drawing(void **state)
 {
     (void)state;
     one_film_only(scene_loaded(flat_scene, "render.integrator=zbuffer"));
@@ -415,7 +415,7 @@ static void the_film_does_not_depend_on_order(void **state)
     one_film_only(s);
 }
 
-static void points_are_counted_and_no_rays_are_tested(void **state)
+static void covered_points_are_counted_and_no_rays_are_tested(void **state)
 {
     (void)state;
     need_counters();
@@ -438,7 +438,7 @@ static void points_are_counted_and_no_rays_are_tested(void **state)
     scene_destroy(s);
 }
 
-static void it_refuses_spectral_films_and_polarisation(void **state)
+static void the_depth_buffer_refuses_spectral_films_and_polarisation(void **state)
 {
     (void)state;
     static const char *const wrong[] = {"render.spectrum=spectral", "render.polarisation=on"};
@@ -457,18 +457,18 @@ static void it_refuses_spectral_films_and_polarisation(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(flat_solids_match_ray_casting_except_at_edges),
-        cmocka_unit_test(round_solids_match_ray_casting_except_at_outlines),
-        cmocka_unit_test(the_higher_priority_is_visible_where_solids_coincide),
+        cmocka_unit_test(flat_solids_equal_ray_casting_except_at_edges),
+        cmocka_unit_test(round_solids_equal_ray_casting_except_at_outlines),
+        cmocka_unit_test(the_surface_of_higher_priority_is_visible),
         cmocka_unit_test(a_fan_covers_each_pixel_once),
         cmocka_unit_test(an_irregular_web_covers_each_pixel_once),
         cmocka_unit_test(triangles_behind_the_camera_are_clipped),
         cmocka_unit_test(texture_interpolation_is_perspective_correct),
-        cmocka_unit_test(affine_texture_interpolation),
-        cmocka_unit_test(boxes_have_both_texture_interpolations),
-        cmocka_unit_test(the_film_does_not_depend_on_order),
-        cmocka_unit_test(points_are_counted_and_no_rays_are_tested),
-        cmocka_unit_test(it_refuses_spectral_films_and_polarisation),
+        cmocka_unit_test(affine_texture_interpolation_equals_its_closed_form),
+        cmocka_unit_test(boxes_support_both_texture_interpolations),
+        cmocka_unit_test(the_film_does_not_depend_on_the_order_of_drawing),
+        cmocka_unit_test(covered_points_are_counted_and_no_rays_are_tested),
+        cmocka_unit_test(the_depth_buffer_refuses_spectral_films_and_polarisation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
