@@ -94,14 +94,14 @@ static void paths_have_highlights_under_every_lighting(void **state)
     (void)state;
     static const char *const rules[] = {"render.lighting=lambert", "render.lighting=phong"};
     scene *s = scene_from(certain_scene);
-    render_result *wanted = render(s);
+    render_result *expected = render(s);
     for (size_t k = 0; k < COUNT(rules); k++) {
         set(s, rules[k]);
         render_result *r = render(s);
-        assert_true(film_hash(r->img) == film_hash(wanted->img));
+        assert_true(film_hash(r->img) == film_hash(expected->img));
         render_result_destroy(r);
     }
-    render_result_destroy(wanted);
+    render_result_destroy(expected);
     /* At normal incidence R.V is 1: k_s I C of the lamp behind the camera, and nothing else without k_d. */
     set_all(
         s,
@@ -172,11 +172,11 @@ static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
                     continue; /* the horizon cuts it */
                 s->lights[0].radius = shares[i] * d;
                 s->lights[0].position = vec3_make(d * sqrt(1.0 - cosines[j] * cosines[j]), d * cosines[j], 0.0);
-                const double wanted = 0.7 * 0.9 * 3.0 * 4.0 / (d * d) * cosines[j];
+                const double expected = 0.7 * 0.9 * 3.0 * 4.0 / (d * d) * cosines[j];
                 const estimate e = look_by_chance(s, 0);
-                expect_estimate(e, wanted);
-                assert_true(e.standard_error < 0.03 * wanted);
-                agreement_add(&a, e, wanted, 1e-8); /* of the smallest ones */
+                expect_estimate(e, expected);
+                assert_true(e.standard_error < 0.03 * expected);
+                agreement_add(&a, e, expected, 1e-8); /* of the smallest ones */
                 s->render.seed++;
             }
     print_message("%d lamps: %.0f%% in their 95%% interval\n", a.count, 100.0 * agreement_share(&a));
@@ -202,10 +202,10 @@ static void a_sphere_light_has_phongs_highlight(void **state)
             snprintf(assignment, sizeof assignment, "floor.shininess=%g", n);
             set(s, assignment);
             s->lights[0].radius = r;
-            const double wanted = 0.4 * 2.0 * 3.0 * 4.0 / (r * r) * (1.0 - pow(least_cos, n + 1.0)) / (n + 1.0);
+            const double expected = 0.4 * 2.0 * 3.0 * 4.0 / (r * r) * (1.0 - pow(least_cos, n + 1.0)) / (n + 1.0);
             const estimate e = look_by_chance(s, 0);
-            expect_estimate(e, wanted);
-            assert_true(e.standard_error < 0.05 * wanted);
+            expect_estimate(e, expected);
+            assert_true(e.standard_error < 0.05 * expected);
         }
     scene_destroy(s);
 }
@@ -268,12 +268,12 @@ static void lamps_are_sampled_independently(void **state)
                           "  red: {position: [0, 4, 0], color: [1, 0, 0], reach: 2, radius: 2}\n"
                           "  green: {position: [0, 4, 0], color: [0, 1, 0], reach: 2, radius: 2}\n"
                           "solids: {floor: {shape: plane, diffuse: 1}}\n");
-    const double wanted = 0.25; /* intensity (reach / d)^2, as above */
+    const double expected = 0.25; /* intensity (reach / d)^2, as above */
     double own = 0.0, difference = 0.0;
     for (int seed = 0; seed < DRAWS; seed++) {
         s->render.seed = seed;
         const vec3 seen = look(s);
-        own += (seen.x - wanted) * (seen.x - wanted) + (seen.y - wanted) * (seen.y - wanted);
+        own += (seen.x - expected) * (seen.x - expected) + (seen.y - expected) * (seen.y - expected);
         difference += (seen.x - seen.y) * (seen.x - seen.y);
     }
     assert_true(own > 0.0 && own / (2 * DRAWS) < 1e-4); /* a hundredth */
@@ -351,7 +351,7 @@ static void a_slab_reduces_the_lamps_light_by_its_reflections(void **state)
         const double d = 5.0 - 0.01 * (1.0 - 1.0 / n), E = 0.01 * 3.0 * 4.0 / (d * d);
         s->render.depth = 24;
         const estimate e = look_by_chance(s, 0);
-        print_message("index %g: %.5f +- %.5f of the open light, wanted %.5f\n", n, e.value / E, e.standard_error / E,
+        print_message("index %g: %.5f +- %.5f of the open light, expected %.5f\n", n, e.value / E, e.standard_error / E,
                       (1.0 - R) / (1.0 + R));
         assert_true(e.standard_error < 0.01 * E);
         expect_estimate(e, E * (1.0 - R) / (1.0 + R));
@@ -428,9 +428,9 @@ static void check_hollow_series(const char *settings)
         s->render.depth = depth;
         render_result *r = render(s);
         for (int c = 0; c < 3; c++) {
-            const double rho = 0.8 / (1 << c), wanted = rho * 3.0 / 4.0 * (1.0 - pow(rho, depth + 1)) / (1.0 - rho);
+            const double rho = 0.8 / (1 << c), expected = rho * 3.0 / 4.0 * (1.0 - pow(rho, depth + 1)) / (1.0 - rho);
             for (int i = 0; i < 48; i++)
-                assert_true(fabs(film_value(r->img, i % 8, i / 8, c) - wanted) < 1e-9);
+                assert_true(fabs(film_value(r->img, i % 8, i / 8, c) - expected) < 1e-9);
         }
         render_result_destroy(r);
     }
@@ -441,7 +441,7 @@ static void light_in_a_hollow_ball_is_a_geometric_series(void **state)
 {
     (void)state;
     check_hollow_series("");
-    check_hollow_series("hollow.ior=1.5"); /* full of glass: nothing is between the lamp and the wall then either */
+    check_hollow_series("hollow.ior=1.5"); /* filled with glass: no interface is between the lamp and the wall either */
     check_hollow_series("hollow.ior=1.5 render.shadows=attenuated");
 }
 

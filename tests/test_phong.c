@@ -58,8 +58,8 @@ static void the_highlight_is_a_power_of_the_cosine(void **state)
             s->lights[0].position = vec3_make(0.0, heights[i], 3.0);
             /* R = (0, h, -3) / l, V = (0, 0.6, -0.8) */
             const double l = sqrt(heights[i] * heights[i] + 9.0), cosine = (0.6 * heights[i] + 2.4) / l;
-            const double wanted = pow(cosine, exponents[k]);
-            assert_near(look(s).x, wanted, 1e-12 + 1e-15 * exponents[k] * wanted);
+            const double expected = pow(cosine, exponents[k]);
+            assert_near(look(s).x, expected, 1e-12 + 1e-15 * exponents[k] * expected);
         }
     }
     scene_destroy(s);

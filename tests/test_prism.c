@@ -111,16 +111,16 @@ static void a_prism_with_four_sides_equals_a_box(void **state)
         .kind = SHAPE_PRISM, .radius = 1.0, .sides = 4, .height = 1.0, .rotation_deg = {0.0, 45.0, 0.0}};
     const solid_shape box = {.kind = SHAPE_BOX, .position = {0.0, 0.5, 0.0}, .size = {edge, 1.0, edge}};
     scene_geometry *a = arrange(&prism), *b = arrange(&box);
-    int met = 0;
+    int hits = 0;
     for (int trial = 0; trial < 20000; trial++) {
         const vec3 from = vec3_scale(random_direction(&seed), 4.0);
         const one_ray r = {from, vec3_normalize(vec3_sub(random_point(&seed, 1.0), from)), FACE_NONE, 0};
         const one_hit h = nearest_interface(a, r), k = nearest_interface(b, r);
         assert_int_equal(h.hit_primitive, k.hit_primitive);
-        met += h.hit_primitive >= 0;
+        hits += h.hit_primitive >= 0;
         assert_true(h.hit_primitive < 0 || fabs(h.t - k.t) <= (h.error + k.error) / h.cos_i);
     }
-    assert_true(met > 5000);
+    assert_true(hits > 5000);
     scene_geometry_destroy(a), scene_geometry_destroy(b);
 }
 

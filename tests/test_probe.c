@@ -244,8 +244,8 @@ static void the_weight_of_a_ray_is_its_largest_channel(void **state)
         ray_tree tree = {0};
         worked(probe_ray(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), &tree, NULL), NULL);
         for (int c = 0; c < 3; c++) {
-            const double kept = c == clear ? 1.0 : exp(-18.0), R = 0.04, T = 0.96;
-            assert_true(fabs(tree.radiance[c] - (R + T * T * kept + T * T * R * kept * kept)) < 1e-12);
+            const double through = c == clear ? 1.0 : exp(-18.0), R = 0.04, T = 0.96;
+            assert_true(fabs(tree.radiance[c] - (R + T * T * through + T * T * R * through * through)) < 1e-12);
         }
         ray_tree_release(&tree);
         probe_destroy(p);

@@ -88,20 +88,20 @@ static int tell_apart(const quantity *list, size_t count, const job_account *a, 
 {
     int compared = 0;
     for (size_t i = 0; i < count; i++) {
-        csv_line row = {0}, told = {0};
+        csv_line row = {0}, from_json = {0};
         if (!list[i].column)
             continue;
         const json_t *value = find(account, list[i].json);
         if (!value)
             fail_msg("the account lacks %s", list[i].json);
         row_put(&row, &list[i], a, worker);
-        put_json(&told, &list[i], value);
+        put_json(&from_json, &list[i], value);
         csv_end(&row);
-        csv_end(&told);
-        if (strcmp(row.text, told.text) != 0)
-            fail_msg("%s: %s is not %s", list[i].name, row.text, told.text);
+        csv_end(&from_json);
+        if (strcmp(row.text, from_json.text) != 0)
+            fail_msg("%s: %s is not %s", list[i].name, row.text, from_json.text);
         csv_line_free(&row);
-        csv_line_free(&told);
+        csv_line_free(&from_json);
         compared++;
     }
     return compared;
@@ -208,14 +208,14 @@ static void expect_part(const char *path, const char *after, const char *begin, 
     char *to = strstr(from, end);
     assert_non_null(to);
     if (getenv("CUVETTE_RENEW")) {
-        char *whole = text_format("%.*s%.*s%s", (int)(from - text), text, (int)size, part, to);
+        char *renewed = text_format("%.*s%.*s%s", (int)(from - text), text, (int)size, part, to);
         FILE *file = fopen(path, "w");
         assert_non_null(file);
-        assert_true(fputs(whole, file) >= 0);
+        assert_true(fputs(renewed, file) >= 0);
         assert_int_equal(fclose(file), 0);
-        free(whole);
+        free(renewed);
     } else if (size != (size_t)(to - from) || memcmp(part, from, size) != 0) {
-        fail_msg("%s, %s: not what the list of quantities says; run make dictionary", path, after);
+        fail_msg("%s, %s: differs from the list of quantities; run make dictionary", path, after);
     }
     free(text);
 }

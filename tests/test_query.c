@@ -66,7 +66,7 @@ static void hits_of_a_sphere_equal_the_closed_form(void **state)
     const double centre[3] = {1.0, 2.0, 3.0}, r = 2.0;
     cuvette_query *q = query_of_text(BALL, NULL);
     uint64_t random = 7;
-    int met = 0;
+    int hits_found = 0;
     for (int i = 0; i < 2000; i++) {
         cuvette_ray ray = {.reach = 0.0};
         double towards[3];
@@ -85,7 +85,7 @@ static void hits_of_a_sphere_equal_the_closed_form(void **state)
             assert_true(isinf(hit.distance) && hit.solid == CUVETTE_OUTSIDE && hit.before == CUVETTE_OUTSIDE);
             continue;
         }
-        met++;
+        hits_found++;
         const double half = sqrt(gap), slack = 1e-12 / half;
         assert_true(fabs(hit.distance - (along - half)) <= 30.0 * slack);
         double outward[3];
@@ -116,7 +116,7 @@ static void hits_of_a_sphere_equal_the_closed_form(void **state)
         ray.reach = hit.distance * (1.0 + 1e-9);
         assert_true(nearest(q, &ray).distance == hit.distance);
     }
-    assert_true(met > 500);
+    assert_true(hits_found > 500);
     cuvette_query_destroy(q);
 }
 
@@ -179,7 +179,7 @@ static void camera_rays_have_the_hits_of_the_probe(void **state)
     scene *model = rod_scene("");
     stage g = {.setting = model};
     stage_look(&g);
-    int met = 0;
+    int hits_found = 0;
     for (int y = 5; y < 600; y += 17)
         for (int x = 5; x < 800; x += 17) {
             cuvette_ray ray;
@@ -193,7 +193,7 @@ static void camera_rays_have_the_hits_of_the_probe(void **state)
             assert_true((root->end == RAY_END_HIT) == (bool)isfinite(hit.distance));
             if (root->end != RAY_END_HIT)
                 continue;
-            met++;
+            hits_found++;
             assert_true(hit.distance == root->hit.t && hit.point[0] == root->hit.point.x &&
                         hit.normal[1] == root->hit.normal.y);
             assert_true(hit.solid == root->hit.solid && hit.before == root->hit.from && hit.after == root->hit.to &&
@@ -201,7 +201,7 @@ static void camera_rays_have_the_hits_of_the_probe(void **state)
             assert_true(hit.n_before == root->hit.n_from && hit.n_after == root->hit.n_to &&
                         hit.error == root->hit.error_bound);
         }
-    assert_true(met > 500);
+    assert_true(hits_found > 500);
     stage_close(&g);
     cuvette_query_destroy(q);
 }
@@ -323,7 +323,7 @@ static void a_cube_of_triangles_is_hit_like_a_box(void **state)
     (void)state;
     cuvette_query *cube = query_of_cube(true), *box = query_of_cube(false);
     uint64_t random = 5;
-    int met = 0;
+    int hits_found = 0;
     for (int i = 0; i < 3000; i++) {
         cuvette_ray ray = {.reach = 0.0};
         for (int k = 0; k < 3; k++) {
@@ -335,7 +335,7 @@ static void a_cube_of_triangles_is_hit_like_a_box(void **state)
                     a.solid == b.solid);
         if (!isfinite(a.distance))
             continue;
-        met++;
+        hits_found++;
         const double slope = fabs(dot(a.normal, ray.direction)) / sqrt(dot(ray.direction, ray.direction));
         assert_true(fabs(a.distance - b.distance) * slope < 1e-14 * (1.0 + a.distance) &&
                     dot(a.normal, b.normal) > 1.0 - 1e-14);
@@ -350,7 +350,7 @@ static void a_cube_of_triangles_is_hit_like_a_box(void **state)
         assert_true(isfinite(c.distance) == isfinite(d.distance) && c.before == d.before && c.after == d.after);
         assert_true(!isfinite(c.distance) || fabs(c.distance - d.distance) < 1e-11);
     }
-    assert_true(met > 2000);
+    assert_true(hits_found > 2000);
     cuvette_query_destroy(cube);
     cuvette_query_destroy(box);
 }

@@ -298,13 +298,13 @@ static void each_interface_counts_once_with_its_own_indices(void **state)
 /* An image of the shadow of a tilted box, made of triangles or not. */
 static render_result *askew(const char *shape)
 {
-    char scene_part[512], text[2048], whole[4096];
+    char scene_part[512], text[2048], yaml[4096];
     snprintf(scene_part, sizeof scene_part,
              "pane: {%s, position: [2, 3, 0], rotation: [20, 30, 10], transparency: 0.9, reflectivity: 0.1, ior: 1.5}",
              shape);
     snprintf(text, sizeof text, window, scene_part);
-    snprintf(whole, sizeof whole, "meshes: {block: {generate: box}}\n%s", text);
-    scene *s = scene_from(whole);
+    snprintf(yaml, sizeof yaml, "meshes: {block: {generate: box}}\n%s", text);
+    scene *s = scene_from(yaml);
     diagnostic why = {0};
     worked(scene_load(s, &why), &why);
     set_all(s, "render.width=40 render.height=30 camera.fov_deg=130");
@@ -363,7 +363,7 @@ static void whitted_ray_tracing_and_paths_agree_on_a_dark_floor_under_water(void
         char assignment[64];
         snprintf(assignment, sizeof assignment, "water.ior=%g", n);
         set(s, assignment);
-        const double tree = mean_of(s), wanted = through(view, 1.0, n) * through(0.0, 1.0, n) / (n * n);
+        const double tree = mean_of(s), expected = through(view, 1.0, n) * through(0.0, 1.0, n) / (n * n);
         set_all(s, "render.radiance=classic");
         const double classic = mean_of(s);
         set_all(s, "render.radiance=basic lamp.radius=150 render.integrator=path render.paths=6400");
@@ -372,7 +372,7 @@ static void whitted_ray_tracing_and_paths_agree_on_a_dark_floor_under_water(void
         assert_true(n == 1.0 || mean_of(s) == paths); /* camera and lamp are in one medium */
         print_message("n %g: Whitted's over the paths' light %.4f with basic radiance, %.4f with classic\n", n,
                       tree / paths, classic / paths);
-        assert_true(fabs(tree / wanted - 1.0) < 1e-3);
+        assert_true(fabs(tree / expected - 1.0) < 1e-3);
         assert_true(fabs(tree / paths - 1.0) <= 0.01);
         scene_destroy(s);
     }

@@ -89,13 +89,13 @@ static bool medium_along(const probe *p, vec3 point, vec3 direction, int *medium
 }
 
 typedef struct census {
-    int asked, unsure, wrong;
+    int queries, unsure, wrong;
 } census;
 
 static void ask(census *sum, const probe *p, vec3 point, vec3 direction, int believed)
 {
     int medium;
-    sum->asked++;
+    sum->queries++;
     if (!medium_along(p, point, direction, &medium))
         sum->unsure++;
     else
@@ -149,7 +149,7 @@ static void look_at_scene(uint64_t *seed, int number, bool lit, renderer *r, sur
         }
     }
     if (sum->media.wrong)
-        fail_msg("scene %d: the media of %d places are not those of the solids there", number, sum->media.wrong);
+        fail_msg("scene %d: the media of %d points are not those of the solids", number, sum->media.wrong);
     render_result_destroy(img);
     stage_close(&g);
 }
@@ -164,8 +164,8 @@ static survey look_at_scenes(uint64_t seed, bool lit)
     for (int number = 0; number < SCENES / 2; number++)
         look_at_scene(&seed, number, lit, r, &sum);
     renderer_destroy(r);
-    assert_true(sum.media.unsure < sum.media.asked / 1000);
-    assert_true(sum.rays > 100000 && sum.hits > 50000 && sum.media.asked > 100000);
+    assert_true(sum.media.unsure < sum.media.queries / 1000);
+    assert_true(sum.rays > 100000 && sum.hits > 50000 && sum.media.queries > 100000);
     return sum;
 }
 

@@ -33,7 +33,7 @@ static slab_light slab_series(double R, double T, int depth)
         return (slab_light){0.0, 0.0, 1.0, 0.0};
     l.back = R;
     int up = 1;
-    for (int met = 2; met <= depth; met++) {
+    for (int interfaces = 2; interfaces <= depth; interfaces++) {
         *(up ? &l.passed : &l.back) += inside * T;
         inside *= R;
         up = !up;
@@ -60,18 +60,18 @@ static void check_slab(scene *s, double R, double T, double lost_share)
     for (int depth = 0; depth <= 12; depth++) {
         s->render.depth = depth;
         s->render.beyond = DEPTH_LIMIT_BLACK;
-        const slab_light wanted = slab_series(R, T, depth);
+        const slab_light expected = slab_series(R, T, depth);
         render_result *result = render(s);
-        assert_near(film_value(result->img, 0, 0, 0), wanted.passed, 1e-12);
-        assert_near(film_value(result->img, 0, 0, 1), wanted.back, 1e-12);
+        assert_near(film_value(result->img, 0, 0, 0), expected.passed, 1e-12);
+        assert_near(film_value(result->img, 0, 0, 1), expected.back, 1e-12);
         assert_true(film_value(result->img, 0, 0, 2) == 0.0);
         /* the cut light is that which the last ray inside carries to its interface, split in two there */
-        const double inside = wanted.inside_up + wanted.inside_down, cut = inside * (R + T);
+        const double inside = expected.inside_up + expected.inside_down, cut = inside * (R + T);
         if (CUVETTE_COUNTERS)
             check_slab_counters(&result->counters, depth, cut);
         render_result_destroy(result);
         if (lost_share == 0.0)
-            assert_near(wanted.passed + wanted.back + cut, 1.0, 1e-14);
+            assert_near(expected.passed + expected.back + cut, 1.0, 1e-14);
         /* at the depth limit the sky: the two cut branches take it from their directions */
         s->render.beyond = DEPTH_LIMIT_SKY;
         const slab_light next = slab_series(R, T, depth + 1);
@@ -136,8 +136,8 @@ static void the_weight_of_a_branch_is_its_largest_channel(void **state)
         const vec3 seen = look(s);
         const double by_channel[3] = {seen.x, seen.y, seen.z};
         for (int c = 0; c < 3; c++) {
-            const double kept = c == clear ? 1.0 : exp(-9.0), R = 0.04, T = 0.96;
-            assert_near(by_channel[c], R + T * T * kept + T * T * R * kept * kept, 1e-12);
+            const double transmittance = c == clear ? 1.0 : exp(-9.0), R = 0.04, T = 0.96;
+            assert_near(by_channel[c], R + T * T * transmittance + T * T * R * transmittance * transmittance, 1e-12);
         }
         scene_destroy(s);
     }
@@ -158,9 +158,10 @@ static void terminated_throughput_is_counted_by_channel(void **state)
     render_result *pruned = render(s);
     assert_int_equal(pruned->counters.cut_weight, 2);
     for (int c = 0; c < 3; c++) {
-        const double kept = exp(-a_per_m[c]);
-        assert_near((double)shallow->counters.cut_depth_throughput[c] / COUNTERS_CUT_ONE, T * kept, 1e-10);
-        assert_near((double)pruned->counters.cut_weight_throughput[c] / COUNTERS_CUT_ONE, R + T * R * kept, 1e-10);
+        const double transmittance = exp(-a_per_m[c]);
+        assert_near((double)shallow->counters.cut_depth_throughput[c] / COUNTERS_CUT_ONE, T * transmittance, 1e-10);
+        assert_near((double)pruned->counters.cut_weight_throughput[c] / COUNTERS_CUT_ONE, R + T * R * transmittance,
+                    1e-10);
     }
     render_result_destroy(shallow);
     render_result_destroy(pruned);

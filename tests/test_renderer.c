@@ -168,7 +168,7 @@ static void progress_callbacks_do_not_change_the_film(void **state)
 
 typedef struct studio {
     const scene *s;
-    uint64_t wanted;
+    uint64_t expected;
     int wrong;
 } studio;
 
@@ -179,7 +179,7 @@ static void *work_in(void *argument)
     w->wrong = renderer_create(isa_best(), NULL, &r, NULL) != STATUS_OK;
     for (int i = 0; i < 10 && !w->wrong; i++) {
         render_result *result = NULL;
-        w->wrong = renderer_render(r, w->s, NULL, &result, NULL) != STATUS_OK || film_hash(result->img) != w->wanted;
+        w->wrong = renderer_render(r, w->s, NULL, &result, NULL) != STATUS_OK || film_hash(result->img) != w->expected;
         render_result_destroy(result);
     }
     renderer_destroy(r);
@@ -199,7 +199,7 @@ static void two_concurrent_renderers_are_independent(void **state)
         studios[i] = (studio){scenes[i], film_hash(alone->img), 0};
         render_result_destroy(alone);
     }
-    assert_true(studios[0].wanted != studios[1].wanted);
+    assert_true(studios[0].expected != studios[1].expected);
     for (int i = 0; i < 2; i++)
         assert_int_equal(pthread_create(&threads[i], NULL, work_in, &studios[i]), 0);
     for (int i = 0; i < 2; i++) {

@@ -35,11 +35,11 @@ static void an_edge_covers_the_cells_whose_centre_is_inside(void **state)
     for (int k = 1; k <= 8; k++) {
         s->render.samples = (int64_t)k * k;
         for (size_t i = 0; i < sizeof edges / sizeof *edges; i++) {
-            const double wanted = (double)covered(k, edges[i]) / k, rounding = k * k * 0x1p-44;
+            const double expected = (double)covered(k, edges[i]) / k, rounding = k * k * 0x1p-44;
             s->solids[0].shape.position = vec3_make(edges[i] - 10.0, 0.0, 1.0);
-            assert_near(look(s).x, wanted, rounding);
+            assert_near(look(s).x, expected, rounding);
             s->solids[0].shape.position = vec3_make(0.0, edges[i] - 10.0, 1.0);
-            assert_near(look(s).y, wanted, rounding);
+            assert_near(look(s).y, expected, rounding);
         }
     }
     scene_destroy(s);

@@ -279,7 +279,7 @@ static void negative_and_infinite_skies_are_refused(void **state)
 {
     (void)state;
     static const float bad[] = {-1e-6F, 65600.0F, 1e30F}, good[] = {0.0F, 65536.0F};
-    char path[] = "/tmp/test_scene_XXXXXX.pfm", text[128], said[DIAGNOSTIC_TEXT_MAX];
+    char path[] = "/tmp/test_scene_XXXXXX.pfm", text[128], message[DIAGNOSTIC_TEXT_MAX];
     int file = mkstemps(path, 4);
     assert_true(file >= 0);
     close(file);
@@ -297,9 +297,9 @@ static void negative_and_infinite_skies_are_refused(void **state)
         assert_int_equal(scene_load(s, &why), is_bad ? STATUS_BAD_INPUT : STATUS_OK);
         assert_true(is_bad == !s->background.img);
         if (is_bad) {
-            diagnostic_text(&why, said, sizeof said);
-            assert_memory_equal(said, "s.yaml:1:23: background.picture: ", 33);
-            assert_non_null(strstr(said, "pixel 2,1 is "));
+            diagnostic_text(&why, message, sizeof message);
+            assert_memory_equal(message, "s.yaml:1:23: background.picture: ", 33);
+            assert_non_null(strstr(message, "pixel 2,1 is "));
         }
         scene_destroy(s);
     }

@@ -39,10 +39,10 @@ static const realism_value *value_of(const realism_report *r, const char *metric
     return NULL;
 }
 
-static void near(double got, double wanted, double tolerance)
+static void near(double got, double expected, double tolerance)
 {
-    if (!(fabs(got - wanted) <= tolerance))
-        fail_msg("%.12f is not %.12f within %g", got, wanted, tolerance);
+    if (!(fabs(got - expected) <= tolerance))
+        fail_msg("%.12f is not %.12f within %g", got, expected, tolerance);
 }
 
 static void all_pass(const char *name, const char *assignments)

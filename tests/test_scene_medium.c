@@ -1,3 +1,4 @@
+/* Tests of media in scenes: laws by name and by coefficients, absorption, and the diagnostics of invalid media. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,10 +20,10 @@ static double index_at(const scene *s, const char *name, double lambda_nm)
     return index_law_at(&law, lambda_nm);
 }
 
-static void near(double got, double wanted, double tolerance)
+static void near(double got, double expected, double tolerance)
 {
-    if (!(fabs(got - wanted) <= tolerance))
-        fail_msg("%.12f is not %.12f within %g", got, wanted, tolerance);
+    if (!(fabs(got - expected) <= tolerance))
+        fail_msg("%.12f is not %.12f within %g", got, expected, tolerance);
 }
 
 static const char three_laws[] =
@@ -93,14 +94,14 @@ static void absorption_is_given_by_channel_or_by_wavelength(void **state)
     scene_destroy(s);
 }
 
-static void expect_error(const char *text, const char *wanted)
+static void expect_error(const char *text, const char *expected)
 {
     scene *s = NULL;
     diagnostic why = {.what = ""};
     char line[DIAGNOSTIC_TEXT_MAX];
     assert_int_equal(scene_read_text("test.yaml", text, strlen(text), &s, &why), STATUS_BAD_INPUT);
     assert_null(s);
-    assert_string_equal(diagnostic_text(&why, line, sizeof line), wanted);
+    assert_string_equal(diagnostic_text(&why, line, sizeof line), expected);
 }
 
 static void invalid_media_are_refused_with_a_location(void **state)

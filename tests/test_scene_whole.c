@@ -1,3 +1,5 @@
+/* Tests that a whole scene can be moved, rotated and scaled: with its camera the film is the same up to rounding; only
+ * the named parts change; and nothing changes if one of them would leave its range. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,9 +11,6 @@
 #include "render_fixture.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
-
-/* Tests that a whole scene can be moved, rotated and scaled: with its camera the film is the same up to rounding; only
- * the named parts change; and nothing changes if one of them would leave its range. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -198,10 +197,10 @@ static void one_solid_or_light_is_scaled_about_its_position(void **state)
 
 static void expect_refused(scene *s, status code, const diagnostic *why, const char *words)
 {
-    char said[DIAGNOSTIC_TEXT_MAX];
-    diagnostic_text(why, said, sizeof said);
-    if (code != STATUS_BAD_INPUT || !strstr(said, words))
-        fail_msg("%d, '%s' instead of '%s'", (int)code, said, words);
+    char message[DIAGNOSTIC_TEXT_MAX];
+    diagnostic_text(why, message, sizeof message);
+    if (code != STATUS_BAD_INPUT || !strstr(message, words))
+        fail_msg("%d, '%s' instead of '%s'", (int)code, message, words);
     assert_true(s->solids[0].shape.position.x == 0.0 && s->solids[2].shape.radius == 0.8 &&
                 s->lights[0].position.x == 4.0);
     assert_true(s->materials[0].value.checker == 0.31 && s->render.unit_m == 0.5 && s->camera.position.x == 1.0);

@@ -246,7 +246,7 @@ static void the_rows_of_a_study_share_a_simulation_unless_keep_is_off(void **sta
 }
 
 typedef struct waiting {
-    int asked, patience; /* times */
+    int polls, patience; /* times */
     double share;
     bool in_order;
 } waiting;
@@ -256,7 +256,7 @@ static bool wait(void *context, double share_done)
     waiting *w = context;
     w->in_order &= share_done > w->share && share_done <= 1.0;
     w->share = share_done;
-    return ++w->asked < w->patience;
+    return ++w->polls < w->patience;
 }
 
 /* Days of motion, interrupted at the first poll. */
@@ -268,7 +268,7 @@ static void an_interrupted_load_does_not_change_the_slime(void **state)
     waiting w = {.patience = 3, .in_order = true};
     diagnostic why = {0};
     assert_int_equal(scene_load_until(s, &(load_watch){wait, &w}, &why), STATUS_INTERRUPTED);
-    assert_int_equal(w.asked, 3);
+    assert_int_equal(w.polls, 3);
     assert_true(w.in_order && w.share > 0.0 && w.share < 1.0);
     assert_non_null(strstr(why.what, "toy: interrupted at "));
     assert_non_null(s->meshes[0].data);

@@ -4,18 +4,18 @@
 static const softbody_integrator all[] = {SOFTBODY_EULER, SOFTBODY_VERLET, SOFTBODY_IMPLICIT};
 enum { ALL = sizeof all / sizeof all[0] };
 
-/* Two masses on a spring swing with omega^2 = k / m_reduced, m_reduced = m1 m2 / (m1 + m2) (Landau and Lifshitz,
- * Mechanics, 13 and 21). The steps of an integrator swing with omega_d of their own: (2/dt) asin(omega dt / 2) of
- * semi-implicit Euler and Verlet, atan(omega dt) / dt of backward Euler, whose swing shrinks by (1 + omega^2
- * dt^2)^(-1/2) a step (eigenvalues of the step's matrix). After a whole number of steps the length is known. */
+/* Two masses on a spring oscillate with omega^2 = k / m_reduced, m_reduced = m1 m2 / (m1 + m2) (Landau and Lifshitz,
+ * Mechanics, 13 and 21). The steps of an integrator oscillate with another omega_d (eigenvalues of the step's matrix):
+ * (2/dt) asin(omega dt / 2) for semi-implicit Euler and Verlet, atan(omega dt) / dt for backward Euler, whose amplitude
+ * decreases by (1 + omega^2 dt^2)^(-1/2) per step. So the length after any number of steps is known. */
 static void the_oscillation_of_a_spring_equals_the_integrators_closed_form(void **state)
 {
     (void)state;
-    const double m1 = 0.3, m2 = 0.7, k = 50.0, drawn = 0.01, dt = 0.004, omega = sqrt(k / (m1 * m2 / (m1 + m2)));
+    const double m1 = 0.3, m2 = 0.7, k = 50.0, stretch = 0.01, dt = 0.004, omega = sqrt(k / (m1 * m2 / (m1 + m2)));
     const double folded = 2.0 / dt * asin(0.5 * omega * dt);
     for (int i = 0; i < ALL; i++) {
         const softbody_settings s = settings_in_space(all[i], dt);
-        softbody *b = pair_of(m1, m2, k, 0.0, drawn, &s);
+        softbody *b = pair_of(m1, m2, k, 0.0, stretch, &s);
         for (long n = 1; n <= 500; n++) {
             steps_of(b, 1);
             const double t = (double)n * dt, z = omega * dt;
@@ -25,7 +25,7 @@ static void the_oscillation_of_a_spring_equals_the_integrators_closed_form(void 
                                   : all[i] == SOFTBODY_VERLET
                                       ? cos(folded * t)
                                       : cos(atan(z) * (double)n) * pow(1.0 + z * z, -0.5 * (double)n);
-            assert_near((pair_length(b) - 1.0) / drawn, theory, 2e-8);
+            assert_near((pair_length(b) - 1.0) / stretch, theory, 2e-8);
         }
         softbody_destroy(b);
     }
@@ -34,17 +34,17 @@ static void the_oscillation_of_a_spring_equals_the_integrators_closed_form(void 
 /* Largest error against cos(omega t) over one second, in position and velocity. */
 static double distance_from_swing(softbody_integrator integrator, double dt)
 {
-    const double k = 40.0, omega = sqrt(k / 0.5), drawn = 0.01;
+    const double k = 40.0, omega = sqrt(k / 0.5), stretch = 0.01;
     const softbody_settings s = settings_in_space(integrator, dt);
-    softbody *b = pair_of(1.0, 1.0, k, 0.0, drawn, &s);
+    softbody *b = pair_of(1.0, 1.0, k, 0.0, stretch, &s);
     double worst = 0.0;
     for (long n = 1; n <= lround(1.0 / dt); n++) {
         vec3 v[2];
         steps_of(b, 1);
         softbody_velocities(b, v);
         const double t = (double)n * dt;
-        worst = fmax(worst, fabs((pair_length(b) - 1.0) / drawn - cos(omega * t)) +
-                                fabs((v[1].x - v[0].x) / (drawn * omega) + sin(omega * t)));
+        worst = fmax(worst, fabs((pair_length(b) - 1.0) / stretch - cos(omega * t)) +
+                                fabs((v[1].x - v[0].x) / (stretch * omega) + sin(omega * t)));
     }
     softbody_destroy(b);
     return worst;
@@ -53,10 +53,10 @@ static double distance_from_swing(softbody_integrator integrator, double dt)
 static void the_orders_of_the_integrators_are_one_two_and_one(void **state)
 {
     (void)state;
-    const double wanted[ALL] = {1.0, 2.0, 1.0};
+    const double expected[ALL] = {1.0, 2.0, 1.0};
     for (int i = 0; i < ALL; i++) {
         const double order = log2(distance_from_swing(all[i], 1.0 / 8192) / distance_from_swing(all[i], 1.0 / 16384));
-        assert_near(order, wanted[i], 0.01);
+        assert_near(order, expected[i], 0.01);
     }
 }
 
@@ -64,13 +64,13 @@ static void the_orders_of_the_integrators_are_one_two_and_one(void **state)
 static void a_damped_spring_equals_the_closed_form(void **state)
 {
     (void)state;
-    const double k = 40.0, kd = 0.8, gamma = kd / 0.5, omega = sqrt(k / 0.5 - 0.25 * gamma * gamma), drawn = 0.01;
+    const double k = 40.0, kd = 0.8, gamma = kd / 0.5, omega = sqrt(k / 0.5 - 0.25 * gamma * gamma), stretch = 0.01;
     for (int i = 0; i < ALL; i++) {
         const softbody_settings s = settings_in_space(all[i], 1e-4);
-        softbody *b = pair_of(1.0, 1.0, k, kd, drawn, &s);
+        softbody *b = pair_of(1.0, 1.0, k, kd, stretch, &s);
         steps_of(b, 7000);
         const double t = 0.7, theory = exp(-0.5 * gamma * t) * (cos(omega * t) + 0.5 * gamma / omega * sin(omega * t));
-        assert_near((pair_length(b) - 1.0) / drawn, theory, all[i] == SOFTBODY_VERLET ? 1e-5 : 4e-3);
+        assert_near((pair_length(b) - 1.0) / stretch, theory, all[i] == SOFTBODY_VERLET ? 1e-5 : 4e-3);
         softbody_destroy(b);
     }
 }
@@ -135,9 +135,9 @@ static void coulomb_friction_stops_a_mass_after_the_computed_distance(void **sta
     vec3 at, v;
     softbody_positions(b, &at);
     softbody_velocities(b, &v);
-    const double way = 1.0 / (2.0 * 0.25 * 10.0);
-    assert_near(at.x, 0.6 * way, 1e-4);
-    assert_near(at.z, -0.8 * way, 1e-4);
+    const double distance = 1.0 / (2.0 * 0.25 * 10.0);
+    assert_near(at.x, 0.6 * distance, 1e-4);
+    assert_near(at.z, -0.8 * distance, 1e-4);
     assert_true(vec3_length(v) == 0.0);
     softbody_destroy(b);
 }

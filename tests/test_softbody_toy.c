@@ -184,14 +184,14 @@ static void forces_are_minus_the_gradient_of_the_energy(void **state)
     steps_of(b, 1);
     softbody_velocities(b, v);
     for (size_t i = 0; i < count; i += 5) {
-        const double h = 1e-5, kept = at[i].y;
-        at[i].y = kept + h;
+        const double h = 1e-5, original = at[i].y;
+        at[i].y = original + h;
         softbody_place(b, at, still);
         const double above = energy_of(b);
-        at[i].y = kept - h;
+        at[i].y = original - h;
         softbody_place(b, at, still);
         const double below = energy_of(b);
-        at[i].y = kept;
+        at[i].y = original;
         assert_near(v[i].y * s.mass_kg / (double)count / s.dt_s, -(above - below) / (2.0 * h), 2e-7);
     }
     free(at);

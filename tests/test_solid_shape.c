@@ -28,7 +28,7 @@ static void a_plane_is_the_half_space_below(void **state)
     assert_true(contains(&s, 1e6, 2, -1e6));
     assert_true(contains(&s, 0, -1e6, 0));
     assert_false(contains(&s, 0, nextafter(2, 3), 0));
-    s.rotation_deg.z = 90; /* its upward normal turns to -x */
+    s.rotation_deg.z = 90; /* its upward normal is rotated to -x */
     assert_true(contains(&s, 0.5, 99, 0));
     assert_false(contains(&s, -0.5, -99, 0));
 }

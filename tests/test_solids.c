@@ -64,7 +64,8 @@ static vec3 double_of(quad3 v)
 }
 
 /* Reports a failure: the shape, the ray and the result. */
-static void told(int good, const char *what, const solid_shape *s, const reference_line *line, const one_hit *h)
+static void report_failure(int good, const char *what, const solid_shape *s, const reference_line *line,
+                           const one_hit *h)
 {
     if (good)
         return;
@@ -75,7 +76,7 @@ static void told(int good, const char *what, const solid_shape *s, const referen
                 h->cos_i, h->error);
     fail_msg("%s", what);
 }
-#define expect(condition, s, line, h) told(condition, #condition, s, line, h)
+#define expect(condition, s, line, h) report_failure(condition, #condition, s, line, h)
 
 static scene_geometry *arrange_one(const solid_shape *shape)
 {
@@ -423,9 +424,9 @@ static void the_volume_of_an_elliptic_cup_equals_its_closed_form(void **state)
                 const double x = (i % STEPS + 0.5) * cell - reach, y = (i / STEPS + 0.5) * cell - reach;
                 volume += cell * cell * chord(a, vec3_add(middle, vec3_add(vec3_scale(u, x), vec3_scale(v, y))), d);
             }
-            const double wanted = pi / s.m * (outside - hollow);
-            if (!(fabs(volume - wanted) < 0.01 * wanted))
-                fail_msg("m %g: %.6g instead of %.6g", s.m, volume, wanted);
+            const double expected = pi / s.m * (outside - hollow);
+            if (!(fabs(volume - expected) < 0.01 * expected))
+                fail_msg("m %g: %.6g instead of %.6g", s.m, volume, expected);
         }
         scene_geometry_destroy(a);
     }

@@ -34,7 +34,7 @@ typedef struct looks {
     double largest, of_mean;
 } looks;
 
-static looks compare(const film *f, const film *wanted)
+static looks compare(const film *f, const film *predicted)
 {
     double mean[3] = {0}, wanted_mean[3] = {0};
     looks l = {0.0, 0.0};
@@ -42,7 +42,7 @@ static looks compare(const film *f, const film *wanted)
         for (int x = 0; x < f->width; x++) {
             double xyz[3], target[3];
             xyz_at(f, x, y, xyz);
-            xyz_at(wanted, x, y, target);
+            xyz_at(predicted, x, y, target);
             l.largest = fmax(l.largest, difference_of(xyz, target));
             for (int i = 0; i < 3; i++)
                 mean[i] += xyz[i], wanted_mean[i] += target[i];
@@ -317,9 +317,9 @@ static void a_prism_separates_red_and_blue(void **state)
         set(s, bands[k].law);
         render_result *r = render(s);
         rows[k] = seen_edge(r->img, k == 0 ? 2 : 0);
-        const double wanted = edge_row(index_of_bk7(bands[k].nm), tilt_deg, edge_deg);
-        print_message("edge at %g nm: row %g, by Snell's law %.2f\n", bands[k].nm, rows[k], wanted);
-        assert_near(rows[k], wanted, 1.5);
+        const double predicted = edge_row(index_of_bk7(bands[k].nm), tilt_deg, edge_deg);
+        print_message("edge at %g nm: row %g, by Snell's law %.2f\n", bands[k].nm, rows[k], predicted);
+        assert_near(rows[k], predicted, 1.5);
         render_result_destroy(r);
     }
     assert_true(fabs(rows[0] - rows[1]) > 20.0);
@@ -353,12 +353,12 @@ static void light_of_an_absorbed_band_is_removed(void **state)
                           "solids:\n"
                           "  pane: {shape: box, size: [4, 4, 0.1], transparency: 1, ior: 1,\n"
                           "         absorb_spectrum: [499.999, 0, 500, 1e5, 600, 1e5, 600.001, 0]}\n");
-    double wanted[3] = {0.0, 0.0, 0.0}, mean[3] = {0.0, 0.0, 0.0}, xyz[3];
+    double predicted[3] = {0.0, 0.0, 0.0}, mean[3] = {0.0, 0.0, 0.0}, xyz[3];
     for (int k = 0; k < 8000; k++) {
         const double lambda_nm = 380.0 + 0.05 * (k + 0.5);
         observer_weights(lambda_nm, xyz);
         for (int i = 0; i < 3; i++)
-            wanted[i] += lambda_nm < 500.0 || lambda_nm > 600.0 ? xyz[i] * observer_d65(lambda_nm) / 8000.0 : 0.0;
+            predicted[i] += lambda_nm < 500.0 || lambda_nm > 600.0 ? xyz[i] * observer_d65(lambda_nm) / 8000.0 : 0.0;
     }
     render_result *r = render(s);
     for (int i = 0; i < 256; i++) {
@@ -366,13 +366,13 @@ static void light_of_an_absorbed_band_is_removed(void **state)
         for (int c = 0; c < 3; c++)
             mean[c] += xyz[c] / 256.0;
     }
-    print_message("band: CIEDE2000 %.3g, luminance %.4f of white\n", difference_of(mean, wanted), mean[1]);
-    assert_true(difference_of(mean, wanted) < 0.05 && mean[1] < 0.35);
+    print_message("band: CIEDE2000 %.3g, luminance %.4f of white\n", difference_of(mean, predicted), mean[1]);
+    assert_true(difference_of(mean, predicted) < 0.05 && mean[1] < 0.35);
     /* unit_m scales lengths: at 0.0001 it absorbs very little */
     set_all(s, "render.unit_m=1e-6 pane.absorb_spectrum=[499.999,0,500,1e6,600,1e6,600.001,0]"); /* optical depth 0.1 */
     render_result_destroy(r);
     r = render(s);
-    double seen = 0.0, rest = wanted[1];
+    double seen = 0.0, rest = predicted[1];
     for (int i = 0; i < 256; i++) {
         xyz_at(r->img, i % 16, i / 16, xyz);
         seen += xyz[1] / 256.0;

@@ -1,3 +1,4 @@
+/* Tests of comparisons of a study's cells with its reference image. */
 #include "study_fixture.h"
 #include "image/compare.h"
 #include "render/core/renderer.h"
@@ -116,15 +117,15 @@ static void differences_equal_those_of_the_films(void **state)
     fixture_run(f, s);
     csv *table = read_table(f, "results/test/compare.csv");
     image *shallow = image_at(f, "0"), *deep = image_at(f, "2");
-    image_comparison lies;
-    assert_int_equal(image_compare(shallow, deep, &lies, NULL), STATUS_OK);
-    assert_true(lies.mse > 0 && lies.flip > 0 && lies.ssim < 1);
-    assert_true(real_of(table, 0, "mse") == lies.mse);
-    assert_true(real_of(table, 0, "psnr_db") == lies.psnr_db);
-    assert_true(real_of(table, 0, "ssim") == lies.ssim);
-    assert_true(real_of(table, 0, "flip") == lies.flip);
-    assert_true(real_of(table, 0, "largest") == lies.largest);
-    assert_true(real_of(table, 0, "differing_share") == lies.differing_share);
+    image_comparison metrics;
+    assert_int_equal(image_compare(shallow, deep, &metrics, NULL), STATUS_OK);
+    assert_true(metrics.mse > 0 && metrics.flip > 0 && metrics.ssim < 1);
+    assert_true(real_of(table, 0, "mse") == metrics.mse);
+    assert_true(real_of(table, 0, "psnr_db") == metrics.psnr_db);
+    assert_true(real_of(table, 0, "ssim") == metrics.ssim);
+    assert_true(real_of(table, 0, "flip") == metrics.flip);
+    assert_true(real_of(table, 0, "largest") == metrics.largest);
+    assert_true(real_of(table, 0, "differing_share") == metrics.differing_share);
     double sum = 0;
     for (size_t i = 0; i < 24 * 18 * 3; i++)
         sum +=
@@ -163,17 +164,17 @@ static void existing_comparisons_are_not_repeated(void **state)
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
     fixture_run(f, s);
-    char *whole = fixture_text(f, "results/test/compare.csv");
+    char *complete = fixture_text(f, "results/test/compare.csv");
     assert_int_equal(fixture_run(f, s), 0);
     char *again = fixture_text(f, "results/test/compare.csv");
-    assert_string_equal(whole, again);
+    assert_string_equal(complete, again);
     free(again);
     /* With the first cell's row and an incomplete one left, the others are made, the rows stay, and no reference is
      * rendered. */
     char reference_path[400], cut[4096];
     struct stat before, after;
-    char *line = strchr(strchr(whole, '\n') + 1, '\n') + 1;
-    snprintf(cut, sizeof cut, "%.*stest,0123", (int)(line - whole), whole);
+    char *line = strchr(strchr(complete, '\n') + 1, '\n') + 1;
+    snprintf(cut, sizeof cut, "%.*stest,0123", (int)(line - complete), complete);
     fixture_write(f, "results/test/compare.csv", cut);
     csv *table = read_table(f, "results/test/compare.csv");
     snprintf(reference_path, sizeof reference_path, "%s/test/references/%s.pfm", f->results,
@@ -185,15 +186,15 @@ static void existing_comparisons_are_not_repeated(void **state)
     char *rows_now = fixture_text(f, "results/test/rows.csv");
     again = fixture_text(f, "results/test/compare.csv");
     assert_string_equal(rows, rows_now);
-    assert_int_equal(strlen(again), strlen(whole));
-    assert_memory_equal(again, whole, (size_t)(line - whole));
+    assert_int_equal(strlen(again), strlen(complete));
+    assert_memory_equal(again, complete, (size_t)(line - complete));
     assert_int_equal(stat(reference_path, &after), 0);
     assert_true(before.st_ino == after.st_ino && before.st_mtim.tv_nsec == after.st_mtim.tv_nsec);
     assert_true(fixture_has(f, "results/test/compare.torn.csv"));
     free(rows);
     free(rows_now);
     free(again);
-    free(whole);
+    free(complete);
     study_destroy(s);
 }
 

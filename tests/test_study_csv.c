@@ -1,3 +1,4 @@
+/* Tests of the CSV reader and writer: quoting, incomplete lines and damaged files. */
 #include "study_fixture.h"
 #include "study/csv.h"
 

@@ -1,3 +1,4 @@
+/* Tests of a study's manifest: the provenance of rows, without names of hosts and paths. */
 #include "study_fixture.h"
 #include "study/provenance.h"
 #include <jansson.h>

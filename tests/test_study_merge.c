@@ -1,3 +1,4 @@
+/* Tests of a study's shards: partition of the cells, merging, duplicate and incomplete rows. */
 #include "study_fixture.h"
 #include "study/csv.h"
 
@@ -12,22 +13,22 @@ static const char study_text[] = "study: test\n"
 
 static size_t run_shard(const fixture *f, const study *s, long shard, long shards)
 {
-    char said[DIAGNOSTIC_TEXT_MAX];
+    char message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     size_t ran = 0;
     study_options options = {.results = f->results, .shard = shard, .shards = shards};
     if (study_run(s, &options, &ran, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return ran;
 }
 
 static size_t merge(const fixture *f, const study *s)
 {
-    char said[DIAGNOSTIC_TEXT_MAX];
+    char message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     size_t rows = 0;
     if (study_merge(s, f->results, &rows, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return rows;
 }
 

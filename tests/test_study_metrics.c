@@ -1,3 +1,4 @@
+/* Tests of the realism and motion metrics that a study keeps. */
 #include "study_fixture.h"
 
 #include "realism/realism.h"
@@ -62,15 +63,15 @@ static void metrics_and_curves_are_written_next_to_the_images(void **state)
 static void realism_metrics_without_a_vessel_are_refused(void **state)
 {
     const fixture *f = *state;
-    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    char path[400], message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     study *s = NULL;
     fixture_write(f, "bad.study", "study: bad\nscene: scene.yaml\nkeep: {metrics: on}\n");
     fixture_path(f, "bad.study", path);
     assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
-    diagnostic_text(&why, said, sizeof said);
-    assert_non_null(strstr(said, "bad.study: metrics cannot be kept for cell 0: "));
-    assert_non_null(strstr(said, "vessel"));
+    diagnostic_text(&why, message, sizeof message);
+    assert_non_null(strstr(message, "bad.study: metrics cannot be kept for cell 0: "));
+    assert_non_null(strstr(message, "vessel"));
     assert_false(fixture_has(f, "results"));
 }
 
@@ -118,14 +119,14 @@ static void motion_metrics_are_written_next_to_the_images(void **state)
 static void motion_metrics_without_a_slime_are_refused(void **state)
 {
     const fixture *f = *state;
-    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    char path[400], message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     study *s = NULL;
     fixture_write(f, "bad.study", "study: bad\nscene: scene.yaml\nkeep: {motion: on}\n");
     fixture_path(f, "bad.study", path);
     assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
-    diagnostic_text(&why, said, sizeof said);
-    assert_non_null(strstr(said, "bad.study: motion cannot be kept for cell 0: "));
+    diagnostic_text(&why, message, sizeof message);
+    assert_non_null(strstr(message, "bad.study: motion cannot be kept for cell 0: "));
 }
 
 int main(void)

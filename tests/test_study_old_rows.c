@@ -33,23 +33,23 @@ static const char rows_name[] = "results/test/rows.csv", workers_name[] = "resul
 
 static char *summary_of(const study *s, const char *results)
 {
-    char *text = NULL, said[DIAGNOSTIC_TEXT_MAX];
+    char *text = NULL, message[DIAGNOSTIC_TEXT_MAX];
     size_t size;
     diagnostic why = {0};
     FILE *out = open_memstream(&text, &size);
     if (study_summary(s, results, out, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     fclose(out);
     return text;
 }
 
 static study *read_study(const char *path)
 {
-    char said[DIAGNOSTIC_TEXT_MAX];
+    char message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     study *s = NULL;
     if (study_read(path, &s, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return s;
 }
 
@@ -147,12 +147,12 @@ static void default_values_are_not_part_of_a_definition(void **state)
 {
     (void)state;
     study *s = read_study(old_study);
-    meaning said = {0};
-    assert_int_equal(meaning_of_study(&said, s), STATUS_OK);
+    meaning message = {0};
+    assert_int_equal(meaning_of_study(&message, s), STATUS_OK);
     size_t paths = 0, shapes = 0;
-    for (size_t i = 0; i < said.count; i++) {
+    for (size_t i = 0; i < message.count; i++) {
         param_place at;
-        const char *name = said.items[i].name, *value = said.items[i].value;
+        const char *name = message.items[i].name, *value = message.items[i].value;
         shapes += strncmp(name, "shape of ", 9) == 0 && strspn(value, "0123456789") == 0;
         if (!is_path_of(s->base, name, &at))
             continue;
@@ -164,7 +164,7 @@ static void default_values_are_not_part_of_a_definition(void **state)
     }
     assert_true(paths > 40);
     assert_int_equal(shapes, s->base->solid_count);
-    meaning_free(&said);
+    meaning_free(&message);
     study_destroy(s);
 }
 
@@ -176,18 +176,18 @@ static void order_and_explicit_defaults_do_not_change_a_definition(void **state)
     study *other = fixture_study(f, "study: x\nscene: scene.yaml\n"
                                     "set: {ball.visible: on, lamp.intensity: 1, render.samples: 1}\n");
     assert_int_equal(s->definition_hash, other->definition_hash);
-    meaning said = {0};
-    assert_int_equal(meaning_of_study(&said, s), STATUS_OK);
-    const uint64_t hash = meaning_hash(&said);
-    const meaning_item first = said.items[0];
-    said.items[0] = said.items[said.count - 1];
-    said.items[said.count - 1] = first;
-    assert_int_equal(meaning_hash(&said), hash);
-    char *const value = said.items[0].value;
-    said.items[0].value = said.items[1].value;
-    said.items[1].value = value;
-    assert_int_not_equal(meaning_hash(&said), hash);
-    meaning_free(&said);
+    meaning message = {0};
+    assert_int_equal(meaning_of_study(&message, s), STATUS_OK);
+    const uint64_t hash = meaning_hash(&message);
+    const meaning_item first = message.items[0];
+    message.items[0] = message.items[message.count - 1];
+    message.items[message.count - 1] = first;
+    assert_int_equal(meaning_hash(&message), hash);
+    char *const value = message.items[0].value;
+    message.items[0].value = message.items[1].value;
+    message.items[1].value = value;
+    assert_int_not_equal(meaning_hash(&message), hash);
+    meaning_free(&message);
     study_destroy(s);
     study_destroy(other);
 }
@@ -279,12 +279,12 @@ static void columns_are_identified_by_name(void **state)
 
 static csv *table_of(const fixture *f, const char *name)
 {
-    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    char path[400], message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     csv *table = NULL;
     fixture_path(f, name, path);
     if (csv_read(path, &table, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return table;
 }
 

@@ -1,3 +1,4 @@
+/* Tests of the shuffled order of cells: it depends on seed and stream only, and is uniformly distributed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

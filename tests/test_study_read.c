@@ -1,3 +1,4 @@
+/* Tests of study files: the grammar, definitions and located diagnostics. Run from the repository root. */
 #include "study_fixture.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
@@ -267,12 +268,12 @@ static void every_study_of_the_project_is_read(void **state)
                  {"pool", 10},    {"maps", 1},       {"portrait", 1}, {"convergence", 30}, {"methods", 7},
                  {"lighting", 3}, {"absorption", 5}, {"absorber", 11}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        char path[400], said[DIAGNOSTIC_TEXT_MAX];
+        char path[400], message[DIAGNOSTIC_TEXT_MAX];
         diagnostic why = {0};
         study *s = NULL;
         snprintf(path, sizeof path, "experiments/%s.study", known[i].name);
         if (study_read(path, &s, &why) != STATUS_OK)
-            fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+            fail_msg("%s", diagnostic_text(&why, message, sizeof message));
         assert_string_equal(s->name, known[i].name);
         assert_int_equal(study_cell_count(s), known[i].cells);
         study_destroy(s);

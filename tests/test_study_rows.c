@@ -1,3 +1,4 @@
+/* Tests of the rows of a study: columns, values, worker rows and times. */
 #include "study_fixture.h"
 #include "study/rows.h"
 #include "study/row_files.h"

@@ -1,3 +1,4 @@
+/* Tests of study runs: repetitions, interruption and resumption, kept files, locks and full disks. */
 #include "study_fixture.h"
 #include "image/image.h"
 #include "study/csv.h"
@@ -231,9 +232,9 @@ static void the_callback_reports_the_progress_of_the_terminal(void **state)
         f,
         "study: test\nscene: scene.yaml\nset: {render.width: 200, render.height: 150}\nrepetitions: 4000\nwarmups: 0\n"
         "grid: [{render.depth: [0, 1, 2, 3]}]\nkeep: {image: on}\n");
-    char *said = NULL;
+    char *message = NULL;
     size_t size, ran = 0;
-    FILE *terminal = open_memstream(&said, &size);
+    FILE *terminal = open_memstream(&message, &size);
     watch w = {.stop = true, .from = pthread_self()};
     study_options options = {
         .results = f->results, .progress = terminal, .stop = stop_when_known, .progressed = look, .context = &w};
@@ -243,10 +244,10 @@ static void the_callback_reports_the_progress_of_the_terminal(void **state)
     fclose(terminal);
     char last[64];
     snprintf(last, sizeof last, "\rtest: %zu of 16000 frames, ", w.frames_done);
-    assert_int_equal(fixture_count(said, "\rtest: "), w.calls);
-    assert_non_null(strstr(said, "\rtest: 0 of 16000 frames, 0%"));
-    assert_non_null(strstr(said, last));
-    free(said);
+    assert_int_equal(fixture_count(message, "\rtest: "), w.calls);
+    assert_non_null(strstr(message, "\rtest: 0 of 16000 frames, 0%"));
+    assert_non_null(strstr(message, last));
+    free(message);
     study_destroy(s);
 }
 

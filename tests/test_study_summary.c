@@ -1,3 +1,4 @@
+/* Tests of the summary of a study: medians, their intervals and the columns. */
 #include "study_fixture.h"
 #include "study/row_files.h"
 #include "study/summary.h"
@@ -58,12 +59,12 @@ static void write_rows(const fixture *f, const study *s, const written *rows, si
 
 static char *summary_of(const fixture *f, const study *s)
 {
-    char *text = NULL, said[DIAGNOSTIC_TEXT_MAX];
+    char *text = NULL, message[DIAGNOSTIC_TEXT_MAX];
     size_t size;
     diagnostic why = {0};
     FILE *out = open_memstream(&text, &size);
     if (study_summary(s, f->results, out, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     fclose(out);
     return text;
 }
@@ -80,12 +81,12 @@ static const char *field(const char *text, int line, const char *name)
             column = at;
     if (column < 0)
         fail_msg("no column %s", name);
-    char *wanted = NULL;
+    char *expected = NULL;
     for (int i = 0; i < line; i++)
-        wanted = strsep(&lines, "\n");
+        expected = strsep(&lines, "\n");
     const char *word = NULL;
     for (at = 0; at <= column; at++)
-        word = strsep(&wanted, "\t");
+        word = strsep(&expected, "\t");
     snprintf(value, sizeof value, "%s", word ? word : "(none)");
     free(copy);
     return value;

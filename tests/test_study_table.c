@@ -1,3 +1,4 @@
+/* Tests of the append-only table file: incomplete ends, locks, full disks and unwritable paths. */
 #include "study_fixture.h"
 #include "study/table.h"
 #include <signal.h>
@@ -7,12 +8,12 @@ static const char header[] = "a,b\n";
 
 static table *open_table(const fixture *f)
 {
-    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    char path[400], message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     table *t = NULL;
     fixture_path(f, "rows.csv", path);
     if (table_open(path, header, &t, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return t;
 }
 

@@ -1,3 +1,4 @@
+/* Tests of rays that start on a surface: its own root is exact, so that rays neither escape nor stick nor drift. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +10,6 @@
 #include "random_stream.h"
 #include "ray_fixture.h"
 #include "solid_reference.h"
-
-/* Tests of rays that start on a surface: its own root is exact, so that rays neither escape nor stick nor drift. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(quad_abs((quad)(a) - (quad)(b)) <= (quad)(tolerance))

@@ -24,11 +24,11 @@ static const char floor_scene[] =
     "  slab: {shape: box, size: [90, 0.6, 90], position: [0, 1.2, 0], transparency: 1, visible: off}\n";
 static const double a_per_m[3] = {0.1, 0.0, 0.3};
 
-static void expect(vec3 seen, double full, double way)
+static void expect(vec3 seen, double full, double length)
 {
-    assert_near(seen.x, full * exp(-a_per_m[0] * way), 1e-12);
-    assert_near(seen.y, full * exp(-a_per_m[1] * way), 1e-12);
-    assert_near(seen.z, full * exp(-a_per_m[2] * way), 1e-12);
+    assert_near(seen.x, full * exp(-a_per_m[0] * length), 1e-12);
+    assert_near(seen.y, full * exp(-a_per_m[1] * length), 1e-12);
+    assert_near(seen.z, full * exp(-a_per_m[2] * length), 1e-12);
 }
 
 static void paths_to_the_camera_and_to_the_light_are_both_attenuated(void **state)
@@ -104,11 +104,11 @@ static void a_spectral_film_uses_the_coefficient_by_wavelength(void **state)
     const vec3 seen = look(s);
     set_all(s, "background.absorb_per_m=0,0,0 slab.visible=on slab.size=90,90,90 slab.position=0,44,0 "
                "slab.absorb_per_m=0.1,0,0.3 floor.priority=1");
-    const vec3 wanted = look(s);
+    const vec3 expected = look(s);
     assert_true(seen.x > 0.05);
-    assert_near(seen.x, wanted.x, 1e-11);
-    assert_near(seen.y, wanted.y, 1e-11);
-    assert_near(seen.z, wanted.z, 1e-11);
+    assert_near(seen.x, expected.x, 1e-11);
+    assert_near(seen.y, expected.y, 1e-11);
+    assert_near(seen.z, expected.z, 1e-11);
     scene_destroy(s);
 }
 

@@ -505,7 +505,7 @@ static void extreme_coordinates_and_footprints_are_valid(void **state)
                 vec3 c = texture_sample(t, u, v, strange[j / COUNT(strange) / COUNT(strange)]);
                 assert_true(fmin(fmin(c.x, c.y), c.z) >= 0.0 && fmax(fmax(c.x, c.y), c.z) <= 1.0);
             }
-            /* as the header says */
+            /* as documented in the header */
             vec3 origin = texture_sample(t, 0.0, 0.0, 0.0),
                  far = texture_sample(t, wraps[i / 3] == TEXTURE_CLAMP ? 1.0 : 0.0, 0.0, 0.0);
             assert_same(texture_sample(t, (double)NAN, (double)NAN, (double)NAN), origin, 0.0);

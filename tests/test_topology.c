@@ -1,3 +1,4 @@
+/* Tests of the machine's topology: placement of workers by each policy, on described machines and on this one. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

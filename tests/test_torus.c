@@ -59,7 +59,7 @@ static void crossings_of_random_lines_agree_with_quadruple_precision(void **stat
     enum { RAYS = 120000 };
     uint64_t seed = 1;
     double worst = 0.0, worst_along = 0.0;
-    long hit_primitive = 0, met_four = 0, unlike = 0;
+    long crossings = 0, with_four = 0, unlike = 0;
     for (int ray = 0; ray < RAYS; ray++) {
         const double R = exp(random_real(&seed, -3.0, 3.0));
         solid_shape s = torus_of(R, R * (1.0 - exp(random_real(&seed, -6.0, -0.002))));
@@ -89,16 +89,16 @@ static void crossings_of_random_lines_agree_with_quadruple_precision(void **stat
                 worst_along = fmax(worst_along, (double)(quad_abs(passed - t[k]) / bound));
             }
         }
-        hit_primitive += n;
-        met_four += n == 4;
+        crossings += n;
+        with_four += n == 4;
         scene_geometry_destroy(a);
     }
-    print_message(
-        "%d rays, %ld crossings, %ld rays with four, %ld grazing ones unlike; points are off by %.3f of their bound, "
-        "distances by %.3f\n",
-        RAYS, hit_primitive, met_four, unlike, worst, worst_along);
+    print_message("%d rays, %ld crossings, %ld rays with four, %ld grazing ones that differ; errors are at most %.3f "
+                  "of the bound "
+                  "for points, %.3f for distances\n",
+                  RAYS, crossings, with_four, unlike, worst, worst_along);
     assert_true(worst <= 1.0 && worst_along <= 1.0);
-    assert_true(met_four > RAYS / 100 && hit_primitive > RAYS / 2);
+    assert_true(with_four > RAYS / 100 && crossings > RAYS / 2);
 }
 
 /* Pappus and Guldin: 2 pi^2 R r^2. */

@@ -39,16 +39,16 @@ static double (*daylight_weights(void))[3]
 /* CIEDE2000 between a colour and its spectrum as seen under D65; checks that the spectrum is a valid reflectance. */
 static double round_trip(double (*weights)[3], const upsampled_spectrum *l, const double rgb[3])
 {
-    double xyz[3] = {0.0, 0.0, 0.0}, wanted[3], lab[3], wanted_lab[3];
+    double xyz[3] = {0.0, 0.0, 0.0}, expected[3], lab[3], wanted_lab[3];
     for (int k = 0; k < WAVELENGTHS; k++) {
         double s = upsampled_reflectance(l, wavelength_nm(k));
         assert_true(s >= 0.0 && s <= 1.0);
         for (int i = 0; i < 3; i++)
             xyz[i] += l->scale * s * weights[k][i];
     }
-    linear_srgb_to_xyz(rgb, wanted);
+    linear_srgb_to_xyz(rgb, expected);
     lab_from_xyz(xyz, lab);
-    lab_from_xyz(wanted, wanted_lab);
+    lab_from_xyz(expected, wanted_lab);
     double difference = color_difference_2000(lab, wanted_lab);
     assert_true(isfinite(difference));
     return difference;
@@ -135,7 +135,7 @@ static void colours_next_to_black_and_white_round_trip(void **state)
     assert_true(worst < 0.01);
 }
 
-/* Colours that occur in no image; nothing may break, and the difference must be invisible (1 is just visible). */
+/* Extreme colours: the spectra must be valid, and the colour difference invisible (1 is just visible). */
 static void extreme_colours_give_finite_spectra(void **state)
 {
     (void)state;

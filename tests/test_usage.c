@@ -217,7 +217,7 @@ static char *make_root(char *root, size_t size)
 static void disturbances_of_the_machine_are_reported(void **state)
 {
     (void)state;
-    char root[256], said[2048] = "";
+    char root[256], message[2048] = "";
     make_root(root, sizeof root);
     put(root, "/sys/devices/system/cpu/cpufreq/policy0/scaling_governor", "performance\n");
     put(root, "/sys/devices/system/cpu/cpufreq/policy4/scaling_governor", "powersave\n");
@@ -227,21 +227,21 @@ static void disturbances_of_the_machine_are_reported(void **state)
     put(root, "/proc/cpuinfo", "processor\t: 0\nflags\t\t: fpu sse2 hypervisor lahf_lm\n");
     put(root, "/proc/loadavg", "3.25 1.00 0.50 1/200 4242\n");
     put(root, "/proc/meminfo", "MemTotal: 8000000 kB\nSwapTotal:  4096000 kB\nSwapFree:  1024000 kB\n");
-    disturbances_of_machine(root, collect, said);
-    assert_string_equal(said, "governor powersave\n"
-                              "turbo on\n"
-                              "threads share cores (SMT on)\n"
-                              "virtual machine: its hypervisor may run others on the same cores\n"
-                              "control group limits the process to 1.5 units\n"
-                              "load 3.2\n"
-                              "swap in use, 3000 MiB\n");
+    disturbances_of_machine(root, collect, message);
+    assert_string_equal(message, "governor powersave\n"
+                                 "turbo on\n"
+                                 "threads share cores (SMT on)\n"
+                                 "virtual machine: its hypervisor may run others on the same cores\n"
+                                 "control group limits the process to 1.5 units\n"
+                                 "load 3.2\n"
+                                 "swap in use, 3000 MiB\n");
     assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
 }
 
 static void no_disturbances_are_reported_for_a_quiet_machine(void **state)
 {
     (void)state;
-    char root[256], said[2048] = "";
+    char root[256], message[2048] = "";
     make_root(root, sizeof root);
     put(root, "/sys/devices/system/cpu/cpufreq/policy0/scaling_governor", "performance\n");
     put(root, "/sys/devices/system/cpu/intel_pstate/no_turbo", "1\n");
@@ -251,19 +251,19 @@ static void no_disturbances_are_reported_for_a_quiet_machine(void **state)
     put(root, "/proc/cpuinfo", "processor\t: 0\nflags\t\t: fpu sse2\nbugs : hypervisor\n");
     put(root, "/proc/loadavg", "0.12 1.00 0.50 1/200 4242\n");
     put(root, "/proc/meminfo", "MemTotal: 8000000 kB\nSwapTotal:  4096000 kB\nSwapFree:  4096000 kB\n");
-    disturbances_of_machine(root, collect, said);
-    assert_string_equal(said, "");
+    disturbances_of_machine(root, collect, message);
+    assert_string_equal(message, "");
     assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
-    disturbances_of_machine("/nowhere", collect, said); /* a system without /proc and /sys */
-    assert_string_equal(said, "");
+    disturbances_of_machine("/nowhere", collect, message); /* a system without /proc and /sys */
+    assert_string_equal(message, "");
 }
 
 static void disturbances_of_this_machine_are_reported_as_lines(void **state)
 {
     (void)state;
-    char said[4096] = "";
-    usage_disturbances(0.05, collect, said);
-    assert_null(strstr(said, "\n\n"));
+    char message[4096] = "";
+    usage_disturbances(0.05, collect, message);
+    assert_null(strstr(message, "\n\n"));
 }
 
 int main(void)

@@ -84,10 +84,10 @@ static void a_pool_runs_many_tasks_in_sequence(void **state)
     assert_non_null(p);
     for (int i = 0; i < 3000; i++)
         assert_int_equal(worker_pool_run(p, 1 + i % 9, true, note, NULL, 0.0, &j, NULL), STATUS_OK);
-    int wanted = 0;
+    int expected = 0;
     for (int i = 0; i < 3000; i++)
-        wanted += 1 + i % 9;
-    assert_int_equal(atomic_load(&j.total), wanted);
+        expected += 1 + i % 9;
+    assert_int_equal(atomic_load(&j.total), expected);
     worker_pool_destroy(p);
 }
 

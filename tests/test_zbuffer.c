@@ -65,14 +65,14 @@ static double share_beyond(const char *text, const char *assignments, double muc
     set(s, "render.integrator=raycast");
     render_result *cast = render(s);
     set(s, "render.integrator=zbuffer");
-    render_result *drawn = render(s);
+    render_result *rasterised = render(s);
     int beyond = 0;
     for (int y = 0; y < cast->img->height; y++)
         for (int x = 0; x < cast->img->width; x++)
-            beyond += difference_at(cast->img, drawn->img, x, y) > much;
+            beyond += difference_at(cast->img, rasterised->img, x, y) > much;
     const double share = (double)beyond / ((double)cast->img->width * cast->img->height);
     render_result_destroy(cast);
-    render_result_destroy(drawn);
+    render_result_destroy(rasterised);
     scene_destroy(s);
     return share;
 }
@@ -313,25 +313,25 @@ static bool in_perspective(double x, double y, double uv[2])
 static bool straight(double x, double y, double uv[2])
 {
     for (int t = 0; t < 2; t++) {
-        double area[3], whole = 0.0;
+        double area[3], total_area = 0.0;
         for (int k = 0; k < 3; k++) {
             const vec3 a = leaning[leaning_halves[t][(k + 1) % 3]], b = leaning[leaning_halves[t][(k + 2) % 3]];
             area[k] = (a.x / a.z - x) * (b.y / b.z - y) - (a.y / a.z - y) * (b.x / b.z - x);
-            whole += area[k];
+            total_area += area[k];
         }
         if (area[0] < 0.0 || area[1] < 0.0 || area[2] < 0.0)
             continue;
         uv[0] = uv[1] = 0.0;
         for (int k = 0; k < 3; k++)
             for (int j = 0; j < 2; j++)
-                uv[j] += area[k] / whole * leaning_uv[leaning_halves[t][k]][j];
+                uv[j] += area[k] / total_area * leaning_uv[leaning_halves[t][k]][j];
         return true;
     }
     return false;
 }
 
 /* Returns the largest difference of v from the other texture interpolation. */
-static double expect_texture(const char *texturing, bool (*wanted)(double, double, double[2]),
+static double expect_texture(const char *texturing, bool (*expected)(double, double, double[2]),
                              bool (*other)(double, double, double[2]))
 {
     scene *s = leaning_scene(texturing);
@@ -342,7 +342,7 @@ static double expect_texture(const char *texturing, bool (*wanted)(double, doubl
         for (int i = 0; i < 100; i++) {
             const double x = (i + 0.5) / 50.0 - 1.0, y = 1.0 - (j + 0.5) / 50.0, edge = 1.0 / 128.0;
             double uv[2], not [2];
-            if (!wanted(x, y, uv) || !other(x, y, not ) || uv[0] < edge || uv[0] > 1.0 - edge || uv[1] < edge ||
+            if (!expected(x, y, uv) || !other(x, y, not ) || uv[0] < edge || uv[0] > 1.0 - edge || uv[1] < edge ||
                 uv[1] > 1.0 - edge)
                 continue; /* the ramp is constant outside its last texels' middles */
             assert_true(fabs(film_value(r->img, i, j, 0) - uv[0]) < 1e-6);
@@ -426,14 +426,14 @@ static void covered_points_are_counted_and_no_rays_are_tested(void **state)
     const ray_counters *c = &r->counters;
     assert_int_equal(c->camera, 4 * 200 * 150);
     assert_int_equal(c->shadow + c->reflect + c->refract, 0);
-    uint64_t met = 0;
+    uint64_t covered = 0;
     for (int k = 0; k < COUNTERS_SOLID_MAX; k++) {
         assert_int_equal(c->tests[k], 0);
-        met += c->first_hits[k];
+        covered += c->first_hits[k];
     }
     for (size_t k = 0; k < s->solid_count; k++)
         assert_true(c->first_hits[k] > 100);
-    assert_true(met > 4 * 200 * 75 && met < c->camera);
+    assert_true(covered > 4 * 200 * 75 && covered < c->camera);
     render_result_destroy(r);
     scene_destroy(s);
 }

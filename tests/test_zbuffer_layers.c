@@ -202,24 +202,23 @@ static void views_without_refraction_equal_ray_tracing(void **state)
         set_all(s, "clear.ior=1 render.transmission=simple");
         render_result *traced = render(s);
         set(s, "render.integrator=zbuffer");
-        render_result *drawn = render(s);
+        render_result *rasterised = render(s);
         int beyond = 0;
         for (int at = 0; at < 160 * 120; at++) {
             double most = 0.0;
             for (int c = 0; c < 3; c++)
                 most = fmax(most, fabs(film_value(traced->img, at % 160, at / 160, c) -
-                                       film_value(drawn->img, at % 160, at / 160, c)));
+                                       film_value(rasterised->img, at % 160, at / 160, c)));
             beyond += most > 0.01;
         }
         if (beyond > 160 * 120 / 100)
             fail_msg("%s: %d pixels differ", variants[v], beyond);
         render_result_destroy(traced);
-        render_result_destroy(drawn);
+        render_result_destroy(rasterised);
         scene_destroy(s);
     }
 }
 
-/* R + T = 1 at every layer: under a sky of 1, clear solids of any index are invisible. */
 /* Of two opaque walls, one slightly behind the other, the nearer is visible, whatever clear solid turns them into
  * layers: from outside, and from inside both. */
 static void an_invisible_clear_solid_does_not_change_the_order(void **state)
@@ -287,6 +286,7 @@ static void an_invisible_clear_solid_does_not_change_opaque_ones(void **state)
     assert_true(stays_with_a_rod(boards, "position: [1.99, 2.4, 1], rotation: [-45, 0, 0]", ""));
 }
 
+/* R + T = 1 at every layer: under a sky of 1, clear solids of any index are invisible. */
 static void no_light_is_lost_between_layers(void **state)
 {
     (void)state;
@@ -313,18 +313,18 @@ static void the_rod_is_close_to_the_traced_image(void **state)
     scene *s = rod_scene("render.width=400 render.height=300 render.depth=4");
     render_result *traced = render(s);
     set(s, "render.integrator=zbuffer");
-    render_result *drawn = render(s);
+    render_result *rasterised = render(s);
     image *a = NULL, *b = NULL;
     image_comparison c;
     assert_int_equal(film_image(traced->img, &a, NULL), STATUS_OK);
-    assert_int_equal(film_image(drawn->img, &b, NULL), STATUS_OK);
+    assert_int_equal(film_image(rasterised->img, &b, NULL), STATUS_OK);
     assert_int_equal(image_compare(a, b, &c, NULL), STATUS_OK);
     print_message("rod: FLIP %.3f\n", c.flip);
     assert_true(c.flip < 0.12);
     image_destroy(a);
     image_destroy(b);
     render_result_destroy(traced);
-    render_result_destroy(drawn);
+    render_result_destroy(rasterised);
     scene_destroy(s);
 }
 
