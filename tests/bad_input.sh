@@ -39,7 +39,7 @@ render() { # WHAT PATTERN ARGUMENT...
 # --- command lines
 refused "no command" "no command is given"
 printf 'meshes: {toy: {generate: slime, dt_s: 1e-300}}\n' >tiny.yaml
-refused "a step of motion of next to nothing" "tiny.yaml:1:.*dt_s" render tiny.yaml --json
+refused "a tiny time step" "tiny.yaml:1:.*dt_s" render tiny.yaml --json
 refused "misspelt command" "did you mean 'render'" rendr
 refused "unknown command" "give one of: render" frobnicate
 refused "unknown option of the program" "unknown option '--bogus'" --bogus
@@ -96,8 +96,8 @@ refused "help for a misspelt command" "did you mean 'study'" help studdy
 refused "study without a command" "no command is given" study
 refused "misspelt study command" "did you mean 'merge'" study merg
 refused "study run without a file" "no study" study run
-refused "study file is not there" "nowhere.study" study run nowhere.study
-refused "study list of nothing" "nowhere" study list nowhere
+refused "a missing study file" "nowhere.study" study run nowhere.study
+refused "study list of a missing folder" "nowhere" study list nowhere
 refused "shard out of range" "0 <= I < N" study run --shard 2/2 x.study
 refused "shard without N" "0 <= I < N" study run --shard 1 x.study
 refused "shard of words" "0 <= I < N" study run --shard a/b x.study
@@ -126,17 +126,17 @@ render "--set of an unknown element" "lamp.position" --set lamp.position.w=1
 render "--set of an unknown solid" "vesel" --set vesel.ior=1.5
 render "--set of a parameter that the shape lacks" "ground" --set ground.radius=1
 render "--set of control characters" "--set" --set $'render.depth=\e[31m4'
-render "--set that makes no shape" "vessel" --set vessel.inner_radius=2
+render "--set that gives an invalid shape" "vessel" --set vessel.inner_radius=2
 render "a camera at its own target" "camera" --set camera.target=0,2.75,-6
 render "an environment without an image" "picture" --set background.kind=picture
 
 # --- environment images
 printf '%s\n' 'background: {kind: picture, picture: sky.png}' 'render: {width: 8, height: 6}' >sky.yaml
-sky() { # WHAT: the file sky.png is bad
+sky() { # WHAT: the file sky.png is invalid
     refused "sky: $1" "sky\." render sky.yaml --json
 }
 rm -f sky.png
-sky "not there"
+sky "missing"
 mkdir sky.png
 sky "a folder"
 rmdir sky.png
@@ -312,15 +312,15 @@ bad_study() { # WHAT PATTERN TEXT
     refused "study: $1" "^cuvette: bad\.study.*$2" study run bad.study --results results
 }
 bad_study "unknown key" ":2:" "study: a\nscen: $scene\n"
-bad_study "scene is not there" ":2:" 'study: a\nscene: nowhere.yaml\n'
+bad_study "a missing scene" ":2:" 'study: a\nscene: nowhere.yaml\n'
 bad_study "unknown parameter" ":3:" "study: a\nscene: $scene\ngrid: [{render.dpth: [1, 2]}]\nrepetitions: 1\n"
 bad_study "value out of range" ":3:" "study: a\nscene: $scene\ngrid: [{render.depth: [1, 200]}]\nrepetitions: 1\n"
 bad_study "no repetitions" ":" "study: a\nscene: $scene\ngrid: [{render.depth: [1]}]\nrepetitions: 0\n"
 bad_study "a range without steps" ":3:.*steps: 5" "study: a\nscene: $scene\ngrid: [{liquid.ior: {from: 1, to: 2}}]\n"
 bad_study "a range of one value" ":3:" "study: a\nscene: $scene\ngrid: [{liquid.ior: {from: 2, to: 2, steps: 3}}]\n"
-bad_study "more repetitions at least than at most" ":3:.*less than" \
+bad_study "a minimum of repetitions above the maximum" ":3:.*less than" \
     "study: a\nscene: $scene\nrepetitions: {min: 9, max: 3, relative_width: 0.1}\n"
-[[ -e results ]] && echo "# a refused study has made results/"
+[[ -e results ]] && echo "# a refused study has created results/"
 changed() { # GRID
     printf '%s\n' 'study: changed' "scene: $scene" 'set: {render.width: 8, render.height: 6}' "grid: [$1]" \
         'repetitions: 1' \

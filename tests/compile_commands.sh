@@ -1,6 +1,6 @@
 #!/bin/bash
-# The compilation database is JSON with one entry for every C file of src and tests, and its commands compile the files
-# that they name: tried with one file of each kind. CC compiles tests/json_get.c, which reads the database.
+# Checks that the compilation database is JSON with one entry for every C file of src and tests, and that its commands
+# compile, for one file of each kind. CC compiles tests/json_get.c, which reads the database.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-commands.XXXXXX") || exit 1
@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
 count=0 failed=0
-empty() { # WHAT TEXT: passes when the text, what is wrong, is empty
+empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
     count=$((count + 1))
     if [[ -z $2 ]]; then
         echo "ok $count - $1"

@@ -1,13 +1,13 @@
 #!/bin/bash
-# The engine as other programs meet it: installed, found by pkg-config, linked shared and statically, from C and C++;
-# its names, its
-# version; the example programs' images and memory. BUILD names the build folder, CONFIG its configuration.
+# The engine library in other programs: installation, pkg-config, shared and static linking, from C and C++; its
+# exported names and version; the example programs' images and memory. BUILD names the build folder, CONFIG its
+# configuration.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 build=${BUILD:-build} config=${CONFIG:-release} cc=${CC:-gcc}
 case $cc in *clang*) cxx=${CXX:-clang++} ;; *) cxx=${CXX:-g++} ;; esac
 case $config in sanitize | tsan | fuzz | coverage)
-    echo "# instrumented libraries are not for other programs"
+    echo "# instrumented libraries cannot be linked with other programs"
     exit 77
     ;;
 esac
@@ -30,7 +30,7 @@ verdict() { # STATUS WHAT [WHY]
         [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3" | head -20
     fi
 }
-empty() { # WHAT TEXT: passes when the text, what is wrong, is empty
+empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
     [[ -z $2 ]]
     verdict $? "$1" "$2"
 }
@@ -42,11 +42,11 @@ have() { command -v "$1" >/dev/null; }
 run_make() { make -s --no-print-directory config="$config" build="$build" CC="$cc" "$@" 2>&1 |
     grep -v -i -e jobserver -e '^ '; }
 
-# --- installed, under DESTDIR and without it
+# --- installation, with and without DESTDIR
 prefix=$work/prefix staged=$work/destination/opt/cuvette
 run_make install DESTDIR="$work/destination" PREFIX=/opt/cuvette
 run_make install PREFIX="$prefix"
-empty "DESTDIR goes before PREFIX, and is in no file" \
+empty "DESTDIR is prepended to PREFIX and is not in an installed file" \
     "$(
         diff <(cd "$prefix" && find . | sort) <(cd "$staged" && find . |
             sort)
@@ -55,18 +55,19 @@ empty "DESTDIR goes before PREFIX, and is in no file" \
 export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
 flags() { pkg-config "$@" cuvette; }
 version=$(sed -n 's/^#define CUVETTE_VERSION_[A-Z]* //p' src/cuvette.h | paste -sd.)
-empty "pkg-config says the header's version" "$([[ $(flags --modversion) == "$version" ]] || flags --modversion 2>&1)"
+empty "pkg-config reports the version of the header" \
+    "$([[ $(flags --modversion) == "$version" ]] || flags --modversion 2>&1)"
 
-# --- what is seen of it
+# --- exported names
 library=$prefix/lib/libcuvette.so.0
 declared=$(grep -o '\bcuvette_[a-z0-9_]*(' "$prefix/include/cuvette.h" | tr -d '(' | sort -u)
-empty "the shared library shows what the header declares, and nothing else" \
+empty "the shared library exports exactly the functions of the header" \
     "$(diff <(echo "$declared") <(nm -D --defined-only "$library" | awk '{print $3}' | sort))"
-empty "so does the static one" \
+empty "the static library exports exactly the functions of the header" \
     "$(diff <(echo "$declared") <(nm -g --defined-only "$prefix/lib/libcuvette.a" | awk 'NF == 3 {print $3}' | sort))"
-empty "its soname is libcuvette.so.0" "$(readelf -d "$library" | grep SONAME | grep -v '\[libcuvette.so.0\]')"
-empty "it needs no executable stack" "$(readelf -lW "$library" | awk '/GNU_STACK/ && /RWE/')"
-empty "it neither prints nor ends the program" \
+empty "the soname is libcuvette.so.0" "$(readelf -d "$library" | grep SONAME | grep -v '\[libcuvette.so.0\]')"
+empty "the library requires no executable stack" "$(readelf -lW "$library" | awk '/GNU_STACK/ && /RWE/')"
+empty "the library neither prints nor calls exit" \
     "$(nm -D --undefined-only "$library" | awk '{print $2}' | sed 's/@.*//' |
         grep -x -e exit -e _exit -e abort -e printf -e puts -e putchar -e perror -e stderr)"
 
@@ -78,27 +79,27 @@ static=("${static[@]/#-lcuvette/-l:libcuvette.a}")
 build_and_run() { # NAME COMPILER FLAG...
     local name=$1
     shift
-    local said
-    said=$("$@" "${warnings[@]}" -g -o "$work/$name" 2>&1)
-    verdict $? "the example builds: $name" "$said"
-    said=$({ "$work/$name" >"$work/$name.ppm"; } 2>&1)
-    verdict $? "and runs" "$said"
-    grep -o "$what_is_said" <<<"$said" >"$work/$name.said"
+    local output
+    output=$("$@" "${warnings[@]}" -g -o "$work/$name" 2>&1)
+    verdict $? "$name: the example compiles" "$output"
+    output=$({ "$work/$name" >"$work/$name.ppm"; } 2>&1)
+    verdict $? "$name: the example runs" "$output"
+    grep -o "$stable_output" <<<"$output" >"$work/$name.output"
 }
 under_valgrind() { # NAME
-    local said
+    local output
     if ! have valgrind; then
         skip "valgrind is not installed"
         return
     fi
-    said=$(LD_LIBRARY_PATH=$prefix/lib valgrind -q --error-exitcode=9 --leak-check=full \
+    output=$(LD_LIBRARY_PATH=$prefix/lib valgrind -q --error-exitcode=9 --leak-check=full \
         --show-leak-kinds=definite,indirect,possible \
         --errors-for-leak-kinds=definite,indirect,possible "$work/$1" 2>&1 >"$work/valgrind.ppm")
-    verdict $? "valgrind finds no fault in it, and no leak" "$(grep '^==' <<<"$said")"
-    empty "and it sees the same image" "$(cmp "$work/$1.ppm" "$work/valgrind.ppm" 2>&1)"
+    verdict $? "$1: valgrind reports no error and no leak" "$(grep '^==' <<<"$output")"
+    empty "$1: the image under valgrind is the same" "$(cmp "$work/$1.ppm" "$work/valgrind.ppm" 2>&1)"
 }
-try_example() { # NAME WIDTH HEIGHT WHAT_IS_SAID: what of its words is the same in every run
-    local name=$1 width=$2 height=$3 what_is_said=$4 source=experiments/engine/$1.c way
+try_example() { # NAME WIDTH HEIGHT PATTERN: the part of its output that is the same in every run
+    local name=$1 width=$2 height=$3 stable_output=$4 source=experiments/engine/$1.c
     empty "$name has fewer than 100 lines" "$(awk 'END {if (NR >= 100) print NR}' "$source")"
     LD_LIBRARY_PATH=$prefix/lib build_and_run "$name-shared-c" "$cc" -std=c17 "$source" "${shared[@]}"
     build_and_run "$name-static-c" "$cc" -std=c17 "$source" "${static[@]}"
@@ -110,23 +111,23 @@ try_example() { # NAME WIDTH HEIGHT WHAT_IS_SAID: what of its words is the same 
     else
         skip "$name as C++: no $cxx"
     fi
-    empty "the shared one needs libcuvette.so.0, the static one none" \
+    empty "$name needs libcuvette.so.0 if linked shared, and not if linked statically" \
         "$(
             readelf -d "$work/$name-shared-c" | grep 'NEEDED.*libcuvette\.so\.0\]' >/dev/null ||
                 echo shared
             readelf -d "$work/$name-static-c" | grep 'NEEDED.*libcuvette'
         )"
-    empty "it says what it did" "$([[ -s $work/$name-shared-c.said ]] || echo nothing)"
+    empty "$name prints its result" "$([[ -s $work/$name-shared-c.output ]] || echo nothing)"
     for variant in "${variants[@]}"; do
-        empty "$name-$variant gives the same image, films and counts" \
+        empty "$name-$variant has the same image, films and counts" \
             "$(
                 cmp "$work/$name-shared-c.ppm" "$work/$name-$variant.ppm" 2>&1
-                diff "$work/$name-shared-c.said" \
-                    "$work/$name-$variant.said"
+                diff "$work/$name-shared-c.output" \
+                    "$work/$name-$variant.output"
             )"
     done
     local head="P6 $width $height 255 "
-    empty "the image is a PPM of $width x $height" \
+    empty "the image of $name is a PPM of $width x $height" \
         "$([[ $(head -c ${#head} "$work/$name-shared-c.ppm" | tr '\n' ' ') == "$head" &&
         $(wc -c <"$work/$name-shared-c.ppm") == $((${#head} + 3 * width * height)) ]] ||
             wc -c <"$work/$name-shared-c.ppm")"
@@ -135,7 +136,7 @@ try_example() { # NAME WIDTH HEIGHT WHAT_IS_SAID: what of its words is the same 
 try_example glass_ball 320 240 'film.*preview\|rays:.*'
 try_example slime 800 120 'film.*'
 
-# --- gone again
+# --- uninstallation
 run_make uninstall PREFIX="$prefix"
-empty "uninstall leaves no file" "$(find "$prefix" -type f -o -type l)"
+empty "make uninstall leaves no file" "$(find "$prefix" -type f -o -type l)"
 exit $failed

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Every fault of tests/faults/laws.tsv names text that stands in its file: else `make law-faults`, which takes an hour,
-# would stop at it.
+# Checks that the text of every fault in tests/faults/laws.tsv still occurs in its file: `make law-faults`, which takes
+# an hour, stops at the first one that does not.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 count=0 failed=0
@@ -11,7 +11,7 @@ while IFS=$'\t' read -r file old new; do
         echo "ok $count - $file: $new"
     else
         failed=1
-        echo "not ok $count - $file has no '$old' for '$new' to take the place of"
+        echo "not ok $count - $file does not contain '$old', which the fault replaces by '$new'"
     fi
 done <tests/faults/laws.tsv
 ((count > 0)) || failed=1

@@ -1,7 +1,7 @@
 #!/bin/bash
-# The program in every floating-point environment: a preloaded library sets it before main, as the start-up code of a
-# library that was linked with -ffast-math does. tests/float_environment.sh [PROGRAM]; needs the compiler (CC). What
-# is printed must be the same, byte for byte. One line a check ("ok ...", "not ok ...").
+# Checks that the output does not depend on the floating-point environment at program start, byte for byte: a preloaded
+# library sets the environment before main, like the start-up code of a library linked with -ffast-math.
+# tests/float_environment.sh [PROGRAM]; needs the compiler (CC). One line per check ("ok ...", "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -12,7 +12,7 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 unset CUVETTE_ISA
 export LC_ALL=C
-# A library may stand before the sanitizers' own: it allocates nothing.
+# The preloaded library may precede the sanitizers' because it allocates nothing.
 export ASAN_OPTIONS=verify_asan_link_order=0
 
 cat >strange.c <<'EOF'
@@ -54,7 +54,7 @@ int main(void)
 EOF
 "${CC:-gcc}" -shared -fPIC -O1 -o strange.so strange.c -lm && "${CC:-gcc}" -o names names.c -lm ||
     {
-        echo "# no compiler that makes a library"
+        echo "# the compiler cannot build a shared library"
         exit 77
     }
 read -r nearest up down zero < <(./names | tr -d ';' | cut -d' ' -f1-4)
@@ -69,22 +69,22 @@ verdict() { # STATUS WHAT
         echo "not ok $((passed + failed)) - $2"
     fi
 }
-environment= # STRANGE of what follows; empty: none
+environment= # the value of STRANGE for the following commands; empty: none
 strange() {  # PROGRAM ARGUMENT...
     if [[ $environment ]]; then STRANGE=$environment LD_PRELOAD=$work/strange.so "$@"; else "$@"; fi
 }
 cuvette() { strange "$program" "$@"; }
 
-# Otherwise what follows would show nothing.
+# Otherwise the following checks would pass trivially.
 [[ $(environment=$up,0,0,0 && strange ./names) == *"; $up" ]]
 verdict $? "the preloaded library sets the environment"
 
-# A function that is added to the engine enters the default environment too.
+# Covers functions added to the engine later.
 bare=$(awk '/^cuvette_status cuvette_/ {name = $2; sub(/\(.*/, "", name); n++}
             name && open {if ($0 !~ /^ *ENGINE_(ENTER|CALL|CHANGE)\(.*\);$/) print name; name = ""}
             {open = /^{$/} END {if (n < 50) print "only", n, "functions"}' "$root"/src/engine/*.c)
 [[ -z $bare ]]
-verdict $? "every function of cuvette.h that can fail enters its environment${bare:+, but not }$bare"
+verdict $? "every function of cuvette.h that can fail sets the default environment${bare:+, except }$bare"
 
 scenes=$root/experiments/scenes
 "$program" mesh --generate torus --around 24 --tube 12 -o ring.ply >/dev/null || exit 1
@@ -100,7 +100,7 @@ EOF
 small=(--set render.width=48 --set render.height=36 --set render.depth=4 --set render.threads=2)
 hash_of() { cuvette render "$@" --json | grep -o '"film_hash": *"[0-9a-f]*"'; }
 
-run_all() { # prints what the program says and writes
+run_all() { # prints the output and the files of the program
     hash_of "$scenes/rod.yaml" "${small[@]}"
     hash_of "$scenes/rod.yaml" "${small[@]}" --set render.integrator=path --set render.samples=4
     hash_of "$scenes/prism.yaml" "${small[@]}" --set render.wavelengths=16
@@ -119,24 +119,24 @@ run_all() { # prints what the program says and writes
 }
 run_all >expected 2>&1
 (($(grep -c film_hash expected) == 7)) && ! grep -q '^cuvette: ' expected
-verdict $? "every command works: $(wc -l <expected) lines"
+verdict $? "every command succeeds in the default environment: $(wc -l <expected) lines"
 expect() { # WHAT ENVIRONMENT
     environment=$2
     run_all >found 2>&1
     cmp -s expected found
     local same=$?
-    verdict "$same" "$1"
+    verdict "$same" "the output is the same with $1"
     ((same == 0)) || diff expected found | sed 's/^/# /' | head -10
 }
 ftz=0x8000 daz=0x0040 both=0x8040
-expect "up" "$up,0,0,0"
-expect "down" "$down,0,0,0"
-expect "toward zero" "$zero,0,0,0"
-expect "FTZ" "$nearest,$ftz,0,0"
-expect "DAZ" "$nearest,$daz,0,0"
-expect "up, FTZ and DAZ" "$up,$both,0,0"
-expect "down, FTZ and DAZ, narrow x87 registers" "$down,$both,1,0"
-expect "toward zero, FTZ and DAZ, traps" "$zero,$both,0,1"
+expect "rounding up" "$up,0,0,0"
+expect "rounding down" "$down,0,0,0"
+expect "rounding toward zero" "$zero,0,0,0"
+expect "flush to zero (FTZ)" "$nearest,$ftz,0,0"
+expect "denormals are zero (DAZ)" "$nearest,$daz,0,0"
+expect "rounding up, FTZ and DAZ" "$up,$both,0,0"
+expect "rounding down, FTZ and DAZ, x87 in single precision" "$down,$both,1,0"
+expect "rounding toward zero, FTZ and DAZ, traps" "$zero,$both,0,1"
 
 echo "$passed passed, $failed failed"
 ((failed == 0))

@@ -1,7 +1,7 @@
 #!/bin/bash
-# tests/format.sh [--check|--write] [FOLDER]: the layout of every source file: C by clang-format (.clang-format), shell
-# by shfmt, the page and its tests by prettier (.prettierrc.json) of FOLDER/node_modules; and no line over 120 columns.
-# A tool that is not there skips its case.
+# The layout of every source file: C by clang-format (.clang-format), shell by shfmt, the page and its tests by prettier
+# (.prettierrc.json) of FOLDER/node_modules; and no line over 120 columns. A check without its tool is skipped.
+# tests/format.sh [--check|--write] [FOLDER]
 set -uo pipefail
 cd "$(dirname "$0")/.."
 write=
@@ -14,7 +14,7 @@ mapfile -t shell < <(find .ci src tests plots experiments paper -type f -print0 
     xargs -0 grep -lE '^#!/bin/(ba)?sh' | sort)
 mapfile -t page < <(find src/web/page tests/web -name '*.js' -o -name '*.mjs' -o -name '*.css' -o -name '*.html' | sort)
 
-# check WHAT TOOL COMMAND...: the command prints what is laid out otherwise, and fails then
+# check WHAT TOOL COMMAND...: the command prints the lines with another layout, and fails if there are any
 check() {
     local what=$1 tool=$2 found
     shift 2

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Every header under src/ compiles alone, as C17 and as C++17 where there is a C++ compiler; one with C11 atomics as C
-# only.
+# Checks that every header under src/ compiles alone: as C17, and as C++17 if there is a C++ compiler and the header has
+# no C11 atomics.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 cc=${CC:-gcc}
@@ -28,11 +28,11 @@ for header in $(find src -name '*.h' | sort); do
     if ! command -v "$cxx" >/dev/null; then
         continue
     elif [[ $("$cc" -D_GNU_SOURCE -Isrc "${libraries[@]}" -M -x c "$header" 2>/dev/null) == */stdatomic.h* ]]; then
-        case_number=$((case_number + 1)) # private to the room that shares them among its threads
+        case_number=$((case_number + 1)) # such headers are private to their folder
         echo "ok $case_number # SKIP $header as C++17, which has no C11 atomics"
     else
         compile "$header" C++17 "$cxx" -std=c++17 -x c++
     fi
 done
-command -v "$cxx" >/dev/null || echo "# no $cxx: C++ was not tried"
+command -v "$cxx" >/dev/null || echo "# $cxx is not installed: C++ was skipped"
 exit $failed

@@ -1,7 +1,7 @@
 #!/bin/bash
-# kill -9 at 20 random moments of a study, each time continued: no row lost, none twice, none torn, and the same cells
-# in the
-# end as in a run that nobody disturbed. CUVETTE names the program, KILLS how often, KILL_SEED the moments.
+# A study that is killed (SIGKILL) at 20 random times and resumed each time: no row is lost, duplicated or incomplete,
+# and the final cells equal those of an uninterrupted run. CUVETTE names the program; KILLS is the number of kills,
+# KILL_SEED the seed of their times.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 program=${CUVETTE:-build/cuvette}
@@ -37,13 +37,13 @@ result() { # status name
     fi
 }
 
-study() { "$program" study run --results "$1" "$work/kill.study" >"$work/said" 2>&1; }
+study() { "$program" study run --results "$1" "$work/kill.study" >"$work/output" 2>&1; }
 
-# The whole lines of a file: what follows the last newline is torn.
-whole() { [[ -f $1 ]] && if [[ -n $(tail -c 1 "$1") ]]; then sed '$d' "$1"; else cat "$1"; fi; }
+# The complete lines of a file: text after the last newline is an incomplete row.
+complete_lines() { [[ -f $1 ]] && if [[ -n $(tail -c 1 "$1") ]]; then sed '$d' "$1"; else cat "$1"; fi; }
 
-# Each line of rows.csv has all its columns; no cell and repetition stands twice; with "complete": 4 measured ones a
-# cell.
+# Each line of rows.csv has all its columns; no cell and repetition is duplicated; with "complete", each cell has 4
+# measured repetitions.
 check_rows() {
     awk -F, -v complete="${2:-}" '
         NR == 1 { columns = NF; next }
@@ -58,16 +58,16 @@ check_rows() {
             if (complete && n != 15) { print n " cells"; bad = 1 }
             if (marked) { print marked " rows are marked"; bad = 1 }
             exit bad
-        }' <(whole "$1")
+        }' <(complete_lines "$1")
 }
 
-# Every row has its worker rows, as many as it had threads, each once, and there are no others.
+# Every row has one worker row per thread, and there are no other worker rows.
 check_workers() {
     awk -F, '
         FNR == 1 { file++; next }
         file == 1 { threads[$3, $4] = $9; rows++ }
-        file == 2 && !(($3, $4) in threads) { print "worker row of no row: cell " $3 " repetition " $4; bad = 1 }
-        file == 2 && seen[$3, $4, $8]++ { print "worker row twice"; bad = 1 }
+        file == 2 && !(($3, $4) in threads) { print "worker row without a row: cell " $3 " repetition " $4; bad = 1 }
+        file == 2 && seen[$3, $4, $8]++ { print "duplicate worker row"; bad = 1 }
         file == 2 { have[$3, $4]++ }
         END {
             for (key in threads)
@@ -79,10 +79,10 @@ check_workers() {
 
 cells() { awk -F, 'NR > 1 { print $3, $8, $9 }' "$1" | sort -u; }
 
-study "$work/calm"
-result $? "a run that nobody disturbs"
-check_rows "$work/calm/kill/rows.csv" complete
-result $? "all its rows are there"
+study "$work/whole"
+result $? "an uninterrupted run succeeds"
+check_rows "$work/whole/kill/rows.csv" complete
+result $? "its rows are complete"
 
 killed=0 round=0 lost=0 torn=0 rounds_bad=0
 while ((killed < kills)); do
@@ -90,13 +90,13 @@ while ((killed < kills)); do
     results=$work/results-$round
     : >"$work/before"
     while :; do
-        "$program" study run --results "$results" "$work/kill.study" >"$work/said" 2>&1 &
+        "$program" study run --results "$results" "$work/kill.study" >"$work/output" 2>&1 &
         child=$!
         sleep "$(awk -v r=$RANDOM 'BEGIN { printf "%.3f", 0.02 + 0.9 * r / 32768 }')"
         kill -9 "$child" 2>/dev/null
         wait "$child" 2>/dev/null
         code=$?
-        whole "$results/kill/rows.csv" >"$work/after"
+        complete_lines "$results/kill/rows.csv" >"$work/after"
         cmp -s -n "$(stat -c %s "$work/before")" "$work/before" "$work/after" || lost=$((lost + 1))
         check_rows "$results/kill/rows.csv" || torn=$((torn + 1))
         cp "$work/after" "$work/before"
@@ -109,19 +109,19 @@ while ((killed < kills)); do
         }
     done
     ((code == 0)) || {
-        cat "$work/said"
+        cat "$work/output"
         rounds_bad=$((rounds_bad + 1))
     }
     cmp -s -n "$(stat -c %s "$work/before")" "$work/before" "$results/kill/rows.csv" || lost=$((lost + 1))
     check_rows "$results/kill/rows.csv" complete || rounds_bad=$((rounds_bad + 1))
     check_workers "$results/kill" || rounds_bad=$((rounds_bad + 1))
-    [[ $(cells "$results/kill/rows.csv") == "$(cells "$work/calm/kill/rows.csv")" ]] || rounds_bad=$((rounds_bad + 1))
-    [[ $(cd "$results/kill/images" && sha256sum *.png) == "$(cd "$work/calm/kill/images" && sha256sum *.png)" ]] ||
+    [[ $(cells "$results/kill/rows.csv") == "$(cells "$work/whole/kill/rows.csv")" ]] || rounds_bad=$((rounds_bad + 1))
+    [[ $(cd "$results/kill/images" && sha256sum *.png) == "$(cd "$work/whole/kill/images" && sha256sum *.png)" ]] ||
         rounds_bad=$((rounds_bad + 1))
-    study "$results" && grep -q "nothing to do" "$work/said" || rounds_bad=$((rounds_bad + 1))
+    study "$results" && grep -q "nothing to do" "$work/output" || rounds_bad=$((rounds_bad + 1))
 done
 result $lost "$killed kills: no row is lost"
-result $torn "after each kill no whole line is torn and none stands twice"
-result $rounds_bad "$round studies went on to the end: same cells, same images, every row with its worker rows"
+result $torn "after each kill every line is complete and none is duplicated"
+result $rounds_bad "$round resumed studies have the same cells and images, and every row has its worker rows"
 echo "1..$case"
 exit $bad

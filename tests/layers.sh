@@ -1,31 +1,32 @@
 #!/bin/bash
-# A file under src/ includes only from its own room and from floors below it, written from src/. Reads the #include
-# lines; then plants bad ones in a copy, to see that they are caught.
+# The layers of src/: a file includes only headers of its own folder and of lower layers, with paths from src/. Checks
+# the #include lines, and that violations inserted into a copy are detected.
 #
-# One door leads sideways: cli/lab.c includes web/lab.h, since `cuvette lab` starts the laboratory, which is next to
-# the program's other commands. No other file of cli may look into web, and none of web into cli.
+# The one exception within a layer is cli/lab.c, which includes web/lab.h because `cuvette lab` starts the laboratory.
+# No other file of cli may include from web, and none of web from cli.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 
-# Prints one line an include that breaks the rule; silence is good.
+# Prints one line per include that violates the rule.
 check() {
     (cd "$1" && find . -name '*.[ch]' -printf '%P\n' | sort | xargs awk '
         BEGIN {
             split("base 0 optics 1 geometry 1 measure 1 image 1 import 1 softbody 2 scene 3 render 4 " \
                   "realism 5 lint 5 job 6 study 7 report 7 engine 8 web 9 cli 9 mpi 9 python 9", word)
-            for (i = 1; i in word; i += 2) floor[word[i]] = word[i + 1]
+            for (i = 1; i in word; i += 2) layer[word[i]] = word[i + 1]
         }
-        function room(path) { return path ~ /\// ? substr(path, 1, index(path, "/") - 1) : "engine" }
+        function folder(path) { return path ~ /\// ? substr(path, 1, index(path, "/") - 1) : "engine" }
         function complain(what) { printf "%s:%d: %s\n", FILENAME, FNR, what }
-        FNR == 1 { own = room(FILENAME); if (!(own in floor)) complain("room " own " stands on no floor") }
+        FNR == 1 { own = folder(FILENAME); if (!(own in layer)) complain("folder " own " has no layer") }
         /^[ \t]*#[ \t]*include[ \t]*"/ {
-            split($0, part, "\""); target = part[2]; other = room(target)
-            if (target ~ /(^|\/)\.\.?\//) complain("\"" target "\" is not written from src/")
-            else if (target !~ /\// && target != "cuvette.h") complain("\"" target "\" is not written from src/")
-            else if (!(other in floor)) complain("\"" target "\" leads to a room that stands on no floor")
-            else if (other != own && floor[other] > floor[own]) complain("\"" target "\" climbs from " own " to " other)
-            else if (other != own && floor[other] == floor[own] && FILENAME " " target != "cli/lab.c web/lab.h")
-                complain("\"" target "\" goes sideways from " own " to " other)
+            split($0, part, "\""); target = part[2]; other = folder(target)
+            if (target ~ /(^|\/)\.\.?\//) complain("\"" target "\" is not a path from src/")
+            else if (target !~ /\// && target != "cuvette.h") complain("\"" target "\" is not a path from src/")
+            else if (!(other in layer)) complain("\"" target "\" is in a folder that has no layer")
+            else if (other != own && layer[other] > layer[own])
+                complain("\"" target "\" is in a higher layer: " own " includes from " other)
+            else if (other != own && layer[other] == layer[own] && FILENAME " " target != "cli/lab.c web/lab.h")
+                complain("\"" target "\" is in the same layer: " own " includes from " other)
         }' /dev/null)
 }
 
@@ -41,7 +42,7 @@ report() { # report NAME FINDINGS: passes when there are none
     fi
 }
 
-plant() { # plant FILE INCLUDE EXPECTED: a copy with that line must be refused with that word
+plant() { # plant FILE INCLUDE EXPECTED: a copy with that line must be refused with that text, or accepted without one
     local copy=$folder/planted
     mkdir -p "$copy/$(dirname "$1")"
     printf '#include <stdio.h>\n  #  include %s\n' "$2" >"$copy/$1"
@@ -60,36 +61,36 @@ plant() { # plant FILE INCLUDE EXPECTED: a copy with that line must be refused w
 failed=0
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-report 'includes stay on their floors' "$(check src)"
+report 'includes are from the own folder or lower layers' "$(check src)"
 callers=$(grep -rl --include='*.c' 'renderer_render(' src | grep -vx -e src/render/core/renderer.c -e src/job/job.c)
-report 'frames are rendered by the job alone' "${callers#src/}"
-plant base/a.h '"optics/interface.h"' climbs
-plant render/a.c '"cuvette.h"' climbs
-plant geometry/a.c '"measure/clock.h"' sideways
-plant cli/a.c '"web/page.h"' sideways
+report 'only the job calls renderer_render' "${callers#src/}"
+plant base/a.h '"optics/interface.h"' 'higher layer'
+plant render/a.c '"cuvette.h"' 'higher layer'
+plant geometry/a.c '"measure/clock.h"' 'same layer'
+plant cli/a.c '"web/page.h"' 'same layer'
 plant cli/lab.c '"web/lab.h"' ''
-plant cli/lab.c '"web/http/http.h"' sideways
+plant cli/lab.c '"web/http/http.h"' 'same layer'
 plant cli/a.c '"job/job.h"' ''
-plant job/a.c '"study/study.h"' climbs
+plant job/a.c '"study/study.h"' 'higher layer'
 plant job/a.c '"render/core/renderer.h"' ''
-plant render/a.c '"job/job.h"' climbs
-plant cli/a.c '"mpi/shards.h"' sideways
-plant web/a.c '"cli/cli.h"' sideways
+plant render/a.c '"job/job.h"' 'higher layer'
+plant cli/a.c '"mpi/shards.h"' 'same layer'
+plant web/a.c '"cli/cli.h"' 'same layer'
 plant web/a.c '"report/json.h"' ''
-plant report/a.c '"cuvette.h"' climbs
-plant study/a.c '"report/json.h"' sideways
+plant report/a.c '"cuvette.h"' 'higher layer'
+plant study/a.c '"report/json.h"' 'same layer'
 plant web/a.c '"cuvette.h"' ''
-plant cuvette.c '"web/http/http.h"' climbs
-plant scene/a.c '"params.h"' 'not written from src/'
-plant scene/a.c '"../base/status.h"' 'not written from src/'
-plant scene/a.c '"scene/../render/film.h"' 'not written from src/'
-plant scene/a.c '"attic/old.h"' 'no floor'
-plant realism/a.c '"study/study.h"' climbs
+plant cuvette.c '"web/http/http.h"' 'higher layer'
+plant scene/a.c '"params.h"' 'not a path from src/'
+plant scene/a.c '"../base/status.h"' 'not a path from src/'
+plant scene/a.c '"scene/../render/film.h"' 'not a path from src/'
+plant scene/a.c '"attic/old.h"' 'no layer'
+plant realism/a.c '"study/study.h"' 'higher layer'
 plant study/a.c '"realism/realism.h"' ''
-plant cuvette.c '"cli/cli.h"' climbs
+plant cuvette.c '"cli/cli.h"' 'higher layer'
 plant cuvette.c '"study/study.h"' ''
 plant cli/a.c '"cuvette.h"' ''
 plant scene/a.c '"scene/model/scene.h"' ''
 plant scene/a.c '"import/mesh_wire.h"' ''
-plant import/a.c '"scene/assets/mesh_stream.h"' climbs
+plant import/a.c '"scene/assets/mesh_stream.h"' 'higher layer'
 exit $failed

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The manual against the program: every command has a page with its options, the pages are clean roff, refer to pages
-# that exist, and their examples work. tests/manual.sh [PROGRAM]. One line a check ("ok ...", "not ok ...").
+# that exist, and their examples work. tests/manual.sh [PROGRAM]. One line per check ("ok ...", "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -21,7 +21,7 @@ verdict() { # STATUS WHAT [WHY]
         [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3"
     fi
 }
-empty() { # WHAT TEXT: passes when the text, the list of mistakes, is empty
+empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
     [[ -z $2 ]]
     verdict $? "$1" "$2"
 }
@@ -53,7 +53,7 @@ page_options() { # PAGE: the tags of its section OPTIONS
 }
 plain() { sed "s/\\\\f[BIR]//g; s/\\\\-/-/g; s/\\\\&//g; s/\\\\(aq/'/g"; } # without fonts and escapes
 
-# --- a page a command, with the purpose and the options of its help
+# --- one page per command, with the purpose and the options of its help
 "$program" --help >"$work/help"
 for command in $(commands); do
     page=$manual/man1/cuvette-$command.1
@@ -84,7 +84,7 @@ listed() { # the commands of cuvette(1) with their purposes
 empty "cuvette(1) lists the commands and their purposes" \
     "$(diff <(sed -n '/^Commands:/,/^$/s/^  \([a-z]*\)  */\1 /p' "$work/help") <(listed))"
 
-# --- every page: clean roff, the program's version, references that lead somewhere
+# --- every page: clean roff, the program's version, references to existing pages
 version=$("$program" --version | cut -d' ' -f2)
 for page in "$manual"/man?/*; do
     file=$(basename "$page")
@@ -110,7 +110,7 @@ empty "cuvette-results(5) has the text of results/README.md (to renew: make dict
     "$(diff <(awk -f "$manual/results.awk" "$root/results/README.md") \
         <(sed '/^\.\\" begin results/,/^\.\\" end results/!d' "$manual/man5/cuvette-results.5" | sed '1d;$d'))"
 
-# --- the examples, in a folder as a reader has it, with small images and short studies
+# --- the examples, in a reader's folder, with small images and short studies
 mkdir -p "$work/bin" "$work/lab"
 ln -s "$program" "$work/bin/cuvette"
 cp -r "$root/experiments" "$work/lab/"
@@ -128,7 +128,7 @@ blocks() { # FILE: the lines of its examples, continued lines joined
     awk '/^\.EE/ {on = 0} on; /^\.EX/ {on = 1}' | plain | sed 's/\\e$/\\/' |
         sed -e ':a' -e '/\\$/{N; s/ *\\\n */ /; ba' -e '}'
 }
-small() { # a command line with images that are done in a moment
+small() { # a command line with small images
     sed -E "s/^cuvette (render|animate) /cuvette \1 --set=render.width=80 --set=render.height=60 /
         s/^(cuvette animate .*)/\1 --duration 0.08/; s/ \| (jq|ffmpeg) .*//"
 }
@@ -136,14 +136,14 @@ try() { # COMMAND LINE
     bash -c "set -e -o pipefail; $1" >said 2>&1 </dev/null
     verdict $? "$1" "$(<said)"
 }
-# --- cuvette(1) leads to every page
+# --- cuvette(1) names every page
 named=$(plain <"$manual/man1/cuvette.1")
 empty "cuvette(1) names every page" "$(for page in "$manual"/man?/cuvette-*; do
     file=$(basename "$page")
     [[ $named == *"${file%.*}(${file##*.})"* ]] || echo "$file"
 done)"
 
-# The study that cuvette-tour(7) lets the reader save.
+# The study in cuvette-tour(7).
 sed 's/\\-/-/g' "$manual/man7/cuvette-tour.7" | awk '/^study: / {on = 1} /^\.EE/ {on = 0} on' >experiments/oils.study
 for page in "$manual"/man[157]/*; do
     title=EXAMPLES

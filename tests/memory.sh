@@ -1,8 +1,8 @@
 #!/bin/bash
-# Commands whose memory fails: at one allocation after another. tests/memory.sh [PROGRAM]; needs the compiler (CC) for
-# tests/fail_allocation.c. Whatever fails, the command ends with exit 1 and one line that says so, and leaves no file;
-# or the file is the right one, to the byte (what does without: glibc's streams, and its printf into fresh memory).
-# One line a check ("ok ...", "not ok ...").
+# Commands with a failing allocation, for each allocation in turn. tests/memory.sh [PROGRAM]; needs the compiler (CC)
+# for tests/fail_allocation.c. The command either exits with 1, one line on standard error and no file, or its file is
+# correct to the byte (glibc's streams and its printf can do without some allocations). One line per check ("ok ...",
+# "not ok ...").
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -13,7 +13,7 @@ cd "$work" || exit 1
 unset CUVETTE_ISA
 case ${CONFIG:-release}${CC:-gcc} in
 tsan* | fuzz* | coverage* | sanitize*clang*)
-    echo "# allocates by itself, whatever is preloaded"
+    echo "# the instrumented program allocates by itself, in spite of a preloaded library"
     exit 77
     ;;
 esac
@@ -21,7 +21,7 @@ export LC_ALL=C ASAN_OPTIONS=verify_asan_link_order=0
 
 "${CC:-gcc}" -std=c17 -D_GNU_SOURCE -shared -fPIC -O1 -o fail.so "$root/tests/fail_allocation.c" -ldl ||
     {
-        echo "# no compiler that makes a library"
+        echo "# the compiler cannot build a shared library"
         exit 77
     }
 
@@ -39,22 +39,22 @@ failing() { # NUMBER KINDS COMMAND...
     FAIL_AT=$1 FAIL_KINDS=$2 FAIL_COUNT=$work/count LD_PRELOAD=$work/fail.so "${@:3}" >out 2>err
 }
 
-# What the last run has done wrong; nothing is good.
+# The errors of the last run; empty if there are none.
 wrongs() { # CODE OUTPUT
     if (($1 == 0)); then
         cmp -s "$2" right || echo "exit 0 with a wrong file"
     elif (($1 != 1)); then
         echo "exit $1"
     elif ! grep -qE '^cuvette: (.*: )?out of memory' err || (($(wc -l <err) != 1)); then
-        echo "exit 1, and says: $(head -c 200 err)"
+        echo "exit 1 with the message: $(head -c 200 err)"
     elif [[ -e $2 ]]; then
         echo "exit 1 with a file"
     fi
 }
 
-# Fails allocations of some kinds, each one or at a step: walk WHAT KINDS STEP OUTPUT ARGUMENT...
+# walk WHAT KINDS STEP OUTPUT ARGUMENT...: fails every STEP-th allocation of these kinds, one per run
 walk() {
-    local what=$1 kinds=$2 step=$3 output=$4 sites tried=0 told=0 bad=0 wrong at code
+    local what=$1 kinds=$2 step=$3 output=$4 sites tried=0 reported=0 bad=0 wrong at code
     shift 4
     rm -f "$output" count
     failing 0 "$kinds" "$program" "$@"
@@ -65,17 +65,17 @@ walk() {
         failing "$at" "$kinds" "$program" "$@" 2>/dev/null
         code=$?
         wrong=$(wrongs "$code" "$output")
-        tried=$((tried + 1)) told=$((told + (code == 1)))
+        tried=$((tried + 1)) reported=$((reported + (code == 1)))
         if [[ $wrong ]]; then
             bad=$((bad + 1))
             ((bad > 5)) || echo "# $what, $kinds, allocation $at of $sites: $wrong"
         fi
     done
-    ((ready == 0 && bad == 0 && told > 0))
-    verdict $? "$what, kinds $kinds: $tried of ${sites:-0} failed, $told told, $bad wrong"
+    ((ready == 0 && bad == 0 && reported > 0))
+    verdict $? "$what, kinds $kinds: $tried of ${sites:-0} allocations failed, $reported reported, $bad errors"
 }
 
-# The device works: a program that it makes fail, fails.
+# Otherwise the following checks would pass trivially.
 cat >all.c <<'EOF'
 #include <stdlib.h>
 int main(void) { void *volatile memory = malloc(10); return memory ? 0 : 7; }

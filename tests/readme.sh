@@ -1,5 +1,5 @@
 #!/bin/bash
-# The documents keep their promises: linked files exist, the commands of README.md work as printed, and
+# The documents against the project: linked files exist, the commands of README.md work as printed, and
 # results/README.md describes every column that a study writes. tests/readme.sh [PROGRAM]; needs the compiler (CC) for
 # tests/json_get.c. One line per check ("ok ...", "not ok ...").
 set -uo pipefail
@@ -21,13 +21,13 @@ verdict() { # STATUS WHAT [WHY]
         [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3"
     fi
 }
-empty() { # WHAT TEXT: passes when the text, what is wrong, is empty
+empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
     [[ -z $2 ]]
     verdict $? "$1" "$2"
 }
 
-# --- files that are named: links and images from the page's folder, `src/...` and the like from the root
-links() { # PAGE: their targets without those on the web and within the page
+# --- named files: links and images relative to the page's folder, `src/...` and similar paths relative to the root
+links() { # PAGE: targets of links, except on the web and within the page
     grep -o '](\([^)]*\))' "$1" | sed 's/^](//; s/[)#].*$//' | grep -v -e '^[a-z]*:' -e '^$' | sort -u
 }
 words() { # PAGE
@@ -48,19 +48,19 @@ for page in "${pages[@]}"; do
             lost+="${lost:+$'\n'}$target"
         fi
     done < <(links "$root/$page")
-    empty "the links of $page lead to files" "$lost"
+    empty "the linked files of $page exist" "$lost"
     lost=
     while read -r target; do
         [[ -e $root/$target ]] || lost+="${lost:+$'\n'}$target"
     done < <(words "$root/$page")
-    empty "the files that $page names are there" "$lost"
+    empty "the files named by $page exist" "$lost"
 done
 # shellcheck disable=SC2016
 empty "the README names the two commands" \
     "$(for line in 'make setup experiments' 'make setup test'; do grep -qE "^    $line( |$)" "$root/README.md" ||
         echo "$line"; done)"
 
-# --- a folder like the reader's: studies and scenes, the program on the path
+# --- a reader's folder: studies and scenes, with the program in PATH
 mkdir -p "$work/bin" "$work/lab"
 ln -s "$program" "$work/bin/cuvette"
 cp -r "$root/experiments" "$work/lab/"
@@ -69,11 +69,11 @@ verdict $? "tests/json_get.c compiles"
 export PATH=$work/bin:$PATH
 cd "$work/lab" || exit 1
 
-try() { # COMMAND LINE: its words in said
+try() { # COMMAND LINE: passes when it succeeds; its output is in said
     bash -c "set -e -o pipefail; $1" >said 2>&1 </dev/null
     verdict $? "$1" "$(<said)"
 }
-# The quick commands of README.md. A program after a | may not be installed.
+# The fast commands of README.md, without the part after a |, whose program may be missing.
 while read -r line; do
     try "${line%% | *}"
 done < <(sed -n \
@@ -81,7 +81,7 @@ done < <(sed -n \
     "$root/README.md" | sed 's/ *#.*//' |
     sed "s/ render / render --set=render.width=160 --set=render.height=120 /")
 
-# --- the dictionary against what a study writes; a name with <...> stands for several
+# --- the dictionary against the files of a study; a name with <...> represents several columns
 cat >experiments/columns.study <<'END'
 study: columns
 scene: scenes/rod.yaml
@@ -96,11 +96,11 @@ described() { # SECTION: first column of its table
     awk -v title="## $1" '/^## / {on = $0 == title} on && /^\| `/' "$root/results/README.md" |
         sed -n 's/^| \(`[^|]*\) |.*/\1/p' | sed 's/^| *//' | cut -d'|' -f1 | tr -d '` ' | tr ',' '\n'
 }
-written() { # FILE SEPARATOR: its header, a name a line, this study's own names as the dictionary's
+written() { # FILE SEPARATOR: the columns of its header, one per line, with the dictionary's <...> names
     head -1 "$1" | tr "$2" '\n' | sed \
         's/^render\.depth$/<axis>/; s/hits\.\(ground\|vessel\|liquid\|rod\)$/hits.<solid>/' | uniq
 }
-compare() { # SECTION NAMES: the same ones, in the same order
+compare() { # SECTION NAMES: the dictionary has the same columns in the same order
     empty "results/README.md has the columns of $1" "$(diff <(described "$1") <(echo "$2"))"
 }
 folder=results/columns
@@ -114,7 +114,7 @@ compare manifest.json "$(
     manifest machine machine.
     manifest 'runs[0]' 'runs[].'
 )"
-empty "and no other part in manifest.json" \
+empty "manifest.json has no other part" \
     "$(json_get $folder/manifest.json @keys | grep -vx -e study -e machine -e runs)"
 
 echo "$((count - failed - skipped)) passed, $failed failed"

@@ -1,6 +1,6 @@
 #!/bin/bash
-# What targets of the Makefile would build, from nothing: the programs that a target's commands run are among it. Reads
-# `make -n`; builds nothing.
+# Checks that make targets build the programs that their commands run. Reads the plan of `make -n` for an empty build
+# folder; builds nothing.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-targets.XXXXXX") || exit 1
@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
 count=0 failed=0
-builds() { # TARGET PROGRAM...: each is linked when nothing is there yet
+builds() { # TARGET PROGRAM...: passes if the plan links each program
     local target=$1 plan program
     shift
     plan=$(make -n CC=gcc config=release build="$work/build" RESULTS="$work/results" "$target" 2>&1)

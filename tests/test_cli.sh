@@ -63,7 +63,7 @@ for command in render animate scene trace fan params media mesh study compare re
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
 done
 run render --he
-check "long options may be shortened" silent_success
+check "unambiguous abbreviations of long options are accepted" silent_success
 
 # --- render
 run render "$scene" -o a.png "${small[@]}"
@@ -82,17 +82,18 @@ check "--bits 16 gives a PNG of 16 bits" is "$(od -An -tu1 -j24 -N1 c.png | tr -
 check "no other files are left" is "$(find . -type f -printf '%f\n' | LC_ALL=C sort | tr '\n' ' ')" \
     "a.jpg a.pfm a.png b.png c.png check.log err json_get out "
 
-# --- the JSON account
+# --- the JSON output of render
 run render "$scene" --json "${small[@]}" --set render.depth=3 --set lamp.position.x=2 --set render.threads=3
 check "--json needs no -o" silent_success
-check "the account is one JSON object" is "$(json @type)" object
-check "schema" is "$(json schema whole)" "$(lines 1 true)"
+check "--json prints one JSON object" is "$(json @type)" object
+check "the schema version, and that the frame is complete" is "$(json schema whole)" "$(lines 1 true)"
 check "film_hash is 16 hexadecimal digits" matches "$(json film_hash)" '^[0-9a-f]{16}$'
-check "camera rays are the pixels" is "$(json rays.camera)" 4800
+check "there is one camera ray per pixel" is "$(json rays.camera)" 4800
 total=$(json rays.total)
-check "the kinds add up to the total" is "$(json rays.camera rays.reflect rays.refract rays.shadow | sum)" "$total"
-check "the depths add up to all but the shadow rays" is "$(json 'rays_by_depth[]' rays.shadow | sum)" "$total"
-check "one number a depth" is "$(json rays_by_depth@length)" 4
+check "the kinds of rays add up to the total" is \
+    "$(json rays.camera rays.reflect rays.refract rays.shadow | sum)" "$total"
+check "rays by depth and shadow rays add up to the total" is "$(json 'rays_by_depth[]' rays.shadow | sum)" "$total"
+check "rays_by_depth has one number per depth" is "$(json rays_by_depth@length)" 4
 check "first hits by solid" is "$(json first_hits@keys)" "$(lines ground vessel liquid rod)"
 check "first hits of the vessel" holds "$(json first_hits.vessel) > 0"
 check "hits and tests by solid" holds "0 < $(json hits.rod) && $(json hits.rod) <= $(json tests.rod)"
@@ -100,26 +101,26 @@ check "cut rays" holds "$(json cut.depth.rays) > 0 && $(json cut.weight.rays) ==
     cut.depth.throughput@length) == 3"
 check "cut_throughput is the mean of the channels" \
     holds "($(json 'cut.depth.throughput[]' | sum) / 3 - $(json cut_throughput)) ^ 2 < 1e-18"
-check "one account a worker" is "$(json 'threads[].worker')" "$(lines 0 1 2)"
+check "there is one record per worker" is "$(json 'threads[].worker')" "$(lines 0 1 2)"
 check "the workers' rays add up" is "$(json 'threads[].rays.total' | sum)" "$total"
-check "their kinds too" is "$(json 'threads[].rays.shadow' | sum)" "$(json rays.shadow)"
+check "the workers' shadow rays add up" is "$(json 'threads[].rays.shadow' | sum)" "$(json rays.shadow)"
 check "keys of a worker" is "$(json 'threads[0]@keys' | sort | tr '\n' ' ')" \
     "busy_s cpu_s pu rays start_s tiles visibility_s waiting_s wall_s worker "
 check "times and process" holds "$(json wall_s) > 0 && $(json cpu_s) > 0 && $(json peak_rss_bytes) > 0"
-check "switches and others" json voluntary_switches involuntary_switches others_share
-check "without random samples there is no noise" is "$(json noise@type)" null
-check "hardware counters are there or null" is "$(json hardware@keys | sort | tr '\n' ' ')" \
+check "context switches and the share of other processes" json voluntary_switches involuntary_switches others_share
+check "noise is null without random samples" is "$(json noise@type)" null
+check "hardware counters are numbers or null" is "$(json hardware@keys | sort | tr '\n' ' ')" \
     "branch_misses cache_misses cycles instructions "
 check "parameters have types" is "$(json 'params["render.depth"]@type' 'params["render.weights"]')" \
     "$(lines integer fresnel)"
 check "vectors are lists" is "$(json 'params["lamp.position"][]')" "$(lines 2.0 7.0 -5.0)"
-check "a real reads back" is "$(json 'params["liquid.ior"]')" 1.33
+check "a real number round-trips" is "$(json 'params["liquid.ior"]')" 1.33
 check "isa and version" matches "$(json isa version | tr '\n' ' ')" '^(sse2|avx2|avx512) [0-9.]+ $'
 run params "$scene" --json
 json 'params[].path' | sort >all.txt
 run render "$scene" --json "${small[@]}"
-check "the account has every parameter" is "$(json params@keys | sort | comm -13 - all.txt)" ""
-check "the summary's hash is the account's" is "$(json film_hash)" "$hash"
+check "the JSON output has every parameter" is "$(json params@keys | sort | comm -13 - all.txt)" ""
+check "the summary and the JSON output have the same hash" is "$(json film_hash)" "$hash"
 run render "$scene" --json "${small[@]}" --set render.threads=7 --set render.schedule=rows
 check "threads and schedule do not change the film" is "$(json film_hash)" "$hash"
 CUVETTE_ISA=sse2 run render "$scene" --json "${small[@]}"
@@ -147,10 +148,10 @@ check "the map of rays is a PNG with a colour scale" \
     is "$(($(od -An -tu1 -j22 -N2 rays.png | awk '{print $1*256+$2}') > 60))" 1
 check "the map of time is a PNG" magic time.png 89504e47
 check "the timeline is JSON with events" holds "$(./json_get line.json traceEvents@length) > 3"
-check "one named row a worker" \
+check "the timeline has one named row per worker" \
     is "$(./json_get line.json 'traceEvents[name=thread_name].args.name')" "$(lines "worker 0" "worker 1")"
 tiles() { ./json_get line.json "traceEvents[ph=X].$1"; }
-check "the tiles cover the image" is 4800 \
+check "the tiles of the timeline cover the image" is 4800 \
     "$(paste <(tiles args.x0) <(tiles args.x1) <(tiles args.y0) <(tiles args.y1) |
         awk '{s += ($2 - $1) * ($4 - $3)} END {print s}')"
 check "no tile ends before it begins" is "$( (
@@ -160,9 +161,9 @@ check "no tile ends before it begins" is "$( (
 run render "$scene" "${small[@]}" --rays rays.pfm --json
 # One channel of the PFM sums to the number of rays.
 sum=$(tail -c $((80 * 60 * 12)) rays.pfm | od -An -v -tf4 -w12 | awk '{s += $1} END {printf "%d", s}')
-check "the map of rays sums to the rays" is "$sum" "$(json rays.total)"
+check "the map of rays sums to the number of rays" is "$sum" "$(json rays.total)"
 run render "$scene" "${small[@]}" --rays again.pfm --repeat 2 --json
-check "maps go with --repeat" cmp rays.pfm again.pfm
+check "maps do not depend on --repeat" cmp rays.pfm again.pfm
 run render "$scene" "${small[@]}" --layers once --set render.integrator=aov
 check "layers of the first hits, one file each" is "$(ls once-*)" \
     "$(printf 'once-%s.pfm\n' albedo depth material normal position solid)"
@@ -170,7 +171,7 @@ check "layers of the first hits, one file each" is "$(ls once-*)" \
 check "the layer of solids has their numbers" is "0 1 2 4 " \
     "$(tail -c $((80 * 60 * 12)) once-solid.pfm | od -An -v -tf4 -w12 | awk '{print $1}' | sort -nu | tr '\n' ' ')"
 run render "$scene" "${small[@]}" --layers again --repeat 2 --json --set render.integrator=aov
-check "layers go with --repeat" cmp once-position.pfm again-position.pfm
+check "layers do not depend on --repeat" cmp once-position.pfm again-position.pfm
 
 # --- parameters
 run params
@@ -178,7 +179,8 @@ check "params prints a table" silent_success
 check "params names range, unit, default and meaning" grep -q '^render.depth .*4 .*0\.\.64.*recursion depth' out
 run params --json
 check "params --json lists the table" holds "$(json params@length) > 40"
-check "each with path, default and range" is "$(json 'params[].path' 'params[].default' 'params[].range' | wc -l)" \
+check "params --json has path, default and range of each" is \
+    "$(json 'params[].path' 'params[].default' 'params[].range' | wc -l)" \
     $((3 * $(json params@length)))
 run params "$scene"
 check "params of a scene has its values" grep -q '^liquid.ior  *1\.33 ' out
@@ -187,11 +189,12 @@ check "params of a scene and a path prints that parameter" is "$(tail -n +2 out 
 run params "${scene%/*}/slime.yaml"
 check "params of a scene with a slime prints slime parameters" grep -q '^toy.stiffness  *10 ' out
 run params "${scene%/*}/models.yaml"
-check "but not for other meshes" is "$(grep -c stiffness out)" 0
+check "params prints no slime parameters for other meshes" is "$(grep -c stiffness out)" 0
 run params checker
 check "params of a word prints the parameters with that name" is "$(tail -n +2 out | cut -d' ' -f1)" MATERIAL.checker
 run params highlight
-check "or those with the word in their meaning" is "$(tail -n +2 out | cut -d' ' -f1)" MATERIAL.shininess
+check "params of a word prints the parameters with the word in their meaning" is \
+    "$(tail -n +2 out | cut -d' ' -f1)" MATERIAL.shininess
 run params --man
 check "params --man is roff" grep -q '^\.SS ' out
 page=$manual/man5/cuvette-scene.5
@@ -208,7 +211,7 @@ example() { # PAGE: its first example
 example man5/cuvette-scene.5 >page.yaml
 run render page.yaml -o page.png "${small[@]}"
 check "the scene of cuvette-scene(5) renders without a note" silent_success
-check "every solid of it is hit" is \
+check "every solid of the scene of cuvette-scene(5) is hit" is \
     "$("$program" render page.yaml --json "${small[@]}" | ./json_get - hits | grep -c ':0[,}]')" 0
 mkdir page
 cp -r "$root/experiments/scenes" page/
@@ -230,8 +233,8 @@ check "compare prints a table" is "$(cut -c1-12 out | tr -d ' ' | tr '\n' ' ')" 
     "size mse psnr ssim flip largest differing "
 check "one channel of six: mse 1/6, psnr 10 log10 6" is "$(sed -n 's/^\(mse\|psnr\) *//p' out)" \
     "$(lines 0.166667 "7.78 dB")"
-check "the largest difference and its place" grep -q '^largest     1 at 1,0$' out
-check "the share that differs" grep -q '^differing   50% of the pixels' out
+check "compare prints the largest difference and its pixel" grep -q '^largest     1 at 1,0$' out
+check "compare prints the share of differing pixels" grep -q '^differing   50% of the pixels' out
 run compare left.pfm right.pfm --json
 check "compare --json" is "$(json schema width height mse 'largest_at[]' differing_share 'bits[]')" \
     "$(lines 1 2 1 0.16666666666666666 1 0 0.5 32 32)"
@@ -241,12 +244,12 @@ run compare a.png b.png --diff where.png
 check "compare of equal images" is "$(sed -n '/^size/d; s/  */ /p' out | tr '\n' ';')" \
     "mse 0;psnr identical;ssim 1.000000;flip 0.000000;largest 0;differing 0% of the pixels, at 8 bits;"
 check "--diff writes a PNG" magic where.png 89504e47
-check "of the size of the images" is "$(od -An -tu1 -j16 -N8 where.png | tr -s ' ')" " 0 0 0 80 0 0 0 60"
+check "--diff writes an image of the same size" is "$(od -An -tu1 -j16 -N8 where.png | tr -s ' ')" " 0 0 0 80 0 0 0 60"
 run compare a.png b.png --json
 check "equal images have no psnr" is "$(json psnr_db@type largest_at@type flip)" "$(lines null null 0.0)"
 run compare a.png a.pfm --json
 check "8 bits differ by at most half a step" holds "$(json largest) <= 0.5 / 255 + 1e-6 && $(json largest) > 0.4 / 255"
-check "which is no difference at 8 bits" is "$(json differing_share)" 0.0
+check "half a step is no difference at 8 bits" is "$(json differing_share)" 0.0
 run compare a.jpg a.png --diff where.jpg
 check "a JPEG can be compared with a PNG" silent_success
 check "--diff writes a JPEG" magic where.jpg ffd8ff
@@ -258,17 +261,18 @@ run media
 check "media prints the catalogue" silent_success
 check "media has n_d, n_F, n_C, Abbe's number, range, temperature, reference and source" \
     grep -qE '^bk7 +1\.51680 +1\.52238 +1\.51432 +64\.17 +300\.\.2500 +20 +air +Schott' out
-check "media marks what is extrapolated" grep -qE '^glycerol +1\.47227\* +1\.47683\* +1\.46991 +68\.30\* ' out
+check "media marks extrapolated indices" grep -qE '^glycerol +1\.47227\* +1\.47683\* +1\.46991 +68\.30\* ' out
 check "media has no Abbe's number without dispersion" grep -qE '^olive-oil .* - +589\.3 ' out
 check "media: one line each" is "$(wc -l <out) $(cut -d' ' -f1 out | sort -u | wc -l)" "16 16"
 run media --at 500
 check "media --at has one more column" is "$(awk 'NR == 1 || $1 == "bk7" {print $6}' out)" "$(lines n_at 1.52141)"
-check "media --at leaves out what was not measured there" grep -qE '^glycerol .* - +589' out
+check "media --at leaves out media that were not measured there" grep -qE '^glycerol .* - +589' out
 run media fused-silica --at 632.8
 check "media of a name prints its coefficients" grep -qE \
     '^coefficients +0\.6961663 0\.0684043 0\.4079426 0\.1162414 0\.8974794 9\.896161$' out
-check "and its formula" grep -qE '^law .*n\^2 = 1 \+ .*L\^2 - C\^2' out
-check "and --at, also relative to vacuum" grep -qE '^n_at +1\.4570[0-9]* at 632\.8 nm, relative to vacuum 1\.4574' out
+check "media of a name prints its formula" grep -qE '^law .*n\^2 = 1 \+ .*L\^2 - C\^2' out
+check "media of a name with --at prints the index relative to vacuum as well" \
+    grep -qE '^n_at +1\.4570[0-9]* at 632\.8 nm, relative to vacuum 1\.4574' out
 run media glycerol
 check "media of a name prints its caveats" grep -qE '^note .*extrapolated' out
 run media water --json
@@ -277,7 +281,7 @@ check "media --json of a name has that medium only" is "$(json schema media@leng
 check "media --json: absolute is n_d of a law relative to vacuum" is "$(json 'media[0].n_d')" \
     "$(json 'media[0].absolute.n_d')"
 run media --json --at 500
-check "media --json has all" is "$(json media@length)" 15
+check "media --json has all media" is "$(json media@length)" 15
 check "media --json: relative to air and absolute" holds \
     "($(json 'media[name=bk7].absolute.n_d') / $(json 'media[name=bk7].n_d') - 1.00027717) ^ 2 < 1e-16"
 check "media --json --at" holds "($(json 'media[name=bk7].at.n') - 1.52141) ^ 2 < 1e-10"
@@ -292,7 +296,7 @@ run mesh --generate box --size 1,2,3
 check "mesh describes a box" is "$code $(grep -E '^(triangles|area|closed|volume)' out | tr -s ' ' | tr '\n' ' ')" \
     "0 triangles 12 area 22 closed yes volume 6 "
 run mesh --generate lathe --profile 1,0,1,1 --around 4
-check "mesh names a hole" grep -qE \
+check "mesh locates a hole" grep -qE \
     '^closed +no: the edge from vertex [0-9]+ to [0-9]+ of triangle [0-9]+ is shared by 1, not 2$' out
 run mesh --generate sphere --count 20 --json
 check "mesh --json" is "$(json schema triangles vertices closed hole single)" "$(lines 1 20 60 true null true)"
@@ -304,7 +308,7 @@ check "mesh -f bin: 36 bytes a triangle" is "$(wc -c <out) $(od -An -tf4 -N12 ou
 # checksums of the dumps of these triangles by the peers' program embree_bench
 for dump in "obj 894476047 13145" "bin 1098474655 3600"; do
     run mesh --generate sparse --count 100 -f "${dump%% *}"
-    check "mesh -f ${dump%% *} is the peers' dump" is "$(cksum <out)" "${dump#* }"
+    check "mesh -f ${dump%% *} equals the dump of embree_bench" is "$(cksum <out)" "${dump#* }"
 done
 run mesh --generate torus --around 5 --tube 4 -f obj -o torus.obj
 check "mesh -o writes a file and prints nothing" is \
@@ -314,9 +318,9 @@ check "mesh -f ply: header and bytes" is \
     "$(head -c 35 out | tr '\n' ' ') $(($(wc -c <out) - $(grep -am1 -bo end_header out | cut -d: -f1) - 11))" \
     "ply format binary_little_endian 1.0 $((24 * 32 + 12 * 13))"
 run mesh --generate sparse --count 100 -f obj
-check "peers/mesh_scene.awk makes the peers' dump for POV-Ray" is \
+check "peers/mesh_scene.awk writes the scene for POV-Ray" is \
     "$(awk -v peer=povray -f "$root/experiments/peers/mesh_scene.awk" out | cksum)" "3555543625 13831"
-check "peers/mesh_scene.awk makes one for Tachyon" is \
+check "peers/mesh_scene.awk writes the scene for Tachyon" is \
     "$(awk -v peer=tachyon -f "$root/experiments/peers/mesh_scene.awk" out | grep -c '^TRI V0 ')" 100
 run mesh --generate toru
 check "an unknown body is refused with the nearest" matches "$code $(<err)" \
@@ -342,11 +346,11 @@ run realism "$scene"
 check "realism succeeds" silent_success
 check "realism passes on the rod scene" is "$(tail -1 out)" "35 of 35 pass"
 run realism "$scene" --set liquid.visible=off --csv
-check "realism --csv has a line a metric" is "$(wc -l <out)" 36
+check "realism --csv has one line per metric" is "$(wc -l <out)" 36
 check "an undefined metric is NA, with its reason" grep -q '^absorption.slope,none,NA,NA,NA,.*"there is no liquid"$' out
 run realism "$scene" --set render.weights=constant --set clear.reflectivity=0.1 --set clear.transparency=0.9
 check "failed metrics are not an error" silent_success
-check "and the failed metrics are marked" grep -q '^FAIL  fresnel.vessel ' out
+check "failed metrics are marked" grep -q '^FAIL  fresnel.vessel ' out
 run realism "$scene" --json
 check "realism --json" is "$(json schema defined passed)" "$(lines 1 35 35)"
 run realism "$scene" --curve depth
@@ -364,9 +368,9 @@ slime=$root/experiments/scenes/slime.yaml
 run motion "$slime" --set toy.level=1
 check "motion succeeds" silent_success
 check "motion names the slime, its integrator and its step" is "$(head -1 out)" "toy: level 1, euler, steps of 0.001 s"
-check "motion has a line a value" is "$(grep -c '^  [a-z_.]* ' out)" 20
+check "motion has one line per value" is "$(grep -c '^  [a-z_.]* ' out)" 20
 run motion "$slime" --set toy.level=1 --set toy.integrator=implicit --csv
-check "motion --csv has a line a value" is "$(wc -l <out)" 20
+check "motion --csv has one line per value" is "$(wc -l <out)" 20
 check "an undefined value is NA" grep -q '^toy,stable_dt.spring_s,NA,NA,NA,s,"' out
 run motion "$slime" --set toy.level=1 --json
 check "motion --json" is "$(json schema 'slimes[].name' 'slimes[].integrator')" "$(lines 1 toy euler)"
@@ -388,7 +392,7 @@ same_floats() { # a radiance of a.pfm and one printed with 17 digits
 for at in 40,30 37,41 5,3 44,22; do
     run trace "$scene" --pixel $at --json "${small[@]}"
     check "trace --json of pixel $at" silent_success
-    check "its radiance is that of the image" same_floats "$(pixel a.pfm ${at/,/ })" "$(json 'radiance[]')"
+    check "the radiance of pixel $at equals the image" same_floats "$(pixel a.pfm ${at/,/ })" "$(json 'radiance[]')"
 done
 run trace "$scene" --pixel 40,30 --depth 3 --json "${small[@]}"
 check "keys of a tree, in order" is "$(json @keys | tr '\n' ' ')" "schema scene depth radiance root lambda_nm carries "
@@ -401,12 +405,12 @@ check "keys of a hit, in order" is "$(json root.hit@keys | tr '\n' ' ')" \
 check "the factors of radiance at a refraction: T, and T (n1 / n2)^2" \
     holds "($(json root.hit.radiance_factor.classic) - (1 - $(json root.hit.R))) ^ 2 < 1e-30 &&
         ($(json root.hit.radiance_factor.basic) * 2.25 - (1 - $(json root.hit.R))) ^ 2 < 1e-30"
-check "and which of them rays carry" is "$(json carries)" classic
+check "the tree names the kind of radiance that rays carry" is "$(json carries)" classic
 check "the first ray" is "$(json root.kind root.depth root.medium root.n root.end root.hit.solid root.hit.surface \
     root.hit.tir)" \
     "$(lines camera 0 air 1 hit vessel "outer side" false)"
 check "media on both sides" is "$(json root.hit.from.medium root.hit.to.medium root.hit.to.n)" "$(lines air vessel 1.5)"
-check "its children" is "$(json 'root.children[].kind')" "$(lines reflect refract)"
+check "the children of the first ray" is "$(json 'root.children[].kind')" "$(lines reflect refract)"
 check "shares: reflectance and the rest" \
     holds "($(json 'root.children[kind=reflect].throughput[0]') - $(json root.hit.R)) ^ 2 < 1e-30"
 check "numbers have 17 significant digits" grep -qE '"cos_i":0\.[0-9]{16,18},' out
@@ -427,7 +431,7 @@ run trace "$scene" --pixel 40,30 --json "${small[@]}" --set render.polarisation=
 check "polarised rays have their Stokes vectors" is "$(json root.stokes@length 'root.stokes[0]')" "$(lines 4 1)"
 run trace "$scene" --pixel 40,30 --set render.spectrum=spectral --lambda 486.1
 check "a spectral scene is noted: one wavelength" matches "$(<err)" '^cuvette: note: .*spectral.*486\.1$'
-check "but traced" is "$code" 0
+check "a spectral scene is traced" is "$code" 0
 run trace "$scene" --pixel 40,30 --set render.integrator=path
 check "random paths are noted" matches "$(<err)" '^cuvette: note: .*random paths'
 run trace "$scene" --pixel 40,30 --set render.integrator=zbuffer
@@ -435,7 +439,8 @@ check "a depth buffer is noted" matches "$(<err)" '^cuvette: note: .*with a dept
 run render "$scene" -o drawn.png --json "${small[@]}" --set render.integrator=zbuffer
 check "a depth buffer renders the scene without shadow rays" is "$code $(json rays.shadow)" "0 0"
 run render "$scene" -o drawn.png "${small[@]}" --set render.integrator=zbuffer --set render.spectrum=spectral
-check "but not a spectral one" matches "$code $(<err)" '^2 cuvette: .*depth buffer.*; set render.integrator'
+check "a depth buffer refuses a spectral scene" matches \
+    "$code $(<err)" '^2 cuvette: .*depth buffer.*; set render.integrator'
 run trace "$scene" --pixel 40,30 --lambda 1200 --set liquid.medium=water "${small[@]}"
 check "a medium that was not measured there is noted" matches "$(<err)" \
     '^cuvette: note: liquid\.medium: water was measured only from 182 to 1129 nm'
@@ -446,7 +451,7 @@ check "-o tree.svg draws" matches "$(head -2 tree.svg | tail -1)" \
     '^<svg xmlns="http://www.w3.org/2000/svg" version="1.1"'
 run trace "$scene" --pixel 40,30 --svg "${small[@]}"
 check "--svg: the same bytes" cmp out tree.svg
-check "total reflection, media and axes are in it" is \
+check "the drawing has total reflection, media and axes" is \
     "$(grep -c 'total internal\|liquid, n = 1.33\|from above' tree.svg)" 3
 (
     sleep 0.3
@@ -455,19 +460,19 @@ check "total reflection, media and axes are in it" is \
 ) | true
 check "a tree into a closed pipe exits with 1 and no message" is "$(cat code err)" 1
 run fan "$scene" --from -3,1,0 --to 3,1,0 -o fan.csv --set render.spectrum=spectral
-check "fan has the same note" matches "$(<err)" '^cuvette: note: .*spectral'
+check "fan prints the note on a spectral scene" matches "$(<err)" '^cuvette: note: .*spectral'
 pencil=(--from -3,1.5,0 --to 3,1.5,0 --width 1.6 --set rod.visible=off)
 run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
-check "fan draws" silent_success
-check "and prints the focus" matches "$(<out)" \
+check "fan draws an SVG" silent_success
+check "fan prints the focus" matches "$(<out)" \
     '^41 rays, 41 followed to the end, 40 crossings of adjacent rays, mean focus 1\.7[0-9]*,1\.5,0 '
 cp fan.svg first.svg
 run fan "$scene" "${pencil[@]}" --rays 41 -o fan.svg
-check "the same bytes again" cmp fan.svg first.svg
+check "fan writes the same bytes again" cmp fan.svg first.svg
 run fan "$scene" "${pencil[@]}" --rays 41 --tree -o tree.svg
-check "--tree draws more" holds "$(wc -l <tree.svg) > $(wc -l <fan.svg) + 40"
+check "fan --tree draws more lines" holds "$(wc -l <tree.svg) > $(wc -l <fan.svg) + 40"
 run fan "$scene" "${pencil[@]}" --rays 5 -o fan.csv
-check "one row per ray" is "$(cut -d, -f1-4 fan.csv | tr '\n' ' ')" \
+check "fan writes one CSV row per ray" is "$(cut -d, -f1-4 fan.csv | tr '\n' ' ')" \
     "ray,offset,interfaces,end 0,-0.8,4,sky 1,-0.4,4,sky 2,0,4,sky 3,0.4,4,sky 4,0.8,4,sky "
 check "the central ray is not deviated and is the axis" is "$(sed -n 4p fan.csv | cut -d, -f11,13-)" 0,NA,NA,NA,NA
 run fan "$scene" --from -3,1.5,0 --to 3,1.5,0 --spread 10 --rays 3 -o fan.csv
@@ -512,7 +517,7 @@ check "lab's image is the film of render" grep -q '"film_hash":"b92bb012fd9c5f71
 )
 kill -INT $lab
 wait $lab
-check "Ctrl-C ends it with status 0" is "$? $(wc -c <lab.err)" "0 0"
+check "SIGINT ends lab with status 0" is "$? $(wc -c <lab.err)" "0 0"
 mkdir -p browser
 cat >browser/xdg-open <<'EOF'
 #!/bin/bash
@@ -528,7 +533,7 @@ for ((i = 0; i < 600; i++)); do
 done
 read -r _ _ _ _ _ session _ </proc/$lab/stat
 check "lab opens its address in a browser" is "$(cut -d' ' -f2 browser/seen)" "$(<lab.out)"
-check "the browser has its own session, so that Ctrl-C does not reach it" holds \
+check "the browser has its own session, so that Ctrl-C does not end it" holds \
     "$(cut -d' ' -f1 browser/seen) != $session"
 kill -INT $lab
 wait $lab
@@ -536,7 +541,7 @@ run_lab --folder . --results . --port 0
 check "lab needs no scene" matches "$address" '^http'
 kill -TERM $lab
 wait $lab
-check "SIGTERM ends it too" is $? 0
+check "SIGTERM ends lab with status 0" is $? 0
 refused_lab() { # WHAT ERROR ARGUMENT...
     local what=$1 error=$2
     shift 2
@@ -555,7 +560,7 @@ refused_lab "results elsewhere" '.*results' --folder elsewhere --results results
 echo 'solids: {ball: {shape: sphere, ior: 1.5}}' >odd.yaml
 run render odd.yaml -o odd.png "${small[@]}"
 check "a likely mistake is noted" grep -q '^cuvette: note: ball\.ior: ball ' err
-check "but the scene is rendered" is "$code" 0
+check "a scene with a note is rendered" is "$code" 0
 run render odd.yaml --json "${small[@]}"
 check "--json leaves notes out" silent_success
 
@@ -582,7 +587,7 @@ lines=$(wc -l <res/tiny/rows.csv)
 check "one row per repetition" is "$lines" 10
 run study run studies/tiny.study --results res
 check "a second run finds nothing to do" matches "$(<out)" 'nothing to do'
-check "and writes nothing" is "$(wc -l <res/tiny/rows.csv)" "$lines"
+check "a second run adds no rows" is "$(wc -l <res/tiny/rows.csv)" "$lines"
 run study status studies/tiny.study --results res
 check "study status after the run" matches "$(<out)" '3 of 3 cells done, 6 rows and 3 warm-ups in res/tiny, 0 marked'
 run study summary studies/tiny.study --results res
@@ -597,7 +602,7 @@ run study run --quiet studies/tiny.study --results parts --shard 0/2
 check "--quiet prints nothing" is "$(cat out err)" ""
 run study run studies/tiny.study --results parts --shard 1/2
 run study merge studies/tiny.study --results parts
-check "study merge joins the shards" is "$(wc -l <parts/tiny/rows.csv)" "$lines"
+check "study merge merges the shards" is "$(wc -l <parts/tiny/rows.csv)" "$lines"
 sed -e 's/^study: .*/study: against/' -e '$a reference: {render.depth: 2}' studies/tiny.study >studies/against.study
 run study run --quiet studies/against.study --results res
 check "a study with a reference compares each cell" is \
@@ -642,7 +647,7 @@ for signal in INT TERM; do
     check "SIG$signal ends a render with 130" is $? 130
     check "SIG$signal: the partial image is written" magic part.png 89504e47
     check "SIG$signal: one line reports it" is "$(grep -c interrupted err)" 1
-    check "SIG$signal: the account is marked as partial" is "$(json whole)" false
+    check "SIG$signal: the JSON output is marked as incomplete" is "$(json whole)" false
 done
 # A huge ray tree, and a mesh that takes long to generate: the program reacts to signals in every phase.
 {
@@ -659,7 +664,7 @@ for signal in INT TERM; do
         kill -"$signal" $job
         wait $job
         check "SIG$signal ends ${words##*/} with 130" is $? 130
-        check "SIG$signal: ${words##*/} leaves a whole image or none" \
+        check "SIG$signal: ${words##*/} leaves a complete image or none" \
             eval '[[ ! -e part.png ]] || "$program" compare part.png part.png'
         check "SIG$signal: no other file is left of ${words##*/}" is "$(find . -name '.cuvette-*.part')" ""
     done
@@ -677,7 +682,8 @@ wait $job
 check "SIGINT ends a study with 130" is $? 130
 check "SIGINT: one line reports it, and how to resume" \
     is "$(grep -c 'interrupted.*run it again' err) $(wc -l <err)" "1 1"
-check "SIGINT: its rows are whole" awk -F, 'NR == 1 {n = NF} NF < n {bad = 1} END {exit bad || NR < 3}' \
+check "SIGINT: the rows of the study are complete" \
+    awk -F, 'NR == 1 {n = NF} NF < n {bad = 1} END {exit bad || NR < 3}' \
     res/long/rows.csv
 if command -v script >/dev/null; then
     script -qec "'$program' rendr" /dev/null >tty.txt 2>&1
@@ -694,7 +700,7 @@ if command -v script >/dev/null; then
     check "progress has a percentage and the time left" grep -q 'rendering: .*%, .* left' tty.txt
 fi
 
-# --- tables on a terminal are wrapped to its width; a pipe gets the whole lines
+# --- tables are wrapped to the width of a terminal, and not in a pipe
 widest() { awk '{if (length > w) w = length} END {print w + 0}' "$1"; }
 words() { tr -d ';' <"$1" | tr -s ' \t' '\n' | sed '/^-*$/d' | sort; } # FILE: its words in any order
 # on_terminal COLUMNS ARGUMENT...: runs the program on a terminal of that width; its output is in tty.txt
@@ -725,16 +731,16 @@ if command -v script >/dev/null; then
     done
     on_terminal 80 params
     check "no line of a table ends in a blank" is "$(grep -c ' $' tty.txt)" 0
-    check "a meaning without room is below its row" is "$(grep -A1 '^render.depth ' tty.txt | tail -1)" \
+    check "a meaning that does not fit is below its row" is "$(grep -A1 '^render.depth ' tty.txt | tail -1)" \
         "    integer 0..64; recursion depth; 0: camera rays only"
     on_terminal 80 realism "$scene" --csv
     check "CSV is not wrapped" holds "$(widest tty.txt) > 80"
     COLUMNS=60 on_terminal 0 media
     check "COLUMNS is the width of a terminal that does not report it" holds "$(widest tty.txt) <= 60"
     COLUMNS=60 on_terminal 200 media
-    check "but not of one that does" holds "$(widest tty.txt) > 100"
+    check "the reported width of a terminal overrides COLUMNS" holds "$(widest tty.txt) > 100"
     COLUMNS=wide on_terminal 0 media
-    check "and 80 without both" holds "$(widest tty.txt) > 70 && $(widest tty.txt) <= 80"
+    check "the width is 80 without both" holds "$(widest tty.txt) > 70 && $(widest tty.txt) <= 80"
     COLUMNS=40 run media
     check "COLUMNS does not wrap a pipe" holds "$(widest out) > 100"
 fi
@@ -746,11 +752,11 @@ cp out first.yaml
 run scene first.yaml
 check "write, read, write gives the same bytes" cmp out first.yaml
 run scene "$scene" --all -o all.yaml
-check "-o prints nothing" is "$code $(cat out err | wc -c)" "0 0"
+check "scene -o prints nothing" is "$code $(cat out err | wc -c)" "0 0"
 check "--all also writes defaults" grep -q '^  polarisation: off' all.yaml
 for file in first.yaml all.yaml; do
     run render "$file" -o b.png "${small[@]}"
-    check "$file makes the same film" matches "$(<out)" "film $hash"
+    check "$file gives the same film" matches "$(<out)" "film $hash"
 done
 run scene --new --title "Rod in a vessel" --set camera.position=0,2.75,-6 --set camera.target=0,1.5,0 \
     --add material:clear,transparency=1,specular=0.6,shininess=80 \
@@ -766,7 +772,7 @@ run scene --new --title "Rod in a vessel" --set camera.position=0,2.75,-6 --set 
     rod=0,0,-45 \
     --move rod=0.2,2.101,0 -o built.yaml
 check "a scene is built by options alone" silent_success
-check "and is the same scene, byte for byte" cmp built.yaml first.yaml
+check "the built scene equals the original, byte for byte" cmp built.yaml first.yaml
 run scene built.yaml --list
 check "--list has one line per object" is "$(head -1 out) $(wc -l <out) $(tail -1 out)" \
     "material clear 8 solid rod box plastic"
@@ -777,7 +783,7 @@ run scene built.yaml --move rod=0,0.5,0 -o built.yaml
 check "a scene can be changed in place" matches "$(grep -A3 '  rod:' built.yaml | tail -1)" \
     'position: \[0.2, 2.601, 0\]'
 run scene built.yaml --turn all+camera=0,90,0 --scale all+camera=2 --move all+camera=1,0,0 -o whole.yaml
-check "a whole scene is turned, scaled and moved" matches \
+check "a whole scene is rotated, scaled and moved" matches \
     "$(
         grep -A6 '^camera:' whole.yaml | head -3 | tr -s '\n ' ' '
         grep unit_m whole.yaml
@@ -793,9 +799,9 @@ check "a roll changes the image" matches "$(<out)" 'flip  *0\.[0-9]*[1-9]'
 mkdir -p pictures/scenes
 cp a.png pictures/sky.png
 run scene built.yaml --set background.picture=pictures/sky.png -o pictures/scenes/moved.yaml
-check "paths follow the file" grep -q '  picture: ../sky.png' pictures/scenes/moved.yaml
+check "relative paths are adjusted to the folder of the file" grep -q '  picture: ../sky.png' pictures/scenes/moved.yaml
 run scene pictures/scenes/moved.yaml --check
-check "and find the image" depth_noted
+check "the adjusted path leads to the image" depth_noted
 refused() { # WHAT ERROR ARGUMENT...: exit 2, one line, nothing written
     local what=$1 error=$2
     shift 2

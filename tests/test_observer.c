@@ -55,7 +55,7 @@ static void matching_functions_have_their_published_values(void **state)
 }
 
 /* The sums that CIE 15:2004, table T.4, prints below its columns: 380 .. 780 nm at 5 nm. */
-static void matching_functions_have_equal_and_published_sums(void **state)
+static void sums_of_the_matching_functions_are_equal_and_published(void **state)
 {
     (void)state;
     double sum[3] = {0.0, 0.0, 0.0}, xyz[3], highest = 0.0, highest_nm = 0.0;
@@ -74,7 +74,7 @@ static void matching_functions_have_equal_and_published_sums(void **state)
     assert_true(highest == 1.0 && highest_nm == 555.0);
 }
 
-static void tables_are_linear_between_entries_and_end_in_nothing(void **state)
+static void tables_are_linear_between_entries_and_zero_outside(void **state)
 {
     (void)state;
     double xyz[3], low[3], high[3];
@@ -117,7 +117,7 @@ static void daylight_has_its_published_chromaticity(void **state)
     }
 }
 
-static void little_of_daylight_is_outside_the_sampled_range(void **state)
+static void the_share_of_daylight_outside_the_sampled_range_is_small(void **state)
 {
     (void)state;
     static const double most[3] = {5.8e-5, 2.8e-6, 2.3e-4};
@@ -128,7 +128,7 @@ static void little_of_daylight_is_outside_the_sampled_range(void **state)
         assert_true(sampled[i] < all[i] && 1.0 - sampled[i] / all[i] < most[i]);
 }
 
-static void white_in_is_white_out(void **state)
+static void a_white_reflectance_gives_white(void **state)
 {
     (void)state;
     double xyz[3], rgb[3];
@@ -140,7 +140,7 @@ static void white_in_is_white_out(void **state)
 }
 
 /* With evenly spread wavelengths, as a renderer samples them; the equal-energy spectrum has x = y = 1/3. */
-static void mean_of_the_weights_is_the_colour_of_a_spectrum(void **state)
+static void the_mean_of_the_weights_is_the_colour_of_a_spectrum(void **state)
 {
     (void)state;
     const int samples = 100000;
@@ -162,7 +162,7 @@ static void mean_of_the_weights_is_the_colour_of_a_spectrum(void **state)
 }
 
 /* IEC 61966-2-1, and the primaries of ITU-R BT.709, which hold exactly. */
-static void primaries_are_those_of_srgb(void **state)
+static void the_primaries_have_srgbs_chromaticities(void **state)
 {
     (void)state;
     static const double published[3][3] = {
@@ -179,7 +179,7 @@ static void primaries_are_those_of_srgb(void **state)
     }
 }
 
-static void the_two_matrices_undo_each_other(void **state)
+static void the_two_matrices_are_inverse(void **state)
 {
     (void)state;
     const double rgb[3] = {0.2, -0.7, 3.0};
@@ -195,7 +195,7 @@ static void the_two_matrices_undo_each_other(void **state)
 
 /* The locus is at these chromaticities (Wyszecki and Stiles, table I(3.3.1)); none of its colours is in the gamut, and
  * each has negative components for distant primaries. */
-static void single_wavelengths_lie_on_the_spectral_locus(void **state)
+static void single_wavelengths_are_on_the_spectral_locus(void **state)
 {
     (void)state;
     static const struct {
@@ -220,16 +220,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(matching_functions_have_their_published_values),
-        cmocka_unit_test(matching_functions_have_equal_and_published_sums),
-        cmocka_unit_test(tables_are_linear_between_entries_and_end_in_nothing),
+        cmocka_unit_test(sums_of_the_matching_functions_are_equal_and_published),
+        cmocka_unit_test(tables_are_linear_between_entries_and_zero_outside),
         cmocka_unit_test(daylight_has_its_published_values),
         cmocka_unit_test(daylight_has_its_published_chromaticity),
-        cmocka_unit_test(little_of_daylight_is_outside_the_sampled_range),
-        cmocka_unit_test(white_in_is_white_out),
-        cmocka_unit_test(mean_of_the_weights_is_the_colour_of_a_spectrum),
-        cmocka_unit_test(primaries_are_those_of_srgb),
-        cmocka_unit_test(the_two_matrices_undo_each_other),
-        cmocka_unit_test(single_wavelengths_lie_on_the_spectral_locus),
+        cmocka_unit_test(the_share_of_daylight_outside_the_sampled_range_is_small),
+        cmocka_unit_test(a_white_reflectance_gives_white),
+        cmocka_unit_test(the_mean_of_the_weights_is_the_colour_of_a_spectrum),
+        cmocka_unit_test(the_primaries_have_srgbs_chromaticities),
+        cmocka_unit_test(the_two_matrices_are_inverse),
+        cmocka_unit_test(single_wavelengths_are_on_the_spectral_locus),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,7 +61,7 @@ static void reflectances_agree_with_the_sine_and_tangent_laws(void **state)
 
 /* Air to glass of index 1.5, the standard example (Hecht, figs. 4.47 to 4.49). At 45 degrees sin_t = sqrt(2)/3, so
  * r_s = -(9 - 2 sqrt(14)) / 5. */
-static void reflectances_of_glass_at_known_angles(void **state)
+static void reflectances_of_glass_equal_those_of_hecht(void **state)
 {
     (void)state;
     fresnel f = fresnel_dielectric(cosine_deg(45.0), 1.0, 1.5);
@@ -77,7 +77,7 @@ static void reflectances_of_glass_at_known_angles(void **state)
     assert_true(f.R_p < 1e-30);
 }
 
-static void normal_incidence(void **state)
+static void reflectance_at_normal_incidence_equals_the_closed_form(void **state)
 {
     (void)state;
     for (size_t k = 0; k < COUNT(pairs); k++) {
@@ -91,7 +91,7 @@ static void normal_incidence(void **state)
 }
 
 /* tan theta_B = n_to / n_from: no light polarised in the plane of incidence is reflected. */
-static void brewsters_angle(void **state)
+static void p_light_is_not_reflected_at_brewsters_angle(void **state)
 {
     (void)state;
     for (size_t k = 0; k < COUNT(pairs); k++) {
@@ -106,7 +106,7 @@ static void brewsters_angle(void **state)
     }
 }
 
-static void grazing_incidence_reflects_all(void **state)
+static void everything_is_reflected_at_grazing_incidence(void **state)
 {
     (void)state;
     for (size_t k = 0; k < COUNT(pairs); k++) {
@@ -167,7 +167,7 @@ static void total_reflection_begins_at_the_critical_angle(void **state)
 }
 
 /* Stokes: the reverse path through the interface reflects the same share. */
-static void both_sides_reflect_alike(void **state)
+static void reflectance_is_equal_from_both_sides(void **state)
 {
     (void)state;
     uint64_t seed = 2;
@@ -200,7 +200,7 @@ static incidence random_incidence(uint64_t *seed)
     return w;
 }
 
-static void directions_obey_snell(void **state)
+static void directions_obey_snells_law(void **state)
 {
     (void)state;
     uint64_t seed = 3;
@@ -245,7 +245,7 @@ static void refraction_is_reversible(void **state)
 }
 
 /* A stack of parallel interfaces: light leaving the last one obeys Snell between the first medium and the last. */
-static void parallel_layers_keep_n_sin_theta(void **state)
+static void n_sin_theta_is_conserved_in_parallel_layers(void **state)
 {
     (void)state;
     uint64_t seed = 5;
@@ -268,7 +268,7 @@ static void parallel_layers_keep_n_sin_theta(void **state)
 }
 
 /* 64 mirrors: a direction stays a unit vector, and agrees with quadruple precision. */
-static void reflections_do_not_drift(void **state)
+static void repeated_reflections_keep_unit_length(void **state)
 {
     (void)state;
     uint64_t seed = 6;
@@ -290,17 +290,17 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reflectances_agree_with_the_sine_and_tangent_laws),
-        cmocka_unit_test(reflectances_of_glass_at_known_angles),
-        cmocka_unit_test(normal_incidence),
-        cmocka_unit_test(brewsters_angle),
-        cmocka_unit_test(grazing_incidence_reflects_all),
+        cmocka_unit_test(reflectances_of_glass_equal_those_of_hecht),
+        cmocka_unit_test(reflectance_at_normal_incidence_equals_the_closed_form),
+        cmocka_unit_test(p_light_is_not_reflected_at_brewsters_angle),
+        cmocka_unit_test(everything_is_reflected_at_grazing_incidence),
         cmocka_unit_test(shares_stay_in_range_and_equal_media_reflect_nothing),
         cmocka_unit_test(total_reflection_begins_at_the_critical_angle),
-        cmocka_unit_test(both_sides_reflect_alike),
-        cmocka_unit_test(directions_obey_snell),
+        cmocka_unit_test(reflectance_is_equal_from_both_sides),
+        cmocka_unit_test(directions_obey_snells_law),
         cmocka_unit_test(refraction_is_reversible),
-        cmocka_unit_test(parallel_layers_keep_n_sin_theta),
-        cmocka_unit_test(reflections_do_not_drift),
+        cmocka_unit_test(n_sin_theta_is_conserved_in_parallel_layers),
+        cmocka_unit_test(repeated_reflections_keep_unit_length),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

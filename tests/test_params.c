@@ -89,7 +89,7 @@ static void rows_are_complete_and_defaults_are_in_range(void **state)
     scene_destroy(s);
 }
 
-static void ranges_read_like_a_manual(void **state)
+static void ranges_have_readable_texts(void **state)
 {
     (void)state;
     static const struct {
@@ -120,7 +120,7 @@ static status same_as_fallback(void *context, const char *path, const param *row
 }
 
 /* So a scene prints its defaults in the same form as the table. */
-static void an_empty_scene_is_the_defaults(void **state)
+static void an_empty_scene_has_the_defaults(void **state)
 {
     (void)state;
     scene *s = scene_create();
@@ -138,7 +138,7 @@ static void an_empty_scene_is_the_defaults(void **state)
 
 /* ---- setting ---- */
 
-static void every_type_is_set_and_got(void **state)
+static void values_of_every_type_are_set_and_read(void **state)
 {
     (void)state;
     static const struct {
@@ -183,7 +183,7 @@ static void every_type_is_set_and_got(void **state)
     scene_destroy(s);
 }
 
-static void a_material_is_set_for_all_and_a_solid_for_itself(void **state)
+static void a_material_changes_all_its_solids_and_a_solid_only_itself(void **state)
 {
     (void)state;
     scene *s = make();
@@ -201,7 +201,7 @@ static void a_material_is_set_for_all_and_a_solid_for_itself(void **state)
     scene_destroy(s);
 }
 
-static void target_and_angles_take_each_others_place(void **state)
+static void the_last_of_target_and_angles_applies(void **state)
 {
     (void)state;
     scene *s = make();
@@ -227,7 +227,7 @@ static void target_and_angles_take_each_others_place(void **state)
     scene_destroy(s);
 }
 
-static void a_picture_makes_the_background_one(void **state)
+static void setting_an_image_selects_the_image_background(void **state)
 {
     (void)state;
     scene *s = make();
@@ -272,7 +272,7 @@ static void expect_reproduced(const scene *changed)
     scene_destroy(c.s);
 }
 
-static void what_is_printed_makes_the_same_scene(void **state)
+static void printed_parameters_give_the_same_scene(void **state)
 {
     (void)state;
     scene *s = make();
@@ -300,7 +300,7 @@ static status stop_at_third(void *context, const char *path, const param *row, c
     return ++*(int *)context == 3 ? STATUS_INTERRUPTED : STATUS_OK;
 }
 
-static void a_visit_stops_when_told(void **state)
+static void a_visit_stops_when_the_callback_fails(void **state)
 {
     (void)state;
     scene *s = make();
@@ -312,7 +312,7 @@ static void a_visit_stops_when_told(void **state)
 
 /* ---- errors ---- */
 
-static void wrong_paths_and_values_say_what_is_right(void **state)
+static void errors_of_paths_and_values_name_the_valid_ones(void **state)
 {
     (void)state;
     static const struct {
@@ -383,7 +383,7 @@ static void wrong_paths_and_values_say_what_is_right(void **state)
     scene_destroy(untouched);
 }
 
-static void odd_paths_are_refused(void **state)
+static void malformed_paths_are_refused(void **state)
 {
     (void)state;
     static const char *const paths[] = {"",
@@ -432,16 +432,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rows_are_complete_and_defaults_are_in_range),
-        cmocka_unit_test(ranges_read_like_a_manual),
-        cmocka_unit_test(an_empty_scene_is_the_defaults),
-        cmocka_unit_test(every_type_is_set_and_got),
-        cmocka_unit_test(a_material_is_set_for_all_and_a_solid_for_itself),
-        cmocka_unit_test(target_and_angles_take_each_others_place),
-        cmocka_unit_test(a_picture_makes_the_background_one),
-        cmocka_unit_test(what_is_printed_makes_the_same_scene),
-        cmocka_unit_test(a_visit_stops_when_told),
-        cmocka_unit_test(wrong_paths_and_values_say_what_is_right),
-        cmocka_unit_test(odd_paths_are_refused),
+        cmocka_unit_test(ranges_have_readable_texts),
+        cmocka_unit_test(an_empty_scene_has_the_defaults),
+        cmocka_unit_test(values_of_every_type_are_set_and_read),
+        cmocka_unit_test(a_material_changes_all_its_solids_and_a_solid_only_itself),
+        cmocka_unit_test(the_last_of_target_and_angles_applies),
+        cmocka_unit_test(setting_an_image_selects_the_image_background),
+        cmocka_unit_test(printed_parameters_give_the_same_scene),
+        cmocka_unit_test(a_visit_stops_when_the_callback_fails),
+        cmocka_unit_test(errors_of_paths_and_values_name_the_valid_ones),
+        cmocka_unit_test(malformed_paths_are_refused),
         cmocka_unit_test(an_assignment_splits_at_its_first_equals_sign),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -49,7 +49,7 @@ static agreement agree(scene *s, const char *settings, double unseen)
 }
 
 /* For rare events the interval covers less often than its nominal probability; hence 90 of 100, not 95. */
-static void paths_through_clear_solids_have_the_trees_mean(void **state)
+static void paths_through_clear_solids_have_the_mean_of_whitted_ray_tracing(void **state)
 {
     (void)state;
     scene *s = scene_from(clear_scene);
@@ -94,14 +94,14 @@ static void paths_have_highlights_under_every_lighting(void **state)
     (void)state;
     static const char *const rules[] = {"render.lighting=lambert", "render.lighting=phong"};
     scene *s = scene_from(certain_scene);
-    render_result *wanted = render(s);
+    render_result *expected = render(s);
     for (size_t k = 0; k < COUNT(rules); k++) {
         set(s, rules[k]);
         render_result *r = render(s);
-        assert_true(film_hash(r->img) == film_hash(wanted->img));
+        assert_true(film_hash(r->img) == film_hash(expected->img));
         render_result_destroy(r);
     }
-    render_result_destroy(wanted);
+    render_result_destroy(expected);
     /* At normal incidence R.V is 1: k_s I C of the lamp behind the camera, and nothing else without k_d. */
     set_all(
         s,
@@ -124,7 +124,7 @@ static const char glossy_scene[] = "render: {width: 1, height: 1, depth: 1, inte
 
 /* A sky of h + (s - h) cos theta lights a floor like h + 2/3 (s - h), the mean of cos theta by the cosine law; at 45
  * degrees the mirror reflects it at cos theta = 1 / sqrt 2. The choice of lobe must be independent of the direction. */
-static void a_matte_mirror_has_both_shares_of_the_sky(void **state)
+static void a_matte_mirror_reflects_the_diffuse_and_the_specular_share(void **state)
 {
     (void)state;
     static const double high[3] = {1.0, 0.2, 0.5}, low[3] = {0.0, 0.8, 0.1}, color[3] = {0.9, 0.6, 0.3};
@@ -172,11 +172,11 @@ static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
                     continue; /* the horizon cuts it */
                 s->lights[0].radius = shares[i] * d;
                 s->lights[0].position = vec3_make(d * sqrt(1.0 - cosines[j] * cosines[j]), d * cosines[j], 0.0);
-                const double wanted = 0.7 * 0.9 * 3.0 * 4.0 / (d * d) * cosines[j];
+                const double expected = 0.7 * 0.9 * 3.0 * 4.0 / (d * d) * cosines[j];
                 const estimate e = look_by_chance(s, 0);
-                expect_estimate(e, wanted);
-                assert_true(e.standard_error < 0.03 * wanted);
-                agreement_add(&a, e, wanted, 1e-8); /* of the smallest ones */
+                expect_estimate(e, expected);
+                assert_true(e.standard_error < 0.03 * expected);
+                agreement_add(&a, e, expected, 1e-8); /* of the smallest ones */
                 s->render.seed++;
             }
     print_message("%d lamps: %.0f%% in their 95%% interval\n", a.count, 100.0 * agreement_share(&a));
@@ -188,7 +188,7 @@ static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
 /* Lamps in the direction (0, 0.6, 0.8), into which the view ray is reflected: R.V is the cosine of the angle from the
  * lamp's middle, so that Phong's highlight is k_s times the light, 2 L times the integral of cos^n over the cosines of
  * the cone, from sqrt(1 - s^2) to 1. */
-static void a_sphere_has_a_highlight(void **state)
+static void a_sphere_light_has_phongs_highlight(void **state)
 {
     (void)state;
     static const double shares[] = {0.05, 0.3, 0.55}, shininess[] = {1.0, 2.5, 40.0};
@@ -202,10 +202,10 @@ static void a_sphere_has_a_highlight(void **state)
             snprintf(assignment, sizeof assignment, "floor.shininess=%g", n);
             set(s, assignment);
             s->lights[0].radius = r;
-            const double wanted = 0.4 * 2.0 * 3.0 * 4.0 / (r * r) * (1.0 - pow(least_cos, n + 1.0)) / (n + 1.0);
+            const double expected = 0.4 * 2.0 * 3.0 * 4.0 / (r * r) * (1.0 - pow(least_cos, n + 1.0)) / (n + 1.0);
             const estimate e = look_by_chance(s, 0);
-            expect_estimate(e, wanted);
-            assert_true(e.standard_error < 0.05 * wanted);
+            expect_estimate(e, expected);
+            assert_true(e.standard_error < 0.05 * expected);
         }
     scene_destroy(s);
 }
@@ -213,7 +213,7 @@ static void a_sphere_has_a_highlight(void **state)
 /* In the same place, on a floor that is also a mirror: the lamp itself, of radiance L, with the mirror's share; and
  * with the matte share Lambert's law of spheres, once, because the random continuation does not count the lamp
  * again. */
-static void a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once(void **state)
+static void a_matte_mirror_counts_a_visible_lamp_once_per_lobe(void **state)
 {
     (void)state;
     scene *s = scene_from(lamp_scene);
@@ -268,12 +268,12 @@ static void lamps_are_sampled_independently(void **state)
                           "  red: {position: [0, 4, 0], color: [1, 0, 0], reach: 2, radius: 2}\n"
                           "  green: {position: [0, 4, 0], color: [0, 1, 0], reach: 2, radius: 2}\n"
                           "solids: {floor: {shape: plane, diffuse: 1}}\n");
-    const double wanted = 0.25; /* intensity (reach / d)^2, as above */
+    const double expected = 0.25; /* intensity (reach / d)^2, as above */
     double own = 0.0, difference = 0.0;
     for (int seed = 0; seed < DRAWS; seed++) {
         s->render.seed = seed;
         const vec3 seen = look(s);
-        own += (seen.x - wanted) * (seen.x - wanted) + (seen.y - wanted) * (seen.y - wanted);
+        own += (seen.x - expected) * (seen.x - expected) + (seen.y - expected) * (seen.y - expected);
         difference += (seen.x - seen.y) * (seen.x - seen.y);
     }
     assert_true(own > 0.0 && own / (2 * DRAWS) < 1e-4); /* a hundredth */
@@ -283,7 +283,7 @@ static void lamps_are_sampled_independently(void **state)
 
 /* Only the upper half of a lamp whose middle is on the horizon contributes. B-24's other case, theta = 90 degrees: E /
  * (pi L) = (asin(s) - s sqrt(1 - s^2)) / pi with s = r / d. */
-static void the_horizon_cuts_a_lamp(void **state)
+static void only_the_part_of_a_lamp_above_the_horizon_contributes(void **state)
 {
     (void)state;
     scene *s = scene_from(lamp_scene);
@@ -295,7 +295,7 @@ static void the_horizon_cuts_a_lamp(void **state)
 
 /* A thin screen over x < 0 at height 1, the lamp above its edge at height 5: the planes through the edge that touch the
  * lamp intersect the floor at x = -+1 r / sqrt(4^2 - r^2), by similar triangles. The penumbra is between them. */
-static void a_penumbra_is_as_wide_as_similar_triangles_require(void **state)
+static void the_width_of_a_penumbra_follows_from_similar_triangles(void **state)
 {
     (void)state;
     const double r = 1.5, edge = r / sqrt(16.0 - r * r);
@@ -351,7 +351,7 @@ static void a_slab_reduces_the_lamps_light_by_its_reflections(void **state)
         const double d = 5.0 - 0.01 * (1.0 - 1.0 / n), E = 0.01 * 3.0 * 4.0 / (d * d);
         s->render.depth = 24;
         const estimate e = look_by_chance(s, 0);
-        print_message("index %g: %.5f +- %.5f of the open light, wanted %.5f\n", n, e.value / E, e.standard_error / E,
+        print_message("index %g: %.5f +- %.5f of the open light, expected %.5f\n", n, e.value / E, e.standard_error / E,
                       (1.0 - R) / (1.0 + R));
         assert_true(e.standard_error < 0.01 * E);
         expect_estimate(e, E * (1.0 - R) / (1.0 + R));
@@ -428,9 +428,9 @@ static void check_hollow_series(const char *settings)
         s->render.depth = depth;
         render_result *r = render(s);
         for (int c = 0; c < 3; c++) {
-            const double rho = 0.8 / (1 << c), wanted = rho * 3.0 / 4.0 * (1.0 - pow(rho, depth + 1)) / (1.0 - rho);
+            const double rho = 0.8 / (1 << c), expected = rho * 3.0 / 4.0 * (1.0 - pow(rho, depth + 1)) / (1.0 - rho);
             for (int i = 0; i < 48; i++)
-                assert_true(fabs(film_value(r->img, i % 8, i / 8, c) - wanted) < 1e-9);
+                assert_true(fabs(film_value(r->img, i % 8, i / 8, c) - expected) < 1e-9);
         }
         render_result_destroy(r);
     }
@@ -441,7 +441,7 @@ static void light_in_a_hollow_ball_is_a_geometric_series(void **state)
 {
     (void)state;
     check_hollow_series("");
-    check_hollow_series("hollow.ior=1.5"); /* full of glass: nothing is between the lamp and the wall then either */
+    check_hollow_series("hollow.ior=1.5"); /* filled with glass: no interface is between the lamp and the wall either */
     check_hollow_series("hollow.ior=1.5 render.shadows=attenuated");
 }
 
@@ -470,7 +470,7 @@ static uint64_t rays_of(const scene *s)
 
 /* The wall is also a mirror, which light from the middle does not show: of each channel k_d C continues, and by the
  * mirror k_r. The end of a path must not depend on the choice between the two. */
-static void roulette_does_not_choose_between_matte_and_mirror(void **state)
+static void roulette_is_independent_of_the_choice_between_matte_and_mirror(void **state)
 {
     (void)state;
     scene *s = scene_from(hollow_scene);
@@ -520,7 +520,7 @@ static void a_light_sphere_in_a_hollow_ball_is_a_geometric_series(void **state)
 }
 
 /* The medium before a lamp absorbs by exp(-a d), and the medium behind the lamp does not. */
-static void only_the_medium_before_a_lamp_absorbs(void **state)
+static void the_medium_before_a_lamp_absorbs_and_the_one_behind_does_not(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -609,7 +609,7 @@ static void check_spread(const char *settings)
     scene_destroy(s);
 }
 
-static void the_reported_standard_error_is_that_over_seeds(void **state)
+static void the_reported_standard_error_equals_that_over_seeds(void **state)
 {
     (void)state;
     check_spread("render.paths=64");
@@ -661,7 +661,7 @@ static void any_number_of_paths_is_valid(void **state)
 }
 
 /* Shares are n values of a sum; by hand: 1, 2 and 6 add up to 9, their variance is 7, and that of the sum 3 x 7. */
-static void shares_add_up(void **state)
+static void the_sum_and_variance_of_shares(void **state)
 {
     (void)state;
     film *f = NULL;
@@ -686,29 +686,29 @@ static void shares_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(paths_through_clear_solids_have_the_trees_mean),
+        cmocka_unit_test(paths_through_clear_solids_have_the_mean_of_whitted_ray_tracing),
         cmocka_unit_test(deterministic_light_is_exact),
         cmocka_unit_test(paths_have_highlights_under_every_lighting),
-        cmocka_unit_test(a_matte_mirror_has_both_shares_of_the_sky),
+        cmocka_unit_test(a_matte_mirror_reflects_the_diffuse_and_the_specular_share),
         cmocka_unit_test(a_sphere_lights_a_floor_by_lamberts_law),
-        cmocka_unit_test(a_sphere_has_a_highlight),
-        cmocka_unit_test(a_mirror_shows_the_lamp_and_a_matte_floor_counts_it_once),
+        cmocka_unit_test(a_sphere_light_has_phongs_highlight),
+        cmocka_unit_test(a_matte_mirror_counts_a_visible_lamp_once_per_lobe),
         cmocka_unit_test(with_a_light_sphere_clear_solids_block_point_lights),
         cmocka_unit_test(lamps_are_sampled_independently),
-        cmocka_unit_test(the_horizon_cuts_a_lamp),
-        cmocka_unit_test(a_penumbra_is_as_wide_as_similar_triangles_require),
+        cmocka_unit_test(only_the_part_of_a_lamp_above_the_horizon_contributes),
+        cmocka_unit_test(the_width_of_a_penumbra_follows_from_similar_triangles),
         cmocka_unit_test(a_slab_reduces_the_lamps_light_by_its_reflections),
         cmocka_unit_test(a_lamp_behind_a_glass_ball_has_the_balls_transmittance),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(light_in_a_hollow_ball_is_a_geometric_series),
         cmocka_unit_test(roulette_keeps_the_mean_and_saves_rays),
-        cmocka_unit_test(roulette_does_not_choose_between_matte_and_mirror),
+        cmocka_unit_test(roulette_is_independent_of_the_choice_between_matte_and_mirror),
         cmocka_unit_test(a_light_sphere_in_a_hollow_ball_is_a_geometric_series),
-        cmocka_unit_test(only_the_medium_before_a_lamp_absorbs),
-        cmocka_unit_test(the_reported_standard_error_is_that_over_seeds),
+        cmocka_unit_test(the_medium_before_a_lamp_absorbs_and_the_one_behind_does_not),
+        cmocka_unit_test(the_reported_standard_error_equals_that_over_seeds),
         cmocka_unit_test(the_reported_standard_error_of_a_spectral_film_is_a_bound),
         cmocka_unit_test(any_number_of_paths_is_valid),
-        cmocka_unit_test(shares_add_up),
+        cmocka_unit_test(the_sum_and_variance_of_shares),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,21 +45,21 @@ static fingerprint fingerprint_at(const scene *s, isa level)
     return f;
 }
 
-static void instruction_sets(void **state)
+static void films_are_bit_identical_on_all_instruction_sets(void **state)
 {
     (void)state;
     for (size_t v = 0; v < COUNT(variants); v++) {
         scene *s = rod_scene(variants[v]);
-        const fingerprint wanted = fingerprint_at(s, ISA_SSE2);
+        const fingerprint expected = fingerprint_at(s, ISA_SSE2);
         for (int level = ISA_AVX2; level <= (int)isa_best(); level++) {
             const fingerprint f = fingerprint_at(s, (isa)level);
-            assert_memory_equal(&f, &wanted, sizeof f);
+            assert_memory_equal(&f, &expected, sizeof f);
         }
         scene_destroy(s);
     }
 }
 
-static void threads_schedules_and_tiles(void **state)
+static void films_are_bit_identical_for_threads_schedules_and_tiles(void **state)
 {
     (void)state;
     static const int threads[] = {1, 2, 7}, tiles[] = {1, 8, 64};
@@ -67,7 +67,7 @@ static void threads_schedules_and_tiles(void **state)
     assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
     for (size_t v = 0; v < COUNT(variants); v++) {
         scene *s = rod_scene(variants[v]);
-        const fingerprint wanted = fingerprint_at(s, isa_best());
+        const fingerprint expected = fingerprint_at(s, isa_best());
         for (size_t t = 0; t < COUNT(threads); t++)
             for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++)
                 for (size_t k = 0; k < (rule < SCHEDULE_TILES ? 1 : COUNT(tiles)); k++) {
@@ -77,7 +77,7 @@ static void threads_schedules_and_tiles(void **state)
                     render_result *result = NULL;
                     assert_int_equal(renderer_render(r, s, NULL, &result, NULL), STATUS_OK);
                     const fingerprint f = fingerprint_of(result);
-                    assert_memory_equal(&f, &wanted, sizeof f);
+                    assert_memory_equal(&f, &expected, sizeof f);
                     render_result_destroy(result);
                 }
         scene_destroy(s);
@@ -103,8 +103,8 @@ static void the_seed_changes_only_random_choices(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(instruction_sets),
-        cmocka_unit_test(threads_schedules_and_tiles),
+        cmocka_unit_test(films_are_bit_identical_on_all_instruction_sets),
+        cmocka_unit_test(films_are_bit_identical_for_threads_schedules_and_tiles),
         cmocka_unit_test(the_seed_changes_only_random_choices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

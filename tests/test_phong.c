@@ -27,7 +27,7 @@ static void expect_color(vec3 seen, double r, double g, double b)
     assert_near(seen.z, b, 1e-12);
 }
 
-static void each_term_of_phongs_model(void **state)
+static void each_term_of_phongs_model_equals_the_value_by_hand(void **state)
 {
     (void)state;
     scene *s = scene_from(plane_scene);
@@ -45,7 +45,7 @@ static void each_term_of_phongs_model(void **state)
     scene_destroy(s);
 }
 
-static void highlight_is_a_power_of_the_cosine(void **state)
+static void the_highlight_is_a_power_of_the_cosine(void **state)
 {
     (void)state;
     static const double exponents[] = {0.0, 0.5, 1.0, 2.0, 2.5, 7.0, 80.0, 80.5, 1000.0, 5000.0};
@@ -58,14 +58,14 @@ static void highlight_is_a_power_of_the_cosine(void **state)
             s->lights[0].position = vec3_make(0.0, heights[i], 3.0);
             /* R = (0, h, -3) / l, V = (0, 0.6, -0.8) */
             const double l = sqrt(heights[i] * heights[i] + 9.0), cosine = (0.6 * heights[i] + 2.4) / l;
-            const double wanted = pow(cosine, exponents[k]);
-            assert_near(look(s).x, wanted, 1e-12 + 1e-15 * exponents[k] * wanted);
+            const double expected = pow(cosine, exponents[k]);
+            assert_near(look(s).x, expected, 1e-12 + 1e-15 * exponents[k] * expected);
         }
     }
     scene_destroy(s);
 }
 
-static void a_lamp_behind_the_surface_gives_nothing(void **state)
+static void a_lamp_behind_the_surface_does_not_contribute(void **state)
 {
     (void)state;
     scene *s = scene_from(plane_scene);
@@ -78,7 +78,7 @@ static void a_lamp_behind_the_surface_gives_nothing(void **state)
 
 /* A ball of radius 2, hit at (0, 0, -2): N = V = (0, 0, -1), L = (0, 0.6, -0.8), R = (0, -0.6, -0.8). Several lamps add
  * up. */
-static void light_on_a_ball(void **state)
+static void phongs_model_on_a_ball_adds_several_lamps(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -96,7 +96,7 @@ static void light_on_a_ball(void **state)
 }
 
 /* A clear surface has its highlight on the camera's side. */
-static void highlight_of_a_clear_surface(void **state)
+static void a_clear_surface_has_its_highlight_on_the_cameras_side(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -116,7 +116,7 @@ static void highlight_of_a_clear_surface(void **state)
 
 /* A solid is half way to the lamp: `off` ignores it, `opaque` tests only whether it exists, `attenuated` uses the
  * transmittance of its two surfaces. */
-static void shadow_modes(void **state)
+static void shadow_modes_ignore_block_or_attenuate(void **state)
 {
     (void)state;
     scene *s =
@@ -153,7 +153,7 @@ static void shadow_modes(void **state)
 
 /* Straight down at points of a plane: cells of 0.5, even ones with the first colour, also left of and behind the
  * origin. */
-static void checkers_of_a_plane(void **state)
+static void the_checkers_of_a_plane_have_the_given_size_and_phase(void **state)
 {
     (void)state;
     static const double at[] = {-1.3, -0.8, -0.3, 0.2, 0.7, 1.2};
@@ -172,7 +172,7 @@ static void checkers_of_a_plane(void **state)
 }
 
 /* The pattern rotates and moves with its solid. */
-static void checkers_move_with_their_solid(void **state)
+static void checkers_transform_with_their_solid(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 0}\n"
@@ -193,7 +193,7 @@ static void checkers_move_with_their_solid(void **state)
 
 /* On a rotated flat face the coordinate across it is zero up to rounding, or on a border between cells: rounding must
  * not choose the cell. */
-static void checkers_on_turned_faces_are_whole(void **state)
+static void rounding_does_not_change_checkers_on_rotated_faces(void **state)
 {
     (void)state;
     scene *s =
@@ -222,7 +222,7 @@ static void checkers_on_turned_faces_are_whole(void **state)
 
 /* Each flat face is on a border between cells of 0.5 and shows those behind it: for a box 0 under the upper faces and
  * -1 over the lower ones; for a cylinder 0 over its bottom and 1 under its top at 1. */
-static void flat_faces_show_the_cells_behind_them(void **state)
+static void flat_faces_show_the_checkers_behind_them(void **state)
 {
     (void)state;
     static const struct {
@@ -259,7 +259,7 @@ static void flat_faces_show_the_cells_behind_them(void **state)
 }
 
 /* Yaw rotates the image even when the camera looks straight down. */
-static void yaw_counts_looking_down(void **state)
+static void yaw_rotates_the_image_when_looking_down(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -283,7 +283,7 @@ static void yaw_counts_looking_down(void **state)
 }
 
 /* An opaque mirror reflects light times its reflectivity, once for each bounce. */
-static void mirrors_multiply(void **state)
+static void reflectivities_of_mirrors_multiply(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 2, beyond: black}\n"
@@ -304,18 +304,18 @@ static void mirrors_multiply(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_term_of_phongs_model),
-        cmocka_unit_test(highlight_is_a_power_of_the_cosine),
-        cmocka_unit_test(a_lamp_behind_the_surface_gives_nothing),
-        cmocka_unit_test(light_on_a_ball),
-        cmocka_unit_test(highlight_of_a_clear_surface),
-        cmocka_unit_test(shadow_modes),
-        cmocka_unit_test(checkers_of_a_plane),
-        cmocka_unit_test(checkers_move_with_their_solid),
-        cmocka_unit_test(checkers_on_turned_faces_are_whole),
-        cmocka_unit_test(flat_faces_show_the_cells_behind_them),
-        cmocka_unit_test(yaw_counts_looking_down),
-        cmocka_unit_test(mirrors_multiply),
+        cmocka_unit_test(each_term_of_phongs_model_equals_the_value_by_hand),
+        cmocka_unit_test(the_highlight_is_a_power_of_the_cosine),
+        cmocka_unit_test(a_lamp_behind_the_surface_does_not_contribute),
+        cmocka_unit_test(phongs_model_on_a_ball_adds_several_lamps),
+        cmocka_unit_test(a_clear_surface_has_its_highlight_on_the_cameras_side),
+        cmocka_unit_test(shadow_modes_ignore_block_or_attenuate),
+        cmocka_unit_test(the_checkers_of_a_plane_have_the_given_size_and_phase),
+        cmocka_unit_test(checkers_transform_with_their_solid),
+        cmocka_unit_test(rounding_does_not_change_checkers_on_rotated_faces),
+        cmocka_unit_test(flat_faces_show_the_checkers_behind_them),
+        cmocka_unit_test(yaw_rotates_the_image_when_looking_down),
+        cmocka_unit_test(reflectivities_of_mirrors_multiply),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

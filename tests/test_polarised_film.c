@@ -83,11 +83,11 @@ static scene *two_mirrors(double turn, double n)
     const vec3 in_plane = vec3_make(0.0, sin(b), -cos(b)), across = vec3_make(1.0, 0.0, 0.0);
     const vec3 side = vec3_add(vec3_scale(in_plane, cos(turn)), vec3_scale(across, sin(turn)));
     const vec3 normal = vec3_add(vec3_scale(d1, -cos(b)), vec3_scale(side, sin(b))); /* -d1.normal = cos b */
-    const vec3 met = vec3_scale(d1, at), d2 = vec3_add(d1, vec3_scale(normal, 2.0 * cos(b)));
+    const vec3 hit_point = vec3_scale(d1, at), d2 = vec3_add(d1, vec3_scale(normal, 2.0 * cos(b)));
     s->solids[0].surface.ior = s->solids[1].surface.ior = n;
     s->solids[1].shape.radius = radius;
-    s->solids[1].shape.position = vec3_sub(met, vec3_scale(normal, radius));
-    s->solids[2].shape.position = vec3_add(met, vec3_scale(d2, 2.0));
+    s->solids[1].shape.position = vec3_sub(hit_point, vec3_scale(normal, radius));
+    s->solids[2].shape.position = vec3_add(hit_point, vec3_scale(d2, 2.0));
     s->camera.position = vec3_scale(d0, -3.0);
     s->camera.target = vec3_make(0.0, 0.0, 0.0);
     s->camera.aimed = 1;
@@ -133,7 +133,7 @@ static void direct_transmission_keeps_polarisations_separate(void **state)
     const reflectances R = reflectances_at(acos(-1.0) / 3.0, 1.5);
     const double kept_s = pow(1.0 - R.s, 4.0), kept_p = pow(1.0 - R.p, 4.0);
     for (int on = 0; on <= 1; on++) {
-        const double wanted = on ? 0.5 * (kept_s + kept_p) : pow(1.0 - 0.5 * (R.s + R.p), 4.0);
+        const double expected = on ? 0.5 * (kept_s + kept_p) : pow(1.0 - 0.5 * (R.s + R.p), 4.0);
         s->render.polarisation = on;
         probe *p = NULL;
         ray_tree tree = {0};
@@ -141,14 +141,14 @@ static void direct_transmission_keeps_polarisations_separate(void **state)
         worked(probe_create(s, isa_best(), &p, &why), &why);
         worked(probe_path(p, vec3_make(0.0, 0.0, -50.0), vec3_make(0.0, 0.0, 1.0), -1, &tree, &why), &why);
         assert_int_equal(tree.count, 5);
-        assert_near(tree.node[4].throughput[0], wanted, 1e-12);
+        assert_near(tree.node[4].throughput[0], expected, 1e-12);
         const double q = on ? (kept_s - kept_p) / (kept_s + kept_p) : 0.0;
         assert_near(hypot(tree.node[4].stokes[1], tree.node[4].stokes[2]), fabs(q), 1e-12);
         assert_near(tree.node[4].stokes[3], 0.0, 1e-12);
         ray_tree_release(&tree);
         probe_destroy(p);
         s->render.depth = 4; /* the film: direct transmission, plus what two reflections add later */
-        assert_near(look_with(s, on).x, wanted, 1e-12);
+        assert_near(look_with(s, on).x, expected, 1e-12);
         s->render.depth = 5;
     }
     scene_destroy(s);
@@ -166,15 +166,15 @@ static void a_pile_of_plates_obeys_stokes_formula(void **state)
                  by_p = (1.0 - R.p) / (1.0 + 3.0 * R.p);
     set_all(s, "render.depth=40 render.min_weight=1e-7");
     for (int on = 0; on <= 1; on++) {
-        const double wanted = on ? 0.5 * (by_s + by_p) : (1.0 - mean) / (1.0 + 3.0 * mean);
+        const double expected = on ? 0.5 * (by_s + by_p) : (1.0 - mean) / (1.0 + 3.0 * mean);
         s->render.polarisation = on;
         render_result *r = render(s);
         const double cut =
             (double)(r->counters.cut_depth_throughput[0] + r->counters.cut_weight_throughput[0]) / COUNTERS_CUT_ONE;
         const double seen = film_value(r->img, 0, 0, 0);
-        print_message("pile of plates, polarisation %d: %.7f + at most %.1e, wanted %.7f\n", on, seen, cut, wanted);
+        print_message("pile of plates, polarisation %d: %.7f + at most %.1e, expected %.7f\n", on, seen, cut, expected);
         assert_true(cut < 1e-3);
-        assert_true(seen <= wanted + 1e-10 && seen + cut >= wanted - 1e-10);
+        assert_true(seen <= expected + 1e-10 && seen + cut >= expected - 1e-10);
         render_result_destroy(r);
     }
     /* the values differ measurably */
@@ -215,7 +215,7 @@ static double share_by_fields(const ray_tree *tree, size_t last)
     return sum;
 }
 
-static void the_weight_of_any_path_is_that_of_its_fields(void **state)
+static void the_weight_of_any_path_equals_that_of_its_fields(void **state)
 {
     (void)state;
     scene *s = scene_from(solids_scene);
@@ -249,7 +249,7 @@ static void the_weight_of_any_path_is_that_of_its_fields(void **state)
 }
 
 /* Inside a block, at 45 degrees to four faces, no light leaves: each reflection is total and loses nothing. */
-static void total_reflections_lose_no_light(void **state)
+static void total_internal_reflections_lose_no_light(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 30}\n"
@@ -329,7 +329,7 @@ static void matched_media_are_invisible(void **state)
 
 /* At normal incidence there is no plane of incidence, and both polarisations behave alike, however many interfaces
  * there are. */
-static void at_normal_incidence_polarisation_changes_nothing(void **state)
+static void polarisation_has_no_effect_at_normal_incidence(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 12, shadows: off}\n"
@@ -353,11 +353,11 @@ int main(void)
         cmocka_unit_test(two_reflections_at_brewsters_angle_obey_malus),
         cmocka_unit_test(direct_transmission_keeps_polarisations_separate),
         cmocka_unit_test(a_pile_of_plates_obeys_stokes_formula),
-        cmocka_unit_test(the_weight_of_any_path_is_that_of_its_fields),
-        cmocka_unit_test(total_reflections_lose_no_light),
+        cmocka_unit_test(the_weight_of_any_path_equals_that_of_its_fields),
+        cmocka_unit_test(total_internal_reflections_lose_no_light),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(matched_media_are_invisible),
-        cmocka_unit_test(at_normal_incidence_polarisation_changes_nothing),
+        cmocka_unit_test(polarisation_has_no_effect_at_normal_incidence),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,7 +48,7 @@ static double deviation(const scene_geometry *a, double n, double incidence)
 
 /* Born and Wolf, Principles of Optics, 4.7.2: sin((A + D) / 2) = n sin(A / 2) at the minimum, where the ray passes
  * symmetrically and its angle of incidence is (A + D) / 2. */
-static void the_least_deviation_is_that_of_the_formula(void **state)
+static void minimum_deviation_of_a_prism_equals_the_formula(void **state)
 {
     (void)state;
     const solid_shape s = {.kind = SHAPE_PRISM, .radius = 1.0, .sides = 3, .height = 2.0};
@@ -65,7 +65,7 @@ static void the_least_deviation_is_that_of_the_formula(void **state)
 }
 
 /* The polygon's area is n/2 r^2 sin(2 pi / n). */
-static void its_volume_is_that_of_its_polygon(void **state)
+static void the_volume_of_a_prism_equals_that_of_its_polygon(void **state)
 {
     (void)state;
     enum { POINTS = 100000 };
@@ -84,7 +84,7 @@ static void its_volume_is_that_of_its_polygon(void **state)
 }
 
 /* For a hexagon: corner to corner along z, side to side along x. */
-static void chords_through_the_middle(void **state)
+static void the_central_chords_of_a_hexagonal_prism_equal_its_diameters(void **state)
 {
     (void)state;
     const solid_shape s = {.kind = SHAPE_PRISM, .radius = 1.0, .sides = 6, .height = 1.0};
@@ -102,7 +102,7 @@ static void chords_through_the_middle(void **state)
 }
 
 /* With four sides, rotated by 45 degrees, it is a box. */
-static void with_four_sides_it_is_a_box(void **state)
+static void a_prism_with_four_sides_equals_a_box(void **state)
 {
     (void)state;
     uint64_t seed = 2;
@@ -111,16 +111,16 @@ static void with_four_sides_it_is_a_box(void **state)
         .kind = SHAPE_PRISM, .radius = 1.0, .sides = 4, .height = 1.0, .rotation_deg = {0.0, 45.0, 0.0}};
     const solid_shape box = {.kind = SHAPE_BOX, .position = {0.0, 0.5, 0.0}, .size = {edge, 1.0, edge}};
     scene_geometry *a = arrange(&prism), *b = arrange(&box);
-    int met = 0;
+    int hits = 0;
     for (int trial = 0; trial < 20000; trial++) {
         const vec3 from = vec3_scale(random_direction(&seed), 4.0);
         const one_ray r = {from, vec3_normalize(vec3_sub(random_point(&seed, 1.0), from)), FACE_NONE, 0};
         const one_hit h = nearest_interface(a, r), k = nearest_interface(b, r);
         assert_int_equal(h.hit_primitive, k.hit_primitive);
-        met += h.hit_primitive >= 0;
+        hits += h.hit_primitive >= 0;
         assert_true(h.hit_primitive < 0 || fabs(h.t - k.t) <= (h.error + k.error) / h.cos_i);
     }
-    assert_true(met > 5000);
+    assert_true(hits > 5000);
     scene_geometry_destroy(a), scene_geometry_destroy(b);
 }
 
@@ -140,10 +140,10 @@ static void too_few_and_too_many_sides_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_least_deviation_is_that_of_the_formula),
-        cmocka_unit_test(its_volume_is_that_of_its_polygon),
-        cmocka_unit_test(chords_through_the_middle),
-        cmocka_unit_test(with_four_sides_it_is_a_box),
+        cmocka_unit_test(minimum_deviation_of_a_prism_equals_the_formula),
+        cmocka_unit_test(the_volume_of_a_prism_equals_that_of_its_polygon),
+        cmocka_unit_test(the_central_chords_of_a_hexagonal_prism_equal_its_diameters),
+        cmocka_unit_test(a_prism_with_four_sides_equals_a_box),
         cmocka_unit_test(too_few_and_too_many_sides_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

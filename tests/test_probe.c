@@ -54,7 +54,7 @@ static void compare_settings(const char *const *settings, size_t count)
     }
 }
 
-static void a_tree_is_its_pixel_at_every_depth(void **state)
+static void the_radiance_of_a_tree_equals_the_film_at_every_depth(void **state)
 {
     (void)state;
     static const char *const settings[] = {"render.depth=0", "render.depth=1", "render.depth=4", "render.depth=9",
@@ -62,7 +62,7 @@ static void a_tree_is_its_pixel_at_every_depth(void **state)
     compare_settings(settings, sizeof settings / sizeof *settings);
 }
 
-static void a_tree_is_its_pixel_with_all_settings(void **state)
+static void the_radiance_of_a_tree_equals_the_film_with_all_settings(void **state)
 {
     (void)state;
     static const char *const settings[] = {
@@ -112,7 +112,7 @@ static void check_node(const ray_tree *tree, int at)
     }
 }
 
-static void rays_fit_their_parents_and_the_laws(void **state)
+static void children_are_consistent_with_parents_and_the_laws_of_optics(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=96 render.height=72 render.depth=6");
@@ -136,7 +136,7 @@ static const char slab_text[] =
     "solids: {slab: {shape: box, transparency: 1, ior: 1.5, size: [9, 2, 9], absorb_per_m: [0.5, 0.1, 0]}}\n";
 
 /* R = ((n - 1) / (n + 1))^2 at normal incidence: Hecht 4.67; absorption by exp(-a d). */
-static void a_slab_at_normal_incidence(void **state)
+static void a_slab_at_normal_incidence_has_fresnels_and_beers_shares(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_text);
@@ -163,7 +163,7 @@ static void a_slab_at_normal_incidence(void **state)
 
 /* Unpolarised light reflected by glass at Brewster's angle is fully polarised: Hecht 8.6. A cut ray records that
  * too. */
-static void a_cut_ray_keeps_its_polarisation(void **state)
+static void a_terminated_ray_keeps_its_degree_of_polarisation(void **state)
 {
     (void)state;
     for (int depth = 0; depth < 2; depth++) {
@@ -209,7 +209,7 @@ static void a_direction_may_have_any_length(void **state)
 }
 
 /* A direction taken from one tree starts the same tree again. */
-static void a_ray_can_be_traced_again(void **state)
+static void tracing_a_stored_ray_gives_the_same_tree(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=96 render.height=72");
@@ -231,7 +231,7 @@ static void a_ray_can_be_traced_again(void **state)
 
 /* R, and T^2 and T^2 R of a channel that the slab transmits: that channel alone makes a ray worth tracing, whichever it
  * is. */
-static void a_rays_weight_is_its_largest_channel(void **state)
+static void the_weight_of_a_ray_is_its_largest_channel(void **state)
 {
     (void)state;
     static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9",
@@ -244,8 +244,8 @@ static void a_rays_weight_is_its_largest_channel(void **state)
         ray_tree tree = {0};
         worked(probe_ray(p, vec3_make(0, 5, 0), vec3_make(0, -1, 0), &tree, NULL), NULL);
         for (int c = 0; c < 3; c++) {
-            const double kept = c == clear ? 1.0 : exp(-18.0), R = 0.04, T = 0.96;
-            assert_true(fabs(tree.radiance[c] - (R + T * T * kept + T * T * R * kept * kept)) < 1e-12);
+            const double through = c == clear ? 1.0 : exp(-18.0), R = 0.04, T = 0.96;
+            assert_true(fabs(tree.radiance[c] - (R + T * T * through + T * T * R * through * through)) < 1e-12);
         }
         ray_tree_release(&tree);
         probe_destroy(p);
@@ -254,7 +254,7 @@ static void a_rays_weight_is_its_largest_channel(void **state)
 }
 
 /* A cup's hollow has a side and a floor of its own, numbered after those of its outside. */
-static void faces_of_a_cups_hollow_have_their_own_numbers(void **state)
+static void the_faces_of_a_cups_hollow_are_numbered_separately(void **state)
 {
     (void)state;
     static const struct {
@@ -278,7 +278,7 @@ static void faces_of_a_cups_hollow_have_their_own_numbers(void **state)
 }
 
 /* Shadow rays to two lamps in one place coincide, but each belongs to one lamp, in their order. */
-static void lamps_in_one_place_are_distinguished(void **state)
+static void lamps_at_one_position_are_distinguished(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1}\n"
@@ -324,7 +324,7 @@ static void a_path_refracts_or_reflects_where_requested(void **state)
 
 /* At one wavelength, absorption by wavelength is equal for all channels; at 450 nm it is half way between the table's
  * points. */
-static void absorption_of_a_spectral_scene_is_that_of_its_wavelength(void **state)
+static void the_probe_of_a_spectral_scene_absorbs_by_its_wavelength(void **state)
 {
     (void)state;
     for (int i = 0; i < 2; i++) {
@@ -350,18 +350,18 @@ static void absorption_of_a_spectral_scene_is_that_of_its_wavelength(void **stat
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_tree_is_its_pixel_at_every_depth),
-        cmocka_unit_test(a_tree_is_its_pixel_with_all_settings),
-        cmocka_unit_test(rays_fit_their_parents_and_the_laws),
-        cmocka_unit_test(a_slab_at_normal_incidence),
-        cmocka_unit_test(a_cut_ray_keeps_its_polarisation),
+        cmocka_unit_test(the_radiance_of_a_tree_equals_the_film_at_every_depth),
+        cmocka_unit_test(the_radiance_of_a_tree_equals_the_film_with_all_settings),
+        cmocka_unit_test(children_are_consistent_with_parents_and_the_laws_of_optics),
+        cmocka_unit_test(a_slab_at_normal_incidence_has_fresnels_and_beers_shares),
+        cmocka_unit_test(a_terminated_ray_keeps_its_degree_of_polarisation),
         cmocka_unit_test(a_direction_may_have_any_length),
-        cmocka_unit_test(a_ray_can_be_traced_again),
-        cmocka_unit_test(a_rays_weight_is_its_largest_channel),
-        cmocka_unit_test(faces_of_a_cups_hollow_have_their_own_numbers),
-        cmocka_unit_test(lamps_in_one_place_are_distinguished),
+        cmocka_unit_test(tracing_a_stored_ray_gives_the_same_tree),
+        cmocka_unit_test(the_weight_of_a_ray_is_its_largest_channel),
+        cmocka_unit_test(the_faces_of_a_cups_hollow_are_numbered_separately),
+        cmocka_unit_test(lamps_at_one_position_are_distinguished),
         cmocka_unit_test(a_path_refracts_or_reflects_where_requested),
-        cmocka_unit_test(absorption_of_a_spectral_scene_is_that_of_its_wavelength),
+        cmocka_unit_test(the_probe_of_a_spectral_scene_absorbs_by_its_wavelength),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -88,20 +88,20 @@ static int tell_apart(const quantity *list, size_t count, const job_account *a, 
 {
     int compared = 0;
     for (size_t i = 0; i < count; i++) {
-        csv_line row = {0}, told = {0};
+        csv_line row = {0}, from_json = {0};
         if (!list[i].column)
             continue;
         const json_t *value = find(account, list[i].json);
         if (!value)
             fail_msg("the account lacks %s", list[i].json);
         row_put(&row, &list[i], a, worker);
-        put_json(&told, &list[i], value);
+        put_json(&from_json, &list[i], value);
         csv_end(&row);
-        csv_end(&told);
-        if (strcmp(row.text, told.text) != 0)
-            fail_msg("%s: %s is not %s", list[i].name, row.text, told.text);
+        csv_end(&from_json);
+        if (strcmp(row.text, from_json.text) != 0)
+            fail_msg("%s: %s is not %s", list[i].name, row.text, from_json.text);
         csv_line_free(&row);
-        csv_line_free(&told);
+        csv_line_free(&from_json);
         compared++;
     }
     return compared;
@@ -119,7 +119,7 @@ static const char scene_text[] = "render: {width: 24, height: 16, integrator: pa
                                  "  ring: {shape: mesh, mesh: tube, material: matt, position: [0, 1, 0]}\n"
                                  "  ball: {shape: sphere, material: clear, ior: 1.5, position: [1, 1, 0]}\n";
 
-static void rows_and_account_agree(void **state)
+static void rows_and_json_agree(void **state)
 {
     char path[400];
     scene *s;
@@ -154,7 +154,7 @@ static void rows_and_account_agree(void **state)
 }
 
 /* Values that are equal in all frames, and values over all frames. */
-static void several_frames_merge(void **state)
+static void values_of_several_frames_are_merged(void **state)
 {
     (void)state;
     scene *s = scene_create();
@@ -208,14 +208,14 @@ static void expect_part(const char *path, const char *after, const char *begin, 
     char *to = strstr(from, end);
     assert_non_null(to);
     if (getenv("CUVETTE_RENEW")) {
-        char *whole = text_format("%.*s%.*s%s", (int)(from - text), text, (int)size, part, to);
+        char *renewed = text_format("%.*s%.*s%s", (int)(from - text), text, (int)size, part, to);
         FILE *file = fopen(path, "w");
         assert_non_null(file);
-        assert_true(fputs(whole, file) >= 0);
+        assert_true(fputs(renewed, file) >= 0);
         assert_int_equal(fclose(file), 0);
-        free(whole);
+        free(renewed);
     } else if (size != (size_t)(to - from) || memcmp(part, from, size) != 0) {
-        fail_msg("%s, %s: not what the list of quantities says; run make dictionary", path, after);
+        fail_msg("%s, %s: differs from the list of quantities; run make dictionary", path, after);
     }
     free(text);
 }
@@ -225,7 +225,7 @@ static void print_column(void *context, const row_column *c)
     fprintf(context, "| `%s` | %s | %s |\n", c->name, c->unit, c->meaning);
 }
 
-static void the_dictionary_is_the_list(void **state)
+static void the_dictionary_equals_the_list(void **state)
 {
     (void)state;
     static const struct {
@@ -270,7 +270,7 @@ static void print_keys(FILE *out, const quantity *list, size_t count, const char
     }
 }
 
-static void the_manual_is_the_list(void **state)
+static void the_manual_equals_the_list(void **state)
 {
     (void)state;
     char *text = NULL;
@@ -290,10 +290,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_and_keys_are_unique),
         cmocka_unit_test(every_column_has_a_key),
-        cmocka_unit_test_setup_teardown(rows_and_account_agree, fixture_setup, fixture_teardown),
-        cmocka_unit_test(several_frames_merge),
-        cmocka_unit_test(the_dictionary_is_the_list),
-        cmocka_unit_test(the_manual_is_the_list),
+        cmocka_unit_test_setup_teardown(rows_and_json_agree, fixture_setup, fixture_teardown),
+        cmocka_unit_test(values_of_several_frames_are_merged),
+        cmocka_unit_test(the_dictionary_equals_the_list),
+        cmocka_unit_test(the_manual_equals_the_list),
     };
     return cmocka_run_group_tests_name("quantities", tests, NULL, NULL);
 }

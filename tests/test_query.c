@@ -60,13 +60,13 @@ static double dot(const double *a, const double *b)
     "  ball: {shape: sphere, radius: 2, position: [1, 2, 3], transparency: 1, ior: 1.5}\n"
 
 /* A ray that passes a sphere's centre at distance b hits it sqrt(r^2 - b^2) before and behind its nearest point. */
-static void a_sphere_is_hit_where_its_equation_requires(void **state)
+static void hits_of_a_sphere_equal_the_closed_form(void **state)
 {
     (void)state;
     const double centre[3] = {1.0, 2.0, 3.0}, r = 2.0;
     cuvette_query *q = query_of_text(BALL, NULL);
     uint64_t random = 7;
-    int met = 0;
+    int hits_found = 0;
     for (int i = 0; i < 2000; i++) {
         cuvette_ray ray = {.reach = 0.0};
         double towards[3];
@@ -85,7 +85,7 @@ static void a_sphere_is_hit_where_its_equation_requires(void **state)
             assert_true(isinf(hit.distance) && hit.solid == CUVETTE_OUTSIDE && hit.before == CUVETTE_OUTSIDE);
             continue;
         }
-        met++;
+        hits_found++;
         const double half = sqrt(gap), slack = 1e-12 / half;
         assert_true(fabs(hit.distance - (along - half)) <= 30.0 * slack);
         double outward[3];
@@ -116,7 +116,7 @@ static void a_sphere_is_hit_where_its_equation_requires(void **state)
         ray.reach = hit.distance * (1.0 + 1e-9);
         assert_true(nearest(q, &ray).distance == hit.distance);
     }
-    assert_true(met > 500);
+    assert_true(hits_found > 500);
     cuvette_query_destroy(q);
 }
 
@@ -171,7 +171,7 @@ static void batches_equal_single_rays_on_every_instruction_set(void **state)
     cuvette_query_destroy(q);
 }
 
-static void camera_rays_hit_what_the_probe_hits(void **state)
+static void camera_rays_have_the_hits_of_the_probe(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -179,7 +179,7 @@ static void camera_rays_hit_what_the_probe_hits(void **state)
     scene *model = rod_scene("");
     stage g = {.setting = model};
     stage_look(&g);
-    int met = 0;
+    int hits_found = 0;
     for (int y = 5; y < 600; y += 17)
         for (int x = 5; x < 800; x += 17) {
             cuvette_ray ray;
@@ -193,7 +193,7 @@ static void camera_rays_hit_what_the_probe_hits(void **state)
             assert_true((root->end == RAY_END_HIT) == (bool)isfinite(hit.distance));
             if (root->end != RAY_END_HIT)
                 continue;
-            met++;
+            hits_found++;
             assert_true(hit.distance == root->hit.t && hit.point[0] == root->hit.point.x &&
                         hit.normal[1] == root->hit.normal.y);
             assert_true(hit.solid == root->hit.solid && hit.before == root->hit.from && hit.after == root->hit.to &&
@@ -201,12 +201,12 @@ static void camera_rays_hit_what_the_probe_hits(void **state)
             assert_true(hit.n_before == root->hit.n_from && hit.n_after == root->hit.n_to &&
                         hit.error == root->hit.error_bound);
         }
-    assert_true(met > 500);
+    assert_true(hits_found > 500);
     stage_close(&g);
     cuvette_query_destroy(q);
 }
 
-static void a_points_medium_has_the_highest_priority(void **state)
+static void the_medium_at_a_point_has_the_highest_priority(void **state)
 {
     (void)state;
     static const struct {
@@ -236,7 +236,7 @@ static const uint32_t cube_corners[] = {0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1
 static const unsigned char cube_slots[] = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5};
 
 /* Faces have the scene's materials with their slots' names. */
-static void slots_of_arrays_use_materials_by_name(void **state)
+static void material_slots_of_arrays_use_materials_by_name(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -323,7 +323,7 @@ static void a_cube_of_triangles_is_hit_like_a_box(void **state)
     (void)state;
     cuvette_query *cube = query_of_cube(true), *box = query_of_cube(false);
     uint64_t random = 5;
-    int met = 0;
+    int hits_found = 0;
     for (int i = 0; i < 3000; i++) {
         cuvette_ray ray = {.reach = 0.0};
         for (int k = 0; k < 3; k++) {
@@ -335,7 +335,7 @@ static void a_cube_of_triangles_is_hit_like_a_box(void **state)
                     a.solid == b.solid);
         if (!isfinite(a.distance))
             continue;
-        met++;
+        hits_found++;
         const double slope = fabs(dot(a.normal, ray.direction)) / sqrt(dot(ray.direction, ray.direction));
         assert_true(fabs(a.distance - b.distance) * slope < 1e-14 * (1.0 + a.distance) &&
                     dot(a.normal, b.normal) > 1.0 - 1e-14);
@@ -350,13 +350,13 @@ static void a_cube_of_triangles_is_hit_like_a_box(void **state)
         assert_true(isfinite(c.distance) == isfinite(d.distance) && c.before == d.before && c.after == d.after);
         assert_true(!isfinite(c.distance) || fabs(c.distance - d.distance) < 1e-11);
     }
-    assert_true(met > 2000);
+    assert_true(hits_found > 2000);
     cuvette_query_destroy(cube);
     cuvette_query_destroy(box);
 }
 
 /* No triangles, but several instances of them: a program may begin like this. */
-static void copies_of_empty_meshes_are_never_hit(void **state)
+static void instances_of_empty_meshes_are_never_hit(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -376,7 +376,7 @@ static void copies_of_empty_meshes_are_never_hit(void **state)
     cuvette_scene_destroy(s);
 }
 
-static void wrong_triangles_are_refused_and_add_nothing(void **state)
+static void invalid_triangles_are_refused_and_not_added(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -401,7 +401,7 @@ static void wrong_triangles_are_refused_and_add_nothing(void **state)
     cuvette_scene_destroy(s);
 }
 
-static void wrong_rays_are_named(void **state)
+static void invalid_rays_are_reported(void **state)
 {
     (void)state;
     cuvette_diagnostic why;
@@ -471,16 +471,16 @@ static void threads_can_share_a_query(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_sphere_is_hit_where_its_equation_requires),
+        cmocka_unit_test(hits_of_a_sphere_equal_the_closed_form),
         cmocka_unit_test(batches_equal_single_rays_on_every_instruction_set),
-        cmocka_unit_test(camera_rays_hit_what_the_probe_hits),
-        cmocka_unit_test(a_points_medium_has_the_highest_priority),
-        cmocka_unit_test(slots_of_arrays_use_materials_by_name),
+        cmocka_unit_test(camera_rays_have_the_hits_of_the_probe),
+        cmocka_unit_test(the_medium_at_a_point_has_the_highest_priority),
+        cmocka_unit_test(material_slots_of_arrays_use_materials_by_name),
         cmocka_unit_test(a_cube_of_triangles_is_hit_like_a_box),
         cmocka_unit_test(rays_hit_the_meshes_of_a_rasterised_scene),
-        cmocka_unit_test(copies_of_empty_meshes_are_never_hit),
-        cmocka_unit_test(wrong_triangles_are_refused_and_add_nothing),
-        cmocka_unit_test(wrong_rays_are_named),
+        cmocka_unit_test(instances_of_empty_meshes_are_never_hit),
+        cmocka_unit_test(invalid_triangles_are_refused_and_not_added),
+        cmocka_unit_test(invalid_rays_are_reported),
         cmocka_unit_test(threads_can_share_a_query),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -78,7 +78,7 @@ static void random_paths_see_the_same_sky(void **state)
 /* In a dispersive medium each wavelength has its own index: the film sums X, Y and Z over them. Straight up R is ((n -
  * 1) / (n + 1))^2, and of a white sky, which has daylight's spectrum, the observer sees the sum of n^2 T D65 y over the
  * sum of D65 y in luminance. */
-static void each_wavelength_has_its_own_square(void **state)
+static void each_wavelength_has_the_square_of_its_index(void **state)
 {
     (void)state;
     scene *s =
@@ -117,7 +117,7 @@ static const char furnace[] =
     "  bead: {shape: sphere, transparency: 1, ior: 2.42, position: [0.2, 0.9, 0], radius: 0.4, priority: 6}\n";
 
 /* A uniform L / n^2 makes all media invisible: n_eye^2 in every pixel, in units of the surroundings'. */
-static void a_furnace_shows_only_the_cameras_own_medium(void **state)
+static void a_furnace_has_the_squared_index_of_the_cameras_medium(void **state)
 {
     (void)state;
     static const char *const modes[] = {"", "render.polarisation=on", "render.integrator=path render.paths=16",
@@ -182,7 +182,7 @@ static void radiance_of_a_floor_decreases_on_leaving_water(void **state)
 }
 
 /* A camera in the water sees the unchanged floor, with raycast too. */
-static void in_one_medium_nothing_changes(void **state)
+static void radiance_is_unchanged_within_one_medium(void **state)
 {
     (void)state;
     static const char *const modes[] = {"whitted", "raycast"};
@@ -199,7 +199,7 @@ static void in_one_medium_nothing_changes(void **state)
 
 /* E_straight T, T by the straight line's angle on the side of the lower index: for a lamp above, and for one whose
  * light goes from water up. */
-static void a_lamp_lights_the_floor_through_the_surface(void **state)
+static void direct_light_through_the_surface_has_its_transmittance(void **state)
 {
     (void)state;
     for (int degrees = 0; degrees <= 60; degrees += 15) {
@@ -298,13 +298,13 @@ static void each_interface_counts_once_with_its_own_indices(void **state)
 /* An image of the shadow of a tilted box, made of triangles or not. */
 static render_result *askew(const char *shape)
 {
-    char scene_part[512], text[2048], whole[4096];
+    char scene_part[512], text[2048], yaml[4096];
     snprintf(scene_part, sizeof scene_part,
              "pane: {%s, position: [2, 3, 0], rotation: [20, 30, 10], transparency: 0.9, reflectivity: 0.1, ior: 1.5}",
              shape);
     snprintf(text, sizeof text, window, scene_part);
-    snprintf(whole, sizeof whole, "meshes: {block: {generate: box}}\n%s", text);
-    scene *s = scene_from(whole);
+    snprintf(yaml, sizeof yaml, "meshes: {block: {generate: box}}\n%s", text);
+    scene *s = scene_from(yaml);
     diagnostic why = {0};
     worked(scene_load(s, &why), &why);
     set_all(s, "render.width=40 render.height=30 camera.fov_deg=130");
@@ -353,7 +353,7 @@ static double mean_of(const scene *s)
     return sum / 256.0;
 }
 
-static void trees_and_paths_agree_on_a_dark_floor_under_water(void **state)
+static void whitted_ray_tracing_and_paths_agree_on_a_dark_floor_under_water(void **state)
 {
     (void)state;
     static const double indices[] = {1.0, 1.333, 1.5, 1.8};
@@ -363,7 +363,7 @@ static void trees_and_paths_agree_on_a_dark_floor_under_water(void **state)
         char assignment[64];
         snprintf(assignment, sizeof assignment, "water.ior=%g", n);
         set(s, assignment);
-        const double tree = mean_of(s), wanted = through(view, 1.0, n) * through(0.0, 1.0, n) / (n * n);
+        const double tree = mean_of(s), expected = through(view, 1.0, n) * through(0.0, 1.0, n) / (n * n);
         set_all(s, "render.radiance=classic");
         const double classic = mean_of(s);
         set_all(s, "render.radiance=basic lamp.radius=150 render.integrator=path render.paths=6400");
@@ -372,14 +372,14 @@ static void trees_and_paths_agree_on_a_dark_floor_under_water(void **state)
         assert_true(n == 1.0 || mean_of(s) == paths); /* camera and lamp are in one medium */
         print_message("n %g: Whitted's over the paths' light %.4f with basic radiance, %.4f with classic\n", n,
                       tree / paths, classic / paths);
-        assert_true(fabs(tree / wanted - 1.0) < 1e-3);
+        assert_true(fabs(tree / expected - 1.0) < 1e-3);
         assert_true(fabs(tree / paths - 1.0) <= 0.01);
         scene_destroy(s);
     }
 }
 
 /* A lamp under water is unchanged for a diver, and has T / n^2 of its radiance from above. */
-static void a_light_sphere_counts_by_the_medium_that_it_emits_into(void **state)
+static void the_radiance_of_a_light_sphere_refers_to_its_medium(void **state)
 {
     (void)state;
     const char *const lamp = "render.integrator=path render.paths=4096 lamp.position=0,0.4,0 "
@@ -394,7 +394,7 @@ static void a_light_sphere_counts_by_the_medium_that_it_emits_into(void **state)
 
 /* Direct light of a sphere on a floor in one medium, pi L (r / d)^2 cos theta, is emitted there: T / n^2 of it reaches
  * a camera in air. */
-static void a_sphere_lights_its_own_medium(void **state)
+static void direct_light_of_a_sphere_is_emitted_into_its_medium(void **state)
 {
     (void)state;
     double at;
@@ -421,7 +421,7 @@ static uint64_t hash_of(const char *settings)
     return hash;
 }
 
-static void without_refraction_the_film_is_the_classic_one(void **state)
+static void basic_and_classic_radiance_agree_without_refraction(void **state)
 {
     (void)state;
     static const char *const straight[] = {
@@ -434,7 +434,7 @@ static void without_refraction_the_film_is_the_classic_one(void **state)
     assert_true(hash_of("") != hash_of("render.radiance=basic"));
 }
 
-static void the_film_is_the_same_for_any_threads(void **state)
+static void the_film_does_not_depend_on_threads(void **state)
 {
     (void)state;
     static const char *const modes[] = {"", "camera.position=0,1.2,0", "render.spectrum=spectral",
@@ -449,7 +449,7 @@ static void the_film_is_the_same_for_any_threads(void **state)
 }
 
 /* The traced rays do not depend on the kind of radiance: throughputs are shares of the camera ray, in any medium. */
-static void the_same_rays_are_followed(void **state)
+static void the_kind_of_radiance_does_not_change_the_rays(void **state)
 {
     (void)state;
     need_counters();
@@ -494,21 +494,21 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_sky_from_under_water_has_the_square_of_the_index),
         cmocka_unit_test(random_paths_see_the_same_sky),
-        cmocka_unit_test(each_wavelength_has_its_own_square),
-        cmocka_unit_test(a_furnace_shows_only_the_cameras_own_medium),
+        cmocka_unit_test(each_wavelength_has_the_square_of_its_index),
+        cmocka_unit_test(a_furnace_has_the_squared_index_of_the_cameras_medium),
         cmocka_unit_test(radiance_of_a_floor_decreases_on_leaving_water),
-        cmocka_unit_test(in_one_medium_nothing_changes),
-        cmocka_unit_test(a_lamp_lights_the_floor_through_the_surface),
+        cmocka_unit_test(radiance_is_unchanged_within_one_medium),
+        cmocka_unit_test(direct_light_through_the_surface_has_its_transmittance),
         cmocka_unit_test(panes_shade_by_fresnel_on_both_faces),
         cmocka_unit_test(spheres_and_cylinders_shade_by_the_angle_of_the_straight_ray),
         cmocka_unit_test(each_interface_counts_once_with_its_own_indices),
         cmocka_unit_test(meshes_cast_the_same_shadows_as_solids),
-        cmocka_unit_test(trees_and_paths_agree_on_a_dark_floor_under_water),
-        cmocka_unit_test(a_light_sphere_counts_by_the_medium_that_it_emits_into),
-        cmocka_unit_test(a_sphere_lights_its_own_medium),
-        cmocka_unit_test(without_refraction_the_film_is_the_classic_one),
-        cmocka_unit_test(the_film_is_the_same_for_any_threads),
-        cmocka_unit_test(the_same_rays_are_followed),
+        cmocka_unit_test(whitted_ray_tracing_and_paths_agree_on_a_dark_floor_under_water),
+        cmocka_unit_test(the_radiance_of_a_light_sphere_refers_to_its_medium),
+        cmocka_unit_test(direct_light_of_a_sphere_is_emitted_into_its_medium),
+        cmocka_unit_test(basic_and_classic_radiance_agree_without_refraction),
+        cmocka_unit_test(the_film_does_not_depend_on_threads),
+        cmocka_unit_test(the_kind_of_radiance_does_not_change_the_rays),
         cmocka_unit_test(a_tree_contains_the_radiance_factor_of_each_refraction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -89,13 +89,13 @@ static bool medium_along(const probe *p, vec3 point, vec3 direction, int *medium
 }
 
 typedef struct census {
-    int asked, unsure, wrong;
+    int queries, unsure, wrong;
 } census;
 
 static void ask(census *sum, const probe *p, vec3 point, vec3 direction, int believed)
 {
     int medium;
-    sum->asked++;
+    sum->queries++;
     if (!medium_along(p, point, direction, &medium))
         sum->unsure++;
     else
@@ -149,7 +149,7 @@ static void look_at_scene(uint64_t *seed, int number, bool lit, renderer *r, sur
         }
     }
     if (sum->media.wrong)
-        fail_msg("scene %d: the media of %d places are not those of the solids there", number, sum->media.wrong);
+        fail_msg("scene %d: the media of %d points are not those of the solids", number, sum->media.wrong);
     render_result_destroy(img);
     stage_close(&g);
 }
@@ -164,13 +164,13 @@ static survey look_at_scenes(uint64_t seed, bool lit)
     for (int number = 0; number < SCENES / 2; number++)
         look_at_scene(&seed, number, lit, r, &sum);
     renderer_destroy(r);
-    assert_true(sum.media.unsure < sum.media.asked / 1000);
-    assert_true(sum.rays > 100000 && sum.hits > 50000 && sum.media.asked > 100000);
+    assert_true(sum.media.unsure < sum.media.queries / 1000);
+    assert_true(sum.rays > 100000 && sum.hits > 50000 && sum.media.queries > 100000);
     return sum;
 }
 
 /* No interface and no opaque surface creates light: R + T <= 1, k_a + k_r <= 1. */
-static void under_a_sky_of_one_nothing_is_brighter(void **state)
+static void no_pixel_exceeds_a_sky_of_one(void **state)
 {
     (void)state;
     assert_true(look_at_scenes(5, false).brightest <= 1.0 + 1e-12);
@@ -220,7 +220,7 @@ static void rays_through_corners_and_along_edges_are_valid(void **state)
 
 /* A ray in the plane of a face that contains its origin leaves the solid there, or later, but never through the
  * opposite face. The sign of a zero component decides its half-space. */
-static void a_ray_within_a_face_does_not_leave_by_the_opposite_one(void **state)
+static void a_ray_within_a_face_does_not_leave_through_the_opposite_face(void **state)
 {
     (void)state;
     static const char *const shapes[] = {"shape: box, size: [1, 1, 1], position: [0, 0.5, 0]",
@@ -244,9 +244,9 @@ static void a_ray_within_a_face_does_not_leave_by_the_opposite_one(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(under_a_sky_of_one_nothing_is_brighter),
+        cmocka_unit_test(no_pixel_exceeds_a_sky_of_one),
         cmocka_unit_test(rays_through_corners_and_along_edges_are_valid),
-        cmocka_unit_test(a_ray_within_a_face_does_not_leave_by_the_opposite_one),
+        cmocka_unit_test(a_ray_within_a_face_does_not_leave_through_the_opposite_face),
         cmocka_unit_test(with_lights_the_probe_equals_the_image),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

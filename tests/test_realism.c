@@ -1,3 +1,4 @@
+/* Tests of the realism check on the rod in its vessel: theory at textbook numbers, metrics and curves. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,7 +18,7 @@
 
 /* --- theory at textbook numbers */
 
-static void critical_angles_of_water_glass_and_diamond(void **state)
+static void critical_angles_of_water_glass_and_diamond_equal_the_textbooks_values(void **state)
 {
     (void)state;
     /* Hecht, Optics, 5th ed., table 4.2: 48.6 (n = 1.333), 41.8 (1.50), and 24.4 degrees for diamond (2.417). */
@@ -28,7 +29,7 @@ static void critical_angles_of_water_glass_and_diamond(void **state)
     assert_true(isnan(theory_critical_angle(1.5, 1.5)));
 }
 
-static void reflectances_at_known_angles(void **state)
+static void reflectances_at_known_angles_equal_the_textbooks_values(void **state)
 {
     (void)state;
     assert_near(theory_fresnel(0.0, 1.0, 1.5), 0.04, 1e-15);        /* 4% of glass at normal incidence */
@@ -39,7 +40,7 @@ static void reflectances_at_known_angles(void **state)
     assert_near(theory_fresnel_p(45.0 * DEGREE, 1.0, 1.33), pow(theory_fresnel_s(45.0 * DEGREE, 1.0, 1.33), 2), 1e-16);
 }
 
-static void a_slab_lets_through_a_geometric_series(void **state)
+static void the_transmittance_of_a_slab_is_a_geometric_series(void **state)
 {
     (void)state;
     assert_near(theory_slab(0.04, 1), 0.9216, 1e-15); /* the two surfaces alone */
@@ -62,7 +63,7 @@ static void one_medium_focuses_like_a_ball_lens(void **state)
     }
 }
 
-static void an_empty_vessel_spreads_light(void **state)
+static void an_empty_vessel_is_a_diverging_lens(void **state)
 {
     (void)state;
     const theory_shells c = {.n_around = 1.0, .n_wall = 1.5, .n_core = 1.0, .outer = 1.0, .inner = 0.9};
@@ -70,7 +71,7 @@ static void an_empty_vessel_spreads_light(void **state)
     assert_near(theory_shells_reach(&c), 0.9, 0.0);
 }
 
-static void a_pond_looks_shallower_by_its_index(void **state)
+static void apparent_depth_of_a_pond_follows_from_its_index(void **state)
 {
     (void)state;
     /* Straight down: depth / n. At 45 degrees in air, water at 4/3 has sin t = 0.5303. */
@@ -80,7 +81,7 @@ static void a_pond_looks_shallower_by_its_index(void **state)
     assert_true(isnan(theory_apparent_tangent(-1.0, 1.0, 1.0, 1.0, 1.33)));
 }
 
-static void the_view_is_that_of_the_tracer(void **state)
+static void the_view_equals_the_cameras(void **state)
 {
     (void)state;
     scene *s = rod_scene("camera.position=2,3,-5 camera.target=-0.3,1,0.4 camera.roll_deg=-70");
@@ -143,7 +144,7 @@ static const char *const settings[] = {
     "render.radiance=basic background.ior=1.1",
 };
 
-static void everything_passes_whatever_the_indices(void **state)
+static void all_metrics_pass_for_various_indices(void **state)
 {
     (void)state;
     for (size_t i = 0; i < COUNT(settings); i++) {
@@ -159,7 +160,7 @@ static void everything_passes_whatever_the_indices(void **state)
     }
 }
 
-static void metrics_without_meaning_are_named_as_such(void **state)
+static void undefined_metrics_are_reported_as_undefined(void **state)
 {
     (void)state;
     scene *usual = rod_scene(""), *empty = rod_scene("liquid.visible=off"), *leaning = rod_scene("rod.rotation.z=10");
@@ -180,8 +181,8 @@ static void metrics_without_meaning_are_named_as_such(void **state)
     scene_destroy(usual), scene_destroy(empty), scene_destroy(leaning);
 }
 
-/* Measures in the scene as `changed` makes it, and asks theory about the one without. All of these must fail, and no
- * others. */
+/* Compares measurements in the scene with `changed` applied to theory for the scene without it. Exactly the metrics
+ * that start with these words must fail. */
 static void expect_failures(const char *base, const char *changed, const char *const *words, size_t count)
 {
     scene *s = rod_scene(base), *other = rod_scene(base);
@@ -189,17 +190,17 @@ static void expect_failures(const char *base, const char *changed, const char *c
     const realism_report r = measured_against(other, s);
     for (int i = 0; i < r.count; i++) {
         const realism_value *v = &r.value[i];
-        bool wanted = false;
+        bool expected = false;
         for (size_t k = 0; k < count; k++)
-            wanted |= starts_with(v->metric, words[k]);
-        if (realism_is_defined(v) && realism_passes(v) == wanted)
-            fail_msg("%s, then %s: %s %s at %.17g for %.17g", base, changed, v->metric, wanted ? "passes" : "fails",
+            expected |= starts_with(v->metric, words[k]);
+        if (realism_is_defined(v) && realism_passes(v) == expected)
+            fail_msg("%s, then %s: %s %s at %.17g for %.17g", base, changed, v->metric, expected ? "passes" : "fails",
                      v->measured, v->theory);
     }
     scene_destroy(s), scene_destroy(other);
 }
 
-static void an_index_that_is_off_by_a_millionth_fails(void **state)
+static void a_relative_error_of_the_index_of_1e_6_fails(void **state)
 {
     (void)state;
     const char *const of_air[] = {
@@ -219,7 +220,7 @@ static void an_index_that_is_off_by_a_millionth_fails(void **state)
     expect_failures("vessel.ior=2.4 liquid.visible=off", "vessel.ior=2.400001", of_empty, COUNT(of_empty));
 }
 
-static void light_that_is_kept_or_swallowed_fails(void **state)
+static void wrong_transmittance_and_absorption_fail(void **state)
 {
     (void)state;
     const char *const balance[] = {"balance", "slab", "gap", "radiance", "reversal.throughput"};
@@ -250,7 +251,7 @@ static void water_in_glass_disperses_as_published(void **state)
     scene_destroy(s);
 }
 
-static void refuses_scenes_without_a_vessel_a_rod_or_a_common_axis(void **state)
+static void scenes_without_vessel_rod_or_common_axis_are_refused(void **state)
 {
     (void)state;
     static const struct {
@@ -273,7 +274,7 @@ static void refuses_scenes_without_a_vessel_a_rod_or_a_common_axis(void **state)
     }
 }
 
-static void curves_lie_on_theory(void **state)
+static void curves_equal_theory(void **state)
 {
     (void)state;
     static const int counts[REALISM_CURVE_COUNT] = {180, 180, 180, 201, 17, 100, 61};
@@ -288,7 +289,7 @@ static void curves_lie_on_theory(void **state)
             assert_true(i == 0 || p.at[i].x > p.at[i - 1].x);
         }
     }
-    /* The last one: without refraction nothing moves, but the glass alone does. */
+    /* The last curve, EDGES, by the liquid's index: at index 1 the displacement is that of the glass alone. */
     assert_true(p.at[0].measured != p.at[60].measured);
     set(s, "liquid.visible=off");
     assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_EDGES, &p, &why), STATUS_BAD_INPUT);
@@ -298,20 +299,20 @@ static void curves_lie_on_theory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(critical_angles_of_water_glass_and_diamond),
-        cmocka_unit_test(reflectances_at_known_angles),
-        cmocka_unit_test(a_slab_lets_through_a_geometric_series),
+        cmocka_unit_test(critical_angles_of_water_glass_and_diamond_equal_the_textbooks_values),
+        cmocka_unit_test(reflectances_at_known_angles_equal_the_textbooks_values),
+        cmocka_unit_test(the_transmittance_of_a_slab_is_a_geometric_series),
         cmocka_unit_test(one_medium_focuses_like_a_ball_lens),
-        cmocka_unit_test(an_empty_vessel_spreads_light),
-        cmocka_unit_test(a_pond_looks_shallower_by_its_index),
-        cmocka_unit_test(the_view_is_that_of_the_tracer),
-        cmocka_unit_test(everything_passes_whatever_the_indices),
-        cmocka_unit_test(metrics_without_meaning_are_named_as_such),
-        cmocka_unit_test(an_index_that_is_off_by_a_millionth_fails),
-        cmocka_unit_test(light_that_is_kept_or_swallowed_fails),
+        cmocka_unit_test(an_empty_vessel_is_a_diverging_lens),
+        cmocka_unit_test(apparent_depth_of_a_pond_follows_from_its_index),
+        cmocka_unit_test(the_view_equals_the_cameras),
+        cmocka_unit_test(all_metrics_pass_for_various_indices),
+        cmocka_unit_test(undefined_metrics_are_reported_as_undefined),
+        cmocka_unit_test(a_relative_error_of_the_index_of_1e_6_fails),
+        cmocka_unit_test(wrong_transmittance_and_absorption_fail),
         cmocka_unit_test(water_in_glass_disperses_as_published),
-        cmocka_unit_test(refuses_scenes_without_a_vessel_a_rod_or_a_common_axis),
-        cmocka_unit_test(curves_lie_on_theory),
+        cmocka_unit_test(scenes_without_vessel_rod_or_common_axis_are_refused),
+        cmocka_unit_test(curves_equal_theory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

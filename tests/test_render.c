@@ -33,7 +33,7 @@ static slab_light slab_series(double R, double T, int depth)
         return (slab_light){0.0, 0.0, 1.0, 0.0};
     l.back = R;
     int up = 1;
-    for (int met = 2; met <= depth; met++) {
+    for (int interfaces = 2; interfaces <= depth; interfaces++) {
         *(up ? &l.passed : &l.back) += inside * T;
         inside *= R;
         up = !up;
@@ -60,18 +60,18 @@ static void check_slab(scene *s, double R, double T, double lost_share)
     for (int depth = 0; depth <= 12; depth++) {
         s->render.depth = depth;
         s->render.beyond = DEPTH_LIMIT_BLACK;
-        const slab_light wanted = slab_series(R, T, depth);
+        const slab_light expected = slab_series(R, T, depth);
         render_result *result = render(s);
-        assert_near(film_value(result->img, 0, 0, 0), wanted.passed, 1e-12);
-        assert_near(film_value(result->img, 0, 0, 1), wanted.back, 1e-12);
+        assert_near(film_value(result->img, 0, 0, 0), expected.passed, 1e-12);
+        assert_near(film_value(result->img, 0, 0, 1), expected.back, 1e-12);
         assert_true(film_value(result->img, 0, 0, 2) == 0.0);
         /* the cut light is that which the last ray inside carries to its interface, split in two there */
-        const double inside = wanted.inside_up + wanted.inside_down, cut = inside * (R + T);
+        const double inside = expected.inside_up + expected.inside_down, cut = inside * (R + T);
         if (CUVETTE_COUNTERS)
             check_slab_counters(&result->counters, depth, cut);
         render_result_destroy(result);
         if (lost_share == 0.0)
-            assert_near(wanted.passed + wanted.back + cut, 1.0, 1e-14);
+            assert_near(expected.passed + expected.back + cut, 1.0, 1e-14);
         /* at the depth limit the sky: the two cut branches take it from their directions */
         s->render.beyond = DEPTH_LIMIT_SKY;
         const slab_light next = slab_series(R, T, depth + 1);
@@ -81,7 +81,7 @@ static void check_slab(scene *s, double R, double T, double lost_share)
     }
 }
 
-static void slab_under_fresnel_weights(void **state)
+static void a_slab_with_fresnel_weights_equals_the_series(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_scene);
@@ -94,7 +94,7 @@ static void slab_under_fresnel_weights(void **state)
     scene_destroy(s);
 }
 
-static void slab_under_constant_weights(void **state)
+static void a_slab_with_constant_weights_equals_the_series(void **state)
 {
     (void)state;
     scene *s = scene_from(slab_scene);
@@ -124,7 +124,7 @@ static void branches_below_the_minimum_weight_are_cut(void **state)
 
 /* In a slab that transmits one channel only: a branch continues as long as that channel has enough weight, whichever it
  * is. R is reflected, and T^2 and T^2 R of the clear channel; its next branch has weight 0.96 R^2. */
-static void a_branchs_weight_is_its_largest_channel(void **state)
+static void the_weight_of_a_branch_is_its_largest_channel(void **state)
 {
     (void)state;
     static const char *const clear_for[] = {"slab.absorb_per_m=0,9,9", "slab.absorb_per_m=9,0,9",
@@ -136,8 +136,8 @@ static void a_branchs_weight_is_its_largest_channel(void **state)
         const vec3 seen = look(s);
         const double by_channel[3] = {seen.x, seen.y, seen.z};
         for (int c = 0; c < 3; c++) {
-            const double kept = c == clear ? 1.0 : exp(-9.0), R = 0.04, T = 0.96;
-            assert_near(by_channel[c], R + T * T * kept + T * T * R * kept * kept, 1e-12);
+            const double transmittance = c == clear ? 1.0 : exp(-9.0), R = 0.04, T = 0.96;
+            assert_near(by_channel[c], R + T * T * transmittance + T * T * R * transmittance * transmittance, 1e-12);
         }
         scene_destroy(s);
     }
@@ -146,7 +146,7 @@ static void a_branchs_weight_is_its_largest_channel(void **state)
 /* In a slab of unit thickness that transmits exp(-a) of each channel. The first branches have weights R and T; the one
  * inside yields T exp(-a) (R + T) at the other side, all of which depth 1 cuts off; a min_weight of 0.5 cuts the
  * smaller of each pair. */
-static void cut_throughput_is_counted_by_channel(void **state)
+static void terminated_throughput_is_counted_by_channel(void **state)
 {
     (void)state;
     need_counters();
@@ -158,9 +158,10 @@ static void cut_throughput_is_counted_by_channel(void **state)
     render_result *pruned = render(s);
     assert_int_equal(pruned->counters.cut_weight, 2);
     for (int c = 0; c < 3; c++) {
-        const double kept = exp(-a_per_m[c]);
-        assert_near((double)shallow->counters.cut_depth_throughput[c] / COUNTERS_CUT_ONE, T * kept, 1e-10);
-        assert_near((double)pruned->counters.cut_weight_throughput[c] / COUNTERS_CUT_ONE, R + T * R * kept, 1e-10);
+        const double transmittance = exp(-a_per_m[c]);
+        assert_near((double)shallow->counters.cut_depth_throughput[c] / COUNTERS_CUT_ONE, T * transmittance, 1e-10);
+        assert_near((double)pruned->counters.cut_weight_throughput[c] / COUNTERS_CUT_ONE, R + T * R * transmittance,
+                    1e-10);
     }
     render_result_destroy(shallow);
     render_result_destroy(pruned);
@@ -221,7 +222,7 @@ static void a_furnace_under_constant_weights_is_white(void **state)
 }
 
 /* The difference from white was cut off, by depth or by weight, and is counted. */
-static void cut_light_is_accounted_for(void **state)
+static void terminated_light_is_counted(void **state)
 {
     (void)state;
     need_counters();
@@ -318,7 +319,7 @@ static void solids_of_index_one_are_invisible(void **state)
 }
 
 /* The counts of POV-Ray and a third program for this scene. */
-static void first_hits_of_the_rod_scene(void **state)
+static void first_hits_of_the_rod_scene_equal_those_of_other_renderers(void **state)
 {
     (void)state;
     need_counters();
@@ -334,7 +335,7 @@ static void first_hits_of_the_rod_scene(void **state)
 
 /* Neighbouring rays leave a slab through one face, some into an opaque box, some into the open: the surface belongs to
  * different regions. */
-static void neighbours_may_hit_different_regions_on_one_face(void **state)
+static void neighbouring_rays_hit_different_regions_on_one_face(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -360,19 +361,19 @@ static void neighbours_may_hit_different_regions_on_one_face(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slab_under_fresnel_weights),
-        cmocka_unit_test(slab_under_constant_weights),
+        cmocka_unit_test(a_slab_with_fresnel_weights_equals_the_series),
+        cmocka_unit_test(a_slab_with_constant_weights_equals_the_series),
         cmocka_unit_test(branches_below_the_minimum_weight_are_cut),
-        cmocka_unit_test(a_branchs_weight_is_its_largest_channel),
-        cmocka_unit_test(cut_throughput_is_counted_by_channel),
+        cmocka_unit_test(the_weight_of_a_branch_is_its_largest_channel),
+        cmocka_unit_test(terminated_throughput_is_counted_by_channel),
         cmocka_unit_test(every_pixel_of_a_white_furnace_is_white),
         cmocka_unit_test(a_furnace_under_constant_weights_is_white),
-        cmocka_unit_test(cut_light_is_accounted_for),
+        cmocka_unit_test(terminated_light_is_counted),
         cmocka_unit_test(four_samples_are_the_mean_of_four_pixels),
         cmocka_unit_test(objects_on_the_right_are_on_the_right_of_the_image),
         cmocka_unit_test(solids_of_index_one_are_invisible),
-        cmocka_unit_test(first_hits_of_the_rod_scene),
-        cmocka_unit_test(neighbours_may_hit_different_regions_on_one_face),
+        cmocka_unit_test(first_hits_of_the_rod_scene_equal_those_of_other_renderers),
+        cmocka_unit_test(neighbouring_rays_hit_different_regions_on_one_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

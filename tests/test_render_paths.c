@@ -14,7 +14,7 @@ static const vec3 turns[] = {{0.0, 0.0, 0.0}, {17.0, -33.0, 71.0}, {-8.0, 112.0,
 static const vec3 places[] = {{0.0, 0.0, 0.0}, {0.7, -1.3, 2.9}, {-11.0, 4.0, 3.0}};
 
 /* Snell's law from either side (Hecht, eq. 4.4): n_i sin i = n_t sin t, in the plane of incidence. */
-static void snell_holds_from_either_side(void **state)
+static void snells_law_holds_from_either_side(void **state)
 {
     (void)state;
     static const double pairs[][2] = {{1.0, 1.5},  {1.5, 1.0},  {1.0, 1.33}, {1.33, 1.0},
@@ -83,7 +83,7 @@ static void check_pile(const layers *l, piling how)
     }
 }
 
-static void slabs_with_air_between_shift_a_ray(void **state)
+static void slabs_with_gaps_offset_a_ray(void **state)
 {
     (void)state;
     const layers seven = {13,
@@ -93,7 +93,7 @@ static void slabs_with_air_between_shift_a_ray(void **state)
     check_pile(&seven, SINGLY); /* 14 interfaces */
 }
 
-static void slabs_in_contact_shift_a_ray(void **state)
+static void slabs_in_contact_offset_a_ray(void **state)
 {
     (void)state;
     const layers twelve = {12,
@@ -147,7 +147,7 @@ static double widest(const shells *s, double d_y)
     return least;
 }
 
-static void coaxial_cylinders_keep_bouguers_invariant(void **state)
+static void bouguers_invariant_is_conserved_in_coaxial_cylinders(void **state)
 {
     (void)state;
     for (int k = 0; k < NESTS; k++) {
@@ -185,7 +185,7 @@ static void skew_rays_through_coaxial_cylinders_follow_bravais(void **state)
 }
 
 /* In any plane through the centre; n times the distance of the ray's line from the centre is invariant. */
-static void nested_spheres_keep_the_impact_parameter(void **state)
+static void the_impact_parameter_is_conserved_in_nested_spheres(void **state)
 {
     (void)state;
     for (int k = 0; k < NESTS; k++) {
@@ -236,7 +236,7 @@ static void a_vessel_with_its_liquid_refracts_like_shells_and_layers(void **stat
 /* Rainbows: k reflections inside a drop deflect light by D = 2 (i - r) + k (pi - 2 r) (Hecht, problem 4.32; van de
  * Hulst, Light Scattering by Small Particles, 12.31), with a hit on the surface every pi - 2 r; T R^k T of it
  * leaves. */
-static void reflections_inside_a_drop_deflect_light_like_rainbows(void **state)
+static void deflections_by_a_drop_equal_those_of_rainbows(void **state)
 {
     (void)state;
     static const double pairs[][2] = {{1.0, 1.333}, {1.0, 1.5}, {1.0, 2.42}, {1.33, 1.5}};
@@ -299,7 +299,7 @@ static double deviation_through(stage *g, double apex, double angle_i)
 
 /* D = i + t2 - A with r + r2 = A (Hecht, 5.5.1, eqs. 5.52 to 5.54), least in the symmetric case: n = sin((A + D)/2) /
  * sin(A/2). */
-static void a_prism_deviates_least_in_the_symmetric_case(void **state)
+static void deviation_is_minimal_for_the_symmetric_path(void **state)
 {
     (void)state;
     static const double apexes[] = {20.0 * DEGREE, 45.0 * DEGREE, 60.0 * DEGREE},
@@ -326,15 +326,15 @@ static void a_prism_deviates_least_in_the_symmetric_case(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(snell_holds_from_either_side),
-        cmocka_unit_test(slabs_with_air_between_shift_a_ray),
-        cmocka_unit_test(slabs_in_contact_shift_a_ray),
-        cmocka_unit_test(coaxial_cylinders_keep_bouguers_invariant),
+        cmocka_unit_test(snells_law_holds_from_either_side),
+        cmocka_unit_test(slabs_with_gaps_offset_a_ray),
+        cmocka_unit_test(slabs_in_contact_offset_a_ray),
+        cmocka_unit_test(bouguers_invariant_is_conserved_in_coaxial_cylinders),
         cmocka_unit_test(skew_rays_through_coaxial_cylinders_follow_bravais),
-        cmocka_unit_test(nested_spheres_keep_the_impact_parameter),
+        cmocka_unit_test(the_impact_parameter_is_conserved_in_nested_spheres),
         cmocka_unit_test(a_vessel_with_its_liquid_refracts_like_shells_and_layers),
-        cmocka_unit_test(reflections_inside_a_drop_deflect_light_like_rainbows),
-        cmocka_unit_test(a_prism_deviates_least_in_the_symmetric_case),
+        cmocka_unit_test(deflections_by_a_drop_equal_those_of_rainbows),
+        cmocka_unit_test(deviation_is_minimal_for_the_symmetric_path),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -136,7 +136,7 @@ static void stop_some_frames(scene *large, scene *small, int count)
 }
 
 /* A frame that would take minutes ends on request; the finished part is kept, and the next frame is correct. */
-static void an_interrupted_frame_ends_and_leaves_no_trace(void **state)
+static void an_interrupted_frame_ends_and_does_not_affect_the_next(void **state)
 {
     (void)state;
     stop_some_frames(rod_scene("render.width=4000 render.height=3000 render.depth=16 render.threads=3"),
@@ -144,7 +144,7 @@ static void an_interrupted_frame_ends_and_leaves_no_trace(void **state)
 }
 
 /* More workers than processors: workers that start late must not continue the work of stopped ones. */
-static void many_stopped_workers_leave_no_trace(void **state)
+static void stopped_workers_do_not_affect_the_next_frame(void **state)
 {
     (void)state;
     stop_some_frames(rod_scene("render.width=1024 render.height=1024 render.depth=30 render.threads=512 "
@@ -152,7 +152,7 @@ static void many_stopped_workers_leave_no_trace(void **state)
                      rod_scene("render.width=64 render.height=48 render.threads=512 render.tile=4"), 4);
 }
 
-static void progress_changes_nothing(void **state)
+static void progress_callbacks_do_not_change_the_film(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=64 render.height=48");
@@ -168,7 +168,7 @@ static void progress_changes_nothing(void **state)
 
 typedef struct studio {
     const scene *s;
-    uint64_t wanted;
+    uint64_t expected;
     int wrong;
 } studio;
 
@@ -179,14 +179,14 @@ static void *work_in(void *argument)
     w->wrong = renderer_create(isa_best(), NULL, &r, NULL) != STATUS_OK;
     for (int i = 0; i < 10 && !w->wrong; i++) {
         render_result *result = NULL;
-        w->wrong = renderer_render(r, w->s, NULL, &result, NULL) != STATUS_OK || film_hash(result->img) != w->wanted;
+        w->wrong = renderer_render(r, w->s, NULL, &result, NULL) != STATUS_OK || film_hash(result->img) != w->expected;
         render_result_destroy(result);
     }
     renderer_destroy(r);
     return NULL;
 }
 
-static void two_renderers_at_once(void **state)
+static void two_concurrent_renderers_are_independent(void **state)
 {
     (void)state;
     scene *scenes[2] = {
@@ -199,7 +199,7 @@ static void two_renderers_at_once(void **state)
         studios[i] = (studio){scenes[i], film_hash(alone->img), 0};
         render_result_destroy(alone);
     }
-    assert_true(studios[0].wanted != studios[1].wanted);
+    assert_true(studios[0].expected != studios[1].expected);
     for (int i = 0; i < 2; i++)
         assert_int_equal(pthread_create(&threads[i], NULL, work_in, &studios[i]), 0);
     for (int i = 0; i < 2; i++) {
@@ -210,7 +210,7 @@ static void two_renderers_at_once(void **state)
 }
 
 /* One renderer, scenes of different depth, size, light and thread counts one after another. */
-static void a_renderer_serves_one_scene_after_another(void **state)
+static void one_renderer_renders_different_scenes_in_sequence(void **state)
 {
     (void)state;
     static const char *const settings[] = {
@@ -239,11 +239,11 @@ int main(void)
         cmocka_unit_test(light_that_is_not_a_number_is_an_error),
         cmocka_unit_test(a_sum_beyond_the_films_range_is_an_error),
         cmocka_unit_test(an_invalid_scene_is_refused),
-        cmocka_unit_test(an_interrupted_frame_ends_and_leaves_no_trace),
-        cmocka_unit_test(many_stopped_workers_leave_no_trace),
-        cmocka_unit_test(progress_changes_nothing),
-        cmocka_unit_test(two_renderers_at_once),
-        cmocka_unit_test(a_renderer_serves_one_scene_after_another),
+        cmocka_unit_test(an_interrupted_frame_ends_and_does_not_affect_the_next),
+        cmocka_unit_test(stopped_workers_do_not_affect_the_next_frame),
+        cmocka_unit_test(progress_callbacks_do_not_change_the_film),
+        cmocka_unit_test(two_concurrent_renderers_are_independent),
+        cmocka_unit_test(one_renderer_renders_different_scenes_in_sequence),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

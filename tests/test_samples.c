@@ -27,7 +27,7 @@ static int covered(int k, double edge)
     return count;
 }
 
-static void an_edge_covers_the_cells_whose_middle_it_covers(void **state)
+static void an_edge_covers_the_cells_whose_centre_is_inside(void **state)
 {
     (void)state;
     static const double edges[] = {-0.95, -0.6, -0.3, 0.05, 0.31, 0.55, 0.9, 1.1};
@@ -35,11 +35,11 @@ static void an_edge_covers_the_cells_whose_middle_it_covers(void **state)
     for (int k = 1; k <= 8; k++) {
         s->render.samples = (int64_t)k * k;
         for (size_t i = 0; i < sizeof edges / sizeof *edges; i++) {
-            const double wanted = (double)covered(k, edges[i]) / k, rounding = k * k * 0x1p-44;
+            const double expected = (double)covered(k, edges[i]) / k, rounding = k * k * 0x1p-44;
             s->solids[0].shape.position = vec3_make(edges[i] - 10.0, 0.0, 1.0);
-            assert_near(look(s).x, wanted, rounding);
+            assert_near(look(s).x, expected, rounding);
             s->solids[0].shape.position = vec3_make(0.0, edges[i] - 10.0, 1.0);
-            assert_near(look(s).y, wanted, rounding);
+            assert_near(look(s).y, expected, rounding);
         }
     }
     scene_destroy(s);
@@ -77,7 +77,7 @@ static void other_films_use_the_same_points(void **state)
 }
 
 /* The largest number of samples and wavelengths fits with the largest pixel and wavelength. */
-static void a_sample_key_holds_the_last_sample_of_the_last_pixel(void **state)
+static void the_largest_sample_and_pixel_fit_in_a_sample_key(void **state)
 {
     (void)state;
     const int64_t pixel = SCENE_PIXELS_MAX - 1, sample = (int64_t)SCENE_SAMPLES_MAX * 65536 - 1, number = 3999;
@@ -91,10 +91,10 @@ static void a_sample_key_holds_the_last_sample_of_the_last_pixel(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_edge_covers_the_cells_whose_middle_it_covers),
+        cmocka_unit_test(an_edge_covers_the_cells_whose_centre_is_inside),
         cmocka_unit_test(a_corner_covers_a_rectangle_of_cells),
         cmocka_unit_test(other_films_use_the_same_points),
-        cmocka_unit_test(a_sample_key_holds_the_last_sample_of_the_last_pixel),
+        cmocka_unit_test(the_largest_sample_and_pixel_fit_in_a_sample_key),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,7 +50,7 @@ static const solid *find(const scene *s, const char *name)
 
 /* ---- the reference scene, which other renderers in the comparison use as well ---- */
 
-static void rod_has_the_reference_camera_and_light(void **state)
+static void the_rod_scene_has_the_reference_camera_and_light(void **state)
 {
     (void)state;
     scene *s = read_file(SCENES "rod.yaml");
@@ -74,7 +74,7 @@ static void rod_has_the_reference_camera_and_light(void **state)
     scene_destroy(s);
 }
 
-static void rod_has_the_reference_solids(void **state)
+static void the_rod_scene_has_the_reference_solids(void **state)
 {
     (void)state;
     scene *s = read_file(SCENES "rod.yaml");
@@ -113,7 +113,7 @@ static void rod_has_the_reference_solids(void **state)
 }
 
 /* The four index pairs of the report, and its constant weights, are settings of the one scene. */
-static void the_reports_settings_are_overrides(void **state)
+static void the_settings_of_the_report_are_overrides_of_the_scene(void **state)
 {
     (void)state;
     static const char *const pairs[][2] = {{"1.0", "1.0"}, {"1.0", "1.5"}, {"1.3", "1.0"}, {"1.3", "1.5"}};
@@ -133,7 +133,7 @@ static void the_reports_settings_are_overrides(void **state)
     scene_destroy(s);
 }
 
-static void every_scene_of_the_project_is_right(void **state)
+static void every_scene_of_the_project_is_valid(void **state)
 {
     (void)state;
     scene *leaning = read_file(SCENES "rod-leaning.yaml"), *inside = read_file(SCENES "rod-from-inside.yaml"),
@@ -162,7 +162,7 @@ static void every_scene_of_the_project_is_right(void **state)
 
 /* ---- reading ---- */
 
-static void the_order_of_the_file_is_kept_and_solids_may_come_first(void **state)
+static void the_order_of_the_file_is_preserved_and_solids_may_be_first(void **state)
 {
     (void)state;
     scene *s = read_text("solids:\n  zebra: {shape: sphere, material: glass}\n  ape: {shape: box, ior: 2}\n"
@@ -179,7 +179,7 @@ static void the_order_of_the_file_is_kept_and_solids_may_come_first(void **state
     scene_destroy(s);
 }
 
-static void what_is_left_out_keeps_its_default(void **state)
+static void omitted_parameters_have_their_defaults(void **state)
 {
     (void)state;
     static const char *const texts[] = {"{}", "render:\nlights:\nsolids:\n", "camera: {}\nmaterials: {}\n",
@@ -256,7 +256,7 @@ static void assert_check_finds(scene *s, const char *assignment, const char *wor
     scene_destroy(c);
 }
 
-static void check_finds_what_single_ranges_cannot(void **state)
+static void scene_check_finds_invalid_combinations(void **state)
 {
     (void)state;
     scene *s = read_file(SCENES "rod.yaml");
@@ -275,11 +275,11 @@ static void check_finds_what_single_ranges_cannot(void **state)
     scene_destroy(s);
 }
 
-static void a_sky_is_neither_negative_nor_endless(void **state)
+static void negative_and_infinite_skies_are_refused(void **state)
 {
     (void)state;
     static const float bad[] = {-1e-6F, 65600.0F, 1e30F}, good[] = {0.0F, 65536.0F};
-    char path[] = "/tmp/test_scene_XXXXXX.pfm", text[128], said[DIAGNOSTIC_TEXT_MAX];
+    char path[] = "/tmp/test_scene_XXXXXX.pfm", text[128], message[DIAGNOSTIC_TEXT_MAX];
     int file = mkstemps(path, 4);
     assert_true(file >= 0);
     close(file);
@@ -297,16 +297,16 @@ static void a_sky_is_neither_negative_nor_endless(void **state)
         assert_int_equal(scene_load(s, &why), is_bad ? STATUS_BAD_INPUT : STATUS_OK);
         assert_true(is_bad == !s->background.img);
         if (is_bad) {
-            diagnostic_text(&why, said, sizeof said);
-            assert_memory_equal(said, "s.yaml:1:23: background.picture: ", 33);
-            assert_non_null(strstr(said, "pixel 2,1 is "));
+            diagnostic_text(&why, message, sizeof message);
+            assert_memory_equal(message, "s.yaml:1:23: background.picture: ", 33);
+            assert_non_null(strstr(message, "pixel 2,1 is "));
         }
         scene_destroy(s);
     }
     unlink(path);
 }
 
-static void a_sky_picture_is_found_beside_its_scene(void **state)
+static void the_path_of_a_sky_image_is_relative_to_the_scene(void **state)
 {
     (void)state;
     char folder[] = "/tmp/test_scene_XXXXXX", image_path[64], scene_path[64];
@@ -358,17 +358,17 @@ static void a_sky_picture_is_found_beside_its_scene(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rod_has_the_reference_camera_and_light),
-        cmocka_unit_test(rod_has_the_reference_solids),
-        cmocka_unit_test(the_reports_settings_are_overrides),
-        cmocka_unit_test(every_scene_of_the_project_is_right),
-        cmocka_unit_test(the_order_of_the_file_is_kept_and_solids_may_come_first),
-        cmocka_unit_test(what_is_left_out_keeps_its_default),
+        cmocka_unit_test(the_rod_scene_has_the_reference_camera_and_light),
+        cmocka_unit_test(the_rod_scene_has_the_reference_solids),
+        cmocka_unit_test(the_settings_of_the_report_are_overrides_of_the_scene),
+        cmocka_unit_test(every_scene_of_the_project_is_valid),
+        cmocka_unit_test(the_order_of_the_file_is_preserved_and_solids_may_be_first),
+        cmocka_unit_test(omitted_parameters_have_their_defaults),
         cmocka_unit_test(angles_do_not_depend_on_the_order_of_keys),
         cmocka_unit_test(a_copy_is_equal_and_independent),
-        cmocka_unit_test(check_finds_what_single_ranges_cannot),
-        cmocka_unit_test(a_sky_is_neither_negative_nor_endless),
-        cmocka_unit_test(a_sky_picture_is_found_beside_its_scene),
+        cmocka_unit_test(scene_check_finds_invalid_combinations),
+        cmocka_unit_test(negative_and_infinite_skies_are_refused),
+        cmocka_unit_test(the_path_of_a_sky_image_is_relative_to_the_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,7 +36,7 @@ static void assert_vector(vec3 v, double x, double y, double z)
         fail_msg("%.17g,%.17g,%.17g is not %.17g,%.17g,%.17g", v.x, v.y, v.z, x, y, z);
 }
 
-static void what_is_added_is_as_a_file_has_it(void **state)
+static void added_objects_have_the_defaults_of_a_file(void **state)
 {
     (void)state;
     static const char *const shapes[] = {"plane", "cylinder", "cup", "box", "sphere", "mesh", "torus", "cone", "prism"};
@@ -84,7 +84,7 @@ static void what_is_added_is_as_a_file_has_it(void **state)
         free(after_);                             \
     } while (0)
 
-static void wrong_names_are_refused(void **state)
+static void invalid_names_are_refused(void **state)
 {
     (void)state;
     scene *s = scene_from(small_scene);
@@ -148,7 +148,7 @@ static void a_mesh_or_texture_in_use_is_not_removed(void **state)
     scene_destroy(s);
 }
 
-static void what_every_scene_has_goes_back_to_its_defaults(void **state)
+static void removing_a_fixed_group_restores_its_defaults(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -166,7 +166,7 @@ static void what_every_scene_has_goes_back_to_its_defaults(void **state)
     scene_destroy(empty);
 }
 
-static void what_refers_to_a_name_follows_it(void **state)
+static void references_follow_a_renamed_object(void **state)
 {
     (void)state;
     scene *s = scene_from(small_scene);
@@ -181,7 +181,7 @@ static void what_refers_to_a_name_follows_it(void **state)
     scene_destroy(s);
 }
 
-static void a_material_is_given_whole(void **state)
+static void assigning_a_material_replaces_all_surface_values(void **state)
 {
     (void)state;
     scene *s = scene_from(small_scene);
@@ -201,7 +201,7 @@ static void a_material_is_given_whole(void **state)
     scene_destroy(s);
 }
 
-static void a_scene_has_its_limits(void **state)
+static void lights_and_solids_above_the_limit_are_refused(void **state)
 {
     (void)state;
     scene *s = scene_create();
@@ -220,7 +220,7 @@ static void a_scene_has_its_limits(void **state)
     scene_destroy(s);
 }
 
-static void things_move(void **state)
+static void objects_and_the_camera_are_moved(void **state)
 {
     (void)state;
     scene *s = scene_from(small_scene);
@@ -242,7 +242,7 @@ static void things_move(void **state)
     scene_destroy(s);
 }
 
-static void what_would_leave_the_scene_stays(void **state)
+static void movements_out_of_range_are_refused(void **state)
 {
     (void)state;
     scene *s = scene_from(small_scene);
@@ -273,7 +273,7 @@ static double random_angle(uint64_t *seed, bool straight)
     return straight ? 45.0 * (double)((int)random_below(seed, 17) - 8) : random_real(seed, -360.0, 360.0);
 }
 
-static void turns_are_rotations_about_the_axes_of_the_world(void **state)
+static void rotations_are_about_the_axes_of_the_world(void **state)
 {
     (void)state;
     uint64_t seed = 20;
@@ -301,7 +301,7 @@ static void turns_are_rotations_about_the_axes_of_the_world(void **state)
     scene_destroy(s);
 }
 
-static void turns_keep_round_numbers_round(void **state)
+static void rotations_keep_round_angles_exact(void **state)
 {
     (void)state;
     static const double cases[][9] = {
@@ -330,7 +330,7 @@ static vec3 direction_of(const camera *c)
 }
 
 /* Right-hand rule: about y, z goes to x. */
-static void a_cone_moves_with_its_target_and_turns_it(void **state)
+static void moving_and_rotating_a_spotlight_transforms_its_target(void **state)
 {
     (void)state;
     scene *s = scene_create();
@@ -349,7 +349,7 @@ static void a_cone_moves_with_its_target_and_turns_it(void **state)
     scene_destroy(s);
 }
 
-static void the_camera_turns_in_place(void **state)
+static void the_camera_rotates_in_place(void **state)
 {
     (void)state;
     uint64_t seed = 21;
@@ -380,7 +380,7 @@ static void solid_with(scene *s, const char *name, shape_kind shape, const char 
     set_all(s, values);
 }
 
-static void the_rod_in_its_vessel_is_built_by_calls_alone(void **state)
+static void the_rod_scene_is_built_by_edits_alone(void **state)
 {
     (void)state;
     scene *s = scene_create(), *read = rod_scene("render.width=80 render.height=60");
@@ -420,21 +420,21 @@ static void the_rod_in_its_vessel_is_built_by_calls_alone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_added_is_as_a_file_has_it),
-        cmocka_unit_test(wrong_names_are_refused),
+        cmocka_unit_test(added_objects_have_the_defaults_of_a_file),
+        cmocka_unit_test(invalid_names_are_refused),
         cmocka_unit_test(a_material_in_use_is_not_removed),
         cmocka_unit_test(a_mesh_or_texture_in_use_is_not_removed),
-        cmocka_unit_test(what_every_scene_has_goes_back_to_its_defaults),
-        cmocka_unit_test(what_refers_to_a_name_follows_it),
-        cmocka_unit_test(a_material_is_given_whole),
-        cmocka_unit_test(a_scene_has_its_limits),
-        cmocka_unit_test(things_move),
-        cmocka_unit_test(what_would_leave_the_scene_stays),
-        cmocka_unit_test(turns_are_rotations_about_the_axes_of_the_world),
-        cmocka_unit_test(turns_keep_round_numbers_round),
-        cmocka_unit_test(a_cone_moves_with_its_target_and_turns_it),
-        cmocka_unit_test(the_camera_turns_in_place),
-        cmocka_unit_test(the_rod_in_its_vessel_is_built_by_calls_alone),
+        cmocka_unit_test(removing_a_fixed_group_restores_its_defaults),
+        cmocka_unit_test(references_follow_a_renamed_object),
+        cmocka_unit_test(assigning_a_material_replaces_all_surface_values),
+        cmocka_unit_test(lights_and_solids_above_the_limit_are_refused),
+        cmocka_unit_test(objects_and_the_camera_are_moved),
+        cmocka_unit_test(movements_out_of_range_are_refused),
+        cmocka_unit_test(rotations_are_about_the_axes_of_the_world),
+        cmocka_unit_test(rotations_keep_round_angles_exact),
+        cmocka_unit_test(moving_and_rotating_a_spotlight_transforms_its_target),
+        cmocka_unit_test(the_camera_rotates_in_place),
+        cmocka_unit_test(the_rod_scene_is_built_by_edits_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,10 +39,10 @@ static const realism_value *value_of(const realism_report *r, const char *metric
     return NULL;
 }
 
-static void near(double got, double wanted, double tolerance)
+static void near(double got, double expected, double tolerance)
 {
-    if (!(fabs(got - wanted) <= tolerance))
-        fail_msg("%.12f is not %.12f within %g", got, wanted, tolerance);
+    if (!(fabs(got - expected) <= tolerance))
+        fail_msg("%.12f is not %.12f within %g", got, expected, tolerance);
 }
 
 static void all_pass(const char *name, const char *assignments)
@@ -57,7 +57,7 @@ static void all_pass(const char *name, const char *assignments)
     scene_destroy(s);
 }
 
-static void every_arrangement_passes_whatever_its_media(void **state)
+static void every_scene_passes_for_various_media(void **state)
 {
     (void)state;
     all_pass("prism", "");
@@ -73,7 +73,7 @@ static void every_arrangement_passes_whatever_its_media(void **state)
 
 /* A 60 degree prism of n = 1.5 deviates light by at least 2 asin(0.75) - 60 = 37.18 degrees (Hecht, Optics, 5th ed.,
  * 5.5.1). */
-static void a_prism_at_least_deviation_as_in_textbooks(void **state)
+static void minimum_deviation_of_a_prism_equals_the_textbooks_value(void **state)
 {
     (void)state;
     scene *s = scene_of("prism", "glass.ior=1.5");
@@ -101,7 +101,7 @@ static void a_drop_shows_the_rainbow_at_42_degrees(void **state)
 
 /* At Brewster's angle p light passes all four interfaces and s light loses 1 - (2 n / (n^2 + 1))^2 at each: Born and
  * Wolf, 1.5.3. */
-static void a_stack_polarises(void **state)
+static void a_stack_of_plates_polarises_at_brewsters_angle(void **state)
 {
     (void)state;
     scene *off = scene_of("plates", "plate1.rotation.y=56.309932474020215 plate2.rotation.y=56.309932474020215");
@@ -116,7 +116,7 @@ static void a_stack_polarises(void **state)
 }
 
 /* With another scene's theory, a relative difference of 1e-6 of the index must be detected. */
-static void an_index_that_is_off_fails(void **state)
+static void a_wrong_index_fails(void **state)
 {
     (void)state;
     static const struct {
@@ -137,7 +137,7 @@ static void an_index_that_is_off_fails(void **state)
 }
 
 /* An index that lets no ray through, or makes no rainbow, is reported and not hidden. */
-static void what_is_not_there_is_not_measured(void **state)
+static void metrics_without_a_ray_are_undefined(void **state)
 {
     (void)state;
     scene *s = scene_of("rainbow", "water.ior=2.5");
@@ -154,12 +154,12 @@ static void what_is_not_there_is_not_measured(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_arrangement_passes_whatever_its_media),
-        cmocka_unit_test(a_prism_at_least_deviation_as_in_textbooks),
+        cmocka_unit_test(every_scene_passes_for_various_media),
+        cmocka_unit_test(minimum_deviation_of_a_prism_equals_the_textbooks_value),
         cmocka_unit_test(a_drop_shows_the_rainbow_at_42_degrees),
-        cmocka_unit_test(a_stack_polarises),
-        cmocka_unit_test(an_index_that_is_off_fails),
-        cmocka_unit_test(what_is_not_there_is_not_measured),
+        cmocka_unit_test(a_stack_of_plates_polarises_at_brewsters_angle),
+        cmocka_unit_test(a_wrong_index_fails),
+        cmocka_unit_test(metrics_without_a_ray_are_undefined),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

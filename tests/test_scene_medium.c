@@ -1,3 +1,4 @@
+/* Tests of media in scenes: laws by name and by coefficients, absorption, and the diagnostics of invalid media. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,10 +20,10 @@ static double index_at(const scene *s, const char *name, double lambda_nm)
     return index_law_at(&law, lambda_nm);
 }
 
-static void near(double got, double wanted, double tolerance)
+static void near(double got, double expected, double tolerance)
 {
-    if (!(fabs(got - wanted) <= tolerance))
-        fail_msg("%.12f is not %.12f within %g", got, wanted, tolerance);
+    if (!(fabs(got - expected) <= tolerance))
+        fail_msg("%.12f is not %.12f within %g", got, expected, tolerance);
 }
 
 static const char three_laws[] =
@@ -37,7 +38,7 @@ static const char three_laws[] =
 
 /* Catalogue glasses are measured in air; Schott gives N-BK7 n_d = 1.51680, and dry air has n_d = 1.000277 (Ciddor
  * 1996). */
-static void laws_by_name_and_by_coefficients(void **state)
+static void indices_by_name_and_by_coefficients_equal_published_values(void **state)
 {
     (void)state;
     scene *s = scene_from(three_laws);
@@ -50,7 +51,7 @@ static void laws_by_name_and_by_coefficients(void **state)
 }
 
 /* The last setting wins; printed parameters give the same scene. */
-static void an_index_takes_the_place_of_a_medium_and_back(void **state)
+static void the_last_of_index_and_medium_applies(void **state)
 {
     (void)state;
     scene *s = scene_from(three_laws);
@@ -74,7 +75,7 @@ static void an_index_takes_the_place_of_a_medium_and_back(void **state)
     scene_destroy(s);
 }
 
-static void absorption_by_channel_and_by_wavelength(void **state)
+static void absorption_is_given_by_channel_or_by_wavelength(void **state)
 {
     (void)state;
     scene *s = scene_from("solids:\n"
@@ -93,17 +94,17 @@ static void absorption_by_channel_and_by_wavelength(void **state)
     scene_destroy(s);
 }
 
-static void expect_error(const char *text, const char *wanted)
+static void expect_error(const char *text, const char *expected)
 {
     scene *s = NULL;
     diagnostic why = {.what = ""};
     char line[DIAGNOSTIC_TEXT_MAX];
     assert_int_equal(scene_read_text("test.yaml", text, strlen(text), &s, &why), STATUS_BAD_INPUT);
     assert_null(s);
-    assert_string_equal(diagnostic_text(&why, line, sizeof line), wanted);
+    assert_string_equal(diagnostic_text(&why, line, sizeof line), expected);
 }
 
-static void what_makes_no_medium_is_refused_where_it_stands(void **state)
+static void invalid_media_are_refused_with_a_location(void **state)
 {
     (void)state;
     expect_error("solids:\n  a: {shape: sphere, ior: 1.5, medium: water}\n",
@@ -140,10 +141,10 @@ static void what_makes_no_medium_is_refused_where_it_stands(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(laws_by_name_and_by_coefficients),
-        cmocka_unit_test(an_index_takes_the_place_of_a_medium_and_back),
-        cmocka_unit_test(absorption_by_channel_and_by_wavelength),
-        cmocka_unit_test(what_makes_no_medium_is_refused_where_it_stands),
+        cmocka_unit_test(indices_by_name_and_by_coefficients_equal_published_values),
+        cmocka_unit_test(the_last_of_index_and_medium_applies),
+        cmocka_unit_test(absorption_is_given_by_channel_or_by_wavelength),
+        cmocka_unit_test(invalid_media_are_refused_with_a_location),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,3 +1,5 @@
+/* Tests that a whole scene can be moved, rotated and scaled: with its camera the film is the same up to rounding; only
+ * the named parts change; and nothing changes if one of them would leave its range. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,9 +11,6 @@
 #include "render_fixture.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
-
-/* Tests that a whole scene can be moved, rotated and scaled: with its camera the film is the same up to rounding; only
- * the named parts change; and nothing changes if one of them would leave its range. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -92,7 +91,7 @@ static const change changes[] = {
 };
 
 /* At most a few pixels whose ray hits the other side of an edge. */
-static void with_its_camera_the_film_is_the_same(void **state)
+static void transforming_scene_and_camera_keeps_the_film(void **state)
 {
     (void)state;
     static const char *const settings[] = {"", "camera.yaw_deg=-12 camera.pitch_deg=-15",
@@ -118,7 +117,7 @@ static void with_its_camera_the_film_is_the_same(void **state)
 }
 
 /* Area lights, whose radiance is proportional to (reach / radius)^2; path tracing uses the same random numbers. */
-static void paths_see_the_same(void **state)
+static void path_traced_films_are_the_same(void **state)
 {
     (void)state;
     scene *s = whole_scene("render.integrator=path render.paths=4 lamp.radius=0.5 torch.radius=0.3");
@@ -137,7 +136,7 @@ static void assert_vector(vec3 v, double x, double y, double z)
         fail_msg("%.17g,%.17g,%.17g instead of %g,%g,%g", v.x, v.y, v.z, x, y, z);
 }
 
-static void only_what_is_named_changes(void **state)
+static void only_the_named_objects_change(void **state)
 {
     (void)state;
     const struct {
@@ -177,7 +176,7 @@ static void only_what_is_named_changes(void **state)
     }
 }
 
-static void one_solid_or_light_is_scaled_where_it_stands(void **state)
+static void one_solid_or_light_is_scaled_about_its_position(void **state)
 {
     (void)state;
     scene *s = whole_scene("");
@@ -198,16 +197,16 @@ static void one_solid_or_light_is_scaled_where_it_stands(void **state)
 
 static void expect_refused(scene *s, status code, const diagnostic *why, const char *words)
 {
-    char said[DIAGNOSTIC_TEXT_MAX];
-    diagnostic_text(why, said, sizeof said);
-    if (code != STATUS_BAD_INPUT || !strstr(said, words))
-        fail_msg("%d, '%s' instead of '%s'", (int)code, said, words);
+    char message[DIAGNOSTIC_TEXT_MAX];
+    diagnostic_text(why, message, sizeof message);
+    if (code != STATUS_BAD_INPUT || !strstr(message, words))
+        fail_msg("%d, '%s' instead of '%s'", (int)code, message, words);
     assert_true(s->solids[0].shape.position.x == 0.0 && s->solids[2].shape.radius == 0.8 &&
                 s->lights[0].position.x == 4.0);
     assert_true(s->materials[0].value.checker == 0.31 && s->render.unit_m == 0.5 && s->camera.position.x == 1.0);
 }
 
-static void what_cannot_be_changes_nothing(void **state)
+static void refused_transformations_do_not_change_the_scene(void **state)
 {
     (void)state;
     scene *s = whole_scene("box.position=999999,0,0");
@@ -227,7 +226,7 @@ static void what_cannot_be_changes_nothing(void **state)
 }
 
 /* A solid named "all" in an old scene moves alone, as before. */
-static void an_object_of_that_name_comes_first(void **state)
+static void an_object_named_all_has_precedence(void **state)
 {
     (void)state;
     scene *s = scene_from("solids: {all: {shape: sphere, diffuse: 1}, other: {shape: sphere, diffuse: 1}}\n");
@@ -241,12 +240,12 @@ static void an_object_of_that_name_comes_first(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(with_its_camera_the_film_is_the_same),
-        cmocka_unit_test(paths_see_the_same),
-        cmocka_unit_test(only_what_is_named_changes),
-        cmocka_unit_test(one_solid_or_light_is_scaled_where_it_stands),
-        cmocka_unit_test(what_cannot_be_changes_nothing),
-        cmocka_unit_test(an_object_of_that_name_comes_first),
+        cmocka_unit_test(transforming_scene_and_camera_keeps_the_film),
+        cmocka_unit_test(path_traced_films_are_the_same),
+        cmocka_unit_test(only_the_named_objects_change),
+        cmocka_unit_test(one_solid_or_light_is_scaled_about_its_position),
+        cmocka_unit_test(refused_transformations_do_not_change_the_scene),
+        cmocka_unit_test(an_object_named_all_has_precedence),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,7 +97,7 @@ static scene *committed_scene(const char *name)
     return s;
 }
 
-static void every_scene_of_the_project_survives_and_makes_the_same_film(void **state)
+static void every_scene_of_the_project_round_trips_with_the_same_film(void **state)
 {
     (void)state;
     DIR *folder = opendir(SCENES);
@@ -201,7 +201,7 @@ static size_t carry_row(const scene *s, const char *owner, const param *row)
     return carried;
 }
 
-static void every_parameter_survives_away_from_its_default(void **state)
+static void every_parameter_round_trips_with_other_values(void **state)
 {
     (void)state;
     static const char *const owners[] = {"render", "camera",  "background", "body",      "model", "toy",  "wood",
@@ -232,7 +232,7 @@ static void every_parameter_survives_away_from_its_default(void **state)
     scene_destroy(s);
 }
 
-static void random_scenes_survive(void **state)
+static void random_scenes_round_trip(void **state)
 {
     (void)state;
     for (unsigned seed = 1; seed <= 40; seed++) {
@@ -264,7 +264,7 @@ static void assert_written(scene *s, const char *expected)
     scene_destroy(there_and_back(s, true));
 }
 
-static void only_what_differs_is_written_and_a_material_is_a_reference(void **state)
+static void only_changed_values_are_written_and_materials_by_reference(void **state)
 {
     (void)state;
     scene *s = scene_from(
@@ -280,7 +280,7 @@ static void only_what_differs_is_written_and_a_material_is_a_reference(void **st
     scene_destroy(s);
 }
 
-static void a_scene_of_nothing_is_a_scene(void **state)
+static void an_empty_scene_round_trips(void **state)
 {
     (void)state;
     scene *s = scene_create();
@@ -288,7 +288,7 @@ static void a_scene_of_nothing_is_a_scene(void **state)
     scene_destroy(s);
 }
 
-static void numbers_are_short_and_read_back_the_same(void **state)
+static void numbers_are_short_and_round_trip(void **state)
 {
     (void)state;
     scene *s = scene_from("{}");
@@ -297,7 +297,7 @@ static void numbers_are_short_and_read_back_the_same(void **state)
     scene_destroy(s);
 }
 
-static void a_camera_along_its_angles_stays_so_even_at_zero(void **state)
+static void a_camera_given_by_angles_keeps_them_even_at_zero(void **state)
 {
     (void)state;
     scene *s = scene_from("camera: {yaw_deg: 0}\n");
@@ -308,7 +308,7 @@ static void a_camera_along_its_angles_stays_so_even_at_zero(void **state)
     scene_destroy(s);
 }
 
-static void one_medium_is_written_where_an_index_was_set_aside(void **state)
+static void the_medium_that_overrides_an_index_is_written(void **state)
 {
     (void)state;
     scene *s = scene_from("background: {medium: air}\n"
@@ -325,7 +325,7 @@ static void one_medium_is_written_where_an_index_was_set_aside(void **state)
     scene_destroy(s);
 }
 
-static void a_mesh_has_one_source(void **state)
+static void a_mesh_is_written_with_one_source(void **state)
 {
     (void)state;
     scene *s =
@@ -343,7 +343,7 @@ static void a_mesh_has_one_source(void **state)
     scene_destroy(s);
 }
 
-static void a_sky_that_is_not_shown_is_not_written(void **state)
+static void an_unused_sky_is_not_written(void **state)
 {
     (void)state;
     scene *s = scene_from("background: {picture: sky.png}\n");
@@ -353,7 +353,7 @@ static void a_sky_that_is_not_shown_is_not_written(void **state)
     scene_destroy(s);
 }
 
-static void texts_are_quoted_where_yaml_needs_it(void **state)
+static void texts_are_quoted_where_yaml_requires_it(void **state)
 {
     (void)state;
     static const char *const titles[][2] = {
@@ -394,7 +394,7 @@ static void texts_are_quoted_where_yaml_needs_it(void **state)
     }
 }
 
-static void names_that_are_words_of_yaml_are_quoted(void **state)
+static void names_that_are_yaml_keywords_are_quoted(void **state)
 {
     (void)state;
     scene *s = scene_from("materials: {no: {ambient: 1}}\nsolids: {On: {shape: sphere, material: no}}\n");
@@ -403,7 +403,7 @@ static void names_that_are_words_of_yaml_are_quoted(void **state)
     scene_destroy(s);
 }
 
-static void text_that_is_not_utf8_is_refused(void **state)
+static void invalid_utf8_is_refused(void **state)
 {
     (void)state;
     static const char *const wrong[] = {"\xff",         "half \xc3",        "\xc0\x80",
@@ -441,7 +441,7 @@ static void assert_moved(const char *from, const char *img, const char *to, cons
     scene_destroy(s);
 }
 
-static void paths_follow_the_file_into_another_folder(void **state)
+static void paths_are_adjusted_when_a_scene_is_written_to_another_folder(void **state)
 {
     (void)state;
     char root[] = "/tmp/cuvette-write-XXXXXX", here[4096];
@@ -471,7 +471,7 @@ static void paths_follow_the_file_into_another_folder(void **state)
     rmdir(root);
 }
 
-static void a_file_appears_whole(void **state)
+static void a_scene_file_round_trips_and_an_unwritable_path_fails(void **state)
 {
     (void)state;
     char path[] = "/tmp/cuvette-write-XXXXXX.yaml";
@@ -492,21 +492,21 @@ static void a_file_appears_whole(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_scene_of_the_project_survives_and_makes_the_same_film),
-        cmocka_unit_test(every_parameter_survives_away_from_its_default),
-        cmocka_unit_test(random_scenes_survive),
-        cmocka_unit_test(only_what_differs_is_written_and_a_material_is_a_reference),
-        cmocka_unit_test(a_scene_of_nothing_is_a_scene),
-        cmocka_unit_test(numbers_are_short_and_read_back_the_same),
-        cmocka_unit_test(a_camera_along_its_angles_stays_so_even_at_zero),
-        cmocka_unit_test(one_medium_is_written_where_an_index_was_set_aside),
-        cmocka_unit_test(a_mesh_has_one_source),
-        cmocka_unit_test(a_sky_that_is_not_shown_is_not_written),
-        cmocka_unit_test(texts_are_quoted_where_yaml_needs_it),
-        cmocka_unit_test(names_that_are_words_of_yaml_are_quoted),
-        cmocka_unit_test(text_that_is_not_utf8_is_refused),
-        cmocka_unit_test(paths_follow_the_file_into_another_folder),
-        cmocka_unit_test(a_file_appears_whole),
+        cmocka_unit_test(every_scene_of_the_project_round_trips_with_the_same_film),
+        cmocka_unit_test(every_parameter_round_trips_with_other_values),
+        cmocka_unit_test(random_scenes_round_trip),
+        cmocka_unit_test(only_changed_values_are_written_and_materials_by_reference),
+        cmocka_unit_test(an_empty_scene_round_trips),
+        cmocka_unit_test(numbers_are_short_and_round_trip),
+        cmocka_unit_test(a_camera_given_by_angles_keeps_them_even_at_zero),
+        cmocka_unit_test(the_medium_that_overrides_an_index_is_written),
+        cmocka_unit_test(a_mesh_is_written_with_one_source),
+        cmocka_unit_test(an_unused_sky_is_not_written),
+        cmocka_unit_test(texts_are_quoted_where_yaml_requires_it),
+        cmocka_unit_test(names_that_are_yaml_keywords_are_quoted),
+        cmocka_unit_test(invalid_utf8_is_refused),
+        cmocka_unit_test(paths_are_adjusted_when_a_scene_is_written_to_another_folder),
+        cmocka_unit_test(a_scene_file_round_trips_and_an_unwritable_path_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,7 +77,7 @@ static void columns_and_rows_are_one_block_per_worker(void **state)
     }
 }
 
-static void workers_without_a_share_get_none(void **state)
+static void workers_without_pixels_get_no_piece(void **state)
 {
     (void)state;
     const render_settings settings = settings_of(SCHEDULE_COLUMNS, 10, 10, 8, 1024);
@@ -89,7 +89,7 @@ static void workers_without_a_share_get_none(void **state)
 }
 
 /* Tiles are assigned in turn, in reading order. */
-static void static_tiles_go_round(void **state)
+static void static_tiles_are_assigned_round_robin(void **state)
 {
     (void)state;
     const render_settings settings = settings_of(SCHEDULE_TILES, 100, 50, 32, 3);
@@ -149,8 +149,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_pixel_goes_to_exactly_one_worker),
         cmocka_unit_test(columns_and_rows_are_one_block_per_worker),
-        cmocka_unit_test(workers_without_a_share_get_none),
-        cmocka_unit_test(static_tiles_go_round),
+        cmocka_unit_test(workers_without_pixels_get_no_piece),
+        cmocka_unit_test(static_tiles_are_assigned_round_robin),
         cmocka_unit_test(concurrent_threads_share_all_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -41,7 +41,7 @@ static bool is_at(vec3 v, double x, double y, double z)
     return v.x == x && v.y == y && v.z == z;
 }
 
-static void a_script_says_what_its_hands_do(void **state)
+static void the_hands_and_keys_of_a_valid_script_are_read(void **state)
 {
     (void)state;
     hand_script *s = read_good();
@@ -73,14 +73,14 @@ static status read_bad_script(const char *path, diagnostic *why)
     return code;
 }
 
-static void every_bad_script_has_its_located_line(void **state)
+static void errors_in_scripts_are_located(void **state)
 {
     (void)state;
     assert_bad_files(FOLDER, read_bad_script, 50);
 }
 
 /* A truncated script is valid or refused with a location. */
-static void every_cut_of_a_good_script_is_a_script_or_refused(void **state)
+static void truncated_scripts_are_valid_or_refused(void **state)
 {
     (void)state;
     size_t refused = 0;
@@ -99,7 +99,7 @@ static void every_cut_of_a_good_script_is_a_script_or_refused(void **state)
     assert_true(refused > 100);
 }
 
-static void what_is_no_file_or_too_large_a_one_is_refused(void **state)
+static void missing_and_too_large_scripts_are_refused(void **state)
 {
     (void)state;
     diagnostic why = {.what = ""};
@@ -120,10 +120,10 @@ static void what_is_no_file_or_too_large_a_one_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_script_says_what_its_hands_do),
-        cmocka_unit_test(every_bad_script_has_its_located_line),
-        cmocka_unit_test(every_cut_of_a_good_script_is_a_script_or_refused),
-        cmocka_unit_test(what_is_no_file_or_too_large_a_one_is_refused),
+        cmocka_unit_test(the_hands_and_keys_of_a_valid_script_are_read),
+        cmocka_unit_test(errors_in_scripts_are_located),
+        cmocka_unit_test(truncated_scripts_are_valid_or_refused),
+        cmocka_unit_test(missing_and_too_large_scripts_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -113,7 +113,7 @@ static void a_spheres_section_is_a_circle(void **state)
 }
 
 /* Corners are exact, whatever the grid and the box's rotation. */
-static void a_boxs_section_has_corners(void **state)
+static void the_section_of_a_box_has_exact_corners(void **state)
 {
     (void)state;
     const char *const turns[] = {"box.rotation=0,0,0", "box.rotation=0,0,30", "box.rotation=0,0,45"};
@@ -160,7 +160,7 @@ static void a_vessels_section_shows_wall_and_floor(void **state)
 }
 
 /* Two halves of one glass: light is not refracted there, but a section shows the boundary. */
-static void equal_solids_have_a_boundary(void **state)
+static void sections_have_boundaries_between_equal_media(void **state)
 {
     (void)state;
     scene *s = scene_from("solids:\n"
@@ -224,7 +224,7 @@ static void a_thin_coat_is_drawn_along_one_face(void **state)
 }
 
 /* A box of triangles is drawn like one of six faces: corners (0.65, 0.35). */
-static void a_mesh_has_a_section_too(void **state)
+static void the_section_of_a_mesh_box_equals_that_of_a_box(void **state)
 {
     (void)state;
     scene *s =
@@ -245,10 +245,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_spheres_section_is_a_circle),
-        cmocka_unit_test(a_boxs_section_has_corners),
-        cmocka_unit_test(a_mesh_has_a_section_too),
+        cmocka_unit_test(the_section_of_a_box_has_exact_corners),
+        cmocka_unit_test(the_section_of_a_mesh_box_equals_that_of_a_box),
         cmocka_unit_test(a_vessels_section_shows_wall_and_floor),
-        cmocka_unit_test(equal_solids_have_a_boundary),
+        cmocka_unit_test(sections_have_boundaries_between_equal_media),
         cmocka_unit_test(a_window_without_extent_is_refused),
         cmocka_unit_test(a_thin_coat_is_drawn_along_one_face),
     };

@@ -12,13 +12,13 @@
  * regions transmit nothing. */
 static double light_by_marching(const room *m, const reference_line *line, int solid_shadows)
 {
-    change met[SOLIDS_MAX * REFERENCE_CROSSINGS_MAX];
-    const int n = changes_of(m, line, met);
+    change changes[SOLIDS_MAX * REFERENCE_CROSSINGS_MAX];
+    const int n = changes_of(m, line, changes);
     double light = 1.0;
-    for (int k = 0; k < n && met[k].t < 1; k++) {
-        if (solid_shadows || is_opaque(m, met[k].before) || is_opaque(m, met[k].after))
+    for (int k = 0; k < n && changes[k].t < 1; k++) {
+        if (solid_shadows || is_opaque(m, changes[k].before) || is_opaque(m, changes[k].after))
             return 0.0;
-        light *= m->shadow_transmittance[higher_of(m, met[k].before, met[k].after)];
+        light *= m->shadow_transmittance[higher_of(m, changes[k].before, changes[k].after)];
     }
     return n < 0 ? -1.0 : light;
 }
@@ -37,13 +37,13 @@ static void shadows_agree_with_marching(void **state)
                 continue; /* no light reaches a point inside an opaque solid */
             one_ray r = {from, vec3_sub(to, from), FACE_NONE, scene_geometry_inside(m.solids, from)};
             const reference_line line = {quad3_from(r.o), quad3_from(r.d)};
-            const double wanted = light_by_marching(&m, &line, k % 2), got = light_through(m.solids, r, k % 2);
-            if (wanted < 0.0)
+            const double expected = light_by_marching(&m, &line, k % 2), got = light_through(m.solids, r, k % 2);
+            if (expected < 0.0)
                 continue;
-            assert_true(fabs(got - wanted) <= 1e-15);
-            partly += wanted > 0.0 && wanted < 1.0;
-            dark += wanted == 0.0;
-            lit += wanted == 1.0;
+            assert_true(fabs(got - expected) <= 1e-15);
+            partly += expected > 0.0 && expected < 1.0;
+            dark += expected == 0.0;
+            lit += expected == 1.0;
         }
         scene_geometry_destroy(m.solids);
     }

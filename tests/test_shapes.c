@@ -118,7 +118,7 @@ static void sizes(const shape_rule *rule, const placed_shape *placed)
     assert_true(rule->thickness(shape) > 0.0 && rule->thickness(shape) <= 2.0 * e.ball + SLACK);
 }
 
-static void what_it_contains_is_within_its_sizes(void **state)
+static void contained_points_are_within_the_bounds(void **state)
 {
     (void)state;
     each_bounded(sizes);
@@ -141,7 +141,7 @@ static void primitives(const shape_rule *rule, const placed_shape *placed)
     scene_geometry_destroy(a);
 }
 
-static void its_primitives_contain_what_it_contains(void **state)
+static void primitives_contain_the_points_of_the_solid(void **state)
 {
     (void)state;
     each_bounded(primitives);
@@ -161,7 +161,7 @@ static void covers(const shape_rule *rule, const placed_shape *placed)
     assert_true(!rule->covers || covered > contained / 2);
 }
 
-static void it_covers_points_that_it_contains(void **state)
+static void a_covered_point_is_contained(void **state)
 {
     (void)state;
     each_bounded(covers);
@@ -194,7 +194,7 @@ static void drawings(const shape_rule *rule, const placed_shape *placed)
     assert_true(strlen(shape_face_name(rule, 0)) > 0);
 }
 
-static void its_drawings_lie_in_its_box(void **state)
+static void drawings_are_within_the_bounding_box(void **state)
 {
     (void)state;
     each_bounded(drawings);
@@ -231,13 +231,13 @@ static void surfaces(const shape_rule *rule, const placed_shape *placed)
     scene_geometry_destroy(a);
 }
 
-static void its_triangles_lie_on_its_surface(void **state)
+static void triangles_are_on_the_surface(void **state)
 {
     (void)state;
     each_bounded(surfaces);
 }
 
-static void its_flat_faces_bound_it(void **state)
+static void flat_faces_bound_the_solid(void **state)
 {
     (void)state;
     const shape_rule *rule;
@@ -265,12 +265,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_parameter_has_a_row),
-        cmocka_unit_test(what_it_contains_is_within_its_sizes),
-        cmocka_unit_test(its_primitives_contain_what_it_contains),
-        cmocka_unit_test(it_covers_points_that_it_contains),
-        cmocka_unit_test(its_drawings_lie_in_its_box),
-        cmocka_unit_test(its_triangles_lie_on_its_surface),
-        cmocka_unit_test(its_flat_faces_bound_it),
+        cmocka_unit_test(contained_points_are_within_the_bounds),
+        cmocka_unit_test(primitives_contain_the_points_of_the_solid),
+        cmocka_unit_test(a_covered_point_is_contained),
+        cmocka_unit_test(drawings_are_within_the_bounding_box),
+        cmocka_unit_test(triangles_are_on_the_surface),
+        cmocka_unit_test(flat_faces_bound_the_solid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,7 +28,7 @@ static vec3 towards(double longitude, double latitude)
     return vec3_make((double)(cl * s), (double)sl, (double)(cl * c));
 }
 
-static void a_uniform_sky_is_the_same_everywhere(void **state)
+static void a_uniform_sky_is_constant(void **state)
 {
     (void)state;
     const background sky = {.kind = BACKGROUND_UNIFORM, .color = {0.1, 0.2, 0.3}, .horizon = {1.0, 1.0, 1.0}};
@@ -66,7 +66,7 @@ static image *numbered(void)
     return img;
 }
 
-static void an_image_is_read_texel_by_texel(void **state)
+static void each_texel_of_an_image_sky_has_its_direction(void **state)
 {
     (void)state;
     image *img = numbered();
@@ -116,7 +116,7 @@ static vec3 mean_by_quadrature(const background *sky, int parts)
     return vec3_scale(sum, 1.0 / weights);
 }
 
-static void the_mean_is_by_solid_angle(void **state)
+static void the_mean_is_weighted_by_solid_angle(void **state)
 {
     (void)state;
     const background plain = {.kind = BACKGROUND_UNIFORM, .color = {0.1, 0.2, 0.3}, .horizon = {1.0, 1.0, 1.0}};
@@ -140,7 +140,7 @@ static void the_mean_is_by_solid_angle(void **state)
 }
 
 /* One row is constant over the sphere; of two rows, each covers one half. */
-static void images_of_few_rows_have_a_mean(void **state)
+static void the_mean_of_images_with_one_and_two_rows(void **state)
 {
     (void)state;
     for (int height = 1; height <= 3; height++) {
@@ -158,12 +158,12 @@ static void images_of_few_rows_have_a_mean(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_uniform_sky_is_the_same_everywhere),
+        cmocka_unit_test(a_uniform_sky_is_constant),
         cmocka_unit_test(a_gradient_rises_with_the_sine_of_the_height),
-        cmocka_unit_test(an_image_is_read_texel_by_texel),
+        cmocka_unit_test(each_texel_of_an_image_sky_has_its_direction),
         cmocka_unit_test(an_image_wraps_around_and_ends_at_the_poles),
-        cmocka_unit_test(the_mean_is_by_solid_angle),
-        cmocka_unit_test(images_of_few_rows_have_a_mean),
+        cmocka_unit_test(the_mean_is_weighted_by_solid_angle),
+        cmocka_unit_test(the_mean_of_images_with_one_and_two_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

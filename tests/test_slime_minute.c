@@ -76,7 +76,7 @@ static extent left_alone(const softbody_settings *s)
     return e;
 }
 
-static void a_toy_on_its_floor_comes_back(void **state)
+static void a_toy_on_its_floor_recovers_its_rest_shape(void **state)
 {
     (void)state;
     const softbody_settings s = default_toy();
@@ -95,7 +95,7 @@ static void a_toy_on_its_floor_comes_back(void **state)
     softbody_destroy(b);
 }
 
-static void a_toy_without_weight_is_a_sphere_again(void **state)
+static void a_toy_without_gravity_recovers_the_sphere(void **state)
 {
     (void)state;
     softbody_settings s = default_toy();
@@ -116,8 +116,8 @@ static void a_toy_without_weight_is_a_sphere_again(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_toy_on_its_floor_comes_back),
-        cmocka_unit_test(a_toy_without_weight_is_a_sphere_again),
+        cmocka_unit_test(a_toy_on_its_floor_recovers_its_rest_shape),
+        cmocka_unit_test(a_toy_without_gravity_recovers_the_sphere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -98,7 +98,7 @@ static void expect_skin(const mesh_entry *m, const hand_script *script)
 }
 
 /* Semi-implicit Euler after n steps: y0 + v n dt - g dt^2 n (n + 1) / 2 for the centre, independent of the springs. */
-static void a_slime_that_falls_is_where_its_steps_say(void **state)
+static void a_falling_slime_is_at_the_integrators_position(void **state)
 {
     scene *s = loaded(*state, falling);
     const mesh_entry *m = &s->meshes[0];
@@ -117,7 +117,7 @@ static void a_slime_that_falls_is_where_its_steps_say(void **state)
     scene_destroy(s);
 }
 
-static void a_script_lies_beside_its_scene_and_moves_the_slime(void **state)
+static void a_script_path_is_relative_to_the_scene_and_moves_the_slime(void **state)
 {
     write_scripts(*state, tug);
     scene *s = loaded(*state, toy);
@@ -147,7 +147,7 @@ static void refused_at(const fixture *f, const char *text, const char *file, lon
     scene_destroy(s);
 }
 
-static void what_is_wrong_is_located_where_it_is_written(void **state)
+static void errors_in_slimes_are_located(void **state)
 {
     const fixture *f = *state;
     refused_at(f, toy, "toy.yaml", 6, 13, "scripts/tug.yaml");
@@ -170,7 +170,7 @@ static void refused_to_read(const char *text, const char *what)
         fail_msg("%ld:%ld: %s", why.line, why.column, why.what);
 }
 
-static void settings_that_make_no_body_are_refused(void **state)
+static void settings_without_a_valid_body_are_refused(void **state)
 {
     (void)state;
     refused_to_read("meshes: {toy: {generate: slime, level: 8}}\n", "level");
@@ -186,7 +186,7 @@ static void settings_that_make_no_body_are_refused(void **state)
     scene_destroy(s);
 }
 
-static void a_change_lets_go_of_the_body_and_a_clone_keeps_it(void **state)
+static void a_change_releases_the_body_and_a_clone_keeps_it(void **state)
 {
     scene *s = loaded(*state, falling);
     scene *copy = scene_clone(s);
@@ -204,7 +204,7 @@ static void a_change_lets_go_of_the_body_and_a_clone_keeps_it(void **state)
     scene_destroy(s);
 }
 
-static void slimes_are_borrowed_only_where_meshes_are_kept(void **state)
+static void slimes_are_reused_only_if_meshes_are_kept(void **state)
 {
     scene *from = loaded(*state, falling);
     for (int keep = 0; keep < 2; keep++) {
@@ -225,7 +225,7 @@ static void slimes_are_borrowed_only_where_meshes_are_kept(void **state)
 }
 
 /* Two rows of one cell: one shared simulation, or one each. */
-static void a_study_s_rows_simulate_where_nothing_is_kept(void **state)
+static void the_rows_of_a_study_share_a_simulation_unless_keep_is_off(void **state)
 {
     for (int keep = 0; keep < 2; keep++) {
         shelf shared = {.count = 0};
@@ -246,7 +246,7 @@ static void a_study_s_rows_simulate_where_nothing_is_kept(void **state)
 }
 
 typedef struct waiting {
-    int asked, patience; /* times */
+    int polls, patience; /* times */
     double share;
     bool in_order;
 } waiting;
@@ -256,11 +256,11 @@ static bool wait(void *context, double share_done)
     waiting *w = context;
     w->in_order &= share_done > w->share && share_done <= 1.0;
     w->share = share_done;
-    return ++w->asked < w->patience;
+    return ++w->polls < w->patience;
 }
 
 /* Days of motion, interrupted at the first poll. */
-static void a_load_that_is_stopped_leaves_the_slime_as_it_was(void **state)
+static void an_interrupted_load_does_not_change_the_slime(void **state)
 {
     scene *s = read_scene(
         *state,
@@ -268,7 +268,7 @@ static void a_load_that_is_stopped_leaves_the_slime_as_it_was(void **state)
     waiting w = {.patience = 3, .in_order = true};
     diagnostic why = {0};
     assert_int_equal(scene_load_until(s, &(load_watch){wait, &w}, &why), STATUS_INTERRUPTED);
-    assert_int_equal(w.asked, 3);
+    assert_int_equal(w.polls, 3);
     assert_true(w.in_order && w.share > 0.0 && w.share < 1.0);
     assert_non_null(strstr(why.what, "toy: interrupted at "));
     assert_non_null(s->meshes[0].data);
@@ -281,7 +281,7 @@ static void a_load_that_is_stopped_leaves_the_slime_as_it_was(void **state)
 }
 
 /* Progress covers both slimes; watching changes nothing. */
-static void a_load_that_is_watched_is_the_same(void **state)
+static void progress_callbacks_do_not_change_the_load(void **state)
 {
     static const char two[] = "meshes:\n  a: {generate: slime, level: 4, time_s: 0.31}\n  b: {generate: slime, level: "
                               "4, time_s: 0.4, dt_s: 0.0007}\n";
@@ -311,7 +311,7 @@ static uint64_t definition(const fixture *f)
     return hash;
 }
 
-static void a_study_s_definition_holds_the_script_s_text(void **state)
+static void the_definition_of_a_study_includes_the_text_of_the_script(void **state)
 {
     const fixture *f = *state;
     write_scripts(f, tug);
@@ -328,7 +328,7 @@ static void a_study_s_definition_holds_the_script_s_text(void **state)
     assert_true(definition(f) == hash);
 }
 
-static void a_slime_survives_its_file_and_its_script_follows(void **state)
+static void a_slime_round_trips_and_its_script_path_is_adjusted(void **state)
 {
     const fixture *f = *state;
     char path[400], *text = NULL, *script = NULL;
@@ -364,7 +364,7 @@ static status note_row(void *context, const char *path, const param *row, const 
     return STATUS_OK;
 }
 
-static void only_slimes_list_what_a_slime_has(void **state)
+static void only_slimes_list_slime_parameters(void **state)
 {
     scene *s = read_scene(*state, falling);
     bool has = false;
@@ -381,18 +381,18 @@ int main(void)
 {
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, fixture_setup, fixture_teardown)
     const struct CMUnitTest tests[] = {
-        IN_FOLDER(a_slime_that_falls_is_where_its_steps_say),
-        IN_FOLDER(a_script_lies_beside_its_scene_and_moves_the_slime),
-        IN_FOLDER(what_is_wrong_is_located_where_it_is_written),
-        cmocka_unit_test(settings_that_make_no_body_are_refused),
-        IN_FOLDER(a_change_lets_go_of_the_body_and_a_clone_keeps_it),
-        IN_FOLDER(slimes_are_borrowed_only_where_meshes_are_kept),
-        IN_FOLDER(a_study_s_rows_simulate_where_nothing_is_kept),
-        IN_FOLDER(a_load_that_is_stopped_leaves_the_slime_as_it_was),
-        IN_FOLDER(a_load_that_is_watched_is_the_same),
-        IN_FOLDER(a_study_s_definition_holds_the_script_s_text),
-        IN_FOLDER(a_slime_survives_its_file_and_its_script_follows),
-        IN_FOLDER(only_slimes_list_what_a_slime_has),
+        IN_FOLDER(a_falling_slime_is_at_the_integrators_position),
+        IN_FOLDER(a_script_path_is_relative_to_the_scene_and_moves_the_slime),
+        IN_FOLDER(errors_in_slimes_are_located),
+        cmocka_unit_test(settings_without_a_valid_body_are_refused),
+        IN_FOLDER(a_change_releases_the_body_and_a_clone_keeps_it),
+        IN_FOLDER(slimes_are_reused_only_if_meshes_are_kept),
+        IN_FOLDER(the_rows_of_a_study_share_a_simulation_unless_keep_is_off),
+        IN_FOLDER(an_interrupted_load_does_not_change_the_slime),
+        IN_FOLDER(progress_callbacks_do_not_change_the_load),
+        IN_FOLDER(the_definition_of_a_study_includes_the_text_of_the_script),
+        IN_FOLDER(a_slime_round_trips_and_its_script_path_is_adjusted),
+        IN_FOLDER(only_slimes_list_slime_parameters),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

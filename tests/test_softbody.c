@@ -4,18 +4,18 @@
 static const softbody_integrator all[] = {SOFTBODY_EULER, SOFTBODY_VERLET, SOFTBODY_IMPLICIT};
 enum { ALL = sizeof all / sizeof all[0] };
 
-/* Two masses on a spring swing with omega^2 = k / m_reduced, m_reduced = m1 m2 / (m1 + m2) (Landau and Lifshitz,
- * Mechanics, 13 and 21). The steps of an integrator swing with omega_d of their own: (2/dt) asin(omega dt / 2) of
- * semi-implicit Euler and Verlet, atan(omega dt) / dt of backward Euler, whose swing shrinks by (1 + omega^2
- * dt^2)^(-1/2) a step (eigenvalues of the step's matrix). After a whole number of steps the length is known. */
-static void a_spring_swings_as_its_integrator_says(void **state)
+/* Two masses on a spring oscillate with omega^2 = k / m_reduced, m_reduced = m1 m2 / (m1 + m2) (Landau and Lifshitz,
+ * Mechanics, 13 and 21). The steps of an integrator oscillate with another omega_d (eigenvalues of the step's matrix):
+ * (2/dt) asin(omega dt / 2) for semi-implicit Euler and Verlet, atan(omega dt) / dt for backward Euler, whose amplitude
+ * decreases by (1 + omega^2 dt^2)^(-1/2) per step. So the length after any number of steps is known. */
+static void the_oscillation_of_a_spring_equals_the_integrators_closed_form(void **state)
 {
     (void)state;
-    const double m1 = 0.3, m2 = 0.7, k = 50.0, drawn = 0.01, dt = 0.004, omega = sqrt(k / (m1 * m2 / (m1 + m2)));
+    const double m1 = 0.3, m2 = 0.7, k = 50.0, stretch = 0.01, dt = 0.004, omega = sqrt(k / (m1 * m2 / (m1 + m2)));
     const double folded = 2.0 / dt * asin(0.5 * omega * dt);
     for (int i = 0; i < ALL; i++) {
         const softbody_settings s = settings_in_space(all[i], dt);
-        softbody *b = pair_of(m1, m2, k, 0.0, drawn, &s);
+        softbody *b = pair_of(m1, m2, k, 0.0, stretch, &s);
         for (long n = 1; n <= 500; n++) {
             steps_of(b, 1);
             const double t = (double)n * dt, z = omega * dt;
@@ -25,7 +25,7 @@ static void a_spring_swings_as_its_integrator_says(void **state)
                                   : all[i] == SOFTBODY_VERLET
                                       ? cos(folded * t)
                                       : cos(atan(z) * (double)n) * pow(1.0 + z * z, -0.5 * (double)n);
-            assert_near((pair_length(b) - 1.0) / drawn, theory, 2e-8);
+            assert_near((pair_length(b) - 1.0) / stretch, theory, 2e-8);
         }
         softbody_destroy(b);
     }
@@ -34,50 +34,50 @@ static void a_spring_swings_as_its_integrator_says(void **state)
 /* Largest error against cos(omega t) over one second, in position and velocity. */
 static double distance_from_swing(softbody_integrator integrator, double dt)
 {
-    const double k = 40.0, omega = sqrt(k / 0.5), drawn = 0.01;
+    const double k = 40.0, omega = sqrt(k / 0.5), stretch = 0.01;
     const softbody_settings s = settings_in_space(integrator, dt);
-    softbody *b = pair_of(1.0, 1.0, k, 0.0, drawn, &s);
+    softbody *b = pair_of(1.0, 1.0, k, 0.0, stretch, &s);
     double worst = 0.0;
     for (long n = 1; n <= lround(1.0 / dt); n++) {
         vec3 v[2];
         steps_of(b, 1);
         softbody_velocities(b, v);
         const double t = (double)n * dt;
-        worst = fmax(worst, fabs((pair_length(b) - 1.0) / drawn - cos(omega * t)) +
-                                fabs((v[1].x - v[0].x) / (drawn * omega) + sin(omega * t)));
+        worst = fmax(worst, fabs((pair_length(b) - 1.0) / stretch - cos(omega * t)) +
+                                fabs((v[1].x - v[0].x) / (stretch * omega) + sin(omega * t)));
     }
     softbody_destroy(b);
     return worst;
 }
 
-static void orders_are_one_two_and_one(void **state)
+static void the_orders_of_the_integrators_are_one_two_and_one(void **state)
 {
     (void)state;
-    const double wanted[ALL] = {1.0, 2.0, 1.0};
+    const double expected[ALL] = {1.0, 2.0, 1.0};
     for (int i = 0; i < ALL; i++) {
         const double order = log2(distance_from_swing(all[i], 1.0 / 8192) / distance_from_swing(all[i], 1.0 / 16384));
-        assert_near(order, wanted[i], 0.01);
+        assert_near(order, expected[i], 0.01);
     }
 }
 
 /* Damped oscillation: exp(-gamma t / 2) cos + ..., gamma = k_d / m_reduced (Landau and Lifshitz, 25.4). */
-static void damping_takes_what_it_should(void **state)
+static void a_damped_spring_equals_the_closed_form(void **state)
 {
     (void)state;
-    const double k = 40.0, kd = 0.8, gamma = kd / 0.5, omega = sqrt(k / 0.5 - 0.25 * gamma * gamma), drawn = 0.01;
+    const double k = 40.0, kd = 0.8, gamma = kd / 0.5, omega = sqrt(k / 0.5 - 0.25 * gamma * gamma), stretch = 0.01;
     for (int i = 0; i < ALL; i++) {
         const softbody_settings s = settings_in_space(all[i], 1e-4);
-        softbody *b = pair_of(1.0, 1.0, k, kd, drawn, &s);
+        softbody *b = pair_of(1.0, 1.0, k, kd, stretch, &s);
         steps_of(b, 7000);
         const double t = 0.7, theory = exp(-0.5 * gamma * t) * (cos(omega * t) + 0.5 * gamma / omega * sin(omega * t));
-        assert_near((pair_length(b) - 1.0) / drawn, theory, all[i] == SOFTBODY_VERLET ? 1e-5 : 4e-3);
+        assert_near((pair_length(b) - 1.0) / stretch, theory, all[i] == SOFTBODY_VERLET ? 1e-5 : 4e-3);
         softbody_destroy(b);
     }
 }
 
 /* -g t^2 / 2; semi-implicit Euler, which adds a dt^2 instead of half of that, falls by -g t (t + dt) / 2, and so does
  * backward Euler. */
-static void free_fall_is_the_closed_form(void **state)
+static void free_fall_equals_the_closed_form(void **state)
 {
     (void)state;
     for (int i = 0; i < ALL; i++) {
@@ -97,7 +97,7 @@ static void free_fall_is_the_closed_form(void **state)
 }
 
 /* A mass that falls from h bounces to e^2 h, up to the height of one step at the speed of impact. */
-static void a_bounce_comes_back_to_e2_h(void **state)
+static void a_bounce_reaches_restitution_squared_times_the_height(void **state)
 {
     (void)state;
     const double rest[] = {0.0, 0.5, 0.9, 1.0};
@@ -123,7 +123,7 @@ static void a_bounce_comes_back_to_e2_h(void **state)
 }
 
 /* Coulomb: a sliding mass stops after v^2 / (2 mu g). */
-static void friction_stops_a_mass(void **state)
+static void coulomb_friction_stops_a_mass_after_the_computed_distance(void **state)
 {
     (void)state;
     softbody_settings s = settings_in_space(SOFTBODY_EULER, 1e-4);
@@ -135,16 +135,16 @@ static void friction_stops_a_mass(void **state)
     vec3 at, v;
     softbody_positions(b, &at);
     softbody_velocities(b, &v);
-    const double way = 1.0 / (2.0 * 0.25 * 10.0);
-    assert_near(at.x, 0.6 * way, 1e-4);
-    assert_near(at.z, -0.8 * way, 1e-4);
+    const double distance = 1.0 / (2.0 * 0.25 * 10.0);
+    assert_near(at.x, 0.6 * distance, 1e-4);
+    assert_near(at.z, -0.8 * distance, 1e-4);
     assert_true(vec3_length(v) == 0.0);
     softbody_destroy(b);
 }
 
 /* Coulomb's impulse is proportional to the change of normal speed, (1 + e) v: an oblique impact loses mu (1 + e) v of
  * tangential speed. */
-static void a_bounce_rubs_by_its_whole_turn(void **state)
+static void oblique_impacts_have_coulombs_impulse_of_friction(void **state)
 {
     (void)state;
     softbody_settings s = settings_in_space(SOFTBODY_EULER, 1e-4);
@@ -191,7 +191,7 @@ static void damping_never_adds_energy(void **state)
     }
 }
 
-static void speeds_that_no_body_has_are_named(void **state)
+static void divergence_is_reported_with_its_step(void **state)
 {
     (void)state;
     softbody_settings s = settings_in_space(SOFTBODY_EULER, 0.01);
@@ -220,7 +220,7 @@ static void speeds_that_no_body_has_are_named(void **state)
 }
 
 /* A step that diverges is stable with splitting, and with backward Euler. */
-static void stiff_springs_hold_when_they_are_helped(void **state)
+static void substeps_and_backward_euler_are_stable_with_stiff_springs(void **state)
 {
     (void)state;
     for (int i = 0; i < 3; i++) {
@@ -247,7 +247,7 @@ static void stiff_springs_hold_when_they_are_helped(void **state)
 
 /* A damper's rate gamma limits semi-implicit Euler to gamma dt < 2 and Verlet, which predicts the velocity, to gamma dt
  * < 1: substeps are below both. */
-static void split_steps_hold_strong_dampers(void **state)
+static void substeps_are_stable_with_strong_dampers(void **state)
 {
     (void)state;
     for (int i = 0; i < 2; i++) {
@@ -265,7 +265,7 @@ static void split_steps_hold_strong_dampers(void **state)
 
 /* Backward Euler with springs compressed to half their length, and with a pressure a thousand times as stiff as the
  * toy's: energy only decreases. */
-static void backward_euler_holds_what_is_pushed_together(void **state)
+static void backward_euler_is_stable_under_compression(void **state)
 {
     (void)state;
     softbody_settings s = settings_in_space(SOFTBODY_IMPLICIT, 0.02);
@@ -291,7 +291,7 @@ static void backward_euler_holds_what_is_pushed_together(void **state)
 
 /* A compressed spring has negative stiffness across its axis: the solver omits it (Choi and Ko), so that a speed across
  * stays unchanged for a step, whereas the true stiffness, -k dt^2 > m / 2 here, would reverse it. */
-static void backward_euler_leaves_out_what_would_buckle(void **state)
+static void backward_euler_omits_the_negative_stiffness_of_compressed_springs(void **state)
 {
     (void)state;
     const softbody_settings s = settings_in_space(SOFTBODY_IMPLICIT, 0.1);
@@ -308,7 +308,7 @@ static void backward_euler_leaves_out_what_would_buckle(void **state)
 }
 
 /* A body that moves fast as a whole has not diverged, however far it moves in a step; and NaN is reported. */
-static void a_fast_body_is_no_burst_one(void **state)
+static void a_fast_body_is_not_reported_as_diverged(void **state)
 {
     (void)state;
     softbody_settings s = settings_in_space(SOFTBODY_EULER, 0.01);
@@ -321,7 +321,7 @@ static void a_fast_body_is_no_burst_one(void **state)
     softbody_destroy(b);
 }
 
-static void no_body_begins_under_its_floor(void **state)
+static void a_body_below_its_floor_is_refused(void **state)
 {
     (void)state;
     softbody_settings s = default_toy();
@@ -335,7 +335,7 @@ static void no_body_begins_under_its_floor(void **state)
     assert_non_null(strstr(why.what, "ground_y"));
 }
 
-static void bad_settings_are_named(void **state)
+static void invalid_settings_are_reported(void **state)
 {
     (void)state;
     struct {
@@ -366,22 +366,22 @@ static void bad_settings_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_spring_swings_as_its_integrator_says),
-        cmocka_unit_test(orders_are_one_two_and_one),
-        cmocka_unit_test(damping_takes_what_it_should),
-        cmocka_unit_test(free_fall_is_the_closed_form),
-        cmocka_unit_test(a_bounce_comes_back_to_e2_h),
-        cmocka_unit_test(friction_stops_a_mass),
-        cmocka_unit_test(a_bounce_rubs_by_its_whole_turn),
+        cmocka_unit_test(the_oscillation_of_a_spring_equals_the_integrators_closed_form),
+        cmocka_unit_test(the_orders_of_the_integrators_are_one_two_and_one),
+        cmocka_unit_test(a_damped_spring_equals_the_closed_form),
+        cmocka_unit_test(free_fall_equals_the_closed_form),
+        cmocka_unit_test(a_bounce_reaches_restitution_squared_times_the_height),
+        cmocka_unit_test(coulomb_friction_stops_a_mass_after_the_computed_distance),
+        cmocka_unit_test(oblique_impacts_have_coulombs_impulse_of_friction),
         cmocka_unit_test(damping_never_adds_energy),
-        cmocka_unit_test(speeds_that_no_body_has_are_named),
-        cmocka_unit_test(stiff_springs_hold_when_they_are_helped),
-        cmocka_unit_test(split_steps_hold_strong_dampers),
-        cmocka_unit_test(backward_euler_holds_what_is_pushed_together),
-        cmocka_unit_test(backward_euler_leaves_out_what_would_buckle),
-        cmocka_unit_test(a_fast_body_is_no_burst_one),
-        cmocka_unit_test(no_body_begins_under_its_floor),
-        cmocka_unit_test(bad_settings_are_named),
+        cmocka_unit_test(divergence_is_reported_with_its_step),
+        cmocka_unit_test(substeps_and_backward_euler_are_stable_with_stiff_springs),
+        cmocka_unit_test(substeps_are_stable_with_strong_dampers),
+        cmocka_unit_test(backward_euler_is_stable_under_compression),
+        cmocka_unit_test(backward_euler_omits_the_negative_stiffness_of_compressed_springs),
+        cmocka_unit_test(a_fast_body_is_not_reported_as_diverged),
+        cmocka_unit_test(a_body_below_its_floor_is_refused),
+        cmocka_unit_test(invalid_settings_are_reported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

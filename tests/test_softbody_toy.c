@@ -27,7 +27,7 @@ static void stir(softbody *b, double wobble, vec3 spin)
 }
 
 /* 12, 42, 162 .. masses; by Euler's formula 3 (V - 2) edges, as many springs across, and one per two masses. */
-static void its_net_has_as_many_springs_as_euler_says(void **state)
+static void the_net_has_the_numbers_of_eulers_formula(void **state)
 {
     (void)state;
     for (int level = 0; level <= 5; level++) {
@@ -49,7 +49,7 @@ static void its_net_has_as_many_springs_as_euler_says(void **state)
 
 /* Newton's third law, for each pair of forces and around each ring: 10^5 steps of a damped body that deforms, rotates
  * and moves. The rounding error is a random walk of 10^5 steps, each about 1e-16 of the total. */
-static void momenta_stay_to_rounding(void **state)
+static void momenta_are_conserved_up_to_rounding(void **state)
 {
     (void)state;
     const softbody_integrator both[] = {SOFTBODY_EULER, SOFTBODY_VERLET};
@@ -70,7 +70,7 @@ static void momenta_stay_to_rounding(void **state)
 
 /* Each row of backward Euler's matrix sums to the mass, and the solver starts from zero: momentum is conserved without
  * drift. Angular momentum is not: forces act at the positions of the start of the step. */
-static void backward_euler_keeps_momentum(void **state)
+static void backward_euler_conserves_momentum(void **state)
 {
     (void)state;
     softbody_settings s = settings_in_space(SOFTBODY_IMPLICIT, 0.01);
@@ -102,7 +102,7 @@ static double energy_swing(softbody_integrator integrator, double dt)
     return worst;
 }
 
-static void energy_swings_less_with_shorter_steps(void **state)
+static void the_energy_error_decreases_with_the_step(void **state)
 {
     (void)state;
     assert_near(log2(energy_swing(SOFTBODY_EULER, 0.002) / energy_swing(SOFTBODY_EULER, 0.001)), 1.0, 0.15);
@@ -134,7 +134,7 @@ static void a_damped_toy_loses_energy(void **state)
 
 /* Pressure alone, on an inflated sphere: the force on each mass is p times its area, so the first step's velocities are
  * p A / 3m outwards, p = K (V0 - V) / V0 with V = f^3 V0. */
-static void pressure_pushes_along_the_area(void **state)
+static void pressure_acts_along_the_area_normals(void **state)
 {
     (void)state;
     softbody_settings s = settings_in_space(SOFTBODY_EULER, 1e-6);
@@ -167,7 +167,7 @@ static void pressure_pushes_along_the_area(void **state)
 }
 
 /* The force on a displaced mass is minus the gradient of the energy, by finite differences. */
-static void forces_are_the_gradient_of_the_energy(void **state)
+static void forces_are_minus_the_gradient_of_the_energy(void **state)
 {
     (void)state;
     softbody_settings s = settings_in_space(SOFTBODY_EULER, 1e-9);
@@ -184,14 +184,14 @@ static void forces_are_the_gradient_of_the_energy(void **state)
     steps_of(b, 1);
     softbody_velocities(b, v);
     for (size_t i = 0; i < count; i += 5) {
-        const double h = 1e-5, kept = at[i].y;
-        at[i].y = kept + h;
+        const double h = 1e-5, original = at[i].y;
+        at[i].y = original + h;
         softbody_place(b, at, still);
         const double above = energy_of(b);
-        at[i].y = kept - h;
+        at[i].y = original - h;
         softbody_place(b, at, still);
         const double below = energy_of(b);
-        at[i].y = kept;
+        at[i].y = original;
         assert_near(v[i].y * s.mass_kg / (double)count / s.dt_s, -(above - below) / (2.0 * h), 2e-7);
     }
     free(at);
@@ -201,7 +201,7 @@ static void forces_are_the_gradient_of_the_energy(void **state)
 }
 
 /* A grab ray through a vertex or an edge does not miss. */
-static void no_ray_falls_between_faces(void **state)
+static void grab_rays_through_vertices_and_edges_hit(void **state)
 {
     (void)state;
     const vec3 eyes[] = {{0.0, 1.0, -6.0}, {0.0, 4.0, -5.0}, {3.0, 1.3, -2.0}};
@@ -232,7 +232,7 @@ static void no_ray_falls_between_faces(void **state)
     softbody_destroy(b);
 }
 
-static void hands_hold_and_let_go(void **state)
+static void hands_grab_hold_and_release_masses(void **state)
 {
     (void)state;
     softbody_settings s = default_toy();
@@ -297,7 +297,7 @@ static vec3 held_at(const softbody *b, const vec3 *first, size_t count)
 
 /* Grabbed at 0.01 s and moved by 2 until 0.05 s: after each step the masses are on a straight line at constant speed; a
  * step with a fast hand is split if requested, including the first one. */
-static void a_script_is_followed_to_the_step(void **state)
+static void a_script_moves_the_held_masses_in_every_step(void **state)
 {
     (void)state;
     softbody_settings s = settings_in_space(SOFTBODY_EULER, 0.001);
@@ -333,7 +333,7 @@ static void a_script_is_followed_to_the_step(void **state)
 }
 
 /* A hand that finds only masses held by others is reported. */
-static void a_hand_that_holds_nothing_is_named(void **state)
+static void a_hand_that_grabs_nothing_is_reported_with_its_line(void **state)
 {
     (void)state;
     softbody_settings s = default_toy();
@@ -355,7 +355,7 @@ static void a_hand_that_holds_nothing_is_named(void **state)
     softbody_destroy(b);
 }
 
-static void threads_and_instructions_change_no_bit(void **state)
+static void threads_and_instruction_sets_give_bit_identical_motion(void **state)
 {
     (void)state;
     for (int integrator = 0; integrator < 3; integrator++) {
@@ -388,7 +388,7 @@ static void threads_and_instructions_change_no_bit(void **state)
 }
 
 /* Faces with a hole, and springs without two ends. */
-static void bad_nets_are_refused(void **state)
+static void invalid_nets_are_refused(void **state)
 {
     (void)state;
     const vec3 at[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -420,19 +420,19 @@ static void bad_nets_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(its_net_has_as_many_springs_as_euler_says),
-        cmocka_unit_test(momenta_stay_to_rounding),
-        cmocka_unit_test(backward_euler_keeps_momentum),
-        cmocka_unit_test(energy_swings_less_with_shorter_steps),
+        cmocka_unit_test(the_net_has_the_numbers_of_eulers_formula),
+        cmocka_unit_test(momenta_are_conserved_up_to_rounding),
+        cmocka_unit_test(backward_euler_conserves_momentum),
+        cmocka_unit_test(the_energy_error_decreases_with_the_step),
         cmocka_unit_test(a_damped_toy_loses_energy),
-        cmocka_unit_test(pressure_pushes_along_the_area),
-        cmocka_unit_test(forces_are_the_gradient_of_the_energy),
-        cmocka_unit_test(hands_hold_and_let_go),
-        cmocka_unit_test(a_script_is_followed_to_the_step),
-        cmocka_unit_test(no_ray_falls_between_faces),
-        cmocka_unit_test(a_hand_that_holds_nothing_is_named),
-        cmocka_unit_test(threads_and_instructions_change_no_bit),
-        cmocka_unit_test(bad_nets_are_refused),
+        cmocka_unit_test(pressure_acts_along_the_area_normals),
+        cmocka_unit_test(forces_are_minus_the_gradient_of_the_energy),
+        cmocka_unit_test(hands_grab_hold_and_release_masses),
+        cmocka_unit_test(a_script_moves_the_held_masses_in_every_step),
+        cmocka_unit_test(grab_rays_through_vertices_and_edges_hit),
+        cmocka_unit_test(a_hand_that_grabs_nothing_is_reported_with_its_line),
+        cmocka_unit_test(threads_and_instruction_sets_give_bit_identical_motion),
+        cmocka_unit_test(invalid_nets_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

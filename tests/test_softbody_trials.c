@@ -70,7 +70,7 @@ static double angle_of(const softbody_settings *s)
 /* Against each integrator's own closed form to rounding: with an amplitude of 1e-3 the position is known to 1e-13.
  * Against mechanics to the first term of the closed form: asin and atan are x (1 + x^2 / 6) and x (1 - x^2 / 3), so
  * periods differ by -angle^2 / 24 and angle^2 / 3. */
-static void a_spring_swings_as_its_integrator_says(void **state)
+static void the_oscillation_of_a_spring_equals_the_integrators_closed_form(void **state)
 {
     (void)state;
     for (int i = 0; i < 3; i++) {
@@ -89,7 +89,7 @@ static void a_spring_swings_as_its_integrator_says(void **state)
 
 /* A step is 1/64 of a quarter period, h = 0.025: an error c h^p (1 + d h) gives the order p + d h / (2 log 2), with d
  * of about 1; verlet's next term is h^2. */
-static void the_order_shows(void **state)
+static void the_spring_trial_measures_the_order_of_the_integrator(void **state)
 {
     (void)state;
     for (int i = 0; i < 3; i++) {
@@ -100,7 +100,7 @@ static void the_order_shows(void **state)
 }
 
 /* Sums of 1000 steps round by up to 1000 half units in the last place of 5. */
-static void a_fall_is_that_of_the_integrator(void **state)
+static void free_fall_equals_the_integrators_closed_form(void **state)
 {
     (void)state;
     for (int i = 0; i < 3; i++) {
@@ -113,7 +113,7 @@ static void a_fall_is_that_of_the_integrator(void **state)
 /* The mass enters the floor by up to v dt, v = sqrt(2 g h), which lengthens the fall and is then removed; and each of
  * the e v / (g dt) steps upwards is wrong by up to g dt^2 / 2. So the error of the height is at most e^2 v dt + e v dt
  * / 2, and smaller with shorter steps. */
-static void a_bounce_has_restitution_squared(void **state)
+static void the_bounce_trial_measures_restitution_squared(void **state)
 {
     (void)state;
     const double e = default_toy().restitution, v = sqrt(2.0 * 9.81);
@@ -129,7 +129,7 @@ static void a_bounce_has_restitution_squared(void **state)
 /* The energy of symplectic methods oscillates by O(dt^p) without drift (Hairer, Lubich, Wanner, IX.8): a quarter of the
  * step gives 4^-p of it. Backward Euler only loses: it damps every mode by omega^2 dt / 2, proportional to dt for small
  * losses. With damping nothing increases, except by euler's oscillation in one step. */
-static void energy_is_kept_in_the_methods_order(void **state)
+static void the_energy_error_has_the_order_of_the_method(void **state)
 {
     (void)state;
     const double euler = measured(&all.whole[0], "energy.drift") / measured(&all.quarter[0], "energy.drift");
@@ -151,7 +151,7 @@ static void energy_is_kept_in_the_methods_order(void **state)
  * momenta are conserved up to rounding, 1000 steps of 1e-16. Backward Euler adds forces of the next positions at the
  * current ones: they have a torque, so angular momentum is conserved to the method's order, and momentum to the
  * solver's residual of 1e-10. */
-static void momenta_stay(void **state)
+static void momenta_are_conserved_in_the_trials(void **state)
 {
     (void)state;
     for (int i = 0; i < 3; i++) {
@@ -166,7 +166,7 @@ static void momenta_stay(void **state)
 
 /* The body's weight compresses it, by about m g / A over the pressure's K, with A = 2 pi r^2 at most. A larger K
  * preserves more of the volume. */
-static void a_stiff_pressure_holds_the_volume(void **state)
+static void a_stiffer_pressure_preserves_more_volume(void **state)
 {
     (void)state;
     softbody_settings stiff = toy_settings(1, SOFTBODY_EULER, 0.00025);
@@ -194,7 +194,7 @@ static double speed_of_rest(double dt_s)
 /* For the spring to 1e-5, as derived in trials_stable.c. For the toy at least the bound, up to the bisection's 1/512;
  * and a toy at rest, excited only by rounding, stays so with steps shorter by a tenth, and diverges with longer ones:
  * by exp(2 acosh 1.1) = 2.4 per step. */
-static void the_longest_step_is_found(void **state)
+static void the_longest_stable_step_is_found(void **state)
 {
     (void)state;
     for (int i = 0; i < 2; i++) {
@@ -227,7 +227,7 @@ static void assert_same(const softbody_trial_report *a, const softbody_trial_rep
 }
 
 /* Level 3 has two chunks of masses, so that two threads have work. */
-static void threads_and_instruction_sets_change_nothing(void **state)
+static void threads_and_instruction_sets_do_not_change_the_trials(void **state)
 {
     (void)state;
     for (int i = 0; i < 3; i++) {
@@ -259,7 +259,7 @@ static void names_are_unique_and_have_units(void **state)
 }
 
 /* A step of 0.1 s is six times the spring's limit. */
-static void what_blows_up_has_no_value(void **state)
+static void diverged_trials_have_no_value(void **state)
 {
     (void)state;
     const softbody_settings s = toy_settings(1, SOFTBODY_EULER, 0.1);
@@ -276,7 +276,7 @@ static void what_blows_up_has_no_value(void **state)
 }
 
 /* Without stiffness, pressure or gravity: no spring to measure, no bounce, and no error. */
-static void a_slime_without_forces_is_no_error(void **state)
+static void trials_accept_a_slime_without_forces(void **state)
 {
     (void)state;
     softbody_settings s = toy_settings(0, SOFTBODY_VERLET, 0.01);
@@ -296,18 +296,18 @@ static void a_slime_without_forces_is_no_error(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_spring_swings_as_its_integrator_says),
-        cmocka_unit_test(the_order_shows),
-        cmocka_unit_test(a_fall_is_that_of_the_integrator),
-        cmocka_unit_test(a_bounce_has_restitution_squared),
-        cmocka_unit_test(energy_is_kept_in_the_methods_order),
-        cmocka_unit_test(momenta_stay),
-        cmocka_unit_test(a_stiff_pressure_holds_the_volume),
-        cmocka_unit_test(the_longest_step_is_found),
-        cmocka_unit_test(threads_and_instruction_sets_change_nothing),
+        cmocka_unit_test(the_oscillation_of_a_spring_equals_the_integrators_closed_form),
+        cmocka_unit_test(the_spring_trial_measures_the_order_of_the_integrator),
+        cmocka_unit_test(free_fall_equals_the_integrators_closed_form),
+        cmocka_unit_test(the_bounce_trial_measures_restitution_squared),
+        cmocka_unit_test(the_energy_error_has_the_order_of_the_method),
+        cmocka_unit_test(momenta_are_conserved_in_the_trials),
+        cmocka_unit_test(a_stiffer_pressure_preserves_more_volume),
+        cmocka_unit_test(the_longest_stable_step_is_found),
+        cmocka_unit_test(threads_and_instruction_sets_do_not_change_the_trials),
         cmocka_unit_test(names_are_unique_and_have_units),
-        cmocka_unit_test(what_blows_up_has_no_value),
-        cmocka_unit_test(a_slime_without_forces_is_no_error),
+        cmocka_unit_test(diverged_trials_have_no_value),
+        cmocka_unit_test(trials_accept_a_slime_without_forces),
     };
     return cmocka_run_group_tests(tests, make_reports, NULL);
 }

@@ -20,7 +20,7 @@ static bool contains(const solid_shape *s, double x, double y, double z)
     return solid_shape_contains(s, vec3_make(x, y, z));
 }
 
-static void plane_is_the_half_space_below(void **state)
+static void a_plane_is_the_half_space_below(void **state)
 {
     (void)state;
     solid_shape s = make(SHAPE_PLANE);
@@ -28,12 +28,12 @@ static void plane_is_the_half_space_below(void **state)
     assert_true(contains(&s, 1e6, 2, -1e6));
     assert_true(contains(&s, 0, -1e6, 0));
     assert_false(contains(&s, 0, nextafter(2, 3), 0));
-    s.rotation_deg.z = 90; /* its upward normal turns to -x */
+    s.rotation_deg.z = 90; /* its upward normal is rotated to -x */
     assert_true(contains(&s, 0.5, 99, 0));
     assert_false(contains(&s, -0.5, -99, 0));
 }
 
-static void sphere_and_box_are_closed(void **state)
+static void spheres_and_boxes_contain_their_surfaces(void **state)
 {
     (void)state;
     solid_shape s = make(SHAPE_SPHERE), b = make(SHAPE_BOX);
@@ -46,7 +46,7 @@ static void sphere_and_box_are_closed(void **state)
     assert_false(contains(&b, 0, 0, -2.001));
 }
 
-static void cylinder_is_elliptic_and_stands_on_its_base(void **state)
+static void a_cylinder_is_elliptic_with_its_origin_at_the_base(void **state)
 {
     (void)state;
     solid_shape s = make(SHAPE_CYLINDER);
@@ -60,7 +60,7 @@ static void cylinder_is_elliptic_and_stands_on_its_base(void **state)
     assert_false(contains(&s, 0, 1, 0.51));
 }
 
-static void cup_is_wall_and_floor(void **state)
+static void a_cup_contains_its_wall_and_floor(void **state)
 {
     (void)state;
     solid_shape s = make(SHAPE_CUP);
@@ -95,7 +95,7 @@ static void assert_near(vec3 a, vec3 b)
     assert_true(vec3_length(vec3_sub(a, b)) < 2e-15);
 }
 
-static void rotation_turns_by_the_right_hand_rule(void **state)
+static void rotations_follow_the_right_hand_rule(void **state)
 {
     (void)state;
     vec3 x = vec3_make(1, 0, 0), y = vec3_make(0, 1, 0), z = vec3_make(0, 0, 1);
@@ -111,7 +111,7 @@ static void rotation_turns_by_the_right_hand_rule(void **state)
     assert_near(none.row[2], z);
 }
 
-static void rotation_is_the_product_of_its_turns(void **state)
+static void a_rotation_is_the_product_of_its_axis_rotations(void **state)
 {
     (void)state;
     for (int i = 0; i < 100; i++) {
@@ -124,7 +124,7 @@ static void rotation_is_the_product_of_its_turns(void **state)
     }
 }
 
-static void a_leaning_rod_leans(void **state)
+static void a_rotated_rod_leans(void **state)
 {
     (void)state;
     solid_shape s = make(SHAPE_BOX);
@@ -143,7 +143,7 @@ static void expect_wrong(solid_shape s, const char *word)
     assert_int_equal(solid_shape_check(&s, NULL), STATUS_BAD_INPUT);
 }
 
-static void check_refuses_what_is_no_solid(void **state)
+static void invalid_solids_are_refused(void **state)
 {
     (void)state;
     for (int k = 0; k < SHAPE_MESH; k++) {
@@ -185,15 +185,15 @@ static void check_refuses_what_is_no_solid(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plane_is_the_half_space_below),
-        cmocka_unit_test(sphere_and_box_are_closed),
-        cmocka_unit_test(cylinder_is_elliptic_and_stands_on_its_base),
-        cmocka_unit_test(cup_is_wall_and_floor),
+        cmocka_unit_test(a_plane_is_the_half_space_below),
+        cmocka_unit_test(spheres_and_boxes_contain_their_surfaces),
+        cmocka_unit_test(a_cylinder_is_elliptic_with_its_origin_at_the_base),
+        cmocka_unit_test(a_cup_contains_its_wall_and_floor),
         cmocka_unit_test(an_elliptic_cup_is_narrower_along_z),
-        cmocka_unit_test(rotation_turns_by_the_right_hand_rule),
-        cmocka_unit_test(rotation_is_the_product_of_its_turns),
-        cmocka_unit_test(a_leaning_rod_leans),
-        cmocka_unit_test(check_refuses_what_is_no_solid),
+        cmocka_unit_test(rotations_follow_the_right_hand_rule),
+        cmocka_unit_test(a_rotation_is_the_product_of_its_axis_rotations),
+        cmocka_unit_test(a_rotated_rod_leans),
+        cmocka_unit_test(invalid_solids_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -64,7 +64,8 @@ static vec3 double_of(quad3 v)
 }
 
 /* Reports a failure: the shape, the ray and the result. */
-static void told(int good, const char *what, const solid_shape *s, const reference_line *line, const one_hit *h)
+static void report_failure(int good, const char *what, const solid_shape *s, const reference_line *line,
+                           const one_hit *h)
 {
     if (good)
         return;
@@ -75,7 +76,7 @@ static void told(int good, const char *what, const solid_shape *s, const referen
                 h->cos_i, h->error);
     fail_msg("%s", what);
 }
-#define expect(condition, s, line, h) told(condition, #condition, s, line, h)
+#define expect(condition, s, line, h) report_failure(condition, #condition, s, line, h)
 
 static scene_geometry *arrange_one(const solid_shape *shape)
 {
@@ -302,7 +303,7 @@ static void from_near(const solid_shape *s, const scene_geometry *a, uint64_t *s
     aim(s, a, from, random_direction(seed));
 }
 
-static void any_ray_agrees_with_quadruple_precision(void **state)
+static void random_rays_agree_with_quadruple_precision(void **state)
 {
     (void)state;
     for_all_shapes(from_near, 600);
@@ -314,7 +315,7 @@ static void from_far(const solid_shape *s, const scene_geometry *a, uint64_t *se
     aim(s, a, from, vec3_sub(place_on(s, seed), from));
 }
 
-static void rays_from_far_away(void **state)
+static void distant_rays_agree_with_quadruple_precision(void **state)
 {
     (void)state;
     for_all_shapes(from_far, 400);
@@ -328,7 +329,7 @@ static void from_beside(const solid_shape *s, const scene_geometry *a, uint64_t 
 
 /* Ray and solid are near each other and both far from the origin: world coordinates are coarse there, and the error
  * bound must include that. */
-static void solids_far_from_the_origin(void **state)
+static void solids_far_from_the_origin_agree_with_quadruple_precision(void **state)
 {
     (void)state;
     for_all_shapes_at(vec3_make(3000.1, -7000.7, 5000.3), from_beside, 400);
@@ -350,7 +351,7 @@ static void along_an_axis(const solid_shape *s, const scene_geometry *a, uint64_
     aim(s, a, from, direction);
 }
 
-static void rays_along_the_axes(void **state)
+static void axis_aligned_rays_agree_with_quadruple_precision(void **state)
 {
     (void)state;
     for_all_shapes(along_an_axis, 800);
@@ -375,7 +376,7 @@ static void grazing(const solid_shape *s, const scene_geometry *a, uint64_t *see
     aim(s, a, back, vec3_sub(along, vec3_scale(h.normal, tilt)));
 }
 
-static void grazing_rays(void **state)
+static void grazing_rays_agree_with_quadruple_precision(void **state)
 {
     (void)state;
     for_all_shapes(grazing, 400);
@@ -400,7 +401,7 @@ static double chord(const scene_geometry *a, vec3 from, vec3 direction)
 /* Cavalieri: a solid's volume is the integral of its chords over a plane across them, here by the midpoints of STEPS x
  * STEPS cells. An ellipse of half axes r and r / m has the area pi r^2 / m; a cup is one such cylinder minus
  * another. */
-static void an_elliptic_cups_volume_is_that_of_its_closed_form(void **state)
+static void the_volume_of_an_elliptic_cup_equals_its_closed_form(void **state)
 {
     (void)state;
     enum { STEPS = 400 };
@@ -423,9 +424,9 @@ static void an_elliptic_cups_volume_is_that_of_its_closed_form(void **state)
                 const double x = (i % STEPS + 0.5) * cell - reach, y = (i / STEPS + 0.5) * cell - reach;
                 volume += cell * cell * chord(a, vec3_add(middle, vec3_add(vec3_scale(u, x), vec3_scale(v, y))), d);
             }
-            const double wanted = pi / s.m * (outside - hollow);
-            if (!(fabs(volume - wanted) < 0.01 * wanted))
-                fail_msg("m %g: %.6g instead of %.6g", s.m, volume, wanted);
+            const double expected = pi / s.m * (outside - hollow);
+            if (!(fabs(volume - expected) < 0.01 * expected))
+                fail_msg("m %g: %.6g instead of %.6g", s.m, volume, expected);
         }
         scene_geometry_destroy(a);
     }
@@ -434,12 +435,12 @@ static void an_elliptic_cups_volume_is_that_of_its_closed_form(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(any_ray_agrees_with_quadruple_precision),
-        cmocka_unit_test(rays_from_far_away),
-        cmocka_unit_test(solids_far_from_the_origin),
-        cmocka_unit_test(rays_along_the_axes),
-        cmocka_unit_test(grazing_rays),
-        cmocka_unit_test(an_elliptic_cups_volume_is_that_of_its_closed_form),
+        cmocka_unit_test(random_rays_agree_with_quadruple_precision),
+        cmocka_unit_test(distant_rays_agree_with_quadruple_precision),
+        cmocka_unit_test(solids_far_from_the_origin_agree_with_quadruple_precision),
+        cmocka_unit_test(axis_aligned_rays_agree_with_quadruple_precision),
+        cmocka_unit_test(grazing_rays_agree_with_quadruple_precision),
+        cmocka_unit_test(the_volume_of_an_elliptic_cup_equals_its_closed_form),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,7 +34,7 @@ typedef struct looks {
     double largest, of_mean;
 } looks;
 
-static looks compare(const film *f, const film *wanted)
+static looks compare(const film *f, const film *predicted)
 {
     double mean[3] = {0}, wanted_mean[3] = {0};
     looks l = {0.0, 0.0};
@@ -42,7 +42,7 @@ static looks compare(const film *f, const film *wanted)
         for (int x = 0; x < f->width; x++) {
             double xyz[3], target[3];
             xyz_at(f, x, y, xyz);
-            xyz_at(wanted, x, y, target);
+            xyz_at(predicted, x, y, target);
             l.largest = fmax(l.largest, difference_of(xyz, target));
             for (int i = 0; i < 3; i++)
                 mean[i] += xyz[i], wanted_mean[i] += target[i];
@@ -118,7 +118,7 @@ static void check_color_checker(const char *lit_by, int wavelengths, double limi
     scene_destroy(s);
 }
 
-static void the_color_checker_looks_like_in_rgb(void **state)
+static void the_color_checker_has_its_rgb_colours(void **state)
 {
     (void)state;
     check_color_checker("patch.ambient=1", 32, 1.0);
@@ -128,7 +128,7 @@ static void the_color_checker_looks_like_in_rgb(void **state)
 }
 
 /* A checker's second colour has its own spectrum. */
-static void both_colours_of_a_checker_look_like_in_rgb(void **state)
+static void both_colours_of_a_checker_have_their_rgb_values(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 16, height: 16, depth: 0}\n"
@@ -143,7 +143,7 @@ static void both_colours_of_a_checker_look_like_in_rgb(void **state)
 
 /* --- skies --- */
 
-static void gradient_and_coloured_skies_look_like_in_rgb(void **state)
+static void gradient_and_coloured_skies_have_their_rgb_colours(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 24, height: 24}\n"
@@ -160,7 +160,7 @@ static void gradient_and_coloured_skies_look_like_in_rgb(void **state)
 
 /* White, grey, each primary and secondary, and two mixtures (a sum of spectra has the sum of their colours), next to
  * each other around the horizon, each 3 texels wide. */
-static void an_image_sky_looks_like_in_rgb(void **state)
+static void an_image_sky_has_its_rgb_colours(void **state)
 {
     (void)state;
     static const float texels[][3] = {{1, 1, 1}, {0.3F, 0.3F, 0.3F}, {1, 0, 0}, {0, 1, 0},          {0, 0, 1},
@@ -189,7 +189,7 @@ static void an_image_sky_looks_like_in_rgb(void **state)
 /* --- glass --- */
 
 /* With grey light and grey walls each wavelength has the rgb values. */
-static void glass_of_one_index_is_as_bright_as_in_rgb(void **state)
+static void glass_of_constant_index_has_the_values_of_rgb(void **state)
 {
     (void)state;
     scene *s = rod_scene("render.width=40 render.height=30 background.kind=gradient background.color=0.2,0.2,0.2 "
@@ -317,9 +317,9 @@ static void a_prism_separates_red_and_blue(void **state)
         set(s, bands[k].law);
         render_result *r = render(s);
         rows[k] = seen_edge(r->img, k == 0 ? 2 : 0);
-        const double wanted = edge_row(index_of_bk7(bands[k].nm), tilt_deg, edge_deg);
-        print_message("edge at %g nm: row %g, by Snell's law %.2f\n", bands[k].nm, rows[k], wanted);
-        assert_near(rows[k], wanted, 1.5);
+        const double predicted = edge_row(index_of_bk7(bands[k].nm), tilt_deg, edge_deg);
+        print_message("edge at %g nm: row %g, by Snell's law %.2f\n", bands[k].nm, rows[k], predicted);
+        assert_near(rows[k], predicted, 1.5);
         render_result_destroy(r);
     }
     assert_true(fabs(rows[0] - rows[1]) > 20.0);
@@ -344,7 +344,7 @@ static void a_prism_separates_red_and_blue(void **state)
 
 /* A pane of index 1 in white light, 0.1 m thick, that absorbs 500 to 600 nm: the light outside the band remains, by the
  * observer's weights and daylight, summed by the midpoint rule at every 0.05 nm. */
-static void an_absorbed_band_is_missing(void **state)
+static void light_of_an_absorbed_band_is_removed(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 16, height: 16, spectrum: spectral, wavelengths: 1024}\n"
@@ -353,12 +353,12 @@ static void an_absorbed_band_is_missing(void **state)
                           "solids:\n"
                           "  pane: {shape: box, size: [4, 4, 0.1], transparency: 1, ior: 1,\n"
                           "         absorb_spectrum: [499.999, 0, 500, 1e5, 600, 1e5, 600.001, 0]}\n");
-    double wanted[3] = {0.0, 0.0, 0.0}, mean[3] = {0.0, 0.0, 0.0}, xyz[3];
+    double predicted[3] = {0.0, 0.0, 0.0}, mean[3] = {0.0, 0.0, 0.0}, xyz[3];
     for (int k = 0; k < 8000; k++) {
         const double lambda_nm = 380.0 + 0.05 * (k + 0.5);
         observer_weights(lambda_nm, xyz);
         for (int i = 0; i < 3; i++)
-            wanted[i] += lambda_nm < 500.0 || lambda_nm > 600.0 ? xyz[i] * observer_d65(lambda_nm) / 8000.0 : 0.0;
+            predicted[i] += lambda_nm < 500.0 || lambda_nm > 600.0 ? xyz[i] * observer_d65(lambda_nm) / 8000.0 : 0.0;
     }
     render_result *r = render(s);
     for (int i = 0; i < 256; i++) {
@@ -366,13 +366,13 @@ static void an_absorbed_band_is_missing(void **state)
         for (int c = 0; c < 3; c++)
             mean[c] += xyz[c] / 256.0;
     }
-    print_message("band: CIEDE2000 %.3g, luminance %.4f of white\n", difference_of(mean, wanted), mean[1]);
-    assert_true(difference_of(mean, wanted) < 0.05 && mean[1] < 0.35);
+    print_message("band: CIEDE2000 %.3g, luminance %.4f of white\n", difference_of(mean, predicted), mean[1]);
+    assert_true(difference_of(mean, predicted) < 0.05 && mean[1] < 0.35);
     /* unit_m scales lengths: at 0.0001 it absorbs very little */
     set_all(s, "render.unit_m=1e-6 pane.absorb_spectrum=[499.999,0,500,1e6,600,1e6,600.001,0]"); /* optical depth 0.1 */
     render_result_destroy(r);
     r = render(s);
-    double seen = 0.0, rest = wanted[1];
+    double seen = 0.0, rest = predicted[1];
     for (int i = 0; i < 256; i++) {
         xyz_at(r->img, i % 16, i / 16, xyz);
         seen += xyz[1] / 256.0;
@@ -419,7 +419,7 @@ static void sphere_lights_have_their_colour(void **state)
  * lower at longer wavelengths, is one medium with them only at that wavelength. At 85 degrees it reflects everything
  * above 525 nm, where sin 85 > n / 1.5: red sees the sky, sin 5 of its brightness up there, and blue the black
  * below. */
-static void media_with_equal_index_at_one_wavelength_are_two(void **state)
+static void media_with_equal_index_at_one_wavelength_stay_distinct(void **state)
 {
     (void)state;
     scene *s =
@@ -439,18 +439,18 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_white_sky_is_white),
-        cmocka_unit_test(the_color_checker_looks_like_in_rgb),
-        cmocka_unit_test(both_colours_of_a_checker_look_like_in_rgb),
-        cmocka_unit_test(gradient_and_coloured_skies_look_like_in_rgb),
-        cmocka_unit_test(an_image_sky_looks_like_in_rgb),
-        cmocka_unit_test(glass_of_one_index_is_as_bright_as_in_rgb),
+        cmocka_unit_test(the_color_checker_has_its_rgb_colours),
+        cmocka_unit_test(both_colours_of_a_checker_have_their_rgb_values),
+        cmocka_unit_test(gradient_and_coloured_skies_have_their_rgb_colours),
+        cmocka_unit_test(an_image_sky_has_its_rgb_colours),
+        cmocka_unit_test(glass_of_constant_index_has_the_values_of_rgb),
         cmocka_unit_test(the_weight_limit_does_not_depend_on_the_number_of_wavelengths),
         cmocka_unit_test(a_spectral_furnace_is_white_in_every_pixel),
         cmocka_unit_test(a_prism_separates_red_and_blue),
-        cmocka_unit_test(an_absorbed_band_is_missing),
+        cmocka_unit_test(light_of_an_absorbed_band_is_removed),
         cmocka_unit_test(random_paths_have_the_same_colours),
         cmocka_unit_test(sphere_lights_have_their_colour),
-        cmocka_unit_test(media_with_equal_index_at_one_wavelength_are_two),
+        cmocka_unit_test(media_with_equal_index_at_one_wavelength_stay_distinct),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

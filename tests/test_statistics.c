@@ -13,7 +13,7 @@
 
 /* Percentiles of the t distribution, NIST/SEMATECH e-Handbook of Statistical Methods, 1.3.6.7.2 (three decimals), and
  * the same quantiles to more digits, Abramowitz and Stegun, table 26.10. */
-static void t_quantile_agrees_with_tables(void **state)
+static void the_t_quantile_agrees_with_tables(void **state)
 {
     (void)state;
     static const struct {
@@ -44,14 +44,14 @@ static void t_quantile_agrees_with_tables(void **state)
 }
 
 /* Two closed forms: v = 1 is Cauchy's distribution; for v = 2, F(t) = 1/2 + t / (2 sqrt(2 + t^2)). */
-static void t_quantile_agrees_with_closed_forms(void **state)
+static void the_t_quantile_agrees_with_closed_forms(void **state)
 {
     (void)state;
     assert_near(student_t_975(1), tan(3.14159265358979323846 * 0.475), 1e-11);
     assert_near(student_t_975(2), 1.9 / sqrt(2.0 * 0.975 * 0.025) / 2.0, 1e-12);
 }
 
-static void t_quantile_falls_without_a_step(void **state)
+static void the_t_quantile_decreases_continuously(void **state)
 {
     (void)state;
     for (size_t v = 2; v < 400; v++) {
@@ -99,7 +99,7 @@ static void too_few_values_have_no_interval(void **state)
 
 /* Student, The probable error of a mean, Biometrika 6 (1908), p. 20: additional hours of sleep gained by ten patients.
  * Mean 1.58; the 95% interval 0.7001142 to 2.4598858 is the one printed for R's data set `sleep` by t.test. */
-static void summary_of_students_sleep(void **state)
+static void the_summary_of_students_sleep_data_equals_published_values(void **state)
 {
     (void)state;
     double hours[] = {1.2, 2.4, 1.3, 1.3, 0.0, 1.0, 1.8, 0.8, 4.6, 1.4};
@@ -131,7 +131,7 @@ static void median_interval_of_many_values(void **state)
     assert_true(s.median_low == 1938.0 && s.median_high == 2063.0);
 }
 
-static void a_nan_is_not_hidden(void **state)
+static void nan_propagates_to_the_results(void **state)
 {
     (void)state;
     double values[] = {1.0, NAN, 2.0, 3.0, 4.0, 5.0, 6.0};
@@ -145,10 +145,14 @@ static void a_nan_is_not_hidden(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(t_quantile_agrees_with_tables),   cmocka_unit_test(t_quantile_agrees_with_closed_forms),
-        cmocka_unit_test(t_quantile_falls_without_a_step), cmocka_unit_test(median_interval_agrees_with_the_sign_test),
-        cmocka_unit_test(too_few_values_have_no_interval), cmocka_unit_test(summary_of_students_sleep),
-        cmocka_unit_test(median_interval_of_many_values),  cmocka_unit_test(a_nan_is_not_hidden),
+        cmocka_unit_test(the_t_quantile_agrees_with_tables),
+        cmocka_unit_test(the_t_quantile_agrees_with_closed_forms),
+        cmocka_unit_test(the_t_quantile_decreases_continuously),
+        cmocka_unit_test(median_interval_agrees_with_the_sign_test),
+        cmocka_unit_test(too_few_values_have_no_interval),
+        cmocka_unit_test(the_summary_of_students_sleep_data_equals_published_values),
+        cmocka_unit_test(median_interval_of_many_values),
+        cmocka_unit_test(nan_propagates_to_the_results),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

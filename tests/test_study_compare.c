@@ -1,3 +1,4 @@
+/* Tests of comparisons of a study's cells with its reference image. */
 #include "study_fixture.h"
 #include "image/compare.h"
 #include "render/core/renderer.h"
@@ -87,7 +88,7 @@ static image *image_at(const fixture *f, const char *depth)
     return img;
 }
 
-static void a_picture_does_not_differ_from_itself(void **state)
+static void an_image_does_not_differ_from_itself(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
@@ -109,22 +110,22 @@ static void a_picture_does_not_differ_from_itself(void **state)
 }
 
 /* The measures of two films rendered without a study; the rms by its definition. */
-static void another_depth_differs_as_the_films_do(void **state)
+static void differences_equal_those_of_the_films(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
     fixture_run(f, s);
     csv *table = read_table(f, "results/test/compare.csv");
     image *shallow = image_at(f, "0"), *deep = image_at(f, "2");
-    image_comparison lies;
-    assert_int_equal(image_compare(shallow, deep, &lies, NULL), STATUS_OK);
-    assert_true(lies.mse > 0 && lies.flip > 0 && lies.ssim < 1);
-    assert_true(real_of(table, 0, "mse") == lies.mse);
-    assert_true(real_of(table, 0, "psnr_db") == lies.psnr_db);
-    assert_true(real_of(table, 0, "ssim") == lies.ssim);
-    assert_true(real_of(table, 0, "flip") == lies.flip);
-    assert_true(real_of(table, 0, "largest") == lies.largest);
-    assert_true(real_of(table, 0, "differing_share") == lies.differing_share);
+    image_comparison metrics;
+    assert_int_equal(image_compare(shallow, deep, &metrics, NULL), STATUS_OK);
+    assert_true(metrics.mse > 0 && metrics.flip > 0 && metrics.ssim < 1);
+    assert_true(real_of(table, 0, "mse") == metrics.mse);
+    assert_true(real_of(table, 0, "psnr_db") == metrics.psnr_db);
+    assert_true(real_of(table, 0, "ssim") == metrics.ssim);
+    assert_true(real_of(table, 0, "flip") == metrics.flip);
+    assert_true(real_of(table, 0, "largest") == metrics.largest);
+    assert_true(real_of(table, 0, "differing_share") == metrics.differing_share);
     double sum = 0;
     for (size_t i = 0; i < 24 * 18 * 3; i++)
         sum +=
@@ -158,22 +159,22 @@ static void cells_share_the_reference_of_one_scene(void **state)
     study_destroy(s);
 }
 
-static void what_is_compared_is_not_compared_again(void **state)
+static void existing_comparisons_are_not_repeated(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
     fixture_run(f, s);
-    char *whole = fixture_text(f, "results/test/compare.csv");
+    char *complete = fixture_text(f, "results/test/compare.csv");
     assert_int_equal(fixture_run(f, s), 0);
     char *again = fixture_text(f, "results/test/compare.csv");
-    assert_string_equal(whole, again);
+    assert_string_equal(complete, again);
     free(again);
     /* With the first cell's row and an incomplete one left, the others are made, the rows stay, and no reference is
      * rendered. */
     char reference_path[400], cut[4096];
     struct stat before, after;
-    char *line = strchr(strchr(whole, '\n') + 1, '\n') + 1;
-    snprintf(cut, sizeof cut, "%.*stest,0123", (int)(line - whole), whole);
+    char *line = strchr(strchr(complete, '\n') + 1, '\n') + 1;
+    snprintf(cut, sizeof cut, "%.*stest,0123", (int)(line - complete), complete);
     fixture_write(f, "results/test/compare.csv", cut);
     csv *table = read_table(f, "results/test/compare.csv");
     snprintf(reference_path, sizeof reference_path, "%s/test/references/%s.pfm", f->results,
@@ -185,19 +186,19 @@ static void what_is_compared_is_not_compared_again(void **state)
     char *rows_now = fixture_text(f, "results/test/rows.csv");
     again = fixture_text(f, "results/test/compare.csv");
     assert_string_equal(rows, rows_now);
-    assert_int_equal(strlen(again), strlen(whole));
-    assert_memory_equal(again, whole, (size_t)(line - whole));
+    assert_int_equal(strlen(again), strlen(complete));
+    assert_memory_equal(again, complete, (size_t)(line - complete));
     assert_int_equal(stat(reference_path, &after), 0);
     assert_true(before.st_ino == after.st_ino && before.st_mtim.tv_nsec == after.st_mtim.tv_nsec);
     assert_true(fixture_has(f, "results/test/compare.torn.csv"));
     free(rows);
     free(rows_now);
     free(again);
-    free(whole);
+    free(complete);
     study_destroy(s);
 }
 
-static void a_damaged_reference_is_found(void **state)
+static void a_damaged_reference_image_is_detected(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
@@ -224,7 +225,7 @@ static void a_damaged_reference_is_found(void **state)
 }
 
 /* Rows of another reference are refused; without them the images are compared again, and the rows stay. */
-static void another_reference_measures_nothing_again(void **state)
+static void a_changed_reference_repeats_comparisons_but_no_measurements(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, depth_text);
@@ -303,7 +304,7 @@ static void a_summary_has_time_and_error_on_one_line(void **state)
 }
 
 /* Four times the paths halve the standard error, and so the error against a reference of many paths. */
-static void noise_says_how_far_random_paths_lie(void **state)
+static void the_error_of_random_paths_decreases_with_their_number(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: test\nscene: scene.yaml\nset: {render.integrator: path, render.depth: 6}\n"
@@ -324,7 +325,7 @@ static void noise_says_how_far_random_paths_lie(void **state)
     study_destroy(s);
 }
 
-static void without_a_reference_nothing_is_compared(void **state)
+static void a_study_without_reference_compares_nothing(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\n");
@@ -340,16 +341,18 @@ static void without_a_reference_nothing_is_compared(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_picture_does_not_differ_from_itself, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(another_depth_differs_as_the_films_do, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(an_image_does_not_differ_from_itself, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(differences_equal_those_of_the_films, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(cells_share_the_reference_of_one_scene, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(what_is_compared_is_not_compared_again, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_damaged_reference_is_found, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(another_reference_measures_nothing_again, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(existing_comparisons_are_not_repeated, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_damaged_reference_image_is_detected, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_changed_reference_repeats_comparisons_but_no_measurements, fixture_setup,
+                                        fixture_teardown),
         cmocka_unit_test_setup_teardown(shards_compare_their_cells, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(a_summary_has_time_and_error_on_one_line, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(noise_says_how_far_random_paths_lie, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(without_a_reference_nothing_is_compared, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(the_error_of_random_paths_decreases_with_their_number, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_study_without_reference_compares_nothing, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests_name("compare of studies", tests, NULL, NULL);
 }

@@ -1,7 +1,8 @@
+/* Tests of the CSV reader and writer: quoting, incomplete lines and damaged files. */
 #include "study_fixture.h"
 #include "study/csv.h"
 
-static void fields_are_written_and_read_back(void **state)
+static void csv_fields_round_trip(void **state)
 {
     const fixture *f = *state;
     csv_line line = {0};
@@ -54,7 +55,7 @@ static int rows_of(const fixture *f, const char *text, long *line)
     return rows;
 }
 
-static void only_whole_lines_are_rows(void **state)
+static void only_complete_lines_are_rows(void **state)
 {
     const fixture *f = *state;
     assert_int_equal(rows_of(f, "", NULL), 0);
@@ -65,7 +66,7 @@ static void only_whole_lines_are_rows(void **state)
     assert_int_equal(rows_of(f, "a,b\n,\n\"\",\"x,y\"\n", NULL), 2);
 }
 
-static void damaged_rows_are_named(void **state)
+static void damaged_rows_are_located(void **state)
 {
     const fixture *f = *state;
     long line;
@@ -80,7 +81,7 @@ static void damaged_rows_are_named(void **state)
     assert_int_equal(line, 1);
 }
 
-static void zero_bytes_are_damage(void **state)
+static void zero_bytes_are_reported_as_damage(void **state)
 {
     const fixture *f = *state;
     char path[400];
@@ -93,7 +94,7 @@ static void zero_bytes_are_damage(void **state)
     assert_null(table);
 }
 
-static void no_file_is_no_table(void **state)
+static void a_missing_file_gives_no_table(void **state)
 {
     (void)state;
     csv *table = (csv *)1;
@@ -104,11 +105,11 @@ static void no_file_is_no_table(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(fields_are_written_and_read_back, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(only_whole_lines_are_rows, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(damaged_rows_are_named, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(zero_bytes_are_damage, fixture_setup, fixture_teardown),
-        cmocka_unit_test(no_file_is_no_table),
+        cmocka_unit_test_setup_teardown(csv_fields_round_trip, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(only_complete_lines_are_rows, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(damaged_rows_are_located, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(zero_bytes_are_reported_as_damage, fixture_setup, fixture_teardown),
+        cmocka_unit_test(a_missing_file_gives_no_table),
     };
     return cmocka_run_group_tests_name("csv", tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests of a study's manifest: the provenance of rows, without names of hosts and paths. */
 #include "study_fixture.h"
 #include "study/provenance.h"
 #include <jansson.h>
@@ -22,7 +23,7 @@ static const char *text_at(const json_t *object, const char *key)
 static const char first_text[] = "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\n";
 static const char second_text[] = "study: test\nscene: scene.yaml\nrepetitions: 2\nwarmups: 0\n";
 
-static void manifests_say_where_rows_come_from(void **state)
+static void manifests_record_the_provenance_of_rows(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, first_text);
@@ -81,7 +82,7 @@ static void each_run_is_added(void **state)
     study_destroy(s);
 }
 
-static void manifests_name_no_host_and_no_path(void **state)
+static void manifests_contain_no_host_name_or_path(void **state)
 {
     const fixture *f = *state;
     char host[256] = "";
@@ -116,7 +117,7 @@ static void damaged_manifests_are_refused(void **state)
     study_destroy(s);
 }
 
-static void what_tells_a_machine_is_taken_out(void **state)
+static void identifying_entries_are_removed_from_the_topology(void **state)
 {
     (void)state;
     char xml[] =
@@ -130,7 +131,7 @@ static void what_tells_a_machine_is_taken_out(void **state)
 }
 
 /* A repository with one commit; silent without git. */
-static void commits_are_found(void **state)
+static void the_commit_of_a_repository_is_found(void **state)
 {
     const fixture *f = *state;
     char command[2000];
@@ -160,12 +161,12 @@ static void commits_are_found(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(manifests_say_where_rows_come_from, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(manifests_record_the_provenance_of_rows, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(each_run_is_added, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(manifests_name_no_host_and_no_path, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(manifests_contain_no_host_name_or_path, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(damaged_manifests_are_refused, fixture_setup, fixture_teardown),
-        cmocka_unit_test(what_tells_a_machine_is_taken_out),
-        cmocka_unit_test_setup_teardown(commits_are_found, fixture_setup, fixture_teardown),
+        cmocka_unit_test(identifying_entries_are_removed_from_the_topology),
+        cmocka_unit_test_setup_teardown(the_commit_of_a_repository_is_found, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests_name("study_manifest", tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests of a study's shards: partition of the cells, merging, duplicate and incomplete rows. */
 #include "study_fixture.h"
 #include "study/csv.h"
 
@@ -12,26 +13,26 @@ static const char study_text[] = "study: test\n"
 
 static size_t run_shard(const fixture *f, const study *s, long shard, long shards)
 {
-    char said[DIAGNOSTIC_TEXT_MAX];
+    char message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     size_t ran = 0;
     study_options options = {.results = f->results, .shard = shard, .shards = shards};
     if (study_run(s, &options, &ran, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return ran;
 }
 
 static size_t merge(const fixture *f, const study *s)
 {
-    char said[DIAGNOSTIC_TEXT_MAX];
+    char message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     size_t rows = 0;
     if (study_merge(s, f->results, &rows, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return rows;
 }
 
-static void shards_share_the_cells(void **state)
+static void shards_partition_the_cells(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -55,7 +56,7 @@ static void shards_share_the_cells(void **state)
     study_destroy(s);
 }
 
-static void merging_loses_nothing(void **state)
+static void merging_keeps_every_row(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -87,7 +88,7 @@ static void merging_loses_nothing(void **state)
 }
 
 /* A run without shards measures what the shards left. */
-static void runs_see_the_shards_rows(void **state)
+static void a_run_without_shards_counts_the_rows_of_shards(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -99,7 +100,7 @@ static void runs_see_the_shards_rows(void **state)
     study_destroy(s);
 }
 
-static void torn_shards_are_cut(void **state)
+static void incomplete_rows_of_shards_are_dropped(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -117,7 +118,7 @@ static void torn_shards_are_cut(void **state)
     study_destroy(s);
 }
 
-static void contradictions_are_errors(void **state)
+static void contradictory_rows_are_errors(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -139,7 +140,7 @@ static void contradictions_are_errors(void **state)
 }
 
 /* One repetition twice in one file is always an error. */
-static void rows_twice_in_a_file_are_errors(void **state)
+static void duplicate_rows_in_a_file_are_errors(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -176,7 +177,7 @@ static void damaged_rows_are_refused(void **state)
     study_destroy(s);
 }
 
-static void there_is_nothing_to_merge(void **state)
+static void merging_without_rows_is_an_error(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -185,7 +186,7 @@ static void there_is_nothing_to_merge(void **state)
     study_destroy(s);
 }
 
-static void wrong_shards_are_refused(void **state)
+static void invalid_shards_are_refused(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -201,15 +202,16 @@ static void wrong_shards_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(shards_share_the_cells, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(merging_loses_nothing, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(runs_see_the_shards_rows, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(torn_shards_are_cut, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(contradictions_are_errors, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(rows_twice_in_a_file_are_errors, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(shards_partition_the_cells, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(merging_keeps_every_row, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_run_without_shards_counts_the_rows_of_shards, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(incomplete_rows_of_shards_are_dropped, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(contradictory_rows_are_errors, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(duplicate_rows_in_a_file_are_errors, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(damaged_rows_are_refused, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(there_is_nothing_to_merge, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(wrong_shards_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(merging_without_rows_is_an_error, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(invalid_shards_are_refused, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests_name("study_merge", tests, NULL, NULL);
 }

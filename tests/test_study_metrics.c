@@ -1,3 +1,4 @@
+/* Tests of the realism and motion metrics that a study keeps. */
 #include "study_fixture.h"
 
 #include "realism/realism.h"
@@ -30,7 +31,7 @@ static size_t lines_of(const char *text)
 
 /* One line per metric, preceded by the cell's values, with the same names for every cell; keeping it does not change a
  * frame. */
-static void metrics_and_curves_lie_beside_the_pictures(void **state)
+static void metrics_and_curves_are_written_next_to_the_images(void **state)
 {
     const fixture *f = *state;
     fixture_write(f, "vessel.yaml", vessel_scene);
@@ -59,18 +60,18 @@ static void metrics_and_curves_lie_beside_the_pictures(void **state)
 }
 
 /* The scene of the fixture has no vessel, which is reported before anything is measured. */
-static void a_scene_without_metrics_is_refused(void **state)
+static void realism_metrics_without_a_vessel_are_refused(void **state)
 {
     const fixture *f = *state;
-    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    char path[400], message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     study *s = NULL;
     fixture_write(f, "bad.study", "study: bad\nscene: scene.yaml\nkeep: {metrics: on}\n");
     fixture_path(f, "bad.study", path);
     assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
-    diagnostic_text(&why, said, sizeof said);
-    assert_non_null(strstr(said, "bad.study: metrics cannot be kept for cell 0: "));
-    assert_non_null(strstr(said, "vessel"));
+    diagnostic_text(&why, message, sizeof message);
+    assert_non_null(strstr(message, "bad.study: metrics cannot be kept for cell 0: "));
+    assert_non_null(strstr(message, "vessel"));
     assert_false(fixture_has(f, "results"));
 }
 
@@ -85,7 +86,7 @@ static const char slime_scene[] = "render: {width: 24, height: 18, depth: 2}\n"
 
 /* One line per value of each slime, and none for other meshes; values other than times are those of the trials with the
  * cell's settings. */
-static void motion_lies_beside_the_pictures(void **state)
+static void motion_metrics_are_written_next_to_the_images(void **state)
 {
     const fixture *f = *state;
     fixture_write(f, "slime.yaml", slime_scene);
@@ -115,26 +116,27 @@ static void motion_lies_beside_the_pictures(void **state)
     study_destroy(s);
 }
 
-static void a_scene_where_nothing_moves_is_refused(void **state)
+static void motion_metrics_without_a_slime_are_refused(void **state)
 {
     const fixture *f = *state;
-    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    char path[400], message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     study *s = NULL;
     fixture_write(f, "bad.study", "study: bad\nscene: scene.yaml\nkeep: {motion: on}\n");
     fixture_path(f, "bad.study", path);
     assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
-    diagnostic_text(&why, said, sizeof said);
-    assert_non_null(strstr(said, "bad.study: motion cannot be kept for cell 0: "));
+    diagnostic_text(&why, message, sizeof message);
+    assert_non_null(strstr(message, "bad.study: motion cannot be kept for cell 0: "));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(metrics_and_curves_lie_beside_the_pictures, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_scene_without_metrics_is_refused, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(motion_lies_beside_the_pictures, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_scene_where_nothing_moves_is_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(metrics_and_curves_are_written_next_to_the_images, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(realism_metrics_without_a_vessel_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(motion_metrics_are_written_next_to_the_images, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(motion_metrics_without_a_slime_are_refused, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

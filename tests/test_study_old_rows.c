@@ -33,29 +33,29 @@ static const char rows_name[] = "results/test/rows.csv", workers_name[] = "resul
 
 static char *summary_of(const study *s, const char *results)
 {
-    char *text = NULL, said[DIAGNOSTIC_TEXT_MAX];
+    char *text = NULL, message[DIAGNOSTIC_TEXT_MAX];
     size_t size;
     diagnostic why = {0};
     FILE *out = open_memstream(&text, &size);
     if (study_summary(s, results, out, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     fclose(out);
     return text;
 }
 
 static study *read_study(const char *path)
 {
-    char said[DIAGNOSTIC_TEXT_MAX];
+    char message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     study *s = NULL;
     if (study_read(path, &s, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return s;
 }
 
 /* --- existing rows --- */
 
-static void the_reference_run_is_read(void **state)
+static void rows_of_the_reference_run_are_read(void **state)
 {
     (void)state;
     size_t read = 0;
@@ -101,7 +101,7 @@ static void rows_of_the_first_definition_are_read(void **state)
 }
 
 /* The first definition included every parameter: a difference in one of them is detected. */
-static void the_first_definition_tells_differences(void **state)
+static void the_first_definition_distinguishes_every_parameter(void **state)
 {
     (void)state;
     study *s = read_study(old_study);
@@ -123,7 +123,7 @@ static void the_first_definition_tells_differences(void **state)
 }
 
 /* A study with newer parameters has no first definition. */
-static void the_first_definition_ends_with_its_parameters(void **state)
+static void newer_parameters_have_no_first_definition(void **state)
 {
     (void)state;
     study *s = read_study(old_study);
@@ -143,16 +143,16 @@ static bool is_path_of(const scene *s, const char *name, param_place *at)
 }
 
 /* A parameter added by a later version is at its default in every older scene. */
-static void defaults_enter_no_definition(void **state)
+static void default_values_are_not_part_of_a_definition(void **state)
 {
     (void)state;
     study *s = read_study(old_study);
-    meaning said = {0};
-    assert_int_equal(meaning_of_study(&said, s), STATUS_OK);
+    meaning message = {0};
+    assert_int_equal(meaning_of_study(&message, s), STATUS_OK);
     size_t paths = 0, shapes = 0;
-    for (size_t i = 0; i < said.count; i++) {
+    for (size_t i = 0; i < message.count; i++) {
         param_place at;
-        const char *name = said.items[i].name, *value = said.items[i].value;
+        const char *name = message.items[i].name, *value = message.items[i].value;
         shapes += strncmp(name, "shape of ", 9) == 0 && strspn(value, "0123456789") == 0;
         if (!is_path_of(s->base, name, &at))
             continue;
@@ -164,36 +164,36 @@ static void defaults_enter_no_definition(void **state)
     }
     assert_true(paths > 40);
     assert_int_equal(shapes, s->base->solid_count);
-    meaning_free(&said);
+    meaning_free(&message);
     study_destroy(s);
 }
 
 /* For a parameter anywhere in the table, with and without an explicit default. */
-static void order_and_defaults_are_the_same_meaning(void **state)
+static void order_and_explicit_defaults_do_not_change_a_definition(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: x\nscene: scene.yaml\n");
     study *other = fixture_study(f, "study: x\nscene: scene.yaml\n"
                                     "set: {ball.visible: on, lamp.intensity: 1, render.samples: 1}\n");
     assert_int_equal(s->definition_hash, other->definition_hash);
-    meaning said = {0};
-    assert_int_equal(meaning_of_study(&said, s), STATUS_OK);
-    const uint64_t hash = meaning_hash(&said);
-    const meaning_item first = said.items[0];
-    said.items[0] = said.items[said.count - 1];
-    said.items[said.count - 1] = first;
-    assert_int_equal(meaning_hash(&said), hash);
-    char *const value = said.items[0].value;
-    said.items[0].value = said.items[1].value;
-    said.items[1].value = value;
-    assert_int_not_equal(meaning_hash(&said), hash);
-    meaning_free(&said);
+    meaning message = {0};
+    assert_int_equal(meaning_of_study(&message, s), STATUS_OK);
+    const uint64_t hash = meaning_hash(&message);
+    const meaning_item first = message.items[0];
+    message.items[0] = message.items[message.count - 1];
+    message.items[message.count - 1] = first;
+    assert_int_equal(meaning_hash(&message), hash);
+    char *const value = message.items[0].value;
+    message.items[0].value = message.items[1].value;
+    message.items[1].value = value;
+    assert_int_not_equal(meaning_hash(&message), hash);
+    meaning_free(&message);
     study_destroy(s);
     study_destroy(other);
 }
 
 /* The order of solids decides between equal priorities, and a solid with only defaults is part of it. */
-static void objects_count(void **state)
+static void objects_are_part_of_a_definition(void **state)
 {
     const fixture *f = *state;
     static const char *const scenes[] = {
@@ -254,7 +254,7 @@ static void rearrange(const fixture *f, const char *name, const char *without, c
 }
 
 /* Summaries under a permuted header, with one column less and one more; a missing one is unknown. */
-static void columns_are_known_by_name(void **state)
+static void columns_are_identified_by_name(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -279,12 +279,12 @@ static void columns_are_known_by_name(void **state)
 
 static csv *table_of(const fixture *f, const char *name)
 {
-    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    char path[400], message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     csv *table = NULL;
     fixture_path(f, name, path);
     if (csv_read(path, &table, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return table;
 }
 
@@ -295,7 +295,7 @@ static void expect(const csv *table, size_t row, const char *column, const char 
 }
 
 /* A study resumes in a file with other columns: none is lost, every row is complete, and old rows keep their values. */
-static void a_study_goes_on_under_other_columns(void **state)
+static void a_study_resumes_in_a_file_with_other_columns(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -332,7 +332,7 @@ static void a_study_goes_on_under_other_columns(void **state)
 }
 
 /* Without new rows the file does not change. */
-static void a_complete_study_is_left_alone(void **state)
+static void a_complete_study_leaves_the_row_file_unchanged(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -348,7 +348,7 @@ static void a_complete_study_is_left_alone(void **state)
 }
 
 /* Shards of different versions, one of them with rows in two files with different columns. */
-static void shards_of_other_columns_are_joined(void **state)
+static void shards_with_other_columns_are_merged(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -385,7 +385,7 @@ static diagnostic refusal_of(const fixture *f, const study *s)
     return why;
 }
 
-static void columns_that_a_row_needs_are_named(void **state)
+static void missing_required_columns_are_reported(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -431,7 +431,7 @@ static void make_old(const fixture *f, const study *s)
 }
 
 /* The manifest's texts have the same meaning: the rows are read, and the study resumes. */
-static void recorded_texts_that_mean_the_same_are_believed(void **state)
+static void recorded_definitions_with_the_same_meaning_are_accepted(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -469,7 +469,7 @@ static void expect_refusal(const fixture *f, const study *s, const char *word)
     assert_non_null(strstr(why.file, "rows.csv"));
 }
 
-static void what_cannot_be_verified_is_refused(void **state)
+static void unverifiable_definitions_are_refused(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -500,7 +500,7 @@ static void what_cannot_be_verified_is_refused(void **state)
 }
 
 /* Comparisons with another reference are refused even if the rows' own definition is accepted. */
-static void comparisons_know_their_reference(void **state)
+static void comparisons_with_another_reference_are_refused(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -550,21 +550,21 @@ static void contents_of_files_are_verified(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_reference_run_is_read),
+        cmocka_unit_test(rows_of_the_reference_run_are_read),
         cmocka_unit_test(rows_of_the_first_definition_are_read),
-        cmocka_unit_test(the_first_definition_tells_differences),
-        cmocka_unit_test(the_first_definition_ends_with_its_parameters),
-        cmocka_unit_test(defaults_enter_no_definition),
-        CASE(order_and_defaults_are_the_same_meaning),
-        CASE(objects_count),
-        CASE(columns_are_known_by_name),
-        CASE(a_study_goes_on_under_other_columns),
-        CASE(a_complete_study_is_left_alone),
-        CASE(shards_of_other_columns_are_joined),
-        CASE(columns_that_a_row_needs_are_named),
-        CASE(recorded_texts_that_mean_the_same_are_believed),
-        CASE(what_cannot_be_verified_is_refused),
-        CASE(comparisons_know_their_reference),
+        cmocka_unit_test(the_first_definition_distinguishes_every_parameter),
+        cmocka_unit_test(newer_parameters_have_no_first_definition),
+        cmocka_unit_test(default_values_are_not_part_of_a_definition),
+        CASE(order_and_explicit_defaults_do_not_change_a_definition),
+        CASE(objects_are_part_of_a_definition),
+        CASE(columns_are_identified_by_name),
+        CASE(a_study_resumes_in_a_file_with_other_columns),
+        CASE(a_complete_study_leaves_the_row_file_unchanged),
+        CASE(shards_with_other_columns_are_merged),
+        CASE(missing_required_columns_are_reported),
+        CASE(recorded_definitions_with_the_same_meaning_are_accepted),
+        CASE(unverifiable_definitions_are_refused),
+        CASE(comparisons_with_another_reference_are_refused),
         CASE(contents_of_files_are_verified),
     };
     return cmocka_run_group_tests_name("study_old_rows", tests, NULL, NULL);

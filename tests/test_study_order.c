@@ -1,3 +1,4 @@
+/* Tests of the shuffled order of cells: it depends on seed and stream only, and is uniformly distributed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,7 +12,7 @@
 
 enum { COUNT = 50 };
 
-static void every_cell_once(void **state)
+static void every_cell_occurs_once(void **state)
 {
     (void)state;
     for (uint64_t stream = 0; stream < 100; stream++) {
@@ -25,7 +26,7 @@ static void every_cell_once(void **state)
     }
 }
 
-static void seed_and_stream_decide(void **state)
+static void orders_depend_on_seed_and_stream(void **state)
 {
     (void)state;
     size_t a[COUNT], b[COUNT];
@@ -41,7 +42,7 @@ static void seed_and_stream_decide(void **state)
 }
 
 /* The order of a published study must never change: expected values recorded once. */
-static void orders_stay_what_they_were(void **state)
+static void the_orders_of_published_studies_do_not_change(void **state)
 {
     (void)state;
     static const size_t known[9] = {7, 4, 5, 0, 6, 8, 2, 1, 3};
@@ -51,7 +52,7 @@ static void orders_stay_what_they_were(void **state)
 }
 
 /* 4! orders, 24000 draws: chi squared with 23 degrees of freedom exceeds 49.7 for one in 1000 seeds. */
-static void orders_are_drawn_evenly(void **state)
+static void orders_are_uniformly_distributed(void **state)
 {
     (void)state;
     unsigned count[256] = {0};
@@ -72,7 +73,7 @@ static void orders_are_drawn_evenly(void **state)
     assert_true(chi_squared < 49.7);
 }
 
-static void small_counts(void **state)
+static void orders_of_no_and_one_cell(void **state)
 {
     (void)state;
     size_t order[1] = {99};
@@ -85,11 +86,11 @@ static void small_counts(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_cell_once),
-        cmocka_unit_test(seed_and_stream_decide),
-        cmocka_unit_test(orders_stay_what_they_were),
-        cmocka_unit_test(orders_are_drawn_evenly),
-        cmocka_unit_test(small_counts),
+        cmocka_unit_test(every_cell_occurs_once),
+        cmocka_unit_test(orders_depend_on_seed_and_stream),
+        cmocka_unit_test(the_orders_of_published_studies_do_not_change),
+        cmocka_unit_test(orders_are_uniformly_distributed),
+        cmocka_unit_test(orders_of_no_and_one_cell),
     };
     return cmocka_run_group_tests_name("order", tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests of study files: the grammar, definitions and located diagnostics. Run from the repository root. */
 #include "study_fixture.h"
 #include "scene/model/params.h"
 #include "scene/model/scene.h"
@@ -10,7 +11,7 @@ static const char *axis_value(const study *s, size_t cell, size_t axis, size_t p
     return s->axes[axis].points[study_cell_point(s, cell, axis)].values[path];
 }
 
-static void the_whole_grammar(void **state)
+static void the_whole_grammar_is_read(void **state)
 {
     const fixture *f = *state;
     study *s =
@@ -61,7 +62,7 @@ static void the_whole_grammar(void **state)
     study_destroy(s);
 }
 
-static void what_is_left_out(void **state)
+static void omitted_study_keys_have_their_defaults(void **state)
 {
     study *s = fixture_study(*state, "study: small\nscene: scene.yaml\n");
     assert_string_equal(s->title, "small");
@@ -79,7 +80,7 @@ static void what_is_left_out(void **state)
     study_destroy(s);
 }
 
-static void ranges_are_even(void **state)
+static void values_of_ranges_are_evenly_spaced(void **state)
 {
     study *s = fixture_study(*state, "study: ranges\nscene: scene.yaml\ngrid:\n"
                                      "  - {ball.ior: {from: 1.0, to: 1.6, steps: 4}}\n"
@@ -103,7 +104,7 @@ static uint64_t hash_of(const fixture *f, const char *text)
 }
 
 /* The definition depends on the meaning of a row, not on the form of the file or the number of repetitions. */
-static void what_is_the_same_definition(void **state)
+static void equivalent_studies_have_the_same_definition(void **state)
 {
     const fixture *f = *state;
     uint64_t hash =
@@ -132,7 +133,7 @@ static void what_is_the_same_definition(void **state)
 }
 
 /* The same names with other contents are another definition: for a mesh's positions, colours and normals. */
-static void what_files_hold_is_defined_too(void **state)
+static void contents_of_files_are_part_of_a_definition(void **state)
 {
     const fixture *f = *state;
     static const char text[] = "study: x\nscene: painted.yaml\n";
@@ -159,7 +160,7 @@ static void what_files_hold_is_defined_too(void **state)
     }
 }
 
-static void scenes_lie_beside_the_study(void **state)
+static void paths_of_scenes_are_relative_to_the_study(void **state)
 {
     const fixture *f = *state;
     char folder[400], path[400], absolute[512];
@@ -178,7 +179,7 @@ static void scenes_lie_beside_the_study(void **state)
 }
 
 /* A mistake in the scene is located in the scene. */
-static void wrong_scenes_are_located_there(void **state)
+static void errors_in_scenes_of_studies_are_located_in_the_scene(void **state)
 {
     const fixture *f = *state;
     char path[400], scene_path[400];
@@ -207,7 +208,7 @@ static void check_bad(const char *name, long line, long column, const char *what
 }
 
 /* tests/bad-studies/expected.tsv lists every file of the folder with its diagnostic. */
-static void bad_studies_are_located(void **state)
+static void errors_in_studies_are_located(void **state)
 {
     (void)state;
     char line[1024], path[400];
@@ -239,7 +240,7 @@ static void bad_studies_are_located(void **state)
 }
 
 /* A truncated file is an error or a smaller study, never a crash. */
-static void cut_off_anywhere(void **state)
+static void truncated_studies_are_valid_or_refused(void **state)
 {
     const fixture *f = *state;
     static const char text[] =
@@ -257,7 +258,7 @@ static void cut_off_anywhere(void **state)
     }
 }
 
-static void the_studies_of_the_house(void **state)
+static void every_study_of_the_project_is_read(void **state)
 {
     (void)state;
     static const struct {
@@ -267,12 +268,12 @@ static void the_studies_of_the_house(void **state)
                  {"pool", 10},    {"maps", 1},       {"portrait", 1}, {"convergence", 30}, {"methods", 7},
                  {"lighting", 3}, {"absorption", 5}, {"absorber", 11}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        char path[400], said[DIAGNOSTIC_TEXT_MAX];
+        char path[400], message[DIAGNOSTIC_TEXT_MAX];
         diagnostic why = {0};
         study *s = NULL;
         snprintf(path, sizeof path, "experiments/%s.study", known[i].name);
         if (study_read(path, &s, &why) != STATUS_OK)
-            fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+            fail_msg("%s", diagnostic_text(&why, message, sizeof message));
         assert_string_equal(s->name, known[i].name);
         assert_int_equal(study_cell_count(s), known[i].cells);
         study_destroy(s);
@@ -302,7 +303,7 @@ static status note_load(void *context, const scene *setting, diagnostic *why)
 }
 
 /* Files of the scene, the cells and the reference: access to each is checked before any is read. */
-static void a_guard_is_asked_first(void **state)
+static void the_guard_is_called_before_any_file_is_read(void **state)
 {
     const fixture *f = *state;
     const char *text = "study: test\nscene: scene.yaml\ngrid: [{background.picture: [near.png, far.png]}]\nreference: "
@@ -331,17 +332,18 @@ static void a_guard_is_asked_first(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(the_whole_grammar, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_guard_is_asked_first, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(what_is_left_out, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(ranges_are_even, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(what_is_the_same_definition, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(what_files_hold_is_defined_too, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(scenes_lie_beside_the_study, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(wrong_scenes_are_located_there, fixture_setup, fixture_teardown),
-        cmocka_unit_test(bad_studies_are_located),
-        cmocka_unit_test_setup_teardown(cut_off_anywhere, fixture_setup, fixture_teardown),
-        cmocka_unit_test(the_studies_of_the_house),
+        cmocka_unit_test_setup_teardown(the_whole_grammar_is_read, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(the_guard_is_called_before_any_file_is_read, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(omitted_study_keys_have_their_defaults, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(values_of_ranges_are_evenly_spaced, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(equivalent_studies_have_the_same_definition, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(contents_of_files_are_part_of_a_definition, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(paths_of_scenes_are_relative_to_the_study, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(errors_in_scenes_of_studies_are_located_in_the_scene, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test(errors_in_studies_are_located),
+        cmocka_unit_test_setup_teardown(truncated_studies_are_valid_or_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test(every_study_of_the_project_is_read),
     };
     return cmocka_run_group_tests_name("study_read", tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests of the rows of a study: columns, values, worker rows and times. */
 #include "study_fixture.h"
 #include "study/rows.h"
 #include "study/row_files.h"
@@ -87,7 +88,7 @@ static void expect(const csv *table, size_t row, const char *column, const char 
         fail_msg("%s is %s, not %s", column, csv_field(table, row, at), value);
 }
 
-static void rows_say_what_happened(void **state)
+static void rows_record_the_measured_values(void **state)
 {
     csv *table = table_of(*state, false);
     static const char *const known[][2] = {
@@ -138,7 +139,7 @@ static void rows_say_what_happened(void **state)
     csv_destroy(table);
 }
 
-static void columns_keep_their_order(void **state)
+static void columns_are_in_the_expected_order(void **state)
 {
     study *s = fixture_study(*state, grid_text);
     char *header = row_file_header(s, ROWS);
@@ -156,7 +157,7 @@ static void columns_keep_their_order(void **state)
     study_destroy(s);
 }
 
-static void each_worker_has_its_row(void **state)
+static void each_worker_has_a_row(void **state)
 {
     csv *table = table_of(*state, true);
     assert_int_equal(table->row_count, 3);
@@ -187,9 +188,9 @@ static void times_are_utc(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(rows_say_what_happened, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(columns_keep_their_order, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(each_worker_has_its_row, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(rows_record_the_measured_values, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(columns_are_in_the_expected_order, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(each_worker_has_a_row, fixture_setup, fixture_teardown),
         cmocka_unit_test(times_are_utc),
     };
     return cmocka_run_group_tests_name("rows", tests, NULL, NULL);

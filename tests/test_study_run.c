@@ -1,3 +1,4 @@
+/* Tests of study runs: repetitions, interruption and resumption, kept files, locks and full disks. */
 #include "study_fixture.h"
 #include "image/image.h"
 #include "study/csv.h"
@@ -57,7 +58,7 @@ static void expect_begins(const fixture *f, const char *name, const char *earlie
     free(now);
 }
 
-static void every_cell_gets_its_repetitions(void **state)
+static void every_cell_has_its_repetitions(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -82,7 +83,7 @@ static void every_cell_gets_its_repetitions(void **state)
     study_destroy(s);
 }
 
-static void a_complete_study_costs_nothing(void **state)
+static void a_complete_study_renders_nothing_and_rewrites_nothing(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -102,7 +103,7 @@ static void a_complete_study_costs_nothing(void **state)
 
 /* Warm-ups come immediately before the first repetition of their cell, and rounds are complete: no cell gets its second
  * repetition before all have their first. */
-static void rounds_are_shuffled_blocks(void **state)
+static void rounds_are_complete_shuffled_blocks(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -153,7 +154,7 @@ static bool stop_soon(void *context)
     return --*left < 0;
 }
 
-static void an_interrupted_study_goes_on(void **state)
+static void an_interrupted_study_resumes(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -224,16 +225,16 @@ static bool stop_when_known(void *context)
 }
 
 /* The callback and the terminal get the same progress at the same time. */
-static void whoever_asks_is_told(void **state)
+static void the_callback_reports_the_progress_of_the_terminal(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(
         f,
         "study: test\nscene: scene.yaml\nset: {render.width: 200, render.height: 150}\nrepetitions: 4000\nwarmups: 0\n"
         "grid: [{render.depth: [0, 1, 2, 3]}]\nkeep: {image: on}\n");
-    char *said = NULL;
+    char *message = NULL;
     size_t size, ran = 0;
-    FILE *terminal = open_memstream(&said, &size);
+    FILE *terminal = open_memstream(&message, &size);
     watch w = {.stop = true, .from = pthread_self()};
     study_options options = {
         .results = f->results, .progress = terminal, .stop = stop_when_known, .progressed = look, .context = &w};
@@ -243,15 +244,15 @@ static void whoever_asks_is_told(void **state)
     fclose(terminal);
     char last[64];
     snprintf(last, sizeof last, "\rtest: %zu of 16000 frames, ", w.frames_done);
-    assert_int_equal(fixture_count(said, "\rtest: "), w.calls);
-    assert_non_null(strstr(said, "\rtest: 0 of 16000 frames, 0%"));
-    assert_non_null(strstr(said, last));
-    free(said);
+    assert_int_equal(fixture_count(message, "\rtest: "), w.calls);
+    assert_non_null(strstr(message, "\rtest: 0 of 16000 frames, 0%"));
+    assert_non_null(strstr(message, last));
+    free(message);
     study_destroy(s);
 }
 
 /* Only the kept images of a study with complete rows. */
-static void pictures_are_told_too(void **state)
+static void kept_images_are_reported_as_progress(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(
@@ -270,7 +271,7 @@ static void pictures_are_told_too(void **state)
 }
 
 /* What a kill during the write leaves: half a row, and the worker rows of a frame whose row was never written. */
-static void torn_rows_are_measured_again(void **state)
+static void incomplete_rows_are_measured_again(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -335,7 +336,7 @@ static void other_definitions_are_refused(void **state)
 }
 
 /* More repetitions, another order, more kept files: the study resumes. */
-static void studies_may_grow(void **state)
+static void a_study_resumes_with_more_repetitions_or_kept_images(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(
@@ -354,7 +355,7 @@ static void studies_may_grow(void **state)
 }
 
 /* Any interval is narrow enough at twice the mean, and none at a millionth: min and max apply. */
-static void repetitions_follow_the_interval(void **state)
+static void repetitions_stop_at_the_relative_width_of_the_interval(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(
@@ -389,7 +390,7 @@ static void leave_row_of_another_film(const fixture *f, size_t row)
 }
 
 /* A row with another film is marked, not dropped, and counts as a repetition. */
-static void wrong_films_are_marked(void **state)
+static void rows_with_another_film_are_marked(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 3\nwarmups: 1\n");
@@ -406,7 +407,7 @@ static void wrong_films_are_marked(void **state)
 }
 
 /* Threads and schedules do not change the film, so the cells of a grid over them check one another. */
-static void cells_of_one_film_are_compared(void **state)
+static void cells_that_share_a_film_check_one_another(void **state)
 {
     const fixture *f = *state;
     study *s =
@@ -440,7 +441,7 @@ static void cells_of_one_film_are_compared(void **state)
     study_destroy(s);
 }
 
-static void pictures_and_maps_are_kept(void **state)
+static void images_and_maps_are_kept(void **state)
 {
     const fixture *f = *state;
     study *s =
@@ -480,7 +481,7 @@ static void pictures_and_maps_are_kept(void **state)
     study_destroy(s);
 }
 
-static void two_processes_do_not_mix(void **state)
+static void a_second_process_is_refused(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -502,7 +503,7 @@ static void two_processes_do_not_mix(void **state)
     study_destroy(s);
 }
 
-static void a_full_disk_keeps_whole_rows(void **state)
+static void a_full_disk_leaves_only_complete_rows(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, "study: test\nscene: scene.yaml\nrepetitions: 40\nwarmups: 0\n");
@@ -536,7 +537,7 @@ static void a_full_disk_keeps_whole_rows(void **state)
     study_destroy(s);
 }
 
-static void unwritable_results(void **state)
+static void unwritable_result_folders_are_reported(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -555,23 +556,27 @@ static void unwritable_results(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(every_cell_gets_its_repetitions, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_complete_study_costs_nothing, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(rounds_are_shuffled_blocks, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(every_cell_has_its_repetitions, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_complete_study_renders_nothing_and_rewrites_nothing, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(rounds_are_complete_shuffled_blocks, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(without_shuffling_cells_go_in_order, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(an_interrupted_study_goes_on, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(whoever_asks_is_told, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(pictures_are_told_too, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(torn_rows_are_measured_again, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(an_interrupted_study_resumes, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(the_callback_reports_the_progress_of_the_terminal, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(kept_images_are_reported_as_progress, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(incomplete_rows_are_measured_again, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(other_definitions_are_refused, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(studies_may_grow, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(repetitions_follow_the_interval, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(wrong_films_are_marked, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(cells_of_one_film_are_compared, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(pictures_and_maps_are_kept, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(two_processes_do_not_mix, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_full_disk_keeps_whole_rows, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(unwritable_results, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_study_resumes_with_more_repetitions_or_kept_images, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(repetitions_stop_at_the_relative_width_of_the_interval, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(rows_with_another_film_are_marked, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(cells_that_share_a_film_check_one_another, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(images_and_maps_are_kept, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_second_process_is_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_full_disk_leaves_only_complete_rows, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(unwritable_result_folders_are_reported, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests_name("study_run", tests, NULL, NULL);
 }

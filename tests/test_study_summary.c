@@ -1,3 +1,4 @@
+/* Tests of the summary of a study: medians, their intervals and the columns. */
 #include "study_fixture.h"
 #include "study/row_files.h"
 #include "study/summary.h"
@@ -58,12 +59,12 @@ static void write_rows(const fixture *f, const study *s, const written *rows, si
 
 static char *summary_of(const fixture *f, const study *s)
 {
-    char *text = NULL, said[DIAGNOSTIC_TEXT_MAX];
+    char *text = NULL, message[DIAGNOSTIC_TEXT_MAX];
     size_t size;
     diagnostic why = {0};
     FILE *out = open_memstream(&text, &size);
     if (study_summary(s, f->results, out, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     fclose(out);
     return text;
 }
@@ -80,18 +81,18 @@ static const char *field(const char *text, int line, const char *name)
             column = at;
     if (column < 0)
         fail_msg("no column %s", name);
-    char *wanted = NULL;
+    char *expected = NULL;
     for (int i = 0; i < line; i++)
-        wanted = strsep(&lines, "\n");
+        expected = strsep(&lines, "\n");
     const char *word = NULL;
     for (at = 0; at <= column; at++)
-        word = strsep(&wanted, "\t");
+        word = strsep(&expected, "\t");
     snprintf(value, sizeof value, "%s", word ? word : "(none)");
     free(copy);
     return value;
 }
 
-static void medians_and_intervals(void **state)
+static void a_summary_has_medians_and_their_intervals(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -134,7 +135,7 @@ static void medians_and_intervals(void **state)
     study_destroy(s);
 }
 
-static void columns_keep_their_order(void **state)
+static void columns_are_in_the_expected_order(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -161,7 +162,7 @@ static void columns_keep_their_order(void **state)
 }
 
 /* The summary of a real run, in a locale with a decimal comma if the system has one. */
-static void points_stay_points(void **state)
+static void decimal_points_do_not_depend_on_the_locale(void **state)
 {
     const fixture *f = *state;
     setlocale(LC_ALL, "de_DE.UTF-8");
@@ -187,9 +188,9 @@ static void points_stay_points(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(medians_and_intervals, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(columns_keep_their_order, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(points_stay_points, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_summary_has_medians_and_their_intervals, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(columns_are_in_the_expected_order, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(decimal_points_do_not_depend_on_the_locale, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests_name("study_summary", tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests of the append-only table file: incomplete ends, locks, full disks and unwritable paths. */
 #include "study_fixture.h"
 #include "study/table.h"
 #include <signal.h>
@@ -7,12 +8,12 @@ static const char header[] = "a,b\n";
 
 static table *open_table(const fixture *f)
 {
-    char path[400], said[DIAGNOSTIC_TEXT_MAX];
+    char path[400], message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     table *t = NULL;
     fixture_path(f, "rows.csv", path);
     if (table_open(path, header, &t, &why) != STATUS_OK)
-        fail_msg("%s", diagnostic_text(&why, said, sizeof said));
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return t;
 }
 
@@ -28,7 +29,7 @@ static void expect(const fixture *f, const char *name, const char *text)
     free(there);
 }
 
-static void rows_add_up(void **state)
+static void rows_are_appended(void **state)
 {
     const fixture *f = *state;
     table *t = open_table(f);
@@ -43,7 +44,7 @@ static void rows_add_up(void **state)
     assert_false(fixture_has(f, "rows.torn.csv"));
 }
 
-static void torn_ends_are_moved_aside(void **state)
+static void incomplete_rows_are_moved_to_the_torn_file(void **state)
 {
     const fixture *f = *state;
     fixture_write(f, "rows.csv", "a,b\n1,2\n3,");
@@ -58,7 +59,7 @@ static void torn_ends_are_moved_aside(void **state)
     expect(f, "rows.torn.csv", "3,\n5\n");
 }
 
-static void torn_headers_are_written_again(void **state)
+static void incomplete_headers_are_rewritten(void **state)
 {
     const fixture *f = *state;
     fixture_write(f, "rows.csv", "a,");
@@ -68,7 +69,7 @@ static void torn_headers_are_written_again(void **state)
 }
 
 /* Longer than the blocks in which the end is searched. */
-static void long_torn_ends(void **state)
+static void long_incomplete_ends_are_moved_to_the_torn_file(void **state)
 {
     const fixture *f = *state;
     char *text = malloc(20000);
@@ -83,7 +84,7 @@ static void long_torn_ends(void **state)
     free(text);
 }
 
-static void whole_lines_can_be_set_aside(void **state)
+static void complete_lines_can_be_moved_to_the_torn_file(void **state)
 {
     const fixture *f = *state;
     table *t = open_table(f);
@@ -112,7 +113,7 @@ static void one_writer_at_a_time(void **state)
 }
 
 /* A file size limit simulates a full disk: a write is short, then fails. */
-static void a_full_disk_leaves_rows_whole(void **state)
+static void a_full_disk_leaves_only_complete_lines(void **state)
 {
     const fixture *f = *state;
     struct rlimit before, small;
@@ -135,7 +136,7 @@ static void a_full_disk_leaves_rows_whole(void **state)
     expect(f, "rows.csv", "a,b\n1,2\n33,44\n");
 }
 
-static void unwritable_places(void **state)
+static void unwritable_paths_are_reported(void **state)
 {
     const fixture *f = *state;
     static const char *const places[] = {"scene.yaml/rows.csv", "nowhere/rows.csv"};
@@ -155,14 +156,15 @@ static void unwritable_places(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(rows_add_up, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(torn_ends_are_moved_aside, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(torn_headers_are_written_again, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(long_torn_ends, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(whole_lines_can_be_set_aside, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(rows_are_appended, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(incomplete_rows_are_moved_to_the_torn_file, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(incomplete_headers_are_rewritten, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(long_incomplete_ends_are_moved_to_the_torn_file, fixture_setup,
+                                        fixture_teardown),
+        cmocka_unit_test_setup_teardown(complete_lines_can_be_moved_to_the_torn_file, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(one_writer_at_a_time, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(a_full_disk_leaves_rows_whole, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(unwritable_places, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(a_full_disk_leaves_only_complete_lines, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(unwritable_paths_are_reported, fixture_setup, fixture_teardown),
     };
     return cmocka_run_group_tests_name("table", tests, NULL, NULL);
 }

@@ -1,3 +1,4 @@
+/* Tests of rays that start on a surface: its own root is exact, so that rays neither escape nor stick nor drift. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +10,6 @@
 #include "random_stream.h"
 #include "ray_fixture.h"
 #include "solid_reference.h"
-
-/* Tests of rays that start on a surface: its own root is exact, so that rays neither escape nor stick nor drift. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 #define assert_near(a, b, tolerance) assert_true(quad_abs((quad)(a) - (quad)(b)) <= (quad)(tolerance))
@@ -52,7 +51,7 @@ static int bounce_inside(const solid_shape *s, scene_geometry *a, one_ray r, int
 }
 
 /* Reflection in a sphere: all chords are 2 r cos_i, in one plane, for any number of reflections. */
-static void chords_of_a_sphere(void **state)
+static void chords_of_reflections_in_a_sphere_are_equal(void **state)
 {
     (void)state;
     uint64_t seed = 1;
@@ -80,7 +79,7 @@ static void chords_of_a_sphere(void **state)
 }
 
 /* In a round cylinder the chords between two hits with the side are 2 r cos_i / sin^2 of the angle to the axis. */
-static void chords_of_a_cylinder(void **state)
+static void chords_of_reflections_in_a_cylinder_equal_the_closed_form(void **state)
 {
     (void)state;
     uint64_t seed = 2;
@@ -143,7 +142,7 @@ static void nothing_escapes_from_a_closed_mirror(void **state)
 }
 
 /* Whispering gallery: at grazing incidence the chords are as short as 2e-9 radii and must still be positive. */
-static void grazing_chords_do_not_stick(void **state)
+static void grazing_chords_have_positive_lengths(void **state)
 {
     (void)state;
     uint64_t seed = 4;
@@ -165,7 +164,7 @@ static void grazing_chords_do_not_stick(void **state)
 
 /* A ray that leaves a convex solid, by reflection or refraction, never hits it again; a ray that enters leaves on the
  * far side, with the chord of quadruple precision. */
-static void convex_solids_are_met_twice_and_no_more(void **state)
+static void a_line_crosses_a_convex_solid_at_most_twice(void **state)
 {
     (void)state;
     static const solid_shape shapes[] = {
@@ -251,7 +250,7 @@ static void leaves_at_once(const scene_geometry *a, const one_hit *h, vec3 along
 
 /* A ray inside, on a face, that leans outwards by any amount leaves immediately: the root of its own face is exactly
  * zero. */
-static void the_root_of_the_starting_face_is_zero(void **state)
+static void the_root_of_the_starting_face_is_exactly_zero(void **state)
 {
     (void)state;
     on_all_faces(leaves_at_once);
@@ -264,7 +263,7 @@ static void stays_outside(const scene_geometry *a, const one_hit *h, vec3 along,
 }
 
 /* A ray outside, on a face, does not enter there, even if rounding turns it inwards: its set decides. */
-static void who_has_left_by_a_face_does_not_come_back(void **state)
+static void a_ray_outside_its_starting_face_does_not_enter_there(void **state)
 {
     (void)state;
     on_all_faces(stays_outside);
@@ -290,14 +289,14 @@ static void is_on_one_side_or_the_other(const scene_geometry *a, const one_hit *
 
 /* A ray that starts on a surface up to rounding, as from a camera: its set defines whether it is inside or outside, and
  * inwards it enters immediately or is inside already. It cannot pass without an event. */
-static void a_start_at_the_edge_is_on_one_side_or_the_other(void **state)
+static void a_ray_that_starts_on_a_surface_cannot_pass_without_an_event(void **state)
 {
     (void)state;
     on_all_faces(is_on_one_side_or_the_other);
 }
 
 /* A reflected ray on the wall of a cup's hollow crosses it to the other side, and leaves it by the open top. */
-static void a_cup_is_met_again_through_its_hollow(void **state)
+static void a_ray_across_a_cups_hollow_hits_the_opposite_wall(void **state)
 {
     (void)state;
     const solid_shape s = {
@@ -329,15 +328,15 @@ static void a_cup_is_met_again_through_its_hollow(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chords_of_a_sphere),
-        cmocka_unit_test(chords_of_a_cylinder),
+        cmocka_unit_test(chords_of_reflections_in_a_sphere_are_equal),
+        cmocka_unit_test(chords_of_reflections_in_a_cylinder_equal_the_closed_form),
         cmocka_unit_test(nothing_escapes_from_a_closed_mirror),
-        cmocka_unit_test(grazing_chords_do_not_stick),
-        cmocka_unit_test(convex_solids_are_met_twice_and_no_more),
-        cmocka_unit_test(the_root_of_the_starting_face_is_zero),
-        cmocka_unit_test(who_has_left_by_a_face_does_not_come_back),
-        cmocka_unit_test(a_start_at_the_edge_is_on_one_side_or_the_other),
-        cmocka_unit_test(a_cup_is_met_again_through_its_hollow),
+        cmocka_unit_test(grazing_chords_have_positive_lengths),
+        cmocka_unit_test(a_line_crosses_a_convex_solid_at_most_twice),
+        cmocka_unit_test(the_root_of_the_starting_face_is_exactly_zero),
+        cmocka_unit_test(a_ray_outside_its_starting_face_does_not_enter_there),
+        cmocka_unit_test(a_ray_that_starts_on_a_surface_cannot_pass_without_an_event),
+        cmocka_unit_test(a_ray_across_a_cups_hollow_hits_the_opposite_wall),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,14 +24,14 @@ static const char floor_scene[] =
     "  slab: {shape: box, size: [90, 0.6, 90], position: [0, 1.2, 0], transparency: 1, visible: off}\n";
 static const double a_per_m[3] = {0.1, 0.0, 0.3};
 
-static void expect(vec3 seen, double full, double way)
+static void expect(vec3 seen, double full, double length)
 {
-    assert_near(seen.x, full * exp(-a_per_m[0] * way), 1e-12);
-    assert_near(seen.y, full * exp(-a_per_m[1] * way), 1e-12);
-    assert_near(seen.z, full * exp(-a_per_m[2] * way), 1e-12);
+    assert_near(seen.x, full * exp(-a_per_m[0] * length), 1e-12);
+    assert_near(seen.y, full * exp(-a_per_m[1] * length), 1e-12);
+    assert_near(seen.z, full * exp(-a_per_m[2] * length), 1e-12);
 }
 
-static void paths_to_the_camera_and_to_the_light_both_count(void **state)
+static void paths_to_the_camera_and_to_the_light_are_both_attenuated(void **state)
 {
     (void)state;
     static const double distances[] = {0.5, 1.0, 5.0, 20.0, 100.0};
@@ -104,15 +104,15 @@ static void a_spectral_film_uses_the_coefficient_by_wavelength(void **state)
     const vec3 seen = look(s);
     set_all(s, "background.absorb_per_m=0,0,0 slab.visible=on slab.size=90,90,90 slab.position=0,44,0 "
                "slab.absorb_per_m=0.1,0,0.3 floor.priority=1");
-    const vec3 wanted = look(s);
+    const vec3 expected = look(s);
     assert_true(seen.x > 0.05);
-    assert_near(seen.x, wanted.x, 1e-11);
-    assert_near(seen.y, wanted.y, 1e-11);
-    assert_near(seen.z, wanted.z, 1e-11);
+    assert_near(seen.x, expected.x, 1e-11);
+    assert_near(seen.y, expected.y, 1e-11);
+    assert_near(seen.z, expected.z, 1e-11);
     scene_destroy(s);
 }
 
-static void the_sky_is_as_bright_as_given(void **state)
+static void the_sky_is_not_attenuated(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
@@ -194,12 +194,12 @@ static void the_probe_uses_the_coefficient_at_its_wavelength(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(paths_to_the_camera_and_to_the_light_both_count),
+        cmocka_unit_test(paths_to_the_camera_and_to_the_light_are_both_attenuated),
         cmocka_unit_test(the_scene_sets_the_length_of_a_unit),
         cmocka_unit_test(without_shadow_rays_the_path_to_the_light_is_not_absorbed),
         cmocka_unit_test(the_inside_of_solids_is_not_part_of_the_surroundings),
         cmocka_unit_test(a_spectral_film_uses_the_coefficient_by_wavelength),
-        cmocka_unit_test(the_sky_is_as_bright_as_given),
+        cmocka_unit_test(the_sky_is_not_attenuated),
         cmocka_unit_test(the_reflected_path_is_attenuated_too),
         cmocka_unit_test(the_refracted_path_is_attenuated_too),
         cmocka_unit_test(the_path_to_a_visible_light_is_attenuated),

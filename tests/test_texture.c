@@ -76,7 +76,7 @@ static const texture_wrap wraps[] = {TEXTURE_REPEAT, TEXTURE_MIRROR, TEXTURE_CLA
 static const texture_filter filters[] = {TEXTURE_NEAREST, TEXTURE_BILINEAR, TEXTURE_TRILINEAR};
 static const int sizes[][2] = {{1, 1}, {1, 8}, {7, 1}, {1, 2}, {3, 5}, {5, 3}, {8, 8}, {16, 4}, {13, 31}, {64, 33}};
 
-static void texel_centres_return_the_texels_the_lowest_row_first(void **state)
+static void texel_centres_return_the_texels_from_the_lowest_row(void **state)
 {
     (void)state;
     for (size_t s = 0; s < COUNT(sizes); s++) {
@@ -101,7 +101,7 @@ static void texel_centres_return_the_texels_the_lowest_row_first(void **state)
     }
 }
 
-static void the_lower_left_corner_of_the_picture_is_the_origin(void **state)
+static void the_lower_left_corner_of_the_image_is_the_origin(void **state)
 {
     (void)state;
     image *img = blank(4, 2);
@@ -116,7 +116,7 @@ static void the_lower_left_corner_of_the_picture_is_the_origin(void **state)
     texture_release(t);
 }
 
-static void between_centres_bilinear_is_the_mean_and_nearest_changes_at_the_edge(void **state)
+static void bilinear_interpolates_between_centres_and_nearest_changes_at_the_edge(void **state)
 {
     (void)state;
     image *img = blank(2, 2);
@@ -139,7 +139,7 @@ static void between_centres_bilinear_is_the_mean_and_nearest_changes_at_the_edge
 
 /* Texel (x, y) is 3 + 5 x - 2 y, in texels: u = (x + 1/2) / w gives 3 + 5 (u w - 1/2) - 2 (v h - 1/2) between the
  * centres. */
-static void a_linear_ramp_is_reproduced_between_the_outer_centres_and_is_flat_beyond(void **state)
+static void bilinear_filtering_reproduces_a_linear_ramp_and_clamps_outside(void **state)
 {
     (void)state;
     const int width = 16, height = 6;
@@ -168,7 +168,7 @@ static const struct {
     {TEXTURE_CLAMP, -5, {0, 0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3}},
 };
 
-static void wrap_modes_lay_the_texels_out_on_either_side_of_the_seams(void **state)
+static void wrap_modes_place_the_texels_on_both_sides_of_the_seams(void **state)
 {
     (void)state;
     image *along_u = blank(4, 1), *along_v = blank(1, 4);
@@ -205,7 +205,7 @@ static void wrap_modes_lay_the_texels_out_on_either_side_of_the_seams(void **sta
     image_destroy(along_v);
 }
 
-static void each_axis_has_a_wrap_mode_of_its_own(void **state)
+static void the_wrap_modes_of_the_axes_are_independent(void **state)
 {
     (void)state;
     image *img = blank(4, 4);
@@ -225,7 +225,7 @@ static void each_axis_has_a_wrap_mode_of_its_own(void **state)
     image_destroy(img);
 }
 
-static void a_mirrored_texture_is_symmetric_about_whole_numbers(void **state)
+static void a_mirrored_texture_is_symmetric_about_integers(void **state)
 {
     (void)state;
     for (size_t f = 0; f < COUNT(filters); f++) {
@@ -242,7 +242,7 @@ static void a_mirrored_texture_is_symmetric_about_whole_numbers(void **state)
     }
 }
 
-static void each_level_has_half_the_size_and_the_mean_of_the_picture(void **state)
+static void each_level_has_half_the_size_and_the_mean_of_the_image(void **state)
 {
     (void)state;
     for (size_t s = 0; s < COUNT(sizes); s++) {
@@ -269,7 +269,7 @@ static void each_level_has_half_the_size_and_the_mean_of_the_picture(void **stat
 }
 
 /* A row of five becomes two texels of 2.5 each, then their mean; one of three becomes one. */
-static void odd_sizes_are_shared_out_by_area(void **state)
+static void texels_of_odd_sizes_are_weighted_by_area(void **state)
 {
     (void)state;
     image *img = blank(5, 3);
@@ -311,7 +311,7 @@ static void write_then_read(const image *img, const char *ending, int bits, text
 
 /* IEC 61966-2-1: half the light of white is the sRGB value 1.055 (1/2)^(1/2.4) - 0.055 = 0.7354; averaging encoded
  * values would give 1/2, the light ((0.5 + 0.055) / 1.055)^2.4 = 0.2140. */
-static void a_checkerboard_from_far_is_half_the_light_of_white(void **state)
+static void a_distant_checkerboard_has_half_the_light_of_white(void **state)
 {
     (void)state;
     image *board = blank(64, 64), *grey = blank(1, 1);
@@ -337,7 +337,7 @@ static void a_checkerboard_from_far_is_half_the_light_of_white(void **state)
     image_destroy(grey);
 }
 
-static void a_linear_picture_gives_back_the_numbers_in_its_file(void **state)
+static void a_linear_image_returns_the_values_of_its_file(void **state)
 {
     (void)state;
     image *steps = blank(256, 1), *fine = blank(256, 2);
@@ -398,7 +398,7 @@ static void the_level_is_the_logarithm_of_the_footprint_in_texels(void **state)
     texture_release(t);
 }
 
-static void trilinear_has_no_step_where_the_level_changes(void **state)
+static void trilinear_filtering_is_continuous_between_levels(void **state)
 {
     (void)state;
     texture *t = owned(noise(24, 37), TEXTURE_REPEAT, TEXTURE_TRILINEAR);
@@ -417,7 +417,7 @@ static void trilinear_has_no_step_where_the_level_changes(void **state)
     texture_release(t);
 }
 
-static void a_larger_footprint_never_shows_more_contrast(void **state)
+static void contrast_never_increases_with_the_footprint(void **state)
 {
     (void)state;
     image *img = blank(64, 64);
@@ -458,7 +458,7 @@ static void samples_stay_within_the_range_of_the_texels(void **state)
     }
 }
 
-static void a_plain_picture_is_plain_everywhere(void **state)
+static void a_uniform_image_gives_a_uniform_texture(void **state)
 {
     (void)state;
     for (size_t k = 0; k < COUNT(sizes); k++) {
@@ -477,7 +477,7 @@ static void a_plain_picture_is_plain_everywhere(void **state)
     }
 }
 
-static void no_coordinate_and_no_footprint_is_too_strange(void **state)
+static void extreme_coordinates_and_footprints_are_valid(void **state)
 {
     (void)state;
     static const double strange[] = {(double)NAN,
@@ -505,7 +505,7 @@ static void no_coordinate_and_no_footprint_is_too_strange(void **state)
                 vec3 c = texture_sample(t, u, v, strange[j / COUNT(strange) / COUNT(strange)]);
                 assert_true(fmin(fmin(c.x, c.y), c.z) >= 0.0 && fmax(fmax(c.x, c.y), c.z) <= 1.0);
             }
-            /* as the header says */
+            /* as documented in the header */
             vec3 origin = texture_sample(t, 0.0, 0.0, 0.0),
                  far = texture_sample(t, wraps[i / 3] == TEXTURE_CLAMP ? 1.0 : 0.0, 0.0, 0.0);
             assert_same(texture_sample(t, (double)NAN, (double)NAN, (double)NAN), origin, 0.0);
@@ -516,7 +516,7 @@ static void no_coordinate_and_no_footprint_is_too_strange(void **state)
     }
 }
 
-static void what_is_no_number_is_refused_and_named(void **state)
+static void images_with_nan_or_without_pixels_are_refused(void **state)
 {
     (void)state;
     image *img = noise(5, 4);
@@ -566,7 +566,7 @@ static void owners_share_a_texture_and_the_last_one_releases_it(void **state)
     texture_release(t);
 }
 
-static void a_pyramid_takes_a_third_more_memory(void **state)
+static void mipmaps_take_a_third_more_memory(void **state)
 {
     (void)state;
     image *img = noise(256, 256);
@@ -585,26 +585,26 @@ static void a_pyramid_takes_a_third_more_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(texel_centres_return_the_texels_the_lowest_row_first),
-        cmocka_unit_test(the_lower_left_corner_of_the_picture_is_the_origin),
-        cmocka_unit_test(between_centres_bilinear_is_the_mean_and_nearest_changes_at_the_edge),
-        cmocka_unit_test(a_linear_ramp_is_reproduced_between_the_outer_centres_and_is_flat_beyond),
-        cmocka_unit_test(wrap_modes_lay_the_texels_out_on_either_side_of_the_seams),
-        cmocka_unit_test(each_axis_has_a_wrap_mode_of_its_own),
-        cmocka_unit_test(a_mirrored_texture_is_symmetric_about_whole_numbers),
-        cmocka_unit_test(each_level_has_half_the_size_and_the_mean_of_the_picture),
-        cmocka_unit_test(odd_sizes_are_shared_out_by_area),
-        cmocka_unit_test(a_checkerboard_from_far_is_half_the_light_of_white),
-        cmocka_unit_test(a_linear_picture_gives_back_the_numbers_in_its_file),
+        cmocka_unit_test(texel_centres_return_the_texels_from_the_lowest_row),
+        cmocka_unit_test(the_lower_left_corner_of_the_image_is_the_origin),
+        cmocka_unit_test(bilinear_interpolates_between_centres_and_nearest_changes_at_the_edge),
+        cmocka_unit_test(bilinear_filtering_reproduces_a_linear_ramp_and_clamps_outside),
+        cmocka_unit_test(wrap_modes_place_the_texels_on_both_sides_of_the_seams),
+        cmocka_unit_test(the_wrap_modes_of_the_axes_are_independent),
+        cmocka_unit_test(a_mirrored_texture_is_symmetric_about_integers),
+        cmocka_unit_test(each_level_has_half_the_size_and_the_mean_of_the_image),
+        cmocka_unit_test(texels_of_odd_sizes_are_weighted_by_area),
+        cmocka_unit_test(a_distant_checkerboard_has_half_the_light_of_white),
+        cmocka_unit_test(a_linear_image_returns_the_values_of_its_file),
         cmocka_unit_test(the_level_is_the_logarithm_of_the_footprint_in_texels),
-        cmocka_unit_test(trilinear_has_no_step_where_the_level_changes),
-        cmocka_unit_test(a_larger_footprint_never_shows_more_contrast),
+        cmocka_unit_test(trilinear_filtering_is_continuous_between_levels),
+        cmocka_unit_test(contrast_never_increases_with_the_footprint),
         cmocka_unit_test(samples_stay_within_the_range_of_the_texels),
-        cmocka_unit_test(a_plain_picture_is_plain_everywhere),
-        cmocka_unit_test(no_coordinate_and_no_footprint_is_too_strange),
-        cmocka_unit_test(what_is_no_number_is_refused_and_named),
+        cmocka_unit_test(a_uniform_image_gives_a_uniform_texture),
+        cmocka_unit_test(extreme_coordinates_and_footprints_are_valid),
+        cmocka_unit_test(images_with_nan_or_without_pixels_are_refused),
         cmocka_unit_test(owners_share_a_texture_and_the_last_one_releases_it),
-        cmocka_unit_test(a_pyramid_takes_a_third_more_memory),
+        cmocka_unit_test(mipmaps_take_a_third_more_memory),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -29,7 +29,7 @@ static const ray_tree *down(stage *g)
     return stage_ray(g, vec3_make(0.0, 30.0, 0.0), vec3_make(0.0, -1.0, 0.0));
 }
 
-static void a_tint_is_the_color_after_its_distance(void **state)
+static void a_tint_is_the_transmittance_after_its_distance(void **state)
 {
     (void)state;
     static const double distance[] = {0.05, 1.0, 3.0};
@@ -47,7 +47,7 @@ static void a_tint_is_the_color_after_its_distance(void **state)
 }
 
 /* On a slanted path the tint is that of the path's length, not of the pane's thickness. */
-static void a_slanted_path_is_tinted_more(void **state)
+static void tint_depends_on_the_length_of_the_path(void **state)
 {
     (void)state;
     stage g = pane(0.5, "");
@@ -81,7 +81,7 @@ static void black_transmits_nothing_and_white_all(void **state)
 }
 
 /* An opaque solid has no inside. */
-static void opaque_solids_tint_nothing(void **state)
+static void opaque_solids_have_no_tint(void **state)
 {
     (void)state;
     stage g = pane(0.5, "pane.transparency=0 pane.ambient=1");
@@ -143,11 +143,11 @@ static void light_through_a_tinted_pane_is_tinted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_tint_is_the_color_after_its_distance),
-        cmocka_unit_test(a_slanted_path_is_tinted_more),
+        cmocka_unit_test(a_tint_is_the_transmittance_after_its_distance),
+        cmocka_unit_test(tint_depends_on_the_length_of_the_path),
         cmocka_unit_test(absorption_and_tint_add_up),
         cmocka_unit_test(black_transmits_nothing_and_white_all),
-        cmocka_unit_test(opaque_solids_tint_nothing),
+        cmocka_unit_test(opaque_solids_have_no_tint),
         cmocka_unit_test(every_film_is_tinted),
         cmocka_unit_test(a_spectral_film_is_tinted_by_the_upsampled_color),
         cmocka_unit_test(light_through_a_tinted_pane_is_tinted),

@@ -1,3 +1,4 @@
+/* Tests of the machine's topology: placement of workers by each policy, on described machines and on this one. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -25,7 +26,7 @@ static void assert_places(const topology *machine, pin_policy policy, int count,
 }
 
 /* Two packages of four cores of two threads, numbered along the tree: core c has the units 2c and 2c + 1. */
-static void places_on_two_packages(void **state)
+static void placement_on_two_packages_by_each_policy(void **state)
 {
     (void)state;
     topology *machine = described("pack:2 core:4 pu:2");
@@ -48,7 +49,7 @@ static void places_on_two_packages(void **state)
 }
 
 /* As Linux numbers most machines: first the first threads of all cores, then the second ones. */
-static void places_follow_the_system_s_numbers(void **state)
+static void placement_uses_the_numbers_of_the_operating_system(void **state)
 {
     (void)state;
     topology *machine = described("pack:1 core:4 pu:2(indexes=0,4,1,5,2,6,3,7)");
@@ -59,7 +60,7 @@ static void places_follow_the_system_s_numbers(void **state)
     topology_destroy(machine);
 }
 
-static void more_workers_than_units_wrap(void **state)
+static void placement_wraps_around_with_more_workers_than_units(void **state)
 {
     (void)state;
     topology *machine = described("pack:1 core:2 pu:2");
@@ -107,7 +108,7 @@ static void scatter_uses_every_core_once_before_any_twice(void **state)
 }
 
 /* Package 0 keeps one thread a core, package 1 both: by weight alone, package 1 would take 5 of 8 workers. */
-static void scatter_is_fair_where_cores_are_unlike(void **state)
+static void scatter_is_balanced_on_unequal_packages(void **state)
 {
     (void)state;
     topology *machine = described("pack:2 core:4 pu:2");
@@ -122,7 +123,7 @@ static void scatter_is_fair_where_cores_are_unlike(void **state)
     topology_destroy(machine);
 }
 
-static void restricted_to_a_part(void **state)
+static void placement_uses_only_the_restricted_units(void **state)
 {
     (void)state;
     topology *machine = described("pack:2 core:4 pu:2");
@@ -143,7 +144,7 @@ static void restricted_to_a_part(void **state)
     topology_destroy(machine);
 }
 
-static void bad_descriptions_are_refused(void **state)
+static void invalid_descriptions_are_refused(void **state)
 {
     (void)state;
     static const char *const bad[] = {"", "pack:", "pack:0 pu:2", "cup:2 rod:1", "pu:2 core:2", "pack:2 core:x"};
@@ -176,7 +177,7 @@ static void texts_describe_the_machine(void **state)
     topology_destroy(machine);
 }
 
-static void this_machine_binds_threads(void **state)
+static void threads_are_bound_on_this_machine(void **state)
 {
     (void)state;
     topology *machine = NULL;
@@ -205,7 +206,7 @@ static void this_machine_binds_threads(void **state)
     topology_destroy(machine);
 }
 
-static void the_process_s_binding_is_respected(void **state)
+static void the_binding_of_the_process_is_respected(void **state)
 {
     (void)state;
     cpu_set_t own, one;
@@ -233,16 +234,16 @@ static void the_process_s_binding_is_respected(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(places_on_two_packages),
-        cmocka_unit_test(places_follow_the_system_s_numbers),
-        cmocka_unit_test(more_workers_than_units_wrap),
+        cmocka_unit_test(placement_on_two_packages_by_each_policy),
+        cmocka_unit_test(placement_uses_the_numbers_of_the_operating_system),
+        cmocka_unit_test(placement_wraps_around_with_more_workers_than_units),
         cmocka_unit_test(scatter_uses_every_core_once_before_any_twice),
-        cmocka_unit_test(scatter_is_fair_where_cores_are_unlike),
-        cmocka_unit_test(restricted_to_a_part),
-        cmocka_unit_test(bad_descriptions_are_refused),
+        cmocka_unit_test(scatter_is_balanced_on_unequal_packages),
+        cmocka_unit_test(placement_uses_only_the_restricted_units),
+        cmocka_unit_test(invalid_descriptions_are_refused),
         cmocka_unit_test(texts_describe_the_machine),
-        cmocka_unit_test(this_machine_binds_threads),
-        cmocka_unit_test(the_process_s_binding_is_respected),
+        cmocka_unit_test(threads_are_bound_on_this_machine),
+        cmocka_unit_test(the_binding_of_the_process_is_respected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,7 +28,7 @@ static int walk(const scene_geometry *a, one_ray r, one_hit *hits, int most)
     return n;
 }
 
-static void a_line_through_both_tubes_crosses_four_times(void **state)
+static void a_line_through_both_tubes_has_four_crossings(void **state)
 {
     (void)state;
     const solid_shape s = torus_of(1.0, 0.25);
@@ -53,13 +53,13 @@ static void a_line_through_both_tubes_crosses_four_times(void **state)
 
 /* Every crossing of a random line, from hit to hit (including starts on the surface), against quadruple precision, and
  * its point's distance from the surface in units of its bound. */
-static void crossings_agree_with_quadruple_precision(void **state)
+static void crossings_of_random_lines_agree_with_quadruple_precision(void **state)
 {
     (void)state;
     enum { RAYS = 120000 };
     uint64_t seed = 1;
     double worst = 0.0, worst_along = 0.0;
-    long hit_primitive = 0, met_four = 0, unlike = 0;
+    long crossings = 0, with_four = 0, unlike = 0;
     for (int ray = 0; ray < RAYS; ray++) {
         const double R = exp(random_real(&seed, -3.0, 3.0));
         solid_shape s = torus_of(R, R * (1.0 - exp(random_real(&seed, -6.0, -0.002))));
@@ -89,20 +89,20 @@ static void crossings_agree_with_quadruple_precision(void **state)
                 worst_along = fmax(worst_along, (double)(quad_abs(passed - t[k]) / bound));
             }
         }
-        hit_primitive += n;
-        met_four += n == 4;
+        crossings += n;
+        with_four += n == 4;
         scene_geometry_destroy(a);
     }
-    print_message(
-        "%d rays, %ld crossings, %ld rays with four, %ld grazing ones unlike; points are off by %.3f of their bound, "
-        "distances by %.3f\n",
-        RAYS, hit_primitive, met_four, unlike, worst, worst_along);
+    print_message("%d rays, %ld crossings, %ld rays with four, %ld grazing ones that differ; errors are at most %.3f "
+                  "of the bound "
+                  "for points, %.3f for distances\n",
+                  RAYS, crossings, with_four, unlike, worst, worst_along);
     assert_true(worst <= 1.0 && worst_along <= 1.0);
-    assert_true(met_four > RAYS / 100 && hit_primitive > RAYS / 2);
+    assert_true(with_four > RAYS / 100 && crossings > RAYS / 2);
 }
 
 /* Pappus and Guldin: 2 pi^2 R r^2. */
-static void its_volume_is_that_of_pappus(void **state)
+static void the_volume_of_a_torus_equals_that_of_pappus(void **state)
 {
     (void)state;
     enum { POINTS = 200000 };
@@ -121,7 +121,7 @@ static void its_volume_is_that_of_pappus(void **state)
 
 /* A ball that fills the hole overlaps the tube, which has the higher priority: no air between them, and the tube's
  * inner side is an interface between the two. */
-static void what_reaches_into_the_tube_is_hidden_there(void **state)
+static void a_lower_priority_is_hidden_inside_the_tube(void **state)
 {
     (void)state;
     const solid_shape shapes[2] = {torus_of(1.0, 0.25), {.kind = SHAPE_SPHERE, .radius = 0.9}};
@@ -148,7 +148,7 @@ static void what_reaches_into_the_tube_is_hidden_there(void **state)
 
 /* Light through both tubes is attenuated by each interface; an opaque torus blocks with either tube, and lets light
  * through its hole. */
-static void shadows_see_both_tubes(void **state)
+static void shadows_include_both_tubes_of_a_torus(void **state)
 {
     (void)state;
     const solid_shape s = torus_of(1.0, 0.25);
@@ -194,7 +194,7 @@ static void nothing_escapes_from_a_mirrored_tube(void **state)
 
 /* A start on the surface, with a set that states the side: inside and directed outwards it leaves at once, and outside
  * it enters no sooner than it has left. */
-static void the_set_is_believed_on_its_own_surface(void **state)
+static void the_region_set_decides_on_the_starting_surface(void **state)
 {
     (void)state;
     uint64_t seed = 4;
@@ -220,7 +220,7 @@ static void the_set_is_believed_on_its_own_surface(void **state)
     scene_geometry_destroy(a);
 }
 
-static void a_ring_without_a_hole_is_refused(void **state)
+static void a_torus_without_a_hole_is_refused(void **state)
 {
     (void)state;
     solid_shape s = torus_of(1.0, 1.0);
@@ -236,14 +236,14 @@ static void a_ring_without_a_hole_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_line_through_both_tubes_crosses_four_times),
-        cmocka_unit_test(crossings_agree_with_quadruple_precision),
-        cmocka_unit_test(its_volume_is_that_of_pappus),
-        cmocka_unit_test(what_reaches_into_the_tube_is_hidden_there),
-        cmocka_unit_test(shadows_see_both_tubes),
+        cmocka_unit_test(a_line_through_both_tubes_has_four_crossings),
+        cmocka_unit_test(crossings_of_random_lines_agree_with_quadruple_precision),
+        cmocka_unit_test(the_volume_of_a_torus_equals_that_of_pappus),
+        cmocka_unit_test(a_lower_priority_is_hidden_inside_the_tube),
+        cmocka_unit_test(shadows_include_both_tubes_of_a_torus),
         cmocka_unit_test(nothing_escapes_from_a_mirrored_tube),
-        cmocka_unit_test(the_set_is_believed_on_its_own_surface),
-        cmocka_unit_test(a_ring_without_a_hole_is_refused),
+        cmocka_unit_test(the_region_set_decides_on_the_starting_surface),
+        cmocka_unit_test(a_torus_without_a_hole_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,7 +41,7 @@ static void close_stage(stage *st)
     scene_destroy(st->s);
 }
 
-static void the_last_returned_is_taken_first(void **state)
+static void the_tracer_returned_last_is_reused_first(void **state)
 {
     (void)state;
     stage st;
@@ -72,7 +72,7 @@ static void trace_a_pixel(tracer *t)
     assert_int_equal(begun, 1);
 }
 
-static void counts_last_for_one_frame(void **state)
+static void counters_are_reset_for_each_frame(void **state)
 {
     (void)state;
     need_counters();
@@ -115,7 +115,7 @@ static void *work(void *context)
 }
 
 /* ThreadSanitizer reports it if two workers ever hold the same tracer. */
-static void workers_share_tracers(void **state)
+static void concurrent_workers_never_share_a_tracer(void **state)
 {
     (void)state;
     need_counters();
@@ -136,9 +136,9 @@ static void workers_share_tracers(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_last_returned_is_taken_first),
-        cmocka_unit_test(counts_last_for_one_frame),
-        cmocka_unit_test(workers_share_tracers),
+        cmocka_unit_test(the_tracer_returned_last_is_reused_first),
+        cmocka_unit_test(counters_are_reset_for_each_frame),
+        cmocka_unit_test(concurrent_workers_never_share_a_tracer),
     };
     return cmocka_run_group_tests_name("tracer_pool", tests, NULL, NULL);
 }

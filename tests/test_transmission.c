@@ -29,13 +29,13 @@ static const char pane_scene[] =
 static const double sky[3] = {0.1, 0.2, 0.3}, around[3] = {0.5, 1.0, 2.0}, lamp[3] = {2.0, 1.0, 0.5},
                     color[3] = {0.9, 0.6, 0.3};
 
-/* eye, way and behind: transmittances of the paths from the camera, to the lamp, and through the pane's medium. */
-static void expect_whitteds_sum(const scene *s, const double *eye, const double *way, const double *behind)
+/* eye, to_lamp and behind: transmittances of the paths from the camera, to the lamp, and through the pane's medium. */
+static void expect_whitteds_sum(const scene *s, const double *eye, const double *to_lamp, const double *behind)
 {
     const vec3 seen = look(s);
     const double seen_by[3] = {seen.x, seen.y, seen.z};
     for (int c = 0; c < 3; c++) {
-        const double I_d = lamp[c] * way[c] * 0.8, I_s = lamp[c] * way[c] * 0.48 * 0.48 * 0.48, I_r = sky[c];
+        const double I_d = lamp[c] * to_lamp[c] * 0.8, I_s = lamp[c] * to_lamp[c] * 0.48 * 0.48 * 0.48, I_r = sky[c];
         const double I_t = behind[c] * sqrt(color[c]) * (0.4 * around[c] + 0.5 * sky[c]);
         const double I = 0.1 * around[c] * color[c] + 0.2 * I_d * color[c] + 0.15 * I_s + 0.25 * I_r + 0.3 * I_t;
         assert_near(seen_by[c], eye[c] * I, 1e-12);
@@ -89,8 +89,8 @@ static void simple_transmission_is_not_refracted(void **state)
             const ray_tree *tree = stage_way(&g, from, to, -1);
             assert_int_equal(tree->count, 3);
             const ray_node *last = &tree->node[2];
-            const vec3 wanted = vec3_add(from, vec3_scale(to, 10.0 / to.z));
-            assert_true((apart(last->hit.point, wanted) < 1e-12) == simple);
+            const vec3 expected = vec3_add(from, vec3_scale(to, 10.0 / to.z));
+            assert_true((apart(last->hit.point, expected) < 1e-12) == simple);
             assert_true((memcmp(&last->direction, &tree->node[0].direction, sizeof last->direction) == 0) == simple);
             if (simple) {
                 assert_near(last->throughput[0], 0.64, 1e-15);
@@ -141,7 +141,7 @@ static void under_simple_transmission_equal_indices_are_two_surfaces(void **stat
 
 /* Every integrator with branches: the sky through a ball, constant r and t at two surfaces, to 1e-9 of the whole
  * series. */
-static void simple_transmission_with_spectra_and_random_paths(void **state)
+static void simple_transmission_conserves_light_with_spectra_and_random_paths(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 60, transmission: simple, beyond: black}\n"
@@ -212,7 +212,7 @@ static void an_index_above_ten_thousand_is_a_mirror(void **state)
 }
 
 /* At 10000 itself Fresnel still transmits some light. */
-static void an_index_of_ten_thousand_is_not_a_mirror_yet(void **state)
+static void an_index_of_ten_thousand_still_transmits(void **state)
 {
     (void)state;
     stage g = stage_of(mirror_scene, "pane.ior=10000 pane.reflectivity=0");
@@ -228,7 +228,7 @@ static void an_index_of_ten_thousand_is_not_a_mirror_yet(void **state)
 }
 
 /* It is a mirror at any priority: under glass that overlaps it all light is reflected; and it casts a shadow. */
-static void a_mirror_by_index_is_opaque_to_glass_and_light(void **state)
+static void an_index_mirror_reflects_under_glass_and_casts_shadows(void **state)
 {
     (void)state;
     scene *s = scene_from("render: {width: 1, height: 1, depth: 12}\n"
@@ -262,11 +262,11 @@ int main(void)
         cmocka_unit_test(simple_transmission_is_not_refracted),
         cmocka_unit_test(simple_transmission_has_no_total_reflection),
         cmocka_unit_test(under_simple_transmission_equal_indices_are_two_surfaces),
-        cmocka_unit_test(simple_transmission_with_spectra_and_random_paths),
+        cmocka_unit_test(simple_transmission_conserves_light_with_spectra_and_random_paths),
         cmocka_unit_test(weights_above_one_and_polarisation_are_refused),
         cmocka_unit_test(an_index_above_ten_thousand_is_a_mirror),
-        cmocka_unit_test(an_index_of_ten_thousand_is_not_a_mirror_yet),
-        cmocka_unit_test(a_mirror_by_index_is_opaque_to_glass_and_light),
+        cmocka_unit_test(an_index_of_ten_thousand_still_transmits),
+        cmocka_unit_test(an_index_mirror_reflects_under_glass_and_casts_shadows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,16 +39,16 @@ static double (*daylight_weights(void))[3]
 /* CIEDE2000 between a colour and its spectrum as seen under D65; checks that the spectrum is a valid reflectance. */
 static double round_trip(double (*weights)[3], const upsampled_spectrum *l, const double rgb[3])
 {
-    double xyz[3] = {0.0, 0.0, 0.0}, wanted[3], lab[3], wanted_lab[3];
+    double xyz[3] = {0.0, 0.0, 0.0}, expected[3], lab[3], wanted_lab[3];
     for (int k = 0; k < WAVELENGTHS; k++) {
         double s = upsampled_reflectance(l, wavelength_nm(k));
         assert_true(s >= 0.0 && s <= 1.0);
         for (int i = 0; i < 3; i++)
             xyz[i] += l->scale * s * weights[k][i];
     }
-    linear_srgb_to_xyz(rgb, wanted);
+    linear_srgb_to_xyz(rgb, expected);
     lab_from_xyz(xyz, lab);
-    lab_from_xyz(wanted, wanted_lab);
+    lab_from_xyz(expected, wanted_lab);
     double difference = color_difference_2000(lab, wanted_lab);
     assert_true(isfinite(difference));
     return difference;
@@ -75,7 +75,7 @@ static void spectra_are_sigmoids_of_a_parabola(void **state)
 }
 
 /* ColorChecker Classic, sRGB under D65 (X-Rite; Pascale, "RGB coordinates of the Macbeth ColorChecker", 2006). */
-static void color_checker_comes_back(void **state)
+static void the_color_checker_round_trips(void **state)
 {
     (void)state;
     static const unsigned char patches[24][3] = {
@@ -97,7 +97,7 @@ static void color_checker_comes_back(void **state)
 }
 
 /* Every 32nd step of the sRGB cube, its corners and edges too. */
-static void whole_cube_comes_back(void **state)
+static void the_srgb_cube_round_trips(void **state)
 {
     (void)state;
     double(*weights)[3] = daylight_weights(), worst = 0.0, sum = 0.0, worst_corner = 0.0;
@@ -119,7 +119,7 @@ static void whole_cube_comes_back(void **state)
 }
 
 /* The 8-bit steps next to black and white, where the fit is stiffest. */
-static void neighbours_of_black_and_white_come_back(void **state)
+static void colours_next_to_black_and_white_round_trip(void **state)
 {
     (void)state;
     static const int ends[] = {0, 1, 2, 253, 254, 255};
@@ -135,8 +135,8 @@ static void neighbours_of_black_and_white_come_back(void **state)
     assert_true(worst < 0.01);
 }
 
-/* Colours that occur in no image; nothing may break, and the difference must be invisible (1 is just visible). */
-static void far_corners_stay_finite(void **state)
+/* Extreme colours: the spectra must be valid, and the colour difference invisible (1 is just visible). */
+static void extreme_colours_give_finite_spectra(void **state)
 {
     (void)state;
     static const double ends[] = {0.0,  1e-310, 1e-40, 1e-15,      1e-9,        1e-6,
@@ -156,7 +156,7 @@ static void far_corners_stay_finite(void **state)
     assert_true(worst < 0.02);
 }
 
-static void greys_are_constant(void **state)
+static void spectra_of_greys_are_constant(void **state)
 {
     (void)state;
     for (int k = 0; k <= 1000; k++) {
@@ -173,7 +173,7 @@ static void greys_are_constant(void **state)
         assert_true(upsampled_reflectance(&dark, nm) == 0.0 && upsampled_reflectance(&light, nm) == 1.0);
 }
 
-static void out_of_range_is_taken_to_the_range(void **state)
+static void values_out_of_range_are_clamped(void **state)
 {
     (void)state;
     const double wild[3] = {-3.0, (double)NAN, 7.0}, tame[3] = {0.0, 0.0, 1.0};
@@ -186,7 +186,7 @@ static void out_of_range_is_taken_to_the_range(void **state)
     assert_true(a.scale == 1.0 && c.scale == d.scale && isfinite(infinite.scale));
 }
 
-static void primaries_reflect_where_their_hue_is(void **state)
+static void primaries_reflect_their_hue_and_little_else(void **state)
 {
     (void)state;
     upsampled_spectrum red = upsample_reflectance((double[3]){1.0, 0.0, 0.0}),
@@ -198,7 +198,7 @@ static void primaries_reflect_where_their_hue_is(void **state)
     assert_true(upsampled_reflectance(&blue, 440.0) > 0.9 && upsampled_reflectance(&blue, 560.0) < 0.05);
 }
 
-static void white_light_is_daylight_exactly(void **state)
+static void the_spectrum_of_white_light_is_exactly_daylight(void **state)
 {
     (void)state;
     static const double powers[] = {1.0, 0.25, 3.7, 1e-6, 12345.678};
@@ -211,7 +211,7 @@ static void white_light_is_daylight_exactly(void **state)
     assert_true(upsampled_emission(&none, 555.0) == 0.0);
 }
 
-static void emission_is_linear_in_its_scale(void **state)
+static void emission_is_proportional_to_its_scale(void **state)
 {
     (void)state;
     upsampled_spectrum one = upsample_emission((double[3]){0.9, 0.4, 0.1}),
@@ -225,7 +225,7 @@ static void emission_is_linear_in_its_scale(void **state)
 }
 
 /* Lights of any power keep their colour: the components relative to the largest. */
-static void lights_come_back(void **state)
+static void colours_of_lights_round_trip(void **state)
 {
     (void)state;
     double(*weights)[3] = daylight_weights(), worst = 0.0;
@@ -251,16 +251,16 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spectra_are_sigmoids_of_a_parabola),
-        cmocka_unit_test(color_checker_comes_back),
-        cmocka_unit_test(whole_cube_comes_back),
-        cmocka_unit_test(neighbours_of_black_and_white_come_back),
-        cmocka_unit_test(far_corners_stay_finite),
-        cmocka_unit_test(greys_are_constant),
-        cmocka_unit_test(out_of_range_is_taken_to_the_range),
-        cmocka_unit_test(primaries_reflect_where_their_hue_is),
-        cmocka_unit_test(white_light_is_daylight_exactly),
-        cmocka_unit_test(emission_is_linear_in_its_scale),
-        cmocka_unit_test(lights_come_back),
+        cmocka_unit_test(the_color_checker_round_trips),
+        cmocka_unit_test(the_srgb_cube_round_trips),
+        cmocka_unit_test(colours_next_to_black_and_white_round_trip),
+        cmocka_unit_test(extreme_colours_give_finite_spectra),
+        cmocka_unit_test(spectra_of_greys_are_constant),
+        cmocka_unit_test(values_out_of_range_are_clamped),
+        cmocka_unit_test(primaries_reflect_their_hue_and_little_else),
+        cmocka_unit_test(the_spectrum_of_white_light_is_exactly_daylight),
+        cmocka_unit_test(emission_is_proportional_to_its_scale),
+        cmocka_unit_test(colours_of_lights_round_trip),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

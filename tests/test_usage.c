@@ -61,7 +61,7 @@ static void proc_stat_of_other_machines(void **state)
     assert_false(proc_stat_parse("cpu  1 2 3 4\n", 0.0, &machine));
 }
 
-static void fields_are_found(void **state)
+static void fields_of_proc_files_are_found(void **state)
 {
     (void)state;
     static const char text[] = "Name:\tcuvette\nVmHWM:\t    1234 kB\nVmHWMx:\t 9 kB\nEmpty:\n";
@@ -76,7 +76,7 @@ static void fields_are_found(void **state)
     assert_int_equal(strlen(read), sizeof read - 1);
 }
 
-static void share_of_others(void **state)
+static void the_share_of_other_processes_is_computed(void **state)
 {
     (void)state;
     /* 2 s on 4 units are 8 s; 3 of the 5 busy seconds belong to other processes */
@@ -101,7 +101,7 @@ static void *burn(void *context)
     return NULL;
 }
 
-static void usage_counts_all_threads(void **state)
+static void cpu_time_includes_all_threads(void **state)
 {
     (void)state;
     usage before = usage_now();
@@ -122,7 +122,7 @@ static void usage_counts_all_threads(void **state)
     assert_true(isnan(share) || (share >= 0.0 && share <= 1.0));
 }
 
-static void absent_switches_stay_absent(void **state)
+static void missing_values_stay_missing_in_a_difference(void **state)
 {
     (void)state;
     usage before = usage_now();
@@ -133,7 +133,7 @@ static void absent_switches_stay_absent(void **state)
     assert_true(isnan(d.machine_busy_s));
 }
 
-static void peak_memory_is_remembered(void **state)
+static void peak_memory_does_not_decrease_after_freeing(void **state)
 {
     (void)state;
     enum { BYTES = 48 << 20 };
@@ -154,7 +154,7 @@ static void assert_grows(int64_t first, int64_t second)
     assert_true((first == -1 && second == -1) || (first >= 0 && second > first));
 }
 
-static void hardware_counts_grow_or_are_absent(void **state)
+static void hardware_counters_increase_or_are_unavailable(void **state)
 {
     (void)state;
     hardware_counter *counter = hardware_counter_create();
@@ -214,10 +214,10 @@ static char *make_root(char *root, size_t size)
     return root;
 }
 
-static void a_disturbed_machine_is_described(void **state)
+static void disturbances_of_the_machine_are_reported(void **state)
 {
     (void)state;
-    char root[256], said[2048] = "";
+    char root[256], message[2048] = "";
     make_root(root, sizeof root);
     put(root, "/sys/devices/system/cpu/cpufreq/policy0/scaling_governor", "performance\n");
     put(root, "/sys/devices/system/cpu/cpufreq/policy4/scaling_governor", "powersave\n");
@@ -227,21 +227,21 @@ static void a_disturbed_machine_is_described(void **state)
     put(root, "/proc/cpuinfo", "processor\t: 0\nflags\t\t: fpu sse2 hypervisor lahf_lm\n");
     put(root, "/proc/loadavg", "3.25 1.00 0.50 1/200 4242\n");
     put(root, "/proc/meminfo", "MemTotal: 8000000 kB\nSwapTotal:  4096000 kB\nSwapFree:  1024000 kB\n");
-    disturbances_of_machine(root, collect, said);
-    assert_string_equal(said, "governor powersave\n"
-                              "turbo on\n"
-                              "threads share cores (SMT on)\n"
-                              "virtual machine: its hypervisor may run others on the same cores\n"
-                              "control group limits the process to 1.5 units\n"
-                              "load 3.2\n"
-                              "swap in use, 3000 MiB\n");
+    disturbances_of_machine(root, collect, message);
+    assert_string_equal(message, "governor powersave\n"
+                                 "turbo on\n"
+                                 "threads share cores (SMT on)\n"
+                                 "virtual machine: its hypervisor may run others on the same cores\n"
+                                 "control group limits the process to 1.5 units\n"
+                                 "load 3.2\n"
+                                 "swap in use, 3000 MiB\n");
     assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
 }
 
-static void a_quiet_machine_reports_nothing(void **state)
+static void no_disturbances_are_reported_for_a_quiet_machine(void **state)
 {
     (void)state;
-    char root[256], said[2048] = "";
+    char root[256], message[2048] = "";
     make_root(root, sizeof root);
     put(root, "/sys/devices/system/cpu/cpufreq/policy0/scaling_governor", "performance\n");
     put(root, "/sys/devices/system/cpu/intel_pstate/no_turbo", "1\n");
@@ -251,19 +251,19 @@ static void a_quiet_machine_reports_nothing(void **state)
     put(root, "/proc/cpuinfo", "processor\t: 0\nflags\t\t: fpu sse2\nbugs : hypervisor\n");
     put(root, "/proc/loadavg", "0.12 1.00 0.50 1/200 4242\n");
     put(root, "/proc/meminfo", "MemTotal: 8000000 kB\nSwapTotal:  4096000 kB\nSwapFree:  4096000 kB\n");
-    disturbances_of_machine(root, collect, said);
-    assert_string_equal(said, "");
+    disturbances_of_machine(root, collect, message);
+    assert_string_equal(message, "");
     assert_int_equal(nftw(root, remove_entry, 8, FTW_DEPTH | FTW_PHYS), 0);
-    disturbances_of_machine("/nowhere", collect, said); /* a system without /proc and /sys */
-    assert_string_equal(said, "");
+    disturbances_of_machine("/nowhere", collect, message); /* a system without /proc and /sys */
+    assert_string_equal(message, "");
 }
 
-static void this_machine_is_examined(void **state)
+static void disturbances_of_this_machine_are_reported_as_lines(void **state)
 {
     (void)state;
-    char said[4096] = "";
-    usage_disturbances(0.05, collect, said);
-    assert_null(strstr(said, "\n\n"));
+    char message[4096] = "";
+    usage_disturbances(0.05, collect, message);
+    assert_null(strstr(message, "\n\n"));
 }
 
 int main(void)
@@ -271,15 +271,15 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(proc_stat_is_read),
         cmocka_unit_test(proc_stat_of_other_machines),
-        cmocka_unit_test(fields_are_found),
-        cmocka_unit_test(share_of_others),
-        cmocka_unit_test(usage_counts_all_threads),
-        cmocka_unit_test(absent_switches_stay_absent),
-        cmocka_unit_test(peak_memory_is_remembered),
-        cmocka_unit_test(hardware_counts_grow_or_are_absent),
-        cmocka_unit_test(a_disturbed_machine_is_described),
-        cmocka_unit_test(a_quiet_machine_reports_nothing),
-        cmocka_unit_test(this_machine_is_examined),
+        cmocka_unit_test(fields_of_proc_files_are_found),
+        cmocka_unit_test(the_share_of_other_processes_is_computed),
+        cmocka_unit_test(cpu_time_includes_all_threads),
+        cmocka_unit_test(missing_values_stay_missing_in_a_difference),
+        cmocka_unit_test(peak_memory_does_not_decrease_after_freeing),
+        cmocka_unit_test(hardware_counters_increase_or_are_unavailable),
+        cmocka_unit_test(disturbances_of_the_machine_are_reported),
+        cmocka_unit_test(no_disturbances_are_reported_for_a_quiet_machine),
+        cmocka_unit_test(disturbances_of_this_machine_are_reported_as_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

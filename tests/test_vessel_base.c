@@ -87,7 +87,7 @@ static double radiance(const char *depth, double entry_y)
     return value;
 }
 
-static void the_base_shows_the_sky(void **state)
+static void the_base_of_the_vessel_reflects_the_sky(void **state)
 {
     (void)state;
     for (double entry_y = 0.32; entry_y < 0.46; entry_y += 0.04) {
@@ -103,6 +103,6 @@ static void the_base_shows_the_sky(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_base_shows_the_sky)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_base_of_the_vessel_reflects_the_sky)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

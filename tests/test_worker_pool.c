@@ -76,7 +76,7 @@ static void persistent_threads_are_reused(void **state)
     worker_pool_destroy(p);
 }
 
-static void many_runs_in_a_row(void **state)
+static void a_pool_runs_many_tasks_in_sequence(void **state)
 {
     (void)state;
     static job j;
@@ -84,10 +84,10 @@ static void many_runs_in_a_row(void **state)
     assert_non_null(p);
     for (int i = 0; i < 3000; i++)
         assert_int_equal(worker_pool_run(p, 1 + i % 9, true, note, NULL, 0.0, &j, NULL), STATUS_OK);
-    int wanted = 0;
+    int expected = 0;
     for (int i = 0; i < 3000; i++)
-        wanted += 1 + i % 9;
-    assert_int_equal(atomic_load(&j.total), wanted);
+        expected += 1 + i % 9;
+    assert_int_equal(atomic_load(&j.total), expected);
     worker_pool_destroy(p);
 }
 
@@ -119,7 +119,7 @@ static void watch(void *context)
 }
 
 /* The workers wait until the watcher has been called twice: it is called while they run, on the calling thread. */
-static void the_watcher_is_called_while_workers_run(void **state)
+static void the_progress_callback_runs_while_workers_run(void **state)
 {
     (void)state;
     static job j;
@@ -151,9 +151,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_worker_runs_once),
         cmocka_unit_test(persistent_threads_are_reused),
-        cmocka_unit_test(many_runs_in_a_row),
+        cmocka_unit_test(a_pool_runs_many_tasks_in_sequence),
         cmocka_unit_test(persistent_and_new_threads_may_alternate),
-        cmocka_unit_test(the_watcher_is_called_while_workers_run),
+        cmocka_unit_test(the_progress_callback_runs_while_workers_run),
         cmocka_unit_test(an_idle_pool_can_be_destroyed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

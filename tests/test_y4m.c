@@ -73,7 +73,7 @@ static void check_colour(int width, int height, double r, double g, double b, in
  * to 1. BT.601: K = 0.299, 0.587, 0.114. Red: Y 81.48, Cb 128 - 224 0.299 / 1.772 = 90.20, Cr 240. Green: Y 144.55, Cb
  * 128 - 224 0.587 / 1.772 = 53.80, Cr 128 - 224 0.587 / 1.402 = 34.21. Blue: Y 40.97, Cb 240, Cr 128 - 224 0.114
  * / 1.402 = 109.79. */
-static void colours_of_low_pictures_are_bt601(void **state)
+static void colours_of_low_images_are_bt601(void **state)
 {
     (void)state;
     check_colour(4, 2, 1, 1, 1, 235, 128, 128);
@@ -87,7 +87,7 @@ static void colours_of_low_pictures_are_bt601(void **state)
 /* BT.709: K = 0.2126, 0.7152, 0.0722. Red: Y 62.56, Cb 128 - 224 0.2126 / 1.8556 = 102.34. Green: Y 172.63, Cb 128 -
  * 224 0.7152 / 1.8556 = 41.66, Cr 128 - 224 0.7152 / 1.5748 = 26.27. Blue: Y 31.81, Cr 128 - 224 0.0722 / 1.5748 =
  * 117.73. */
-static void colours_of_high_pictures_are_bt709(void **state)
+static void colours_of_high_images_are_bt709(void **state)
 {
     (void)state;
     check_colour(2, 720, 1, 1, 1, 235, 128, 128);
@@ -99,7 +99,7 @@ static void colours_of_high_pictures_are_bt709(void **state)
 
 /* Linear values are sRGB-encoded first: 0.2140411 is the byte 127.5 of 255, so 0.214 is 127; its grey is Y = 16 + 219
  * 127 / 255 = 125.07. Values out of range are clamped, NaN is black. */
-static void pixels_are_coded_first(void **state)
+static void pixels_are_srgb_encoded_before_conversion(void **state)
 {
     (void)state;
     check_colour(2, 2, 0.214, 0.214, 0.214, 125, 128, 128);
@@ -111,7 +111,7 @@ static void pixels_are_coded_first(void **state)
 
 /* 3 x 3: chroma 2 x 2, whose cells have 4, 2, 2 and 1 pixels. Red at 0,0; 2,0; 0,2 and 2,2 among black, so a quarter,
  * half, half and all of the red's -37.797 and +112: Cb 118.55, 109.10, 109.10, 90.20; Cr 156, 184, 184, 240. */
-static void chroma_is_the_mean_of_what_is_there(void **state)
+static void chroma_at_the_border_is_the_mean_of_existing_pixels(void **state)
 {
     (void)state;
     image *img = image_of(3, 3);
@@ -135,7 +135,7 @@ static void odd_sizes_are_rounded_up(void **state)
     check_colour(7, 721, 1, 0, 0, 63, 102, 240);
 }
 
-static void the_header_is_that_of_the_format(void **state)
+static void the_header_has_the_text_of_the_format(void **state)
 {
     (void)state;
     stream_bytes out = {0};
@@ -147,7 +147,7 @@ static void the_header_is_that_of_the_format(void **state)
     free(out.text);
 }
 
-static void what_is_no_film_is_refused(void **state)
+static void invalid_sizes_and_frame_rates_are_refused(void **state)
 {
     (void)state;
     diagnostic why = {0};
@@ -161,13 +161,13 @@ static void what_is_no_film_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_of_low_pictures_are_bt601),
-        cmocka_unit_test(colours_of_high_pictures_are_bt709),
-        cmocka_unit_test(pixels_are_coded_first),
-        cmocka_unit_test(chroma_is_the_mean_of_what_is_there),
+        cmocka_unit_test(colours_of_low_images_are_bt601),
+        cmocka_unit_test(colours_of_high_images_are_bt709),
+        cmocka_unit_test(pixels_are_srgb_encoded_before_conversion),
+        cmocka_unit_test(chroma_at_the_border_is_the_mean_of_existing_pixels),
         cmocka_unit_test(odd_sizes_are_rounded_up),
-        cmocka_unit_test(the_header_is_that_of_the_format),
-        cmocka_unit_test(what_is_no_film_is_refused),
+        cmocka_unit_test(the_header_has_the_text_of_the_format),
+        cmocka_unit_test(invalid_sizes_and_frame_rates_are_refused),
     };
     return cmocka_run_group_tests_name("y4m", tests, NULL, NULL);
 }

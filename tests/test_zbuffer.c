@@ -65,19 +65,19 @@ static double share_beyond(const char *text, const char *assignments, double muc
     set(s, "render.integrator=raycast");
     render_result *cast = render(s);
     set(s, "render.integrator=zbuffer");
-    render_result *drawn = render(s);
+    render_result *rasterised = render(s);
     int beyond = 0;
     for (int y = 0; y < cast->img->height; y++)
         for (int x = 0; x < cast->img->width; x++)
-            beyond += difference_at(cast->img, drawn->img, x, y) > much;
+            beyond += difference_at(cast->img, rasterised->img, x, y) > much;
     const double share = (double)beyond / ((double)cast->img->width * cast->img->height);
     render_result_destroy(cast);
-    render_result_destroy(drawn);
+    render_result_destroy(rasterised);
     scene_destroy(s);
     return share;
 }
 
-static void flat_solids_match_ray_casting_except_at_edges(void **state)
+static void flat_solids_equal_ray_casting_except_at_edges(void **state)
 {
     (void)state;
     static const char *const variants[] = {"",
@@ -101,7 +101,7 @@ static void flat_solids_match_ray_casting_except_at_edges(void **state)
 /* Shading uses the solid itself: the remaining differences are where the chord is hit instead of the arc, and outlines.
  * A chord's height is under 2e-4 of the radius; it moves a point along the surface by that over the cosine of
  * incidence, and changes light by about as much. */
-static void round_solids_match_ray_casting_except_at_outlines(void **state)
+static void round_solids_equal_ray_casting_except_at_outlines(void **state)
 {
     (void)state;
     static const char *const variants[] = {"",
@@ -119,7 +119,7 @@ static void round_solids_match_ray_casting_except_at_outlines(void **state)
 }
 
 /* As for overlapping solids: the one with the higher priority is visible. */
-static void the_higher_priority_is_visible_where_solids_coincide(void **state)
+static void the_surface_of_higher_priority_is_visible(void **state)
 {
     (void)state;
     static const char text[] = HEAD "meshes: {one: {generate: box}}\n"
@@ -313,25 +313,25 @@ static bool in_perspective(double x, double y, double uv[2])
 static bool straight(double x, double y, double uv[2])
 {
     for (int t = 0; t < 2; t++) {
-        double area[3], whole = 0.0;
+        double area[3], total_area = 0.0;
         for (int k = 0; k < 3; k++) {
             const vec3 a = leaning[leaning_halves[t][(k + 1) % 3]], b = leaning[leaning_halves[t][(k + 2) % 3]];
             area[k] = (a.x / a.z - x) * (b.y / b.z - y) - (a.y / a.z - y) * (b.x / b.z - x);
-            whole += area[k];
+            total_area += area[k];
         }
         if (area[0] < 0.0 || area[1] < 0.0 || area[2] < 0.0)
             continue;
         uv[0] = uv[1] = 0.0;
         for (int k = 0; k < 3; k++)
             for (int j = 0; j < 2; j++)
-                uv[j] += area[k] / whole * leaning_uv[leaning_halves[t][k]][j];
+                uv[j] += area[k] / total_area * leaning_uv[leaning_halves[t][k]][j];
         return true;
     }
     return false;
 }
 
 /* Returns the largest difference of v from the other texture interpolation. */
-static double expect_texture(const char *texturing, bool (*wanted)(double, double, double[2]),
+static double expect_texture(const char *texturing, bool (*expected)(double, double, double[2]),
                              bool (*other)(double, double, double[2]))
 {
     scene *s = leaning_scene(texturing);
@@ -342,7 +342,7 @@ static double expect_texture(const char *texturing, bool (*wanted)(double, doubl
         for (int i = 0; i < 100; i++) {
             const double x = (i + 0.5) / 50.0 - 1.0, y = 1.0 - (j + 0.5) / 50.0, edge = 1.0 / 128.0;
             double uv[2], not [2];
-            if (!wanted(x, y, uv) || !other(x, y, not ) || uv[0] < edge || uv[0] > 1.0 - edge || uv[1] < edge ||
+            if (!expected(x, y, uv) || !other(x, y, not ) || uv[0] < edge || uv[0] > 1.0 - edge || uv[1] < edge ||
                 uv[1] > 1.0 - edge)
                 continue; /* the ramp is constant outside its last texels' middles */
             assert_true(fabs(film_value(r->img, i, j, 0) - uv[0]) < 1e-6);
@@ -365,7 +365,7 @@ static void texture_interpolation_is_perspective_correct(void **state)
     assert_true(expect_texture("render.texturing=perspective", in_perspective, straight) > 0.2);
 }
 
-static void affine_texture_interpolation(void **state)
+static void affine_texture_interpolation_equals_its_closed_form(void **state)
 {
     (void)state;
     assert_true(expect_texture("render.texturing=affine", straight, in_perspective) > 0.2);
@@ -373,7 +373,7 @@ static void affine_texture_interpolation(void **state)
 
 /* Where all corners are equally far both are correct; elsewhere analytic solids show the difference too, and the ray
  * caster is correct. */
-static void boxes_have_both_texture_interpolations(void **state)
+static void boxes_support_both_texture_interpolations(void **state)
 {
     (void)state;
     static const char text[] = "render: {width: 60, height: 60, depth: 0, integrator: zbuffer, shadows: off}\n"
@@ -405,7 +405,7 @@ static void boxes_have_both_texture_interpolations(void **state)
 }
 
 /* The last scene has an affine texture on triangles that the near plane clips. */
-static void the_film_does_not_depend_on_order(void **state)
+static void the_film_does_not_depend_on_the_order_of_drawing(void **state)
 {
     (void)state;
     one_film_only(scene_loaded(flat_scene, "render.integrator=zbuffer"));
@@ -415,7 +415,7 @@ static void the_film_does_not_depend_on_order(void **state)
     one_film_only(s);
 }
 
-static void points_are_counted_and_no_rays_are_tested(void **state)
+static void covered_points_are_counted_and_no_rays_are_tested(void **state)
 {
     (void)state;
     need_counters();
@@ -426,19 +426,19 @@ static void points_are_counted_and_no_rays_are_tested(void **state)
     const ray_counters *c = &r->counters;
     assert_int_equal(c->camera, 4 * 200 * 150);
     assert_int_equal(c->shadow + c->reflect + c->refract, 0);
-    uint64_t met = 0;
+    uint64_t covered = 0;
     for (int k = 0; k < COUNTERS_SOLID_MAX; k++) {
         assert_int_equal(c->tests[k], 0);
-        met += c->first_hits[k];
+        covered += c->first_hits[k];
     }
     for (size_t k = 0; k < s->solid_count; k++)
         assert_true(c->first_hits[k] > 100);
-    assert_true(met > 4 * 200 * 75 && met < c->camera);
+    assert_true(covered > 4 * 200 * 75 && covered < c->camera);
     render_result_destroy(r);
     scene_destroy(s);
 }
 
-static void it_refuses_spectral_films_and_polarisation(void **state)
+static void the_depth_buffer_refuses_spectral_films_and_polarisation(void **state)
 {
     (void)state;
     static const char *const wrong[] = {"render.spectrum=spectral", "render.polarisation=on"};
@@ -457,18 +457,18 @@ static void it_refuses_spectral_films_and_polarisation(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(flat_solids_match_ray_casting_except_at_edges),
-        cmocka_unit_test(round_solids_match_ray_casting_except_at_outlines),
-        cmocka_unit_test(the_higher_priority_is_visible_where_solids_coincide),
+        cmocka_unit_test(flat_solids_equal_ray_casting_except_at_edges),
+        cmocka_unit_test(round_solids_equal_ray_casting_except_at_outlines),
+        cmocka_unit_test(the_surface_of_higher_priority_is_visible),
         cmocka_unit_test(a_fan_covers_each_pixel_once),
         cmocka_unit_test(an_irregular_web_covers_each_pixel_once),
         cmocka_unit_test(triangles_behind_the_camera_are_clipped),
         cmocka_unit_test(texture_interpolation_is_perspective_correct),
-        cmocka_unit_test(affine_texture_interpolation),
-        cmocka_unit_test(boxes_have_both_texture_interpolations),
-        cmocka_unit_test(the_film_does_not_depend_on_order),
-        cmocka_unit_test(points_are_counted_and_no_rays_are_tested),
-        cmocka_unit_test(it_refuses_spectral_films_and_polarisation),
+        cmocka_unit_test(affine_texture_interpolation_equals_its_closed_form),
+        cmocka_unit_test(boxes_support_both_texture_interpolations),
+        cmocka_unit_test(the_film_does_not_depend_on_the_order_of_drawing),
+        cmocka_unit_test(covered_points_are_counted_and_no_rays_are_tested),
+        cmocka_unit_test(the_depth_buffer_refuses_spectral_films_and_polarisation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,7 +76,7 @@ static void a_slab_reflects_and_absorbs(void **state)
 }
 
 /* A ball, a cylinder and a mesh are slabs on their axis, too. */
-static void curved_solids_are_slabs_on_their_axis(void **state)
+static void curved_solids_equal_slabs_on_their_axis(void **state)
 {
     (void)state;
     const double r = head_on(1.0, 1.5), expected = behind(r, exp(-0.3 * 2.0) * behind(r, wall));
@@ -89,7 +89,7 @@ static void curved_solids_are_slabs_on_their_axis(void **state)
 }
 
 /* The wall's index applies in the overlap; nothing is between them; equal ones are one medium. */
-static void the_higher_priority_is_visible_where_solids_overlap(void **state)
+static void the_higher_priority_applies_where_solids_overlap(void **state)
 {
     (void)state;
     static const char both[] =
@@ -116,7 +116,7 @@ static void the_higher_priority_is_visible_where_solids_overlap(void **state)
 
 /* An opaque solid is visible in front of, inside and behind a clear one, but not where a clear one has higher
  * priority. */
-static void opaque_solids_among_clear_ones(void **state)
+static void opaque_solids_among_clear_ones_are_visible_by_priority(void **state)
 {
     (void)state;
     static const char block[] =
@@ -132,7 +132,7 @@ static void opaque_solids_among_clear_ones(void **state)
 
 /* From inside: the path to the surface absorbs; beyond the critical angle, asin(1 / 1.5) = 41.8 degrees, the sky is
  * reflected. */
-static void the_camera_in_a_clear_solid(void **state)
+static void a_camera_in_a_clear_solid_has_absorption_and_total_reflection(void **state)
 {
     (void)state;
     static const char around[] =
@@ -146,7 +146,7 @@ static void the_camera_in_a_clear_solid(void **state)
     assert_near(seen_in(around, "wall.position=0,0,5"), exp(-0.05 * 14.5) * wall, 1e-9);
 }
 
-static void the_depth_limit_ends_the_view(void **state)
+static void layers_beyond_the_depth_limit_show_the_fallback(void **state)
 {
     (void)state;
     static const char slab[] = "  slab: {shape: box, transparency: 1, ior: 1.5, size: [4, 4, 2]}\n";
@@ -186,7 +186,7 @@ static const char clear_scene[] =
     "priority: -1}\n";
 
 /* Where light is not refracted and surfaces do not reflect, rays give the same image, except at outlines. */
-static void undeflected_views_match_rays(void **state)
+static void views_without_refraction_equal_ray_tracing(void **state)
 {
     (void)state;
     static const char *const variants[] = {"",
@@ -202,24 +202,23 @@ static void undeflected_views_match_rays(void **state)
         set_all(s, "clear.ior=1 render.transmission=simple");
         render_result *traced = render(s);
         set(s, "render.integrator=zbuffer");
-        render_result *drawn = render(s);
+        render_result *rasterised = render(s);
         int beyond = 0;
         for (int at = 0; at < 160 * 120; at++) {
             double most = 0.0;
             for (int c = 0; c < 3; c++)
                 most = fmax(most, fabs(film_value(traced->img, at % 160, at / 160, c) -
-                                       film_value(drawn->img, at % 160, at / 160, c)));
+                                       film_value(rasterised->img, at % 160, at / 160, c)));
             beyond += most > 0.01;
         }
         if (beyond > 160 * 120 / 100)
             fail_msg("%s: %d pixels differ", variants[v], beyond);
         render_result_destroy(traced);
-        render_result_destroy(drawn);
+        render_result_destroy(rasterised);
         scene_destroy(s);
     }
 }
 
-/* R + T = 1 at every layer: under a sky of 1, clear solids of any index are invisible. */
 /* Of two opaque walls, one slightly behind the other, the nearer is visible, whatever clear solid turns them into
  * layers: from outside, and from inside both. */
 static void an_invisible_clear_solid_does_not_change_the_order(void **state)
@@ -287,6 +286,7 @@ static void an_invisible_clear_solid_does_not_change_opaque_ones(void **state)
     assert_true(stays_with_a_rod(boards, "position: [1.99, 2.4, 1], rotation: [-45, 0, 0]", ""));
 }
 
+/* R + T = 1 at every layer: under a sky of 1, clear solids of any index are invisible. */
 static void no_light_is_lost_between_layers(void **state)
 {
     (void)state;
@@ -313,18 +313,18 @@ static void the_rod_is_close_to_the_traced_image(void **state)
     scene *s = rod_scene("render.width=400 render.height=300 render.depth=4");
     render_result *traced = render(s);
     set(s, "render.integrator=zbuffer");
-    render_result *drawn = render(s);
+    render_result *rasterised = render(s);
     image *a = NULL, *b = NULL;
     image_comparison c;
     assert_int_equal(film_image(traced->img, &a, NULL), STATUS_OK);
-    assert_int_equal(film_image(drawn->img, &b, NULL), STATUS_OK);
+    assert_int_equal(film_image(rasterised->img, &b, NULL), STATUS_OK);
     assert_int_equal(image_compare(a, b, &c, NULL), STATUS_OK);
     print_message("rod: FLIP %.3f\n", c.flip);
     assert_true(c.flip < 0.12);
     image_destroy(a);
     image_destroy(b);
     render_result_destroy(traced);
-    render_result_destroy(drawn);
+    render_result_destroy(rasterised);
     scene_destroy(s);
 }
 
@@ -338,12 +338,12 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_slab_reflects_and_absorbs),
-        cmocka_unit_test(curved_solids_are_slabs_on_their_axis),
-        cmocka_unit_test(the_higher_priority_is_visible_where_solids_overlap),
-        cmocka_unit_test(opaque_solids_among_clear_ones),
-        cmocka_unit_test(the_camera_in_a_clear_solid),
-        cmocka_unit_test(the_depth_limit_ends_the_view),
-        cmocka_unit_test(undeflected_views_match_rays),
+        cmocka_unit_test(curved_solids_equal_slabs_on_their_axis),
+        cmocka_unit_test(the_higher_priority_applies_where_solids_overlap),
+        cmocka_unit_test(opaque_solids_among_clear_ones_are_visible_by_priority),
+        cmocka_unit_test(a_camera_in_a_clear_solid_has_absorption_and_total_reflection),
+        cmocka_unit_test(layers_beyond_the_depth_limit_show_the_fallback),
+        cmocka_unit_test(views_without_refraction_equal_ray_tracing),
         cmocka_unit_test(an_invisible_clear_solid_does_not_change_the_order),
         cmocka_unit_test(an_invisible_clear_solid_does_not_change_opaque_ones),
         cmocka_unit_test(no_light_is_lost_between_layers),

@@ -27,7 +27,7 @@ plain() { sed "s/\\\\-/-/g; s/\\\\(aq/'/g; s/\\\\(ha/^/g; s/\\\\(ti/~/g; s/\\\\e
 functions='function asin(x) {return atan2(x, sqrt(1 - x * x))}
     function deg(x) {return x * 45 / atan2(1, 1)}
     function rad(x) {return x * atan2(1, 1) / 45}'
-decimals() { # NUMBER: how many it has
+decimals() { # NUMBER: its number of decimals
     local digits=${1#*.}
     echo ${#digits}
 }
@@ -55,7 +55,7 @@ finish() { # runs the command and compares its output with the lines below it
     output=$(bash -o pipefail -c "$command" 2>&1 </dev/null)
     verdict $? "$command" "$output"
     [[ $output == "${shown%$'\n'}" ]]
-    verdict $? "it prints what the page shows" "$(diff <(echo "${shown%$'\n'}") <(echo "$output"))"
+    verdict $? "$command prints the output on the page" "$(diff <(echo "${shown%$'\n'}") <(echo "$output"))"
     printed+=$output$'\n'
     command='' shown=''
 }

@@ -1,16 +1,16 @@
 #!/bin/bash
-# Which loops of the kernels gcc vectorised, for each instruction set. A loop under the comment VECTORISE must be
-# vectorised for AVX2 and AVX-512; plain SSE2 may stay scalar. KERNEL_FLAGS and KERNEL_FLAGS_<isa> come from the
+# The loops of the kernels that gcc vectorised, for each instruction set. A loop under the comment VECTORISE must be
+# vectorised for AVX2 and AVX-512; with SSE2 it may stay scalar. KERNEL_FLAGS and KERNEL_FLAGS_<isa> come from the
 # Makefile.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 cc=${KERNEL_CC:-gcc}
 if ! command -v "$cc" >/dev/null; then
-    echo "# no $cc, whose report this reads"
+    echo "# $cc is not installed, whose report is required"
     exit 77
 fi
 if [[ -z ${KERNEL_FLAGS:-} ]]; then
-    exec make --no-print-directory vectorise # run by hand: the Makefile knows the flags
+    exec make --no-print-directory vectorise # run by hand, without the Makefile's flags
 fi
 
 folder=$(mktemp -d)
@@ -31,8 +31,8 @@ report() {
         END { for (line in width) print line, width[line] }' "$folder/all" | sort -t: -k1,1 -k2n >"$folder/vectorised"
 }
 
-# Why a loop stayed scalar: gcc's first objection, which is about the widest vectors; its short report gives the last
-# one.
+# The reason for a scalar loop: the first one in gcc's detailed report, which is for the widest vectors. The short
+# report has only the last.
 reason() { # reason FILE:LINE
     awk -v loop="Analyzing loop at $1" '/Analyzing loop at/ { mine = $0 == loop }
         mine && sub(/.*not vectorized: /, "") { print; exit }' "$folder/details"

@@ -1,5 +1,5 @@
-// Accessibility of every panel, light and dark, on small to large screens: axe finds no fault, nothing exceeds the
-// window.
+// Accessibility of every panel, light and dark, on small to large screens: axe reports no violation, and no element is
+// wider than the window.
 
 async function everyPanel(t, how) {
   const name = `${how.width}x${how.height}, ${how.dark ? 'dark' : 'light'}`;
@@ -26,16 +26,16 @@ export const cases = {
   'a large screen, dark': (t) => everyPanel(t, { width: 1920, height: 1080, dark: true }),
   'a narrow window, light': (t) => everyPanel(t, { width: 800, height: 900, scene: 'scenes/slime.yaml' }),
   'a narrow window, dark': (t) => everyPanel(t, { width: 800, height: 900, dark: true, scene: 'scenes/slime.yaml' }),
-  'the button for light and dark': async (t) => {
+  'the button for the dark theme': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const colour = () => screen.page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     const light = await colour();
     await screen.button('Dark theme').click();
     const dark = await colour();
-    t.check(light !== dark, `the background stays ${light}`);
-    await t.axe(screen, 'turned dark by the button');
+    t.check(light !== dark, `the button does not change the background, ${light}`);
+    await t.axe(screen, 'the dark theme chosen by the button');
     await screen.load();
-    t.equal(await colour(), dark, 'dark is remembered');
+    t.equal(await colour(), dark, 'the dark theme after reloading');
   },
 };

@@ -1,4 +1,4 @@
-// The checks of a case: counts those that passed and keeps a line for each that failed. A failed check does not end its
+// The checks of a case: counts passed checks and keeps a line for each failed one. A failed check does not end its
 // case.
 
 export class Checks {
@@ -30,7 +30,7 @@ export class Checks {
     return this.check(pattern.test(text), `${what}: ${JSON.stringify(text)} does not match ${pattern}`);
   }
 
-  /** wrong: a list of faults; passes if it is empty. */
+  /** Passes if the list of errors is empty. */
   none(wrong, what) {
     return this.check(
       wrong.length === 0,

@@ -1,5 +1,5 @@
-// The reference image is pinned, the scene changed, and the wipe shows A to the left and B to the right, pixel by
-// pixel.
+// Comparison with a pinned reference image: with a changed scene the wipe shows A to the left and B to the right, pixel
+// by pixel.
 import { readPng } from './png.mjs';
 import { difference } from './screen.mjs';
 
@@ -24,7 +24,7 @@ async function pinAndChange(t) {
 export const cases = {
   'the wipe': async (t) => {
     const { screen, a, b } = await pinAndChange(t);
-    t.more(difference(a, b), 0.1, 'A and B differ, share of pixels');
+    t.more(difference(a, b), 0.1, 'share of pixels in which A and B differ');
     const share = screen.page.getByRole('slider', { name: 'Share of A' });
     for (const percent of [0, 50, 100]) {
       await share.focus();
@@ -32,19 +32,19 @@ export const cases = {
       if (percent === 50) for (let i = 0; i < 50; i++) await screen.page.keyboard.press('ArrowRight');
       await screen.page.mouse.move(1, 1);
       await screen.quiet();
-      const seen = await screen.seen();
+      const seen = await screen.displayed();
       const edge = (seen.width * percent) / 100;
       // The letters A and B are in the upper corners.
       const left = (x, y) => x < edge - EDGE && y > 40;
       const right = (x, y) => x >= edge + EDGE && y > 40;
       if (percent > 0)
-        t.equal(difference(seen, a, left), 0, `${percent} %: share of pixels to the left that are not A's`);
+        t.equal(difference(seen, a, left), 0, `${percent} %: share of pixels to the left that differ from A`);
       if (percent < 100)
-        t.equal(difference(seen, b, right), 0, `${percent} %: share of pixels to the right that are not B's`);
+        t.equal(difference(seen, b, right), 0, `${percent} %: share of pixels to the right that differ from B`);
     }
   },
 
-  'the handle in the image': async (t) => {
+  'the handle of the wipe in the image': async (t) => {
     const { screen, a, b } = await pinAndChange(t);
     const handle = screen.page.getByRole('slider', { name: 'Share of the reference image' });
     const box = await handle.boundingBox();
@@ -55,17 +55,17 @@ export const cases = {
     await screen.page.mouse.up();
     await screen.page.mouse.move(1, 1);
     await screen.quiet();
-    t.near(Number(await handle.getAttribute('aria-valuenow')), 25, 1, 'the share after it was dragged, percent');
-    const seen = await screen.seen();
+    t.near(Number(await handle.getAttribute('aria-valuenow')), 25, 1, 'the share of A after the drag, percent');
+    const seen = await screen.displayed();
     t.equal(
       difference(seen, a, (x, y) => x < 200 - EDGE && y > 40),
       0,
-      "share of pixels to the left that are not A's",
+      'share of pixels to the left that differ from A',
     );
     t.equal(
       difference(seen, b, (x, y) => x > 200 + EDGE && y > 40),
       0,
-      "share of pixels to the right that are not B's",
+      'share of pixels to the right that differ from B',
     );
   },
 
@@ -77,41 +77,41 @@ export const cases = {
     await screen.page.mouse.move(1, 1);
     await screen.quiet();
     t.near(
-      difference(await screen.seen(), map, (x, y) => y > 40),
+      difference(await screen.displayed(), map, (x, y) => y > 40),
       0,
       0.001,
-      "share of pixels that are not the map's",
+      'share of pixels that differ from the map',
     );
     await t.axe(screen, 'the difference map');
     await screen.button('Close: Difference from A').click();
     await screen.page.mouse.move(1, 1);
     await screen.quiet();
     t.equal(
-      difference(await screen.seen(), b, (x, y) => y > 40),
+      difference(await screen.displayed(), b, (x, y) => y > 40),
       0,
-      "closed, share of pixels that are not B's",
+      'after closing the map: share of pixels that differ from B',
     );
   },
 
-  'the numbers': async (t) => {
+  'the metrics of the comparison': async (t) => {
     const { lab, screen } = await pinAndChange(t);
     const { a, b, changed, comparison } = await lab.get('/api/compare?wait=1');
     const panel = screen.page.getByRole('tabpanel', { name: 'Compare' });
-    // The numbers of A and A may be displayed until those of the new image arrive.
+    // The metrics of A against A may be displayed until those of the new image arrive.
     await panel.getByText(b.film_hash).waitFor();
     const text = await panel.innerText();
     for (const value of [a.film_hash, b.film_hash, 'plastic.color', 'tiles.color'])
       t.check(text.includes(value), `the panel does not show ${value}`);
-    t.equal(changed.map((row) => row.path).sort(), ['plastic.color', 'tiles.color'], 'what changed');
+    t.equal(changed.map((row) => row.path).sort(), ['plastic.color', 'tiles.color'], 'the changed parameters');
     const psnr = Number(text.match(/PSNR\s+([\d.]+)/)?.[1]);
     t.near(psnr, comparison.psnr_db, 0.01, 'PSNR, dB');
     await screen.button('Clear A').click();
     await screen.until(() => !window.lab.state.pin);
     await screen.quiet();
     t.equal(
-      difference(await screen.seen(), await screen.served(), (x, y) => y > 40),
+      difference(await screen.displayed(), await screen.served(), (x, y) => y > 40),
       0,
-      "without A, share of pixels that are not B's",
+      'without A: share of pixels that differ from B',
     );
   },
 };

@@ -1,4 +1,4 @@
-// Undo, redo, saving, opening and copying: the page's scene makes the same film as the program makes of the file.
+// Undo, redo, saving, opening and copying: the film of the page equals that of `cuvette render` for the file.
 import { readFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { readPng } from './png.mjs';
@@ -7,7 +7,7 @@ import { difference } from './screen.mjs';
 const filmOf = async (lab, ...words) => JSON.parse(await lab.run('render', ...words, '--json')).film_hash;
 const shownFilm = (screen) => screen.page.evaluate(() => window.lab.picture.film_hash);
 
-/** Does something that changes the scene and waits for the final image. */
+/** Calls a function that changes the scene and waits for the final image. */
 async function change(screen, act) {
   const { generation } = await screen.lab.get('/api/state');
   await act();
@@ -20,8 +20,8 @@ export const cases = {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const first = await shownFilm(screen);
-    t.equal(first, await filmOf(lab, 'scenes/rod.yaml'), 'the film of the scene as opened');
-    t.equal(await screen.button('Undo').isEnabled(), false, 'there is nothing to undo');
+    t.equal(first, await filmOf(lab, 'scenes/rod.yaml'), 'the film of the opened scene');
+    t.equal(await screen.button('Undo').isEnabled(), false, 'undo is enabled in an unchanged scene');
     await screen.setNumber('liquid.ior', 1.6);
     await screen.setNumber('rod.reflectivity', 0.5);
     const both = await shownFilm(screen);
@@ -32,22 +32,22 @@ export const cases = {
     );
     await change(screen, () => screen.button('Undo').click());
     t.equal(await lab.value('rod.reflectivity'), 0, 'the newer change is undone first');
-    t.equal(await lab.value('liquid.ior'), 1.6, 'the older one is not');
+    t.equal(await lab.value('liquid.ior'), 1.6, 'the older change is not undone');
     // The shortcuts work on the page, not in a text field, which has its own undo.
     await screen.stage.focus();
     await change(screen, () => screen.page.keyboard.press('Control+z'));
-    t.equal(await shownFilm(screen), first, 'both undone, the film is the first one');
-    t.equal(await screen.button('Undo').isEnabled(), false, 'there is nothing to undo any more');
+    t.equal(await shownFilm(screen), first, 'after undoing both changes: the first film');
+    t.equal(await screen.button('Undo').isEnabled(), false, 'undo is disabled again');
     await change(screen, () => screen.button('Redo').click());
     await change(screen, () => screen.page.keyboard.press('Control+Shift+Z'));
-    t.equal(await shownFilm(screen), both, 'both done again');
+    t.equal(await shownFilm(screen), both, 'after redoing both changes: the film');
     await change(screen, () => screen.page.keyboard.press('Control+z'));
     await change(screen, () => screen.page.keyboard.press('Control+y'));
-    t.equal(await shownFilm(screen), both, 'and once more by Ctrl Y');
-    t.equal(await screen.button('Redo').isEnabled(), false, 'there is nothing to redo');
+    t.equal(await shownFilm(screen), both, 'after Control+Y: the film');
+    t.equal(await screen.button('Redo').isEnabled(), false, 'redo is enabled after the last redo');
   },
 
-  'a drag of a slider is one step': async (t) => {
+  'a drag of a slider is one step of undo': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const slider = await screen.paramSlider('liquid.ior');
@@ -62,9 +62,9 @@ export const cases = {
     const dragged = await lab.value('liquid.ior');
     t.more(dragged, 1.34, 'the index after the drag');
     await change(screen, () => screen.button('Undo').click());
-    t.equal(await lab.value('liquid.ior'), 1.33, 'one undo takes all of it back');
+    t.equal(await lab.value('liquid.ior'), 1.33, 'the index after one undo');
     await change(screen, () => screen.button('Redo').click());
-    t.equal(await lab.value('liquid.ior'), dragged, 'one redo brings all of it back');
+    t.equal(await lab.value('liquid.ior'), dragged, 'the index after one redo');
   },
 
   reset: async (t) => {
@@ -76,15 +76,15 @@ export const cases = {
     await screen.button('Reset liquid.ior').first().click();
     await screen.settled();
     await screen.until(() => window.lab.param('liquid.ior').value === 1.33);
-    t.equal(await lab.value('render.depth'), 2, 'a reset of one value leaves the others');
+    t.equal(await lab.value('render.depth'), 2, 'a reset of one value does not change others');
     await screen.button('Reset all').click();
     await change(screen, () => screen.page.getByRole('dialog').getByRole('button', { name: 'Reset all' }).click());
-    t.equal(await shownFilm(screen), first, 'the film is the first one');
+    t.equal(await shownFilm(screen), first, 'the film after the reset');
     await change(screen, () => screen.button('Undo').click());
     t.equal(await lab.value('render.depth'), 2, 'a reset can be undone');
   },
 
-  'saved under another name, and opened again': async (t) => {
+  'a scene saved under another name can be opened': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.setNumber('liquid.ior', 1.5);
@@ -93,18 +93,14 @@ export const cases = {
     await screen.showPanel('Objects');
     await screen.button('Save as').click();
     const dialog = screen.page.getByRole('dialog', { name: 'Save the scene as' });
-    await t.axe(screen, 'the dialog of names');
+    await t.axe(screen, 'the dialog Save the scene as');
     await dialog.getByRole('textbox').fill('scenes/denser.yaml');
     await dialog.getByRole('button', { name: 'Save', exact: true }).click();
     await screen.until(() => window.lab.state.file === 'scenes/denser.yaml' && window.lab.state.saved);
     t.match(await readFile(join(lab.folder, 'scenes/denser.yaml'), 'utf8'), /ior: 1\.5/, 'the file has the new index');
-    t.equal(
-      await filmOf(lab, 'scenes/denser.yaml'),
-      film,
-      'cuvette render makes the film of the page from the saved file',
-    );
+    t.equal(await filmOf(lab, 'scenes/denser.yaml'), film, 'the film of cuvette render for the saved file');
     await screen.load();
-    t.equal(await shownFilm(screen), film, 'loaded again, the page shows the same film');
+    t.equal(await shownFilm(screen), film, 'the film after loading the page again');
     for (const [file, expected] of [
       ['rod', await filmOf(lab, 'scenes/rod.yaml')],
       ['denser', film],
@@ -114,11 +110,11 @@ export const cases = {
       const choice = screen.page.getByRole('dialog', { name: 'Open a scene' });
       await choice.getByRole('searchbox').fill(`scenes/${file}.yaml`);
       await change(screen, () => choice.getByRole('listitem').getByRole('button').click());
-      t.equal(await shownFilm(screen), expected, `${file}.yaml, opened in the page: the film`);
+      t.equal(await shownFilm(screen), expected, `the film of ${file}.yaml opened in the page`);
     }
   },
 
-  'an existing file is not overwritten without a question': async (t) => {
+  'an existing file is not overwritten without confirmation': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     screen.expect(/409/);
@@ -135,7 +131,7 @@ export const cases = {
     t.equal((await lab.get('/api/state')).file, 'scenes/rod.yaml', 'the scene keeps its file');
   },
 
-  'outside of the folder': async (t) => {
+  'saving outside of the folder is refused': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     screen.expect(/400/);
@@ -145,15 +141,15 @@ export const cases = {
     await dialog.getByRole('textbox').fill('../outside.yaml');
     await dialog.getByRole('textbox').press('Enter');
     await dialog.getByText('outside.yaml').waitFor();
-    t.equal((await lab.get('/api/state')).file, 'scenes/rod.yaml', 'it is refused');
-    t.equal(await dialog.getByRole('textbox').inputValue(), '../outside.yaml', 'the name is there to be mended');
+    t.equal((await lab.get('/api/state')).file, 'scenes/rod.yaml', 'the file of the scene after the refusal');
+    t.equal(await dialog.getByRole('textbox').inputValue(), '../outside.yaml', 'the refused name stays in the field');
     await dialog.getByRole('textbox').fill('inside.yaml.yaml');
     await dialog.getByRole('textbox').press('Enter');
     await screen.until(() => window.lab.state.file === 'inside.yaml' && window.lab.state.saved);
-    t.match(await readFile(join(lab.folder, 'inside.yaml'), 'utf8'), /liquid/, 'the file of the mended name');
+    t.match(await readFile(join(lab.folder, 'inside.yaml'), 'utf8'), /liquid/, 'the file under the corrected name');
   },
 
-  'saved by a key': async (t) => {
+  'Control+S saves, including a value that is being typed': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.setNumber('render.depth', 3);
@@ -166,11 +162,11 @@ export const cases = {
       .click();
     await screen.until(() => window.lab.state.saved);
     const text = await readFile(join(lab.folder, 'scenes/rod.yaml'), 'utf8');
-    t.match(text, /depth: 3/, 'the file has what was set');
-    t.match(text, /ior: 1\.45/, 'and what was still being written');
+    t.match(text, /depth: 3/, 'the file has the new depth');
+    t.match(text, /ior: 1\.45/, 'the file has the value that was being typed');
   },
 
-  'a file written by hand is replaced after one question': async (t) => {
+  'a file written by hand is replaced after one confirmation': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const text = () => readFile(join(lab.folder, 'scenes/rod.yaml'), 'utf8');
@@ -184,24 +180,24 @@ export const cases = {
     await screen.showPanel('Objects');
     await save();
     await question.getByText('Replace scenes/rod.yaml? The file is rewritten and its comments are lost.').waitFor();
-    await t.axe(screen, 'the question');
+    await t.axe(screen, 'the dialog Replace the file');
     await answer(question, 'Cancel');
     await save();
     await answer(question, 'Save as …');
     await answer(naming, 'Save'); // the same name again
     await answer(question, 'Cancel');
     await screen.quiet();
-    t.equal(await text(), byHand, 'the file, until it may be replaced');
+    t.equal(await text(), byHand, 'the file before the confirmation');
     await save();
     await answer(question, 'Replace');
     await screen.until(() => window.lab.state.saved);
-    t.match(await text(), /depth: 3/, 'the file has what was set');
+    t.match(await text(), /depth: 3/, 'the file has the new depth');
     await screen.setNumber('render.depth', 5);
     await screen.until(() => !window.lab.state.saved);
     await screen.stage.focus();
     await screen.page.keyboard.press('Control+s');
     await screen.until(() => window.lab.state.saved);
-    t.match(await text(), /depth: 5/, 'then it is written unasked');
+    t.match(await text(), /depth: 5/, 'the second save needs no confirmation');
     await screen.showPanel('Objects');
     await screen.button('Open').click();
     const choice = screen.page.getByRole('dialog', { name: 'Open a scene' });
@@ -217,18 +213,18 @@ export const cases = {
     await screen.showPanel('Parameters');
     const medium = screen.page.getByRole('combobox', { name: 'liquid medium', exact: true }).first();
     const unused = screen.page.locator('.param[data-path="liquid.ior"]').first().getByText('unused');
-    t.equal(await unused.isVisible(), false, 'the index is in use');
+    t.equal(await unused.isVisible(), false, 'the index is marked as unused');
     await change(screen, () => medium.selectOption('diamond'));
     await unused.waitFor();
     t.equal(await lab.value('liquid.medium'), 'diamond', 'the medium');
     for (const law of ['cauchy', 'sellmeier', 'table']) {
       await change(screen, () => medium.selectOption(law));
-      t.equal(await lab.value('liquid.medium'), law, `${law} is taken, with coefficients`);
-      t.more((await lab.value('liquid.coefficients')).length, 1, `${law}: coefficients`);
+      t.equal(await lab.value('liquid.medium'), law, `${law}: the medium`);
+      t.more((await lab.value('liquid.coefficients')).length, 1, `${law}: number of coefficients`);
       t.equal(
         await screen.page.getByRole('textbox', { name: 'liquid coefficients', exact: true }).first().isVisible(),
         true,
-        `${law}: they are at hand`,
+        `${law}: the field of the coefficients is visible`,
       );
     }
     await change(screen, () => medium.selectOption('ior'));
@@ -238,7 +234,7 @@ export const cases = {
     const slider = await screen.paramSlider('liquid.ior');
     await change(screen, () => slider.press('ArrowRight'));
     await unused.waitFor({ state: 'hidden' });
-    t.equal(await medium.inputValue(), 'ior', 'an index that is set takes the place of the medium');
+    t.equal(await medium.inputValue(), 'ior', 'setting the index replaces the medium');
   },
 
   'the page reopens on every panel': async (t) => {
@@ -261,10 +257,10 @@ export const cases = {
     const found = screen.page.locator('.param-list:not([hidden]) > .param');
     await screen.until(() => document.querySelectorAll('.param-list:not([hidden]) > .param').length > 2);
     const paths = await found.evaluateAll((rows) => rows.map((row) => row.dataset.path));
-    t.equal(paths.slice(0, 2), ['vessel.ior', 'liquid.ior'], 'the first of those found');
+    t.equal(paths.slice(0, 2), ['vessel.ior', 'liquid.ior'], 'the first results');
   },
 
-  'a rejected camera value does not stay in its field': async (t) => {
+  'a rejected camera value is reset in its field': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     screen.expect(/400/);
@@ -278,11 +274,11 @@ export const cases = {
       await field.press('Enter');
       await screen.quiet();
       await field.blur();
-      t.equal(await field.inputValue(), right, `${label}, left after ${wrong}`);
+      t.equal(await field.inputValue(), right, `${label} after the rejected value ${wrong}`);
     }
   },
 
-  'a sky image, and none again': async (t) => {
+  'a sky image is set and removed': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const before = await shownFilm(screen);
@@ -292,13 +288,13 @@ export const cases = {
     t.equal(
       await dialog.getByRole('button', { name: 'No image' }).count(),
       0,
-      'a way to be rid of one that is not there',
+      'buttons that remove a missing sky image',
     );
     await change(screen, () => dialog.getByRole('listitem').getByRole('button').first().click());
-    t.check((await shownFilm(screen)) !== before, 'the sky is another');
+    t.check((await shownFilm(screen)) !== before, 'a sky image changes the film');
     await screen.button('Sky').click();
     await change(screen, () => dialog.getByRole('button', { name: 'No image' }).click());
-    t.equal(await shownFilm(screen), before, 'the film without it');
+    t.equal(await shownFilm(screen), before, 'the film after its removal');
   },
 
   'a rejected value does not change the slider': async (t) => {
@@ -311,11 +307,11 @@ export const cases = {
     await field.fill('60000');
     await field.press('Enter');
     await screen.page.getByText('pixels exceed the laboratory').first().waitFor();
-    t.equal(await slider.inputValue(), before, 'where its thumb stands');
-    t.equal(await field.inputValue(), '800', 'the number');
+    t.equal(await slider.inputValue(), before, 'the value of the slider');
+    t.equal(await field.inputValue(), '800', 'the value of the number field');
   },
 
-  'images and commands for other programs': async (t) => {
+  'the image, the render command and the scene file are exported': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.context.grantPermissions(['clipboard-read', 'clipboard-write'], { origin: lab.origin });
@@ -324,7 +320,7 @@ export const cases = {
     const [download] = await Promise.all([screen.page.waitForEvent('download'), screen.button('Save PNG').click()]);
     t.equal(download.suggestedFilename(), 'rod.png', 'the name of the image');
     const saved = readPng(await readFile(await download.path()));
-    t.equal(difference(saved, await screen.served()), 0, "share of pixels that are not the server's");
+    t.equal(difference(saved, await screen.served()), 0, "share of pixels that differ from the server's image");
     await screen.button('Copy render command').click();
     await screen.page.locator('#status').getByText('The command is on the clipboard').waitFor();
     const command = await screen.page.evaluate(() => navigator.clipboard.readText());

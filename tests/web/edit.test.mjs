@@ -1,4 +1,4 @@
-// Objects are added, selected in the image, dragged, turned, given a material, copied and removed.
+// Objects are added, selected in the image, dragged, rotated, given a material, copied and removed.
 import { camera } from './optics.mjs';
 
 const eye = [0, 6, -5];
@@ -36,7 +36,7 @@ export const cases = {
     await screen.clickPixel(Math.floor(middle.x), Math.floor(middle.y));
     await screen.page.getByRole('heading', { name: 'ball', exact: true }).waitFor();
     const seen = blue(await screen.pixels());
-    t.near(seen.x, middle.x, 1, 'the ball is where it is projected to, x');
+    t.near(seen.x, middle.x, 1, 'the image of the ball is at its projection, x');
     await change(screen, async () => {
       await screen.drag(middle, { x: middle.x + 90, y: middle.y + 30 });
       await screen.quiet();
@@ -46,16 +46,16 @@ export const cases = {
     // The pointer grabbed the point of the ball that is nearest to the camera.
     const away = before.map((v, i) => v - eye[i]);
     const held = after.map((v, i) => v - (0.3 * away[i]) / Math.hypot(...away));
-    t.near(view.project(held).x, middle.x + 90, 1, 'what is held stays under the pointer, x');
-    t.near(view.project(held).y, middle.y + 30, 1, 'what is held stays under the pointer, y');
+    t.near(view.project(held).x, middle.x + 90, 1, 'the grabbed point stays under the pointer, x');
+    t.near(view.project(held).y, middle.y + 30, 1, 'the grabbed point stays under the pointer, y');
     const moved = blue(await screen.pixels());
-    t.near(moved.x - seen.x, there.x - middle.x, 1.5, 'and so does what is seen of it, x');
-    t.near(moved.y - seen.y, there.y - middle.y, 1.5, 'and so does what is seen of it, y');
+    t.near(moved.x - seen.x, there.x - middle.x, 1.5, 'the image of the ball moves with it, x');
+    t.near(moved.y - seen.y, there.y - middle.y, 1.5, 'the image of the ball moves with it, y');
     await change(screen, () => screen.button('Undo').click());
-    t.equal(await lab.value('ball.position'), before, 'one undo takes the drag back');
+    t.equal(await lab.value('ball.position'), before, 'the position after one undo');
   },
 
-  'steps, by buttons and by keys': async (t) => {
+  'buttons and keys move and rotate an object in steps': async (t) => {
     const lab = await t.lab('tests/shadow.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Objects');
@@ -66,10 +66,10 @@ export const cases = {
     await change(screen, () => screen.button('Move by minus y').press('Enter'));
     t.near((await lab.value('ball.position'))[1] - before[1], -0.1, 1e-9, 'a step down, scene units');
     await change(screen, () => screen.button('Turn by plus z').click());
-    t.equal(await lab.value('ball.rotation'), [0, 0, 15], 'a turn about z, degrees');
+    t.equal(await lab.value('ball.rotation'), [0, 0, 15], 'a rotation about z, degrees');
   },
 
-  'the whole scene is moved, turned and scaled': async (t) => {
+  'the whole scene is moved, rotated and scaled': async (t) => {
     const lab = await t.lab('tests/shadow.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
@@ -81,8 +81,8 @@ export const cases = {
     await change(screen, () => screen.button('Move all by plus x').click());
     let now = await values();
     t.near(now[0][0] - ball[0], 0.1, 1e-9, 'the ball moves');
-    t.near(now[1][0] - lamp[0], 0.1, 1e-9, 'and the lamp');
-    t.equal(now[2], eyeAt, 'the camera stays');
+    t.near(now[1][0] - lamp[0], 0.1, 1e-9, 'the lamp moves');
+    t.equal(now[2], eyeAt, 'the camera does not move');
     await change(screen, () => screen.button('Undo').click());
     await screen.page.getByRole('checkbox', { name: 'Camera' }).check();
     const before = await screen.pixels();
@@ -93,21 +93,21 @@ export const cases = {
       Math.hypot(...now[2]),
       1.1 * Math.hypot(...eyeAt),
       1e-9,
-      'with the camera: it is farther away by the factor',
+      'scaled with the camera: its distance is multiplied by the factor',
     );
     const after = await screen.pixels();
     const different = before.data.filter((value, i) => Math.abs(value - after.data[i]) > 2).length;
-    t.check(different < 4 * 50, `the image is the same: ${different} values differ`);
+    t.check(different < 4 * 50, `scaled with the camera, ${different} values of the image differ`);
     await screen.page.getByRole('checkbox', { name: 'Solids' }).uncheck();
     await screen.page.getByRole('checkbox', { name: 'Camera' }).uncheck();
     const [stays] = await values();
     await change(screen, () => screen.button('Move all by minus y').click());
-    t.equal((await values())[0], stays, 'the lights alone: the ball stays');
+    t.equal((await values())[0], stays, 'moving only the lights does not move the ball');
     await t.axe(screen, 'steps of the whole scene');
     await t.picture(screen, 'whole-scene');
   },
 
-  'a rolled camera': async (t) => {
+  'dragging with a rolled camera': async (t) => {
     const lab = await t.lab('tests/shadow.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
@@ -116,11 +116,11 @@ export const cases = {
     await roll.fill('90');
     await change(screen, () => roll.press('Enter'));
     const level = view.project(await lab.value('ball.position'));
-    // Roll 90 turns the image to the left: what was right of the centre is above it.
+    // Roll 90 rotates the image to the left: points right of the centre move above it.
     const there = { x: 320 + (level.y - 240), y: 240 - (level.x - 320) };
     const seen = blue(await screen.pixels());
-    t.near(seen.x, there.x, 1.5, 'the ball is seen where it is turned to, x');
-    t.near(seen.y, there.y, 1.5, 'the ball is seen where it is turned to, y');
+    t.near(seen.x, there.x, 1.5, 'the image of the ball is rotated, x');
+    t.near(seen.y, there.y, 1.5, 'the image of the ball is rotated, y');
     await screen.chooseTool('Object');
     await screen.clickPixel(Math.floor(there.x), Math.floor(there.y));
     await screen.page.getByRole('heading', { name: 'ball', exact: true }).waitFor();
@@ -129,11 +129,11 @@ export const cases = {
       await screen.quiet();
     });
     const moved = blue(await screen.pixels());
-    t.near(moved.x - seen.x, 60, 8, 'what is dragged to the right goes to the right, x');
-    t.near(moved.y - seen.y, 0, 8, 'what is dragged to the right goes to the right, y');
+    t.near(moved.x - seen.x, 60, 8, 'a drag to the right moves the image to the right, x');
+    t.near(moved.y - seen.y, 0, 8, 'a drag to the right moves the image to the right, y');
   },
 
-  'added, copied, renamed, given a material, removed': async (t) => {
+  'objects are added, copied, renamed, given a material and removed': async (t) => {
     const lab = await t.lab('tests/shadow.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Objects');
@@ -147,11 +147,11 @@ export const cases = {
           .getByRole('button', { name: shape, exact: true })
           .click(),
       );
-      t.more((await names(lab)).length, known.length, `${shape}: there are more objects`);
-      t.equal(trouble, null, `${shape}: the scene can be rendered`);
+      t.more((await names(lab)).length, known.length, `${shape}: number of objects`);
+      t.equal(trouble, null, `${shape}: error of the scene`);
     }
     while (await screen.button('Undo').isEnabled()) await change(screen, () => screen.button('Undo').click());
-    t.equal(await names(lab), first, 'all of it can be undone');
+    t.equal(await names(lab), first, 'the objects after undoing everything');
     await screen.page.getByRole('button', { name: /^ball/ }).click();
     await change(screen, () => screen.button('Copy', true).click());
     const [copy] = (await names(lab)).filter((name) => !first.includes(name));
@@ -159,16 +159,16 @@ export const cases = {
     const name = screen.page.getByRole('textbox', { name: 'Name' });
     await name.fill('twin');
     await change(screen, () => name.press('Enter'));
-    t.check((await names(lab)).includes('twin'), 'it is renamed');
+    t.check((await names(lab)).includes('twin'), 'the copy is renamed');
     await change(screen, () => screen.page.getByRole('combobox', { name: 'Material' }).selectOption('grey'));
     t.equal(
       (await lab.get('/api/scene')).objects.find((object) => object.name === 'twin').material,
       'grey',
-      'it is dressed',
+      'the material of the copy',
     );
     await t.axe(screen, 'an object that is chosen');
     await change(screen, () => screen.button('Remove').click());
-    t.equal(await names(lab), first, 'it is removed');
+    t.equal(await names(lab), first, 'the objects after removing the copy');
   },
 
   'a new scene': async (t) => {
@@ -176,9 +176,9 @@ export const cases = {
     const screen = await t.open(lab);
     await screen.showPanel('Objects');
     const state = await change(screen, () => screen.button('New', true).click());
-    t.equal(state.file, null, 'it is in no file');
-    t.equal(state.trouble, null, 'it can be rendered');
+    t.equal(state.file, null, 'the file of a new scene');
+    t.equal(state.trouble, null, 'the error of a new scene');
     await change(screen, () => screen.button('Undo').click());
-    t.check((await names(lab)).includes('rod'), 'undo brings the other back');
+    t.check((await names(lab)).includes('rod'), 'undo restores the previous scene');
   },
 };

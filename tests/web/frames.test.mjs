@@ -1,5 +1,5 @@
-// The displayed image is never older than an earlier one or than a known change, and the last is the final image of the
-// last value.
+// The order of displayed images: none is older than an earlier one or than a known change, and the last is the final
+// image of the last value.
 import { difference } from './screen.mjs';
 
 /** Records every pass that is displayed, once, with the newest known generation at that time. The event repeats for
@@ -26,7 +26,7 @@ function checkOrder(t, drawn, what) {
     drawn.filter((frame) => frame.generation < frame.expected).map((frame) => JSON.stringify(frame)),
     `${what}: a frame older than the known generation`,
   );
-  t.check(drawn.at(-1)?.final, `${what}: the last frame is the final one: ${JSON.stringify(drawn.at(-1))}`);
+  t.check(drawn.at(-1)?.final, `${what}: the last frame is not final: ${JSON.stringify(drawn.at(-1))}`);
 }
 
 async function checkLast(t, screen, scene, what) {
@@ -34,11 +34,11 @@ async function checkLast(t, screen, scene, what) {
   const ior = await lab.value('liquid.ior');
   const { picture } = await lab.get('/api/state');
   const account = JSON.parse(await lab.run('render', scene, '--json', '--set', `liquid.ior=${ior}`));
-  t.equal(picture.film_hash, account.film_hash, `${what}: the film that cuvette render makes of index ${ior}`);
+  t.equal(picture.film_hash, account.film_hash, `${what}: the film of cuvette render for index ${ior}`);
   t.equal(
     difference(await screen.pixels(), await screen.served()),
     0,
-    `${what}: share of pixels that are not the server's image`,
+    `${what}: share of pixels that differ from the server's image`,
   );
 }
 
@@ -60,7 +60,7 @@ export const cases = {
     await checkLast(t, screen, 'scenes/rod.yaml', 'keys');
   },
 
-  'other clients change the scene too': async (t) => {
+  'changes by other clients': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
@@ -81,16 +81,19 @@ export const cases = {
     const screen = await t.open(lab);
     screen.expect(/net::ERR_|401|Failed to load resource|EventSource/);
     const banner = screen.page.locator('#banner');
-    t.equal(await banner.isVisible(), false, 'no banner while the server is there');
+    t.equal(await banner.isVisible(), false, 'the banner is visible while the server runs');
     await lab.stop();
     await banner.waitFor({ state: 'visible' });
-    t.match(await banner.innerText(), /server/i, 'the banner says what is wrong');
+    t.match(await banner.innerText(), /server/i, 'the banner names the server');
     await t.picture(screen, 'lost');
     await lab.serve('scenes/rod.yaml');
     await screen.until(() => /address/i.test(document.querySelector('#banner').innerText));
-    t.match(await banner.innerText(), /address/i, 'the banner says that another address was printed');
+    t.match(await banner.innerText(), /address/i, 'the banner names the newly printed address');
     await screen.load();
-    t.equal(await banner.isVisible(), false, 'no banner at the new address');
-    t.check(await screen.page.evaluate(() => window.lab.picture.final), 'and the image is there');
+    t.equal(await banner.isVisible(), false, 'the banner is visible at the new address');
+    t.check(
+      await screen.page.evaluate(() => window.lab.picture.final),
+      'the final image is displayed at the new address',
+    );
   },
 };

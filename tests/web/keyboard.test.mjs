@@ -1,4 +1,4 @@
-// The page by keyboard alone: from its top to the image, the tools, the parameters and the panels.
+// The page without a mouse: focus order and keys of the image, the tools, the parameters and the panels.
 
 const LONGEST_WAY = 120;
 
@@ -21,7 +21,7 @@ async function checkFocusShows(t, screen, what) {
     const node = document.activeElement;
     return visible(node) || Boolean(node.closest('label') && visible(node.closest('label')));
   });
-  t.check(shown, `${what}: its focus is seen`);
+  t.check(shown, `${what}: the focus is not visible`);
 }
 
 export const cases = {
@@ -48,8 +48,8 @@ export const cases = {
       names.push(at.name);
       if (!at.name) nameless.push(at.what);
     }
-    t.more(names.length, 15, 'elements that keys reach');
-    t.none(nameless, 'elements without a name');
+    t.more(names.length, 15, 'elements that Tab reaches');
+    t.none(nameless, 'elements without an accessible name');
   },
 
   'the image': async (t) => {
@@ -63,7 +63,7 @@ export const cases = {
       await screen.page.keyboard.press(key);
       await screen.until((g) => window.lab.state.generation > g, generation);
       const moved = Math.hypot(...(await eye()).map((v, i) => v - camera.eye[i]));
-      t.more(moved, 1e-3, `${key} moves the eye`);
+      t.more(moved, 1e-3, `${key} moves the camera`);
     }
     await screen.settled();
     const scale = () => screen.page.evaluate(() => window.lab.view.scale);
@@ -71,7 +71,7 @@ export const cases = {
     await screen.page.keyboard.press('+');
     t.more(await scale(), before, '+ zooms in');
     await screen.page.keyboard.press('0');
-    t.near(await scale(), before, 1e-6, '0 shows all of it again');
+    t.near(await scale(), before, 1e-6, '0 fits the image into the view');
   },
 
   'the tools': async (t) => {
@@ -88,7 +88,7 @@ export const cases = {
       seen.add(await chosen());
     }
     t.more(all, 1, 'tools');
-    t.equal(seen.size, all, 'tools that arrow keys choose');
+    t.equal(seen.size, all, 'tools that the arrow keys select');
   },
 
   'a light': async (t) => {
@@ -101,7 +101,7 @@ export const cases = {
     const before = await lab.value('lamp.position');
     await screen.page.keyboard.press('ArrowLeft');
     await screen.until((x) => window.lab.param('lamp.position').value[0] < x, before[0]);
-    t.more(before[0], (await lab.value('lamp.position'))[0], 'an arrow key moves it to the left');
+    t.more(before[0], (await lab.value('lamp.position'))[0], 'an arrow key moves the lamp to the left');
   },
 
   'a parameter': async (t) => {
@@ -112,7 +112,7 @@ export const cases = {
     await checkFocusShows(t, screen, 'the slider');
     await screen.page.keyboard.press('ArrowRight');
     await screen.until(() => window.lab.param('liquid.ior').value > 1.33);
-    t.more(await lab.value('liquid.ior'), 1.33, 'an arrow key turns it');
+    t.more(await lab.value('liquid.ior'), 1.33, 'an arrow key increases the index');
     await tabTo(t, screen, '.param[data-path="liquid.ior"] input[type=number]');
     await screen.page.keyboard.type('1.4');
     await screen.page.keyboard.press('Enter');
@@ -121,7 +121,7 @@ export const cases = {
     await tabTo(t, screen, '.param[data-path="liquid.ior"] button');
     await screen.page.keyboard.press('Enter');
     await screen.until(() => window.lab.param('liquid.ior').value === 1.33);
-    t.equal(await lab.value('liquid.ior'), 1.33, 'the reset button resets it');
+    t.equal(await lab.value('liquid.ior'), 1.33, 'the value after the reset button');
   },
 
   'the panels': async (t) => {
@@ -139,7 +139,7 @@ export const cases = {
     t.equal(
       await screen.page.evaluate(() => document.activeElement.innerText),
       names[0],
-      'after the last comes the first',
+      'the panel after the last one',
     );
   },
 

@@ -1,5 +1,5 @@
-// A laboratory for one test: a temporary folder, `cuvette lab` on it, requests as from curl, and the program's other
-// commands.
+// A laboratory for one test: a temporary folder, `cuvette lab` on it, requests like those of curl, and other commands
+// of the program.
 import { spawn, execFile } from 'node:child_process';
 import { rmSync } from 'node:fs';
 import { cp, mkdtemp, mkdir, rm } from 'node:fs/promises';
@@ -14,12 +14,12 @@ const START_LIMIT_MS = 30000;
 
 /** The first match of a pattern in the output of a program; an error with the whole output if the program ends
  * before. */
-function said(child, pattern) {
+function firstMatch(child, pattern) {
   return new Promise((resolve, reject) => {
     let text = '';
-    const give_up = (why) => reject(new Error(`${why}: ${text.trim()}`));
-    const late = setTimeout(() => give_up('the program printed no address'), START_LIMIT_MS);
-    const hear = (piece) => {
+    const fail = (why) => reject(new Error(`${why}: ${text.trim()}`));
+    const late = setTimeout(() => fail('the program printed no address'), START_LIMIT_MS);
+    const receive = (piece) => {
       text += piece;
       const match = text.match(pattern);
       if (match) {
@@ -27,16 +27,16 @@ function said(child, pattern) {
         resolve(match);
       }
     };
-    child.stdout.on('data', hear);
-    child.stderr.on('data', hear);
+    child.stdout.on('data', receive);
+    child.stderr.on('data', receive);
     child.on('exit', (code) => {
       clearTimeout(late);
-      give_up(`the program ended with ${code}`);
+      fail(`the program ended with ${code}`);
     });
   });
 }
 
-/** Running programs and temporary folders, removed when this program ends, however it ends. */
+/** Running programs and temporary folders, which every exit of this program removes. */
 const running = new Set();
 process.on('exit', () => {
   for (const { child, folder } of running) {
@@ -78,7 +78,7 @@ export class Lab {
       ['lab', ...(scene ? [join(this.folder, scene)] : []), '--no-browser', '--folder', this.folder, ...port, ...more],
       { cwd: this.folder, stdio: ['ignore', 'pipe', 'pipe'] },
     );
-    const [address, number, token] = await said(this.child, /http:\/\/127\.0\.0\.1:(\d+)\/\?token=([0-9a-f]+)/);
+    const [address, number, token] = await firstMatch(this.child, /http:\/\/127\.0\.0\.1:(\d+)\/\?token=([0-9a-f]+)/);
     Object.assign(this, { address, port: Number(number), token, origin: `http://127.0.0.1:${number}` });
   }
 

@@ -67,7 +67,7 @@ export function camera({ position, target, fovDeg, width, height }) {
   };
 }
 
-const meetsBall = (from, direction, { centre, radius }, until) => {
+const hitsBall = (from, direction, { centre, radius }, until) => {
   const d = unit(direction);
   const away = minus(centre, from);
   const along = dot(away, d);
@@ -79,8 +79,8 @@ export function inShadow(x, y, { eye, view, ball, lamp }) {
   const d = view.direction(x, y);
   if (d[1] >= 0) return false;
   const t = -eye[1] / d[1];
-  if (meetsBall(eye, d, ball, Infinity)) return false;
+  if (hitsBall(eye, d, ball, Infinity)) return false;
   const floor = eye.map((v, i) => v + t * d[i]);
-  const way = minus(lamp, floor);
-  return meetsBall(floor, way, ball, Math.sqrt(dot(way, way)));
+  const toLamp = minus(lamp, floor);
+  return hitsBall(floor, toLamp, ball, Math.sqrt(dot(toLamp, toLamp)));
 }

@@ -16,7 +16,7 @@ const channels = (c) => (c[0] === c[1] && c[1] === c[2] ? [c[0]] : c);
 /** The rays of a tree from the root, each before its children. */
 const flat = (node) => [node, ...node.children.flatMap(flat)];
 
-/** The numbers that a row must show, by column head. */
+/** The expected values of a row, by column header. */
 function wanted({ depth, medium, n, throughput, brought, hit }) {
   const row = {
     Depth: [depth],
@@ -86,7 +86,7 @@ async function compareTree(t, screen, lab, x, y, what) {
 }
 
 export const cases = {
-  'pixels that are clicked': async (t) => {
+  'clicked pixels have the trees of cuvette trace': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
@@ -107,7 +107,7 @@ export const cases = {
     }
   },
 
-  'a changed scene': async (t) => {
+  'the table follows a change of the scene': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
     await screen.actualSize();
@@ -118,7 +118,7 @@ export const cases = {
     await screen.settled(generation);
     await screen.quiet();
     await compareTree(t, screen, lab, 400, 300, 'index 1.7');
-    t.check(JSON.stringify(first) !== JSON.stringify(await rowsOf(screen)), 'the table is another one');
+    t.check(JSON.stringify(first) !== JSON.stringify(await rowsOf(screen)), 'the table does not change with the scene');
   },
 
   'the pixel is chosen by keys': async (t) => {

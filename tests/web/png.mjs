@@ -13,7 +13,7 @@ const predictions = [() => 0, (left) => left, (left, above) => above, (left, abo
 /** {width, height, data}: RGBA, one byte per channel, rows from the top as in ImageData. */
 export function readPng(bytes) {
   const file = Buffer.from(bytes);
-  if (file.readUInt32BE(0) !== 0x89504e47) throw new Error('this is no PNG');
+  if (file.readUInt32BE(0) !== 0x89504e47) throw new Error('the file is not a PNG');
   let head = null;
   const packed = [];
   for (let at = 8; at < file.length; at += 12 + file.readUInt32BE(at)) {
@@ -30,7 +30,8 @@ export function readPng(bytes) {
     if (type === 'IDAT') packed.push(body);
   }
   const channels = { 2: 3, 6: 4 }[head.kind];
-  if (head.bits !== 8 || !channels || head.interlaced) throw new Error('a PNG of a kind that is not read here');
+  if (head.bits !== 8 || !channels || head.interlaced)
+    throw new Error('unsupported PNG: only 8-bit RGB or RGBA without interlace');
   const { width, height } = head;
   const raw = inflateSync(Buffer.concat(packed));
   const data = new Uint8ClampedArray(width * height * 4).fill(255);

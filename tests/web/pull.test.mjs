@@ -50,8 +50,12 @@ async function drawnOut(t, screen, rest) {
     await nextPicture(screen);
     now = silhouette(await screen.pixels());
   }
-  t.more(rest.wide / rest.high, (1.1 * now.wide) / now.high, 'how wide it was by how high, above that of now');
-  t.near(now.top, rest.top - LIFT, IN, 'its top goes with the hand, pixels');
+  t.more(
+    rest.wide / rest.high,
+    (1.1 * now.wide) / now.high,
+    'the ratio of width to height at rest, above 1.1 times that when lifted',
+  );
+  t.near(now.top, rest.top - LIFT, IN, 'the top follows the hand, pixels');
 }
 
 async function checkBack(t, lab, screen, rest) {
@@ -60,16 +64,16 @@ async function checkBack(t, lab, screen, rest) {
   const now = silhouette(await screen.pixels());
   // It may have rolled nearer or farther and onto another side, which affects its shape; the tolerance is below half of
   // the effect of lifting.
-  t.near(now.wide / now.high, rest.wide / rest.high, 0.1, 'released, how wide it is by how high');
+  t.near(now.wide / now.high, rest.wide / rest.high, 0.1, 'the ratio of width to height after the release');
   t.near(
     now.count / (now.wide * now.high),
     rest.count / (rest.wide * rest.high),
     0.03,
-    'released, its share of its frame',
+    'the filled share of its bounding box after the release',
   );
   const { slime } = await lab.get('/api/state');
-  t.near(slime.volume / slime.volume_at_rest, 1, 0.03, 'its volume, of that at rest');
-  t.equal(slime.trouble, null, 'it has no trouble');
+  t.near(slime.volume / slime.volume_at_rest, 1, 0.03, 'its volume relative to that at rest');
+  t.equal(slime.trouble, null, 'the error of the slime');
 }
 
 export const cases = {
@@ -109,7 +113,7 @@ export const cases = {
     await checkBack(t, lab, screen, rest);
   },
 
-  'paused, and off': async (t) => {
+  'a paused slime keeps its shape, and off restores the scene': async (t) => {
     const lab = await t.lab('tests/slime.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Slime');
@@ -119,25 +123,25 @@ export const cases = {
     await screen.until(() => !window.lab.slime.playing && window.lab.picture.final);
     const { slime, picture } = await lab.get('/api/state');
     const own = JSON.parse(await lab.run('render', 'tests/slime.yaml', '--json')).film_hash;
-    t.check(picture.film_hash !== own, 'the image shows where it is, not where the scene has it');
-    t.equal((await lab.get('/api/state')).slime.time_s, slime.time_s, 'its time stands still');
+    t.check(picture.film_hash !== own, 'the image shows the simulated slime, not that of the scene');
+    t.equal((await lab.get('/api/state')).slime.time_s, slime.time_s, 'its time while paused');
     await screen.button('Off').click();
     await screen.until((hash) => window.lab.picture.film_hash === hash, own);
-    t.equal((await lab.get('/api/state')).slime.on, false, 'it is off, and the image is that of cuvette render');
+    t.equal((await lab.get('/api/state')).slime.on, false, 'the slime is on after Off');
   },
 
-  'a scene without one': async (t) => {
+  'a scene without a slime has no tool Grab': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Slime');
     await screen.page.getByText('This scene has no slime').waitFor();
     const tools = screen.page.getByRole('radiogroup', { name: 'Pointer tool' });
-    t.equal(await tools.getByText('Grab').isVisible(), false, 'there is no tool to grab it');
+    t.equal(await tools.getByText('Grab').isVisible(), false, 'the tool Grab is visible without a slime');
     const { generation } = await lab.get('/api/state');
     await screen.button('Add a slime').click();
     await screen.until((g) => window.lab.newestGeneration > g, generation);
     await screen.settled(generation + 1);
     await screen.button('Play').waitFor();
-    t.check(await tools.getByText('Grab').isVisible(), 'one that was added can be grabbed');
+    t.check(await tools.getByText('Grab').isVisible(), 'the tool Grab is visible after a slime was added');
   },
 };

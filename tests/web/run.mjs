@@ -1,7 +1,7 @@
 // tests/web/run.mjs --program CUVETTE --modules FOLDER [--screenshots FOLDER] [NAME...]: runs tests/web/NAME.test.mjs,
 // or all, in Chromium; prints one line per file and per failed check, and ends with "N passed, M failed". A file
 // exports cases: {name: async (t) => ..}; t has the checks of checks.mjs, t.lab(scene), t.open(lab, options) and
-// t.axe(screen, what); whatever these start ends with the case.
+// t.axe(screen, what); pages and programs are closed at the end of the case.
 import { execFileSync } from 'node:child_process';
 import { readdirSync } from 'node:fs';
 import { mkdir, readFile } from 'node:fs/promises';
@@ -69,7 +69,7 @@ class Case extends Checks {
 
   async end() {
     for (const screen of this.screens) {
-      this.none(screen.unexpected, 'the page prints no error and asks nobody else');
+      this.none(screen.unexpected, 'errors in the console and requests to other servers');
       await screen.close().catch(() => {});
     }
     for (const lab of this.labs) await lab.end();

@@ -1,4 +1,5 @@
-// A page in the browser: records its messages and its requests. It waits for conditions only, never for fixed times.
+// A page of the laboratory in the browser, with its console messages and requests. Waits are for conditions, never for
+// fixed times.
 import { readPng } from './png.mjs';
 
 const LIMIT_MS = 30000;
@@ -16,9 +17,9 @@ export class Screen {
     });
     screen.context.setDefaultTimeout(LIMIT_MS);
     screen.page = await screen.context.newPage();
-    screen.troubles = [];
+    screen.errors = [];
     screen.expected = [];
-    screen.asking = new Set();
+    screen.pending = new Set();
     screen.idle = [];
     screen.watch();
     await screen.load();
@@ -27,7 +28,7 @@ export class Screen {
 
   watch() {
     const { page } = this;
-    const note = (text) => this.troubles.push(text);
+    const note = (text) => this.errors.push(text);
     page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type())) note(`${message.text()} (${message.location().url ?? ''})`);
     });
@@ -36,12 +37,12 @@ export class Screen {
       const url = new URL(request.url());
       if (['data:', 'blob:', 'about:'].includes(url.protocol)) return;
       if (url.origin !== this.lab.origin) note(`a request to ${url.origin}`);
-      if (url.pathname !== '/api/events') this.asking.add(request);
+      if (url.pathname !== '/api/events') this.pending.add(request);
     });
     for (const end of ['requestfinished', 'requestfailed'])
       page.on(end, (request) => {
-        this.asking.delete(request);
-        if (this.asking.size === 0) for (const wake of this.idle.splice(0)) wake();
+        this.pending.delete(request);
+        if (this.pending.size === 0) for (const wake of this.idle.splice(0)) wake();
       });
   }
 
@@ -50,7 +51,7 @@ export class Screen {
     this.expected.push(pattern);
   }
   get unexpected() {
-    return this.troubles.filter((text) => !this.expected.some((pattern) => pattern.test(text)));
+    return this.errors.filter((text) => !this.expected.some((pattern) => pattern.test(text)));
   }
 
   async load() {
@@ -77,9 +78,9 @@ export class Screen {
   async quiet() {
     do {
       // a reply may trigger requests that waited for it
-      if (this.asking.size) await new Promise((resolve) => this.idle.push(resolve));
+      if (this.pending.size) await new Promise((resolve) => this.idle.push(resolve));
       await this.page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
-    } while (this.asking.size);
+    } while (this.pending.size);
   }
 
   /** Waits until a condition in the page is true; it may use window.lab. */
@@ -108,7 +109,7 @@ export class Screen {
   }
 
   /** The image as displayed, with everything drawn over it. */
-  async seen() {
+  async displayed() {
     const { width, height } = await this.page.evaluate(() => ({
       width: window.lab.view.width,
       height: window.lab.view.height,
@@ -117,7 +118,7 @@ export class Screen {
     return readPng(await this.page.screenshot({ clip: { ...corner, width, height } }));
   }
 
-  /** Shows actual pixels, by the key for it. */
+  /** Shows the image at actual size, by its key. */
   async actualSize() {
     await this.stage.focus();
     await this.page.keyboard.press('1');

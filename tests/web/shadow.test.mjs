@@ -22,11 +22,11 @@ async function compare(t, screen, what) {
   const dark = (x, y) => at(x, y, 0) < 100 && at(x, y, 2) < 100;
   const shade = (x, y) => inShadow(x + 0.5, y + 0.5, { eye, view, ball, lamp });
   const [found, expected] = [region(dark), region(shade)];
-  t.more(expected.n, 300, `${what}: the shadow is in the image`);
-  t.near(found.x, expected.x, 1, `${what}, lamp at ${lamp}: the shadow's middle, x`);
-  t.near(found.y, expected.y, 1, `${what}, lamp at ${lamp}: the shadow's middle, y`);
+  t.more(expected.n, 300, `${what}: pixels of the expected shadow`);
+  t.near(found.x, expected.x, 1, `${what}, lamp at ${lamp}: the centre of the shadow, x`);
+  t.near(found.y, expected.y, 1, `${what}, lamp at ${lamp}: the centre of the shadow, y`);
   const wrong = region((x, y) => dark(x, y) !== shade(x, y)).n;
-  t.check(wrong <= expected.n / 50, `${what}: ${wrong} of ${expected.n} pixels are not as the closed form says`);
+  t.check(wrong <= expected.n / 50, `${what}: ${wrong} of ${expected.n} pixels differ from the closed form`);
   return { lamp, ...found };
 }
 
@@ -41,7 +41,7 @@ export const cases = {
     await screen.drag(handle, { x: handle.x - 60, y: handle.y + 40 });
     const after = await compare(t, screen, 'dragged');
     t.more(Math.hypot(...after.lamp.map((v, i) => v - before.lamp[i])), 0.2, 'the lamp has moved');
-    t.more(Math.hypot(after.x - before.x, after.y - before.y), 10, 'and its shadow, pixels');
+    t.more(Math.hypot(after.x - before.x, after.y - before.y), 10, 'the shadow has moved, pixels');
     const there = view.project(after.lamp);
     t.near(there.x, handle.x - 60, 2, 'the lamp is where the pointer was released, x');
     t.near(there.y, handle.y + 40, 2, 'the lamp is where the pointer was released, y');

@@ -18,7 +18,7 @@ async function play(t, options) {
 const until = (screen, condition) => screen.until(condition);
 
 export const cases = {
-  'a pointer draws it': async (t) => {
+  'the pointer grabs and pulls the slime': async (t) => {
     const { lab, screen } = await play(t);
     await screen.chooseTool('Grab');
     const [a, b] = [await screen.place(400, 330), await screen.place(330, 250)];
@@ -28,15 +28,15 @@ export const cases = {
     await screen.page.mouse.move(b.x, b.y, { steps: 8 });
     await screen.page.mouse.wheel(0, -60);
     await until(screen, () => window.lab.slime.speed > 1);
-    t.more(await screen.page.locator('.layer-grab circle').count(), 1, 'marks of the hand');
+    t.more(await screen.page.locator('.layer-grab circle').count(), 1, 'markers of the hand');
     await t.picture(screen, 'slime-drawn');
     await screen.page.mouse.up();
     await until(screen, () => window.lab.slime.held === 0);
-    t.equal(await screen.page.locator('.layer-grab circle').count(), 0, 'marks after the release');
-    t.equal((await slime(lab)).trouble, null, 'it holds together');
+    t.equal(await screen.page.locator('.layer-grab circle').count(), 0, 'markers after the release');
+    t.equal((await slime(lab)).trouble, null, 'the error of the slime');
   },
 
-  'keys draw it': async (t) => {
+  'keys grab and pull the slime': async (t) => {
     const { screen } = await play(t);
     await screen.chooseTool('Grab');
     await screen.stage.focus();
@@ -50,29 +50,29 @@ export const cases = {
     await until(screen, () => window.lab.slime.held > 0);
     await screen.chooseTool('Orbit');
     await until(screen, () => window.lab.slime.held === 0);
-    t.check(true, 'another tool releases it');
+    t.check(true, 'choosing another tool releases the slime');
   },
 
-  'colours change while it moves, and a change of its body restarts it': async (t) => {
+  'changing a colour keeps the motion, and changing the body restarts it': async (t) => {
     const { lab, screen } = await play(t);
     const { time_s: then } = await slime(lab);
     await screen.page.getByLabel('Absorption, red', { exact: true }).press('End');
     await until(screen, () => window.lab.param('body.absorb_per_m').value[0] === 100);
     await screen.until((time_s) => window.lab.slime.time_s > time_s, then);
-    t.more((await slime(lab)).time_s, then, 'its time goes on');
+    t.more((await slime(lab)).time_s, then, 'its time advances');
     await screen.page.getByLabel('Tint', { exact: true }).fill('#ff8000');
     await until(screen, () => window.lab.param('body.absorb_per_m').value[0] === 0);
     const [red, green, blue] = await lab.value('body.absorb_per_m');
-    t.equal(red, 0, 'an orange tint absorbs no red');
-    t.near(Math.exp(-green), ((128 / 255 + 0.055) / 1.055) ** 2.4, 0.001, 'the share of green behind 1 m');
-    t.more(blue, 5, 'absorption of blue, 1/m');
+    t.equal(red, 0, 'the absorption of red by an orange tint, 1/m');
+    t.near(Math.exp(-green), ((128 / 255 + 0.055) / 1.055) ** 2.4, 0.001, 'the transmittance of green over 1 m');
+    t.more(blue, 5, 'the absorption of blue, 1/m');
     const { generation } = await lab.get('/api/state');
     await screen.page.getByLabel('Damping', { exact: true }).press('ArrowRight');
     await screen.until(
       (g) => window.lab.state.generation > g && window.lab.slime.time_s < window.lab.state.slime.time_s + 1,
       generation,
     );
-    t.equal((await slime(lab)).trouble, null, 'no trouble');
+    t.equal((await slime(lab)).trouble, null, 'the error after the restart');
     await screen.button('Pause').click();
     await until(screen, () => !window.lab.slime.playing);
     await screen.button('Off').click();
@@ -90,11 +90,11 @@ export const cases = {
     }
   },
 
-  'a scene without one': async (t) => {
+  'a scene without a slime': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Slime');
-    t.equal(await screen.page.getByRole('radio', { name: 'Grab' }).count(), 0, 'tools to grab with');
+    t.equal(await screen.page.getByRole('radio', { name: 'Grab' }).count(), 0, 'radio buttons of the tool Grab');
     await t.axe(screen, 'no slime');
   },
 };

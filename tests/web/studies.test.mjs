@@ -1,5 +1,5 @@
-// A study is started on the page, watched, stopped half way and continued to its end; the page shows what the program
-// prints.
+// Studies on the page: one is started, stopped half way and resumed to its end, and its table equals the output of the
+// program.
 import { readFile } from 'node:fs/promises';
 import { join } from 'node:path';
 
@@ -20,26 +20,26 @@ async function chosen(t) {
 
 const rowsOf = async (lab) =>
   (await readFile(join(lab.folder, 'results/quick/rows.csv'), 'utf8')).trim().split('\n').slice(1);
-/** Without warm-up rows: a continued run warms up again. */
+/** The rows without warm-ups, which a resumed run repeats. */
 const measured = (rows) => rows.filter((row) => row.split(',')[4] === '0');
 
 export const cases = {
-  'started, stopped, continued to its end': async (t) => {
+  'a study is started, stopped and resumed to its end': async (t) => {
     const { lab, screen, study } = await chosen(t);
     screen.context.setDefaultTimeout(60000);
     await study.getByRole('button', { name: 'Start', exact: true }).click();
     await running(screen, true);
     await screen.until(() => window.lab.study.frames_done > 12);
-    t.check((await lab.get('/api/state')).waiting, 'nothing is rendered meanwhile, and the state says why');
+    t.check((await lab.get('/api/state')).waiting, 'the state reports that rendering waits for the study');
     await study.getByRole('progressbar').waitFor();
     await study.getByRole('button', { name: 'Stop', exact: true }).click();
     await running(screen, false);
     await screen.quiet();
     const some = await rowsOf(lab);
-    t.more(some.length, 12, 'rows after it was stopped');
-    t.check(measured(some).length < ROWS, `it was stopped before its end: ${measured(some).length} of ${ROWS} rows`);
+    t.more(some.length, 12, 'rows after the stop');
+    t.check(measured(some).length < ROWS, `stopped after ${measured(some).length} of ${ROWS} rows, not before the end`);
     const plot = study.getByRole('img', { name: /Time by recursion depth and index/ });
-    t.more(await plot.locator('.plot-marker').count(), 0, 'markers in its figure');
+    t.more(await plot.locator('.plot-marker').count(), 0, 'markers in the figure');
 
     await study.getByRole('button', { name: 'Continue' }).click();
     await running(screen, true);
@@ -48,19 +48,19 @@ export const cases = {
     await screen.quiet();
     const all = await rowsOf(lab);
     t.equal(measured(all).length, ROWS, 'rows at the end');
-    t.equal(all.slice(0, some.length), some, 'the rows from before are kept as they were');
-    const told = await lab.get('/api/studies/quick');
-    t.equal([told.cells_done, told.marked], [CELLS, 0], 'cells done, rows of another film');
+    t.equal(all.slice(0, some.length), some, 'the rows of the first run are unchanged');
+    const report = await lab.get('/api/studies/quick');
+    t.equal([report.cells_done, report.marked], [CELLS, 0], 'cells done, rows of another film');
     // One line per depth or index with four markers each, and one in the legend.
-    t.equal(await plot.locator('.plot-series .plot-marker').count(), CELLS + 4, 'markers in its figure');
+    t.equal(await plot.locator('.plot-series .plot-marker').count(), CELLS + 4, 'markers in the figure');
     await t.axe(screen, 'a study with rows');
 
     const summary = (await lab.run('study', 'summary', 'studies/quick.study'))
       .trim()
       .split('\n')
       .map((line) => line.split('\t'));
-    t.equal(told.summary.columns, summary[0], 'columns of the summary');
-    t.equal(told.summary.rows.length, summary.length - 1, 'lines of the summary');
+    t.equal(report.summary.columns, summary[0], 'columns of the summary');
+    t.equal(report.summary.rows.length, summary.length - 1, 'lines of the summary');
     const table = study.getByRole('region', { name: 'Summary' }).getByRole('table');
     t.equal(await table.locator('tbody tr').count(), CELLS, 'lines of the summary in the page');
     const hashes = summary.slice(1).map((line) => line[summary[0].indexOf('film_hash')]);
@@ -72,33 +72,37 @@ export const cases = {
 
     await screen.showPanel('Parameters');
     await screen.settled();
-    t.check(await screen.page.evaluate(() => window.lab.picture.final), 'afterwards the image is rendered again');
+    t.check(await screen.page.evaluate(() => window.lab.picture.final), 'the image is rendered after the study');
   },
 
-  'a change during a measurement is rendered afterwards': async (t) => {
+  'a change during a study is rendered afterwards': async (t) => {
     const { lab, screen, study } = await chosen(t);
     screen.context.setDefaultTimeout(60000);
     await study.getByRole('button', { name: 'Start', exact: true }).click();
     await running(screen, true);
     const { generation } = await lab.post('/api/set', { set: { 'liquid.ior': 1.6 } });
-    t.more(generation, (await lab.get('/api/state')).picture.generation, 'rendering is suspended');
+    t.more(
+      generation,
+      (await lab.get('/api/state')).picture.generation,
+      'the generation of the change is newer than that of the image',
+    );
     await study.getByRole('button', { name: 'Stop', exact: true }).click();
     await running(screen, false);
     await screen.showPanel('Parameters');
     await screen.settled(generation);
     const film = JSON.parse(await lab.run('render', 'scenes/rod.yaml', '--set', 'liquid.ior=1.6', '--json')).film_hash;
-    t.equal(await screen.page.evaluate(() => window.lab.picture.film_hash), film, 'the film of the change');
+    t.equal(await screen.page.evaluate(() => window.lab.picture.film_hash), film, 'the film of the changed scene');
   },
 
-  'the machine': async (t) => {
+  'the panel Machine has the kernel and version of cuvette machine': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await screen.showPanel('Machine');
     const panel = screen.page.getByRole('tabpanel', { name: 'Machine' });
     await panel.getByText('Kernel').waitFor();
     const text = await panel.innerText();
-    const told = JSON.parse(await lab.run('machine', '--json'));
-    for (const word of [...told.kernel.slice(0, 1), told.version])
+    const machine = JSON.parse(await lab.run('machine', '--json'));
+    for (const word of [...machine.kernel.slice(0, 1), machine.version])
       t.check(text.includes(word), `the panel does not show ${word}`);
   },
 };
