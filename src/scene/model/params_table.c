@@ -283,7 +283,7 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, ior, "", 0.1, 1e9, "1",
          "refractive index, relative to vacuum; above 10000 a transparent surface is a perfect mirror"),
     CHOICE(PARAM_MATERIAL, material, medium, medium_words, "ior",
-           "source of the refractive index: ior, a dispersion law with coefficients, or a medium of the "
+           "source of the index: ior, a dispersion law with coefficients, or a medium of the "
            "catalogue (cuvette media)"),
     LIST(PARAM_MATERIAL, material, coefficients, "", 1e6, "[]",
          "of the dispersion law: cauchy A,B,C.. n = A + B/L^2 + C/L^4; sellmeier B1,C1,B2,C2.. (um^2); table "
