@@ -549,7 +549,7 @@ refused_lab() { # WHAT ERROR ARGUMENT...
     check "lab refuses $what" matches "$code $(wc -l <err) $(wc -c <out) $(<err)" "^2 1 0 cuvette: $error"
 }
 mkdir -p elsewhere
-refused_lab "two scenes" "lab: unexpected argument 'here.yaml'; give one SCENE" here.yaml here.yaml
+refused_lab "two scenes" "lab: unexpected argument 'here.yaml'; give exactly one SCENE" here.yaml here.yaml
 refused_lab "a missing scene" 'nowhere.yaml: ' nowhere.yaml
 refused_lab "a scene outside of its folder" 'here.yaml: is not in the folder' --folder elsewhere here.yaml
 refused_lab "a missing folder" "'nowhere' is not a folder" --folder nowhere
@@ -830,7 +830,7 @@ refused "a scene that is invalid as a whole" \
     "built.yaml: vessel: inner_radius 2 is not smaller than radius 1; make inner_radius smaller than radius, or the \
 cup has no wall" \
     built.yaml --set vessel.inner_radius=2
-refused "a file and --new" "scene: a scene file and --new exclude each other; give only one of them" built.yaml --new
+refused "a file and --new" "scene: a scene file and --new exclude each other; use only one of them" built.yaml --new
 run scene built.yaml -o rod.png
 check "scene writes no image" is "$code $(wc -l <err)" "2 1"
 run scene

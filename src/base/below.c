@@ -11,7 +11,7 @@
 
 enum { FLAGS = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY };
 
-/* The name in /proc of an open file; opening it opens the same file. */
+/* The path /proc/self/fd/N of an open file; opening that path opens the same file. */
 typedef struct shown {
     char name[32];
 } shown;

@@ -126,7 +126,7 @@ char *file_beside(const char *path, const char *name)
 static char *resolve(const char *path)
 {
     char *current = strdup(path);
-    for (int links = 0; current && links < 40; links++) { /* as many as Linux follows, path_resolution(7) */
+    for (int links = 0; current && links < 40; links++) { /* Linux follows at most 40 links, path_resolution(7) */
         char target[PATH_MAX];
         ssize_t length = readlink(current, target, sizeof target - 1);
         if (length < 0)

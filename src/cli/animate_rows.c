@@ -142,7 +142,7 @@ status animate_rows_open(const char *path, uint64_t definition, bool restart, an
     if (result == STATUS_OK && there)
         result = take_rows(rows, path, there, header.text, definition, why);
     if (result == STATUS_OK && restart && rows->count > 0)
-        result = refuse(path, "has rows already, but this animation starts again", why);
+        result = refuse(path, "already has rows, but this animation starts from the beginning", why);
     THEN(result, open_table(path, header.text, &rows->file, why));
     csv_destroy(there);
     csv_line_free(&header);

@@ -19,7 +19,7 @@ static char *table_text(const command *table, size_t count, const char *about, c
     }
     if (!text)
         return NULL;
-    char *whole = text_format("%s\n'%s COMMAND --help' prints the help of a command.", text, program);
+    char *whole = text_format("%s\n'%s COMMAND --help' prints help for a command.", text, program);
     free(text);
     return whole;
 }

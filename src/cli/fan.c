@@ -41,7 +41,7 @@ static status take_size(const command_option *o, void *context, const char *valu
     if (result != STATUS_OK)
         return result;
     if (request->has_width)
-        return options_wrong(name, value, why, "give only one of them", "--width and --spread exclude each other");
+        return options_wrong(name, value, why, "use only one of them", "--width and --spread exclude each other");
     if (!(size >= 0.0 && size <= most))
         return options_wrong(name, value, why, spreads ? "give 0 to 179 degrees" : "give 0 to 1e6", "out of range");
     request->has_width = true;

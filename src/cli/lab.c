@@ -40,7 +40,7 @@ static const command_form form = {
     .synopsis = "[SCENE]",
     .arguments_at = offsetof(lab_request, scene),
     .argument_limit = 1,
-    .excess_remedy = "give one SCENE",
+    .excess_remedy = "give exactly one SCENE",
     .excess = "unexpected argument '%.128s'",
     .about = "Open the laboratory in the browser: view a scene, change any of its parameters, inspect the rays of a "
              "pixel, compare images, edit the scene, move a slime, run studies. This program serves the page on "

@@ -13,23 +13,23 @@ static const command commands[] = {
     {"animate", "render an animation of a scene with moving slimes", command_animate},
     {"scene", "check, edit and write a scene, or build a new one", command_scene},
     {"trace", "trace one ray and print its ray tree", command_trace},
-    {"fan", "trace a fan of rays; find their focus and their caustic", command_fan},
-    {"params", "print the parameter table", command_params},
+    {"fan", "trace a fan of rays and find its focus and caustic", command_fan},
+    {"params", "list all parameters, or those of a scene", command_params},
     {"media", "print the media catalogue: refractive index, dispersion, source", command_media},
     {"mesh", "describe, generate or convert a triangle mesh", command_mesh},
-    {"study", "run, list, merge and summarise studies (parameter sweeps)", command_study},
+    {"study", "run and summarise studies (parameter sweeps)", command_study},
     {"compare", "compare two images", command_compare},
-    {"realism", "compare the traced optics of a scene with closed-form theory", command_realism},
-    {"motion", "compare the motion of slimes with closed-form mechanics", command_motion},
+    {"realism", "compare the optics of a scene, as traced, with textbook formulas", command_realism},
+    {"motion", "compare the motion of slimes (soft bodies) with mechanics", command_motion},
     {"lab", "open the laboratory in the browser", command_lab},
-    {"machine", "describe this machine and what disturbs measurements on it", command_machine},
-    {"help", "print the help of a command", command_help},
+    {"machine", "describe this machine and what may disturb timings on it", command_machine},
+    {"help", "print help for a command", command_help},
 };
 
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
 static const char about[] = "Cuvette, a ray-tracing laboratory: describe a scene, sweep any of its parameters, and get "
-                            "the image, the exact ray counts and reliable times.";
+                            "the image, exact ray counts and reliable timings.";
 
 static status dispatch(int argc, char **argv, diagnostic *why)
 {

@@ -38,12 +38,13 @@ static const command_form form = {
     .argument_limit = 1,
     .excess_remedy = "give one medium, or none for all",
     .excess = "unexpected argument '%.128s'",
-    .about = "Print the media catalogue: refractive index at the lines d, F and C, Abbe number, wavelength range and "
-             "temperature of the measurement, reference (air or vacuum) and source. With a name, print all data of "
-             "that medium: the dispersion formula with its coefficients, and caveats.\vIndices are as published, "
-             "relative to air or to vacuum; for one medium the index relative to vacuum is printed too. A star marks "
-             "an index outside the measured range. --at never extrapolates. On a terminal the lines are wrapped to "
-             "its width; a pipe or a file gets the full lines.",
+    .about = "Print the media catalogue: refractive index at the d, F and C lines, Abbe number, wavelength range and "
+             "temperature of the measurement, reference medium (air or vacuum) and source. With a name, print all data "
+             "for that medium: the dispersion formula with its coefficients, and caveats.\vIndices are as published, "
+             "relative to air or to vacuum; with a name the index relative to vacuum is printed as well. An "
+             "asterisk marks an index outside the measured range. --at never extrapolates. On a terminal the lines are "
+             "wrapped to "
+             "its width; output to a pipe or file is not wrapped.",
 };
 
 static status find(const media_request *request, const medium **out, diagnostic *why)

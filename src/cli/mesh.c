@@ -86,7 +86,7 @@ static const command_form form = {
 
 static status check_request(const mesh_request *request, diagnostic *why)
 {
-    const char *what = NULL, *remedy = "give only one of them";
+    const char *what = NULL, *remedy = "use only one of them";
     if (!request->generate && !request->file)
         what = "no mesh is given", remedy = "give a file, or a generator such as --generate torus";
     else if (request->generate && request->file)

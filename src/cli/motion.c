@@ -31,7 +31,7 @@ static status check_request(void *context, diagnostic *why)
 {
     const motion_request *request = context;
     return request->json && request->csv
-               ? options_wrong("motion", NULL, why, "give only one of them", "--json and --csv exclude each other")
+               ? options_wrong("motion", NULL, why, "use only one of them", "--json and --csv exclude each other")
                : STATUS_OK;
 }
 
@@ -79,7 +79,7 @@ static void print_cells(const trial_cells *c, int columns)
 
 static void print_text(const mesh_entry *m, const softbody_trial_report *r, int columns)
 {
-    static const trial_cells titles = {"", "measured", "theory", "error", "unit", "what"};
+    static const trial_cells titles = {"", "measured", "theory", "error", "unit", "description"};
     char measured[NUMBER_TEXT_MAX], theory[NUMBER_TEXT_MAX], error[NUMBER_TEXT_MAX];
     printf("%s: level %lld, %s, steps of %g s\n", m->name, (long long)m->level, motion_word(m), m->slime.dt_s);
     print_cells(&titles, columns);

@@ -81,7 +81,7 @@ static status explain(const getopt_table *table, int result, const char *program
     char remedy[192];
     const char *known = name_of_key(table, optopt);
     if (result == ':') {
-        snprintf(remedy, sizeof remedy, "'%s --help' describes the value", program);
+        snprintf(remedy, sizeof remedy, "see '%s --help' for the accepted values", program);
         return diagnose(why, STATUS_BAD_INPUT, remedy, "option '--%s' requires a value", known ? known : "?");
     }
     if (optopt == 0)

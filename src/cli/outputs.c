@@ -56,7 +56,7 @@ static status check_folder(const named_file *file, diagnostic *why)
 {
     struct stat about;
     if (stat(file->path, &about) == 0 && S_ISDIR(about.st_mode))
-        return wrong(file, why, "give a file in it", "is a folder");
+        return wrong(file, why, "give a file inside that folder", "is a folder");
     char *folder = outputs_folder_of(file->path);
     if (!folder)
         return out_of_memory(why);
@@ -135,7 +135,7 @@ static bool is_same(void *context, const char *path)
 static status check_not_read(const named_file *file, const scene *s, diagnostic *why)
 {
     if (scene_files_any(s, is_same, (void *)(uintptr_t)file->path))
-        return wrong(file, why, "give another file", "the scene is read from this file");
+        return wrong(file, why, "give another file", "this is the scene's own file");
     return STATUS_OK;
 }
 
@@ -233,7 +233,7 @@ status outputs_check_script(const char *option, const char *path, const scene *s
 {
     const named_file file = {option, path};
     const bool is_read = strcmp(path, "-") != 0 && is_script_of(path, s);
-    return is_read ? wrong(&file, why, "give another file", "a script of the scene is read from this file") : STATUS_OK;
+    return is_read ? wrong(&file, why, "give another file", "this file is a script that the scene uses") : STATUS_OK;
 }
 
 status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),

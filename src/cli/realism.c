@@ -42,7 +42,7 @@ static status check_request(void *context, diagnostic *why)
 {
     const realism_request *request = context;
     return request->json && (request->csv || request->curve >= 0)
-               ? options_wrong("realism", NULL, why, "give only one of them", "--json excludes --csv and --curve")
+               ? options_wrong("realism", NULL, why, "use only one of them", "--json excludes --csv and --curve")
                : STATUS_OK;
 }
 
@@ -91,7 +91,8 @@ static void print_value(const realism_value *v, int columns)
 
 static void print_text(const realism_report *r, int columns)
 {
-    static const metric_cells titles = {"", "metric", "measured", "theory", "error", "tolerance", "unit", "what"};
+    static const metric_cells titles = {"",      "metric",    "measured", "theory",
+                                        "error", "tolerance", "unit",     "description"};
     int defined = 0, passed = 0;
     print_cells(&titles, columns);
     for (int i = 0; i < r->count; i++) {

@@ -38,15 +38,15 @@ static const command_option options[] = {
     {"bits", 0, "N", "bits per channel of a PNG: 8 (the default) or 16", .take = take_bits},
     {"rays", 0, "FILE", "write the ray count of each pixel: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.rays)},
-    {"time", 0, "FILE", "write the nanoseconds of each pixel: .png with a colour scale, or .pfm",
+    {"time", 0, "FILE", "write the render time of each pixel in ns: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.time)},
-    {"noise", 0, "FILE", "write the standard error of each pixel (random paths): .png with a colour scale, or .pfm",
+    {"noise", 0, "FILE", "write the standard error of each pixel (path tracing): .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.noise)},
-    {"timeline", 0, "FILE", "write time and thread of each tile: .json for chrome://tracing or Perfetto",
+    {"timeline", 0, "FILE", "write start, duration and thread of each tile: .json for chrome://tracing or Perfetto",
      OPTION_FILLS(option_text, render_request, files.timeline)},
-    {"layers", 0, "PREFIX", "write the layers of render.integrator=aov as PREFIX-LAYER.pfm",
+    {"layers", 0, "PREFIX", "write the layers as PREFIX-LAYER.pfm; needs render.integrator=aov",
      OPTION_FILLS(option_text, render_request, files.layers)},
-    {"repeat", 0, "N", "render N times; wall_s and cpu_s are the medians",
+    {"repeat", 0, "N", "render N times and report the median wall and CPU time",
      OPTION_FILLS(option_integer, render_request, repeat), .lowest = 1, .highest = 1000000},
     {0},
 };
@@ -79,7 +79,7 @@ static void print_summary(const job_account *f, const outputs *files)
            (long long)s->render.depth, (unsigned long long)rays, wall_s, wall_s > 0 ? (double)rays / wall_s / 1e6 : 0.0,
            (unsigned long long)job_account_hash(f));
     if (f->result->variance)
-        printf(", noise %.4f rms", render_noise_rms(f->result));
+        printf(", rms noise %.4f", render_noise_rms(f->result));
     const char *before = " -> ";
     for (size_t i = 0; i < sizeof written / sizeof written[0]; i++)
         if (written[i]) {
@@ -163,9 +163,9 @@ static const scene_command render_command = {
     .form = {.options = options,
              .synopsis = "SCENE",
              SCENE_WORD("render"),
-             .about = "Render the scene file SCENE.\vFor example:\n"
+             .about = "Render SCENE, print its ray count and time, and write the image with -o.\vFor example:\n"
                       "  cuvette render experiments/scenes/rod.yaml -o rod.png --set render.depth=4\n"
-                      "'cuvette params SCENE' lists the parameters of --set."},
+                      "'cuvette params SCENE' lists the parameters that --set accepts."},
     .check = check_request,
     .check_scene = check_scene,
     .run = run,

@@ -71,11 +71,11 @@ static status check_request(const scene_request *request, diagnostic *why)
         return options_wrong("scene", NULL, why, "give a scene file, such as experiments/scenes/rod.yaml, or --new",
                              "no scene is given");
     if (request->path && request->begins_empty)
-        return options_wrong("scene", NULL, why, "give only one of them", "a scene file and --new exclude each other");
+        return options_wrong("scene", NULL, why, "use only one of them", "a scene file and --new exclude each other");
     if (request->only_checks && request->only_lists)
-        return options_wrong("scene", NULL, why, "give only one of them", "--check and --list exclude each other");
+        return options_wrong("scene", NULL, why, "use only one of them", "--check and --list exclude each other");
     if (request->output && (request->only_checks || request->only_lists))
-        return options_wrong("scene", NULL, why, "remove -o FILE", "--check and --list write no scene");
+        return options_wrong("scene", NULL, why, "remove -o FILE", "--check and --list do not write a scene");
     if (!request->output || strcmp(request->output, "-") == 0)
         return STATUS_OK;
     TRY(outputs_ending("-o", request->output, endings, 2, "use a name that ends in .yaml or .yml", &unused, why));
@@ -150,8 +150,8 @@ static status run(const scene_request *request, scene *s, diagnostic *why)
 
 static const char about[] =
     "Read a scene file, or start with an empty scene; apply the edits in the order of the options; check the scene and "
-    "write it in a normal form. Only values that differ from the defaults are written; comments are dropped.\vIf there "
-    "is an error, nothing is written. For example:\n"
+    "write it in canonical form. Only values that differ from the defaults are written; comments are dropped. If "
+    "there is an error, nothing is written.\vExamples:\n"
     "  cuvette scene rod.yaml --move rod=0,0.5,0 --turn rod=0,0,-22 -o b.yaml\n"
     "  cuvette scene --new --add light:lamp --add solid:ball=sphere,diffuse=0.8";
 

@@ -235,17 +235,17 @@ static status command_list(int argc, char **argv, diagnostic *why)
 }
 
 static const command commands[] = {
-    {"run", "measure the missing rows of studies", command_run},
-    {"list", "list the studies of a folder", command_list},
+    {"run", "run studies, or resume them: measure the missing rows", command_run},
+    {"list", "list the studies in a folder", command_list},
     {"status", "print the progress of studies", command_status},
-    {"merge", "merge the rows of shards", command_merge},
-    {"summary", "print medians and confidence intervals of each cell", command_summary},
+    {"merge", "merge the rows of a study that was run in shards", command_merge},
+    {"summary", "print medians and confidence intervals for each cell", command_summary},
 };
 
 status command_study(int argc, char **argv, diagnostic *why)
 {
-    return command_dispatch(
-        commands, sizeof commands / sizeof commands[0],
-        "A study is a scene, a grid over its parameters, and repetitions. Its rows go to results/STUDY/rows.csv.", argc,
-        argv, why);
+    return command_dispatch(commands, sizeof commands / sizeof commands[0],
+                            "A study combines a scene, a grid of parameter values and a number of repetitions. Each "
+                            "repetition is one row of results/STUDY/rows.csv.",
+                            argc, argv, why);
 }

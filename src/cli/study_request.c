@@ -79,11 +79,11 @@ static status check_files(const study_request *request, const char *program, dia
     const char *what = NULL, *remedy = NULL;
     bool lists = request->verb == STUDY_LIST;
     if (request->file_count == 0 && !lists)
-        what = "no study is given", remedy = "give a study file, such as experiments/depth.study";
+        what = "no study was given", remedy = "give a study file, such as experiments/depth.study";
     else if (request->file_count > 1 && lists)
         what = "more than one folder is given", remedy = "give one folder";
     else if (request->file_count > 1 && request->verb == STUDY_SUMMARY)
-        what = "more than one study is given", remedy = "give one study, since each has its own columns";
+        what = "more than one study was given", remedy = "give one study, since each has its own columns";
     else if (!request->results[0])
         what = "--results is empty", remedy = "give a folder";
     if (!what)

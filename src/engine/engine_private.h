@@ -56,7 +56,7 @@ cuvette_status engine_begin_advance(cuvette_scene *s, cuvette_diagnostic *why);
 void engine_end_advance(cuvette_scene *s);
 cuvette_status engine_is_advancing(cuvette_diagnostic *why); /* always CUVETTE_BUSY, with a diagnostic */
 
-/* Releases one owner. */
+/* Drops one reference; the last one frees the scene. */
 void engine_release_scene(cuvette_scene *s);
 
 /* scene_check while other threads may load the scene. */

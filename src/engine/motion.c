@@ -143,7 +143,7 @@ status motion_find(const cuvette_motion *m, const char *name, size_t *index, int
             *index = i;
             return STATUS_OK;
         }
-    return diagnose(why, STATUS_BAD_INPUT, "name a slime's mesh, or a solid that shows one", "%.80s is not a slime",
+    return diagnose(why, STATUS_BAD_INPUT, "name a slime's mesh, or a solid that uses one", "%.80s is not a slime",
                     name);
 }
 

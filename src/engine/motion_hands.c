@@ -75,8 +75,8 @@ static cuvette_status find_hand(cuvette_motion *m, int number, motion_hand **out
     if (holds)
         *out = &m->hands[number];
     else
-        diagnose(&inner, STATUS_BAD_INPUT, "give a number that cuvette_motion_grab returned", "hand %d holds nothing",
-                 number);
+        diagnose(&inner, STATUS_BAD_INPUT, "pass a hand number returned by cuvette_motion_grab",
+                 "hand %d holds nothing", number);
     return engine_report(holds ? STATUS_OK : STATUS_BAD_INPUT, &inner, why);
 }
 

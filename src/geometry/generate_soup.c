@@ -71,7 +71,7 @@ static status check_count(size_t count, diagnostic *why)
 {
     if (count >= 1 && count <= MESH_TRIANGLES_MAX)
         return STATUS_OK;
-    return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "a triangle set cannot have %zu triangles", count);
+    return diagnose(why, STATUS_BAD_INPUT, "use 1 to 268435456", "%zu triangles are out of range", count);
 }
 
 status generate_sparse_soup(size_t count, mesh **out, diagnostic *why)

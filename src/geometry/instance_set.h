@@ -118,7 +118,8 @@ typedef struct instance_kernels {
     /* The next relevant crossing: the exit of a mesh that the ray is in, the entry of one that it is not in and that
      * the medium does not hide, either side of an open surface. */
     void (*nearest)(const instance_set *f, const instance_ray *rays, int count, instance_hit *hits);
-    /* Returns whether any mesh of the wanted set blocks the ray. Closed meshes as above, but regardless of hiding. */
+    /* Writes for each ray whether any mesh of the wanted set blocks it. Closed meshes as above, also where a solid of
+     * higher priority hides them. */
     void (*any)(const instance_set *f, const instance_ray *rays, int count, bool *blocked);
     /* The set of primitives after all crossings of wanted meshes in t_min < t <= t_max; an open surface in between has
      * its bit set, too. */

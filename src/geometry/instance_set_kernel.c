@@ -69,7 +69,7 @@ static double beyond_start(const instance_set *f, const instance_ray *ray)
 static double at_start(const instance_set *f, const instance_ray *ray, const instance_hit *hit)
 {
     const instanced_mesh *p = &f->parts[f->by_primitive[mesh_face_primitive(hit->face)]];
-    /* First a quick test for crossings far from the start, by a share that exceeds every error bound. */
+    /* Crossings clearly far from the start need no exact test: 2^-20 of the reach exceeds every error bound. */
     const double reach = p->reach + sum_of_magnitudes(ray->origin);
     if (ray->start == FACE_NONE || ray->t_min > 0.0 || hit->t * sum_of_magnitudes(ray->direction) > 0x1p-20 * reach)
         return 0.0;

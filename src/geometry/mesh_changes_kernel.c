@@ -1,6 +1,6 @@
-/* The part of meshes in the second pass over a batch (nearest_interface_kernel.c): their crossings among those of the
- * other primitives, and their bits of a ray's set. Between two changes of medium a ray can cross only meshes of lower
- * priority, which are hidden; their bits are updated at the next change. */
+/* Meshes in the second pass over a batch (nearest_interface_kernel.c): merges their crossings with those of the other
+ * primitives, and updates their bits in each ray's set of solids that contain the current point. Between two changes of
+ * medium a ray can cross only meshes of lower priority, which are hidden; their bits are updated at the next change. */
 #include "geometry/kernels.h"
 
 #include "geometry/instance_set.h"

@@ -37,7 +37,7 @@ status mesh_check(const mesh *m, diagnostic *why)
                                 m->vertex_count);
         }
         if (m->slots && m->slots[t] >= m->slot_count)
-            return diagnose(why, STATUS_BAD_INPUT, "number slots from 0",
+            return diagnose(why, STATUS_BAD_INPUT, "the slots of materials must be numbered from 0",
                             "triangle %zu refers to material slot %d of %d", t, m->slots[t], m->slot_count);
     }
     return check_vertices(m, why);

@@ -11,5 +11,5 @@
  * by the key. */
 status heatmap_create(const double *values, int width, int height, const char *title, image **out, diagnostic *why);
 
-/* The colour of t, 0..1, sRGB-encoded to 0..255. */
+/* The colour of t in 0..1 on the colour scale, as sRGB values 0..255. */
 void heatmap_color(double t, unsigned char rgb[3]);

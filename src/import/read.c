@@ -24,7 +24,7 @@ static bool locate_json(const request *req, diagnostic *why)
     fclose(stream);
     if (!root) {
         diagnostic_locate(why, req->path, error.line, error.column);
-        diagnose(why, STATUS_BAD_INPUT, "a .gltf file is a JSON text, a binary one ends in .glb", "%s", error.text);
+        diagnose(why, STATUS_BAD_INPUT, "a .gltf file is JSON; binary glTF files end in .glb", "%s", error.text);
     }
     return !root;
 }

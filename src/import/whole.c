@@ -61,7 +61,7 @@ static int type_bytes(const char *type)
 static status bad_header(ply *p, const char *what)
 {
     diagnostic_locate(p->why, p->why->file, p->line, 0);
-    return diagnose(p->why, STATUS_BAD_INPUT, "repair the header", "%s", what);
+    return diagnose(p->why, STATUS_BAD_INPUT, "fix the header", "%s", what);
 }
 
 static status take_property(ply *p, char words[6][WORD_MAX + 1], int count)
@@ -82,7 +82,7 @@ static status take_property(ply *p, char words[6][WORD_MAX + 1], int count)
 static status take_element(ply *p, const char *name, const char *number)
 {
     if (p->element_count == (int)(sizeof p->elements / sizeof *p->elements))
-        return bad_header(p, "more than 16 elements");
+        return bad_header(p, "more than 16 PLY elements");
     char *end = NULL;
     uint64_t count = isdigit((unsigned char)*number) && strlen(number) < 19 ? strtoull(number, &end, 10) : 0;
     if (!end || *end)

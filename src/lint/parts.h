@@ -21,7 +21,7 @@ void lint_camera(const lint_room *room);
 /* A depth limit with a visible effect. */
 status lint_depth(const lint_room *room, diagnostic *why);
 
-/* The solid of a priority index. */
+/* The solid with the given priority index. */
 static inline const solid *lint_solid(const lint_room *room, int priority_index)
 {
     return &room->of->solids[room->made->geometry->regions[priority_index].solid];

@@ -64,7 +64,7 @@ static status check_powers(const dispersion *law, diagnostic *why)
         const double p = law->coefficient[i];
         if (p != floor(p) || fabs(p) > DISPERSION_POWER_MAX)
             return diagnose(why, STATUS_BAD_INPUT, remedy,
-                            "the power %g of the wavelength is not valid in a dispersion law", p);
+                            "the exponent %g of the wavelength is not valid in a dispersion law", p);
     }
     return STATUS_OK;
 }

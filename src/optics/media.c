@@ -69,7 +69,7 @@ static const medium catalogue[] = {
      .note = "The middle of the range 1.4677 to 1.4705 that the standard allows at 589.3 nm. No reliable "
              "dispersion law was found; the index is constant, so do not use it to study colours."},
     {.name = "bk7-liquid",
-     .title = "liquid that matches BK7",
+     .title = "index-matching liquid for BK7",
      .law = {DISPERSION_CAUCHY_POWERS, 5, {1.502639, 0.0047089420, -2.0, 0.000063670450, -4.0}, 350.0, 1550.0},
      .relative_to_air = true,
      .temperature_c = 25.0,

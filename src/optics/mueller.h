@@ -133,7 +133,8 @@ static inline double analyser_sees(stokes row, stokes s)
     return row.i * s.i + row.q * s.q + row.u * s.u + row.v * s.v;
 }
 
-/* The row after an interface, in the frame of child, the reflected or refracted direction. */
+/* The analyser row multiplied by the Mueller matrix of an interface with normal n that a ray of direction d meets; in
+ * the frame of `child`, the reflected or refracted direction. */
 static inline stokes analyser_across(stokes row, vec3 d, vec3 n, vec3 child, sp_response r)
 {
     vec3 x, y, child_x, child_y, s = vec3_cross(d, n);

@@ -58,7 +58,7 @@ static const double table[ENTRIES][4] = {
 };
 /* clang-format on */
 
-/* From these tables over 380 .. 780 nm, in rational arithmetic, rounded once. */
+/* Computed from the tables above over 380 .. 780 nm in exact rational arithmetic, then rounded. */
 static const double ONE_OVER_YBAR = 0.009358344722132764; /* 1 / integral of ybar, 106.8565 nm */
 static const double D65_SCALE = 0.010112441656744924;     /* integral of ybar / integral of ybar D65 */
 

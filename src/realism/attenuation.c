@@ -107,10 +107,10 @@ status realism_absorption(const metrics *m, diagnostic *why)
     double tolerance = ABSORPTION_TOLERANCE;
     const bool exists = m->theory_at.liquid >= 0 && m->at.liquid >= 0;
     const status code = exists ? compare_slopes(m, &worst, &tolerance, why) : STATUS_OK;
-    metrics_add(
-        m, (realism_value){"absorption.slope",
-                           exists ? "slope of -ln(transmittance) over length in the liquid; worst of three channels"
-                                  : "there is no liquid",
-                           "1/m", worst.measured, worst.theory, tolerance});
+    metrics_add(m, (realism_value){
+                       "absorption.slope",
+                       exists ? "slope of -ln(transmittance) over length in the liquid; largest error of three channels"
+                              : "there is no liquid",
+                       "1/m", worst.measured, worst.theory, tolerance});
     return code;
 }

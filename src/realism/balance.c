@@ -52,9 +52,10 @@ status realism_balance(const metrics *m, diagnostic *why)
     }
     trial_end(&t);
     metrics_add(
-        m, (realism_value){"balance.furnace",
-                           "radiance plus the weight cut off at the depth limit, under a sky of radiance 1; worst of "
-                           "300 rays",
-                           "", worst.measured, worst.theory, BALANCE_TOLERANCE});
+        m,
+        (realism_value){
+            "balance.furnace",
+            "radiance plus the weight cut off at the depth limit, under a sky of radiance 1; largest error of 300 rays",
+            "", worst.measured, worst.theory, BALANCE_TOLERANCE});
     return code;
 }

@@ -91,6 +91,6 @@ status realism_drop(const metrics *m, diagnostic *why)
         "angle of the first rainbow at the F line, 486.1 nm", "angle of the first rainbow at the d line, 587.6 nm",
         "angle of the first rainbow at the C line, 656.3 nm", "angle of the first rainbow at render.lambda_nm"};
     double unused[2];
-    return metrics_at_lines(m, names, what, "a refractive index outside 1..2 has no first rainbow", at_line,
+    return metrics_at_lines(m, names, what, "a refractive index outside 1..2 has no primary rainbow", at_line,
                             ANGLE_TOLERANCE, unused, why);
 }

@@ -102,21 +102,22 @@ static status add_edges(const metrics *m, diagnostic *why)
     const double nothing = none ? NAN : 0.0; /* intermediate results are discarded then */
     const double tolerance = EDGE_TOLERANCE_PX;
     metrics_add(m, (realism_value){"edges.left",
-                                   none ? none : "left edge of the rod in the image, through the filled vessel", "px",
-                                   filled[0], l.filled[0] + nothing, tolerance});
-    metrics_add(m, (realism_value){"edges.right", none ? none : "right edge of the rod in the image", "px", filled[1],
-                                   l.filled[1] + nothing, tolerance});
-    metrics_add(m,
-                (realism_value){"edges.left_shift", none ? none : "displacement of the left edge by vessel and liquid",
-                                "px", filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, tolerance});
+                                   none ? none : "left edge of the rod in the image, seen through the filled vessel",
+                                   "px", filled[0], l.filled[0] + nothing, tolerance});
+    metrics_add(m, (realism_value){"edges.right",
+                                   none ? none : "right edge of the rod in the image, seen through the filled vessel",
+                                   "px", filled[1], l.filled[1] + nothing, tolerance});
+    metrics_add(m, (realism_value){"edges.left_shift",
+                                   none ? none : "shift of the left edge caused by the vessel and the liquid", "px",
+                                   filled[0] - bare[0], l.filled[0] - l.bare[0] + nothing, tolerance});
     metrics_add(m, (realism_value){"edges.right_shift",
-                                   none ? none : "displacement of the right edge by vessel and liquid", "px",
+                                   none ? none : "shift of the right edge caused by the vessel and the liquid", "px",
                                    filled[1] - bare[1], l.filled[1] - l.bare[1] + nothing, tolerance});
-    metrics_add(m,
-                (realism_value){"edges.magnification",
-                                none ? none : "width of the rod in the image over its width without vessel and liquid",
-                                "", (filled[1] - filled[0]) / (bare[1] - bare[0]),
-                                (l.filled[1] - l.filled[0]) / (l.bare[1] - l.bare[0]) + nothing, RATIO_TOLERANCE});
+    metrics_add(
+        m, (realism_value){"edges.magnification",
+                           none ? none : "ratio of the rod's width in the image with and without vessel and liquid", "",
+                           (filled[1] - filled[0]) / (bare[1] - bare[0]),
+                           (l.filled[1] - l.filled[0]) / (l.bare[1] - l.bare[0]) + nothing, RATIO_TOLERANCE});
     return code;
 }
 
@@ -157,7 +158,7 @@ static status add_round(const metrics *m, diagnostic *why)
     }
     metrics_add(m, (realism_value){
                        "edges.round_magnification",
-                       visible ? "magnification of a thin round rod on the axis; theory the liquid's refractive index"
+                       visible ? "magnification of a thin round rod on the axis; theory: the liquid's refractive index"
                                : "its edges are hidden by the wall",
                        "", (edge[1] - edge[0]) / (2.0 * radius), theory, RATIO_TOLERANCE});
     return code;

@@ -54,7 +54,7 @@ status realism_gap(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"gap.empty", "gap.far_solid"};
     static const char *const what[] = {
-        "radiance through an empty gap of 1e-7; worst of the angles 0 to 85 degrees",
+        "radiance through an empty gap of 1e-7; largest error for 0 to 85 degrees",
         "radiance through a gap of 0.001, with a solid at distance 100000 that no ray hits"};
     const bool fresnel =
         !scene_has_constant_shares(&m->traced->render) && m->traced->render.transmission == TRANSMISSION_REFRACT;

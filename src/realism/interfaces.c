@@ -38,7 +38,7 @@ static const crossing crossings[] = {
 };
 static const char *const critical_what[] = {"critical angle, vessel to surroundings",
                                             "critical angle, liquid to surroundings",
-                                            "critical angle, vessel to liquid"};
+                                            "critical angle, vessel's wall to liquid"};
 
 static status bisect_critical(trial *t, double start_y, double *angle, diagnostic *why)
 {
@@ -115,11 +115,11 @@ static status add_fresnel(const metrics *m, int which, diagnostic *why)
     worst_pair worst[3] = {{NAN, NAN, false}, {NAN, NAN, false}, {NAN, NAN, false}};
     const status code = exists ? compare_shares(m, at, worst, why) : STATUS_OK;
     const char *const none = exists ? NULL : "there is no liquid";
-    metrics_add(m, (realism_value){at->s, none ? none : "reflectance, s-polarised; worst of 0 to 89.9 degrees", "",
-                                   worst[0].measured, worst[0].theory, SHARE_TOLERANCE});
+    metrics_add(m, (realism_value){at->s, none ? none : "reflectance, s-polarised; largest error for 0 to 89.9 degrees",
+                                   "", worst[0].measured, worst[0].theory, SHARE_TOLERANCE});
     metrics_add(m, (realism_value){at->p, none ? none : "reflectance, p-polarised", "", worst[1].measured,
                                    worst[1].theory, SHARE_TOLERANCE});
-    metrics_add(m, (realism_value){at->mean, none ? none : "reflected share of a ray", "", worst[2].measured,
+    metrics_add(m, (realism_value){at->mean, none ? none : "reflectance, unpolarised", "", worst[2].measured,
                                    worst[2].theory, SHARE_TOLERANCE});
     return code;
 }

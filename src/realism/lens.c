@@ -36,9 +36,10 @@ static status add_deviation(const metrics *m, trial *t, diagnostic *why)
         code = lens_deviation(t->p, &t->tree, &m->at, offset, &measured, why);
         worst_take(&worst, measured, theory_shells_deviation(&c, offset));
     }
-    metrics_add(m, (realism_value){"lens.deviation",
-                                   "deviation of a ray by the filled vessel; worst of 64 offsets from its axis", "rad",
-                                   worst.measured, worst.theory, ANGLE_TOLERANCE});
+    metrics_add(m,
+                (realism_value){"lens.deviation",
+                                "deviation of a ray by the filled vessel; largest error for 64 offsets from its axis",
+                                "rad", worst.measured, worst.theory, ANGLE_TOLERANCE});
     return code;
 }
 
@@ -115,12 +116,11 @@ static status add_dispersion(const metrics *m, diagnostic *why)
         TRY(deviation_at_line(m, lines[i], &measured[i], &theory[i], why));
     const char *none = isnan(theory[0] + theory[1] + theory[2]) ? "the ray does not enter the core" : NULL;
     metrics_add(m, (realism_value){"dispersion.d",
-                                   none ? none : "deviation half way to the rim, water in BK7, at the d line", "rad",
-                                   measured[1], theory[1], ANGLE_TOLERANCE});
-    metrics_add(m,
-                (realism_value){"dispersion.F-C",
-                                none ? none : "chromatic difference: deviation at the F line minus that at the C line",
-                                "rad", measured[0] - measured[2], theory[0] - theory[2], ANGLE_TOLERANCE});
+                                   none ? none : "deviation of a ray halfway from axis to rim, water in BK7, d line",
+                                   "rad", measured[1], theory[1], ANGLE_TOLERANCE});
+    metrics_add(m, (realism_value){"dispersion.F-C",
+                                   none ? none : "angular dispersion: deviation at the F line minus that at the C line",
+                                   "rad", measured[0] - measured[2], theory[0] - theory[2], ANGLE_TOLERANCE});
     return STATUS_OK;
 }
 

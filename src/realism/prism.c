@@ -63,7 +63,7 @@ static double deviation(void *context, double incidence)
     return atan2(vec3_length(across), vec3_dot(in, out));
 }
 
-/* Between the first and the last angle of transmitted rays. */
+/* The least deviation over all angles of incidence at which a ray is transmitted. */
 static double least_deviation(search *s)
 {
     double low = NAN, high = NAN;

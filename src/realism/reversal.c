@@ -101,8 +101,8 @@ status realism_reversal(const metrics *m, diagnostic *why)
     trial_end(&forth);
     trial_end(&back);
     metrics_add(m, (realism_value){"reversal.throughput",
-                                   "throughput of a reversed path over that of the path; worst of about 1000", "",
-                                   ratio.measured, ratio.theory, REVERSAL_TOLERANCE});
+                                   "throughput of a reversed path over that of the path; largest error of about 1000",
+                                   "", ratio.measured, ratio.theory, REVERSAL_TOLERANCE});
     metrics_add(m, (realism_value){"reversal.way", "distance of the reversed path from the origin of the path",
                                    "scene units", miss.measured, miss.theory, REVERSAL_TOLERANCE * m->at.outer});
     return code;

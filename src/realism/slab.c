@@ -50,9 +50,8 @@ status realism_slab(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"slab.depth", "slab.depth_polarised"};
     static const char *const what[] = {
-        "radiance behind a slab at 40 degrees; worst of the depths 0 to 12",
-        "radiance behind a slab at 40 degrees with render.polarisation=on; worst of the depths 0 "
-        "to 12"};
+        "radiance behind a slab at 40 degrees; largest error for depths 0 to 12",
+        "radiance behind a slab at 40 degrees with render.polarisation=on; largest error for depths 0 to 12"};
     status code = STATUS_OK;
     for (int polarised = 0; polarised < 2 && code == STATUS_OK; polarised++) {
         const bool exists = !polarised || !scene_has_constant_shares(&m->traced->render);

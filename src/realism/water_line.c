@@ -124,7 +124,7 @@ static status measure_break(const metrics *m, scene *arranged, double *degrees, 
 
 status realism_water_line(const metrics *m, diagnostic *why)
 {
-    const char *what = "kink of the leaning rod's left edge in the image at the liquid's surface";
+    const char *what = "apparent bend of the leaning rod's left edge at the liquid's surface, in the image";
     double measured = NAN, theory = NAN;
     status code = STATUS_OK;
     scene *supposed = leaning_rod(m->supposed, &m->theory_at);

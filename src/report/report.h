@@ -11,8 +11,8 @@
 
 enum { REPORT_SCHEMA = 1 }; /* increases when a key changes its meaning or is removed */
 
-/* The account of measured frames, which have at least one result. repeated: --repeat was given, so that the times of
- * all repetitions are included. */
+/* The JSON report of measured frames; `a` has at least one result. repeated: --repeat was given, and the report
+ * includes the times of all repetitions. */
 json_t *report_create(const job_account *a, bool repeated);
 
 /* One quantity of the account. worker: as for quantity.read. */

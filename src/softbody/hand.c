@@ -54,7 +54,8 @@ static status check_numbers(const char *hand, const hand_key *key, diagnostic *w
     if (key->act != HAND_GRAB)
         return STATUS_OK;
     if (!is_point(key->origin) || !is_point(key->direction) || !(vec3_dot(key->direction, key->direction) > 0.0))
-        return diagnose(why, STATUS_BAD_INPUT, "give a non-zero direction", "%s: the grab ray is not finite", hand);
+        return diagnose(why, STATUS_BAD_INPUT, "give a non-zero direction",
+                        "%s: the grab ray has a coordinate that is not finite", hand);
     if (!(key->reach > 0.0 && isfinite(key->reach)))
         return diagnose(why, STATUS_BAD_INPUT, "give a length greater than 0", "%s: a reach of %g", hand, key->reach);
     return STATUS_OK;
@@ -82,7 +83,8 @@ static status check_hand(const hand_script *s, const char *hand, const hand_trac
     if (!hand[0] || strlen(hand) > HAND_NAME_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use 1 to 63 bytes", "'%.80s' is not a valid name of a hand", hand);
     if (!track && s->track_count == SOFTBODY_HANDS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a script can have 16 hands; a hand can grab again after its release",
+        return diagnose(why, STATUS_BAD_INPUT,
+                        "a script can have at most 16 hands; a hand can be reused after its release",
                         "too many hands: %s", hand);
     return STATUS_OK;
 }

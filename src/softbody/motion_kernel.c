@@ -106,8 +106,9 @@ ALWAYS_INLINE void add_spring(const springs *s, size_t at, const double *state, 
     *away = x;
 }
 
-/* The volume is a sixth of the sum of a . (b x c) over the faces; around a closed ring its gradient does not depend on
- * the origin. The ring's neighbours are the first slots. */
+/* The volume of a closed mesh is the sum of a . (b x c) / 6 over its faces (the divergence theorem). Its gradient with
+ * respect to a mass is the sum of b x c / 6 over the closed ring of faces around the mass, which does not depend on the
+ * origin. The ring's neighbours are the first slots of each mass. */
 static void forces(const springs *s, const double *state, vectors at, vectors velocity, vectors force, vectors gradient,
                    size_t begin, size_t end)
 {

@@ -118,7 +118,7 @@ static status check_metrics(void *context, const study *s, size_t cell, scene *s
     const status code = realism_check(setting, s->keep_curves, &bad);
     if (code == STATUS_OK)
         return code;
-    return diagnose_at(why, s->path, code, bad.remedy, "%s cannot be kept for cell %zu: %s",
+    return diagnose_at(why, s->path, code, bad.remedy, "%s of cell %zu cannot be saved: %s",
                        s->keep_curves ? "curves" : "metrics", cell, bad.what);
 }
 
@@ -128,7 +128,7 @@ static status check_motion(void *context, const study *s, size_t cell, scene *se
     if (scene_moves(setting))
         return STATUS_OK;
     return diagnose_at(why, s->path, STATUS_BAD_INPUT, "add a mesh with 'generate: slime'",
-                       "motion cannot be kept for cell %zu: nothing moves in it", cell);
+                       "the motion of cell %zu cannot be saved: nothing moves in it", cell);
 }
 
 status cell_tables_check(const study *s, diagnostic *why)

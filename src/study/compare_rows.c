@@ -45,7 +45,7 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
       csv_real(line, isfinite(r->difference.psnr_db) ? r->difference.psnr_db : NAN))                                   \
     X("ssim", "", "mean structural similarity of the luma, 1 for equal images", csv_real(line, r->difference.ssim))    \
     X("flip", "", "mean FLIP error at 67 pixels per degree, 0 for equal images", csv_real(line, r->difference.flip))   \
-    X("largest", "", "largest difference of an encoded channel, 0..1", csv_real(line, r->difference.largest))          \
+    X("largest", "", "largest difference in any encoded channel, 0..1", csv_real(line, r->difference.largest))         \
     X("differing_share", "", "share of the pixels whose 8-bit encodings differ, 0..1",                                 \
       csv_real(line, r->difference.differing_share))                                                                   \
     X("error_rms", "radiance",                                                                                         \

@@ -187,7 +187,7 @@ static status read_scene(study *s, const document *d, const node *root, const st
     if (!n)
         return node_error(d, root, why, "add a line scene: FILE, relative to this file", "the study has no scene");
     if (n->kind != NODE_SCALAR || !n->text[0] || !read_grid_plain(n->text))
-        return node_error(d, n, why, "write the name of a scene file, relative to this file",
+        return node_error(d, n, why, "write the path of a scene file, relative to this file",
                           "this is not a file name");
     char *copy = strdup(s->path);
     if (!copy)

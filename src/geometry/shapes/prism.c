@@ -13,7 +13,8 @@ static status check(const solid_shape *shape, diagnostic *why)
     status code = check_length(shape->radius, "radius", why);
     THEN(code, check_length(shape->height, "height", why));
     if (code == STATUS_OK && (shape->sides < 3 || shape->sides > SIDES_MAX))
-        code = diagnose(why, STATUS_BAD_INPUT, "use 3 to 60, or a cylinder", "sides is %lld", (long long)shape->sides);
+        code = diagnose(why, STATUS_BAD_INPUT, "use 3 to 60, or a cylinder", "'sides' cannot be %lld",
+                        (long long)shape->sides);
     return code;
 }
 
@@ -128,8 +129,9 @@ static status tessellation(const solid_shape *shape, int part, mesh **out, diagn
 
 const shape_rule shape_prism = {
     .word = "prism",
-    .meaning = "0 <= y <= height over a regular polygon with its corners on a circle of radius about the axis, one of "
-               "them at -z; its position is the centre of its base",
+    .meaning =
+        "0 <= y <= height over a regular polygon with its corners on a circle of the given radius about the axis, "
+        "one of them on the -z side; its position is the centre of its base",
     .parameters = WORDS("radius", "sides", "height"),
     .check = check,
     .contains = contains,

@@ -74,14 +74,14 @@ typedef struct shape_rule {
     shape_extent (*extent)(const solid_shape *shape);
     /* The maximum of direction . p over its local points p; INFINITY where an unbounded shape has no end. */
     double (*farthest)(const solid_shape *shape, vec3 direction);
-    /* The maximum of round_distance over its points, or an upper bound. NULL: the maximum over the corners of its
+    /* An upper bound of round_distance over the points of the shape. NULL: the caller uses the corners of its bounding
      * box. */
     double (*farthest_from)(const placed_shape *placed, const round_frame *frame);
-    /* Is the hidden shape known to be entirely within the cover? NULL: never. */
+    /* Is `hidden` known to be entirely inside `cover`? NULL: never. */
     bool (*covers)(const placed_shape *cover, const placed_shape *hidden);
-    /* Its thickness where it is thinnest. */
+    /* Its least thickness. */
     double (*thickness)(const solid_shape *shape);
-    /* Scales it to fill about a cube of that edge. NULL if there is nothing to set. */
+    /* Scales it to fill about a cube with that edge length. NULL: the shape has no size to set. */
     void (*fit)(solid_shape *shape, double size);
 
     /* Writes the rings of its outline drawing and returns their number. NULL: it has none, or the outline is computed

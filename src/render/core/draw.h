@@ -17,7 +17,8 @@ enum {
     DRAW_LIGHT = 4,
     DRAW_NEXT = 0x1000
 };
-static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_NEXT, "the lights' numbers do not reach the next purpose");
+static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_NEXT,
+              "the lights' numbers must not overlap those of the next purpose");
 
 static inline random_words draw(int64_t seed, int64_t sample_key, int depth, int purpose)
 {

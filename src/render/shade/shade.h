@@ -58,7 +58,8 @@ typedef struct shade_kernels {
     void (*constant_branches)(const material *m, bool opaque, const group *g, branch_group *b);
     /* Undeflected transmission at a clear surface, with the material's constant weights. */
     void (*straight_branches)(const material *m, const group *g, branch_group *b);
-    /* Sums branches that are not traced: their number, and their throughput in units of 1/COUNTERS_CUT_ONE. */
+    /* Adds branches that the depth limit cuts off to *sum: their number, and their throughput in units of
+     * 1/COUNTERS_CUT_ONE. */
     void (*cut)(const group *g, const branch_group *b, cut_sum *sum);
     /* Appends all of g to q as rays along (dx, dy, dz) with throughput times weight; the caller then removes rays of
      * weight 0. */

@@ -8,7 +8,7 @@
 
 typedef struct mesh_child {
     pid_t pid;
-    int handle;        /* pidfd of the process, since a process id may be reused; -1 if the kernel has none */
+    int handle;        /* pidfd, which cannot be reused as a process id can; -1 if the kernel has no pidfds */
     int out, err;      /* read ends of its standard output and error; -1 after their end */
     double deadline_s; /* on the monotonic clock */
     char said[2048];   /* the beginning of its standard error */

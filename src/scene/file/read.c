@@ -33,8 +33,8 @@ static status check_sky(const scene_reader *r, const node *map)
         r->scene->background.image_column = img->column;
     }
     if (code == STATUS_OK && shown && kind && strcmp(kind->text, "picture") != 0)
-        return node_error(r->file, kind, r->why, "set it to picture, or remove the picture",
-                          "background.kind is %s, but a picture is given", kind->text);
+        return node_error(r->file, kind, r->why, "set it to picture, or remove the image file",
+                          "background.kind is %s, but an image file is set", kind->text);
     return code;
 }
 

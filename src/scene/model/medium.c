@@ -34,9 +34,10 @@ status material_index_law(const material *m, const char *label, index_law *out, 
     diagnostic bad = {.what = ""};
     if (m->coefficients.count == 0) {
         static const char *const examples[] = {
-            [MEDIUM_SELLMEIER] = "give pairs B, C in um^2, as 'coefficients: [1.1, 0.012]'",
-            [MEDIUM_CAUCHY] = "give A, B in um^2, .., as 'coefficients: [1.5046, 0.0042]'",
-            [MEDIUM_TABLE] = "give pairs of nm and index, as 'coefficients: [450, 1.34, 650, 1.33]'"};
+            [MEDIUM_SELLMEIER] = "give pairs B, C (um^2), for example 'coefficients: [1.1, 0.012]'",
+            [MEDIUM_CAUCHY] = "give A, B (um^2), ..., for example 'coefficients: [1.5046, 0.0042]'",
+            [MEDIUM_TABLE] =
+                "give pairs of wavelength (nm) and index, for example 'coefficients: [450, 1.34, 650, 1.33]'"};
         return diagnose(why, STATUS_BAD_INPUT, examples[m->medium], "%.80s: medium %s has no coefficients", label,
                         medium_words[m->medium]);
     }

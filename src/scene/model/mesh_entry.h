@@ -40,16 +40,16 @@ typedef struct mesh_entry {
     number_list profile;         /* for lathe: radius, height, radius, height, ... */
     double crease_deg;
     vec3 size;                       /* for box; for terrain with the height of its hills */
-    double depth;                    /* for terrain, below y = 0; 0 is open */
+    double depth;                    /* for terrain: the height of its solid base below y = 0; 0: an open surface */
     int64_t seed;                    /* for terrain */
     softbody_settings slime;         /* for slime; its level is the field `level` above */
     double time_s;                   /* for slime: the simulated time that is shown */
     char *script_path;               /* for slime: the script of its hands; "" for none; relative to the scene file */
     long script_line, script_column; /* its location in the scene file; 0 if it was set otherwise */
     softbody_account account;        /* for a loaded slime: the account of its motion */
-    double motion_s;                 /* and the wall time of its steps */
-    const mesh *data;                /* one reference; NULL until scene_load */
-    const face_materials *shading_materials; /* one reference; NULL for none */
+    double motion_s;                 /* for a loaded slime: the wall time of its steps */
+    const mesh *data;                /* a counted reference that the entry owns; NULL until scene_load */
+    const face_materials *shading_materials; /* a counted reference; NULL for none */
 } mesh_entry;
 
 typedef struct texture_entry {

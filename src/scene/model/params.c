@@ -66,7 +66,7 @@ static void forget_medium(scene *s, const param_place *at)
             s->solids[i].surface.medium = MEDIUM_IOR;
 }
 
-/* Releases data loaded for the old value; setting a file also selects it. */
+/* Releases the mesh or image that was loaded for the old value. Setting a file's path also selects the kind `file`. */
 static void forget_loaded(scene *s, const param_place *at, param_value value)
 {
     const bool names_file = at->row->type == PARAM_PATH, some = names_file && value.path[0];

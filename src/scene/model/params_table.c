@@ -259,7 +259,8 @@ static const param table[] = {
          "half-angle a of a spotlight's cone; a soft cone has the falloff (cos t - cos a) / (1 - cos a) at "
          "angle t"),
     COLOR(PARAM_LIGHT, light, color, BRIGHT, "1,1,1", "linear colour, multiplied by intensity"),
-    REAL(PARAM_LIGHT, light, intensity, "", 0, BRIGHT, "1", "factor of the colour: at every distance, or at reach"),
+    REAL(PARAM_LIGHT, light, intensity, "", 0, BRIGHT, "1",
+         "multiplies the light's colour: at all distances, or, if reach is set, at that distance"),
     REAL(PARAM_LIGHT, light, radius, "scene units", 0, FAR, "0",
          "radius of the emitting sphere, sampled by integrator path; 0: a point"),
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
@@ -275,45 +276,44 @@ static const param table[] = {
     REAL(PARAM_MATERIAL, material, shininess, "", 0, 100000, "80",
          "exponent n of the Phong model: larger values give smaller highlights"),
     REAL(PARAM_MATERIAL, material, emission, "", 0, BRIGHT, "0",
-         "k_e of the Phong model: the surface emits k_e times its colour, without a light"),
+         "k_e of the Phong model: the surface emits k_e times its colour, even with no light"),
     REAL(PARAM_MATERIAL, material, reflectivity, "", 0, 1, "0",
-         "reflectance of an opaque surface, and of every surface with constant weights or simple "
-         "transmission; with Fresnel weights, of a transparent surface's coating: R + (1 - R) reflectivity"),
-    REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0", "transmitted share of the refracted light; 0: opaque"),
+         "reflectance of the surface; on a transparent surface with render.weights=fresnel a coating, "
+         "whose total is R + (1 - R) reflectivity with the Fresnel reflectance R"),
+    REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
+         "fraction of the refracted light that enters the solid; 0: opaque"),
     REAL(PARAM_MATERIAL, material, ior, "", 0.1, 1e9, "1",
-         "refractive index, relative to vacuum; above 10000 a transparent surface is a perfect mirror"),
+         "refractive index, relative to vacuum; above 10000 a transparent surface is treated as a perfect mirror"),
     CHOICE(PARAM_MATERIAL, material, medium, medium_words, "ior",
            "source of the index: ior, a dispersion law with coefficients, or a medium of the "
            "catalogue (cuvette media)"),
     LIST(PARAM_MATERIAL, material, coefficients, "", 1e6, "[]",
-         "of the dispersion law: cauchy A,B,C.. n = A + B/L^2 + C/L^4; sellmeier B1,C1,B2,C2.. (um^2); table "
-         "nm,n,nm,n.. (L in um)"),
+         "coefficients of the dispersion law; cauchy: A,B,C,... in n = A + B/L^2 + C/L^4 + ... (L in um); "
+         "sellmeier: B1,C1,B2,C2,... (C in um^2); table: nm,n,nm,n,..."),
     COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "Beer-Lambert absorption coefficient by channel, 1/m"),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
-         "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m..; replaces absorb_per_m"),
+         "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),
     POSITIVE(PARAM_MATERIAL, material, tint_distance, "scene units", FAR, "1",
-             "distance in a transparent solid over which white light takes its color; absorb_per_m adds to it"),
-    {PARAM_MATERIAL, "texture", PARAM_WORD, "", 0, 0, false, "", "name of a texture, whose colour multiplies color",
-     NULL, OF(material, texture)},
+             "distance in a transparent solid over which white light is filtered to 'color'; absorption by "
+             "absorb_per_m is added"),
+    {PARAM_MATERIAL, "texture", PARAM_WORD, "", 0, 0, false, "", "texture whose colour multiplies 'color'", NULL,
+     OF(material, texture)},
     REAL(PARAM_MATERIAL, material, texture_size, "scene units", 0, FAR, "0",
-         "edge of one repeat of the texture, on solids other than meshes; 0: one over each face (of a plane: "
-         "1)"),
+         "side length of one texture tile, on solids other than meshes; 0: one tile per face (on a plane: 1 unit)"),
     REAL(PARAM_MATERIAL, material, checker, "scene units", 0, FAR, "0",
-         "edge of the checker cells in the solid's frame; 0: no checker"),
-    COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of every second checker cell"),
+         "side length of the checker cells, in the solid's frame; 0: no checker"),
+    COLOR(PARAM_MATERIAL, material, checker_color, 1, "0,0,0", "linear colour of alternate checker cells"),
 
     {PARAM_SOLID, "position", PARAM_VECTOR, "scene units", -FAR, FAR, false, "0,0,0",
-     "centre of a box, sphere or torus; centre of the base of a cylinder, cup, cone or prism; a point of "
+     "centre of a box, sphere or torus; centre of the base of a cylinder, cup, cone or prism; a point on "
      "a plane; origin of a mesh",
      NULL, OF(solid, shape.position)},
-    {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0", "rotation about x, then y, then z", NULL,
-     OF(solid, shape.rotation_deg)},
-    LENGTH(radius, "1",
-           "radius; cup: of the outside; cone: at the base; prism: of the circumscribed circle; torus: of the "
-           "centre circle of the tube"),
+    {PARAM_SOLID, "rotation", PARAM_VECTOR, "deg", -360, 360, false, "0,0,0",
+     "rotation about the fixed axes x, then y, then z", NULL, OF(solid, shape.rotation_deg)},
+    LENGTH(radius, "1", "radius; cup: outer; cone: base; prism: circumradius; torus: major radius"),
     LENGTH(height, "1", "height above the base"),
     {PARAM_SOLID, "m", PARAM_REAL, "", 0.001, 1000, false, "1",
-     "cross-section x^2 + m^2 z^2 = radius^2, also of a cup's hollow, with inner_radius; 1: a circle", NULL,
+     "ellipticity: the cross-section is x^2 + m^2 z^2 = radius^2 (inner_radius for a cup's hollow); 1: circular", NULL,
      SHAPE(shape.m)},
     LENGTH(inner_radius, "0.9",
            "cup: radius of the hollow; the wall has thickness radius - inner_radius along x, 1/m of that along z"),
@@ -337,8 +337,8 @@ static const param table[] = {
      "shading of a mesh: flat, Phong (interpolated normals) or Gouraud (interpolated light)", shading_words,
      SHAPE(shading)},
     INTEGER(PARAM_SOLID, solid, priority, "", -1000000, 1000000, "0",
-            "where solids overlap, the one with the highest priority is present; of equal ones the first listed"),
-    CHOICE(PARAM_SOLID, solid, visible, off_on, "on", "off: remove the solid from the scene"),
+            "where solids overlap, the one with the highest priority is present; among equals the one listed first"),
+    CHOICE(PARAM_SOLID, solid, visible, off_on, "on", "off: the solid is left out of the scene"),
 };
 
 enum { TABLE_COUNT = sizeof table / sizeof table[0] };

@@ -25,7 +25,8 @@ void param_value_store(const param *row, int element, void *field, param_value v
 /* The value as text, or NULL if memory runs out. */
 char *param_value_text(const param *row, int element, const void *field);
 
-/* "give an integer 0..64": the valid values of the row, or of one element of a vector; returns text. */
+/* Writes the remedy for an invalid value, such as "give an integer 0..64", for the row or for one element of a vector.
+ * Returns text. */
 char *param_remedy(const param *row, bool one_element, char *text, size_t size);
 
 /* The row's default in the form of param_value_text; fresh memory, NULL if that runs out. */

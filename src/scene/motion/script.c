@@ -152,7 +152,7 @@ static status read_hand(const script_reader *r, const node *name, const node *tr
 {
     if (track->kind != NODE_LIST || track->count == 0)
         return node_error(r->file, track->kind == NODE_LIST ? track : name, r->why,
-                          "write a list of entries such as '- {time_s: 0.5, grab: ..}' below it",
+                          "add a list of entries below it, such as '- {time_s: 0.5, grab: ...}'",
                           "%.80s is not a list of entries", name->text);
     if (strlen(name->text) > HAND_NAME_MAX)
         return node_error(r->file, name, r->why, "use at most 63 bytes", "'%.80s' is not a valid name of a hand",
@@ -167,7 +167,8 @@ static status read_script(const script_reader *r)
     static const char *const keys[] = {"title", "hands"};
     const node *root = document_root(r->file);
     if (root->kind != NODE_MAP)
-        return node_error(r->file, root, r->why, "begin with hands: and the name of a hand below it",
+        return node_error(r->file, root, r->why,
+                          "begin with 'hands:' and, on the next line, the indented name of a hand",
                           "this is not a script");
     TRY(node_check_keys(r->file, root, keys, sizeof keys / sizeof *keys, r->why));
     const node *title = node_get(root, "title"), *hands = node_get(root, "hands");

@@ -113,8 +113,8 @@ status live_grab(live *l, vec3 origin, vec3 direction, double reach, int *hand, 
 {
     const double length = vec3_length(direction);
     if (!vec3_is_finite(origin) || !(length > 0.0 && isfinite(length)) || !(reach >= 0.0 && isfinite(reach)))
-        return diagnose(why, STATUS_BAD_INPUT, "give a finite ray and a reach of at least 0",
-                        "the grab ray is not finite");
+        return diagnose(why, STATUS_BAD_INPUT, "use finite coordinates for the ray and a reach of at least 0",
+                        "the grab ray has a coordinate that is not finite");
     grab_request q = {.origin = origin, .direction = vec3_scale(direction, 1.0 / length), .reach = reach, .why = why};
     pthread_mutex_lock(&l->lock);
     status code = check_on(l, why);

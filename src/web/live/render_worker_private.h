@@ -64,8 +64,8 @@ void render_worker_render_pass(render_worker *p);
 
 /* Frees the contents of an image that is not shared. */
 void shared_image_drop(const shared_image *p);
-/* Makes a shared image with one owner from the contents of shown, or returns NULL when out of memory; the contents
- * then still belong to the caller. */
+/* Moves the contents of `shown` into a new shared image with one reference. Returns NULL when out of memory; the
+ * contents then still belong to the caller. */
 const shared_image *shared_image_create(const shared_image *shown);
 
 /* Calls the listener's state_changed. */

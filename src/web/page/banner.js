@@ -7,7 +7,7 @@ const words = {
   lost: ['The server does not answer.', 'Is cuvette lab still running? The page reconnects by itself.'],
   refused: [
     "The server does not accept this page's token.",
-    'It was probably restarted: open the address that it printed in its terminal.',
+    'The server was probably restarted: open the new address in its terminal.',
   ],
 };
 

@@ -12,7 +12,7 @@ const list = [
   ['+ and -, 0, 1', 'on the image: zoom, fit the image, actual pixels'],
   ['Ctrl arrow keys', 'on the image: pan'],
   ['Ctrl wheel', 'zoom about the pointer; wheel alone with Orbit: forward and back'],
-  ['Space or middle button', 'and drag: pan'],
+  ['Space or middle mouse button', 'and drag: pan'],
   [
     'Enter',
     'with Grab, on the image: grab or release the slime; arrow keys pull, Page Up and ' +

@@ -68,7 +68,7 @@ function create(root, lab) {
   const place = element('div', { class: 'machine', 'aria-live': 'polite' });
   const again = button('Refresh', () => refresh(), {
     icon: 'reset',
-    title: 'takes half a second to measure the load of other programs',
+    title: 'takes half a second to measure the load from other programs',
   });
   const when = element('span', { class: 'hint' });
   root.append(element('div', { class: 'buttons' }, again, when), place);

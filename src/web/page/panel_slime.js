@@ -35,7 +35,7 @@ function controls(lab) {
     title: "Show the slime at the scene's time_s",
   });
   const grab = button(
-    'Grab in the image',
+    'Drag the slime in the image',
     () => {
       lab.view.use('grab');
       lab.view.stage.focus();

@@ -90,7 +90,7 @@ function create(root, lab) {
   async function run(study) {
     try {
       await lab.post(path(study, '/run'), {});
-      lab.say(`${study.name} is being measured; rendering is suspended meanwhile.`);
+      lab.say(`${study.name} is running; rendering is paused until it finishes.`);
     } catch (error) {
       lab.fail(error);
     }

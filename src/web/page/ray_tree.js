@@ -20,7 +20,7 @@ export const kinds = [
   ['ray-reflect', 'reflected'],
   ['ray-refract', 'refracted'],
   ['ray-shadow', 'to a light'],
-  ['ray-blocked', 'to a light, blocked'],
+  ['ray-blocked', 'shadow ray, blocked'],
   ['ray-cut', 'cut off'],
 ];
 

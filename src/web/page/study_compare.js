@@ -143,7 +143,7 @@ export function createCompare(lab) {
       quantities: [quantity],
       cells: () => cells,
       mark: 1,
-      note: 'Medians of wall times; the bars are bounds from the 95% intervals of both medians.',
+      note: 'Ratios of median wall times; the error bars are conservative bounds from the two 95% intervals.',
     });
     sorted.show(...rowsOf(answer));
   }

@@ -169,7 +169,7 @@ export function createDetails(lab, { onrun, onstop }) {
     stop.hidden = !start.hidden;
     const complete = details.cells > 0 && details.cells_done >= details.cells;
     start.querySelector('.button-label').textContent = complete
-      ? 'Complete the study'
+      ? 'Measure the missing rows'
       : details.rows
         ? 'Continue'
         : 'Start';
@@ -179,7 +179,7 @@ export function createDetails(lab, { onrun, onstop }) {
       ? `the study ${other} is running`
       : complete
         ? 'all rows are measured; renders the missing images'
-        : 'measures the missing rows; rendering is suspended meanwhile';
+        : 'measures the missing rows; rendering is paused until it finishes';
     const error = details.error || (mine && now.error) || null;
     const where = error?.file ? `${error.file}${error.line ? `:${error.line}` : ''}: ` : '';
     if (trouble.dataset.of !== JSON.stringify(error)) {

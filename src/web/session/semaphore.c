@@ -41,7 +41,7 @@ status semaphore_acquire(semaphore *g, diagnostic *why)
     g->free_places -= in;
     pthread_mutex_unlock(&g->lock);
     return in ? STATUS_OK
-              : diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is being closed");
+              : diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is shutting down");
 }
 
 void semaphore_release(semaphore *g)

@@ -167,7 +167,7 @@ static status claim_run(studies *st, study *s, diagnostic *why)
 static status begin(studies *st, study *s, diagnostic *why)
 {
     if (atomic_load(&st->ending))
-        return diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is being closed");
+        return diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is shutting down");
     TRY(claim_run(st, s, why));
     join_thread(st);
     st->s = s;

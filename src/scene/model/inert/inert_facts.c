@@ -25,7 +25,7 @@ bool draws_through(const scene *s)
            first_visible(s, is_clear);
 }
 
-/* Attenuated shadow rays pass transparent solids. */
+/* Attenuated shadow rays pass through transparent solids. */
 bool nothing_passes(const scene *s)
 {
     const bool lit_through = !integrator_traits_of(&s->render)->drawn && !integrator_traits_of(&s->render)->layers &&

@@ -59,7 +59,7 @@ static bool kind(const inert_case *c)
     const bool flat = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
     return flat && b->kind != BACKGROUND_IMAGE && !b->image_path[0] &&
            inert_say(c, "flat-gradient", "set background.horizon=0.5,0.4,0.3",
-                     "horizon equals color: the gradient is uniform");
+                     "'horizon' equals 'color', so there is no gradient");
 }
 
 static bool has_ambient(const scene *s, const solid *one)

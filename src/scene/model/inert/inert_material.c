@@ -116,7 +116,7 @@ static bool specular_rule(const inert_case *c)
         return inert_say(c, "lambert", "set render.lighting=phong", "Lambert shading has no highlights");
     return no_lamp(c) || (only_spheres_shine(s) && !material_is_opaque(c->m) &&
                           inert_say(c, "sphere-highlight", "set render.integrator=whitted",
-                                    "a transparent surface reflects the lights themselves"));
+                                    "a transparent surface reflects the lights directly and has no Phong highlight"));
 }
 
 static bool shininess_rule(const inert_case *c)

@@ -148,7 +148,7 @@ static bool shadows(const inert_case *c)
 {
     const scene *s = c->s;
     if (integrator_traits_of(&s->render)->drawn)
-        return inert_say(c, "no-shadows", WHITTED, "the depth buffer has no shadows");
+        return inert_say(c, "no-shadows", WHITTED, "the depth-buffer integrator renders no shadows");
     return nothing_lit(c) ||
            (only_spheres_shine(s) && inert_say(c, "spheres", WHITTED, "spherical lights are hit by random paths"));
 }
