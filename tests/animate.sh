@@ -189,7 +189,7 @@ done
 "$program" render textured.yaml -o read/00003.png >out 2>err
 code=$?
 check "an image that the scene reads is not replaced by render" \
-    eval '((code == 2)) && cmp read/00003.png one/00003.png && grep -q "is read from" err'
+    eval '((code == 2)) && cmp read/00003.png one/00003.png && grep -q "the scene reads" err'
 cp slime.yaml '%d.png.json'
 "$program" animate %d.png.json -o ./%d.png --duration 0 >out 2>err
 code=$?
@@ -221,7 +221,7 @@ animate -o one/%05d.png --duration 0.6 --rows late.csv
 check "a frame whose image was removed keeps its one row" \
     eval 'summary "1 rendered.* 14 kept" && cmp before.csv late.csv'
 for film in one/%05d.png\ --restart film.y4m; do
-    refused "an animation with existing rows does not start again: $film" 'late.csv: has rows already' \
+    refused "an animation with existing rows does not start again: $film" 'late.csv: already has rows' \
         -o $film --duration 0.6 --rows late.csv
 done
 check "a refused restart removes no frame" is "$(frames one)" 15

@@ -72,7 +72,7 @@ refused "repeat is not an integer" "integer from 1" render "$scene" --json --rep
 refused "repeat too large for 64 bits" "integer from 1" render "$scene" --json --repeat 99999999999999999999
 cp "$scene" same.yaml
 ln -s same.yaml same.png
-refused "image over the scene" "this is the scene's own file" render same.yaml -o same.png
+refused "image over the scene" "the scene reads this file" render same.yaml -o same.png
 CUVETTE_ISA=mmx render "unknown instruction set" "CUVETTE_ISA"
 CUVETTE_ISA=mmx refused "unknown instruction set, machine" "CUVETTE_ISA" machine
 printf '%s\n' 'study: isa' "scene: $scene" 'grid: [{render.depth: [0]}]' 'repetitions: 1' >isa.study
@@ -192,7 +192,7 @@ sky "a GIF"
 rm sky.png
 cp good.jpg sky.jpg
 printf '%s\n' 'background: {kind: picture, picture: sky.jpg}' 'render: {width: 8, height: 6}' >sky.yaml
-refused "image over the environment image" "this is the scene's own file" render sky.yaml -o sky.jpg
+refused "image over the environment image" "the scene reads this file" render sky.yaml -o sky.jpg
 
 # --- scripts of slimes; tests/bad-scripts covers the messages of their reader
 mkdir slimes
@@ -206,7 +206,7 @@ refused "a wrong script" "^cuvette: slimes/tug.yaml:3:7: left: .*add a grab" ren
 refused "a wrong script, checked" "^cuvette: slimes/tug.yaml:3:7: " scene slimes/toy.yaml --check
 printf '%s\n' 'hands:' '  left:' '    - {time_s: 0.01, grab: [9, 9, 9], towards: [0, 1, 0], reach: 1}' >slimes/tug.yaml
 refused "a hand that misses" "^cuvette: slimes/tug.yaml:3:7: .*nothing" render slimes/toy.yaml --json
-refused "trace over the script" "this is the scene's own file" \
+refused "trace over the script" "the scene reads this file" \
     trace slimes/toy.yaml --pixel 1,1 --text -o slimes/tug.yaml
 refused "scene over the script" "this file is a script that the scene uses" scene slimes/toy.yaml -o slimes/tug.yaml
 refused "a diverging slime" "^cuvette: slimes/toy.yaml:3:19: toy: " render slimes/toy.yaml --json --set \
@@ -266,7 +266,7 @@ refused "trace in two formats" "more than one format" trace "$scene" --pixel 1,1
 refused "trace into an unknown ending" "x.gif: .*\.svg" trace "$scene" --pixel 1,1 -o x.gif
 refused "trace into a missing folder" "folder does not exist" trace "$scene" --pixel 1,1 -o nowhere/x.svg
 refused "trace onto a folder" "is a folder" trace "$scene" --pixel 1,1 --json -o folder.png
-refused "trace over the scene" "this is the scene's own file" trace same.yaml --pixel 1,1 --text -o same.yaml
+refused "trace over the scene" "the scene reads this file" trace same.yaml --pixel 1,1 --text -o same.yaml
 # Two million rays: seconds, and a minute with sanitizers.
 [[ ${CONFIG:-release} != release ]] ||
     refused "a tree too large" "--ray: .*more than .* rays.*render.depth" trace glass.yaml --ray 0.1,0.2,0.3,1,0.7,0.4 \

@@ -135,7 +135,7 @@ static bool is_same(void *context, const char *path)
 static status check_not_read(const named_file *file, const scene *s, diagnostic *why)
 {
     if (scene_files_any(s, is_same, (void *)(uintptr_t)file->path))
-        return wrong(file, why, "give another file", "this is the scene's own file");
+        return wrong(file, why, "give another file", "the scene reads this file");
     return STATUS_OK;
 }
 

@@ -288,8 +288,8 @@ static const param table[] = {
            "source of the index: ior, a dispersion law with coefficients, or a medium of the "
            "catalogue (cuvette media)"),
     LIST(PARAM_MATERIAL, material, coefficients, "", 1e6, "[]",
-         "coefficients of the dispersion law; cauchy: A,B,C,... in n = A + B/L^2 + C/L^4 + ... (L in um); "
-         "sellmeier: B1,C1,B2,C2,... (C in um^2); table: nm,n,nm,n,..."),
+         "coefficients of the dispersion law at L in um; cauchy: A,B,C,... in n = A + B/L^2 + C/L^4 + ...; "
+         "sellmeier: B1,C1,B2,C2,... (C in um^2); table: L,n,L,n,... in nm"),
     COLOR(PARAM_MATERIAL, material, absorb_per_m, 1e9, "0,0,0", "Beer-Lambert absorption coefficient by channel, 1/m"),
     LIST(PARAM_MATERIAL, material, absorb_spectrum, "nm, 1/m", 1e9, "[]",
          "Beer-Lambert absorption coefficient by wavelength, as nm,1/m,nm,1/m,...; replaces absorb_per_m"),
