@@ -113,9 +113,10 @@ static void invalid_media_are_refused_with_a_location(void **state)
                  "test.yaml:2:27: both an ior and a medium are given; keep either the ior or the medium");
     expect_error("background: {medium: water, ior: 1.5}\n",
                  "test.yaml:1:34: both an ior and a medium are given; keep either the ior or the medium");
-    expect_error("solids:\n  a: {shape: sphere, medium: cauchy}\n",
-                 "test.yaml:2:3: a: medium cauchy has no coefficients; give A, B in um^2, .., as 'coefficients: "
-                 "[1.5046, 0.0042]'");
+    expect_error(
+        "solids:\n  a: {shape: sphere, medium: cauchy}\n",
+        "test.yaml:2:3: a: medium cauchy has no coefficients; give A, B (um^2), ..., for example 'coefficients: "
+        "[1.5046, 0.0042]'");
     expect_error(
         "solids:\n  a: {shape: sphere, medium: wather}\n",
         "test.yaml:2:30: a.medium: no choice 'wather'; did you mean 'water'? It is one of: ior, sellmeier, cauchy, "
