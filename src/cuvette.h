@@ -477,8 +477,8 @@ CUVETTE_API cuvette_status cuvette_motion_advance(cuvette_motion *motion, double
 CUVETTE_API size_t cuvette_motion_count(const cuvette_motion *motion);
 CUVETTE_API const char *cuvette_motion_name(const cuvette_motion *motion, size_t index);
 
-/* The state of a slime, named by its mesh or by a solid that shows the mesh. Lengths, also in energies (N scene units,
- * where N is kg scene units / s^2), are in the mesh's frame, before a solid's scale, rotation and translation. */
+/* The state of a slime, named by its mesh or by a solid that shows the mesh. Lengths are in scene units of
+ * the mesh's frame, before a solid's scale, rotation and translation; energies are in kg (scene unit)^2 / s^2. */
 typedef struct cuvette_slime {
     size_t size; /* sizeof(cuvette_slime) */
     double time_s;

@@ -324,7 +324,7 @@ check "peers/mesh_scene.awk writes the scene for Tachyon" is \
     "$(awk -v peer=tachyon -f "$root/experiments/peers/mesh_scene.awk" out | grep -c '^TRI V0 ')" 100
 run mesh --generate toru
 check "an unknown body is refused with the nearest" matches "$code $(<err)" \
-    "^2 cuvette: --generate: .*'toru'; did you mean 'torus'"
+    "^2 cuvette: --generate: .*'toru'.*; did you mean 'torus'"
 run mesh --generate torus --minor 2
 check "wrong radii are refused with the remedy" matches "$code $(<err)" \
     "^2 cuvette: --generate: invalid torus radii 1 and 2; use radii"
@@ -820,7 +820,7 @@ refused "to scale the camera" \
 refused "a factor of zero" "--scale all=0: all cannot be scaled by 0; give a factor above 0, at most 1e9" \
     built.yaml --scale all=0
 refused "two numbers" "--move rod=1,2: fewer than 3 numbers; give NAME=DX,DY,DZ" built.yaml --move rod=1,2
-refused "an unknown shape" "--add solid:x=bax: no shape 'bax'; did you mean 'box'?" built.yaml --add solid:x=bax
+refused "an unknown shape" "--add solid:x=bax: 'bax' is not a shape; did you mean 'box'?" built.yaml --add solid:x=bax
 refused "a solid without a shape" \
     "--add solid:x: x has no shape; write solid:NAME=SHAPE, such as solid:rod=box" built.yaml --add solid:x
 refused "an unknown kind" \

@@ -338,9 +338,9 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"camera.5=1",
          "camera has no parameter '5'; camera has position, target, yaw_deg, pitch_deg, roll_deg, fov_deg"},
         {"fov=45", "the scene has no object 'fov'; did you mean 'camera.fov_deg'?"},
-        {"lens.visible=of", "lens.visible: no choice 'of'; give one of: off, on"},
-        {"lens.visible=noo", "lens.visible: no choice 'noo'; give one of: off, on"},
-        {"render.shadows=no", "render.shadows: no choice 'no'; give one of: off, opaque, attenuated"},
+        {"lens.visible=of", "lens.visible: 'of' is not one of the choices; give one of: off, on"},
+        {"lens.visible=noo", "lens.visible: 'noo' is not one of the choices; give one of: off, on"},
+        {"render.shadows=no", "render.shadows: 'no' is not one of the choices; give one of: off, opaque, attenuated"},
         {"glass.radius=2",
          "glass has no parameter 'radius'; glass has color, ambient, diffuse, specular, shininess, emission, "
          "reflectivity, transparency, ior, medium, coefficients, absorb_per_m, absorb_spectrum, tint_distance, "
@@ -357,7 +357,7 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
         {"render.depth=4.0", "render.depth: '4.0' is not an integer; give an integer 0..64"},
         {"render.samples=3", "render.samples: 3 is out of range; give one of: 1, 4, 9, 16, 25, 36, 49, 64"},
         {"render.schedule=dinamic",
-         "render.schedule: no choice 'dinamic'; did you mean 'dynamic'? It is one of: columns, "
+         "render.schedule: 'dinamic' is not one of the choices; did you mean 'dynamic'? It is one of: columns, "
          "rows, tiles, dynamic"},
         {"render.pin=", "render.pin has no value; give one of: none, compact, scatter"},
         {"camera.fov_deg=0", "camera.fov_deg: 0 is out of range; give a number > 0, at most 179"},

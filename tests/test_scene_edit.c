@@ -197,7 +197,7 @@ static void assigning_a_material_replaces_all_surface_values(void **state)
     assert_int_equal(s->solids[2].shape.kind, SHAPE_SPHERE);
     assert_int_equal(scene_put(s, "c.radius", "3", NULL), STATUS_OK);
     assert_true(s->solids[2].shape.radius == 3.0);
-    assert_refused(s, scene_put(s, "c.shape", "cylindre", &why), "no shape 'cylindre'");
+    assert_refused(s, scene_put(s, "c.shape", "cylindre", &why), "'cylindre' is not a shape");
     scene_destroy(s);
 }
 

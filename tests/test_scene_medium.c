@@ -119,7 +119,8 @@ static void invalid_media_are_refused_with_a_location(void **state)
         "[1.5046, 0.0042]'");
     expect_error(
         "solids:\n  a: {shape: sphere, medium: wather}\n",
-        "test.yaml:2:30: a.medium: no choice 'wather'; did you mean 'water'? It is one of: ior, sellmeier, cauchy, "
+        "test.yaml:2:30: a.medium: 'wather' is not one of the choices; did you mean 'water'? It is one of: ior, "
+        "sellmeier, cauchy, "
         "table, air, "
         "water, ethanol, glycerol, toluene, olive-oil, bk7-liquid, fused-silica, bk7, sf11, n-sf11, soda-lime, pmma, "
         "sapphire, diamond");

@@ -11,7 +11,8 @@
 
 static const double outer_width = 960.0, least_height = 260.0, most_height = 760.0;
 
-/* A horizontal plane has the axis to the right; in any other, up is upwards and the rays run to the right. */
+/* A horizontal plane is drawn with the axis to the right; any other with world +y upwards as far as the plane allows,
+ * and the rays running to the right. */
 static section_plane plane_of(const fan *f)
 {
     const vec3 up = vec3_sub(vec3_make(0, 1, 0), vec3_scale(f->normal, f->normal.y));

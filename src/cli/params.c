@@ -43,7 +43,8 @@ static bool ends_with(const char *text, const char *ending)
     return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-/* A path or word of the table has neither a slash nor the ending of a scene file. */
+/* Whether an argument names a scene file: paths of parameters (render.depth) and search words have neither a slash nor
+ * the ending .yaml or .yml. */
 static bool names_scene(const char *word)
 {
     struct stat found;

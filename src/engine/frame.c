@@ -39,7 +39,7 @@ static status check_rectangle(const film *f, int x0, int y0, int x1, int y1, siz
                         "an image of %d x %d has no rectangle from %d,%d to %d,%d", f->width, f->height, x0, y0, x1,
                         y1);
     if (*stride < 3 * (size_t)(x1 - x0))
-        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or at least 3 times the width",
+        return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or to at least 3 * (x1 - x0) floats",
                         "a stride of %zu is shorter than a row", *stride);
     return STATUS_OK;
 }

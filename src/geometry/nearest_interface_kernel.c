@@ -155,7 +155,8 @@ static void surfaces(uint64_t opaque_regions, int n, const int64_t *restrict bef
     }
 }
 
-/* Marks columns that need a second, exact check: another boundary is near, or the media may be equal. */
+/* Marks the rays (columns of the batch) that need a second, exact check: another boundary is near, or the media may be
+ * equal. */
 static void mark_attention(const scene_geometry *a, int n, const ray_scratch *restrict s, const hit_batch *restrict c,
                            int64_t *restrict attention)
 {

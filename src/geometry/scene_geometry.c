@@ -1,4 +1,4 @@
-/* The build of the scene geometry, and its queries by point. */
+/* Builds the scene geometry, and answers queries for points. */
 #include "geometry/scene_geometry.h"
 #include "base/elementary.h"
 #include "geometry/instance_set.h"

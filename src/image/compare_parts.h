@@ -20,7 +20,7 @@ status compare_flip(const image *a, const image *b, double *errors, diagnostic *
 void flip_opponent(const float rgb[3], double opponent[3]);
 /* Back to linear RGB, clamped to 0..1, and from there to CIELAB with Hunt's adjustment. */
 void flip_hunt_lab(const double opponent[3], double lab[3]);
-/* HyAB distance to the power 0.7 of green and blue, the most distant colours of the RGB cube. */
+/* HyAB distance between green and blue, the most distant colours of the RGB cube, raised to the power 0.7. */
 double flip_farthest(void);
 /* The distance of two colours of flip_hunt_lab, mapped to 0..1. */
 double flip_color_error(const double a[3], const double b[3], double farthest);

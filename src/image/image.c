@@ -98,7 +98,7 @@ static status write_as(const image *img, image_format format, FILE *stream, int 
     case IMAGE_BMP:
     case IMAGE_UNKNOWN: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "PNG, JPEG or PFM", "unknown image format");
+    return diagnose(why, STATUS_BAD_INPUT, "use PNG, JPEG or PFM", "unknown image format");
 }
 
 status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,

@@ -51,7 +51,7 @@ typedef struct quantity {
 /* Quantities of a frame; their read function ignores worker. In the order of the columns, the film's hash first. */
 extern const quantity frame_quantities[];
 extern const size_t frame_quantity_count;
-/* Quantities of one worker, by its number. In JSON, members of the objects in the list `threads`. */
+/* Quantities of one worker; read takes the worker's number. In JSON, members of the objects in the list `threads`. */
 extern const quantity worker_quantities[];
 extern const size_t worker_quantity_count;
 

@@ -36,9 +36,9 @@ static const crossing crossings[] = {
     {"critical.liquid", "fresnel.liquid.s", "fresnel.liquid.p", "fresnel.liquid", SETUP_OUTSIDE, SETUP_LIQUID},
     {"critical.wall", "fresnel.wall.s", "fresnel.wall.p", "fresnel.wall", SETUP_VESSEL, SETUP_LIQUID},
 };
-static const char *const critical_what[] = {"critical angle, vessel to surroundings",
-                                            "critical angle, liquid to surroundings",
-                                            "critical angle, vessel's wall to liquid"};
+static const char *const critical_what[] = {"critical angle between vessel and surroundings",
+                                            "critical angle between liquid and surroundings",
+                                            "critical angle between the vessel's wall and liquid"};
 
 static status bisect_critical(trial *t, double start_y, double *angle, diagnostic *why)
 {

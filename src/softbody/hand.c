@@ -67,8 +67,8 @@ static status check_order(const char *hand, const hand_track *track, const hand_
     const hand_key *last = track && track->key_count ? &track->keys[track->key_count - 1] : NULL;
     const bool holds = last && last->act != HAND_RELEASE;
     if (last && key->time_s < last->time_s)
-        return diagnose(why, STATUS_BAD_INPUT, "write the entries of a hand in the order of time",
-                        "%s: %g s comes after %g s", hand, key->time_s, last->time_s);
+        return diagnose(why, STATUS_BAD_INPUT, "sort the entries of each hand by time", "%s: %g s comes after %g s",
+                        hand, key->time_s, last->time_s);
     if (key->act == HAND_GRAB && holds)
         return diagnose(why, STATUS_BAD_INPUT, "release first, or use another hand for the second grab",
                         "%s: it already holds something", hand);

@@ -22,11 +22,11 @@ static status check_shape(const softbody_settings *s, diagnostic *why)
                              {"damping", s->damping},     {"pressure", s->pressure}, {"friction", s->friction}};
     for (size_t i = 0; i < sizeof least / sizeof least[0]; i++)
         if (!(least[i].value >= 0.0 && least[i].value <= 1e9))
-            return refuse(why, least[i].name, least[i].value, "a number from 0 to 1e9");
+            return refuse(why, least[i].name, least[i].value, "give a number from 0 to 1e9");
     if (!(s->restitution >= 0.0 && s->restitution <= 1.0))
-        return refuse(why, "restitution", s->restitution, "a number from 0 to 1");
+        return refuse(why, "restitution", s->restitution, "give a number from 0 to 1");
     if (!(fabs(s->ground_y) < 1e9))
-        return refuse(why, "ground_y", s->ground_y, "a finite number");
+        return refuse(why, "ground_y", s->ground_y, "give a finite number");
     const vec3 all[] = {s->position, s->velocity, s->gravity};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         if (!(vec3_length(all[i]) < 1e9))

@@ -197,7 +197,8 @@ static vec3 velocity_of_center(const softbody *b)
     return vec3_scale(sum, 1.0 / mass);
 }
 
-/* The first mass with a NaN position, or that leaves the others too fast; the number of masses if there is none. */
+/* The first mass whose speed relative to the centre of mass is NaN or above the limit; the number of masses if there is
+ * none. */
 static size_t find_blown(const softbody *b, double *speed)
 {
     const vec3 center = velocity_of_center(b);

@@ -10,7 +10,7 @@
 typedef struct accepted {
     const study *s;
     const char *folder;
-    bool looked; /* for older definitions; filled at the first row whose hash differs from the study's */
+    bool looked; /* older definitions were looked up, at the first row whose hash differs from the study's */
     uint64_t older[2];
     size_t count;
     char why_not[400];

@@ -8,8 +8,8 @@
 typedef struct progress_line progress_line;
 
 progress_line *progress_begin(const study *s, const study_options *options);
-/* Before a cell is measured. Estimates the time left: the maximum number of missing repetitions times their mean time
- * so far. */
+/* Call before a cell is measured. Estimates the time left: the sum over the unfinished cells of the missing
+ * repetitions, up to repetitions_max, times the mean time of the cell so far (of all cells if it has none). */
 void progress_count(progress_line *line, size_t cell, const progress_index *done, const size_t *cells,
                     size_t cell_count);
 /* All cells are measured; reported immediately. */

@@ -1,5 +1,5 @@
 /* The measured repetitions by cell: read from the rows on disk, updated while a study runs. Ownership:
- * progress_index_read gives, progress_index_destroy releases. */
+ * progress_index_read allocates, progress_index_destroy releases. */
 #pragma once
 
 #include "study/study.h"

@@ -143,11 +143,11 @@ static status read_range(study_axis *axis, scene *on, const document *d, const n
     for (size_t i = 0; code == STATUS_OK && i < 3; i++) {
         const node *n = node_get(range, keys[i]);
         if (!n)
-            code = node_error(d, range, why, "write {from: 1.0, to: 2.0, steps: 5}", "the range has no %s", keys[i]);
+            code = node_error(d, range, why, "write {from: 1.0, to: 2.0, steps: 5}", "the range has no '%s'", keys[i]);
         else if (i == 2)
             code = read_step_count(d, n, &steps, why);
         else if (n->kind != NODE_SCALAR || !number_parse_real(n->text, &end[i]))
-            code = node_error(d, n, why, "write a number", "%s is not a number", keys[i]);
+            code = node_error(d, n, why, "write a number", "'%s' is not a number", keys[i]);
     }
     if (code == STATUS_OK && !(end[0] < end[1]) && !(end[0] > end[1]))
         code = node_error(d, range, why, "use different values", "from and to are equal");

@@ -28,7 +28,8 @@ typedef struct row_files {
     size_t row_count;
 } row_files;
 
-/* results/<name>; results/<name>/rows.csv, or rows.shard-i-of-N.csv when shards > 1. Fresh memory, or NULL. */
+/* study_folder: results/<name>. row_file_path: the file of that kind in it, such as rows.csv, or
+ * rows.shard-i-of-N.csv when shards > 1. Fresh memory, or NULL. */
 char *study_folder(const study *s, const char *results);
 char *row_file_path(const char *folder, row_kind kind, long shard, long shards);
 /* The header line of files of that kind; fresh memory, or NULL. */

@@ -61,11 +61,11 @@ export const cases = {
     await screen.showPanel('Objects');
     await screen.page.getByRole('button', { name: /^ball/ }).click();
     const before = await lab.value('ball.position');
-    await change(screen, () => screen.button('Move by plus x').click());
+    await change(screen, () => screen.button('Move: plus x').click());
     t.near((await lab.value('ball.position'))[0] - before[0], 0.1, 1e-9, 'a step along x, scene units');
-    await change(screen, () => screen.button('Move by minus y').press('Enter'));
+    await change(screen, () => screen.button('Move: minus y').press('Enter'));
     t.near((await lab.value('ball.position'))[1] - before[1], -0.1, 1e-9, 'a step down, scene units');
-    await change(screen, () => screen.button('Turn by plus z').click());
+    await change(screen, () => screen.button('Turn: plus z').click());
     t.equal(await lab.value('ball.rotation'), [0, 0, 15], 'a rotation about z, degrees');
   },
 
@@ -78,7 +78,7 @@ export const cases = {
     const values = async () =>
       Promise.all(['ball.position', 'lamp.position', 'camera.position'].map((path) => lab.value(path)));
     const [ball, lamp, eyeAt] = await values();
-    await change(screen, () => screen.button('Move all by plus x').click());
+    await change(screen, () => screen.button('Move all: plus x').click());
     let now = await values();
     t.near(now[0][0] - ball[0], 0.1, 1e-9, 'the ball moves');
     t.near(now[1][0] - lamp[0], 0.1, 1e-9, 'the lamp moves');
@@ -86,7 +86,7 @@ export const cases = {
     await change(screen, () => screen.button('Undo').click());
     await screen.page.getByRole('checkbox', { name: 'Camera' }).check();
     const before = await screen.pixels();
-    await change(screen, () => screen.button('Turn all by plus y').click());
+    await change(screen, () => screen.button('Turn all: plus y').click());
     await change(screen, () => screen.button('Scale all: larger').click());
     now = await values();
     t.near(
@@ -101,7 +101,7 @@ export const cases = {
     await screen.page.getByRole('checkbox', { name: 'Solids' }).uncheck();
     await screen.page.getByRole('checkbox', { name: 'Camera' }).uncheck();
     const [stays] = await values();
-    await change(screen, () => screen.button('Move all by minus y').click());
+    await change(screen, () => screen.button('Move all: minus y').click());
     t.equal((await values())[0], stays, 'moving only the lights does not move the ball');
     await t.axe(screen, 'steps of the whole scene');
     await t.picture(screen, 'whole-scene');

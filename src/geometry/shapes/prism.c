@@ -1,4 +1,5 @@
-/* The shape prism: 0 <= y <= height over a regular polygon with `sides` corners on a circle of radius about the axis,
+/* The shape prism: 0 <= y <= height over a regular polygon with `sides` corners on a circle of radius `radius`
+ * about the axis,
  * the first corner in front, at -z. Its position is the centre of its base. */
 #include "geometry/shapes/parts.h"
 

@@ -270,7 +270,8 @@ static bool stopped(const atomic_bool *stop)
     return atomic_load_explicit(stop, memory_order_relaxed);
 }
 
-/* As many whole pixels as fit into a batch. */
+/* The number of rays made at once: those of as many whole pixels as fit into a batch, or a full batch if a pixel has
+ * more rays than that. */
 static int rays_at_once(int64_t each)
 {
     return each >= BATCH ? BATCH : (int)(BATCH / each * each);

@@ -25,7 +25,7 @@
 /* The numbers of camera rays of one pixel. camera_rays_enqueue (render/camera/camera_rays.c) makes the rays. */
 typedef struct camera_sampling {
     int64_t rays;
-    int64_t points;   /* upper limit of sample points in the pixel: the largest square grid within it is used */
+    int64_t points;   /* upper limit of sample points in a pixel: the largest k x k grid with at most that many */
     int64_t together; /* number of consecutive rays through one point; the next ones use the next point, cyclically */
     int64_t marks;    /* further bits of their sample keys besides pixel and sample (render/core/sample_key.h) */
 } camera_sampling;

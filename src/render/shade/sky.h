@@ -1,5 +1,5 @@
 /* The sky: radiance of the background, which is uniform, a vertical gradient, or an equirectangular image whose middle
- * column is +z, whose right half is +x, and whose top row is straight up. Pure; cannot fail. */
+ * column faces +z, whose right half covers x > 0, and whose top row is straight up. Pure; cannot fail. */
 #pragma once
 
 #include "scene/model/view_settings.h"

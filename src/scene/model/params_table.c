@@ -242,7 +242,8 @@ static const param table[] = {
      .offset = offsetof(mesh_entry, slime.threads), .performance_only = true},
 
     {PARAM_TEXTURE, "file", PARAM_PATH, "", 0, 0, false, "",
-     "PNG, JPEG, PFM or 24-bit BMP file, from the scene file's folder", NULL, OF(texture_entry, path)},
+     "PNG, JPEG, PFM or 24-bit BMP file; its path is relative to the scene file's folder", NULL,
+     OF(texture_entry, path)},
     CHOICE(PARAM_TEXTURE, texture_entry, filter, filter_words, "trilinear",
            "nearest texel; bilinear, of four texels; or trilinear, of two mipmap levels"),
     CHOICE(PARAM_TEXTURE, texture_entry, wrap_u, wrap_words, "repeat", "horizontal wrap mode"),
@@ -281,7 +282,8 @@ static const param table[] = {
          "reflectance of the surface; on a transparent surface with render.weights=fresnel a coating, "
          "whose total is R + (1 - R) reflectivity with the Fresnel reflectance R"),
     REAL(PARAM_MATERIAL, material, transparency, "", 0, 1, "0",
-         "fraction of the refracted light that enters the solid; 0: opaque"),
+         "fraction of the light that is not reflected which enters the solid (with constant weights or simple "
+         "transmission: of the incident light); 0: opaque"),
     REAL(PARAM_MATERIAL, material, ior, "", 0.1, 1e9, "1",
          "refractive index, relative to vacuum; above 10000 a transparent surface is treated as a perfect mirror"),
     CHOICE(PARAM_MATERIAL, material, medium, medium_words, "ior",

@@ -115,9 +115,9 @@ static status parse_choice(const param *row, const char *label, const char *text
         char range[400], remedy[460];
         snprintf(remedy, sizeof remedy, "did you mean '%s'? It is %s", nearest,
                  param_range_text(row, range, sizeof range));
-        return diagnose(why, STATUS_BAD_INPUT, remedy, "%s: no choice '" SHOWN "'", label, text);
+        return diagnose(why, STATUS_BAD_INPUT, remedy, "%s: '" SHOWN "' is not one of the choices", label, text);
     }
-    return wrong(row, false, why, "%s: no choice '" SHOWN "'", label, text);
+    return wrong(row, false, why, "%s: '" SHOWN "' is not one of the choices", label, text);
 }
 
 static status parse_integer(const param *row, const char *label, const char *text, int64_t *out, diagnostic *why)

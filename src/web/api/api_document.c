@@ -165,7 +165,7 @@ static bool take_pair(call *c, const char *key, double pair[2])
     for (size_t i = 0; angles && i < 2; i++) {
         const json_t *item = json_array_get(angles, i);
         if (json_array_size(angles) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
-            api_refuse(c, 400, "a camera angle is not a number", "give [YAW, PITCH] in degrees");
+            api_refuse(c, 400, "the camera needs two angles", "give [YAW, PITCH] in degrees, each -1e6..1e6");
             return false;
         }
         pair[i] = json_number_value(item);

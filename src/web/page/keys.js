@@ -19,7 +19,10 @@ const list = [
       'Page Down pull along the view',
   ],
   ['Shift drag', 'with Orbit: turn in place; with Light: nearer and farther'],
-  ['Arrow keys with Inspect', 'on the image: move by one pixel, with Shift by ten; Escape clears'],
+  [
+    'Arrow keys with Inspect',
+    'on the image: move the selected pixel by one, with Shift by ten; Escape clears the selection',
+  ],
   ['F', 'while held: show the reference image A'],
   ['Home on the splitter', 'reset the width of the panels; arrow keys change it'],
 ];

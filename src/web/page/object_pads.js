@@ -35,8 +35,8 @@ export function createPads(choice, { id = 'object', many = '' } = {}) {
           const face = `${sign < 0 ? '\u2212' : '+'}${axis}`;
           return button(face, () => act(by(), nameOf(`${choice.name} ${label} ${face}`)), {
             small: true,
-            title: `${label} by ${face}`,
-            'aria-label': `${label} by ${sign < 0 ? 'minus' : 'plus'} ${axis}`,
+            title: `${label}: ${face}`,
+            'aria-label': `${label}: ${sign < 0 ? 'minus' : 'plus'} ${axis}`,
           });
         }),
       ),

@@ -36,8 +36,9 @@ static status remove_material(scene *s, size_t index, diagnostic *why)
 
 static status in_use(const char *what, const char *name, const char *user, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT, "assign another one to it first, or remove it", "%.80s is the %s of %.80s",
-                    name, what, user);
+    char remedy[200];
+    snprintf(remedy, sizeof remedy, "first give %.80s another %s, or remove %.80s", user, what, user);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "%.80s is the %s of %.80s", name, what, user);
 }
 
 static status remove_mesh(scene *s, size_t index, diagnostic *why)

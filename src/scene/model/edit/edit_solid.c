@@ -63,7 +63,7 @@ status scene_shape_named(const char *word, shape_kind *out, diagnostic *why)
     char remedy[200], all[160];
     snprintf(remedy, sizeof remedy, nearest ? "did you mean '%s'?" : "the shapes are %s",
              nearest ? nearest : scene_shape_words("and", all, sizeof all));
-    return diagnose(why, STATUS_BAD_INPUT, remedy, "no shape '%.60s'", word);
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "'%.60s' is not a shape", word);
 }
 
 static status put_shape(scene *s, solid *owner, const char *word, diagnostic *why)

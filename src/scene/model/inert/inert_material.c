@@ -1,4 +1,4 @@
-/* Parameters of a material without effect on its solids. */
+/* Material parameters that have no effect on the material's solids. */
 #include "scene/model/inert/inert_private.h"
 #include "geometry/shapes/shape.h"
 #include "scene/model/cover.h"
@@ -70,8 +70,9 @@ static bool absorption_rule(const inert_case *c)
 
 static bool no_color(const inert_case *c)
 {
-    const char *text = integrator_traits_of(&c->s->render)->layers ? "the shown layer has no colours"
-                                                                   : "no ambient or diffuse light reaches this surface";
+    const char *text = integrator_traits_of(&c->s->render)->layers
+                           ? "the shown layer has no colours"
+                           : "this surface reflects no ambient or diffuse light";
     return !shows_color(c->s, c->m) && inert_say(c, "no-color", color_remedy(c->s, c->m, c->name).text, "%s", text);
 }
 
