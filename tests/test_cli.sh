@@ -123,6 +123,10 @@ check "the JSON output has every parameter" is "$(json params@keys | sort | comm
 check "the summary and the JSON output have the same hash" is "$(json film_hash)" "$hash"
 run render "$scene" --json "${small[@]}" --set render.threads=7 --set render.schedule=rows
 check "threads and schedule do not change the film" is "$(json film_hash)" "$hash"
+run render "$scene" --json "${small[@]}" --set render.threads=auto
+check "threads: auto does not change the film, and the account keeps the word" is \
+    "$(json film_hash 'params["render.threads"]')" "$(lines "$hash" auto)"
+check "threads: auto starts one worker per unit of the process" is "$(json workers)" "$(nproc)"
 CUVETTE_ISA=sse2 run render "$scene" --json "${small[@]}"
 check "CUVETTE_ISA is used and does not change the film" is "$(json isa film_hash)" "$(lines sse2 "$hash")"
 run render "$scene" --json "${small[@]}" --repeat 5
