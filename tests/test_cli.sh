@@ -583,6 +583,12 @@ order: {shuffle: on, seed: 3}
 END
 run study list studies
 check "study list shows name, cells and title" matches "$(<out)" 'tiny\.study +3 cells +A small one'
+run study run --dry-run studies/tiny.study --results res
+check "study run --dry-run counts the missing rows" is "$(head -1 out)" \
+    "tiny: 3 of 3 cells lack rows: 6 rows and 3 warm-ups to measure"
+check "study run --dry-run estimates the time" matches "$(sed -n 2p out)" \
+    '^tiny: about [0-9.]+ s, from trial frames of 3 cells, extrapolated in pixels$'
+check "study run --dry-run writes nothing" eval '[[ $(wc -l <out) == 2 && ! -e res ]]'
 run study status studies/tiny.study --results res
 check "study status before the run" matches "$(<out)" '0 of 3 cells'
 run study run studies/tiny.study --results res
@@ -602,6 +608,14 @@ if command -v script >/dev/null; then
     script -qec "'$program' study summary studies/tiny.study --results res" /dev/null >tty.txt 2>&1
     check "study summary on a terminal is short" grep -q '^cell .*interval.* marked' tty.txt
 fi
+sed -e 's/repetitions: 2/repetitions: 4/' -e '$a keep: {image: on}' studies/tiny.study >studies/more.study
+run study run -n studies/more.study --results res
+check "study run --dry-run uses existing rows and lists files" is "$(sed 's/about [0-9.]* s/about T s/' out)" "$(lines \
+    "tiny: 3 of 3 cells lack rows: 6 rows and 3 warm-ups to measure" \
+    "tiny: about T s, from the rows of 3 cells" \
+    "tiny: 3 files to keep in res/tiny/images: CELL.png")"
+run study run --dry-run studies/tiny.study --results res
+check "study run --dry-run of a complete study" is "$(<out)" "tiny: complete, nothing to do"
 run study run --quiet studies/tiny.study --results parts --shard 0/2
 check "--quiet prints nothing" is "$(cat out err)" ""
 run study run studies/tiny.study --results parts --shard 1/2

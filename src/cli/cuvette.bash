@@ -83,7 +83,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 
 _cuvette_study() # VERB
 {
-    local -A options=([run]='--results --shard --quiet' [status]=--results [merge]=--results [summary]=--results [list]='')
+    local -A options=([run]='--results --shard --dry-run --quiet' [status]=--results [merge]=--results [summary]=--results [list]='')
     if [[ $current == -* ]]; then
         _cuvette_words "${options[$1]} --help --usage --version"
     elif [[ $1 == list ]]; then

@@ -4,6 +4,7 @@
 #include "cli/inert_notes.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
+#include "cli/study_commands.h"
 #include "cli/study_request.h"
 #include "cli/terminal.h"
 #include "study/study.h"
@@ -113,6 +114,8 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .stop = terminal_stop_requested};
     size_t rows = 0;
     status result = request->quiet ? STATUS_OK : lint(s, request, why);
+    if (result == STATUS_OK && request->dry_run)
+        return study_dry_run(s, request, why);
     THEN(result, study_run(s, &options, &rows, why));
     if (result == STATUS_INTERRUPTED) {
         diagnose(why, STATUS_INTERRUPTED,

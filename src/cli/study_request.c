@@ -37,6 +37,8 @@ static const command_option run_options[] = {
      OPTION_FILLS(option_text, study_request, results)},
     {"shard", 0, "I/N", "run part I of N, counted from 0; parts can run concurrently, on one or several machines",
      .take = take_shard},
+    {"dry-run", 'n', NULL, "print what would be measured and kept, and about how long it takes; write nothing",
+     OPTION_FILLS(option_flag, study_request, dry_run)},
     {"quiet", 'q', NULL, "print errors only", OPTION_FILLS(option_flag, study_request, quiet)},
     {0},
 };

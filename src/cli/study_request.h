@@ -22,7 +22,7 @@ typedef struct study_request {
     size_t file_count;
     const char *results;
     long shard, shards;
-    bool quiet;
+    bool quiet, dry_run;
 } study_request;
 
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why);

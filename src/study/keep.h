@@ -8,6 +8,10 @@
 
 /* Whether a file that the study keeps is missing for the cell. */
 bool keep_missing(const study *s, const char *folder, size_t cell);
+/* The number of such files. */
+size_t keep_missing_count(const study *s, const char *folder, size_t cell);
+/* The ending of the study's kept file i, counted from 0: ".png" of images/0003.png; NULL after the last. */
+const char *keep_ending(const study *s, size_t i);
 
 /* The options of the frame; progress and context stay NULL. */
 render_options keep_options(const study *s);

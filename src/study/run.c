@@ -9,7 +9,7 @@
 #include "study/run_state.h"
 #include <stdlib.h>
 
-static void choose_cells(run *r)
+void run_choose_cells(run *r)
 {
     size_t total = study_cell_count(r->s);
     size_t shards = r->options->shards > 1 ? (size_t)r->options->shards : 1;
@@ -147,7 +147,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
     status code = has_memory ? progress_index_read(s, options->results, &r.done, why) : out_of_memory(why);
     THEN(code, run_find_compared(&r, why));
     if (code == STATUS_OK) {
-        choose_cells(&r);
+        run_choose_cells(&r);
         bool idle = run_complete(&r);
         if (!idle) {
             code = run_prepare(&r, why);

@@ -31,6 +31,9 @@ typedef struct run {
 status run_prepare(run *r, diagnostic *why);
 void run_release(run *r);
 
+/* Fills cells and cell_count with the cells of the shard; order is overwritten. */
+void run_choose_cells(run *r);
+
 /* Reads which cells have been compared from the existing files. */
 status run_find_compared(run *r, diagnostic *why);
 
