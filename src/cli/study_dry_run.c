@@ -9,7 +9,9 @@
 /* "0.2 s", "42 s", "7 min", "3.5 h": an estimate has no more digits. */
 static const char *duration(double s, char *text, size_t size)
 {
-    if (s < 9.95)
+    if (s < 0.05)
+        snprintf(text, size, "0.1 s");
+    else if (s < 9.95)
         snprintf(text, size, "%.1f s", s);
     else if (s < 99.5)
         snprintf(text, size, "%.0f s", s);
@@ -53,7 +55,7 @@ static void print_time(const study *s, const study_estimate *e)
     }
     duration(e->least_s, least, sizeof least);
     duration(e->most_s, most, sizeof most);
-    printf("%s: %s ", s->name, e->cut ? "more than" : "about");
+    printf("%s: %s ", s->name, e->cut ? "more than" : e->most_s < 0.05 ? "less than" : "about");
     if (strcmp(least, most) != 0)
         printf("%s to ", least);
     printf("%s", most);

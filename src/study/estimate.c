@@ -39,7 +39,7 @@ static double pixels_of(const scene *s)
     return (double)s->render.width * (double)s->render.height;
 }
 
-/* The frame with at most so many pixels and the same aspect ratio. */
+/* Reduces the frame to at most that number of pixels, with the same aspect ratio. */
 static void shrink(scene *s, double width, double height, double most)
 {
     const double scale = fmin(1.0, sqrt(most / (width * height)));

@@ -1,6 +1,6 @@
 /* What a run of a study would measure, and how long it would take, without measuring or writing anything. The time of a
- * cell is that of its own rows; otherwise it is extrapolated from trial frames of the cell with fewer pixels, which take
- * at most a few seconds for the whole study. Ownership: values; everything else is borrowed. */
+ * cell is that of its own rows; otherwise it is extrapolated from trial frames of the cell with fewer pixels, which
+ * take at most a few seconds for the whole study. Ownership: values; everything else is borrowed. */
 #pragma once
 
 #include "study/study.h"

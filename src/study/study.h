@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "scene/model/inert/note.h"
 #include "scene/model/open.h"
 #include <stdbool.h>
 #include <stdint.h>
@@ -28,6 +29,12 @@ typedef struct study_axis {
     size_t count;
 } study_axis;
 
+/* A note on the study file, which is valid; at line and column. */
+typedef struct study_note {
+    long line, column;
+    scene_note note;
+} study_note;
+
 typedef struct study {
     char *path, *name, *title;
     char *scene_path;  /* resolved against the study file's folder */
@@ -49,6 +56,8 @@ typedef struct study {
     /* Hash of the meaning of a row: name, scene, fixed parameters, grid; rows with another meaning are refused
      * (study/accepted.h). Repetitions, order, title and kept files may change between runs. */
     uint64_t definition_hash;
+    study_note *notes; /* in the order of the file */
+    size_t note_count;
     uint64_t compare_hash; /* hash of the meaning of a row of compare.csv: the definition and the reference */
 } study;
 
