@@ -57,7 +57,7 @@ for command in render animate scene trace fan params media mesh study compare re
     check "--help names $command" grep -q "^  $command " out
 done
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
-    "study list" "study status" "study merge" "study summary"; do
+    "study new" "study list" "study status" "study merge" "study summary"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -581,6 +581,23 @@ repetitions: 2
 warmups: 1
 order: {shuffle: on, seed: 3}
 END
+run study new "$scene" --axis render.depth=0..4:5 --axis render.threads=1,auto --axis 'lamp.position=[0,5,1],[2,5,1]' \
+    --set render.width=16 --set render.height=12 --set lamp.color=1,0.5,1 --repetitions 2 -o studies/made.study
+check "study new writes a study" is "$(<out)" \
+    "studies/made.study: 20 cells of 2 repetitions; cuvette study run studies/made.study"
+check "study new explains the parameters" eval \
+    'grep -q "# recursion depth" studies/made.study && grep -q "^scene: .*rod.yaml # relative" studies/made.study'
+check "study new writes at most 100 columns" holds "$(wc -L <studies/made.study) <= 110"
+run study run --dry-run studies/made.study --results none
+check "a new study can be run" is "$(head -1 out)" "made: 20 of 20 cells lack rows: 40 rows and 20 warm-ups to measure"
+run study new "$scene" --axis liquid.ior=1.3,1,4 --name decimal -o studies/made.study --force
+check "study new notes a decimal comma at its line" matches "$(<err)" \
+    '^cuvette: note: studies/made\.study:[0-9]+:[0-9]+: liquid\.ior: 1 and 4 are two values; did you mean 1\.4\?$'
+check "study new --force replaces a file, and --name its name" grep -q '^study: decimal ' studies/made.study
+run study new "$scene" --axis liquid.ior=1.3,1,4
+check "study new prints without -o, and the note too" eval \
+    'grep -q "^study: rod-ior " out && grep -q "^cuvette: note: liquid.ior: 1 and 4" err'
+rm studies/made.study
 run study list studies
 check "study list shows name, cells and title" matches "$(<out)" 'tiny\.study +3 cells +A small one'
 run study run --dry-run studies/tiny.study --results res

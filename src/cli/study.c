@@ -189,6 +189,7 @@ static status command_list(int argc, char **argv, diagnostic *why)
 }
 
 static const command commands[] = {
+    {"new", "write a study file for a scene and the parameters to vary", study_new},
     {"run", "run studies, or resume them: measure the missing rows", command_run},
     {"list", "list the studies in a folder", command_list},
     {"status", "print the progress of studies", command_status},
