@@ -96,11 +96,13 @@ static const command_form forms[STUDY_VERB_COUNT] = {
                       .synopsis = "FILE...",
                       .about = "Check every row of each study: damaged, edited, moved, missing, duplicate and marked "
                                "ones. Exit status 1 if there is one.\vNothing is changed."},
-    [STUDY_SUMMARY] = {.options = summary_options_list,
-                       .take_argument = take_file,
-                       .synopsis = "FILE",
-                       .about = "Print one line per cell and environment: medians, 95% confidence intervals, counts.\vA terminal gets "
-                                "the most important columns; a pipe or a file gets all of them, separated by tabs."},
+    [STUDY_SUMMARY] =
+        {.options = summary_options_list,
+         .take_argument = take_file,
+         .synopsis = "FILE",
+         .about =
+             "Print one line per cell and environment: medians, 95% confidence intervals, counts.\vA terminal gets "
+             "the most important columns; a pipe or a file gets all of them, separated by tabs."},
 };
 
 static status check_files(const study_request *request, const char *program, diagnostic *why)

@@ -1,8 +1,8 @@
 /* The cells of rows that have a definition instead of an identity, written by versions without identities. A definition
- * is a hash of a whole study. Known are the study's own; that of version 1 (study/definition_v1.h); and the one recorded
- * in the folder's manifest.json, if the scene's files had the same contents: the recorded texts of study and scene then
- * give the identity of each of its cells. Ownership: borrows study and folder until accepted_end. Errors: none;
- * accepted_why_not describes the reason. */
+ * is a hash of a whole study. Known are the study's own; that of version 1 (study/definition_v1.h); and the one
+ * recorded in the folder's manifest.json, if the scene's files had the same contents: the recorded texts of study and
+ * scene then give the identity of each of its cells. Ownership: borrows study and folder until accepted_end. Errors:
+ * none; accepted_why_not describes the reason. */
 #pragma once
 
 #include "study/study.h"

@@ -62,8 +62,8 @@ bool check_parse(const char *text, uint32_t *content, uint32_t *chain)
     return true;
 }
 
-static status check_line(const check_columns *c, char previous[CHECK_TEXT], const char *line, size_t size, char **fields,
-                         csv_line *out, diagnostic *why)
+static status check_line(const check_columns *c, char previous[CHECK_TEXT], const char *line, size_t size,
+                         char **fields, csv_line *out, diagnostic *why)
 {
     char *copy = strndup(line, size);
     const bool split = copy && csv_split(copy, fields) == c->count;

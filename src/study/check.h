@@ -1,7 +1,7 @@
 /* The checks of rows: the last column of each file. Eight hex digits of a hash of the row's values by column name, then
  * eight of a hash of these and of the check of the previous row of the same run (for the first row, of the run's id).
- * The first part shows an edited row, the second a row that was removed, inserted or moved. Both ignore NA and the order
- * of the columns, so that a file may get more columns. It detects accidents and careless edits, not forgery. */
+ * The first part shows an edited row, the second a row that was removed, inserted or moved. Both ignore NA and the
+ * order of the columns, so that a file may get more columns. It detects accidents and careless edits, not forgery. */
 #pragma once
 
 #include "study/csv.h"

@@ -142,8 +142,8 @@ static size_t find_lines(csv *table)
         return 0;
     memcpy(table->split, table->raw, table->whole);
     size_t line = 0;
-    for (char *at = table->split, *end = at + table->whole;
-         at < end && (at = memchr(at, '\n', (size_t)(end - at))); at++) {
+    for (char *at = table->split, *end = at + table->whole; at < end && (at = memchr(at, '\n', (size_t)(end - at)));
+         at++) {
         *at = 0;
         table->start[line++] = (size_t)(at - table->split) + 1;
     }

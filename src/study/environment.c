@@ -12,7 +12,8 @@ const char *const environment_names[ENVIRONMENT_FACTS] = {"machine",  "cpu_model
                                                           "governor", "limits",    "isa",       "build"};
 enum { MACHINE, CPU_MODEL, MICROCODE, SMT, GOVERNOR, LIMITS, ISA, BUILD };
 
-/* The rest of the first line that starts with prefix, without blanks and colon; false and "unknown" if there is none. */
+/* The rest of the first line that starts with prefix, without blanks and colon; false and "unknown" if there is none.
+ */
 static bool read_line(const char *root, const char *name, const char *prefix, char *text, size_t size)
 {
     char path[512], line[1024];

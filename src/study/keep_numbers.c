@@ -139,8 +139,8 @@ static status each_name(const study *s, const char *images, const numbering *old
     status code = STATUS_OK;
     for (int i = 0; i < count; i++) {
         if (code == STATUS_OK)
-            code = old ? free_number(images, names[i]->d_name, old, why)
-                       : give_number(images, names[i]->d_name, s, why);
+            code =
+                old ? free_number(images, names[i]->d_name, old, why) : give_number(images, names[i]->d_name, s, why);
         free(names[i]);
     }
     free(names);

@@ -156,8 +156,7 @@ static status lock_files(const char *joined, const char *header, char *const *pa
     status code = table_open(joined, header, &locked[0], why);
     *count = code == STATUS_OK;
     for (size_t i = 0; code == STATUS_OK && i < path_count; i++)
-        if (strcmp(paths[i], joined) != 0 &&
-            (code = table_open(paths[i], header, &locked[*count], why)) == STATUS_OK)
+        if (strcmp(paths[i], joined) != 0 && (code = table_open(paths[i], header, &locked[*count], why)) == STATUS_OK)
             ++*count;
     return code;
 }

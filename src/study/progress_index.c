@@ -106,17 +106,17 @@ static status add_rows(progress_index *l, const row_files *files, diagnostic *wh
         else if (ref->run != last_run)
             build = hash_text(files->runs->entry[ref->run].here.fact[ENVIRONMENT_FACTS - 1]);
         last_run = ref->run;
-        TRY(progress_index_add(l,
-                               &(progress_index_entry){
-                                   .cell = ref->cell,
-                                   .repetition = ref->repetition,
-                                   .warmup = ref->warmup,
-                                   .film_hash = strtoull(csv_field(ref->table, ref->row, at.film_hash), NULL, 16),
-                                   .build = build,
-                                   .wall_s = csv_field_real(ref->table, ref->row, at.wall_s),
-                                   .environment = ref->environment,
-                                   .of_other_shard = at.of_other_shard},
-                               why));
+        TRY(progress_index_add(
+            l,
+            &(progress_index_entry){.cell = ref->cell,
+                                    .repetition = ref->repetition,
+                                    .warmup = ref->warmup,
+                                    .film_hash = strtoull(csv_field(ref->table, ref->row, at.film_hash), NULL, 16),
+                                    .build = build,
+                                    .wall_s = csv_field_real(ref->table, ref->row, at.wall_s),
+                                    .environment = ref->environment,
+                                    .of_other_shard = at.of_other_shard},
+            why));
     }
     return STATUS_OK;
 }

@@ -102,9 +102,9 @@ static status drop_twin(row_files *files, const row_ref *first, row_ref *second,
     const bool copied = same_row(first, second), merged = copied && first->table != second->table;
     const size_t line = second->row + 2, cell = second->cell;
     second->table = NULL;
-    if (merged || row_files_add_issue(files, ROW_DUPLICATE, path, (long)line,
-                                      "duplicate row: cell %zu, repetition %ld, %s", cell, second->repetition,
-                                      copied ? "twice in one file" : "with different values") == STATUS_OK)
+    if (merged ||
+        row_files_add_issue(files, ROW_DUPLICATE, path, (long)line, "duplicate row: cell %zu, repetition %ld, %s", cell,
+                            second->repetition, copied ? "twice in one file" : "with different values") == STATUS_OK)
         return STATUS_OK;
     return out_of_memory(why);
 }
@@ -113,12 +113,11 @@ status row_check_drop_twins(row_files *files, diagnostic *why)
 {
     row_ref **sorted = sort_rows(files);
     status code = sorted ? STATUS_OK : out_of_memory(why);
-    for (size_t i = 1, kept = 0; code == STATUS_OK && i < files->row_count; i++) {
+    for (size_t i = 1, kept = 0; code == STATUS_OK && i < files->row_count; i++)
         if (compare_repetitions(sorted[kept], sorted[i]) != 0 || sorted[kept]->worker != sorted[i]->worker)
             kept = i;
         else
             code = drop_twin(files, sorted[kept], sorted[i], why);
-    }
     free(sorted);
     compact(files);
     return code;
@@ -143,8 +142,8 @@ static equal_columns find_equal_columns(const csv *table)
     for (size_t i = 0; table->header && i < table->column_count; i++) {
         const char *dot = strchr(table->header[i], '.');
         const quantity *q = frame_quantity(table->header[i]);
-        const bool of_solid = dot && (strncmp(table->header[i], "first_hits.", 11) == 0 ||
-                                      strncmp(table->header[i], "hits.", 5) == 0);
+        const bool of_solid =
+            dot && (strncmp(table->header[i], "first_hits.", 11) == 0 || strncmp(table->header[i], "hits.", 5) == 0);
         const bool is_equal = of_solid || (q && q->column && q->merge == QUANTITY_SAME && q->type != QUANTITY_HASH);
         if (is_equal && c.count < sizeof c.column / sizeof *c.column)
             c.column[c.count++] = (int)i;

@@ -5,7 +5,7 @@
 
 typedef struct row_environment_count {
     char key[ENVIRONMENT_KEY];
-    size_t rows;    /* without warm-ups */
+    size_t rows;          /* without warm-ups */
     const run_entry *run; /* its last run in row_files.runs, or NULL */
 } row_environment_count;
 

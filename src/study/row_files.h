@@ -13,7 +13,7 @@ typedef enum row_kind { ROWS, WORKER_ROWS, COMPARE_ROWS } row_kind;
 typedef struct row_ref {
     const csv *table;
     size_t row;
-    size_t cell; /* in the study as it is now */
+    size_t cell;             /* in the study as it is now */
     long repetition, worker; /* worker: 0 in rows.csv; compare.csv has no repetitions, workers or warm-ups */
     long run;                /* index in row_files.runs; below 0: the row has no known run */
     bool warmup;
@@ -55,7 +55,7 @@ typedef struct row_files {
     runs *runs;
     row_issue *issues;
     size_t issue_count, fault_count; /* fault_count: issues other than ROW_TORN */
-    size_t other_cells; /* rows of cells that the study does not have */
+    size_t other_cells;              /* rows of cells that the study does not have */
 } row_files;
 
 /* study_folder: results/<name>. row_file_path: the file of that kind in it, such as rows.csv, or
@@ -70,8 +70,8 @@ char *row_file_header(const study *s, row_kind kind);
 status row_files_list(const char *folder, row_kind kind, char ***paths, size_t *count, diagnostic *why);
 
 /* Columns are identified by name; files of other versions of the program are read as well. STATUS_BAD_INPUT if a file
- * lacks an identifying column, is of another study, or has rows of an unknown definition (study/accepted.h). Worker rows
- * whose repetition has no row (the process was killed between the two) are dropped. */
+ * lacks an identifying column, is of another study, or has rows of an unknown definition (study/accepted.h). Worker
+ * rows whose repetition has no row (the process was killed between the two) are dropped. */
 status row_files_read(const study *s, const char *results, row_kind kind, row_files **out, diagnostic *why);
 void row_files_destroy(row_files *files);
 

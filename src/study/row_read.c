@@ -65,10 +65,10 @@ typedef struct table_state {
 
 static columns find_columns(const csv *t)
 {
-    return (columns){csv_column(t, "study"),  csv_column(t, "definition"), csv_column(t, "identity"),
-                     csv_column(t, "run"),    csv_column(t, "check"),      csv_column(t, "cell"),
-                     csv_column(t, "repetition"), csv_column(t, "warmup"), csv_column(t, "worker"),
-                     csv_column(t, "isa"),    csv_column(t, "config")};
+    return (columns){csv_column(t, "study"),      csv_column(t, "definition"), csv_column(t, "identity"),
+                     csv_column(t, "run"),        csv_column(t, "check"),      csv_column(t, "cell"),
+                     csv_column(t, "repetition"), csv_column(t, "warmup"),     csv_column(t, "worker"),
+                     csv_column(t, "isa"),        csv_column(t, "config")};
 }
 
 static bool read_integer(const csv *t, size_t row, int column, int64_t highest, int64_t *out)

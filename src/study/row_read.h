@@ -9,7 +9,7 @@ typedef struct row_cells {
     struct row_cell {
         uint64_t identity;
         size_t cell;
-    } *sorted;
+    } * sorted;
     size_t count;
 } row_cells;
 status row_cells_create(const study *s, row_kind kind, row_cells *out, diagnostic *why);
@@ -17,7 +17,7 @@ void row_cells_free(row_cells *c);
 
 /* What is known of the rows of a run while files are read. */
 typedef struct row_chain {
-    size_t rows, most; /* in the current file; in any file */
+    size_t rows, most;              /* in the current file; in any file */
     char last[RUN_ID], end[RUN_ID]; /* the last check in the current file; that of the file with the most rows */
 } row_chain;
 

@@ -9,9 +9,9 @@ typedef enum column_type { ANY, COUNTED, SWITCH, REAL, POSITIVE, HASHED, LISTED,
 static const struct {
     const char *name;
     column_type type;
-} own[] = {{"cell", COUNTED},   {"repetition", COUNTED}, {"warmup", SWITCH},  {"order", COUNTED},
-           {"time_utc", TIME},  {"film_expected", HASHED}, {"marked", SWITCH}, {"definition", HASHED},
-           {"worker", COUNTED}, {"film_hash", HASHED},   {"wall_s", POSITIVE}};
+} own[] = {{"cell", COUNTED},   {"repetition", COUNTED},   {"warmup", SWITCH},  {"order", COUNTED},
+           {"time_utc", TIME},  {"film_expected", HASHED}, {"marked", SWITCH},  {"definition", HASHED},
+           {"worker", COUNTED}, {"film_hash", HASHED},     {"wall_s", POSITIVE}};
 
 static column_type type_of_quantity(const quantity *q)
 {
@@ -19,8 +19,7 @@ static column_type type_of_quantity(const quantity *q)
     case QUANTITY_COUNT:
     case QUANTITY_NUMBER: return COUNTED;
     case QUANTITY_TRUTH: return SWITCH;
-    case QUANTITY_REAL:
-        return strcmp(q->unit, "s") == 0 || strcmp(q->unit, "rays") == 0 ? POSITIVE : REAL;
+    case QUANTITY_REAL: return strcmp(q->unit, "s") == 0 || strcmp(q->unit, "rays") == 0 ? POSITIVE : REAL;
     case QUANTITY_HASH: return HASHED;
     case QUANTITY_DEPTHS: return LISTED;
     case QUANTITY_COLOR:

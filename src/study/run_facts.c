@@ -125,7 +125,8 @@ static json_t *processor_facts(void)
 {
     return json_pack("{s:o, s:o, s:o, s:o, s:o}", "vendor", taken(provenance_cpu_field("vendor_id")), "family",
                      taken(provenance_cpu_field("cpu family")), "model", taken(provenance_cpu_field("model\t")),
-                     "stepping", taken(provenance_cpu_field("stepping")), "mhz", taken(provenance_cpu_field("cpu MHz")));
+                     "stepping", taken(provenance_cpu_field("stepping")), "mhz",
+                     taken(provenance_cpu_field("cpu MHz")));
 }
 
 static json_t *environment_facts(const run_environment *e)
@@ -150,12 +151,11 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
                             environment_facts(here), "started_utc", run_time(), "ended_utc", "shard", (int)shard,
                             "shards", (int)(shards > 1 ? shards : 1), "processor", processor_facts(), "topology",
                             taken(topology_summary(machine)), "load", load_average(), "steal_share", steal_share());
-    json_t *program = json_pack("{s:s, s:o, s:s, s:s, s:s#, s:o, s:o, s:o, s:o}", "version", CUVETTE_VERSION,
-                                "build_commit", borrowed(build_commit()), "compiler", COMPILER, "flags",
-                                CUVETTE_COMPILER_FLAGS, "config", CUVETTE_COMPILER_FLAGS,
-                                (int)strcspn(CUVETTE_COMPILER_FLAGS, ":"), "kernel", taken(provenance_kernel()),
-                                "binding", taken(provenance_binding()), "libraries", libraries(), "disturbances",
-                                disturbances);
+    json_t *program = json_pack(
+        "{s:s, s:o, s:s, s:s, s:s#, s:o, s:o, s:o, s:o}", "version", CUVETTE_VERSION, "build_commit",
+        borrowed(build_commit()), "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config",
+        CUVETTE_COMPILER_FLAGS, (int)strcspn(CUVETTE_COMPILER_FLAGS, ":"), "kernel", taken(provenance_kernel()),
+        "binding", taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances);
     json_t *texts = json_pack("{s:o, s:o, s:o, s:o}", "study_commit", taken(commit), "study_dirty", is_dirty,
                               "study_text", borrowed(s->text), "scene_text", borrowed(s->scene_text));
     json_object_update(run, program);

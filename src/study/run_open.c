@@ -102,8 +102,7 @@ status run_seal_rows(const run *r, diagnostic *why)
             *seal = (run_seal){.table = row_file_stem(kind), .rows = tables[kind]->count};
             memcpy(seal->check, tables[kind]->last, sizeof seal->check);
         }
-    return runs_end(r->folder, scene_root(r->s->base), r->options->shard, r->options->shards, r->id, seals, count,
-                    why);
+    return runs_end(r->folder, scene_root(r->s->base), r->options->shard, r->options->shards, r->id, seals, count, why);
 }
 
 static void close_table(row_table *t)

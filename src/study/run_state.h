@@ -27,10 +27,10 @@ typedef struct run {
     bool *warm;                /* indexed by cell number in the whole grid */
     size_t *order;             /* scratch: the order of cells[] in a round */
     progress_index *done;
-    bool *compared;        /* indexed by cell number in the whole grid: compare.csv has its row */
+    bool *compared;          /* indexed by cell number in the whole grid: compare.csv has its row */
     row_table rows, workers; /* workers: closed unless kept */
     row_table compares;      /* closed without a reference */
-    reference held;        /* the last reference used */
+    reference held;          /* the last reference used */
     size_t row_number, ran;
     char id[RUN_ID]; /* of this run; "" before run_prepare */
     int process;
@@ -40,8 +40,8 @@ typedef struct run {
     progress_line *line;
 } run;
 
-/* Opens folder, locks, existing rows (read again under the lock), list of runs, job. After a failure run_release releases
- * what was opened. */
+/* Opens folder, locks, existing rows (read again under the lock), list of runs, job. After a failure run_release
+ * releases what was opened. */
 status run_prepare(run *r, diagnostic *why);
 void run_release(run *r);
 

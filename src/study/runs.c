@@ -39,9 +39,7 @@ static bool is_list(const json_t *list)
     size_t i;
     if (!json_is_array(entries))
         return false;
-    json_array_foreach(entries, i, run)
-        if (!is_run(run))
-            return false;
+    json_array_foreach(entries, i, run) if (!is_run(run)) return false;
     return true;
 }
 
@@ -77,7 +75,8 @@ static status add_entries(runs *all, const json_t *list, diagnostic *why)
     if (!grown)
         return out_of_memory(why);
     all->entry = grown;
-    json_array_foreach(entries, i, run) {
+    json_array_foreach(entries, i, run)
+    {
         read_entry(run, &all->entry[all->count]);
         all->count += runs_find(all, all->entry[all->count].id) < 0; /* merged lists stay with those of the shards */
     }
@@ -199,9 +198,9 @@ status runs_begin(const study *s, const char *folder, const topology *machine, c
     json_t *run = run_facts(s, machine, here, id, shard, shards);
     json_t *fresh = json_pack("{s:i, s:o, s:o, s:[]}", "schema", 2, "study", run_study_facts(s), "machine",
                               run_machine_facts(machine), "runs");
-    status code = run && fresh ? change(folder, scene_root(s->base), list_path(folder, shard, shards), fresh, add_run,
-                                        run, why)
-                               : out_of_memory(why);
+    status code = run && fresh
+                      ? change(folder, scene_root(s->base), list_path(folder, shard, shards), fresh, add_run, run, why)
+                      : out_of_memory(why);
     json_decref(run);
     json_decref(fresh);
     return code;
@@ -218,14 +217,15 @@ static status end_run(json_t *list, void *context, diagnostic *why)
     const ending *e = context;
     json_t *run;
     size_t i;
-    json_array_foreach(json_object_get(list, "runs"), i, run) {
+    json_array_foreach(json_object_get(list, "runs"), i, run)
+    {
         if (strcmp(json_string_value(json_object_get(run, "id")), e->id) != 0)
             continue;
         json_t *rows = json_object();
         for (size_t k = 0; k < e->count; k++)
-            json_object_set_new(rows, e->seals[k].table,
-                                json_pack("{s:I, s:s}", "count", (json_int_t)e->seals[k].rows, "check",
-                                          e->seals[k].check));
+            json_object_set_new(
+                rows, e->seals[k].table,
+                json_pack("{s:I, s:s}", "count", (json_int_t)e->seals[k].rows, "check", e->seals[k].check));
         json_object_set_new(run, "ended_utc", run_time());
         return json_object_set_new(run, "rows", rows) == 0 ? STATUS_OK : out_of_memory(why);
     }
@@ -245,8 +245,8 @@ static status add_missing(json_t *list, void *context, diagnostic *why)
     size_t k;
     for (size_t i = 0; i < all->count; i++) {
         bool has = false;
-        json_array_foreach(entries, k, run)
-            has |= strcmp(json_string_value(json_object_get(run, "id")), all->entry[i].id) == 0;
+        json_array_foreach(entries, k, run) has |=
+            strcmp(json_string_value(json_object_get(run, "id")), all->entry[i].id) == 0;
         if (!has && json_array_append(entries, (json_t *)(uintptr_t)all->entry[i].facts) != 0)
             return out_of_memory(why);
     }

@@ -1,7 +1,7 @@
-/* The runs of a study: results/<study>/runs.json, runs.shard-i-of-N.json of shards. Each call of study_run that measures
- * is a run: it has an id, which its rows carry, the facts of its environment (study/environment.h) and others that are
- * recorded only, and at its end the number and last check of its rows in each file, so that missing rows are noticed.
- * Ownership: runs_read gives, runs_destroy releases; entries point into it. Errors name the file. */
+/* The runs of a study: results/<study>/runs.json, runs.shard-i-of-N.json of shards. Each call of study_run that
+ * measures is a run: it has an id, which its rows carry, the facts of its environment (study/environment.h) and others
+ * that are recorded only, and at its end the number and last check of its rows in each file, so that missing rows are
+ * noticed. Ownership: runs_read gives, runs_destroy releases; entries point into it. Errors name the file. */
 #pragma once
 
 #include "study/run_facts.h"

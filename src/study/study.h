@@ -96,12 +96,12 @@ typedef struct study_moment {
 } study_moment;
 
 typedef struct study_options {
-    const char *results; /* results folder; results/<name>/ is created in it */
-    long shard, shards;  /* this process measures the cells whose position in the shuffled grid, modulo shards, is
+    const char *results;  /* results folder; results/<name>/ is created in it */
+    long shard, shards;   /* this process measures the cells whose position in the shuffled grid, modulo shards, is
                             shard; 0 of 1 (or 0 of 0) for all */
-    bool by_repetition;         /* instead, this process measures all cells, and every shards-th repetition of each */
-    bool any_environment;       /* rows of every environment count, not only those of the present one */
-    FILE *progress;      /* a terminal for the progress line with ETA, or NULL */
+    bool by_repetition;   /* instead, this process measures all cells, and every shards-th repetition of each */
+    bool any_environment; /* rows of every environment count, not only those of the present one */
+    FILE *progress;       /* a terminal for the progress line with ETA, or NULL */
     bool (*stop)(void *context); /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
     void (*progressed)(
         void *context,

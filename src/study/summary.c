@@ -25,7 +25,7 @@ static const char *const after_marked[] = {
 typedef struct cell_rows {
     bool header;
     size_t number;
-    const char *environment; /* whose rows these are; "NA" without a row */
+    const char *environment;   /* whose rows these are; "NA" without a row */
     const char *film_expected; /* NULL without a row */
     const row_ref **rows;
     size_t count, marked;
