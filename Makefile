@@ -345,7 +345,7 @@ experiments: $(build)/cuvette ## run the studies (resumes), make tables and figu
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
 	@$(MAKE) --no-print-directory build=$(build) tables figures
 
-# A study's summary, if its rows are newer.
+# A study's summary, if its rows are newer: of the environment with most rows.
 studies := $(patsubst experiments/%.study,%,$(wildcard experiments/*.study))
 measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s)))
 # Tables of single cells, concatenated for a study.
@@ -360,7 +360,7 @@ $(foreach kind,metrics curves motion,$(eval $(call strung_rule,$(kind))))
 .SECONDEXPANSION:
 $(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
 	@mkdir -p $(@D)
-	$(build)/cuvette study summary --results $(RESULTS) experiments/$*.study >$@
+	$(build)/cuvette study summary --environment main --results $(RESULTS) experiments/$*.study >$@
 
 figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg ## draw the figures whose rows or scripts are newer
 	@mkdir -p $(RESULTS)

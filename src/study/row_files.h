@@ -52,7 +52,7 @@ typedef struct row_files {
     size_t count;
     row_ref *rows; /* in the order of the files */
     size_t row_count;
-    runs *runs;
+    run_list *runs;
     row_issue *issues;
     size_t issue_count, fault_count; /* fault_count: issues other than ROW_TORN */
     size_t other_cells;              /* rows of cells that the study does not have */

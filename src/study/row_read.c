@@ -240,7 +240,7 @@ status row_read_table(row_reader *r, const csv *table, const char *path, diagnos
 
 status row_read_seals(row_reader *r, diagnostic *why)
 {
-    const runs *all = r->into->runs;
+    const run_list *all = r->into->runs;
     const char *stem = row_file_stem(r->kind);
     for (size_t i = 0; i < all->count; i++) {
         run_seal seal;

@@ -66,7 +66,7 @@ static void read_entry(const json_t *run, run_entry *out)
     out->key_is_right = key && strcmp(key, out->here.key) == 0;
 }
 
-static status add_entries(runs *all, const json_t *list, diagnostic *why)
+static status add_entries(run_list *all, const json_t *list, diagnostic *why)
 {
     const json_t *entries = json_object_get(list, "runs"), *run;
     const size_t more = json_array_size(entries);
@@ -90,11 +90,11 @@ static int is_list_name(const struct dirent *entry)
            (strncmp(entry->d_name, "runs.shard-", 11) == 0 && strcmp(entry->d_name + length - 5, ".json") == 0);
 }
 
-status runs_read(const char *folder, const char *root, runs **out, diagnostic *why)
+status runs_read(const char *folder, const char *root, run_list **out, diagnostic *why)
 {
     struct dirent **names = NULL;
     const int found = scandir(folder, &names, is_list_name, alphasort); /* runs.json is the first */
-    runs *all = calloc(1, sizeof *all);
+    run_list *all = calloc(1, sizeof *all);
     if (all)
         all->files = calloc(found > 0 ? (size_t)found : 1, sizeof(json_t *));
     status code = all && all->files ? STATUS_OK : out_of_memory(why);
@@ -116,7 +116,7 @@ status runs_read(const char *folder, const char *root, runs **out, diagnostic *w
     return code;
 }
 
-void runs_destroy(runs *all)
+void runs_destroy(run_list *all)
 {
     if (!all)
         return;
@@ -127,7 +127,7 @@ void runs_destroy(runs *all)
     free(all);
 }
 
-long runs_find(const runs *all, const char *id)
+long runs_find(const run_list *all, const char *id)
 {
     for (size_t i = all ? all->count : 0; i > 0; i--)
         if (strcmp(all->entry[i - 1].id, id) == 0)
@@ -240,7 +240,7 @@ status runs_end(const char *folder, const char *root, long shard, long shards, c
 
 static status add_missing(json_t *list, void *context, diagnostic *why)
 {
-    const runs *all = context;
+    const run_list *all = context;
     json_t *entries = json_object_get(list, "runs"), *run;
     size_t k;
     for (size_t i = 0; i < all->count; i++) {
@@ -255,7 +255,7 @@ static status add_missing(json_t *list, void *context, diagnostic *why)
 
 status runs_merge(const char *folder, const char *root, diagnostic *why)
 {
-    runs *all;
+    run_list *all;
     TRY(runs_read(folder, root, &all, why));
     status code = STATUS_OK;
     if (all->count > 0) {

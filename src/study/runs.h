@@ -15,18 +15,18 @@ typedef struct run_entry {
     const json_t *facts; /* all of the entry */
 } run_entry;
 
-typedef struct runs {
+typedef struct run_list {
     json_t **files;
     size_t file_count;
     run_entry *entry; /* in the order of the files, the common one first, and of their starts */
     size_t count;
-} runs;
+} run_list;
 
 /* All lists of the folder, below root (base/below.h); none is no error. STATUS_BAD_INPUT if one is damaged. */
-status runs_read(const char *folder, const char *root, runs **out, diagnostic *why);
-void runs_destroy(runs *all);
+status runs_read(const char *folder, const char *root, run_list **out, diagnostic *why);
+void runs_destroy(run_list *all);
 /* The index of the run of that id, or -1. NULL is allowed. */
-long runs_find(const runs *all, const char *id);
+long runs_find(const run_list *all, const char *id);
 
 /* A row file at the end of a run: rows.csv, and the number and last check of the run's rows in it. */
 typedef struct run_seal {
