@@ -80,6 +80,8 @@ status study_dry_run(const study *s, const study_request *request, diagnostic *w
     const study_options options = {.results = request->results,
                                    .shard = request->shard,
                                    .shards = request->shards,
+                                   .by_repetition = request->by_repetition,
+                                   .any_environment = request->any_environment,
                                    .stop = terminal_stop_requested};
     study_estimate e;
     TRY(study_estimate_run(s, &options, &e, why));

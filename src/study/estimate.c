@@ -146,7 +146,7 @@ static void count(const trials *t, study_estimate *out)
         const bool lacks = lacks_rows(r, cell), keeps = lacks_files(r, cell);
         t->cell_s[cell] = at->counted ? mean(at->wall_s, at->counted) : NAN;
         if (lacks) {
-            const size_t least = (size_t)r->s->repetitions_min, most = (size_t)r->s->repetitions_max;
+            const size_t least = (size_t)progress_index_least(r->done), most = (size_t)progress_index_most(r->done);
             out->cells_lacking++;
             out->rows_least += at->counted < least ? least - at->counted : 1;
             out->rows_most += most - at->counted;
@@ -183,7 +183,7 @@ static void add_times(const trials *t, study_estimate *out)
         const bool lacks = lacks_rows(r, cell), keeps = lacks_files(r, cell);
         if (!lacks && !keeps)
             continue;
-        const size_t least = (size_t)r->s->repetitions_min, most = (size_t)r->s->repetitions_max;
+        const size_t least = (size_t)progress_index_least(r->done), most = (size_t)progress_index_most(r->done);
         const size_t more = (lacks ? (size_t)r->s->warmups : 0) + (keeps ? 1 : 0);
         const bool tried = !isnan(t->cell_s[cell]);
         const double frame_s = tried ? t->cell_s[cell] : other_s, once_s = tried ? t->once_s[cell] : other_once_s;
@@ -207,9 +207,11 @@ status study_estimate_run(const study *s, const study_options *options, study_es
                 calloc(total, sizeof *t.once_s)};
     const job_settings settings = {.keeps_meshes = true, .stop = must_stop, .context = &t};
     status code = r.folder && r.cells && r.order && r.compared && t.cell_s && t.once_s ? STATUS_OK : out_of_memory(why);
-    THEN(code, progress_index_read(s, options->results, &r.done, why));
-    THEN(code, run_find_compared(&r, why));
     THEN(code, job_create(&settings, &r.with, why));
+    if (code == STATUS_OK)
+        environment_read("", job_isa(r.with), &r.here);
+    THEN(code, run_read_rows(&r, why));
+    THEN(code, run_find_compared(&r, why));
     if (code == STATUS_OK) {
         run_choose_cells(&r);
         count(&t, out);

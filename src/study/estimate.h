@@ -21,6 +21,6 @@ typedef struct study_estimate {
 /* The time after which no further trial frame begins, and a running one is stopped. */
 #define STUDY_ESTIMATE_TRIALS_S 5.0
 
-/* options: as for study_run; only results, shard, shards, stop and context are used. STATUS_INTERRUPTED after a stop
+/* options: as for study_run; progress and progressed are not used. STATUS_INTERRUPTED after a stop
  * request; otherwise the errors of reading the rows and of loading the files of a cell. */
 status study_estimate_run(const study *s, const study_options *options, study_estimate *out, diagnostic *why);

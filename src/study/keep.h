@@ -13,6 +13,10 @@ size_t keep_missing_count(const study *s, const char *folder, size_t cell);
 /* The ending of the study's kept file i, counted from 0: ".png" of images/0003.png; NULL after the last. */
 const char *keep_ending(const study *s, size_t i);
 
+/* Names the kept files by the numbers that their cells have now (study/keep_numbers.c); create: makes the folder for
+ * the first of them. *changed: files may have other names than before. */
+status keep_renumber(const study *s, const char *folder, bool create, bool *changed, diagnostic *why);
+
 /* The options of the frame; progress and context stay NULL. */
 render_options keep_options(const study *s);
 
