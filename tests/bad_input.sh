@@ -144,6 +144,16 @@ refused "study new did not write" "no command" study
     failed=$((failed + 1))
     echo "not ok - study new wrote a file after an error"
 }
+refused "study exclude without a file" "no study" study exclude
+refused "study exclude without a row" "no row is given" study exclude x.study --reason x
+refused "study exclude without a reason" "no reason is given" study exclude x.study --row 0:1
+refused "study exclude of two studies" "unexpected argument" study exclude x.study y.study --row 0:1 --reason x
+refused "study exclude without rows" "--row 0:1: there is no such row" \
+    study exclude isa.study --row 0:1 --reason x --results isa-results
+refused "study exclude with an empty reason" "--reason: this is not a reason" \
+    study exclude isa.study --row 0:1 --reason '' --results isa-results
+refused "study exclude with an empty folder" "--results is empty" \
+    study exclude isa.study --row 0:1 --reason x --results ""
 refused "study run: a value for --dry-run" "takes no value" study run --dry-run=1 x.study
 refused "empty results folder" "empty" study status --results "" x.study
 

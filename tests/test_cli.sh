@@ -58,7 +58,7 @@ for command in render animate scene trace fan params media mesh study compare re
     check "--help names $command" grep -q "^  $command " out
 done
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
-    "study new" "study list" "study status" "study merge" "study summary"; do
+    "study new" "study list" "study status" "study merge" "study summary" "study exclude"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -635,6 +635,19 @@ check "study run --dry-run uses existing rows and lists files" is "$(<out)" "$(l
     "tiny: 3 files to keep in res/tiny/images: CELL.png")"
 run study run --dry-run studies/tiny.study --results res
 check "study run --dry-run of a complete study" is "$(<out)" "tiny: complete, nothing to do"
+cp -r res kept-res
+run study exclude studies/tiny.study --row 0:1 --reason 'the lid was open' --results res
+check "study exclude" is "$(<out)" "tiny: row 0:1 is excluded in res/tiny/excluded.csv"
+run study summary studies/tiny.study --results res
+check "study summary leaves an excluded row out, and counts it" is "$(awk -F'\t' 'NR == 1 {
+    for (i = 1; i <= NF; i++) if ($i == "excluded") e = i} NR > 1 {print $3, $e}' out | tr '\n' ' ')" "1 1 2 0 2 0 "
+run study status studies/tiny.study --results res
+check "study status reports an excluded row" grep -qx \
+    "tiny: 1 row is excluded from summaries, by res/tiny/excluded.csv" out
+run study run studies/tiny.study --results res
+check "an excluded row is not measured again" is "$(<out)" "tiny: complete, nothing to do"
+check "an excluded row stays" cmp res/tiny/rows.csv kept-res/tiny/rows.csv
+rm -r kept-res res/tiny/excluded.csv
 run study run --quiet studies/tiny.study --results parts --shard 0/2
 check "--quiet prints nothing" is "$(cat out err)" ""
 run study run studies/tiny.study --results parts --shard 1/2

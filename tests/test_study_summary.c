@@ -156,7 +156,7 @@ static void columns_are_in_the_expected_order(void **state)
         "median\tcpu_s_low\t"
         "cpu_s_high\tcpu_s_mean\tcpu_s_min\tcpu_s_max\trays_total\trays_camera\trays_reflect\trays_refract\trays_"
         "shadow\t"
-        "cut_depth_throughput\ttotal_internal\tfilm_hash\tmarked\tbusy_s_mean\tbusy_s_max\twaiting_s_"
+        "cut_depth_throughput\ttotal_internal\tfilm_hash\tmarked\texcluded\tbusy_s_mean\tbusy_s_max\twaiting_s_"
         "mean\timbalance\tothers_share\t"
         "worker_cpu_s_sum\tpeak_rss_bytes\tnoise_rms\ttriangles\tinstances\taccel_bytes\tbuild_s\tdrawn\tdrawn_bytes\t"
         "visibility_s_sum\tmotion_steps\tmotion_s\tfirst_hits.ground\tfirst_hits.ball\tenvironment\n";

@@ -68,7 +68,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         compopt -o nospace
         _cuvette_words solid: light: material: mesh: texture:
         ;;
-    --title | --name | --repetitions) COMPREPLY=() ;;
+    --title | --name | --repetitions | --row | --reason) COMPREPLY=() ;;
     --duration | --start) COMPREPLY=() ;;
     --bits) _cuvette_words 8 16 ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
@@ -86,7 +86,7 @@ _cuvette_study() # VERB
 {
     local -A options=([new]='--axis --set --name --repetitions --output --force' [status]=--results
         [run]='--results --shard --by --any-environment --dry-run --quiet' [merge]=--results [verify]=--results
-        [summary]='--results --environment' [list]='')
+        [summary]='--results --environment' [exclude]='--row --reason --results' [list]='')
     if [[ $current == -* ]]; then
         _cuvette_words "${options[$1]} --help --usage --version"
     elif [[ $1 == list ]]; then
@@ -102,7 +102,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='new run list status merge verify summary'
+    local command=${COMP_WORDS[1]-} verbs='new run list status merge verify summary exclude'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine help --help --usage --version

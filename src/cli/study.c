@@ -7,6 +7,7 @@
 #include "cli/study_notes.h"
 #include "cli/study_request.h"
 #include "cli/terminal.h"
+#include "study/excluded.h"
 #include "study/study.h"
 #include "study/summary.h"
 #include "study/verify.h"
@@ -131,6 +132,18 @@ static status judge(const diagnostic *verdict, diagnostic *why)
     return STATUS_FAILURE;
 }
 
+static status print_excluded(const study *s, const study_request *request, diagnostic *why)
+{
+    excluded *list = NULL;
+    TRY(excluded_read(s, request->results, &list, why));
+    const size_t count = excluded_count(list);
+    if (count)
+        printf("%s: %zu row%s excluded from summaries, by %s/%s/excluded.csv\n", s->name, count,
+               count == 1 ? " is" : "s are", request->results, s->name);
+    excluded_destroy(list);
+    return STATUS_OK;
+}
+
 static status print_status(const study *s, const study_request *request, diagnostic *why)
 {
     study_progress progress;
@@ -144,6 +157,7 @@ static status print_status(const study *s, const study_request *request, diagnos
     if (progress.rows_other_cells)
         printf("%s: %zu rows of cells that the study does not have are kept and not used\n", s->name,
                progress.rows_other_cells);
+    TRY(print_excluded(s, request, why));
     return judge(&progress.fault, why);
 }
 
@@ -264,6 +278,7 @@ static const command commands[] = {
     {"merge", "merge the rows of a study that was run in shards", command_merge},
     {"verify", "check every row: damaged, edited, missing, duplicate and marked ones", command_verify},
     {"summary", "print medians and confidence intervals for each cell", command_summary},
+    {"exclude", "exclude a row from summaries, with the reason", study_exclude},
 };
 
 status command_study(int argc, char **argv, diagnostic *why)

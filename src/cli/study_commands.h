@@ -8,5 +8,8 @@
 /* `study new`: writes a study file. */
 status study_new(int argc, char **argv, diagnostic *why);
 
+/* `study exclude`: excludes a row from summaries. */
+status study_exclude(int argc, char **argv, diagnostic *why);
+
 /* `study run --dry-run`: prints what a run would measure and keep, and about how long it would take. */
 status study_dry_run(const study *s, const study_request *request, diagnostic *why);

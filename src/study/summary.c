@@ -3,6 +3,7 @@
 #include "measure/statistics.h"
 #include "study/cell_table.h"
 #include "study/compare_rows.h"
+#include "study/excluded.h"
 #include "study/grid.h"
 #include "study/row_environments.h"
 #include "study/rows.h"
@@ -28,7 +29,8 @@ typedef struct cell_rows {
     const char *environment;   /* whose rows these are; "NA" without a row */
     const char *film_expected; /* NULL without a row */
     const row_ref **rows;
-    size_t count, marked;
+    size_t count, marked, excluded;
+    const excluded *without; /* the rows that a person excluded */
     double *values;
     const row_ref *compared; /* the cell's row of compare.csv, or NULL */
     FILE *out;
@@ -112,9 +114,10 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
     for (size_t i = 0; i < COUNT(before_hash); i++)
         put_median(cell, before_hash[i]);
     if (cell->header)
-        fputs("\tfilm_hash\tmarked", cell->out);
+        fputs("\tfilm_hash\tmarked\texcluded", cell->out);
     else
-        fprintf(cell->out, "\t%s\t%zu", cell->film_expected ? cell->film_expected : "NA", cell->marked);
+        fprintf(cell->out, "\t%s\t%zu\t%zu", cell->film_expected ? cell->film_expected : "NA", cell->marked,
+                cell->excluded);
     for (size_t i = 0; i < COUNT(after_marked); i++)
         put_median(cell, after_marked[i]);
     const status code = put_solids(s, cell, why);
@@ -127,12 +130,14 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
 static void collect(cell_rows *cell, row_ref *const *rows, size_t count)
 {
     cell->film_expected = NULL;
-    cell->count = cell->marked = 0;
+    cell->count = cell->marked = cell->excluded = 0;
     for (size_t i = 0; i < count; i++) {
         const bool marked = strcmp(row_field(rows[i], "marked"), "0") != 0;
         cell->film_expected = cell->film_expected ? cell->film_expected : row_field(rows[i], "film_expected");
+        const bool is_excluded = excluded_has(cell->without, rows[i]);
         cell->marked += marked;
-        if (!marked && !rows[i]->warmup)
+        cell->excluded += is_excluded;
+        if (!marked && !is_excluded && !rows[i]->warmup)
             cell->rows[cell->count++] = rows[i];
     }
 }
@@ -162,13 +167,15 @@ static status put_cell(const study *s, cell_rows *cell, row_ref *const *rows, si
 }
 
 /* Rows are in the order of time; they are sorted by cell and environment. */
-static status put_cells(const study *s, const row_files *files, const row_files *compared, const char *environment,
-                        FILE *out, diagnostic *why)
+static status put_cells(const study *s, const row_files *files, const row_files *compared, const excluded *without,
+                        const char *environment, FILE *out, diagnostic *why)
 {
     const size_t room = files->row_count + 1;
     row_ref **sorted = malloc(room * sizeof *sorted);
-    cell_rows cell = {
-        .rows = malloc(room * sizeof *cell.rows), .values = malloc(room * sizeof *cell.values), .out = out};
+    cell_rows cell = {.rows = malloc(room * sizeof *cell.rows),
+                      .values = malloc(room * sizeof *cell.values),
+                      .without = without,
+                      .out = out};
     const row_ref **compared_with = calloc(study_cell_count(s), sizeof *compared_with);
     status code = sorted && cell.rows && cell.values && compared_with ? STATUS_OK : out_of_memory(why);
     size_t count = 0;
@@ -206,10 +213,12 @@ status study_summary_of(const study *s, const char *results, const summary_optio
                         diagnostic *verdict, diagnostic *why)
 {
     row_files *files, *compared = NULL;
+    excluded *without = NULL;
     char environment[ENVIRONMENT_KEY] = "";
     status code = row_files_read(s, results, ROWS, &files, why);
     if (code == STATUS_OK && files->row_count == 0)
         code = no_rows(s, results, why);
+    THEN(code, excluded_read(s, results, &without, why));
     if (code == STATUS_OK && s->reference.count)
         code = row_files_read(s, results, COMPARE_ROWS, &compared, why);
     if (code == STATUS_OK && options->environment && strcmp(options->environment, "main") == 0)
@@ -218,9 +227,10 @@ status study_summary_of(const study *s, const char *results, const summary_optio
         snprintf(environment, sizeof environment, "%s", options->environment);
     if (code == STATUS_OK)
         code = put_line(s, &(cell_rows){.header = true, .out = out}, why);
-    THEN(code, put_cells(s, files, compared, environment, out, why));
+    THEN(code, put_cells(s, files, compared, without, environment, out, why));
     if (code == STATUS_OK && verdict && row_files_judge(files, verdict) == STATUS_OK && compared)
         row_files_judge(compared, verdict);
+    excluded_destroy(without);
     row_files_destroy(compared);
     row_files_destroy(files);
     return code;

@@ -1,6 +1,6 @@
 /* A study's rows as a table: one line per cell and environment, tab separated, medians and intervals
- * (results/tables/<study>.tsv). Warm-ups and marked rows are excluded from every value except the number of marked
- * rows; rows that cannot be trusted (study/row_files.h) from all. */
+ * (results/tables/<study>.tsv). Warm-ups, marked rows and those that a person excluded (study/excluded.h) are left out
+ * of every value except their numbers; rows that cannot be trusted (study/row_files.h) from all. */
 #pragma once
 
 #include "study/study.h"

@@ -28,7 +28,7 @@ const NAMES = {
   ssim: 'SSIM against the reference',
   others_share: 'CPU share of other programs',
 };
-const NOT_SHOWN = new Set(['cell', 'n', 'marked']);
+const NOT_SHOWN = new Set(['cell', 'n', 'marked', 'excluded']);
 
 export const numberOf = (text) =>
   text === undefined || text === null || text === '' || text === 'NA' ? NaN : Number(text);

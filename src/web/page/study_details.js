@@ -9,7 +9,8 @@ import { createFigures } from './study_figures.js';
 import { createRows } from './study_rows.js';
 import { createSortTable } from './study_table.js';
 
-const FIRST = /^(cell|n|wall_s_(median|low|high)|cpu_s_median|rays_total|noise_rms|psnr_db|flip|film_hash|marked)$/;
+const FIRST =
+  /^(cell|n|wall_s_(median|low|high)|cpu_s_median|rays_total|noise_rms|psnr_db|flip|film_hash|marked|excluded)$/;
 const stages = { measuring: 'measuring', moving: 'simulating the slime', pictures: 'rendering images' };
 
 function axisWords({ name, paths, units, count: points }) {

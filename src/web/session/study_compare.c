@@ -1,6 +1,7 @@
 /* Compares two runs of one study, cell by cell. */
 #include "measure/statistics.h"
 #include "report/json.h"
+#include "study/excluded.h"
 #include "study/row_files.h"
 #include "study/grid.h"
 #include "web/api/study_json.h"
@@ -11,6 +12,7 @@
 /* The rows of one run, sorted by cell. */
 typedef struct sorted_rows {
     row_files *files;
+    excluded *without;
     size_t at; /* the first row of the next cell */
     double *values;
 } sorted_rows;
@@ -34,6 +36,7 @@ static status sort_rows(const study *s, const char *results, sorted_rows *out, d
 {
     *out = (sorted_rows){0};
     TRY(row_files_read(s, results, ROWS, &out->files, why));
+    TRY(excluded_read(s, results, &out->without, why));
     qsort(out->files->rows, out->files->row_count, sizeof *out->files->rows, compare_places);
     out->values = malloc((out->files->row_count + 1) * sizeof *out->values);
     return out->values ? STATUS_OK : out_of_memory(why);
@@ -41,11 +44,12 @@ static status sort_rows(const study *s, const char *results, sorted_rows *out, d
 
 static void release(sorted_rows *rows)
 {
+    excluded_destroy(rows->without);
     row_files_destroy(rows->files);
     free(rows->values);
 }
 
-/* As in a summary: without warm-up rows and marked rows. */
+/* As in a summary: without warm-up rows, marked and excluded rows. */
 static cell_times take_cell(sorted_rows *rows, size_t cell)
 {
     size_t count = 0;
@@ -54,7 +58,8 @@ static cell_times take_cell(sorted_rows *rows, size_t cell)
         const row_ref *ref = &rows->files->rows[rows->at];
         film = film ? film : row_field(ref, "film_expected");
         const double wall_s = row_field_real(ref, "wall_s");
-        if (!ref->warmup && strcmp(row_field(ref, "marked"), "0") == 0 && !isnan(wall_s))
+        if (!ref->warmup && strcmp(row_field(ref, "marked"), "0") == 0 && !isnan(wall_s) &&
+            !excluded_has(rows->without, ref))
             rows->values[count++] = wall_s;
     }
     return (cell_times){summarize(rows->values, count), film};
