@@ -39,7 +39,7 @@ _cuvette_objects() # SUFFIX WORD...: completes the objects of the scene on the c
 _cuvette_value() # OPTION: completes its value; false for a flag
 {
     case $1 in
-    -s | --set) _cuvette_parameters ;;
+    -s | --set | -a | --axis) _cuvette_parameters ;;
     --generate) _cuvette_words sparse dense sphere icosphere torus lathe box ;;
     -f | --format) _cuvette_words obj bin ply ;;
     --curve) _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges ;;
@@ -48,6 +48,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         trace) _cuvette_files 'txt|json|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
         scene) _cuvette_files 'yaml|yml' ;;
+        study) _cuvette_files 'study' ;;
         mesh) _cuvette_files 'obj|bin|ply' ;;
         animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
@@ -67,7 +68,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         compopt -o nospace
         _cuvette_words solid: light: material: mesh: texture:
         ;;
-    --title) COMPREPLY=() ;;
+    --title | --name | --repetitions) COMPREPLY=() ;;
     --duration | --start) COMPREPLY=() ;;
     --bits) _cuvette_words 8 16 ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
@@ -83,13 +84,16 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 
 _cuvette_study() # VERB
 {
-    local -A options=([run]='--results --shard --by --any-environment --quiet' [status]=--results [merge]=--results
+    local -A options=([new]='--axis --set --name --repetitions --output --force'
+        [run]='--results --shard --by --any-environment --dry-run --quiet' [status]=--results [merge]=--results
         [verify]=--results [summary]='--results --environment' [list]='')
     if [[ $current == -* ]]; then
         _cuvette_words "${options[$1]} --help --usage --version"
     elif [[ $1 == list ]]; then
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
+    elif [[ $1 == new ]]; then
+        _cuvette_files 'yaml|yml'
     else
         _cuvette_files 'study'
     fi
@@ -98,7 +102,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='run list status merge verify summary'
+    local command=${COMP_WORDS[1]-} verbs='new run list status merge verify summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine help --help --usage --version

@@ -24,7 +24,7 @@ typedef struct study_request {
     const char *results;
     const char *environment; /* of the summary: a key, "main", or NULL for all */
     long shard, shards;
-    bool by_repetition, any_environment, quiet;
+    bool by_repetition, any_environment, quiet, dry_run;
 } study_request;
 
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why);
