@@ -240,6 +240,7 @@ static const command commands[] = {
     {"status", "print the progress of studies", command_status},
     {"merge", "merge the rows of a study that was run in shards", command_merge},
     {"summary", "print medians and confidence intervals for each cell", command_summary},
+    {"plot", "draw a figure of studies with gnuplot", command_study_plot},
 };
 
 status command_study(int argc, char **argv, diagnostic *why)

@@ -9,6 +9,9 @@
 /* Whether a file that the study keeps is missing for the cell. */
 bool keep_missing(const study *s, const char *folder, size_t cell);
 
+/* The path of a cell's image in the study's folder; fresh memory, or NULL. */
+char *keep_image_path(const char *folder, size_t cell);
+
 /* The options of the frame; progress and context stay NULL. */
 render_options keep_options(const study *s);
 
