@@ -264,6 +264,7 @@ static const command commands[] = {
     {"merge", "merge the rows of a study that was run in shards", command_merge},
     {"verify", "check every row: damaged, edited, missing, duplicate and marked ones", command_verify},
     {"summary", "print medians and confidence intervals for each cell", command_summary},
+    {"plot", "draw a figure of studies with gnuplot", command_study_plot},
 };
 
 status command_study(int argc, char **argv, diagnostic *why)

@@ -34,3 +34,6 @@ void study_request_release(study_request *request);
  * wall time, median CPU time, rays and marked rows; with a reference also flip and error_rms. tsv is the output of
  * study_summary and is modified. */
 status study_table_print(FILE *out, char *tsv, diagnostic *why);
+
+/* `cuvette study plot`, which has options of its own (study_plot.c). */
+status command_study_plot(int argc, char **argv, diagnostic *why);
