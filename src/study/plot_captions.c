@@ -64,7 +64,7 @@ static double sum_of(const plot_plan *p, const char *name)
 
 static facts collect(const plot_plan *p)
 {
-    facts f = {.least_n = INFINITY, .marked = sum_of(p, "marked"), .disturbed = sum_of(p, "disturbed")};
+    facts f = {.least_n = INFINITY, .others = NAN, .marked = sum_of(p, "marked"), .disturbed = sum_of(p, "disturbed")};
     const long n = plot_table_column(&p->table, "n"), others = plot_table_column(&p->table, "others_share");
     for (size_t i = 0; i < p->point_count; i++) {
         const plot_point *point = &p->points[i];
@@ -169,18 +169,28 @@ static status add_conditions(plot_plan *p, diagnostic *why)
     return list[0] ? plot_caption_add(p, why, "Only cells with %s.", list) : STATUS_OK;
 }
 
+/* Rows that are not in the values, and how busy the machine was. */
+static status add_noise(plot_plan *p, const facts *f, diagnostic *why)
+{
+    char disturbed[60] = "";
+    if (plot_table_column(&p->table, "disturbed") >= 0)
+        snprintf(disturbed, sizeof disturbed, "; disturbed: %g", f->disturbed);
+    const double share = 100 * f->others;
+    if (isnan(share))
+        return plot_caption_add(p, why, "Rows marked and left out: %g%s.", f->marked, disturbed);
+    return plot_caption_add(p, why,
+                            share < 10
+                                ? "Rows marked and left out: %g%s. Other processes: at most %.2g %% of the machine."
+                                : "Rows marked and left out: %g%s. Other processes: at most %.0f %% of the machine.",
+                            f->marked, disturbed, share);
+}
+
 status plot_captions(plot_plan *p, diagnostic *why)
 {
     const facts f = collect(p);
     TRY(add_spread(p, &f, why));
     TRY(add_missing(p, why));
-    if (p->y.name[0] && plot_table_column(&p->table, "disturbed") >= 0)
-        TRY(plot_caption_add(
-            p, why, "Rows marked and left out: %g; disturbed: %g. Other processes: at most %.2g %% of the machine.",
-            f.marked, f.disturbed, 100 * f.others));
-    else
-        TRY(plot_caption_add(p, why, "Rows marked and left out: %g. Other processes: at most %.2g %% of the machine.",
-                             f.marked, 100 * f.others));
+    TRY(add_noise(p, &f, why));
     TRY(add_environments(p, why));
     TRY(add_conditions(p, why));
     TRY(add_linked(p, why));

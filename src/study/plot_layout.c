@@ -6,7 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LETTER = 7, TITLE = 36, LINE = 13 /* of captions */, GAP = 24, PANEL_TITLE = 26, WIDTH_MIN = 560 };
+enum {
+    LETTER = 7,
+    TITLE_LETTER = 8,
+    TITLE = 36,
+    LINE = 13 /* of captions */,
+    GAP = 24,
+    PANEL_TITLE = 26,
+    WIDTH_MIN = 560
+};
 
 typedef struct grid {
     size_t count, columns, rows;
@@ -58,7 +66,7 @@ static bool name_panels(plot_plan *p, int *width)
         if (!p->panels[i].used)
             continue;
         p->panels[i].title = panel_title(p, i, true);
-        if (p->panels[i].title && (int)strlen(p->panels[i].title) * LETTER > *width) {
+        if (p->panels[i].title && (int)strlen(p->panels[i].title) * TITLE_LETTER > *width) {
             free(p->panels[i].title);
             p->panels[i].title = panel_title(p, i, false);
         }
@@ -66,7 +74,7 @@ static bool name_panels(plot_plan *p, int *width)
             return false;
         letters = (int)strlen(p->panels[i].title) > letters ? (int)strlen(p->panels[i].title) : letters;
     }
-    *width = limited(letters * LETTER, *width, *width > 480 ? *width : 480);
+    *width = limited(letters * TITLE_LETTER, *width, *width > 480 ? *width : 480);
     return true;
 }
 

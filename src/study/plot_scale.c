@@ -1,12 +1,13 @@
 /* Quantities of a figure: their columns, units and scales. */
 #include "study/plot_parts.h"
 #include "base/text.h"
-#include "job/quantities.h"
 #include "scene/model/params.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { QUANTITIES_MAX = 256 /* among which the nearest name is looked for */ };
 
 /* --- units --- */
 
@@ -31,6 +32,9 @@ void plot_unit_of(const study *s, const char *path, char unit[32])
     unit_search search = {path, unit};
     unit[0] = '\0';
     scene_each_param(s->base, match_unit, &search);
+    const size_t length = strlen(path), end = strlen(unit);
+    if (length > end && path[length - end - 1] == '_' && strcmp(path + length - end, unit) == 0)
+        unit[0] = '\0'; /* the name has it, as lambda_nm */
 }
 
 /* --- columns --- */
@@ -48,14 +52,27 @@ static bool ends_with(const char *text, const char *ending)
     return length >= end && strcmp(text + length - end, ending) == 0;
 }
 
+/* The name of a quantity: wall_s of the column wall_s_median. */
+static void stem_of(const char *column, char stem[64])
+{
+    const size_t end = ends_with(column, "_median") ? strlen("_median") : 0;
+    snprintf(stem, 64, "%.*s", (int)(strlen(column) - end), column);
+}
+
 static status no_such_column(const plot_plan *p, const char *name, diagnostic *why)
 {
-    const char *near = text_nearest(name, p->table.names, p->table.columns);
-    char remedy[200];
-    snprintf(remedy, sizeof remedy,
-             near ? "did you mean '%.64s'?"
-                  : "choose one, such as wall_s, cpu_s or rays_total%.0s; see cuvette-results(5)",
-             near ? near : "");
+    char stems[QUANTITIES_MAX][64];
+    const char *names[QUANTITIES_MAX];
+    size_t count = 0;
+    for (size_t i = 0; i < p->table.columns && count < QUANTITIES_MAX; i++)
+        if (!plot_axis_named(p, p->table.names[i])) {
+            names[count] = stems[count];
+            stem_of(p->table.names[i], stems[count++]);
+        }
+    const char *near = text_nearest(name, names, count);
+    char remedy[200] = "choose one, such as wall_s, cpu_s or rays_total; see cuvette-results(5)";
+    if (near)
+        snprintf(remedy, sizeof remedy, "did you mean '%.64s'?", near);
     return diagnose_at(why, "--y", STATUS_BAD_INPUT, remedy, "the summary of %s has no column of numbers '%.64s'",
                        p->s->name, name);
 }
@@ -90,8 +107,7 @@ static bool is_number(const plot_plan *p, long column)
 status plot_quantity_find(const plot_plan *p, const char *name, plot_quantity *out, diagnostic *why)
 {
     *out = (plot_quantity){.factor = 1, .value = -1, .low = -1, .high = -1, .least = -1, .most = -1};
-    snprintf(out->name, sizeof out->name, "%.*s",
-             (int)(strlen(name) - (ends_with(name, "_median") ? strlen("_median") : 0)), name);
+    stem_of(name, out->name);
     out->value = column_of(p, out->name, "_median");
     out->low = column_of(p, out->name, "_low");
     out->high = column_of(p, out->name, "_high");
@@ -101,15 +117,8 @@ status plot_quantity_find(const plot_plan *p, const char *name, plot_quantity *o
         out->value = plot_table_column(&p->table, name);
     if (out->value < 0 || plot_axis_named(p, name) || strcmp(name, "cell") == 0 || !is_number(p, out->value))
         return no_such_column(p, name, why);
-    const quantity *known = frame_quantity(out->name);
     const bool time = ends_with(out->name, "_s") || strstr(out->name, "_s_");
-    snprintf(out->unit, sizeof out->unit, "%s",
-             time                             ? "s"
-             : ends_with(out->name, "_bytes") ? "bytes"
-             : known && known->unit           ? known->unit
-                                              : "");
-    if (strlen(out->unit) > 8) /* a sentence on a ratio */
-        out->unit[0] = '\0';
+    snprintf(out->unit, sizeof out->unit, "%s", time ? "s" : ends_with(out->name, "_bytes") ? "bytes" : "");
     if (time)
         name_time(out->name, out->label);
     else
