@@ -58,7 +58,7 @@ for command in render animate scene trace fan params media mesh study compare re
     check "--help names $command" grep -q "^  $command " out
 done
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
-    "study new" "study list" "study status" "study merge" "study verify" "study summary" "study plot"; do
+    "study new" "study list" "study status" "study merge" "study verify" "study upgrade" "study summary" "study plot"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
