@@ -78,7 +78,8 @@ static const command_option plot_options[] = {
     {"where", 'w', "PATH=VALUE", "show only cells with this value; can be repeated", .take = take_where},
     {"images", 0, NULL, "draw the kept images with captions instead", OPTION_FILLS(option_flag, request, plot.images)},
     PLOT_OPTION("published", "CSV", "add numbers from a file with columns of the same names", published),
-    PLOT_OPTION("results", "DIR", "folder of the results (default: results)", results),
+    {"results", 'r', "DIR", "folder of the results (default: results)",
+     OPTION_FILLS(option_text, request, plot.results)},
     {0},
 };
 
