@@ -49,7 +49,8 @@ warmups: 0
 keep: {image: on}
 END
 sed -e 's/^study: .*/study: words/' -e '/liquid.ior/d' \
-    -e 's/render.depth: .*/render.schedule: [rows, tiles, dynamic]}/' -e 's/repetitions: .*/repetitions: 2/' -e '/^keep/d' own.study >words.study
+    -e 's/render.depth: .*/render.schedule: [rows, tiles, dynamic]}/' \
+    -e 's/repetitions: .*/repetitions: 2/' -e '/^keep/d' own.study >words.study
 "$program" study run --quiet --results res own.study words.study || exit 1
 
 run own.study

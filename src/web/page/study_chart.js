@@ -1,5 +1,6 @@
 /* A chart of a study's cells with controls for its axes, and the same data as a table.
- * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note})} */
+ * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note}),
+ * chosen(): {quantity, x, logX, logY}, null for what the user did not choose} */
 
 import { check, choice, digits, element, empty, group, replace, table } from './ui.js';
 import { plot } from './plot.js';
@@ -44,6 +45,7 @@ export function createChart({ caption, id }) {
       what = next;
       draw();
     },
+    chosen: () => ({ ...chosen }),
   };
 
   function pick(key, value) {
