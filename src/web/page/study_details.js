@@ -117,7 +117,12 @@ export function createDetails(lab, { onrun, onstop }) {
   const parts = element(
     'div',
     { class: 'study-groups' },
-    group('Chart', { id: 'study-figure', hint: 'medians with 95% intervals, updated during the run' }, chart.node, save.node),
+    group(
+      'Chart',
+      { id: 'study-figure', hint: 'medians with 95% intervals, updated during the run' },
+      chart.node,
+      save.node,
+    ),
     group('Summary', { id: 'study-summary', hint: 'one line per cell' }, summary.node),
     rows.node,
     group('Figures of plots/', { id: 'study-drawn', hint: 'drawn by gnuplot' }, figures.node),
