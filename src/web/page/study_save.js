@@ -6,10 +6,11 @@ import { button, download, element, notice, replace } from './ui.js';
 const FORMATS = ['SVG', 'PNG', 'PDF'];
 
 /* The options of `cuvette study plot`; scales are passed only if the user changed one of them. */
-function optionsOf({ quantity, x, logX, logY }, format) {
+function optionsOf({ quantity, x, by, logX, logY }, format) {
   const options = new URLSearchParams({ format });
   if (quantity) options.set('y', quantity);
   if (x) options.set('x', x);
+  if (by) options.set('by', by);
   if (logX !== null || logY !== null) options.set('log', `${logX ? 'x' : ''}${logY ? 'y' : ''}` || 'none');
   return options;
 }
