@@ -50,7 +50,7 @@ _cuvette_axes() # OPTION: completes the parameters in the grid of the study on t
 _cuvette_value() # OPTION: completes its value; false for a flag
 {
     case $1 in
-    -s | --set) _cuvette_parameters ;;
+    -s | --set | -a | --axis) _cuvette_parameters ;;
     --generate) _cuvette_words sparse dense sphere icosphere torus lathe box ;;
     -f | --format)
         case ${COMP_WORDS[1]-} in
@@ -68,6 +68,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         trace) _cuvette_files 'txt|json|svg' ;;
         fan) _cuvette_files 'svg|csv' ;;
         scene) _cuvette_files 'yaml|yml' ;;
+        study) _cuvette_files 'study' ;;
         mesh) _cuvette_files 'obj|bin|ply' ;;
         study) _cuvette_files 'png|svg|pdf' ;;
         animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m' ;;
@@ -88,7 +89,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         compopt -o nospace
         _cuvette_words solid: light: material: mesh: texture:
         ;;
-    --title) COMPREPLY=() ;;
+    --title | --name | --repetitions) COMPREPLY=() ;;
     --duration | --start) COMPREPLY=() ;;
     --bits) _cuvette_words 8 16 ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
@@ -104,13 +105,17 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 
 _cuvette_study() # VERB
 {
-    local -A options=([run]='--results --shard --quiet' [status]=--results [merge]=--results [summary]=--results [list]=''
+    local -A options=([new]='--axis --set --name --repetitions --output --force'
+        [run]='--results --shard --by --any-environment --dry-run --quiet' [status]=--results [merge]=--results
+        [verify]=--results [summary]='--results --environment' [list]=''
         [plot]='--output --format --x --y --by --log --where --images --published --results')
     if [[ $current == -* ]]; then
         _cuvette_words "${options[$1]} --help --usage --version"
     elif [[ $1 == list ]]; then
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$current")
+    elif [[ $1 == new ]]; then
+        _cuvette_files 'yaml|yml'
     else
         _cuvette_files 'study'
     fi
@@ -119,7 +124,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='run list status merge summary plot'
+    local command=${COMP_WORDS[1]-} verbs='new run list status merge verify summary plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine help --help --usage --version
