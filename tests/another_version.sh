@@ -51,7 +51,8 @@ change src/scene/model/params_table.c "$row" \
     "    INTEGER(PARAM_RENDER, render_settings, later, \"\", 0, 9, \"3\", \"of a later version\"),
 $row"
 quantity=' Q(cpu_s, "s", REAL,'
-change src/job/quantities.c "$quantity" " Q(later, \"\", COUNT, MEDIAN, ROW, \"later\", NULL, \"of a later version\", a->of->render.later) \\
+change src/job/quantities.c "$quantity" \
+    " Q(later, \"\", COUNT, MEDIAN, ROW, \"later\", NULL, \"of a later version\", a->of->render.later) \\
 $quantity"
 make -s -j"$(nproc)" warnings= build/cuvette build/cuvette-import >"$work/build.log" 2>&1 || {
     sed 's/^/# /' "$work/build.log" | tail -n 5
