@@ -6,6 +6,7 @@
 #include "cli/scene_input.h"
 #include "cli/study_request.h"
 #include "cli/terminal.h"
+#include "study/spread.h"
 #include "study/study.h"
 #include "study/summary.h"
 #include "scene/model/scene.h"
@@ -152,6 +153,8 @@ static status merge_one(const study *s, const study_request *request, diagnostic
 /* A terminal gets the most important columns, a pipe or file all of them. */
 static status print_summary(const study *s, const study_request *request, diagnostic *why)
 {
+    if (request->columns)
+        return study_spread(s, request->results, request->columns, stdout, why);
     if (!terminal_columns(STDOUT_FILENO))
         return study_summary(s, request->results, stdout, why);
     char *text = NULL;

@@ -47,6 +47,15 @@ static const command_option results_options[] = {
     {0},
 };
 
+static const command_option summary_options[] = {
+    {"results", 'r', "DIR", "folder of the results (default: results)",
+     OPTION_FILLS(option_text, study_request, results)},
+    {"interval", 'i', "COLUMN[/COLUMN],...",
+     "medians and 95% intervals of these columns of rows.csv, or of quotients of two",
+     OPTION_FILLS(option_text, study_request, columns)},
+    {0},
+};
+
 static const command_form forms[STUDY_VERB_COUNT] = {
     [STUDY_RUN] = {.options = run_options,
                    .take_argument = take_file,
@@ -67,7 +76,7 @@ static const command_form forms[STUDY_VERB_COUNT] = {
                      .take_argument = take_file,
                      .synopsis = "FILE...",
                      .about = "Merge the rows of a study's shards into its rows.csv."},
-    [STUDY_SUMMARY] = {.options = results_options,
+    [STUDY_SUMMARY] = {.options = summary_options,
                        .take_argument = take_file,
                        .synopsis = "FILE",
                        .about = "Print one line per cell: medians, 95% confidence intervals, counts.\vA terminal gets "

@@ -21,6 +21,7 @@ typedef struct study_request {
     const char **files; /* study files; for STUDY_LIST the folder */
     size_t file_count;
     const char *results;
+    const char *columns; /* of --interval, or NULL */
     long shard, shards;
     bool quiet;
 } study_request;

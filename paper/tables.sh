@@ -1,0 +1,56 @@
+#!/bin/sh
+# Write the tables that paper and claims read: OUT/tables/STUDY.tsv, the summary of each study in one environment, with
+# intervals of more columns than `cuvette study summary` gives; and OUT/environments, the environment of each study.
+#   paper/tables.sh RESULTS OUT         run from anywhere
+# CUVETTE: the program (default: build/cuvette); without it, or without any rows, the tables in RESULTS/tables are used,
+# which have fewer intervals. ENVIRONMENT: show this one (8 hex digits) instead of the one with most rows in each study.
+export LC_ALL=C
+set -eu
+
+results=$(cd "$1" && pwd)
+mkdir -p "$2/tables"
+out=$(cd "$2" && pwd)
+here=$(cd "$(dirname "$0")" && pwd)
+program=${CUVETTE:-$here/../build/cuvette}
+# Measured columns that have no interval in a summary; quotients are formed row by row.
+more=build_s,imbalance,busy_s_mean,busy_s_max,waiting_s_mean,visibility_s_sum,motion_s,others_share
+more=$more,visibility_s_sum/wall_s,rays_total/cpu_s,visibility_s_sum/rays_total,motion_s/motion_steps
+
+rows_of() { ls "$results"/$1/rows*.csv >/dev/null 2>&1; }
+summaries=1
+[ -x "$program" ] && rows_of '*' || summaries=0
+
+summarise() { # STUDY: its table and the intervals; returns 1 if it has no rows
+    summary=$results/tables/$1.tsv
+    : >"$out/spread"
+    if [ $summaries = 1 ]; then
+        rows_of "$1" || return 1
+        summary=$out/summary
+        "$program" study summary --results "$results" "$here/../experiments/$1.study" >"$summary" 2>"$out/message" ||
+            sed "s|^|$1: |" "$out/message" >&2
+        "$program" study summary --results "$results" --interval "$more" "$here/../experiments/$1.study" \
+            >"$out/spread" 2>/dev/null || : >"$out/spread"
+    fi
+    [ -s "$summary" ] || return 1
+    environment=$(awk -v wanted="${ENVIRONMENT:-}" -f "$here/environment.awk" "$summary")
+    awk -v chosen="$environment" -f "$here/join.awk" "$out/spread" "$summary" >"$out/tables/$1.tsv"
+    printf '%s\t%s\n' "$1" "$environment" >>"$out/environments"
+}
+
+rm -f "$out"/tables/*.tsv
+: >"$out/environments"
+for file in "$here"/../experiments/*.study; do
+    study=$(basename "$file" .study)
+    summarise "$study" || continue
+    for kind in metrics curves motion; do
+        if ls "$results/$study/images/"*-$kind.tsv >/dev/null 2>&1; then
+            awk 'NR == 1 || FNR > 1' "$results/$study/images/"*-$kind.tsv >"$out/tables/$study-$kind.tsv"
+        elif [ -r "$results/tables/$study-$kind.tsv" ]; then
+            cp "$results/tables/$study-$kind.tsv" "$out/tables/"
+        fi
+    done
+done
+for file in "$here"/../experiments/published/*.csv; do
+    tr -d '\r' <"$file" | awk -f "$here/published.awk" >"$out/tables/published-$(basename "$file" .csv).tsv"
+done
+rm -f "$out/spread" "$out/summary" "$out/message"
