@@ -27,10 +27,9 @@ function expand(text,   out, key, keep, inner) {
     }
     return out text
 }
-FNR == 1 { file++ }
-file < 3 && /^\\setval[{]/ { rest = substr($0, 8); key = braces(); value[key] = braces(); next }
-file < 3 && /^\\setclaim[{]/ { rest = substr($0, 10); key = braces(); instead[key] = braces(); next }
-file < 3 { next }
+FILENAME != ARGV[3] && /^\\setval[{]/ { rest = substr($0, 8); key = braces(); value[key] = braces(); next }
+FILENAME != ARGV[3] && /^\\setclaim[{]/ { rest = substr($0, 10); key = braces(); instead[key] = braces(); next }
+FILENAME != ARGV[3] { next }
 /^\\newcommand|^%/ { next }
 { all = all $0 "\n" }
 END { printf "%s", expand(all) }
