@@ -1,4 +1,4 @@
-# Print the environment of a summary that has most rows, or the wanted one; "unknown" for tables without environments.
+# Print the environment of a summary that has most rows (of equal ones the last), or the wanted one; "unknown" for tables without environments.
 #   awk -v wanted=HEX -f environment.awk SUMMARY.tsv
 BEGIN { FS = "\t" }
 NR == 1 {
@@ -12,6 +12,6 @@ NR == 1 {
 END {
     best = "unknown"
     for (e in rows)
-        if (best == "unknown" || rows[e] > rows[best] || (rows[e] == rows[best] && order[e] < order[best])) best = e
+        if (best == "unknown" || rows[e] > rows[best] || (rows[e] == rows[best] && order[e] > order[best])) best = e
     print wanted != "" ? wanted : best
 }

@@ -29,7 +29,7 @@ summarise() { # STUDY: its table and the intervals; returns 1 if it has no rows
         "$program" study summary --results "$results" "$here/../experiments/$1.study" >"$summary" 2>"$out/message" ||
             sed "s|^|$1: |" "$out/message" >&2
         "$program" study summary --results "$results" --interval "$more" "$here/../experiments/$1.study" \
-            >"$out/spread" 2>/dev/null || : >"$out/spread"
+            >"$out/spread" 2>/dev/null || : # the summary has said why
     fi
     [ -s "$summary" ] || return 1
     environment=$(awk -v wanted="${ENVIRONMENT:-}" -f "$here/environment.awk" "$summary")

@@ -50,7 +50,8 @@ check "tests/json_get.c compiles" bash -c \
 
 # --- help and version
 run --version
-check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
+check "--version names the version and the build" matches "$(<out)" \
+    '^cuvette [0-9]+\.[0-9]+\.[0-9]+ \(build [0-9a-f]{16}(, commit [0-9a-f]+\+?)?\)$'
 run --help
 check "--help succeeds on standard output" silent_success
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine help; do
@@ -608,7 +609,7 @@ run study run --quiet studies/against.study --results res
 check "a study with a reference compares each cell" is \
     "$(awk -F, 'NR > 1 && $8 == 0' res/against/compare.csv | wc -l)" 1
 run study summary studies/against.study --results res
-check "study summary has error and time" is "$(awk -F'\t' 'NR == 4 {print $(NF - 7), $(NF - 6)}' out)" "0 NA"
+check "study summary has error and time" is "$(awk -F'\t' 'NR == 4 {print $(NF - 8), $(NF - 7)}' out)" "0 NA"
 sed -i 's/^reference: .*/reference: {render.depht: 2}/' studies/against.study
 run study run studies/against.study --results res
 check "a misspelt parameter in the reference is located" matches "$(<err)" 'against\.study:10:13: .*depht'

@@ -83,7 +83,8 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 
 _cuvette_study() # VERB
 {
-    local -A options=([run]='--results --shard --quiet' [status]=--results [merge]=--results [summary]=--results [list]='')
+    local -A options=([run]='--results --shard --by --any-environment --quiet' [status]=--results [merge]=--results
+        [verify]=--results [summary]='--results --environment' [list]='')
     if [[ $current == -* ]]; then
         _cuvette_words "${options[$1]} --help --usage --version"
     elif [[ $1 == list ]]; then
@@ -97,7 +98,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='run list status merge summary'
+    local command=${COMP_WORDS[1]-} verbs='run list status merge verify summary'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine help --help --usage --version

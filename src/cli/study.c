@@ -9,6 +9,7 @@
 #include "study/spread.h"
 #include "study/study.h"
 #include "study/summary.h"
+#include "study/verify.h"
 #include "scene/model/scene.h"
 #include <dirent.h>
 #include <errno.h>
@@ -41,6 +42,9 @@ static status for_each_study(study_verb verb, study_action *act, int argc, char 
 {
     study_request request;
     status result = study_request_parse(verb, argc, argv, &request, why);
+    isa level = ISA_SSE2; /* part of the environment */
+    if (result == STATUS_OK && (verb == STUDY_RUN || verb == STUDY_STATUS))
+        result = scene_input_isa(&level, why);
     THEN(result, read_and_act(&request, act, why));
     study_request_release(&request);
     return result;
@@ -80,6 +84,32 @@ static bool varies(void *context, const char *place)
     return false;
 }
 
+/* Prints notes on existing rows that are not used, or should not be. */
+static void note_rows(const study *s, const study_request *request, const study_progress *progress)
+{
+    char text[700], difference[400] = "";
+    if (progress->rows_elsewhere && !request->any_environment) {
+        study_environment_difference(s, request->results, difference, sizeof difference);
+        snprintf(text, sizeof text,
+                 "%s: %zu rows are of another environment%s%s; they are kept and not pooled (--any-environment counts "
+                 "them)",
+                 s->name, progress->rows_elsewhere, difference[0] ? ": here " : "", difference);
+        terminal_note(text);
+    }
+    if (request->shards > 1 && !request->by_repetition && study_cell_count(s) > 1) {
+        snprintf(text, sizeof text,
+                 "%s: each shard measures its own cells; on several machines, use --by=repetition, or cells differ by "
+                 "machine",
+                 s->name);
+        terminal_note(text);
+    }
+    if (progress->fault.what[0]) {
+        snprintf(text, sizeof text, "%s: %.300s; `cuvette study verify` lists such rows", s->name,
+                 progress->fault.what);
+        terminal_note(text);
+    }
+}
+
 /* Prints notes on the scene with the fixed parameters before anything is measured. Slimes are not simulated for
  * this. */
 static status lint(const study *s, const study_request *request, diagnostic *why)
@@ -89,6 +119,7 @@ static status lint(const study *s, const study_request *request, diagnostic *why
     status result = study_status(s, request->results, &progress, why);
     if (result != STATUS_OK || progress.cells_done == progress.cells)
         return result;
+    note_rows(s, request, &progress);
     result = scene_input_isa(&level, why);
     scene *base = scene_clone(s->base);
     if (result == STATUS_OK && !base)
@@ -110,6 +141,8 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     const study_options options = {.results = request->results,
                                    .shard = request->shard,
                                    .shards = request->shards,
+                                   .by_repetition = request->by_repetition,
+                                   .any_environment = request->any_environment,
                                    .progress = terminal,
                                    .stop = terminal_stop_requested};
     size_t rows = 0;
@@ -132,6 +165,18 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     return terminal_flush(why); /* the next study may take an hour */
 }
 
+/* The first fault of the rows becomes the error of the command, after its output. */
+static status judge(const diagnostic *verdict, diagnostic *why)
+{
+    if (!verdict->what[0])
+        return STATUS_OK;
+    const status flushed = terminal_flush(why);
+    if (flushed != STATUS_OK)
+        return flushed;
+    *why = *verdict;
+    return STATUS_FAILURE;
+}
+
 static status print_status(const study *s, const study_request *request, diagnostic *why)
 {
     study_progress progress;
@@ -139,32 +184,56 @@ static status print_status(const study *s, const study_request *request, diagnos
     printf("%s: %zu of %zu cells done, %zu rows and %zu warm-ups in %s/%s, %zu marked\n", s->name, progress.cells_done,
            progress.cells, progress.rows - progress.warmups, progress.warmups, request->results, s->name,
            progress.rows_marked);
-    return STATUS_OK;
+    if (progress.rows_elsewhere)
+        printf("%s: %zu other rows, of other environments than this one (%s), are not counted\n", s->name,
+               progress.rows_elsewhere, progress.environment);
+    if (progress.rows_other_cells)
+        printf("%s: %zu rows of cells that the study does not have are kept and not used\n", s->name,
+               progress.rows_other_cells);
+    return judge(&progress.fault, why);
 }
 
 static status merge_one(const study *s, const study_request *request, diagnostic *why)
 {
     size_t rows = 0;
-    TRY(study_merge(s, request->results, &rows, why));
+    diagnostic verdict = {.what = ""};
+    TRY(study_merge(s, request->results, &rows, &verdict, why));
     printf("%s: %zu rows in %s/%s/rows.csv\n", s->name, rows, request->results, s->name);
-    return STATUS_OK;
+    return judge(&verdict, why);
 }
 
 /* A terminal gets the most important columns, a pipe or file all of them. */
 static status print_summary(const study *s, const study_request *request, diagnostic *why)
 {
-    if (request->columns)
-        return study_spread(s, request->results, request->columns, stdout, why);
-    if (!terminal_columns(STDOUT_FILENO))
-        return study_summary(s, request->results, stdout, why);
+    const summary_options options = {.environment = request->environment};
+    diagnostic verdict = {.what = ""};
+    if (request->columns) {
+        TRY(study_spread(s, request->results, request->columns, &options, stdout, &verdict, why));
+        return judge(&verdict, why);
+    }
     char *text = NULL;
     text_writer writer;
     TRY(text_writer_open(&writer, why));
-    status result = study_summary(s, request->results, writer.stream, why);
+    status result = study_summary_of(s, request->results, &options, writer.stream, &verdict, why);
     result = text_writer_end(&writer, result, &text, NULL, why);
-    THEN(result, study_table_print(stdout, text, why));
+    if (result == STATUS_OK && terminal_columns(STDOUT_FILENO))
+        result = study_table_print(stdout, text, why);
+    else if (result == STATUS_OK)
+        fputs(text, stdout);
     free(text);
-    return result;
+    return result == STATUS_OK ? judge(&verdict, why) : result;
+}
+
+static status verify_one(const study *s, const study_request *request, diagnostic *why)
+{
+    study_verdict verdict;
+    TRY(study_verify(s, request->results, stdout, &verdict, why));
+    return judge(&verdict.first, why);
+}
+
+static status command_verify(int argc, char **argv, diagnostic *why)
+{
+    return for_each_study(STUDY_VERIFY, verify_one, argc, argv, why);
 }
 
 static status command_run(int argc, char **argv, diagnostic *why)
@@ -242,6 +311,7 @@ static const command commands[] = {
     {"list", "list the studies in a folder", command_list},
     {"status", "print the progress of studies", command_status},
     {"merge", "merge the rows of a study that was run in shards", command_merge},
+    {"verify", "check every row: damaged, edited, missing, duplicate and marked ones", command_verify},
     {"summary", "print medians and confidence intervals for each cell", command_summary},
 };
 

@@ -13,6 +13,7 @@ typedef enum study_verb {
     STUDY_STATUS,
     STUDY_MERGE,
     STUDY_SUMMARY,
+    STUDY_VERIFY,
     STUDY_VERB_COUNT
 } study_verb;
 
@@ -21,9 +22,10 @@ typedef struct study_request {
     const char **files; /* study files; for STUDY_LIST the folder */
     size_t file_count;
     const char *results;
-    const char *columns; /* of --interval, or NULL */
+    const char *environment; /* of the summary: a key, "main", or NULL for all */
+    const char *columns;     /* of --interval, or NULL */
     long shard, shards;
-    bool quiet;
+    bool by_repetition, any_environment, quiet;
 } study_request;
 
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why);

@@ -9,6 +9,10 @@
 /* Whether a file that the study keeps is missing for the cell. */
 bool keep_missing(const study *s, const char *folder, size_t cell);
 
+/* Names the kept files by the numbers that their cells have now (study/keep_numbers.c); create: makes the folder for
+ * the first of them. *changed: files may have other names than before. */
+status keep_renumber(const study *s, const char *folder, bool create, bool *changed, diagnostic *why);
+
 /* The options of the frame; progress and context stay NULL. */
 render_options keep_options(const study *s);
 

@@ -2,6 +2,7 @@
 #include "measure/statistics.h"
 #include "study/cell_table.h"
 #include "study/grid.h"
+#include "study/row_environments.h"
 #include "study/row_files.h"
 #include <math.h>
 #include <stdlib.h>
@@ -66,17 +67,12 @@ static status check_columns(const row_files *files, const column_list *list, dia
     return STATUS_OK;
 }
 
-/* Rows of unlike environments are not pooled. */
-static const char *environment_of(const row_ref *ref)
-{
-    const char *environment = row_field(ref, "environment");
-    return strcmp(environment, "NA") == 0 ? "unknown" : environment;
-}
-
 static int by_cell_and_environment(const void *a, const void *b)
 {
     const row_ref *x = *(const row_ref *const *)a, *y = *(const row_ref *const *)b;
-    return x->cell != y->cell ? (x->cell < y->cell ? -1 : 1) : strcmp(environment_of(x), environment_of(y));
+    if (x->cell != y->cell)
+        return x->cell < y->cell ? -1 : 1;
+    return strcmp(row_environment(x), row_environment(y));
 }
 
 static double value_of(const row_ref *ref, const spread_column *c)
@@ -102,7 +98,7 @@ static void put_line(const study *s, const row_ref **rows, size_t count, const s
     const double numbers[] = {of.median, of.median_low, of.median_high, of.minimum, of.maximum};
     fprintf(out, "%zu", rows[0]->cell);
     grid_put_values(s, rows[0]->cell, out);
-    fprintf(out, "\t%s\t%s%s%s\t%zu", environment_of(rows[0]), c->name, c->below ? "/" : "", c->below ? c->below : "",
+    fprintf(out, "\t%s\t%s%s%s\t%zu", row_environment(rows[0]), c->name, c->below ? "/" : "", c->below ? c->below : "",
             known);
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         cell_table_number(out, numbers[i]);
@@ -116,7 +112,9 @@ static void put_header(const study *s, FILE *out)
     fputs("\tenvironment\tcolumn\tn\tmedian\tlow\thigh\tmin\tmax\n", out);
 }
 
-static status put_all(const study *s, const row_files *files, const column_list *list, FILE *out, diagnostic *why)
+/* environment: "" for all. */
+static status put_all(const study *s, const row_files *files, const column_list *list, const char *environment,
+                      FILE *out, diagnostic *why)
 {
     const row_ref **rows = malloc((files->row_count + 1) * sizeof *rows);
     double *values = malloc((files->row_count + 1) * sizeof *values);
@@ -128,7 +126,8 @@ static status put_all(const study *s, const row_files *files, const column_list 
     size_t count = 0;
     for (size_t i = 0; i < files->row_count; i++) {
         const row_ref *ref = &files->rows[i];
-        if (!ref->warmup && strcmp(row_field(ref, "marked"), "0") == 0)
+        const bool wanted = !environment[0] || strcmp(row_environment(ref), environment) == 0;
+        if (wanted && !ref->warmup && strcmp(row_field(ref, "marked"), "0") == 0)
             rows[count++] = ref;
     }
     qsort(rows, count, sizeof *rows, by_cell_and_environment);
@@ -144,10 +143,12 @@ static status put_all(const study *s, const row_files *files, const column_list 
     return STATUS_OK;
 }
 
-status study_spread(const study *s, const char *results, const char *columns, FILE *out, diagnostic *why)
+status study_spread(const study *s, const char *results, const char *columns, const summary_options *options, FILE *out,
+                    diagnostic *verdict, diagnostic *why)
 {
     column_list list = {0};
     row_files *files = NULL;
+    char environment[ENVIRONMENT_KEY] = "";
     status code = column_list_read(columns, &list, why);
     THEN(code, row_files_read(s, results, ROWS, &files, why));
     if (code == STATUS_OK && files->row_count == 0)
@@ -155,7 +156,13 @@ status study_spread(const study *s, const char *results, const char *columns, FI
                            "run the study first, or give the folder of its results with --results", "no rows in %s/%s",
                            results, s->name);
     THEN(code, check_columns(files, &list, why));
-    THEN(code, put_all(s, files, &list, out, why));
+    if (code == STATUS_OK && options->environment && strcmp(options->environment, "main") == 0)
+        code = row_environments_main(files, environment, why);
+    else if (options->environment)
+        snprintf(environment, sizeof environment, "%s", options->environment);
+    THEN(code, put_all(s, files, &list, environment, out, why));
+    if (code == STATUS_OK && verdict)
+        (void)row_files_judge(files, verdict);
     row_files_destroy(files);
     column_list_release(&list);
     return code;

@@ -4,9 +4,12 @@
 #pragma once
 
 #include "study/study.h"
+#include "study/summary.h"
 
 /* columns: names separated by commas; A/B is the quotient of two columns of one row. Writes lines for each cell with
  * rows: cell, each path of the grid, environment, column, n, median, low and high (the interval; NA for n below 6),
  * min, max; tab separated, NA for unknown values. STATUS_BAD_INPUT if rows.csv has no such column or none is given;
- * STATUS_FAILURE without any row. The caller checks out for write errors (ferror). */
-status study_spread(const study *s, const char *results, const char *columns, FILE *out, diagnostic *why);
+ * STATUS_FAILURE without any row. options and verdict as
+ * of study_summary_of. The caller checks out for write errors (ferror). */
+status study_spread(const study *s, const char *results, const char *columns, const summary_options *options, FILE *out,
+                    diagnostic *verdict, diagnostic *why);

@@ -47,6 +47,8 @@ typedef struct param {
     size_t offset;              /* in the group's struct */
     bool performance_only;      /* affects only performance: the film does not depend on it */
     bool by_shape;              /* PARAM_SOLID: only for solids whose shape rule lists it */
+    const char *first_default;  /* the default of the first version that had the parameter, if it is another one now:
+                                   rows omit it in the identity of a cell; NULL: fallback */
 } param;
 
 size_t param_count(void);

@@ -107,13 +107,23 @@ char *param_value_text(const param *row, int element, const void *field)
     return NULL;
 }
 
-char *param_default_text(const param *row)
+static char *canonical_text(const param *row, const char *given)
 {
     param_value value;
-    if (param_value_parse(row, -1, row->name, row->fallback, &value, NULL) != STATUS_OK)
+    if (param_value_parse(row, -1, row->name, given, &value, NULL) != STATUS_OK)
         return NULL;
     char *text = param_value_text(row, -1, &value);
     if (row->type == PARAM_PATH)
         free(value.path);
     return text;
+}
+
+char *param_default_text(const param *row)
+{
+    return canonical_text(row, row->fallback);
+}
+
+char *param_first_default_text(const param *row)
+{
+    return canonical_text(row, row->first_default ? row->first_default : row->fallback);
 }
