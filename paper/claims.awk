@@ -121,11 +121,19 @@ function paper_number(key,   line, name, text) {
         close(numbers)
     }
     if (!(key in of_paper) || !match(of_paper[key], /^-?[0-9.]+(e-?[0-9]+)?/)) {
-        sub(/\/.*/, "", key)
-        lack("the rows give no number of " key)
+        lack_number(key)
         return exact(0)
     }
     return exact(substr(of_paper[key], 1, RLENGTH) + 0)
+}
+
+function lack_number(key,   name, count, i) {
+    count = split($at["needs"], name, " ")
+    for (i = 1; i <= count; i++) {
+        load(name[i])
+        if (!(name[i] in width)) lack("no rows of " name[i])
+    }
+    lack("the rows do not give the number " key)
 }
 
 # --- the parser: rest is the text that is left

@@ -34,8 +34,14 @@ awk -F '\t' '{
     printf "%-15s %-18s %s%s\n", $2, $1, $3 == "-" ? "" : $3 "  ", $4 == "-" ? "" : "(" $4 ")"
     if ($2 != "reproduced") printf "%34s %s\n", "", $5
     number[$2]++
+    if (match($4, /^no rows of [a-z-]+$/)) {
+        study = substr($4, 12)
+        if (!(study in missing)) studies = studies " experiments/" study ".study"
+        missing[study] = 1
+    }
 }
 END {
+    if (studies != "") print "for the missing rows: cuvette study run" studies
     printf "%d claims: %d reproduced, %d not reproduced, %d underpowered\n", NR, number["reproduced"],
         number["not reproduced"], number["underpowered"]
     exit number["not reproduced"] > 0

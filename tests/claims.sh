@@ -115,6 +115,27 @@ if ((with_gnuplot)); then
         "$(claims | awk -F'\t' '$9 == "-" { print $1 }' | sort | tr '\n' ' ')"
 fi
 
+# LaTeX may not be installed: what it reads is well formed.
+empty "numbers.tex and claims.tex have balanced braces and no special characters" "$(awk '
+    { line = $0; gsub(/\\./, "", line); open = gsub(/[{]/, "", line); close_ = gsub(/[}]/, "", line) }
+    /^\\setval|^\\setclaim/ && (open != close_ || line ~ /[&#_%]/) && $0 !~ /^\\setval[{][^}]*_/ { print }
+    /^\\setval[{][^}]*_/ && open != close_ { print }' "$work/reference/numbers.tex" "$work/reference/claims.tex")"
+empty "every \\begin of the paper has its \\end, and braces are balanced" "$(awk '
+    /^[ \t]*%/ { next }
+    { line = $0; gsub(/\\\\/, "", line); gsub(/\\[{}%]/, "", line); sub(/%.*/, "", line)
+      text = line; depth += gsub(/[{]/, "", text) - gsub(/[}]/, "", text)
+      # Those of \newenvironment are in two parts.
+      if (line ~ /newenvironment/) next
+      while (match(line, /\\(begin|end)[{][a-z*]+[}]/)) {
+          name = substr(line, RSTART, RLENGTH)
+          line = substr(line, RSTART + RLENGTH)
+          kind = name ~ /begin/ ? 1 : -1
+          gsub(/.*[{]|[}]/, "", name)
+          if (kind > 0) stack[++top] = name
+          else if (stack[top--] != name) print FNR ": \\end{" name "}"
+      } }
+    END { if (depth) print "braces: " depth; if (top) print "open: " stack[top] }' paper/paper.tex)"
+
 # --- wrong rows: exactly one claim turns
 copy film profile
 edit "$work/film/profile/rows.csv" 'NR == 9' film_hash '"00000000000000aa"'
@@ -169,6 +190,8 @@ rm -r "$work/none/polarised"
 judge "$work/none" "$work/out"
 same "no rows: underpowered" "$(changed "$work/out")" \
     "polarised-cost: underpowered, polarised-image: underpowered"
+grep -q '^for the missing rows: cuvette study run experiments/polarised.study$' "$work/said"
+verdict $? "with the command that measures them" "$(tail -n 3 "$work/said")"
 mkdir "$work/empty"
 judge "$work/empty" "$work/out"
 same "a folder without rows is an error" "$code" 2
