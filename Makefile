@@ -167,6 +167,7 @@ $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) $(room_cflags) -MMD -MP -c -o $@ $<
+$(build)/obj/study/plot_style.o: plots/style.gp
 $(build)/obj/geometry/hierarchy_embree.o: pkg_cflags += $(embree_cflags)
 web_cflags = $(eval web_cflags := $$(shell pkg-config --cflags libmicrohttpd))$(web_cflags)
 $(build)/obj/web/%.o: private room_cflags = $(web_cflags)

@@ -1,16 +1,16 @@
 /* `cuvette study`: runs, lists, merges and summarises studies. */
 #include "base/text_writer.h"
 #include "cli/cli.h"
-#include "cli/inert_notes.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
+#include "cli/study_commands.h"
+#include "cli/study_notes.h"
 #include "cli/study_request.h"
 #include "cli/terminal.h"
 #include "study/spread.h"
 #include "study/study.h"
 #include "study/summary.h"
 #include "study/verify.h"
-#include "scene/model/scene.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -50,40 +50,6 @@ static status for_each_study(study_verb verb, study_action *act, int argc, char 
     return result;
 }
 
-/* Returns whether path equals place or is an element of it ("lamp.position.x" of "lamp.position"). */
-static bool is_part(const char *place, const char *path)
-{
-    const size_t length = strlen(place);
-    return strncmp(place, path, length) == 0 && (path[length] == '\0' || path[length] == '.');
-}
-
-/* Returns whether place is a solid's parameter and path the same parameter of its material. */
-static bool is_of_material(const scene *s, const char *place, const char *path)
-{
-    const char *dot = strchr(place, '.');
-    char name[SCENE_NAME_MAX + 1], whole[NOTE_PLACE_MAX];
-    if (!dot || (size_t)(dot - place) >= sizeof name)
-        return false;
-    snprintf(name, sizeof name, "%.*s", (int)(dot - place), place);
-    const int solid_index = scene_find_solid(s, name);
-    if (solid_index < 0 || s->solids[solid_index].material_index < 0)
-        return false;
-    snprintf(whole, sizeof whole, "%s%s", s->materials[s->solids[solid_index].material_index].name, dot);
-    return is_part(whole, path);
-}
-
-static bool varies(void *context, const char *place)
-{
-    const study *s = context;
-    for (size_t a = 0; a < s->axis_count; a++)
-        for (size_t i = 0; i < s->axes[a].points[0].count; i++) {
-            const char *path = s->axes[a].points[0].paths[i];
-            if (is_part(place, path) || is_part(path, place) || is_of_material(s->base, place, path))
-                return true;
-        }
-    return false;
-}
-
 /* Prints notes on existing rows that are not used, or should not be. */
 static void note_rows(const study *s, const study_request *request, const study_progress *progress)
 {
@@ -110,29 +76,16 @@ static void note_rows(const study *s, const study_request *request, const study_
     }
 }
 
-/* Prints notes on the scene with the fixed parameters before anything is measured. Slimes are not simulated for
- * this. */
-static status lint(const study *s, const study_request *request, diagnostic *why)
+/* Prints notes before anything is measured, unless nothing will be. */
+static status print_notes(const study *s, const study_request *request, diagnostic *why)
 {
     study_progress progress;
-    isa level = ISA_SSE2;
-    status result = study_status(s, request->results, &progress, why);
-    if (result != STATUS_OK || progress.cells_done == progress.cells)
-        return result;
+    TRY(study_status(s, request->results, &progress, why));
+    if (progress.cells_done == progress.cells)
+        return STATUS_OK;
     note_rows(s, request, &progress);
-    result = scene_input_isa(&level, why);
-    scene *base = scene_clone(s->base);
-    if (result == STATUS_OK && !base)
-        result = out_of_memory(why);
-    bool moves = false;
-    for (size_t i = 0; result == STATUS_OK && i < base->mesh_count; i++)
-        moves |= base->meshes[i].source == MESH_SLIME;
-    THEN(result, moves ? scene_load_files(base, why) : scene_load(base, why));
-    if (result == STATUS_OK)
-        result = scene_input_lint(base, level, &(lint_filter){varies, (void *)(uintptr_t)s}, why);
-    THEN(result, inert_note_study(s, why));
-    scene_destroy(base);
-    return result;
+    study_notes_print_file(s);
+    return study_notes_print_cells(s, why);
 }
 
 static status run_one(const study *s, const study_request *request, diagnostic *why)
@@ -146,7 +99,9 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .progress = terminal,
                                    .stop = terminal_stop_requested};
     size_t rows = 0;
-    status result = request->quiet ? STATUS_OK : lint(s, request, why);
+    status result = request->quiet ? STATUS_OK : print_notes(s, request, why);
+    if (result == STATUS_OK && request->dry_run)
+        return study_dry_run(s, request, why);
     THEN(result, study_run(s, &options, &rows, why));
     if (result == STATUS_INTERRUPTED) {
         diagnose(why, STATUS_INTERRUPTED,
@@ -307,12 +262,14 @@ static status command_list(int argc, char **argv, diagnostic *why)
 }
 
 static const command commands[] = {
+    {"new", "write a study file for a scene and the parameters to vary", study_new},
     {"run", "run studies, or resume them: measure the missing rows", command_run},
     {"list", "list the studies in a folder", command_list},
     {"status", "print the progress of studies", command_status},
     {"merge", "merge the rows of a study that was run in shards", command_merge},
     {"verify", "check every row: damaged, edited, missing, duplicate and marked ones", command_verify},
     {"summary", "print medians and confidence intervals for each cell", command_summary},
+    {"plot", "draw a figure of studies with gnuplot", command_study_plot},
 };
 
 status command_study(int argc, char **argv, diagnostic *why)

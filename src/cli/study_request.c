@@ -53,6 +53,8 @@ static const command_option run_options[] = {
      .take = take_by},
     {"any-environment", 0, NULL, "count the rows of every environment, not only those of this machine and build",
      OPTION_FILLS(option_flag, study_request, any_environment)},
+    {"dry-run", 'n', NULL, "print what would be measured and kept, and about how long it takes; write nothing",
+     OPTION_FILLS(option_flag, study_request, dry_run)},
     {"quiet", 'q', NULL, "print errors only", OPTION_FILLS(option_flag, study_request, quiet)},
     {0},
 };

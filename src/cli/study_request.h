@@ -25,7 +25,7 @@ typedef struct study_request {
     const char *environment; /* of the summary: a key, "main", or NULL for all */
     const char *columns;     /* of --interval, or NULL */
     long shard, shards;
-    bool by_repetition, any_environment, quiet;
+    bool by_repetition, any_environment, quiet, dry_run;
 } study_request;
 
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why);
@@ -35,3 +35,6 @@ void study_request_release(study_request *request);
  * wall time, median CPU time, rays and marked rows; with a reference also flip and error_rms. tsv is the output of
  * study_summary and is modified. */
 status study_table_print(FILE *out, char *tsv, diagnostic *why);
+
+/* `cuvette study plot`, which has options of its own (study_plot.c). */
+status command_study_plot(int argc, char **argv, diagnostic *why);

@@ -37,6 +37,7 @@ void study_destroy(study *s)
     free(s->scene_text);
     scene_destroy(s->base);
     free(s->identity);
+    free(s->notes);
     free(s);
 }
 

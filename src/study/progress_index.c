@@ -166,6 +166,11 @@ static long part_of(const progress_index *l, long repetitions)
     return l->shards > 1 ? (repetitions - l->shard + l->shards - 1) / l->shards : repetitions;
 }
 
+long progress_index_least(const progress_index *l)
+{
+    return part_of(l, l->s->repetitions_min);
+}
+
 long progress_index_most(const progress_index *l)
 {
     return part_of(l, l->s->repetitions_max);
@@ -177,7 +182,7 @@ bool progress_index_cell_done(const progress_index *l, size_t cell)
     const progress_index_cell *at = &l->cells[cell];
     if (at->counted >= (size_t)progress_index_most(l))
         return true;
-    if (at->counted < (size_t)part_of(l, s->repetitions_min) || s->relative_width <= 0)
+    if (at->counted < (size_t)progress_index_least(l) || s->relative_width <= 0)
         return false;
     summary walls = summarize(at->wall_s, at->counted); /* safe to sort in place */
     double width = summary_relative_width(&walls);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void choose_cells(run *r)
+void run_choose_cells(run *r)
 {
     size_t total = study_cell_count(r->s);
     const bool divided = r->options->shards > 1 && !r->options->by_repetition;
@@ -177,7 +177,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
     bool renumbered = false;
     THEN(code, keep_renumber(s, r.folder, false, &renumbered, why));
     if (code == STATUS_OK) {
-        choose_cells(&r);
+        run_choose_cells(&r);
         bool idle = run_complete(&r);
         if (!idle) {
             code = run_prepare(&r, why);

@@ -47,6 +47,8 @@ void run_release(run *r);
 
 /* Reads the existing rows into r->done. */
 status run_read_rows(run *r, diagnostic *why);
+/* Fills cells and cell_count with the cells of the shard; order is overwritten. */
+void run_choose_cells(run *r);
 
 /* Reads which cells have been compared from the existing files. */
 status run_find_compared(run *r, diagnostic *why);

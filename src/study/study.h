@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "scene/model/inert/note.h"
 #include "scene/model/open.h"
 #include <stdbool.h>
 #include <stdint.h>
@@ -27,6 +28,12 @@ typedef struct study_axis {
     study_point *points;
     size_t count;
 } study_axis;
+
+/* A note on the study file, which is valid; at line and column. */
+typedef struct study_note {
+    long line, column;
+    scene_note note;
+} study_note;
 
 typedef struct study {
     char *path, *name, *title;
@@ -50,6 +57,8 @@ typedef struct study {
     /* Hash of name, scene, fixed parameters and grid, as in the rows of versions without identities of cells
      * (study/accepted.h). */
     uint64_t definition_hash;
+    study_note *notes; /* in the order of the file */
+    size_t note_count;
 } study;
 
 /* Whether the study keeps files of its cells in addition to rows. */
