@@ -335,12 +335,12 @@ run_fuzzers: $(fuzzers)
 
 # --- studies, figures, paper ---
 
-.PHONY: experiments tables figures paper bench
+.PHONY: experiments tables figures claims paper bench
 # Nothing runs in parallel with a measurement.
 requested = $(filter $(1),$(MAKECMDGOALS))
 experiments: | $(call requested,test)
 bench: | $(call requested,test experiments)
-paper: | $(call requested,experiments figures)
+claims paper: | $(call requested,experiments figures)
 experiments: $(build)/cuvette-import
 experiments: $(build)/cuvette ## run the studies (resumes), make tables and figures
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
@@ -375,8 +375,13 @@ $(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 	@mkdir -p $(@D)
 	$(build)/cuvette trace $< --ray=-3,1.5,0.6,1,0,0 --depth 5 --set rod.visible=off -o $@
 
-paper: ## rebuild the report from existing rows, without measuring
-	$(MAKE) -C paper
+# The rows of this clone, or the committed run if there are none and no folder is given.
+claimed = $(if $(filter-out file,$(origin RESULTS))$(wildcard $(RESULTS)/*/rows*.csv $(RESULTS)/tables/*.tsv),$(RESULTS),results/reference)
+claims: $(build)/cuvette ## judge each claim of the paper by the rows: reproduced, not reproduced, underpowered; RESULTS=DIR, ENVIRONMENT=HEX
+	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' paper/claims.sh '$(claimed)' $(build)/claims
+
+paper: $(build)/cuvette ## rebuild the report from existing rows, without measuring
+	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)'
 
 bench: all peers $(build)/tests/bench_mesh ## benchmark frames and rays as ratios to other programs; REPS=7 rounds
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters $(build)/nocounters/cuvette

@@ -107,7 +107,7 @@ _cuvette_study() # VERB
 {
     local -A options=([new]='--axis --set --name --repetitions --output --force'
         [run]='--results --shard --by --any-environment --dry-run --quiet' [status]=--results [merge]=--results
-        [verify]=--results [upgrade]='--results --to' [summary]='--results --environment' [list]=''
+        [verify]=--results [upgrade]='--results --to' [summary]='--results --environment --interval' [list]=''
         [plot]='--output --format --x --y --by --log --where --images --published --results')
     if [[ $current == -* ]]; then
         _cuvette_words "${options[$1]} --help --usage --version"

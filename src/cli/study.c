@@ -7,6 +7,7 @@
 #include "cli/study_notes.h"
 #include "cli/study_request.h"
 #include "cli/terminal.h"
+#include "study/spread.h"
 #include "study/study.h"
 #include "study/summary.h"
 #include "study/upgrade.h"
@@ -162,6 +163,10 @@ static status print_summary(const study *s, const study_request *request, diagno
 {
     const summary_options options = {.environment = request->environment};
     diagnostic verdict = {.what = ""};
+    if (request->columns) {
+        TRY(study_spread(s, request->results, request->columns, &options, stdout, &verdict, why));
+        return judge(&verdict, why);
+    }
     char *text = NULL;
     text_writer writer;
     TRY(text_writer_open(&writer, why));

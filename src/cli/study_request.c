@@ -78,6 +78,9 @@ static const command_option summary_options_list[] = {
      OPTION_FILLS(option_text, study_request, results)},
     {"environment", 0, "KEY", "only the rows of the environment KEY; main: of the one with most rows",
      OPTION_FILLS(option_text, study_request, environment)},
+    {"interval", 'i', "COLUMN[/COLUMN],...",
+     "medians and 95% intervals of these columns of rows.csv, or of quotients of two",
+     OPTION_FILLS(option_text, study_request, columns)},
     {0},
 };
 

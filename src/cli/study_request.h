@@ -25,6 +25,7 @@ typedef struct study_request {
     const char *results;
     const char *to;          /* of an upgrade: the results folder to write; NULL: results-upgraded */
     const char *environment; /* of the summary: a key, "main", or NULL for all */
+    const char *columns;     /* of --interval, or NULL */
     long shard, shards;
     bool by_repetition, any_environment, quiet, dry_run;
 } study_request;
