@@ -99,7 +99,7 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
     job_account made = {.result = NULL};
     status code = study_cell_scene(r->s, cell, &setting, why);
     THEN(code, run_load(r, setting, why));
-    THEN(code, run_render(r, setting, NULL, &made, why));
+    THEN(code, run_render(r, setting, &(render_options){.usage = r->s->keep_workers}, &made, why));
     if (code == STATUS_OK) {
         const study_row row = {.of = r->s,
                                .cell = cell,
