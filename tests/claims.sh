@@ -237,6 +237,17 @@ if ((with_gnuplot)); then
     empty "and has no negative cost anywhere" "$(nonsense "$work/out")"
 fi
 
+# A cost that is lost in noise is no number; a sentence that has it is replaced, though its claim is reproduced.
+copy flat shading
+edit "$work/flat/shading/rows.csv" \
+    'f("model.shading") == "flat" && f("model.diffuse") > 0 && f("render.integrator") == "raycast"' \
+    cpu_s 'f("cpu_s") * (NR % 2 ? 0.9 : 1.1)'
+judge "$work/flat" "$work/out"
+same "a noisy cost of flat shading changes no verdict" "$(changed "$work/out")" ""
+text "$work/out" >"$work/plain"
+grep -q 'Reproduced, but without all numbers of this sentence:} Phong shading takes more' "$work/plain"
+verdict $? "its sentence does not print the cost" "$(grep -n 'flat shading' "$work/plain")"
+
 # --- intervals of any column agree with those of the summary
 spread=$("$CUVETTE" study summary --results "$reference" --interval wall_s,wall_s/wall_s experiments/depth.study)
 summary=$("$CUVETTE" study summary --results "$reference" experiments/depth.study)
