@@ -151,10 +151,23 @@ $(build)/$(soname): $(library_objects)
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -shared -Wl,-soname,$(soname) $(if $(filter sanitize tsan fuzz,$(config)),,-Wl,-z,defs) -o $@ $^ $(LDFLAGS) $(all_libs)
 
+# The identity of the build (src/base/build_id.h): code of these folders can change a film or a time.
+measured_code := $(sort $(foreach room,base optics geometry measure image softbody scene render realism job,$(wildcard \
+  $(addprefix src/$(room)/,*.[ch] */*.[ch] */*/*.[ch]))))
+$(build)/build_id: always $(build)/flags
+	@{ $(CC) --version | head -n 1; echo '$(subst ','\'',$(code_flags) $(isa_flags_avx512) $(embree_cflags))'; cat $(measured_code); } | \
+	  sha256sum | cut -c 1-16 >$@.new
+	@{ git rev-parse --short HEAD && git diff --quiet HEAD -- src Makefile || echo +; } 2>/dev/null | tr -d '\n' >>$@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+$(build)/obj/base/build_id.o: $(build)/build_id
+$(build)/obj/base/build_id.o: private all_cflags += -DCUVETTE_BUILD_ID='"$(shell head -n 1 $(build)/build_id)"' \
+  -DCUVETTE_BUILD_COMMIT='"$(shell tail -n +2 $(build)/build_id)"'
+
 $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) $(room_cflags) -MMD -MP -c -o $@ $<
+$(build)/obj/study/plot_style.o: plots/style.gp
 $(build)/obj/geometry/hierarchy_embree.o: pkg_cflags += $(embree_cflags)
 web_cflags = $(eval web_cflags := $$(shell pkg-config --cflags libmicrohttpd))$(web_cflags)
 $(build)/obj/web/%.o: private room_cflags = $(web_cflags)
@@ -333,7 +346,7 @@ experiments: $(build)/cuvette ## run the studies (resumes), make tables and figu
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
 	@$(MAKE) --no-print-directory build=$(build) tables figures
 
-# A study's summary, if its rows are newer.
+# A study's summary, if its rows are newer: of the environment with most rows.
 studies := $(patsubst experiments/%.study,%,$(wildcard experiments/*.study))
 measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s)))
 # Tables of single cells, concatenated for a study.
@@ -348,7 +361,7 @@ $(foreach kind,metrics curves motion,$(eval $(call strung_rule,$(kind))))
 .SECONDEXPANSION:
 $(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
 	@mkdir -p $(@D)
-	$(build)/cuvette study summary --results $(RESULTS) experiments/$*.study >$@
+	$(build)/cuvette study summary --environment main --results $(RESULTS) experiments/$*.study >$@
 
 figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg ## draw the figures whose rows or scripts are newer
 	@mkdir -p $(RESULTS)

@@ -10,8 +10,9 @@ out=$2
 here=$(dirname "$0")
 published=$here/../experiments/published
 
-fact() { # the first text or number of that name in the study's manifest
-    sed -n "s/^ *\"$2\": *\"\\{0,1\\}\\([^\"]*[^\",]\\)\"\\{0,1\\},\\{0,1\\}\$/\\1/p" "$results/$1/manifest.json" |
+fact() { # the first text or number of that name in the study's list of runs
+    cat "$results/$1"/runs.json "$results/$1"/manifest.json 2>/dev/null |
+        sed -n "s/^ *\"$2\": *\"\\{0,1\\}\\([^\"]*[^\",]\\)\"\\{0,1\\},\\{0,1\\}\$/\\1/p" |
         head -n 1
 }
 
@@ -20,7 +21,7 @@ plain() { sed 's/[\\{}~^]/ /g; s/[_%$#&]/\\&/g'; }
 
 machine() {
     for study in threads depth profile ior pool; do
-        [ -r "$results/$study/manifest.json" ] || continue
+        [ -r "$results/$study/runs.json" ] || [ -r "$results/$study/manifest.json" ] || continue
         for name in processing_units topology compiler flags isa version; do
             text=$(fact "$study" "$name" | plain)
             [ -z "$text" ] || [ "$text" = null ] || echo "\\setval{machine/$name}{$text}"

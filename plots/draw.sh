@@ -80,9 +80,9 @@ is_fresh() {
     done
 }
 
-# The number of processing units of the machine that measured, 0 if no manifest has it.
+# The number of processing units of the machine that measured, 0 if no list of runs has it.
 units() {
-    { cat "$results"/{threads,profile,depth,pool}/manifest.json 2>/dev/null || true; } |
+    { cat "$results"/{threads,profile,depth,pool}/{runs,manifest}.json 2>/dev/null || true; } |
         sed -n 's/.*"processing_units": *\([0-9][0-9]*\).*/\1/p' | sed -n 1p
 }
 

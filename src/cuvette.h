@@ -135,7 +135,7 @@ CUVETTE_API cuvette_status cuvette_scene_set(cuvette_scene *scene, const char *p
                                              cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_set_double(cuvette_scene *scene, const char *path, double value,
                                                     cuvette_diagnostic *why);
-/* Sets an integer or a switch (0, 1), or a real parameter to a whole number. */
+/* Sets an integer or a switch (0, 1), or a real parameter to a whole number; 0 sets render.threads to auto. */
 CUVETTE_API cuvette_status cuvette_scene_set_int(cuvette_scene *scene, const char *path, int64_t value,
                                                  cuvette_diagnostic *why);
 /* Sets three numbers for a vector or a colour (linear RGB), up to 32 for a list. */
@@ -149,7 +149,7 @@ CUVETTE_API cuvette_status cuvette_scene_get(const cuvette_scene *scene, const c
                                              size_t *length, cuvette_diagnostic *why);
 CUVETTE_API cuvette_status cuvette_scene_get_double(const cuvette_scene *scene, const char *path, double *value,
                                                     cuvette_diagnostic *why);
-/* Gets an integer, or a switch as 0 or 1. */
+/* Gets an integer, or a switch as 0 or 1; 0 for render.threads = auto. */
 CUVETTE_API cuvette_status cuvette_scene_get_int(const cuvette_scene *scene, const char *path, int64_t *value,
                                                  cuvette_diagnostic *why);
 /* Writes at most room numbers and sets *count to the number that exists, even if that exceeds room, which is

@@ -103,6 +103,48 @@ refused "shard without N" "0 <= I < N" study run --shard 1 x.study
 refused "shard of words" "0 <= I < N" study run --shard a/b x.study
 refused "shard of a huge number" "0 <= I < N" study run --shard 0/99999999999999999999999 x.study
 refused "summary of two studies" "more than one study" study summary a.study b.study
+new_study() { # WHAT PATTERN ARGUMENT...
+    refused "study new: $1" "$2" study new "${@:3}"
+}
+new_study "no scene" "no scene is given"
+new_study "no axis" "study new: no axis is given" "$scene"
+new_study "two scenes" "unexpected argument" "$scene" "$scene" --axis render.depth=1
+new_study "a missing scene" "nowhere.yaml" nowhere.yaml --axis render.depth=1
+new_study "an axis without values" "^cuvette: --axis render.depth: this is not an axis" "$scene" --axis render.depth
+new_study "an axis with an empty value" "--axis render.depth=1,,2: a value is empty" "$scene" --axis render.depth=1,,2
+new_study "an unknown parameter" "--axis render.dpth=1: .*did you mean 'render.depth'" "$scene" --axis render.dpth=1
+new_study "a value out of range" "--axis render.depth=1,65: .*give an integer 0..64" "$scene" --axis render.depth=1,65
+new_study "a decimal comma in brackets" "--axis" "$scene" --axis 'render.depth=[1,2'
+new_study "a range without steps" "such as 1..2:5" "$scene" --axis liquid.ior=1..2
+new_study "a range of words" "not a range of numbers" "$scene" --axis liquid.ior=1..two:3
+new_study "a range with one step" "--axis liquid.ior=1..2:1: steps" "$scene" --axis liquid.ior=1..2:1
+new_study "a flat range" "--axis liquid.ior=2..2:3: from and to are equal" "$scene" --axis liquid.ior=2..2:3
+new_study "a range between integers" "--axis render.depth=0..4:4: .*is not an integer" \
+    "$scene" --axis render.depth=0..4:4
+new_study "a value twice" "--axis render.depth=1,1: value 2 equals value 1" \
+    "$scene" --axis liquid.ior=1,2 --axis render.depth=1,1
+new_study "a parameter twice" "--axis render.depth=2: .*already on axis 1" \
+    "$scene" --axis render.depth=1 --axis render.depth=2
+new_study "a parameter in set and axis" "--axis render.depth=2: .*already set for all cells" \
+    "$scene" --axis render.depth=2 --set render.depth=3
+new_study "a wrong setting" "--set render.tile=0: .*out of range" "$scene" --axis render.depth=1 --set render.tile=0
+new_study "a setting without a value" "--set render.tile" "$scene" --axis render.depth=1 --set render.tile
+new_study "a control character" "--axis .*control characters" "$scene" --axis $'background.picture=a\tb'
+new_study "a name with a slash" "--name a/b: invalid name" "$scene" --axis render.depth=1 --name a/b
+new_study "a reserved name" "--name tables: invalid name" "$scene" --axis render.depth=1 --name tables
+new_study "no repetitions" "integer from 1" "$scene" --axis render.depth=1 --repetitions 0
+new_study "another ending" "end it with .study" "$scene" --axis render.depth=1 -o x.yaml
+new_study "a missing folder" "folder does not exist" "$scene" --axis render.depth=1 -o nowhere/x.study
+echo 'kept' >kept.study
+new_study "an existing file" "already exists; .*--force" "$scene" --axis render.depth=1 -o kept.study
+new_study "an invalid study over an existing file" "value 2 equals" \
+    "$scene" --axis render.depth=1,1 -o kept.study --force
+refused "study new did not write" "no command" study
+[[ $(<kept.study) == kept && ! -e x.study && ! -e x.yaml ]] || {
+    failed=$((failed + 1))
+    echo "not ok - study new wrote a file after an error"
+}
+refused "study run: a value for --dry-run" "takes no value" study run --dry-run=1 x.study
 refused "empty results folder" "empty" study status --results "" x.study
 
 # --- parameters
@@ -321,17 +363,14 @@ bad_study "a range of one value" ":3:" "study: a\nscene: $scene\ngrid: [{liquid.
 bad_study "a minimum of repetitions above the maximum" ":3:.*less than" \
     "study: a\nscene: $scene\nrepetitions: {min: 9, max: 3, relative_width: 0.1}\n"
 [[ -e results ]] && echo "# a refused study has created results/"
-changed() { # GRID
-    printf '%s\n' 'study: changed' "scene: $scene" 'set: {render.width: 8, render.height: 6}' "grid: [$1]" \
-        'repetitions: 1' \
-        >changed.study
-}
-changed '{render.depth: [0, 1]}'
-"$program" study run changed.study --results changed-results >/dev/null
-changed '{render.depth: [0, 2]}'
-for verb in run status summary; do
+# Rows that nothing identifies.
+printf '%s\n' 'study: unknown' "scene: $scene" 'set: {render.width: 8, render.height: 6}' 'repetitions: 1' \
+    >unknown.study
+"$program" study run unknown.study --results unknown-results >/dev/null
+sed -i '1s/,identity,/,definition,/' unknown-results/unknown/rows.csv
+for verb in run status summary verify; do
     refused "study $verb: rows of another definition" "rows\.csv.*move this folder away.*--results.*another name" \
-        study "$verb" changed.study --results changed-results
+        study "$verb" unknown.study --results unknown-results
 done
 
 echo "$passed passed, $failed failed"

@@ -108,14 +108,15 @@ compare rows.csv "$(written $folder/rows.csv ,)"
 compare workers.csv "$(written $folder/workers.csv ,)"
 compare 'tables/<study>.tsv' "$(written summary.tsv '\t')"
 compare images/index.tsv "$(written $folder/images/index.tsv '\t')"
-manifest() { json_get $folder/manifest.json "$1@keys" | sed "s/^/$2/"; }
-compare manifest.json "$(
-    manifest study study.
-    manifest machine machine.
-    manifest 'runs[0]' 'runs[].'
+recorded() { json_get $folder/runs.json "$1@keys" | sed "s/^/$2/"; }
+compare runs.json "$(
+    echo schema
+    recorded study study.
+    recorded machine machine.
+    recorded 'runs[0]' 'runs[].'
 )"
-empty "manifest.json has no other part" \
-    "$(json_get $folder/manifest.json @keys | grep -vx -e study -e machine -e runs)"
+empty "runs.json has no other part" \
+    "$(json_get $folder/runs.json @keys | grep -vx -e schema -e study -e machine -e runs)"
 
 echo "$((count - failed - skipped)) passed, $failed failed"
 ((failed == 0))

@@ -50,14 +50,15 @@ check "tests/json_get.c compiles" bash -c \
 
 # --- help and version
 run --version
-check "--version names the version" matches "$(<out)" '^cuvette [0-9]+\.[0-9]+\.[0-9]+$'
+check "--version names the version and the build" matches "$(<out)" \
+    '^cuvette [0-9]+\.[0-9]+\.[0-9]+ \(build [0-9a-f]{16}(, commit [0-9a-f]+\+?)?\)$'
 run --help
 check "--help succeeds on standard output" silent_success
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine help; do
     check "--help names $command" grep -q "^  $command " out
 done
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
-    "study list" "study status" "study merge" "study summary"; do
+    "study new" "study list" "study status" "study merge" "study verify" "study summary" "study plot"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -123,6 +124,10 @@ check "the JSON output has every parameter" is "$(json params@keys | sort | comm
 check "the summary and the JSON output have the same hash" is "$(json film_hash)" "$hash"
 run render "$scene" --json "${small[@]}" --set render.threads=7 --set render.schedule=rows
 check "threads and schedule do not change the film" is "$(json film_hash)" "$hash"
+run render "$scene" --json "${small[@]}" --set render.threads=auto
+check "threads: auto does not change the film, and the account keeps the word" is \
+    "$(json film_hash 'params["render.threads"]')" "$(lines "$hash" auto)"
+check "threads: auto starts one worker per unit of the process" is "$(json workers)" "$(nproc)"
 CUVETTE_ISA=sse2 run render "$scene" --json "${small[@]}"
 check "CUVETTE_ISA is used and does not change the film" is "$(json isa film_hash)" "$(lines sse2 "$hash")"
 run render "$scene" --json "${small[@]}" --repeat 5
@@ -577,8 +582,31 @@ repetitions: 2
 warmups: 1
 order: {shuffle: on, seed: 3}
 END
+run study new "$scene" --axis render.depth=0..4:5 --axis render.threads=1,auto --axis 'lamp.position=[0,5,1],[2,5,1]' \
+    --set render.width=16 --set render.height=12 --set lamp.color=1,0.5,1 --repetitions 2 -o studies/made.study
+check "study new writes a study" is "$(<out)" \
+    "studies/made.study: 20 cells of 2 repetitions; cuvette study run studies/made.study"
+check "study new explains the parameters" eval \
+    'grep -q "# recursion depth" studies/made.study && grep -q "^scene: .*rod.yaml # relative" studies/made.study'
+check "study new writes at most 100 columns" holds "$(wc -L <studies/made.study) <= 110"
+run study run --dry-run studies/made.study --results none
+check "a new study can be run" is "$(head -1 out)" "made: 20 of 20 cells lack rows: 40 rows and 20 warm-ups to measure"
+run study new "$scene" --axis liquid.ior=1.3,1,4 --name decimal -o studies/made.study --force
+check "study new notes a decimal comma at its line" matches "$(<err)" \
+    '^cuvette: note: studies/made\.study:[0-9]+:[0-9]+: liquid\.ior: 1 and 4 are two values; did you mean 1\.4\?$'
+check "study new --force replaces a file, and --name its name" grep -q '^study: decimal ' studies/made.study
+run study new "$scene" --axis liquid.ior=1.3,1,4
+check "study new prints without -o, and the note too" eval \
+    'grep -q "^study: rod-ior " out && grep -q "^cuvette: note: liquid.ior: 1 and 4" err'
+rm studies/made.study
 run study list studies
 check "study list shows name, cells and title" matches "$(<out)" 'tiny\.study +3 cells +A small one'
+run study run --dry-run studies/tiny.study --results res
+check "study run --dry-run counts the missing rows" is "$(head -1 out)" \
+    "tiny: 3 of 3 cells lack rows: 6 rows and 3 warm-ups to measure"
+check "study run --dry-run estimates the time" matches "$(sed -n 2p out)" \
+    '^tiny: (about|less than) [0-9.]+ s, from trial frames of 3 cells, extrapolated in pixels$'
+check "study run --dry-run writes nothing" eval '[[ $(wc -l <out) == 2 && ! -e res ]]'
 run study status studies/tiny.study --results res
 check "study status before the run" matches "$(<out)" '0 of 3 cells'
 run study run studies/tiny.study --results res
@@ -598,6 +626,15 @@ if command -v script >/dev/null; then
     script -qec "'$program' study summary studies/tiny.study --results res" /dev/null >tty.txt 2>&1
     check "study summary on a terminal is short" grep -q '^cell .*interval.* marked' tty.txt
 fi
+sed -e 's/repetitions: 2/repetitions: 4/' -e '$a keep: {image: on}' studies/tiny.study >studies/more.study
+run study run -n studies/more.study --results res
+sed -Ei 's/(about|less than) [0-9.]+ s/about T s/' out
+check "study run --dry-run uses existing rows and lists files" is "$(<out)" "$(lines \
+    "tiny: 3 of 3 cells lack rows: 6 rows and 3 warm-ups to measure" \
+    "tiny: about T s, from the rows of 3 cells" \
+    "tiny: 3 files to keep in res/tiny/images: CELL.png")"
+run study run --dry-run studies/tiny.study --results res
+check "study run --dry-run of a complete study" is "$(<out)" "tiny: complete, nothing to do"
 run study run --quiet studies/tiny.study --results parts --shard 0/2
 check "--quiet prints nothing" is "$(cat out err)" ""
 run study run studies/tiny.study --results parts --shard 1/2
@@ -608,7 +645,7 @@ run study run --quiet studies/against.study --results res
 check "a study with a reference compares each cell" is \
     "$(awk -F, 'NR > 1 && $8 == 0' res/against/compare.csv | wc -l)" 1
 run study summary studies/against.study --results res
-check "study summary has error and time" is "$(awk -F'\t' 'NR == 4 {print $(NF - 7), $(NF - 6)}' out)" "0 NA"
+check "study summary has error and time" is "$(awk -F'\t' 'NR == 4 {print $(NF - 8), $(NF - 7)}' out)" "0 NA"
 sed -i 's/^reference: .*/reference: {render.depht: 2}/' studies/against.study
 run study run studies/against.study --results res
 check "a misspelt parameter in the reference is located" matches "$(<err)" 'against\.study:10:13: .*depht'

@@ -1,6 +1,7 @@
 /* Tests that the film is bit-identical for any threads, schedules, tiles, pool and instruction sets, and so are the
  * counters. */
 #include <math.h>
+#include <sched.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -118,6 +119,48 @@ static void the_film_is_the_same_with_1024_threads(void **state)
     scene_destroy(s);
 }
 
+static int workers_of(const scene *s)
+{
+    renderer *r = NULL;
+    render_result *result = NULL;
+    assert_int_equal(renderer_create(isa_best(), NULL, &r, NULL), STATUS_OK);
+    assert_int_equal(renderer_prepare(r, s, NULL), STATUS_OK);
+    assert_int_equal(renderer_render(r, s, NULL, &result, NULL), STATUS_OK);
+    const int count = result->worker_count;
+    for (int i = 0; i < count; i++)
+        assert_true(result->workers[i].wall_s > 0);
+    render_result_destroy(result);
+    renderer_destroy(r);
+    return count;
+}
+
+/* render.threads=auto has one worker per unit of the process: here all of them, then one of them. */
+static void automatic_threads_respect_the_affinity_of_the_process(void **state)
+{
+    (void)state;
+    scene *s = rod_scene(SMALL);
+    const fingerprint expected = fingerprint_at(s, isa_best(), NULL);
+    set(s, "render.threads=auto");
+    for (int pool = 0; pool < 2; pool++) {
+        cpu_set_t all, one;
+        assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
+        s->render.pool = pool;
+        assert_int_equal(workers_of(s), CPU_COUNT(&all));
+        const fingerprint f = fingerprint_at(s, isa_best(), NULL);
+        expect_same(&f, &expected);
+        size_t unit = 0;
+        while (!CPU_ISSET(unit, &all))
+            unit++;
+        CPU_ZERO(&one);
+        CPU_SET(unit, &one);
+        assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
+        assert_int_equal(workers_of(s), 1);
+        assert_int_equal(sched_setaffinity(0, sizeof all, &all), 0);
+    }
+    assert_int_equal(s->render.threads, 0); /* the scene keeps the word */
+    scene_destroy(s);
+}
+
 /* Additional outputs do not change the film; rays by pixel add up to all rays. */
 static void additional_outputs_do_not_change_the_film(void **state)
 {
@@ -182,6 +225,7 @@ int main(void)
         cmocka_unit_test(the_film_is_the_same_for_every_instruction_set),
         cmocka_unit_test(the_film_is_the_same_for_all_threads_schedules_tiles_and_pool),
         cmocka_unit_test(the_film_is_the_same_with_1024_threads),
+        cmocka_unit_test(automatic_threads_respect_the_affinity_of_the_process),
         cmocka_unit_test(additional_outputs_do_not_change_the_film),
         cmocka_unit_test(counters_are_consistent),
     };

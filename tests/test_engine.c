@@ -139,6 +139,12 @@ static void parameters_are_set_and_read_by_path(void **state)
     fine(cuvette_scene_get_int(s, "render.depth", &integer, &why), &why);
     assert_int_equal((int)integer, 4);
     assert_int_equal(cuvette_scene_get_int(s, "render.integrator", &integer, &why), CUVETTE_BAD_INPUT); /* a word */
+    fine(cuvette_scene_set_int(s, "render.threads", 0, &why), &why);                                    /* auto */
+    fine(cuvette_scene_get(s, "render.threads", text, sizeof text, NULL, &why), &why);
+    assert_string_equal(text, "auto");
+    fine(cuvette_scene_get_int(s, "render.threads", &integer, &why), &why);
+    assert_int_equal(integer, 0);
+    fine(cuvette_scene_set_int(s, "render.threads", 1, &why), &why);
     assert_int_equal(cuvette_scene_get(s, "render.integrator", text, 7, &length, &why), CUVETTE_BAD_INPUT);
     assert_int_equal((int)length, 7); /* whitted, and there is its 0 */
     fine(cuvette_scene_get(s, "render.integrator", text, 8, NULL, &why), &why);

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "lab_study_fixture.h"
+#include "rows_fixture.h"
 #include "study/csv.h"
 #include "study/summary.h"
 #include <pthread.h>
@@ -81,6 +82,14 @@ static void write_other_run(const lab_room *room)
         }
     fclose(out);
     csv_destroy(table);
+    rows_recheck(other);
+    char *runs = room_path(room, "results/tiny/runs.json"), *copy = room_path(room, "old/runs/tiny/runs.json");
+    json_t *list = json_load_file(runs, 0, NULL);
+    assert_int_equal(json_dump_file(list, copy, 0), 0);
+    json_decref(list);
+    rows_unseal(copy);
+    free(runs);
+    free(copy);
     free(path);
     free(other);
 }

@@ -150,6 +150,8 @@ static void values_of_every_type_are_set_and_read(void **state)
         {"render.min_weight", "1e-3", "0.001"},
         {"render.weights", "constant", "constant"},
         {"render.pool", "off", "off"},
+        {"render.threads", "8", "8"},
+        {"render.threads", " auto ", "auto"},
         {"render.samples", "4", "4"},
         {"camera.position", "0,2.75,-6", "0,2.75,-6"},
         {"camera.position", "[0, 1e2, -.5]", "0,100,-0.5"},
@@ -360,6 +362,9 @@ static void errors_of_paths_and_values_name_the_valid_ones(void **state)
          "render.schedule: 'dinamic' is not one of the choices; did you mean 'dynamic'? It is one of: columns, "
          "rows, tiles, dynamic"},
         {"render.pin=", "render.pin has no value; give one of: none, compact, scatter"},
+        {"render.threads=0", "render.threads: 0 is out of range; give an integer 1..1024, or auto"},
+        {"render.threads=automatic", "render.threads: 'automatic' is not an integer; give an integer 1..1024, or auto"},
+        {"render.depth=auto", "render.depth: 'auto' is not an integer; give an integer 0..64"},
         {"camera.fov_deg=0", "camera.fov_deg: 0 is out of range; give a number > 0, at most 179"},
         {"camera.fov_deg=nan", "camera.fov_deg: 'nan' is not a finite number; give a number > 0, at most 179"},
         {"camera.position=1,2", "camera.position: 2 values instead of 3; give 3 numbers, each -1000000..1000000"},

@@ -27,7 +27,7 @@ static size_t merge(const fixture *f, const study *s)
     char message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     size_t rows = 0;
-    if (study_merge(s, f->results, &rows, &why) != STATUS_OK)
+    if (study_merge(s, f->results, &rows, NULL, &why) != STATUS_OK)
         fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return rows;
 }
@@ -132,15 +132,15 @@ static void contradictory_rows_are_errors(void **state)
     free(rows);
     diagnostic why = {0};
     size_t count;
-    assert_int_equal(study_merge(s, f->results, &count, &why), STATUS_BAD_INPUT);
+    assert_int_equal(study_merge(s, f->results, &count, NULL, &why), STATUS_BAD_INPUT);
     assert_non_null(strstr(why.what, "duplicate row"));
     assert_non_null(strstr(why.file, "rows.shard-0-of-2.csv"));
     assert_int_equal(why.line, 19);
     study_destroy(s);
 }
 
-/* One repetition twice in one file is always an error. */
-static void duplicate_rows_in_a_file_are_errors(void **state)
+/* One repetition twice in one file counts once, and is a fault; a person must decide before a merge. */
+static void duplicate_rows_in_a_file_are_faults(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -153,13 +153,16 @@ static void duplicate_rows_in_a_file_are_errors(void **state)
     strcat(strcat(twice, rows), last);
     fixture_write(f, "results/test/rows.csv", twice);
     study_progress progress;
-    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+    assert_int_equal(progress.faults, 2); /* it is twice there, and not after the row that its check names */
+    assert_int_equal(progress.rows, 18);
+    assert_int_equal(study_merge(s, f->results, NULL, NULL, NULL), STATUS_BAD_INPUT);
     free(twice);
     free(rows);
     study_destroy(s);
 }
 
-static void damaged_rows_are_refused(void **state)
+static void edited_rows_are_not_used(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
@@ -170,10 +173,11 @@ static void damaged_rows_are_refused(void **state)
     *cell = '9'; /* there are cells 0 to 8 */
     fixture_write(f, "results/test/rows.csv", rows);
     free(rows);
-    diagnostic why = {0};
     study_progress progress;
-    assert_int_equal(study_status(s, f->results, &progress, &why), STATUS_BAD_INPUT);
-    assert_int_equal(why.line, 2);
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+    assert_int_equal(progress.faults, 1);
+    assert_int_equal(progress.fault.line, 2);
+    assert_int_equal(progress.rows, 17);
     study_destroy(s);
 }
 
@@ -208,8 +212,8 @@ int main(void)
                                         fixture_teardown),
         cmocka_unit_test_setup_teardown(incomplete_rows_of_shards_are_dropped, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(contradictory_rows_are_errors, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(duplicate_rows_in_a_file_are_errors, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(damaged_rows_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(duplicate_rows_in_a_file_are_faults, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(edited_rows_are_not_used, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(merging_without_rows_is_an_error, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(invalid_shards_are_refused, fixture_setup, fixture_teardown),
     };

@@ -144,16 +144,16 @@ static void columns_are_in_the_expected_order(void **state)
     study *s = fixture_study(*state, grid_text);
     char *header = row_file_header(s, ROWS);
     static const char start[] =
-        "study,definition,cell,repetition,warmup,order,time_utc,render.schedule,ball.ior,lamp.position,"
+        "study,identity,cell,repetition,warmup,order,time_utc,render.schedule,ball.ior,lamp.position,"
         "film_hash,film_expected,marked,wall_s,cpu_s,rays_camera,";
     assert_memory_equal(header, start, sizeof start - 1);
     free(header);
     header = row_file_header(s, WORKER_ROWS);
     assert_string_equal(
         header,
-        "study,definition,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays_total,"
+        "study,identity,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays_total,"
         "rays_camera,rays_reflect,rays_refract,rays_shadow,start_s,wall_s,cpu_s,busy_s,visibility_s,waiting_s,"
-        "running_s,runnable_s,blocked_s,voluntary_switches,involuntary_switches\n");
+        "running_s,runnable_s,blocked_s,voluntary_switches,involuntary_switches,schema,run,process,check\n");
     free(header);
     study_destroy(s);
 }

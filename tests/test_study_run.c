@@ -1,5 +1,9 @@
 /* Tests of study runs: repetitions, interruption and resumption, kept files, locks and full disks. */
 #include "study_fixture.h"
+#include "base/hash.h"
+#include "image/image.h"
+#include "rows_fixture.h"
+#include <inttypes.h>
 #include "image/image.h"
 #include "study/csv.h"
 #include <pthread.h>
@@ -88,10 +92,10 @@ static void a_complete_study_renders_nothing_and_rewrites_nothing(void **state)
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
     fixture_run(f, s);
-    char *rows = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/manifest.json");
+    char *rows = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/runs.json");
     assert_int_equal(fixture_run(f, s), 0);
     char *rows_now = fixture_text(f, "results/test/rows.csv"),
-         *manifest_now = fixture_text(f, "results/test/manifest.json");
+         *manifest_now = fixture_text(f, "results/test/runs.json");
     assert_string_equal(rows, rows_now);
     assert_string_equal(manifest, manifest_now);
     free(rows);
@@ -299,40 +303,82 @@ static void incomplete_rows_are_measured_again(void **state)
     study_destroy(s);
 }
 
-static void other_definitions_are_refused(void **state)
+/* Rows of cells that are not in the grid stay; those that are in it count. */
+static void changed_grids_keep_their_rows(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, study_text);
     fixture_run(f, s);
     study_destroy(s);
-    static const char *const changed[] = {
-        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}, {render.threads: [1, 3]}]\nkeep: {workers: "
-        "on}\n",
-        "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\n",
-    };
-    static const char *const differences[] = {
-        "render.threads of point 1 on axis 1 is 2 there, and 3 here",
-        "render.threads of point 0 on axis 1 is 1 there, and not set here",
-    };
+    static const char *const grids[] = {
+        "[{render.depth: [0, 1, 2]}, {render.threads: [1, 3]}]", "[{render.depth: [0, 1, 2]}]",
+        "[{render.threads: [2, 1]}, {render.depth: [2, 5, 0]}]", "[{render.depth: [2]}, {render.threads: [1, 2]}]",
+        "[{render.depth: [0, 1, 2, 5]}, {render.threads: [1, 2, 3]}]"};
+    /* The cells that are measured: threads 3; none, because 1 thread is the default; depth 5; none; depth 5, threads 3.
+     */
+    static const size_t missing[] = {3, 0, 2, 0, 1};
     char *before = fixture_text(f, "results/test/rows.csv");
-    for (size_t i = 0; i < 2; i++) {
-        diagnostic why = {0};
-        size_t ran;
+    for (size_t i = 0; i < sizeof grids / sizeof *grids; i++) {
+        char text[400];
         study_progress progress;
-        s = fixture_study(f, changed[i]);
-        study_options options = {.results = f->results};
-        assert_int_equal(study_run(s, &options, &ran, &why), STATUS_BAD_INPUT);
-        assert_int_equal(ran, 0);
-        assert_non_null(strstr(why.what, differences[i]));
-        assert_non_null(strstr(why.remedy, "--results"));
-        assert_non_null(strstr(why.file, "rows.csv"));
-        assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_BAD_INPUT);
+        snprintf(text, sizeof text,
+                 "study: test\nscene: scene.yaml\ngrid: %s\nrepetitions: 3\nwarmups: 1\nkeep: {workers: on}\n",
+                 grids[i]);
+        s = fixture_study(f, text);
+        assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+        assert_int_equal(progress.cells_done, progress.cells - missing[i]);
+        assert_int_equal(fixture_run(f, s), 4 * missing[i]);
+        assert_int_equal(fixture_run(f, s), 0);
         study_destroy(s);
     }
     char *after = fixture_text(f, "results/test/rows.csv");
-    assert_string_equal(before, after);
+    assert_memory_equal(before, after, strlen(before));
+    s = fixture_study(f, study_text);
+    study_progress progress;
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+    assert_int_equal(progress.rows, 24);
+    assert_int_equal(progress.rows_other_cells, 24);
+    assert_int_equal(progress.faults, 0);
+    study_destroy(s);
     free(before);
     free(after);
+}
+
+/* A kept image belongs to its cell, whatever its number in a changed grid. */
+static void kept_files_follow_their_cells(void **state)
+{
+    const fixture *f = *state;
+    static const char *const grids[] = {"[0, 1, 2]", "[2, 3, 0]", "[0]", "[0, 1, 2, 3]"};
+    static const int depths[][4] = {{0, 1, 2}, {2, 3, 0}, {0}, {0, 1, 2, 3}};
+    char *images[4] = {NULL}, path[400], name[64];
+    for (size_t i = 0; i < 4; i++) {
+        char text[200];
+        snprintf(text, sizeof text,
+                 "study: test\nscene: scene.yaml\ngrid: [{render.depth: %s}]\nrepetitions: 1\nwarmups: 0\nkeep: "
+                 "{image: on}\n",
+                 grids[i]);
+        study *s = fixture_study(f, text);
+        fixture_run(f, s);
+        for (size_t cell = 0; cell < study_cell_count(s); cell++) {
+            snprintf(name, sizeof name, "results/test/images/%04zu.png", cell);
+            fixture_path(f, name, path);
+            image *img = NULL;
+            assert_int_equal(image_read(path, &img, NULL, NULL), STATUS_OK);
+            uint64_t hash = hash_bytes(HASH_START, img->pixel, 24 * 18 * 3 * sizeof *img->pixel);
+            snprintf(name, sizeof name, "%016" PRIx64, hash);
+            char **known = &images[depths[i][cell]];
+            if (*known)
+                assert_string_equal(*known, name);
+            else
+                *known = strdup(name);
+            image_destroy(img);
+        }
+        study_destroy(s);
+    }
+    for (size_t i = 0; i < 4; i++) {
+        assert_true(i == 0 || strcmp(images[i], images[i - 1]) != 0);
+        free(images[i]);
+    }
 }
 
 /* More repetitions, another order, more kept files: the study resumes. */
@@ -385,6 +431,9 @@ static void leave_row_of_another_film(const fixture *f, size_t row)
     for (char *at = rows; (at = strstr(at, hash)); at += 16)
         memcpy(at, "0123456789abcdef", 16);
     fixture_write(f, "results/test/rows.csv", rows);
+    rows_recheck(path);
+    fixture_path(f, "results/test/runs.json", path);
+    rows_unseal(path);
     free(rows);
     free(hash);
 }
@@ -516,7 +565,7 @@ static void a_full_disk_leaves_only_complete_rows(void **state)
     options.context = &stop_after;
     assert_int_equal(study_run(s, &options, NULL, NULL), STATUS_INTERRUPTED);
     options.stop = NULL;
-    char *earlier = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/manifest.json");
+    char *earlier = fixture_text(f, "results/test/rows.csv"), *manifest = fixture_text(f, "results/test/runs.json");
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     small = before;
     small.rlim_cur = (strlen(earlier) > strlen(manifest) + 2000 ? strlen(earlier) : strlen(manifest) + 2000) + 1234;
@@ -566,7 +615,8 @@ int main(void)
                                         fixture_teardown),
         cmocka_unit_test_setup_teardown(kept_images_are_reported_as_progress, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(incomplete_rows_are_measured_again, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(other_definitions_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(changed_grids_keep_their_rows, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(kept_files_follow_their_cells, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(a_study_resumes_with_more_repetitions_or_kept_images, fixture_setup,
                                         fixture_teardown),
         cmocka_unit_test_setup_teardown(repetitions_stop_at_the_relative_width_of_the_interval, fixture_setup,

@@ -127,7 +127,7 @@ status command_animate(int argc, char **argv, diagnostic *why)
     THEN(result, scene_input_job(false, &with, why));
     THEN(result, read_scene(&request, in_files ? &names : NULL, &s, why));
     if (result == STATUS_OK && !request.json)
-        result = scene_input_lint(s, job_isa(with), NULL, why);
+        result = scene_input_lint(s, job_isa(with), why);
     if (result == STATUS_OK && !request.json)
         inert_note_changes(s, &request.input);
     THEN(result, make(&request, in_files ? &names : NULL, with, s, why));

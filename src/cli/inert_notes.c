@@ -121,35 +121,3 @@ void inert_note_frame(const scene_input *input, job *with, const job_account *fr
     frame_of f = {frame, with};
     note_changes(frame->of, input, &(inert_witness){&frame->result->counters, is_same, &f});
 }
-
-/* --- studies --- */
-
-static status note_in_all_cells(const study *s, const char *path, diagnostic *why)
-{
-    inert_answer answer = {.rule = ""};
-    bool inert = true;
-    for (size_t cell = 0; cell < study_cell_count(s) && inert; cell++) {
-        scene *setting;
-        TRY(study_cell_scene(s, cell, &setting, why));
-        inert = inert_ask(setting, path, NULL, &answer);
-        scene_destroy(setting);
-    }
-    if (inert)
-        print_note(&answer);
-    return STATUS_OK;
-}
-
-static status note_point(const study *s, const study_point *point, diagnostic *why)
-{
-    for (size_t i = 0; i < point->count; i++)
-        TRY(note_in_all_cells(s, point->paths[i], why));
-    return STATUS_OK;
-}
-
-status inert_note_study(const study *s, diagnostic *why)
-{
-    TRY(note_point(s, &s->fixed, why));
-    for (size_t a = 0; a < s->axis_count; a++)
-        TRY(note_point(s, &s->axes[a].points[0], why));
-    return STATUS_OK;
-}

@@ -4,7 +4,6 @@
 
 #include "cli/scene_input.h"
 #include "scene/model/inert/inert.h"
-#include "study/study.h"
 
 /* Notes on the changes of the command line. s: the changed scene. */
 void inert_note_changes(const scene *s, const scene_input *input);
@@ -15,6 +14,3 @@ void inert_note_frame(const scene_input *input, job *with, const job_account *fr
 
 /* A note on one PATH=VALUE. */
 void inert_note_assignment(const scene *s, const char *assignment);
-
-/* Notes on the axes and fixed parameters of a study that have no effect in any cell. */
-status inert_note_study(const study *s, diagnostic *why);

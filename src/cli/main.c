@@ -1,5 +1,6 @@
 /* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
 #include "base/float_environment.h"
+#include "base/build_id.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
 #include <argp.h>
@@ -55,7 +56,8 @@ static status command_help(int argc, char **argv, diagnostic *why)
 static void print_version(FILE *stream, struct argp_state *state)
 {
     (void)state;
-    fprintf(stream, "cuvette %s\n", CUVETTE_VERSION);
+    const char *commit = build_commit();
+    fprintf(stream, "cuvette %s (build %s%s%s)\n", CUVETTE_VERSION, build_id(), commit[0] ? ", commit " : "", commit);
 }
 
 int main(int argc, char **argv)

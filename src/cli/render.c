@@ -151,7 +151,7 @@ static status run(void *context, scene *s, isa level, diagnostic *why)
     job *with = NULL;
     status result = scene_input_job(true, &with, why);
     if (result == STATUS_OK && !request->json) {
-        result = scene_input_lint(s, level, NULL, why);
+        result = scene_input_lint(s, level, why);
         inert_note_changes(s, &request->input);
     }
     THEN(result, render_and_write(request, s, with, why));

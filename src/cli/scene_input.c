@@ -128,9 +128,9 @@ void scene_input_note_hints(const scene *s)
     scene_hints(s, &printer);
 }
 
-status scene_input_lint(const scene *s, isa level, const lint_filter *varies, diagnostic *why)
+status scene_input_lint(const scene *s, isa level, diagnostic *why)
 {
-    return lint_scene_but(s, level, varies, &printer, why);
+    return lint_scene(s, level, &printer, why);
 }
 
 void scene_input_note_tree(const scene *s)

@@ -85,9 +85,8 @@ void scene_input_note_tree(const scene *s);
 /* Prints the hints on likely mistakes in the scene (scene/model/hints.h) on standard error. */
 void scene_input_note_hints(const scene *s);
 
-/* Prints all notes of the linter (lint/lint.h) on a loaded scene, except those on places that vary. varies may be
- * NULL. */
-status scene_input_lint(const scene *s, isa level, const lint_filter *varies, diagnostic *why);
+/* Prints all notes of the linter (lint/lint.h) on a loaded scene. */
+status scene_input_lint(const scene *s, isa level, diagnostic *why);
 
 /* isa_choose, with located errors. */
 status scene_input_isa(isa *level, diagnostic *why);

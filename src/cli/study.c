@@ -1,14 +1,15 @@
 /* `cuvette study`: runs, lists, merges and summarises studies. */
 #include "base/text_writer.h"
 #include "cli/cli.h"
-#include "cli/inert_notes.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
+#include "cli/study_commands.h"
+#include "cli/study_notes.h"
 #include "cli/study_request.h"
 #include "cli/terminal.h"
 #include "study/study.h"
 #include "study/summary.h"
-#include "scene/model/scene.h"
+#include "study/verify.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -40,67 +41,50 @@ static status for_each_study(study_verb verb, study_action *act, int argc, char 
 {
     study_request request;
     status result = study_request_parse(verb, argc, argv, &request, why);
+    isa level = ISA_SSE2; /* part of the environment */
+    if (result == STATUS_OK && (verb == STUDY_RUN || verb == STUDY_STATUS))
+        result = scene_input_isa(&level, why);
     THEN(result, read_and_act(&request, act, why));
     study_request_release(&request);
     return result;
 }
 
-/* Returns whether path equals place or is an element of it ("lamp.position.x" of "lamp.position"). */
-static bool is_part(const char *place, const char *path)
+/* Prints notes on existing rows that are not used, or should not be. */
+static void note_rows(const study *s, const study_request *request, const study_progress *progress)
 {
-    const size_t length = strlen(place);
-    return strncmp(place, path, length) == 0 && (path[length] == '\0' || path[length] == '.');
+    char text[700], difference[400] = "";
+    if (progress->rows_elsewhere && !request->any_environment) {
+        study_environment_difference(s, request->results, difference, sizeof difference);
+        snprintf(text, sizeof text,
+                 "%s: %zu rows are of another environment%s%s; they are kept and not pooled (--any-environment counts "
+                 "them)",
+                 s->name, progress->rows_elsewhere, difference[0] ? ": here " : "", difference);
+        terminal_note(text);
+    }
+    if (request->shards > 1 && !request->by_repetition && study_cell_count(s) > 1) {
+        snprintf(text, sizeof text,
+                 "%s: each shard measures its own cells; on several machines, use --by=repetition, or cells differ by "
+                 "machine",
+                 s->name);
+        terminal_note(text);
+    }
+    if (progress->fault.what[0]) {
+        snprintf(text, sizeof text, "%s: %.300s; `cuvette study verify` lists such rows", s->name,
+                 progress->fault.what);
+        terminal_note(text);
+    }
 }
 
-/* Returns whether place is a solid's parameter and path the same parameter of its material. */
-static bool is_of_material(const scene *s, const char *place, const char *path)
-{
-    const char *dot = strchr(place, '.');
-    char name[SCENE_NAME_MAX + 1], whole[NOTE_PLACE_MAX];
-    if (!dot || (size_t)(dot - place) >= sizeof name)
-        return false;
-    snprintf(name, sizeof name, "%.*s", (int)(dot - place), place);
-    const int solid_index = scene_find_solid(s, name);
-    if (solid_index < 0 || s->solids[solid_index].material_index < 0)
-        return false;
-    snprintf(whole, sizeof whole, "%s%s", s->materials[s->solids[solid_index].material_index].name, dot);
-    return is_part(whole, path);
-}
-
-static bool varies(void *context, const char *place)
-{
-    const study *s = context;
-    for (size_t a = 0; a < s->axis_count; a++)
-        for (size_t i = 0; i < s->axes[a].points[0].count; i++) {
-            const char *path = s->axes[a].points[0].paths[i];
-            if (is_part(place, path) || is_part(path, place) || is_of_material(s->base, place, path))
-                return true;
-        }
-    return false;
-}
-
-/* Prints notes on the scene with the fixed parameters before anything is measured. Slimes are not simulated for
- * this. */
-static status lint(const study *s, const study_request *request, diagnostic *why)
+/* Prints notes before anything is measured, unless nothing will be. */
+static status print_notes(const study *s, const study_request *request, diagnostic *why)
 {
     study_progress progress;
-    isa level = ISA_SSE2;
-    status result = study_status(s, request->results, &progress, why);
-    if (result != STATUS_OK || progress.cells_done == progress.cells)
-        return result;
-    result = scene_input_isa(&level, why);
-    scene *base = scene_clone(s->base);
-    if (result == STATUS_OK && !base)
-        result = out_of_memory(why);
-    bool moves = false;
-    for (size_t i = 0; result == STATUS_OK && i < base->mesh_count; i++)
-        moves |= base->meshes[i].source == MESH_SLIME;
-    THEN(result, moves ? scene_load_files(base, why) : scene_load(base, why));
-    if (result == STATUS_OK)
-        result = scene_input_lint(base, level, &(lint_filter){varies, (void *)(uintptr_t)s}, why);
-    THEN(result, inert_note_study(s, why));
-    scene_destroy(base);
-    return result;
+    TRY(study_status(s, request->results, &progress, why));
+    if (progress.cells_done == progress.cells)
+        return STATUS_OK;
+    note_rows(s, request, &progress);
+    study_notes_print_file(s);
+    return study_notes_print_cells(s, why);
 }
 
 static status run_one(const study *s, const study_request *request, diagnostic *why)
@@ -109,10 +93,14 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     const study_options options = {.results = request->results,
                                    .shard = request->shard,
                                    .shards = request->shards,
+                                   .by_repetition = request->by_repetition,
+                                   .any_environment = request->any_environment,
                                    .progress = terminal,
                                    .stop = terminal_stop_requested};
     size_t rows = 0;
-    status result = request->quiet ? STATUS_OK : lint(s, request, why);
+    status result = request->quiet ? STATUS_OK : print_notes(s, request, why);
+    if (result == STATUS_OK && request->dry_run)
+        return study_dry_run(s, request, why);
     THEN(result, study_run(s, &options, &rows, why));
     if (result == STATUS_INTERRUPTED) {
         diagnose(why, STATUS_INTERRUPTED,
@@ -131,6 +119,18 @@ static status run_one(const study *s, const study_request *request, diagnostic *
     return terminal_flush(why); /* the next study may take an hour */
 }
 
+/* The first fault of the rows becomes the error of the command, after its output. */
+static status judge(const diagnostic *verdict, diagnostic *why)
+{
+    if (!verdict->what[0])
+        return STATUS_OK;
+    const status flushed = terminal_flush(why);
+    if (flushed != STATUS_OK)
+        return flushed;
+    *why = *verdict;
+    return STATUS_FAILURE;
+}
+
 static status print_status(const study *s, const study_request *request, diagnostic *why)
 {
     study_progress progress;
@@ -138,30 +138,52 @@ static status print_status(const study *s, const study_request *request, diagnos
     printf("%s: %zu of %zu cells done, %zu rows and %zu warm-ups in %s/%s, %zu marked\n", s->name, progress.cells_done,
            progress.cells, progress.rows - progress.warmups, progress.warmups, request->results, s->name,
            progress.rows_marked);
-    return STATUS_OK;
+    if (progress.rows_elsewhere)
+        printf("%s: %zu other rows, of other environments than this one (%s), are not counted\n", s->name,
+               progress.rows_elsewhere, progress.environment);
+    if (progress.rows_other_cells)
+        printf("%s: %zu rows of cells that the study does not have are kept and not used\n", s->name,
+               progress.rows_other_cells);
+    return judge(&progress.fault, why);
 }
 
 static status merge_one(const study *s, const study_request *request, diagnostic *why)
 {
     size_t rows = 0;
-    TRY(study_merge(s, request->results, &rows, why));
+    diagnostic verdict = {.what = ""};
+    TRY(study_merge(s, request->results, &rows, &verdict, why));
     printf("%s: %zu rows in %s/%s/rows.csv\n", s->name, rows, request->results, s->name);
-    return STATUS_OK;
+    return judge(&verdict, why);
 }
 
 /* A terminal gets the most important columns, a pipe or file all of them. */
 static status print_summary(const study *s, const study_request *request, diagnostic *why)
 {
-    if (!terminal_columns(STDOUT_FILENO))
-        return study_summary(s, request->results, stdout, why);
+    const summary_options options = {.environment = request->environment};
+    diagnostic verdict = {.what = ""};
     char *text = NULL;
     text_writer writer;
     TRY(text_writer_open(&writer, why));
-    status result = study_summary(s, request->results, writer.stream, why);
+    status result = study_summary_of(s, request->results, &options, writer.stream, &verdict, why);
     result = text_writer_end(&writer, result, &text, NULL, why);
-    THEN(result, study_table_print(stdout, text, why));
+    if (result == STATUS_OK && terminal_columns(STDOUT_FILENO))
+        result = study_table_print(stdout, text, why);
+    else if (result == STATUS_OK)
+        fputs(text, stdout);
     free(text);
-    return result;
+    return result == STATUS_OK ? judge(&verdict, why) : result;
+}
+
+static status verify_one(const study *s, const study_request *request, diagnostic *why)
+{
+    study_verdict verdict;
+    TRY(study_verify(s, request->results, stdout, &verdict, why));
+    return judge(&verdict.first, why);
+}
+
+static status command_verify(int argc, char **argv, diagnostic *why)
+{
+    return for_each_study(STUDY_VERIFY, verify_one, argc, argv, why);
 }
 
 static status command_run(int argc, char **argv, diagnostic *why)
@@ -235,11 +257,14 @@ static status command_list(int argc, char **argv, diagnostic *why)
 }
 
 static const command commands[] = {
+    {"new", "write a study file for a scene and the parameters to vary", study_new},
     {"run", "run studies, or resume them: measure the missing rows", command_run},
     {"list", "list the studies in a folder", command_list},
     {"status", "print the progress of studies", command_status},
     {"merge", "merge the rows of a study that was run in shards", command_merge},
+    {"verify", "check every row: damaged, edited, missing, duplicate and marked ones", command_verify},
     {"summary", "print medians and confidence intervals for each cell", command_summary},
+    {"plot", "draw a figure of studies with gnuplot", command_study_plot},
 };
 
 status command_study(int argc, char **argv, diagnostic *why)

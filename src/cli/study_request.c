@@ -26,6 +26,16 @@ static status take_shard(const command_option *o, void *context, const char *val
     return STATUS_OK;
 }
 
+static status take_by(const command_option *o, void *context, const char *value, diagnostic *why)
+{
+    study_request *request = context;
+    (void)o;
+    request->by_repetition = strcmp(value, "repetition") == 0;
+    if (!request->by_repetition && strcmp(value, "cell") != 0)
+        return options_wrong("--by", value, why, "give cell or repetition", "unknown division '%.64s'", value);
+    return STATUS_OK;
+}
+
 static void take_file(void *request, const char *file)
 {
     study_request *r = request;
@@ -37,6 +47,14 @@ static const command_option run_options[] = {
      OPTION_FILLS(option_text, study_request, results)},
     {"shard", 0, "I/N", "run part I of N, counted from 0; parts can run concurrently, on one or several machines",
      .take = take_shard},
+    {"by", 0, "WHAT",
+     "what --shard divides: cell (default), or repetition, so that each part measures every cell and cells do not "
+     "differ by machine",
+     .take = take_by},
+    {"any-environment", 0, NULL, "count the rows of every environment, not only those of this machine and build",
+     OPTION_FILLS(option_flag, study_request, any_environment)},
+    {"dry-run", 'n', NULL, "print what would be measured and kept, and about how long it takes; write nothing",
+     OPTION_FILLS(option_flag, study_request, dry_run)},
     {"quiet", 'q', NULL, "print errors only", OPTION_FILLS(option_flag, study_request, quiet)},
     {0},
 };
@@ -44,6 +62,14 @@ static const command_option run_options[] = {
 static const command_option results_options[] = {
     {"results", 'r', "DIR", "folder of the results (default: results)",
      OPTION_FILLS(option_text, study_request, results)},
+    {0},
+};
+
+static const command_option summary_options_list[] = {
+    {"results", 'r', "DIR", "folder of the results (default: results)",
+     OPTION_FILLS(option_text, study_request, results)},
+    {"environment", 0, "KEY", "only the rows of the environment KEY; main: of the one with most rows",
+     OPTION_FILLS(option_text, study_request, environment)},
     {0},
 };
 
@@ -67,11 +93,18 @@ static const command_form forms[STUDY_VERB_COUNT] = {
                      .take_argument = take_file,
                      .synopsis = "FILE...",
                      .about = "Merge the rows of a study's shards into its rows.csv."},
-    [STUDY_SUMMARY] = {.options = results_options,
-                       .take_argument = take_file,
-                       .synopsis = "FILE",
-                       .about = "Print one line per cell: medians, 95% confidence intervals, counts.\vA terminal gets "
-                                "the most important columns; a pipe or a file gets all of them, separated by tabs."},
+    [STUDY_VERIFY] = {.options = results_options,
+                      .take_argument = take_file,
+                      .synopsis = "FILE...",
+                      .about = "Check every row of each study: damaged, edited, moved, missing, duplicate and marked "
+                               "ones. Exit status 1 if there is one.\vNothing is changed."},
+    [STUDY_SUMMARY] =
+        {.options = summary_options_list,
+         .take_argument = take_file,
+         .synopsis = "FILE",
+         .about =
+             "Print one line per cell and environment: medians, 95% confidence intervals, counts.\vA terminal gets "
+             "the most important columns; a pipe or a file gets all of them, separated by tabs."},
 };
 
 static status check_files(const study_request *request, const char *program, diagnostic *why)

@@ -13,6 +13,7 @@ typedef enum study_verb {
     STUDY_STATUS,
     STUDY_MERGE,
     STUDY_SUMMARY,
+    STUDY_VERIFY,
     STUDY_VERB_COUNT
 } study_verb;
 
@@ -21,8 +22,9 @@ typedef struct study_request {
     const char **files; /* study files; for STUDY_LIST the folder */
     size_t file_count;
     const char *results;
+    const char *environment; /* of the summary: a key, "main", or NULL for all */
     long shard, shards;
-    bool quiet;
+    bool by_repetition, any_environment, quiet, dry_run;
 } study_request;
 
 status study_request_parse(study_verb verb, int argc, char **argv, study_request *out, diagnostic *why);
@@ -32,3 +34,6 @@ void study_request_release(study_request *request);
  * wall time, median CPU time, rays and marked rows; with a reference also flip and error_rms. tsv is the output of
  * study_summary and is modified. */
 status study_table_print(FILE *out, char *tsv, diagnostic *why);
+
+/* `cuvette study plot`, which has options of its own (study_plot.c). */
+status command_study_plot(int argc, char **argv, diagnostic *why);

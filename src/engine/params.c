@@ -47,9 +47,10 @@ cuvette_status cuvette_scene_set_int(cuvette_scene *s, const char *path, int64_t
     param_place at;
     char text[NUMBER_TEXT_MAX];
     snprintf(text, sizeof text, "%lld", (long long)value);
-    const bool as_word =
-        (value == 0 || value == 1) && param_place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row);
-    return cuvette_scene_set(s, path, as_word ? at.row->choices[value] : text, why);
+    const bool is_small = value == 0 || value == 1;
+    const param *row = is_small && param_place_find(s->model, path, &at, NULL) == STATUS_OK ? at.row : NULL;
+    const char *word = row && is_switch(row) ? row->choices[value] : row && value == 0 ? row->automatic : NULL;
+    return cuvette_scene_set(s, path, word ? word : text, why);
 }
 
 cuvette_status cuvette_scene_set_vector(cuvette_scene *s, const char *path, const double *values, size_t count,
@@ -121,9 +122,11 @@ cuvette_status cuvette_scene_get_int(const cuvette_scene *s, const char *path, i
     ENGINE_NEED(value);
     ENGINE_TRY(get(s, path, &text, why));
     cuvette_status code = CUVETTE_OK;
-    param_place at;
+    param_place at = {.row = NULL};
     if (param_place_find(s->model, path, &at, NULL) == STATUS_OK && is_switch(at.row))
         *value = strcmp(text, "on") == 0;
+    else if (at.row && at.row->automatic && strcmp(text, at.row->automatic) == 0)
+        *value = 0;
     else if (number_parse_int(text, &number))
         *value = number;
     else

@@ -82,21 +82,3 @@ status lint_scene(const scene *s, isa level, const note_taker *taker, diagnostic
     scene_hints(s, taker);
     return is_loaded(s) ? lint_traced(s, level, taker, why) : STATUS_OK;
 }
-
-typedef struct filtered {
-    const lint_filter *filter;
-    const note_taker *taker;
-} filtered;
-
-static void take_filtered(void *context, const scene_note *note)
-{
-    const filtered *f = context;
-    if (!f->filter->varies(f->filter->context, note->place))
-        f->taker->take(f->taker->context, note);
-}
-
-status lint_scene_but(const scene *s, isa level, const lint_filter *filter, const note_taker *taker, diagnostic *why)
-{
-    filtered f = {filter, taker};
-    return lint_scene(s, level, filter ? &(note_taker){take_filtered, &f} : taker, why);
-}

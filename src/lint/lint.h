@@ -12,11 +12,3 @@
 
 /* Without scene_load, a scene with meshes is examined only by its parameters. level: from isa_choose. */
 status lint_scene(const scene *s, isa level, const note_taker *taker, diagnostic *why);
-
-/* The same for a scene of which some parameters vary: `varies` is called for each note, and a note whose place varies
- * is dropped. NULL: none varies. */
-typedef struct lint_filter {
-    bool (*varies)(void *context, const char *place);
-    void *context;
-} lint_filter;
-status lint_scene_but(const scene *s, isa level, const lint_filter *filter, const note_taker *taker, diagnostic *why);

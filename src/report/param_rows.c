@@ -122,6 +122,7 @@ static json_t *line_json(const param_line *l, bool has_value)
     bad |= json_object_set_new(o, "highest", bounded ? json_of_real(row->highest) : json_null());
     bad |= json_object_set_new(o, "above_lowest", json_boolean(row->above_lowest));
     bad |= row->choices ? json_object_set_new(o, "choices", choices(row)) : 0;
+    bad |= row->automatic ? json_object_set_new(o, "automatic", json_string(row->automatic)) : 0;
     bad |= row->group == PARAM_SOLID ? json_object_set_new(o, "shapes", shapes(row)) : 0;
     bad |= json_object_set_new(o, "default", report_value(row, row->fallback));
     bad |= has_value ? json_object_set_new(o, "value", report_value(row, l->value)) : 0;

@@ -3,8 +3,8 @@
 #include "base/text.h"
 #include "study/definition_v1.h"
 #include "study/grid.h"
+#include "study/identity.h"
 #include "study/manifest.h"
-#include "study/meaning.h"
 #include "study/read_grid.h"
 #include "study/reference.h"
 #include "scene/model/open.h"
@@ -19,9 +19,12 @@ void accepted_start(accepted *a, const study *s, const char *folder)
     *a = (accepted){.s = s, .folder = folder};
 }
 
-static void accept(accepted *a, uint64_t definition)
+void accepted_end(accepted *a)
 {
-    a->older[a->count++] = definition;
+    study_destroy(a->recorded);
+    free(a->recorded_identity);
+    a->recorded = NULL;
+    a->recorded_identity = NULL;
 }
 
 static status read_parts(study *s, const document *d, const void *scene_text, diagnostic *why)
@@ -39,7 +42,7 @@ static status read_parts(study *s, const document *d, const void *scene_text, di
 
 /* Builds a study from the texts recorded in a manifest. Its scene is placed in the folder of the current scene file, so
  * that relative file names resolve as before. Nothing is opened, loaded or checked beyond parsing; use it only for
- * meaning_of_study. */
+ * its identities and its reference. */
 static status recorded_study(const study *now, const char *text, const char *scene_text, study **out, diagnostic *why)
 {
     *out = NULL;
@@ -48,24 +51,6 @@ static status recorded_study(const study *now, const char *text, const char *sce
         return study_parse(s, text, strlen(text), read_parts, scene_text, out, why);
     study_destroy(s);
     return out_of_memory(why);
-}
-
-/* Whether the recorded texts have the same meaning as the study. A difference is described in why_not. */
-static bool means_the_same(accepted *a, const manifest_study *recorded)
-{
-    diagnostic why = {.what = ""};
-    study *then = NULL;
-    meaning there = {0}, here = {0};
-    bool same = false;
-    if (recorded_study(a->s, recorded->text, recorded->scene_text, &then, &why) != STATUS_OK)
-        snprintf(a->why_not, sizeof a->why_not, "the manifest's study cannot be read by this program: %.200s",
-                 why.what);
-    else if (meaning_of_study(&there, then) == STATUS_OK && meaning_of_study(&here, a->s) == STATUS_OK)
-        same = !meaning_difference(&there, &here, a->why_not, sizeof a->why_not);
-    meaning_free(&there);
-    meaning_free(&here);
-    study_destroy(then);
-    return same;
 }
 
 /* Whether the contents of the scene's files are unchanged. Their names alone do not show that. */
@@ -82,6 +67,23 @@ static bool files_are_the_same(accepted *a, const manifest_study *recorded)
     return false;
 }
 
+/* Reads the recorded study and the identities of its cells. */
+static void look_into_texts(accepted *a, const manifest_study *m)
+{
+    diagnostic why = {.what = ""};
+    uint64_t files = HASH_START;
+    grid_hash_files(&files, a->s->base);
+    status code = recorded_study(a->s, m->text, m->scene_text, &a->recorded, &why);
+    THEN(code, identities_with_files(a->recorded, files, &a->recorded_identity, &why));
+    a->recorded_definition = m->definition;
+    if (code == STATUS_OK)
+        snprintf(a->why_not, sizeof a->why_not,
+                 "their fingerprint differs from that in the manifest.json next to them");
+    else
+        snprintf(a->why_not, sizeof a->why_not, "the manifest's study cannot be read by this program: %.200s",
+                 why.what);
+}
+
 static void look_into_manifest(accepted *a, const char *path)
 {
     manifest_study recorded;
@@ -94,43 +96,46 @@ static void look_into_manifest(accepted *a, const char *path)
         snprintf(a->why_not, sizeof a->why_not, "%.300s", why.what);
         return;
     }
-    if (means_the_same(a, &recorded) && files_are_the_same(a, &recorded)) {
-        accept(a, recorded.definition);
-        snprintf(a->why_not, sizeof a->why_not,
-                 "their fingerprint differs from that in the manifest.json next to them");
-    }
+    if (files_are_the_same(a, &recorded))
+        look_into_texts(a, &recorded);
     manifest_study_free(&recorded);
 }
 
 static void look(accepted *a)
 {
-    uint64_t earlier;
     a->looked = true;
-    if (definition_v1(a->s, &earlier))
-        accept(a, earlier);
+    a->has_v1 = definition_v1(a->s, &a->v1);
     char *path = text_format("%s/manifest.json", a->folder);
     if (path)
         look_into_manifest(a, path);
     free(path);
 }
 
-static bool is(const accepted *a, const char *text, uint64_t definition, bool of_comparison)
+static bool is(const study *s, const char *text, uint64_t definition, bool of_comparison)
 {
     char own[17];
-    snprintf(own, sizeof own, "%016" PRIx64, of_comparison ? reference_definition(a->s, definition) : definition);
+    snprintf(own, sizeof own, "%016" PRIx64, of_comparison ? reference_definition(s, definition) : definition);
     return strcmp(own, text) == 0;
 }
 
-bool accepted_has(accepted *a, const char *definition, bool of_comparison)
+static bool take(const study *s, const uint64_t *identity, size_t cell, bool of_comparison, uint64_t *out)
 {
-    if (is(a, definition, a->s->definition_hash, of_comparison))
-        return true;
+    if (cell >= study_cell_count(s))
+        return false;
+    *out = of_comparison ? identity_compared(s, identity[cell]) : identity[cell];
+    return true;
+}
+
+bool accepted_identity(accepted *a, const char *definition, size_t cell, bool of_comparison, uint64_t *identity)
+{
+    if (is(a->s, definition, a->s->definition_hash, of_comparison))
+        return take(a->s, a->s->identity, cell, of_comparison, identity);
     if (!a->looked)
         look(a);
-    for (size_t i = 0; i < a->count; i++)
-        if (is(a, definition, a->older[i], of_comparison))
-            return true;
-    return false;
+    if (a->has_v1 && is(a->s, definition, a->v1, of_comparison))
+        return take(a->s, a->s->identity, cell, of_comparison, identity);
+    return a->recorded_identity && is(a->recorded, definition, a->recorded_definition, of_comparison) &&
+           take(a->recorded, a->recorded_identity, cell, of_comparison, identity);
 }
 
 const char *accepted_why_not(const accepted *a)

@@ -1,8 +1,8 @@
-/* Decides which definition hashes in a study's rows have the same meaning as the study: its current hash; the hash of
- * version 1 (study/definition_v1.h); and the hash recorded in the folder's manifest, if the recorded texts of study and
- * scene, parsed by this program, have the same meaning and the scene's files had the same contents. A definition that
- * cannot be verified is not accepted. Ownership: borrows study and folder. Errors: none; accepted_why_not describes the
- * reason. */
+/* The cells of rows that have a definition instead of an identity, written by versions without identities. A definition
+ * is a hash of a whole study. Known are the study's own; that of version 1 (study/definition_v1.h); and the one
+ * recorded in the folder's manifest.json, if the scene's files had the same contents: the recorded texts of study and
+ * scene then give the identity of each of its cells. Ownership: borrows study and folder until accepted_end. Errors:
+ * none; accepted_why_not describes the reason. */
 #pragma once
 
 #include "study/study.h"
@@ -11,13 +11,17 @@ typedef struct accepted {
     const study *s;
     const char *folder;
     bool looked; /* older definitions were looked up, at the first row whose hash differs from the study's */
-    uint64_t older[2];
-    size_t count;
+    bool has_v1;
+    uint64_t v1;
+    study *recorded; /* read from the manifest's texts, or NULL */
+    uint64_t recorded_definition, *recorded_identity;
     char why_not[400];
 } accepted;
 
 void accepted_start(accepted *a, const study *s, const char *folder);
-/* definition: the hash in the row; in compare.csv it includes the study's reference. */
-bool accepted_has(accepted *a, const char *definition, bool of_comparison);
-/* Why rows are not accepted: "render.width is 800 there, and 640 here". */
+void accepted_end(accepted *a);
+/* The identity of the row with that definition, as in the row, and number of its cell; of_comparison: in compare.csv,
+ * where the definition includes the study's reference. False if it is unknown. */
+bool accepted_identity(accepted *a, const char *definition, size_t cell, bool of_comparison, uint64_t *identity);
+/* Why a definition is not known. */
 const char *accepted_why_not(const accepted *a);

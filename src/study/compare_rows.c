@@ -1,4 +1,5 @@
 #include "study/compare_rows.h"
+#include "study/identity.h"
 #include <math.h>
 
 /* Over all channels of all pixels, linear and not clamped. */
@@ -30,9 +31,10 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
 /* In the last one: line, r (the row). */
 #define COMPARE_COLUMNS(X)                                                                                             \
     X("study", "", "name of the study", csv_text(line, r->of->name))                                                   \
-    X("definition", "", "fingerprint of scene, fixed parameters, grid and reference, 16 hex digits",                   \
-      csv_hash(line, r->of->compare_hash))                                                                             \
-    X("cell", "", "number of the grid point, the last axis fastest", csv_count(line, (int64_t)r->cell))                \
+    X("identity", "", "hash of the cell's identity in rows.csv and of the reference's parameters, 16 hex digits",      \
+      csv_hash(line, identity_compared(r->of, r->of->identity[r->cell])))                                              \
+    X("cell", "", "number of the grid point when it was compared, the last axis fastest",                              \
+      csv_count(line, (int64_t)r->cell))                                                                               \
     X("<axis>", "of the parameter", "value of each parameter of the grid, in its order",                               \
       row_put_axes(line, r->of, r->setting))                                                                           \
     X("reference", "", "fingerprint of the reference's scene, 16 hex digits: its files in references/",                \
@@ -52,7 +54,8 @@ status compare_row_measure(compare_row *row, const render_result *frame, diagnos
       "root of the mean square of film less reference, over all pixels and channels, linear, not clamped; 1 is white", \
       csv_real(line, r->error_rms))                                                                                    \
     X("noise_rms", "radiance", "as in rows.csv", csv_real(line, r->noise_rms))                                         \
-    X("reference_noise_rms", "radiance", "the same of the reference", csv_real(line, r->against->noise_rms))
+    X("reference_noise_rms", "radiance", "the same of the reference", csv_real(line, r->against->noise_rms))           \
+    ROW_ORIGIN(X)
 
 #define DESCRIBE(name, unit, meaning, put) take(context, &(row_column){name, unit, meaning});
 #define PUT(name, unit, meaning, put) put;

@@ -23,6 +23,8 @@ typedef struct compare_row {
     double noise_rms; /* the account of the cell's frame */
     image_comparison difference;
     double error_rms;
+    const char *run; /* as in study/rows.h */
+    int process;
 } compare_row;
 
 /* Compares the frame's image with row->against: fills film_hash, noise_rms, error and error_rms. */

@@ -86,7 +86,8 @@ void csv_line_free(csv_line *line)
     *line = (csv_line){0};
 }
 
-size_t csv_split(char *text, char **fields)
+/* Stores the first `most` fields only. */
+static size_t split_first(char *text, char **fields, size_t most)
 {
     size_t count = 0;
     for (char *read = text;; read++) {
@@ -108,12 +109,17 @@ size_t csv_split(char *text, char **fields)
             return 0;
         bool last = !*read;
         *write = 0;
-        if (fields)
+        if (count < most)
             fields[count] = field;
         count++;
         if (last)
             return count;
     }
+}
+
+size_t csv_split(char *line, char **fields)
+{
+    return split_first(line, fields, fields ? SIZE_MAX : 0);
 }
 
 static status damaged(const char *path, long line, diagnostic *why)
@@ -122,37 +128,69 @@ static status damaged(const char *path, long line, diagnostic *why)
     return diagnose(why, STATUS_BAD_INPUT, "move the file away, or use a copy without this line", "the row is damaged");
 }
 
-/* Finds the row starts and splits the rows into fields. */
-static status split_all(csv *table, const char *path, diagnostic *why)
+/* Finds the starts of the lines, and makes the newlines of the copy ends of texts. Returns the number of lines. */
+static size_t find_lines(csv *table)
 {
-    size_t lines = 0, places = 0; /* upper bound of the number of fields: quoted commas are counted as well */
-    for (size_t i = 0; i < table->whole; i++) {
-        lines += table->raw[i] == '\n';
-        places += table->raw[i] == '\n' || table->raw[i] == ',';
-    }
-    if (lines == 0)
-        return STATUS_OK;
-    if (memchr(table->raw, 0, table->whole))
-        return damaged(path, 1, why);
-    table->start = malloc(lines * sizeof *table->start);
-    table->split = malloc(table->whole);
-    table->header = calloc(places, sizeof *table->header);
-    if (!table->start || !table->split || !table->header)
-        return out_of_memory(why);
+    size_t lines = 0;
+    for (const char *at = table->raw, *end = at + table->whole; at < end && (at = memchr(at, '\n', (size_t)(end - at)));
+         at++)
+        lines++;
+    table->start = malloc((lines + 1) * sizeof *table->start);
+    table->split = malloc(table->whole + 1);
+    table->broken = calloc(lines + 1, sizeof *table->broken);
+    if (!table->start || !table->split || !table->broken)
+        return 0;
     memcpy(table->split, table->raw, table->whole);
-    for (size_t i = 0, line = 0; i < table->whole; i++)
-        if (table->raw[i] == '\n') {
-            table->split[i] = 0;
-            table->start[line++] = i + 1;
-        }
+    size_t line = 0;
+    for (char *at = table->split, *end = at + table->whole; at < end && (at = memchr(at, '\n', (size_t)(end - at)));
+         at++) {
+        *at = 0;
+        table->start[line++] = (size_t)(at - table->split) + 1;
+    }
+    return lines;
+}
+
+static bool split_row(csv *table, size_t row)
+{
+    static char missing[] = "NA";
+    char **fields = table->fields + row * table->column_count;
+    const bool whole = !memchr(table->raw + table->start[row], 0, table->start[row + 1] - table->start[row]);
+    if (whole && split_first(table->split + table->start[row], fields, table->column_count) == table->column_count)
+        return true;
+    for (size_t i = 0; i < table->column_count; i++)
+        fields[i] = missing;
+    table->broken[row] = true;
+    return false;
+}
+
+/* Splits the rows into fields; strict: a broken one is an error. */
+static status split_all(csv *table, const char *path, bool strict, diagnostic *why)
+{
+    if (table->whole == 0)
+        return STATUS_OK;
+    const size_t lines = find_lines(table);
+    if (lines == 0)
+        return out_of_memory(why);
+    size_t most = 1;
+    for (const char *at = table->split; *at; at++)
+        most += *at == ',';
+    char **header = malloc(most * sizeof *header);
+    if (!header)
+        return out_of_memory(why);
     table->row_count = lines - 1;
-    table->column_count = csv_split(table->split, table->header);
-    table->fields = table->header + table->column_count;
+    table->column_count = strlen(table->split) + 1 == table->start[0] ? csv_split(table->split, header) : 0;
+    if (table->column_count > 0)
+        table->header = malloc(lines * table->column_count * sizeof *table->header);
+    if (table->header)
+        memcpy(table->header, header, table->column_count * sizeof *header);
+    free(header);
     if (table->column_count == 0)
         return damaged(path, 1, why);
+    if (!table->header)
+        return out_of_memory(why);
+    table->fields = table->header + table->column_count;
     for (size_t row = 0; row < table->row_count; row++)
-        if (csv_split(table->split + table->start[row], table->fields + row * table->column_count) !=
-            table->column_count)
+        if (!split_row(table, row) && strict)
             return damaged(path, (long)row + 2, why);
     return STATUS_OK;
 }
@@ -162,7 +200,7 @@ status csv_read(const char *path, csv **out, diagnostic *why)
     return csv_read_below(path, NULL, out, why);
 }
 
-status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why)
+static status read_table(const char *path, const char *root, bool strict, csv **out, diagnostic *why)
 {
     *out = NULL;
     if (access(path, F_OK) != 0)
@@ -174,7 +212,7 @@ status csv_read_below(const char *path, const char *root, csv **out, diagnostic 
     if (code == STATUS_OK) {
         const char *newline = table->size ? memrchr(table->raw, '\n', table->size) : NULL;
         table->whole = newline ? (size_t)(newline - table->raw) + 1 : 0;
-        code = split_all(table, path, why);
+        code = split_all(table, path, strict, why);
     }
     if (code != STATUS_OK) {
         csv_destroy(table);
@@ -182,6 +220,16 @@ status csv_read_below(const char *path, const char *root, csv **out, diagnostic 
     }
     *out = table;
     return STATUS_OK;
+}
+
+status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why)
+{
+    return read_table(path, root, true, out, why);
+}
+
+status csv_read_rows(const char *path, const char *root, csv **out, diagnostic *why)
+{
+    return read_table(path, root, false, out, why);
 }
 
 void csv_destroy(csv *table)
@@ -192,6 +240,7 @@ void csv_destroy(csv *table)
     free(table->split);
     free(table->header);
     free(table->start);
+    free(table->broken);
     free(table);
 }
 

@@ -35,6 +35,7 @@ typedef struct csv {
     size_t row_count;
     char **fields; /* row_count * column_count fields, after the header */
     size_t *start; /* offset of row i in raw; start[row_count] = whole */
+    bool *broken;  /* csv_read_rows: row i has another number of fields or invalid quotes; its fields are NA */
 } csv;
 
 /* STATUS_OK and *out = NULL if the file does not exist. STATUS_BAD_INPUT if a row does not have as many fields as the
@@ -42,6 +43,8 @@ typedef struct csv {
 status csv_read(const char *path, csv **out, diagnostic *why);
 /* The same for a file below root (base/below.h). */
 status csv_read_below(const char *path, const char *root, csv **out, diagnostic *why);
+/* The same, but rows with another number of fields are no error. */
+status csv_read_rows(const char *path, const char *root, csv **out, diagnostic *why);
 void csv_destroy(csv *table);
 
 /* Splits one line without its newline into fields, in place; returns their number, or 0 for invalid quotes. fields may

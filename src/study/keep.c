@@ -47,16 +47,33 @@ static char *kept_path(const char *folder, size_t cell, size_t what)
     return text_format("%s/images/%04zu%s", folder, cell, files[what].ending);
 }
 
-bool keep_missing(const study *s, const char *folder, size_t cell)
+char *keep_image_path(const char *folder, size_t cell)
 {
+    return kept_path(folder, cell, 0);
+}
+
+size_t keep_missing_count(const study *s, const char *folder, size_t cell)
+{
+    size_t missing = 0;
     for (size_t what = 0; what < KEPT_COUNT; what++) {
         char *path = wanted(s, what) ? kept_path(folder, cell, what) : NULL;
-        bool missing = path && access(path, F_OK) != 0;
+        missing += path && access(path, F_OK) != 0 ? 1 : 0;
         free(path);
-        if (missing)
-            return true;
     }
-    return false;
+    return missing;
+}
+
+bool keep_missing(const study *s, const char *folder, size_t cell)
+{
+    return keep_missing_count(s, folder, cell) > 0;
+}
+
+const char *keep_ending(const study *s, size_t i)
+{
+    for (size_t what = 0; what < KEPT_COUNT; what++)
+        if (wanted(s, what) && i-- == 0)
+            return files[what].ending;
+    return NULL;
 }
 
 render_options keep_options(const study *s)

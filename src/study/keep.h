@@ -8,6 +8,17 @@
 
 /* Whether a file that the study keeps is missing for the cell. */
 bool keep_missing(const study *s, const char *folder, size_t cell);
+/* The number of such files. */
+size_t keep_missing_count(const study *s, const char *folder, size_t cell);
+/* The ending of the study's kept file i, counted from 0: ".png" of images/0003.png; NULL after the last. */
+const char *keep_ending(const study *s, size_t i);
+
+/* Names the kept files by the numbers that their cells have now (study/keep_numbers.c); create: makes the folder for
+ * the first of them. *changed: files may have other names than before. */
+status keep_renumber(const study *s, const char *folder, bool create, bool *changed, diagnostic *why);
+
+/* The path of a cell's image in the study's folder; fresh memory, or NULL. */
+char *keep_image_path(const char *folder, size_t cell);
 
 /* The options of the frame; progress and context stay NULL. */
 render_options keep_options(const study *s);

@@ -1,16 +1,11 @@
-/* results/<study>/manifest.json: the machine, the program and the files of the rows. Written when the study first runs;
- * each later run appends itself to the list `runs`, so that every row's time_utc falls into one run. It has no host
- * name, serial number or path of this machine. SOURCE_DATE_EPOCH, if set, replaces the time. */
+/* Reads manifest.json, which defines the rows of versions without identities of cells: the texts of study and scene at
+ * the start of the first run. Newer versions write runs.json (study/runs.h). Also JSON values stored next to rows. */
 #pragma once
 
-#include "base/isa.h"
-#include "measure/topology.h"
-#include "study/study.h"
+#include "base/status.h"
 #include <jansson.h>
-
-/* shard of shards, as in study_options. Waits while the process of another shard writes the file. */
-status manifest_write(const study *s, const char *folder, const topology *machine, isa level, long shard, long shards,
-                      diagnostic *why);
+#include <stdbool.h>
+#include <stdint.h>
 
 /* The meaning of rows as recorded in a manifest. */
 typedef struct manifest_study {

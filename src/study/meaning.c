@@ -31,7 +31,7 @@ static status add_param(void *context, const char *path, const param *row, const
     visit_state *state = context;
     if (state->without_performance && row->performance_only)
         return STATUS_OK;
-    char *usual = param_default_text(row);
+    char *usual = param_first_default_text(row);
     status code = STATUS_FAILURE;
     if (usual)
         code = strcmp(usual, value) == 0 ? STATUS_OK : add(state->into, strdup(path), strdup(value));
@@ -105,33 +105,4 @@ uint64_t meaning_hash(const meaning *m)
         sum += hash_finish(hash_bytes(name, item->value, strlen(item->value) + 1));
     }
     return sum;
-}
-
-static const char *value_of(const meaning *m, const char *name)
-{
-    for (size_t i = 0; i < m->count; i++)
-        if (strcmp(m->items[i].name, name) == 0)
-            return m->items[i].value;
-    return NULL;
-}
-
-static bool differs(const meaning *from, const meaning *other, const char **name)
-{
-    for (size_t i = 0; i < from->count; i++) {
-        const char *value = value_of(other, from->items[i].name);
-        *name = from->items[i].name;
-        if (!value || strcmp(value, from->items[i].value) != 0)
-            return true;
-    }
-    return false;
-}
-
-bool meaning_difference(const meaning *there, const meaning *here, char *text, size_t size)
-{
-    const char *name;
-    if (!differs(there, here, &name) && !differs(here, there, &name))
-        return false;
-    const char *a = value_of(there, name), *b = value_of(here, name);
-    snprintf(text, size, "%.120s is %.80s there, and %.80s here", name, a ? a : "not set", b ? b : "not set");
-    return true;
 }

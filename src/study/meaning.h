@@ -1,7 +1,7 @@
-/* The meaning of a row: everything that determines its frame, as pairs of name and value. Values at their defaults are
- * omitted, so that a version of the program with more parameters, shapes or words gives the same meaning for the same
- * files; objects and shapes are identified by name. For this, a published default, name or word must never change.
- * Ownership: meaning_free releases what was filled. */
+/* The meaning of a row: everything that determines its frame, as pairs of name and value. Values at their first
+ * defaults (param.first_default) are omitted, so that a version of the program with more parameters, shapes or words,
+ * or with other defaults, gives the same meaning for the same values; objects and shapes are identified by name. For
+ * this, a published name or word must never change. Ownership: meaning_free releases what was filled. */
 #pragma once
 
 #include "study/study.h"
@@ -24,6 +24,3 @@ void meaning_free(meaning *m);
 
 /* A hash that does not depend on the order of the items. */
 uint64_t meaning_hash(const meaning *m);
-
-/* Describes the first difference: "render.width is 800 there, and 640 here". False if there is none. */
-bool meaning_difference(const meaning *there, const meaning *here, char *text, size_t size);

@@ -1,21 +1,88 @@
 #include "base/file.h"
+#include "study/check.h"
 #include "study/csv_layout.h"
 #include "study/row_files.h"
 #include "study/table.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* Appends the rows of one file, starting at `from`, converted to the common columns. */
-static status write_rows(FILE *out, const row_files *files, size_t from, size_t to, const char *header, diagnostic *why)
+/* A line of any file. Merging is about lines: those of cells that the study no longer has, and those that fail a check,
+ * are kept as well. */
+typedef struct merged_line {
+    const csv *of;
+    size_t row, position;
+    long run;
+    uint64_t values; /* a hash of its values, in any order of columns */
+} merged_line;
+
+static int compare_values(const void *a, const void *b)
 {
-    const csv *of = files->rows[from].table;
+    const merged_line *x = a, *y = b;
+    if (x->values != y->values)
+        return x->values < y->values ? -1 : 1;
+    return (x->position > y->position) - (x->position < y->position);
+}
+
+/* The rows of a run stay together and in order, and runs are in the order of runs.json. */
+static int compare_runs(const void *a, const void *b)
+{
+    const merged_line *x = a, *y = b;
+    if (x->run != y->run)
+        return x->run < y->run ? -1 : 1;
+    return (x->position > y->position) - (x->position < y->position);
+}
+
+static status list_table(const row_files *files, const csv *of, merged_line *lines, size_t *count, diagnostic *why)
+{
+    const int run = csv_column(of, "run");
+    check_columns columns;
+    TRY(check_columns_create(of->header, of->column_count, &columns, why));
+    for (size_t row = 0; row < of->row_count; row++, ++*count)
+        lines[*count] = (merged_line){.of = of,
+                                      .row = row,
+                                      .position = *count,
+                                      .run = runs_find(files->runs, csv_field(of, row, run)),
+                                      .values = check_values(&columns, of->fields + row * of->column_count)};
+    check_columns_free(&columns);
+    return STATUS_OK;
+}
+
+/* All different lines of all files. A line that two files have is there once. */
+static status list_lines(const row_files *files, merged_line **out, size_t *count, diagnostic *why)
+{
+    size_t total = 0, kept = 0;
+    for (size_t i = 0; i < files->count; i++)
+        total += files->tables[i]->row_count;
+    merged_line *lines = malloc((total + 1) * sizeof *lines);
+    *out = lines;
+    *count = 0;
+    status code = lines ? STATUS_OK : out_of_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i < files->count; i++)
+        if (files->tables[i]->header)
+            code = list_table(files, files->tables[i], lines, count, why);
+    if (code != STATUS_OK)
+        return code;
+    qsort(lines, *count, sizeof *lines, compare_values);
+    for (size_t i = 0; i < *count; i++)
+        if (kept == 0 || lines[kept - 1].values != lines[i].values || lines[kept - 1].of == lines[i].of)
+            lines[kept++] = lines[i];
+    *count = kept;
+    qsort(lines, kept, sizeof *lines, compare_runs);
+    return STATUS_OK;
+}
+
+/* Writes lines of one file, converted to the common columns. */
+static status write_lines(FILE *out, const merged_line *lines, size_t count, const char *header, diagnostic *why)
+{
+    const csv *of = lines[0].of;
     char *own = strndup(of->raw, of->start[0]);
     csv_layout *layout = NULL;
     csv_line placed = {0};
     status code = own ? csv_layout_create(own, header, &layout, why) : out_of_memory(why);
-    for (size_t i = from; code == STATUS_OK && i < to; i++) {
-        const size_t row = files->rows[i].row, start = of->start[row], size = of->start[row + 1] - start;
-        if (strcmp(own, header) == 0) {
+    const bool as_it_is = own && strcmp(own, header) == 0;
+    for (size_t i = 0; code == STATUS_OK && i < count; i++) {
+        const size_t start = of->start[lines[i].row], size = of->start[lines[i].row + 1] - start;
+        if (as_it_is) {
             fwrite(of->raw + start, 1, size, out);
         } else if ((code = csv_layout_place(layout, of->raw + start, size, &placed, why)) == STATUS_OK) {
             fwrite(placed.text, 1, placed.size, out);
@@ -44,72 +111,109 @@ static char *joined_header(const row_files *files, const char *header)
     return all;
 }
 
-/* Merges all rows of one kind into rows.csv, workers.csv or compare.csv, unchanged line by line. */
 static status write_joined(const row_files *files, const char *path, const char *header, diagnostic *why)
 {
+    merged_line *lines = NULL;
+    size_t count = 0;
     file_writer writer;
     char *all = joined_header(files, header);
-    status code = all ? file_writer_open(&writer, path, why) : out_of_memory(why);
-    if (code != STATUS_OK) {
-        free(all);
-        return code;
-    }
-    fputs(all, writer.stream);
-    for (size_t from = 0, to; code == STATUS_OK && from < files->row_count; from = to) {
-        for (to = from; to < files->row_count && files->rows[to].table == files->rows[from].table; to++) {
+    status code = all ? list_lines(files, &lines, &count, why) : out_of_memory(why);
+    THEN(code, file_writer_open(&writer, path, why));
+    if (code == STATUS_OK) {
+        fputs(all, writer.stream);
+        for (size_t from = 0, to; code == STATUS_OK && from < count; from = to) {
+            for (to = from + 1; to < count && lines[to].of == lines[from].of; to++) {
+            }
+            code = write_lines(writer.stream, lines + from, to - from, all, why);
         }
-        code = write_rows(writer.stream, files, from, to, all, why);
+        code = file_writer_end(&writer, code, why);
     }
+    free(lines);
     free(all);
-    return file_writer_end(&writer, code, why);
+    return code;
 }
 
-/* Every file is locked during the merge, so that no row is written into a file that is being replaced. */
-static status join(const study *s, const char *results, row_kind kind, size_t *rows, diagnostic *why)
+/* Lines that are no rows, or two rows of one repetition: what belongs together must be decided by a person. */
+static status refuse(const row_files *files, diagnostic *why)
 {
-    *rows = 0;
-    row_files *files;
-    status code = row_files_read(s, results, kind, &files, why);
-    if (code != STATUS_OK || files->count == 0) {
-        row_files_destroy(files);
-        return code;
+    for (size_t i = 0; i < files->issue_count; i++) {
+        const row_issue *at = &files->issues[i];
+        if (at->fault != ROW_DAMAGED && at->fault != ROW_DUPLICATE)
+            continue;
+        diagnostic_locate(why, at->path, at->line, 1);
+        return diagnose(why, STATUS_BAD_INPUT,
+                        at->fault == ROW_DAMAGED ? "move the file away, or use a copy without this line"
+                                                 : "two processes ran the same cells: move one of the files away",
+                        "%s", at->text);
     }
-    char *folder = study_folder(s, results), *header = row_file_header(s, kind);
+    return STATUS_OK;
+}
+
+/* Locks every file during the merge, so that no row is written into a file that is being replaced. */
+static status lock_files(const char *joined, const char *header, char *const *paths, size_t path_count, table **locked,
+                         size_t *count, diagnostic *why)
+{
+    status code = table_open(joined, header, &locked[0], why);
+    *count = code == STATUS_OK;
+    for (size_t i = 0; code == STATUS_OK && i < path_count; i++)
+        if (strcmp(paths[i], joined) != 0 && (code = table_open(paths[i], header, &locked[*count], why)) == STATUS_OK)
+            ++*count;
+    return code;
+}
+
+typedef struct merge {
+    const study *s;
+    const char *results;
+    size_t rows;
+    diagnostic *verdict;
+    bool judged;
+} merge;
+
+static status join(merge *m, row_kind kind, diagnostic *why)
+{
+    char **paths = NULL, *folder = study_folder(m->s, m->results), *header = row_file_header(m->s, kind);
     char *joined = folder ? row_file_path(folder, kind, 0, 1) : NULL;
-    table **locked = calloc(files->count + 1, sizeof(table *));
-    size_t locked_count = 0;
-    code = joined && header && locked ? table_open(joined, header, &locked[0], why) : out_of_memory(why);
-    if (code == STATUS_OK)
-        locked_count = 1;
-    for (size_t i = 0; code == STATUS_OK && i < files->count; i++)
-        if (strcmp(files->paths[i], joined) != 0 &&
-            (code = table_open(files->paths[i], header, &locked[locked_count], why)) == STATUS_OK)
-            locked_count++;
+    size_t count = 0, locked_count = 0;
+    status code = header && joined ? row_files_list(folder, kind, &paths, &count, why) : out_of_memory(why);
+    table **locked = calloc(count + 2, sizeof(table *));
+    row_files *files = NULL;
+    if (code == STATUS_OK && !locked)
+        code = out_of_memory(why);
+    if (code == STATUS_OK && count > 0) {
+        code = lock_files(joined, header, paths, count, locked, &locked_count, why);
+        THEN(code, row_files_read(m->s, m->results, kind, &files, why));
+        THEN(code, refuse(files, why));
+        if (code == STATUS_OK && files->count > 1)
+            code = write_joined(files, joined, header, why);
+        if (code == STATUS_OK) {
+            m->rows = files->row_count + files->other_cells;
+            m->judged = m->judged || row_files_judge(files, m->verdict) != STATUS_OK;
+        }
+    }
     row_files_destroy(files);
-    files = NULL;
-    THEN(code, row_files_read(s, results, kind, &files, why));
-    if (code == STATUS_OK && files->count > 1)
-        code = write_joined(files, joined, header, why);
-    if (code == STATUS_OK)
-        *rows = files->row_count;
     while (locked_count > 0)
         table_close(locked[--locked_count]);
+    for (size_t i = 0; i < count; i++)
+        free(paths[i]);
+    free(paths);
     free(locked);
-    row_files_destroy(files);
     free(joined);
     free(header);
     free(folder);
     return code;
 }
 
-status study_merge(const study *s, const char *results, size_t *rows, diagnostic *why)
+status study_merge(const study *s, const char *results, size_t *rows, diagnostic *verdict, diagnostic *why)
 {
-    size_t joined = 0;
-    /* Worker rows come first: worker rows without their row are valid, the opposite is not. */
-    status code = join(s, results, WORKER_ROWS, &joined, why);
-    THEN(code, join(s, results, COMPARE_ROWS, &joined, why));
-    THEN(code, join(s, results, ROWS, &joined, why));
+    merge m = {.s = s, .results = results, .verdict = verdict};
+    char *folder = study_folder(s, results);
+    status code = folder ? runs_merge(folder, scene_root(s->base), why) : out_of_memory(why);
+    /* Worker rows come before rows: worker rows without their row are valid, the opposite is not. */
+    static const row_kind kinds[] = {WORKER_ROWS, COMPARE_ROWS, ROWS};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds && code == STATUS_OK; i++)
+        code = join(&m, kinds[i], why);
     if (rows)
-        *rows = joined;
+        *rows = m.rows;
+    free(folder);
     return code;
 }

@@ -49,7 +49,7 @@ static void count_frames(progress_line *line, const progress_index *done, const 
     for (size_t i = 0; i < cell_count; i++) {
         const progress_index_cell *cell = &done->cells[cells[i]];
         size_t lacking =
-            progress_index_cell_done(done, cells[i]) ? 0 : (size_t)line->s->repetitions_max - cell->counted;
+            progress_index_cell_done(done, cells[i]) ? 0 : (size_t)progress_index_most(done) - cell->counted;
         now->left_s +=
             (double)lacking * (cell->counted ? sum(cell->wall_s, cell->counted) / (double)cell->counted : mean_s);
         now->frames_all += cell->counted + lacking;

@@ -1,55 +1,144 @@
 #include "study/progress_index.h"
+#include "base/build_id.h"
+#include "base/file.h"
 #include "base/grow.h"
+#include "base/hash.h"
+#include "base/isa.h"
 #include "measure/statistics.h"
 #include "study/row_files.h"
-#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+static uint64_t hash_text(const char *text)
+{
+    return hash_finish(hash_bytes(HASH_START, text, strlen(text) + 1));
+}
+
+uint64_t progress_index_build(void)
+{
+    return hash_text(build_id());
+}
+
+static const uint64_t *find_film(const progress_index_cell *film, uint64_t build)
+{
+    for (size_t i = 0; i < film->film_count; i++)
+        if (film->film[i].build == build)
+            return &film->film[i].film_hash;
+    return NULL;
+}
+
+uint64_t progress_index_film(const progress_index *l, size_t cell, uint64_t build, uint64_t film_hash)
+{
+    const uint64_t *known = find_film(&l->cells[study_cell_film(l->s, cell)], build);
+    return known ? *known : film_hash;
+}
+
+static status expect_film(progress_index *l, const progress_index_entry *entry, diagnostic *why)
+{
+    progress_index_cell *film = &l->cells[study_cell_film(l->s, entry->cell)];
+    if (find_film(film, entry->build))
+        return STATUS_OK;
+    if (!room_for_one(&film->film, film->film_count, sizeof *film->film))
+        return out_of_memory(why);
+    film->film[film->film_count++] = (progress_index_expected){entry->build, entry->film_hash};
+    return STATUS_OK;
+}
 
 status progress_index_add(progress_index *l, const progress_index_entry *entry, diagnostic *why)
 {
     progress_index_cell *cell = &l->cells[entry->cell];
-    if (!entry->warmup) {
+    const bool here = !l->environment[0] || strcmp(l->environment, entry->environment) == 0;
+    const bool counts = here && !entry->of_other_shard;
+    if (counts && !entry->warmup) {
         if (!room_for_one(&cell->wall_s, cell->counted, sizeof *cell->wall_s))
             return out_of_memory(why);
         cell->wall_s[cell->counted++] = entry->wall_s;
     }
-    progress_index_cell *film = &l->cells[study_cell_film(l->s, entry->cell)];
-    film->film_expected = progress_index_film(l, entry->cell, entry->film_hash);
-    film->film_known = true;
+    TRY(expect_film(l, entry, why));
     cell->rows++;
     if (entry->repetition >= cell->next_repetition)
         cell->next_repetition = entry->repetition + 1;
-    bool marked = entry->film_hash != film->film_expected;
+    const bool marked = entry->film_hash != progress_index_film(l, entry->cell, entry->build, entry->film_hash);
     cell->marked += marked;
     l->marked += marked;
+    l->warmups += counts && entry->warmup;
+    l->elsewhere += !here;
+    if (!here)
+        snprintf(l->last_environment, sizeof l->last_environment, "%s", entry->environment);
     l->rows++;
     return STATUS_OK;
 }
 
-status progress_index_read(const study *s, const char *results, progress_index **out, diagnostic *why)
+/* The columns that the index reads, of one table. */
+typedef struct index_columns {
+    const csv *table;
+    int film_hash, wall_s;
+    bool of_other_shard;
+} index_columns;
+
+/* Whether only the rows of one shard count, and the table is not its file. */
+static bool is_of_other_shard(const progress_index *l, const row_files *files, const csv *table)
+{
+    char name[64];
+    if (l->shards <= 1)
+        return false;
+    snprintf(name, sizeof name, "rows.shard-%ld-of-%ld.csv", l->shard, l->shards);
+    for (size_t i = 0; i < files->count; i++)
+        if (files->tables[i] == table)
+            return strcmp(file_name_of(files->paths[i]), name) != 0;
+    return true;
+}
+
+static status add_rows(progress_index *l, const row_files *files, diagnostic *why)
+{
+    index_columns at = {.table = NULL};
+    long last_run = -2;
+    uint64_t build = 0;
+    for (size_t i = 0; i < files->row_count; i++) {
+        const row_ref *ref = &files->rows[i];
+        if (ref->table != at.table)
+            at = (index_columns){ref->table, csv_column(ref->table, "film_hash"), csv_column(ref->table, "wall_s"),
+                                 is_of_other_shard(l, files, ref->table)};
+        if (ref->run < 0)
+            build = hash_text(ref->environment);
+        else if (ref->run != last_run)
+            build = hash_text(files->runs->entry[ref->run].here.fact[ENVIRONMENT_FACTS - 1]);
+        last_run = ref->run;
+        TRY(progress_index_add(
+            l,
+            &(progress_index_entry){.cell = ref->cell,
+                                    .repetition = ref->repetition,
+                                    .warmup = ref->warmup,
+                                    .film_hash = strtoull(csv_field(ref->table, ref->row, at.film_hash), NULL, 16),
+                                    .build = build,
+                                    .wall_s = csv_field_real(ref->table, ref->row, at.wall_s),
+                                    .environment = ref->environment,
+                                    .of_other_shard = at.of_other_shard},
+            why));
+    }
+    return STATUS_OK;
+}
+
+status progress_index_read(const study *s, const char *results, const progress_index_filter *filter,
+                           progress_index **out, diagnostic *why)
 {
     *out = NULL;
     row_files *files;
     TRY(row_files_read(s, results, ROWS, &files, why));
-    status code = STATUS_OK;
     progress_index *l = calloc(1, sizeof *l);
     if (l) {
         l->s = s;
         l->cells = calloc(l->cell_count = study_cell_count(s), sizeof *l->cells);
+        l->other_cells = files->other_cells;
+        l->fault_count = files->fault_count;
+        row_files_judge(files, &l->fault);
+        snprintf(l->environment, sizeof l->environment, "%s", filter->environment);
+        l->shard = filter->shard;
+        l->shards = filter->shards;
     }
-    if (!l || !l->cells)
-        code = out_of_memory(why);
-    for (size_t i = 0; code == STATUS_OK && i < files->row_count; i++) {
-        const row_ref *ref = &files->rows[i];
-        progress_index_entry entry = {.cell = ref->cell,
-                                      .repetition = ref->repetition,
-                                      .warmup = ref->warmup,
-                                      .film_hash = strtoull(row_field(ref, "film_hash"), NULL, 16),
-                                      .wall_s = row_field_real(ref, "wall_s")};
-        code = progress_index_add(l, &entry, why);
-    }
+    const status code = l && l->cells ? add_rows(l, files, why) : out_of_memory(why);
     row_files_destroy(files);
     if (code != STATUS_OK) {
         progress_index_destroy(l);
@@ -63,25 +152,37 @@ void progress_index_destroy(progress_index *l)
 {
     if (!l)
         return;
-    for (size_t i = 0; l->cells && i < l->cell_count; i++)
+    for (size_t i = 0; l->cells && i < l->cell_count; i++) {
         free(l->cells[i].wall_s);
+        free(l->cells[i].film);
+    }
     free(l->cells);
     free(l);
 }
 
-uint64_t progress_index_film(const progress_index *l, size_t cell, uint64_t film_hash)
+/* The part of the shard: repetitions shard, shard + shards, ... */
+static long part_of(const progress_index *l, long repetitions)
 {
-    const progress_index_cell *film = &l->cells[study_cell_film(l->s, cell)];
-    return film->film_known ? film->film_expected : film_hash;
+    return l->shards > 1 ? (repetitions - l->shard + l->shards - 1) / l->shards : repetitions;
+}
+
+long progress_index_least(const progress_index *l)
+{
+    return part_of(l, l->s->repetitions_min);
+}
+
+long progress_index_most(const progress_index *l)
+{
+    return part_of(l, l->s->repetitions_max);
 }
 
 bool progress_index_cell_done(const progress_index *l, size_t cell)
 {
     const study *s = l->s;
     const progress_index_cell *at = &l->cells[cell];
-    if (at->counted >= (size_t)s->repetitions_max)
+    if (at->counted >= (size_t)progress_index_most(l))
         return true;
-    if (at->counted < (size_t)s->repetitions_min || s->relative_width <= 0)
+    if (at->counted < (size_t)progress_index_least(l) || s->relative_width <= 0)
         return false;
     summary walls = summarize(at->wall_s, at->counted); /* safe to sort in place */
     double width = summary_relative_width(&walls);
@@ -91,12 +192,22 @@ bool progress_index_cell_done(const progress_index *l, size_t cell)
 status study_status(const study *s, const char *results, study_progress *out, diagnostic *why)
 {
     progress_index *l;
-    TRY(progress_index_read(s, results, &l, why));
-    *out = (study_progress){.cells = l->cell_count, .rows = l->rows, .rows_marked = l->marked};
-    for (size_t cell = 0; cell < l->cell_count; cell++) {
+    run_environment here;
+    isa level;
+    TRY(isa_choose(&level, why));
+    environment_read("", level, &here);
+    TRY(progress_index_read(s, results, &(progress_index_filter){.environment = here.key}, &l, why));
+    *out = (study_progress){.cells = l->cell_count,
+                            .rows = l->rows - l->elsewhere,
+                            .warmups = l->warmups,
+                            .rows_marked = l->marked,
+                            .rows_elsewhere = l->elsewhere,
+                            .rows_other_cells = l->other_cells,
+                            .faults = l->fault_count,
+                            .fault = l->fault};
+    snprintf(out->environment, sizeof out->environment, "%s", here.key);
+    for (size_t cell = 0; cell < l->cell_count; cell++)
         out->cells_done += progress_index_cell_done(l, cell);
-        out->warmups += l->cells[cell].rows - l->cells[cell].counted;
-    }
     progress_index_destroy(l);
     return STATUS_OK;
 }

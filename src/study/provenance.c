@@ -32,12 +32,12 @@ static char *line_of(const char *path, const char *prefix)
 
 char *provenance_cpu_model(void)
 {
-    return line_of("/proc/cpuinfo", "model name");
+    return provenance_cpu_field("model name");
 }
 
-char *provenance_governor(void)
+char *provenance_cpu_field(const char *name)
 {
-    return line_of("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "");
+    return line_of("/proc/cpuinfo", name);
 }
 
 char *provenance_kernel(void)

@@ -1,4 +1,4 @@
-/* Facts about the machine and the program for the manifest. Fresh memory, release with free; NULL if a fact is not
+/* Facts about the machine and the program for the list of runs. Fresh memory, release with free; NULL if a fact is not
  * available. Cannot fail otherwise. */
 #pragma once
 
@@ -9,8 +9,8 @@
 char *provenance_cpu_model(void);
 /* "Linux 6.1.0 x86_64". */
 char *provenance_kernel(void);
-/* Frequency governor of the first processing unit, such as "performance". */
-char *provenance_governor(void);
+/* The named line of /proc/cpuinfo, of the first processing unit. */
+char *provenance_cpu_field(const char *name);
 /* The processing units available to the process, "0-3,8". */
 char *provenance_binding(void);
 /* The commit checked out in folder, 40 hex digits; *dirty: tracked files differ from it. Silent without git. */

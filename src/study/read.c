@@ -23,6 +23,7 @@
 #include "scene/file/document.h"
 #include "study/cell_table.h"
 #include "study/grid.h"
+#include "study/identity.h"
 #include "study/read_grid.h"
 #include "study/reference.h"
 #include <libgen.h>
@@ -255,8 +256,7 @@ static status read_root(study *s, const document *d, const void *context, diagno
         TRY(grid_each_cell(s, check_loads, (void *)(uintptr_t)guard, why));
     }
     TRY(grid_definition(s, &s->definition_hash, why));
-    s->compare_hash = reference_definition(s, s->definition_hash);
-    return STATUS_OK;
+    return identities_find(s, &s->identity, why);
 }
 
 status study_parse(study *s, const char *text, size_t size, study_parts *read, const void *context, study **out,

@@ -1,6 +1,7 @@
 #include "study/read_grid.h"
 #include "base/number.h"
 #include "scene/model/params.h"
+#include "study/comma_slip.h"
 #include "study/grid.h"
 #include <stdlib.h>
 #include <string.h>
@@ -187,13 +188,26 @@ static status read_points(study_axis *axis, scene *on, const document *d, const 
     return code;
 }
 
+/* The remedy for equal values: in [1.1, 1,3, 1,4], 1 is there twice. */
+static const char *distinct_remedy(const node *at, char text[COMMA_SLIP_TEXT_MAX + 24])
+{
+    char joined[COMMA_SLIP_TEXT_MAX];
+    for (size_t i = 0; at->kind == NODE_LIST && i < at->count; i++)
+        if (comma_slip_at(at, i, joined)) {
+            snprintf(text, COMMA_SLIP_TEXT_MAX + 24, "did you mean %s?", joined);
+            return text;
+        }
+    return "list each value once";
+}
+
 /* at: the node of the points; if it is a list, each point is located at its item. */
 static status check_distinct(const study_axis *axis, const document *d, const node *at, diagnostic *why)
 {
+    char remedy[COMMA_SLIP_TEXT_MAX + 24];
     for (size_t i = 1; i < axis->count; i++)
         for (size_t k = 0; k < i; k++)
             if (points_equal(&axis->points[i], &axis->points[k]))
-                return node_error(d, at->kind == NODE_LIST ? at->items[i] : at, why, "list each value once",
+                return node_error(d, at->kind == NODE_LIST ? at->items[i] : at, why, distinct_remedy(at, remedy),
                                   "value %zu equals value %zu", i + 1, k + 1);
     return STATUS_OK;
 }
@@ -260,6 +274,8 @@ static status read_axes(study *s, scene *on, const document *d, const node *grid
         if (code == STATUS_OK) {
             axis_find_films(&s->axes[i], on);
             code = check_once(s, i, d, grid->items[i], why);
+            if (code == STATUS_OK && grid->items[i]->count == 1)
+                code = comma_slip_note(s, s->axes[i].name, grid->items[i]->items[0], why);
         }
         if (code != STATUS_OK)
             return code;

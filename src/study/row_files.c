@@ -1,15 +1,18 @@
 #include "study/row_files.h"
-#include "base/number.h"
+#include "base/file.h"
+#include "base/grow.h"
 #include "base/text.h"
-#include "study/accepted.h"
 #include "study/compare_rows.h"
 #include "study/row_check.h"
+#include "study/row_read.h"
 #include "study/rows.h"
 #include "scene/model/open.h"
 #include <dirent.h>
 #include <errno.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char *const stems[] = {"rows", "workers", "compare"};
 
@@ -22,6 +25,11 @@ char *row_file_path(const char *folder, row_kind kind, long shard, long shards)
 {
     return shards > 1 ? text_format("%s/%s.shard-%ld-of-%ld.csv", folder, stems[kind], shard, shards)
                       : text_format("%s/%s.csv", folder, stems[kind]);
+}
+
+const char *row_file_stem(row_kind kind)
+{
+    return stems[kind];
 }
 
 char *row_file_header(const study *s, row_kind kind)
@@ -79,46 +87,40 @@ static status list_shards(const char *folder, row_kind kind, shard_name **list, 
     return STATUS_OK;
 }
 
-static status add_file(row_files *files, const study *s, char *path, diagnostic *why)
+status row_files_list(const char *folder, row_kind kind, char ***paths, size_t *count, diagnostic *why)
 {
-    if (!path)
-        return out_of_memory(why);
-    csv *table;
-    status code = csv_read_below(path, scene_root(s->base), &table, why);
-    if (code != STATUS_OK || !table) {
-        free(path);
-        return code;
+    shard_name *shards;
+    size_t shard_count;
+    *paths = NULL;
+    *count = 0;
+    TRY(list_shards(folder, kind, &shards, &shard_count, why));
+    char **list = calloc(shard_count + 1, sizeof *list);
+    status code = list ? STATUS_OK : out_of_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i <= shard_count; i++) {
+        const shard_name of = i > 0 ? shards[i - 1] : (shard_name){0, 1};
+        char *path = row_file_path(folder, kind, of.shard, of.shards);
+        if (!path)
+            code = out_of_memory(why);
+        else if (access(path, F_OK) == 0)
+            list[(*count)++] = path;
+        else
+            free(path);
     }
-    files->paths[files->count] = path;
-    files->tables[files->count++] = table;
-    return STATUS_OK;
+    free(shards);
+    *paths = list;
+    return code;
 }
 
 static status open_files(row_files *files, const study *s, const char *folder, row_kind kind, diagnostic *why)
 {
-    shard_name *shards;
     size_t count;
-    status code = list_shards(folder, kind, &shards, &count, why);
-    if (code == STATUS_OK) {
-        files->paths = calloc(count + 1, sizeof *files->paths);
-        files->tables = calloc(count + 1, sizeof *files->tables);
-        code = files->paths && files->tables ? add_file(files, s, row_file_path(folder, kind, 0, 1), why)
-                                             : out_of_memory(why);
-    }
+    TRY(row_files_list(folder, kind, &files->paths, &count, why));
+    files->count = count;
+    files->tables = calloc(count + 1, sizeof(csv *));
+    status code = files->tables ? STATUS_OK : out_of_memory(why);
     for (size_t i = 0; code == STATUS_OK && i < count; i++)
-        code = add_file(files, s, row_file_path(folder, kind, shards[i].shard, shards[i].shards), why);
-    free(shards);
+        code = csv_read_rows(files->paths[i], scene_root(s->base), &files->tables[i], why);
     return code;
-}
-
-static status another_definition(const char *path, long line, row_kind kind, const char *reason, diagnostic *why)
-{
-    diagnostic_locate(why, path, line, 1);
-    return diagnose(why, STATUS_BAD_INPUT,
-                    kind == COMPARE_ROWS
-                        ? "move this file away: the images will be compared again; nothing is measured again"
-                        : "move this folder away, choose another with --results, or give the study another name",
-                    "these rows have another definition%s%s", reason[0] ? ": " : "", reason);
 }
 
 const char *row_field(const row_ref *ref, const char *name)
@@ -131,56 +133,72 @@ double row_field_real(const row_ref *ref, const char *name)
     return csv_field_real(ref->table, ref->row, csv_column(ref->table, name));
 }
 
-/* An integer from 0 to highest in the named column. */
-static bool field_integer(const row_ref *ref, const char *name, int64_t highest, int64_t *out)
+const char *row_environment(const row_ref *ref)
 {
-    return number_parse_int(row_field(ref, name), out) && *out >= 0 && *out <= highest;
+    return ref->environment;
 }
 
-static status read_row(const study *s, row_ref *ref, const char *path, row_kind kind, accepted *known, diagnostic *why)
+status row_files_add_issue(row_files *files, row_fault fault, const char *path, long line, const char *format, ...)
 {
-    const long line = (long)ref->row + 2;
-    const char *definition = row_field(ref, "definition");
-    if (strcmp(row_field(ref, "study"), s->name) != 0)
-        return another_definition(path, line, kind, "they belong to another study", why);
-    if (!accepted_has(known, definition, kind == COMPARE_ROWS))
-        return another_definition(path, line, kind, accepted_why_not(known), why);
-    int64_t cell, repetition = 0, warmup = 0, worker = 0;
-    if (!field_integer(ref, "cell", (int64_t)study_cell_count(s) - 1, &cell) ||
-        (kind != COMPARE_ROWS &&
-         (!field_integer(ref, "repetition", INT32_MAX, &repetition) || !field_integer(ref, "warmup", 1, &warmup))) ||
-        (kind == WORKER_ROWS && !field_integer(ref, "worker", INT32_MAX, &worker))) {
-        diagnostic_locate(why, path, line, 1);
-        return diagnose(why, STATUS_BAD_INPUT, "move the file away, or use a copy without this line",
-                        "the row is damaged");
-    }
-    ref->cell = (size_t)cell;
-    ref->repetition = (long)repetition;
-    ref->warmup = warmup != 0;
-    ref->worker = (long)worker;
+    if (!room_for_one(&files->issues, files->issue_count, sizeof *files->issues))
+        return STATUS_FAILURE;
+    row_issue *added = &files->issues[files->issue_count++];
+    *added = (row_issue){.fault = fault, .path = file_name_of(path), .line = line};
+    files->fault_count += fault != ROW_TORN;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(added->text, sizeof added->text, format, arguments);
+    va_end(arguments);
     return STATUS_OK;
+}
+
+status row_files_judge(const row_files *files, diagnostic *why)
+{
+    for (size_t i = 0; i < files->issue_count; i++) {
+        const row_issue *first = &files->issues[i];
+        if (first->fault == ROW_TORN)
+            continue;
+        char more[64] = "";
+        if (files->fault_count > 1)
+            snprintf(more, sizeof more, "; and %zu more", files->fault_count - 1);
+        diagnostic_locate(why, first->path, first->line, first->line ? 1 : 0);
+        return diagnose(why, STATUS_FAILURE, "`cuvette study verify` lists the rows", "%s%s", first->text, more);
+    }
+    return STATUS_OK;
+}
+
+/* --- reading --- */
+
+static status read_tables(row_reader *r, diagnostic *why)
+{
+    row_files *files = r->into;
+    size_t total = 0;
+    for (size_t i = 0; i < files->count; i++)
+        total += files->tables[i] ? files->tables[i]->row_count : 0;
+    files->rows = malloc((total + 1) * sizeof *files->rows);
+    r->chain = calloc(files->runs->count + 1, sizeof *r->chain);
+    status code = files->rows && r->chain ? STATUS_OK : out_of_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i < files->count; i++) {
+        if (!files->tables[i] || !files->tables[i]->header)
+            continue;
+        code = row_check_columns(files->tables[i], files->paths[i], r->kind, why);
+        THEN(code, row_read_table(r, files->tables[i], files->paths[i], why));
+    }
+    THEN(code, row_read_seals(r, why));
+    free(r->chain);
+    return code;
 }
 
 static status read_rows(row_files *files, const study *s, const char *folder, row_kind kind, diagnostic *why)
 {
     accepted known;
+    row_reader r = {.s = s, .kind = kind, .into = files, .known = &known};
     accepted_start(&known, s, folder);
-    size_t total = 0;
-    for (size_t i = 0; i < files->count; i++)
-        total += files->tables[i]->row_count;
-    files->rows = malloc((total + 1) * sizeof *files->rows);
-    status code = files->rows ? STATUS_OK : out_of_memory(why);
-    for (size_t i = 0; code == STATUS_OK && i < files->count; i++) {
-        const csv *table = files->tables[i];
-        if (!table->header)
-            continue;
-        code = row_check_columns(table, files->paths[i], kind, why);
-        for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++) {
-            row_ref *ref = &files->rows[files->row_count++];
-            *ref = (row_ref){.table = table, .row = row};
-            code = read_row(s, ref, files->paths[i], kind, &known, why);
-        }
-    }
+    status code = runs_read(folder, scene_root(s->base), &files->runs, why);
+    THEN(code, row_cells_create(s, kind, &r.cells, why));
+    THEN(code, read_tables(&r, why));
+    row_cells_free(&r.cells);
+    accepted_end(&known);
     return code;
 }
 
@@ -205,9 +223,11 @@ status row_files_read(const study *s, const char *results, row_kind kind, row_fi
     status code = load(s, results, kind, out, why);
     row_files *rows = NULL;
     if (code == STATUS_OK && kind == WORKER_ROWS && (code = load(s, results, ROWS, &rows, why)) == STATUS_OK)
-        row_check_drop_orphans(*out, rows);
+        code = row_check_drop_orphans(*out, rows, why);
     row_files_destroy(rows);
     THEN(code, row_check_drop_twins(*out, why));
+    if (code == STATUS_OK && kind == ROWS)
+        code = row_check_quantities(*out, why);
     if (code != STATUS_OK) {
         row_files_destroy(*out);
         *out = NULL;
@@ -221,10 +241,13 @@ void row_files_destroy(row_files *files)
         return;
     for (size_t i = 0; i < files->count; i++) {
         free(files->paths[i]);
-        csv_destroy(files->tables[i]);
+        if (files->tables)
+            csv_destroy(files->tables[i]);
     }
     free(files->paths);
     free(files->tables);
     free(files->rows);
+    free(files->issues);
+    runs_destroy(files->runs);
     free(files);
 }

@@ -70,9 +70,10 @@ static void put_time(csv_line *line, const study_row *r)
  * agree. The last macro argument uses line and r (the row). The other columns are those of job/quantities.h. */
 #define WHOSE(X)                                                                                                \
     X("study", "", "name of the study", csv_text(line, r->of->name))                                            \
-    X("definition", "", "fingerprint of scene, fixed parameters and grid, 16 hex digits",                       \
-      csv_hash(line, r->of->definition_hash))                                                                   \
-    X("cell", "", "number of the grid point, the last axis fastest", csv_count(line, (int64_t)r->cell))         \
+    X("identity", "", "hash of all that determines the cell's film and measurement, 16 hex digits",             \
+      csv_hash(line, r->of->identity[r->cell]))                                                                 \
+    X("cell", "", "number of the grid point when it was measured, the last axis fastest",                       \
+      csv_count(line, (int64_t)r->cell))                                                                        \
     X("repetition", "", "running number in the cell, from 0, warm-ups counted; a continued run warms up again", \
       csv_count(line, r->repetition))                                                                           \
     X("warmup", "", "1: frame before the first measured one of the cell in its process; not for summaries",     \
@@ -112,6 +113,11 @@ static void describe_judged(row_column_taker *take, void *context)
     JUDGED(DESCRIBE)
 }
 
+static void describe_origin(row_column_taker *take, void *context)
+{
+    ROW_ORIGIN(DESCRIBE)
+}
+
 void row_each_column(row_column_taker *take, void *context)
 {
     WHOSE(DESCRIBE) WHEN(DESCRIBE) AXES(DESCRIBE) for (size_t i = 0; i < frame_quantity_count; i++)
@@ -120,6 +126,7 @@ void row_each_column(row_column_taker *take, void *context)
         if (i == 0)
             describe_judged(take, context);
     }
+    describe_origin(take, context);
 }
 
 void worker_each_column(row_column_taker *take, void *context)
@@ -128,6 +135,7 @@ void worker_each_column(row_column_taker *take, void *context)
     AXES(DESCRIBE)
     for (size_t i = 0; i < worker_quantity_count; i++)
         take_quantity(&worker_quantities[i], take, context);
+    describe_origin(take, context);
 }
 
 typedef struct header {
@@ -166,6 +174,11 @@ static void put_judged(csv_line *line, const study_row *r)
     JUDGED(PUT)
 }
 
+static void put_origin(csv_line *line, const study_row *r)
+{
+    ROW_ORIGIN(PUT)
+}
+
 void row_write(csv_line *line, const study_row *r)
 {
     WHOSE(PUT) WHEN(PUT) AXES(PUT) for (size_t i = 0; i < frame_quantity_count; i++)
@@ -175,6 +188,7 @@ void row_write(csv_line *line, const study_row *r)
         if (i == 0)
             put_judged(line, r);
     }
+    put_origin(line, r);
     csv_end(line);
 }
 
@@ -186,6 +200,7 @@ void worker_rows_write(csv_line *line, const study_row *r)
         for (size_t i = 0; i < worker_quantity_count; i++)
             if (worker_quantities[i].column)
                 row_put(line, &worker_quantities[i], r->made, worker);
+        put_origin(line, r);
         csv_end(line);
     }
 }

@@ -8,11 +8,13 @@
 #include "study/rows.h"
 #include "study/run_state.h"
 #include <stdlib.h>
+#include <string.h>
 
-static void choose_cells(run *r)
+void run_choose_cells(run *r)
 {
     size_t total = study_cell_count(r->s);
-    size_t shards = r->options->shards > 1 ? (size_t)r->options->shards : 1;
+    const bool divided = r->options->shards > 1 && !r->options->by_repetition;
+    size_t shards = divided ? (size_t)r->options->shards : 1;
     size_t shard = shards > 1 ? (size_t)r->options->shard : 0;
     for (size_t i = 0; i < total; i++)
         r->order[i] = i;
@@ -22,9 +24,17 @@ static void choose_cells(run *r)
         r->cells[r->cell_count++] = r->order[i];
 }
 
-status run_append(table *to, csv_line *lines, diagnostic *why)
+status run_append(row_table *to, csv_line *lines, diagnostic *why)
 {
-    const status code = lines->failed ? out_of_memory(why) : table_append(to, lines->text, lines->size, why);
+    char last[CHECK_TEXT];
+    memcpy(last, to->last, sizeof last);
+    status code = check_lines(&to->columns, last, lines, why);
+    THEN(code, table_append(to->file, lines->text, lines->size, why));
+    if (code == STATUS_OK) {
+        memcpy(to->last, last, sizeof last);
+        for (const char *at = lines->text; (at = strchr(at, '\n')); at++)
+            to->count++;
+    }
     csv_line_free(lines);
     return code;
 }
@@ -32,16 +42,21 @@ status run_append(table *to, csv_line *lines, diagnostic *why)
 static status append_row(run *r, const study_row *row, diagnostic *why)
 {
     csv_line line = {0};
-    if (r->workers) {
+    if (r->workers.file) {
         worker_rows_write(&line, row);
-        TRY(run_append(r->workers, &line, why));
+        TRY(run_append(&r->workers, &line, why));
     }
     row_write(&line, row);
-    TRY(run_append(r->rows, &line, why));
+    TRY(run_append(&r->rows, &line, why));
     r->row_number++;
     r->ran++;
-    progress_index_entry entry = {row->cell, row->repetition, row->warmup, row->made->film_hash,
-                                  row->made->result->wall_s};
+    const progress_index_entry entry = {.cell = row->cell,
+                                        .repetition = row->repetition,
+                                        .warmup = row->warmup,
+                                        .film_hash = row->made->film_hash,
+                                        .build = r->build,
+                                        .wall_s = row->made->result->wall_s,
+                                        .environment = r->here.key};
     return progress_index_add(r->done, &entry, why);
 }
 
@@ -91,7 +106,9 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
                                .repetition = r->done->cells[cell].next_repetition,
                                .warmup = warmup,
                                .order = r->row_number,
-                               .film_expected = progress_index_film(r->done, cell, made.film_hash),
+                               .film_expected = progress_index_film(r->done, cell, r->build, made.film_hash),
+                               .run = r->id,
+                               .process = r->process,
                                .made = &made};
         code = append_row(r, &row, why);
     }
@@ -110,7 +127,7 @@ static status measure_warm(run *r, size_t cell, diagnostic *why)
 
 static status run_rounds(run *r, diagnostic *why)
 {
-    for (long round = 0; round < r->s->repetitions_max; round++) {
+    for (long round = 0; round < progress_index_most(r->done); round++) {
         for (size_t i = 0; i < r->cell_count; i++)
             r->order[i] = i;
         if (r->s->shuffle)
@@ -144,17 +161,33 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
              .compared = calloc(total, sizeof *r.compared),
              .line = progress_begin(s, options)};
     bool has_memory = r.folder && r.cells && r.warm && r.order && r.compared && r.line;
-    status code = has_memory ? progress_index_read(s, options->results, &r.done, why) : out_of_memory(why);
-    THEN(code, run_find_compared(&r, why));
+    status code = has_memory ? job_create(&(job_settings){.measured = true,
+                                                          .fresh_peak = true,
+                                                          .keeps_meshes = true,
+                                                          .stop = options->stop,
+                                                          .context = options->context},
+                                          &r.with, why)
+                             : out_of_memory(why);
     if (code == STATUS_OK) {
-        choose_cells(&r);
+        environment_read("", job_isa(r.with), &r.here);
+        r.build = progress_index_build();
+    }
+    THEN(code, run_read_rows(&r, why));
+    THEN(code, run_find_compared(&r, why));
+    bool renumbered = false;
+    THEN(code, keep_renumber(s, r.folder, false, &renumbered, why));
+    if (code == STATUS_OK) {
+        run_choose_cells(&r);
         bool idle = run_complete(&r);
         if (!idle) {
             code = run_prepare(&r, why);
             THEN(code, run_rounds(&r, why));
             THEN(code, run_keep_all(&r, why));
+            diagnostic unsealed = {.what = ""};
+            const status sealed = r.id[0] ? run_seal_rows(&r, code == STATUS_OK ? why : &unsealed) : STATUS_OK;
+            code = code == STATUS_OK ? sealed : code;
         }
-        THEN(code, keep_index(s, r.folder, !idle, why));
+        THEN(code, keep_index(s, r.folder, !idle || renumbered, why));
     }
     if (ran)
         *ran = r.ran;

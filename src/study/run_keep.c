@@ -73,10 +73,11 @@ static status hold_reference(run *r, size_t cell, diagnostic *why)
 static status compare_cell(run *r, size_t cell, const scene *setting, const render_result *frame, diagnostic *why)
 {
     csv_line line = {0};
-    compare_row row = {.of = r->s, .cell = cell, .setting = setting, .against = &r->held};
+    compare_row row = {
+        .of = r->s, .cell = cell, .setting = setting, .against = &r->held, .run = r->id, .process = r->process};
     TRY(compare_row_measure(&row, frame, why));
     compare_row_write(&line, &row);
-    status code = run_append(r->compares, &line, why);
+    status code = run_append(&r->compares, &line, why);
     r->compared[cell] = code == STATUS_OK;
     return code;
 }
@@ -91,7 +92,7 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
     THEN(code, study_cell_scene(r->s, cell, &setting, why));
     THEN(code, run_load(r, setting, why));
     THEN(code, run_render(r, setting, keeps ? &wanted : NULL, &frame, why));
-    if (code == STATUS_OK && frame.film_hash != progress_index_film(r->done, cell, frame.film_hash))
+    if (code == STATUS_OK && frame.film_hash != progress_index_film(r->done, cell, r->build, frame.film_hash))
         code = diagnose(why, STATUS_FAILURE, "look for marked rows; the image must depend only on the scene",
                         "the image of cell %zu differs from that of its rows", cell);
     if (code == STATUS_OK && keeps)
@@ -105,10 +106,11 @@ static status keep_cell(run *r, size_t cell, diagnostic *why)
 
 status run_keep_all(run *r, diagnostic *why)
 {
-    status code = STATUS_OK;
     size_t images = 0, img = 0;
+    bool renumbered;
     for (size_t i = 0; i < r->cell_count; i++)
         images += lacks_anything(r, r->cells[i]);
+    status code = images ? keep_renumber(r->s, r->folder, study_keeps_files(r->s), &renumbered, why) : STATUS_OK;
     for (size_t i = 0; code == STATUS_OK && i < r->cell_count; i++)
         if (lacks_anything(r, r->cells[i])) {
             progress_images(r->line, r->cells[i], ++img, images);

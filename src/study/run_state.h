@@ -3,11 +3,21 @@
 #pragma once
 
 #include "job/job.h"
-#include "study/csv.h"
+#include "study/check.h"
 #include "study/progress_index.h"
 #include "study/progress.h"
 #include "study/reference.h"
+#include "study/row_files.h"
+#include "study/runs.h"
 #include "study/table.h"
+
+/* A file of rows that this run appends to, and the chain of their checks (study/check.h). */
+typedef struct row_table {
+    table *file; /* NULL: closed */
+    check_columns columns;
+    char last[CHECK_TEXT]; /* the check of the last row of this run, its id at first */
+    size_t count;          /* rows of this run */
+} row_table;
 
 typedef struct run {
     const study *s;
@@ -17,19 +27,28 @@ typedef struct run {
     bool *warm;                /* indexed by cell number in the whole grid */
     size_t *order;             /* scratch: the order of cells[] in a round */
     progress_index *done;
-    bool *compared;        /* indexed by cell number in the whole grid: compare.csv has its row */
-    table *rows, *workers; /* workers: NULL unless kept */
-    table *compares;       /* NULL without a reference */
-    reference held;        /* the last reference used */
+    bool *compared;          /* indexed by cell number in the whole grid: compare.csv has its row */
+    row_table rows, workers; /* workers: closed unless kept */
+    row_table compares;      /* closed without a reference */
+    reference held;          /* the last reference used */
     size_t row_number, ran;
+    char id[RUN_ID]; /* of this run; "" before run_prepare */
+    int process;
+    run_environment here;
+    uint64_t build; /* progress_index_build */
     job *with;
     progress_line *line;
 } run;
 
-/* Opens folder, locks, existing rows (read again under the lock), manifest, job. After a failure run_release releases
- * what was opened. */
+/* Opens folder, locks, existing rows (read again under the lock), list of runs, job. After a failure run_release
+ * releases what was opened. */
 status run_prepare(run *r, diagnostic *why);
 void run_release(run *r);
+
+/* Reads the existing rows into r->done. */
+status run_read_rows(run *r, diagnostic *why);
+/* Fills cells and cell_count with the cells of the shard; order is overwritten. */
+void run_choose_cells(run *r);
 
 /* Reads which cells have been compared from the existing files. */
 status run_find_compared(run *r, diagnostic *why);
@@ -37,8 +56,10 @@ status run_find_compared(run *r, diagnostic *why);
 /* Whether a row, a kept file or a comparison is missing. */
 bool run_complete(const run *r);
 
-/* Appends the lines to the table, and frees them. */
-status run_append(table *to, csv_line *lines, diagnostic *why);
+/* Completes the checks of the lines, appends them to the table, and frees them. */
+status run_append(row_table *to, csv_line *lines, diagnostic *why);
+/* Records the end of the run: number and last check of its rows. */
+status run_seal_rows(const run *r, diagnostic *why);
 
 /* Loads the files of the scene. */
 status run_load(run *r, scene *setting, diagnostic *why);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "scene/model/inert/note.h"
 #include "scene/model/open.h"
 #include <stdbool.h>
 #include <stdint.h>
@@ -28,6 +29,12 @@ typedef struct study_axis {
     size_t count;
 } study_axis;
 
+/* A note on the study file, which is valid; at line and column. */
+typedef struct study_note {
+    long line, column;
+    scene_note note;
+} study_note;
+
 typedef struct study {
     char *path, *name, *title;
     char *scene_path;  /* resolved against the study file's folder */
@@ -46,10 +53,12 @@ typedef struct study {
         keep_motion;         /* once per cell */
     char *text, *scene_text; /* the texts of both files */
     scene *base;             /* the scene with the fixed parameters applied */
-    /* Hash of the meaning of a row: name, scene, fixed parameters, grid; rows with another meaning are refused
-     * (study/accepted.h). Repetitions, order, title and kept files may change between runs. */
+    uint64_t *identity;      /* of each cell: what determines its film and its measurement (study/identity.h) */
+    /* Hash of name, scene, fixed parameters and grid, as in the rows of versions without identities of cells
+     * (study/accepted.h). */
     uint64_t definition_hash;
-    uint64_t compare_hash; /* hash of the meaning of a row of compare.csv: the definition and the reference */
+    study_note *notes; /* in the order of the file */
+    size_t note_count;
 } study;
 
 /* Whether the study keeps files of its cells in addition to rows. */
@@ -96,10 +105,12 @@ typedef struct study_moment {
 } study_moment;
 
 typedef struct study_options {
-    const char *results; /* results folder; results/<name>/ is created in it */
-    long shard, shards;  /* this process measures the cells whose position in the shuffled grid, modulo shards, is
+    const char *results;  /* results folder; results/<name>/ is created in it */
+    long shard, shards;   /* this process measures the cells whose position in the shuffled grid, modulo shards, is
                             shard; 0 of 1 (or 0 of 0) for all */
-    FILE *progress;      /* a terminal for the progress line with ETA, or NULL */
+    bool by_repetition;   /* instead, this process measures all cells, and every shards-th repetition of each */
+    bool any_environment; /* rows of every environment count, not only those of the present one */
+    FILE *progress;       /* a terminal for the progress line with ETA, or NULL */
     bool (*stop)(void *context); /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
     void (*progressed)(
         void *context,
@@ -111,12 +122,19 @@ typedef struct study_options {
 /* Measures what is missing; for a complete study *ran = 0 rows are written. */
 status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why);
 
-/* The progress of a study on disk, over rows.csv and the files of shards. */
+/* The progress of a study on disk, over rows.csv and the files of shards. Cells, rows and warm-up rows are those of the
+ * present environment (study/environment.h). */
 typedef struct study_progress {
     size_t cells, cells_done, rows, warmups, rows_marked;
-} study_progress; /* warmups: warm-up rows */
+    size_t rows_elsewhere;   /* rows of other environments */
+    size_t rows_other_cells; /* rows of cells that the study does not have (any more) */
+    size_t faults;           /* rows that are marked, fail a check, or are missing */
+    diagnostic fault;        /* the first of them */
+    char environment[16];    /* key of the present environment */
+} study_progress;
 status study_status(const study *s, const char *results, study_progress *out, diagnostic *why);
 
-/* Merges the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv; no row is lost or duplicated. rows.csv
- * is written atomically; the files of shards stay. */
-status study_merge(const study *s, const char *results, size_t *rows, diagnostic *why);
+/* Merges the shards' rows (results/<name>/rows.shard-i-of-N.csv) into rows.csv, and their runs; no line is lost or
+ * duplicated. rows.csv is written atomically; the files of shards stay. STATUS_BAD_INPUT, with nothing written, for a
+ * line that is no row and for two rows of one repetition. verdict becomes the first of the other faults of the rows. */
+status study_merge(const study *s, const char *results, size_t *rows, diagnostic *verdict, diagnostic *why);

@@ -4,7 +4,7 @@
 #include "study/cell_table.h"
 #include "study/compare_rows.h"
 #include "study/grid.h"
-#include "study/row_files.h"
+#include "study/row_environments.h"
 #include "study/rows.h"
 #include "scene/model/open.h"
 #include <math.h>
@@ -25,6 +25,7 @@ static const char *const after_marked[] = {
 typedef struct cell_rows {
     bool header;
     size_t number;
+    const char *environment;   /* whose rows these are; "NA" without a row */
     const char *film_expected; /* NULL without a row */
     const row_ref **rows;
     size_t count, marked;
@@ -36,9 +37,15 @@ typedef struct cell_rows {
 /* Known values of one column over the cell's rows. */
 static summary summarize_column(const cell_rows *cell, const char *name)
 {
+    const csv *table = NULL;
+    int column = -1;
     size_t count = 0;
     for (size_t i = 0; i < cell->count; i++) {
-        const double value = row_field_real(cell->rows[i], name);
+        if (cell->rows[i]->table != table) {
+            table = cell->rows[i]->table;
+            column = csv_column(table, name);
+        }
+        const double value = csv_field_real(table, cell->rows[i]->row, column);
         if (!isnan(value))
             cell->values[count++] = value;
     }
@@ -112,58 +119,114 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
         put_median(cell, after_marked[i]);
     const status code = put_solids(s, cell, why);
     put_compared(s, cell);
-    fputc('\n', cell->out);
+    fprintf(cell->out, "\t%s\n", cell->header ? "environment" : cell->environment);
     return code;
 }
 
-/* Rows are in the order of time; the rows of one cell are collected for its line. */
-static status put_cells(const study *s, const row_files *files, const row_files *compared, FILE *out, diagnostic *why)
+/* The rows of a line: of one cell in one environment. */
+static void collect(cell_rows *cell, row_ref *const *rows, size_t count)
 {
-    size_t room = files->row_count + 1;
+    cell->film_expected = NULL;
+    cell->count = cell->marked = 0;
+    for (size_t i = 0; i < count; i++) {
+        const bool marked = strcmp(row_field(rows[i], "marked"), "0") != 0;
+        cell->film_expected = cell->film_expected ? cell->film_expected : row_field(rows[i], "film_expected");
+        cell->marked += marked;
+        if (!marked && !rows[i]->warmup)
+            cell->rows[cell->count++] = rows[i];
+    }
+}
+
+static int compare_lines(const void *a, const void *b)
+{
+    const row_ref *x = *(row_ref *const *)a, *y = *(row_ref *const *)b;
+    if (x->cell != y->cell)
+        return x->cell < y->cell ? -1 : 1;
+    const int environment = strcmp(x->environment, y->environment);
+    return environment ? environment : (x > y) - (x < y);
+}
+
+/* A cell has a line for each environment with rows of it, or one without rows. */
+static status put_cell(const study *s, cell_rows *cell, row_ref *const *rows, size_t count, diagnostic *why)
+{
+    size_t from = 0, to;
+    do {
+        for (to = from; to < count && strcmp(rows[to]->environment, rows[from]->environment) == 0; to++) {
+        }
+        cell->environment = to > from ? rows[from]->environment : "NA";
+        collect(cell, rows + from, to - from);
+        TRY(put_line(s, cell, why));
+        from = to;
+    } while (from < count);
+    return STATUS_OK;
+}
+
+/* Rows are in the order of time; they are sorted by cell and environment. */
+static status put_cells(const study *s, const row_files *files, const row_files *compared, const char *environment,
+                        FILE *out, diagnostic *why)
+{
+    const size_t room = files->row_count + 1;
+    row_ref **sorted = malloc(room * sizeof *sorted);
     cell_rows cell = {
         .rows = malloc(room * sizeof *cell.rows), .values = malloc(room * sizeof *cell.values), .out = out};
-    status code = cell.rows && cell.values ? STATUS_OK : out_of_memory(why);
-    for (size_t number = 0; code == STATUS_OK && number < study_cell_count(s); number++) {
-        cell.number = number;
-        cell.film_expected = NULL;
-        cell.count = cell.marked = 0;
-        for (size_t i = 0; i < files->row_count; i++) {
-            const row_ref *ref = &files->rows[i];
-            if (ref->cell != number)
-                continue;
-            const bool marked = strcmp(row_field(ref, "marked"), "0") != 0;
-            cell.film_expected = cell.film_expected ? cell.film_expected : row_field(ref, "film_expected");
-            cell.marked += marked;
-            if (!marked && !ref->warmup)
-                cell.rows[cell.count++] = ref;
+    const row_ref **compared_with = calloc(study_cell_count(s), sizeof *compared_with);
+    status code = sorted && cell.rows && cell.values && compared_with ? STATUS_OK : out_of_memory(why);
+    size_t count = 0;
+    for (size_t i = 0; code == STATUS_OK && i < files->row_count; i++)
+        if (!environment[0] || strcmp(files->rows[i].environment, environment) == 0)
+            sorted[count++] = &files->rows[i];
+    if (code == STATUS_OK)
+        qsort(sorted, count, sizeof *sorted, compare_lines);
+    for (size_t i = compared && code == STATUS_OK ? compared->row_count : 0; i > 0; i--)
+        compared_with[compared->rows[i - 1].cell] = &compared->rows[i - 1];
+    size_t from = 0, to;
+    for (size_t number = 0; code == STATUS_OK && number < study_cell_count(s); number++, from = to) {
+        for (to = from; to < count && sorted[to]->cell == number; to++) {
         }
-        cell.compared = NULL;
-        for (size_t i = 0; compared && i < compared->row_count && !cell.compared; i++)
-            if (compared->rows[i].cell == number)
-                cell.compared = &compared->rows[i];
-        code = put_line(s, &cell, why);
+        cell.number = number;
+        cell.compared = compared_with[number];
+        code = put_cell(s, &cell, sorted + from, to - from, why);
     }
+    free(sorted);
     free(cell.rows);
     free(cell.values);
+    free(compared_with);
+    return code;
+}
+
+static status no_rows(const study *s, const char *results, diagnostic *why)
+{
+    char remedy[256];
+    snprintf(remedy, sizeof remedy,
+             "run cuvette study run %.128s first, or give the folder of its results with --results", s->path);
+    return diagnose_at(why, s->path, STATUS_FAILURE, remedy, "no rows in %s/%s", results, s->name);
+}
+
+status study_summary_of(const study *s, const char *results, const summary_options *options, FILE *out,
+                        diagnostic *verdict, diagnostic *why)
+{
+    row_files *files, *compared = NULL;
+    char environment[ENVIRONMENT_KEY] = "";
+    status code = row_files_read(s, results, ROWS, &files, why);
+    if (code == STATUS_OK && files->row_count == 0)
+        code = no_rows(s, results, why);
+    if (code == STATUS_OK && s->reference.count)
+        code = row_files_read(s, results, COMPARE_ROWS, &compared, why);
+    if (code == STATUS_OK && options->environment && strcmp(options->environment, "main") == 0)
+        code = row_environments_main(files, environment, why);
+    else if (options->environment)
+        snprintf(environment, sizeof environment, "%s", options->environment);
+    if (code == STATUS_OK)
+        code = put_line(s, &(cell_rows){.header = true, .out = out}, why);
+    THEN(code, put_cells(s, files, compared, environment, out, why));
+    if (code == STATUS_OK && verdict && row_files_judge(files, verdict) == STATUS_OK && compared)
+        row_files_judge(compared, verdict);
+    row_files_destroy(compared);
+    row_files_destroy(files);
     return code;
 }
 
 status study_summary(const study *s, const char *results, FILE *out, diagnostic *why)
 {
-    row_files *files, *compared = NULL;
-    status code = row_files_read(s, results, ROWS, &files, why);
-    if (code == STATUS_OK && files->row_count == 0) {
-        char remedy[256];
-        snprintf(remedy, sizeof remedy,
-                 "run cuvette study run %.128s first, or give the folder of its results with --results", s->path);
-        code = diagnose_at(why, s->path, STATUS_FAILURE, remedy, "no rows in %s/%s", results, s->name);
-    }
-    if (code == STATUS_OK && s->reference.count)
-        code = row_files_read(s, results, COMPARE_ROWS, &compared, why);
-    if (code == STATUS_OK)
-        code = put_line(s, &(cell_rows){.header = true, .out = out}, why);
-    THEN(code, put_cells(s, files, compared, out, why));
-    row_files_destroy(compared);
-    row_files_destroy(files);
-    return code;
+    return study_summary_of(s, results, &(summary_options){.environment = NULL}, out, NULL, why);
 }

@@ -79,7 +79,7 @@ void renderer_set_machine(renderer *r, const topology *machine)
 
 status renderer_prepare(renderer *r, const scene *s, diagnostic *why)
 {
-    return s->render.pool ? worker_pool_reserve(r->threads, (int)s->render.threads, why) : STATUS_OK;
+    return s->render.pool ? worker_pool_reserve(r->threads, scene_threads(&s->render), why) : STATUS_OK;
 }
 
 static pin_policy policy_of(const scene *s)
@@ -377,7 +377,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
     return code;
 }
 
-status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why)
+static status render_with_threads(renderer *r, const scene *s, const render_options *options, render_result **out,
+                                  diagnostic *why)
 {
     status code = scene_check(s, why);
     plan *p = NULL;
@@ -403,4 +404,12 @@ status renderer_render(renderer *r, const scene *s, const render_options *option
     }
     *out = result;
     return code;
+}
+
+/* `auto` is resolved once, so that all parts of a frame agree on the number of workers. */
+status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why)
+{
+    scene resolved = *s; /* borrows what s owns */
+    resolved.render.threads = scene_threads(&s->render);
+    return render_with_threads(r, &resolved, options, out, why);
 }

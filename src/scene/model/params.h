@@ -44,9 +44,12 @@ typedef struct param {
     const char *const *choices; /* PARAM_CHOICE: words by value, NULL at the end; switches are {"off", "on"}, and no,
                                    yes, false and true are accepted. PARAM_INT: the only allowed numbers, or NULL */
     unsigned makers;            /* PARAM_MESH: bits 1 << mesh_maker, the generators that have the parameter; 0 = all */
+    const char *automatic;      /* PARAM_INT: the word for the value 0, which is below lowest; NULL: none */
     size_t offset;              /* in the group's struct */
     bool performance_only;      /* affects only performance: the film does not depend on it */
     bool by_shape;              /* PARAM_SOLID: only for solids whose shape rule lists it */
+    const char *first_default;  /* the default of the first version that had the parameter, if it is another one now:
+                                   rows omit it in the identity of a cell; NULL: fallback */
 } param;
 
 size_t param_count(void);

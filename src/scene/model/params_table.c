@@ -136,7 +136,9 @@ static const param table[] = {
     REAL(PARAM_RENDER, render_settings, lambda_nm, "nm", 200, 2000, "587.5618",
          "wavelength of the refractive indices of the rgb film; the default is the d line"),
     POSITIVE(PARAM_RENDER, render_settings, unit_m, "m", 1e6, "1", "length of one scene unit, for absorption"),
-    PERFORMANCE_INTEGER(threads, "", 1, 1024, "1", "worker threads"),
+    ROW(PARAM_RENDER, "threads", PARAM_INT, "", 1, 1024, false, "1",
+        "worker threads; auto: one per processing unit that the process may use", NULL, PERFORMANCE(threads),
+        .automatic = "auto"),
     PERFORMANCE_CHOICE(pool, off_on, "on", "keep worker threads between frames; off: start new threads for each frame"),
     PERFORMANCE_CHOICE(
         schedule, schedule_words, "dynamic",

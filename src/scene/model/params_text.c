@@ -44,7 +44,8 @@ static char *element_range_text(const param *row, bool one_element, char *text, 
     else if (is_vector(row) && !one_element)
         snprintf(text, size, "3 numbers, each %s", interval);
     else
-        snprintf(text, size, "%s %s", row->type == PARAM_INT ? "integer" : "number", interval);
+        snprintf(text, size, "%s %s%s%s", row->type == PARAM_INT ? "integer" : "number", interval,
+                 row->automatic ? ", or " : "", row->automatic ? row->automatic : "");
     return text;
 }
 
@@ -92,7 +93,10 @@ char *param_value_text(const param *row, int element, const void *field)
 {
     char number[NUMBER_TEXT_MAX];
     switch (row->type) {
-    case PARAM_INT: return text_format("%lld", (long long)*(const int64_t *)field);
+    case PARAM_INT: {
+        const int64_t value = *(const int64_t *)field;
+        return row->automatic && value == 0 ? strdup(row->automatic) : text_format("%lld", (long long)value);
+    }
     case PARAM_CHOICE: return strdup(row->choices[*(const int64_t *)field]);
     case PARAM_REAL: return strdup(number_format(*(const double *)field, number));
     case PARAM_VECTOR:
@@ -107,13 +111,23 @@ char *param_value_text(const param *row, int element, const void *field)
     return NULL;
 }
 
-char *param_default_text(const param *row)
+static char *canonical_text(const param *row, const char *given)
 {
     param_value value;
-    if (param_value_parse(row, -1, row->name, row->fallback, &value, NULL) != STATUS_OK)
+    if (param_value_parse(row, -1, row->name, given, &value, NULL) != STATUS_OK)
         return NULL;
     char *text = param_value_text(row, -1, &value);
     if (row->type == PARAM_PATH)
         free(value.path);
     return text;
+}
+
+char *param_default_text(const param *row)
+{
+    return canonical_text(row, row->fallback);
+}
+
+char *param_first_default_text(const param *row)
+{
+    return canonical_text(row, row->first_default ? row->first_default : row->fallback);
 }

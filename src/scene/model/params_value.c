@@ -123,6 +123,10 @@ static status parse_choice(const param *row, const char *label, const char *text
 static status parse_integer(const param *row, const char *label, const char *text, int64_t *out, diagnostic *why)
 {
     int64_t value, index;
+    if (row->automatic && strcmp(text, row->automatic) == 0) {
+        *out = 0;
+        return STATUS_OK;
+    }
     if (!number_parse_int(text, &value))
         return wrong(row, false, why, "%s: '" SHOWN "' is not an integer", label, text);
     char plain[NUMBER_TEXT_MAX];

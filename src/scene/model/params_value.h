@@ -31,6 +31,8 @@ char *param_remedy(const param *row, bool one_element, char *text, size_t size);
 
 /* The row's default in the form of param_value_text; fresh memory, NULL if that runs out. */
 char *param_default_text(const param *row);
+/* The same for its first default (param.first_default). */
+char *param_first_default_text(const param *row);
 
 /* Sets every field of the group's rows in *base to its default. Path fields must be NULL or owned text. */
 status param_set_defaults(param_group group, void *base, diagnostic *why);

@@ -42,7 +42,7 @@ typedef struct render_settings {
     int64_t wavelengths;   /* per camera ray, for the spectral film */
     double lambda_nm;      /* wavelength of the refractive indices of an RGB film */
     double unit_m;         /* length of one scene unit in metres */
-    int64_t threads;       /* 1..1024 */
+    int64_t threads;       /* 1..1024; 0: see scene_threads */
     int64_t pool;          /* 1: persistent threads; 0: new threads for every frame */
     int64_t schedule;      /* schedule_rule */
     int64_t tile;          /* tile size, pixels */
@@ -77,6 +77,10 @@ static inline void draw_triangles(render_settings *r)
 {
     r->integrator = INTEGRATOR_ZBUFFER;
 }
+
+/* Worker threads of a frame: render.threads, or one per processing unit that the process may use now (its CPU affinity,
+ * which taskset and a cgroup's cpuset restrict), at most 1024. */
+int scene_threads(const render_settings *r);
 
 /* Threads that build hierarchies: render.build_threads, or one per processing unit. */
 int scene_build_threads(const render_settings *r);

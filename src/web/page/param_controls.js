@@ -96,6 +96,32 @@ function scalar(row, context) {
   return { ...one, node: element('span', { class: 'param-slider' }, one.nodes), single: one.inputs[0] };
 }
 
+/* A slider with a check box for the row's word for an automatic value; unchecking it restores the last number. */
+function orAutomatic(row, context) {
+  let number = typeof row.value === 'number' ? row.value : row.lowest;
+  const one = slider({ ...row, value: number }, context, null, context.send);
+  const box = element('input', { type: 'checkbox', ...attributes(context, `${context.name}, ${row.automatic}`) });
+  const set = (value, rescale) => {
+    const automatic = value === row.automatic;
+    if (!automatic) number = value;
+    box.checked = automatic;
+    for (const input of one.inputs) input.disabled = automatic;
+    one.set(number, rescale);
+  };
+  box.addEventListener('change', () => {
+    const value = box.checked ? row.automatic : number;
+    set(value);
+    context.send(value, gesture('choice'));
+  });
+  const node = element(
+    'span',
+    { class: 'param-slider' },
+    one.nodes,
+    element('label', { class: 'param-automatic' }, box, element('span', { text: row.automatic })),
+  );
+  return { node, inputs: [...one.inputs, box], single: one.inputs[0], busy: one.busy, set };
+}
+
 function parts(row, context, names, make) {
   let value = [...row.value];
   const send = (index) => (x, name) => {
@@ -308,6 +334,7 @@ function maker(row) {
     return row.choices.length === 2 && row.choices[0] === 'off' && row.choices[1] === 'on' ? switches : words;
   if (row.type === 'color') return row.highest > COEFFICIENT ? channels : colour;
   if (row.type === 'vector') return vector;
+  if (row.automatic) return orAutomatic;
   if (row.type === 'real' || row.type === 'integer') return scalar;
   return text;
 }

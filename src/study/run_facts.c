@@ -1,24 +1,19 @@
-#include "study/manifest.h"
+#include "study/run_facts.h"
+#include "base/build_id.h"
 #include "base/file.h"
-#include "base/hash.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "measure/clock.h"
 #include "measure/usage.h"
-#include "study/grid.h"
 #include "study/provenance.h"
 #include "study/rows.h"
-#include "scene/model/open.h"
-#include <fcntl.h>
 #include <hwloc.h>
 #include <jpeglib.h>
 #include <libgen.h>
 #include <png.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <time.h>
-#include <unistd.h>
 #include <yaml.h>
 
 #ifndef CUVETTE_VERSION
@@ -52,8 +47,10 @@ static json_t *borrowed(const char *text)
     return value ? value : json_null();
 }
 
+/* --- parts --- */
+
 /* The current time, or that of SOURCE_DATE_EPOCH (reproducible-builds.org/specs/source-date-epoch). */
-static json_t *time_text(void)
+json_t *run_time(void)
 {
     char text[ROW_TIME_MAX];
     int64_t fixed;
@@ -79,7 +76,7 @@ static json_t *clocks(void)
                      "thread_cpu_tick_s", cpu.tick_s, "thread_cpu_overhead_s", cpu.overhead_s);
 }
 
-static json_t *machine_facts(const topology *machine)
+json_t *run_machine_facts(const topology *machine)
 {
     char *xml = topology_xml(machine);
     provenance_anonymize(xml);
@@ -89,17 +86,9 @@ static json_t *machine_facts(const topology *machine)
                      "hwloc_xml", taken(xml));
 }
 
-static json_t *files_hash(const study *s)
+json_t *run_study_facts(const study *s)
 {
-    uint64_t hash = HASH_START;
-    grid_hash_files(&hash, s->base);
-    return facts_hash(hash);
-}
-
-static json_t *study_facts(const study *s)
-{
-    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title),
-                     "definition", facts_hash(s->definition_hash), "files", files_hash(s), "cells",
+    return json_pack("{s:s, s:o, s:I, s:o, s:o, s:o, s:o}", "name", s->name, "title", borrowed(s->title), "cells",
                      (json_int_t)study_cell_count(s), "file", borrowed(file_name_of(s->path)), "text",
                      borrowed(s->text), "scene_file", borrowed(file_name_of(s->scene_path)), "scene_text",
                      borrowed(s->scene_text));
@@ -110,8 +99,46 @@ static void add_disturbance(void *list, const char *text)
     json_array_append_new(list, borrowed(text));
 }
 
-/* The properties of a run that may change between runs: repetitions, order, kept files. */
-static json_t *run_facts(const study *s, const topology *machine, isa level, long shard, long shards)
+/* Time that the hypervisor gave to others since boot, as a share of all time; null if unknown: proc(5), /proc/stat. */
+static json_t *steal_share(void)
+{
+    unsigned long long t[8] = {0}, sum = 0;
+    FILE *file = fopen("/proc/stat", "re");
+    const int found = file ? fscanf(file, "cpu %llu %llu %llu %llu %llu %llu %llu %llu", &t[0], &t[1], &t[2], &t[3],
+                                    &t[4], &t[5], &t[6], &t[7])
+                           : 0;
+    if (file)
+        fclose(file);
+    for (int i = 0; i < 8; i++)
+        sum += t[i];
+    return found == 8 && sum > 0 ? json_real((double)t[7] / (double)sum) : json_null();
+}
+
+static json_t *load_average(void)
+{
+    double load = 0;
+    return getloadavg(&load, 1) == 1 ? json_real(load) : json_null();
+}
+
+/* Facts of the processor that are not part of the environment's key. */
+static json_t *processor_facts(void)
+{
+    return json_pack("{s:o, s:o, s:o, s:o, s:o}", "vendor", taken(provenance_cpu_field("vendor_id")), "family",
+                     taken(provenance_cpu_field("cpu family")), "model", taken(provenance_cpu_field("model\t")),
+                     "stepping", taken(provenance_cpu_field("stepping")), "mhz",
+                     taken(provenance_cpu_field("cpu MHz")));
+}
+
+static json_t *environment_facts(const run_environment *e)
+{
+    json_t *facts = json_pack("{s:s}", "key", e->key);
+    for (int i = 0; i < ENVIRONMENT_FACTS; i++)
+        json_object_set_new(facts, environment_names[i], borrowed(e->fact[i]));
+    return facts;
+}
+
+json_t *run_facts(const study *s, const topology *machine, const run_environment *here, const char *id, long shard,
+                  long shards)
 {
     char *folder = strdup(s->path);
     bool dirty = false;
@@ -120,52 +147,20 @@ static json_t *run_facts(const study *s, const topology *machine, isa level, lon
     json_t *disturbances = json_array();
     usage_disturbances(load_sample_s, add_disturbance, disturbances);
     json_t *is_dirty = commit ? json_boolean(dirty) : json_null();
-    return json_pack(
-        "{s:o, s:i, s:i, s:o, s:o, s:s, s:o, s:o, s:s, s:s, s:s#, s:s, s:o, s:o, s:o, s:o, s:o, s:o}", "started_utc",
-        time_text(), "shard", (int)shard, "shards", (int)(shards > 1 ? shards : 1), "cpu_model",
-        taken(provenance_cpu_model()), "topology", taken(topology_summary(machine)), "version", CUVETTE_VERSION,
-        "git_commit", taken(commit), "git_dirty", is_dirty, "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS,
-        "config", CUVETTE_COMPILER_FLAGS, (int)strcspn(CUVETTE_COMPILER_FLAGS, ":"), "isa", isa_name(level), "kernel",
-        taken(provenance_kernel()), "governor", taken(provenance_governor()), "binding", taken(provenance_binding()),
-        "libraries", libraries(), "disturbances", disturbances, "study_text", borrowed(s->text));
-}
-
-/* The existing manifest, or a new one. */
-static status load(const study *s, const char *path, const topology *machine, json_t **out, diagnostic *why)
-{
-    *out = NULL;
-    if (access(path, F_OK) == 0) {
-        TRY(facts_read(path, scene_root(s->base), out, why));
-        if (!json_is_array(json_object_get(*out, "runs"))) {
-            json_decref(*out);
-            return diagnose_at(why, path, STATUS_BAD_INPUT, "move it away: a new one will be written",
-                               "the manifest is damaged");
-        }
-        return STATUS_OK;
-    }
-    *out = json_pack("{s:o, s:o, s:[]}", "study", study_facts(s), "machine", machine_facts(machine), "runs");
-    return *out ? STATUS_OK : out_of_memory(why);
-}
-
-status manifest_write(const study *s, const char *folder, const topology *machine, isa level, long shard, long shards,
-                      diagnostic *why)
-{
-    json_t *run = run_facts(s, machine, level, shard, shards), *manifest = NULL;
-    char *path = text_format("%s/manifest.json", folder);
-    status code = run && path ? STATUS_OK : out_of_memory(why);
-    /* Locked, because shards may start at the same time, and each reads the list before it writes it. */
-    int lock = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock >= 0)
-        flock(lock, LOCK_EX);
-    THEN(code, load(s, path, machine, &manifest, why));
-    if (code == STATUS_OK) {
-        json_array_append(json_object_get(manifest, "runs"), run);
-        code = facts_write(manifest, JSON_REAL_PRECISION(6), path, why);
-    }
-    if (lock >= 0)
-        close(lock);
-    json_decref(manifest);
-    json_decref(run);
-    free(path);
-    return code;
+    json_t *run = json_pack("{s:s, s:o, s:o, s:n, s:i, s:i, s:o, s:o, s:o, s:o}", "id", id, "environment",
+                            environment_facts(here), "started_utc", run_time(), "ended_utc", "shard", (int)shard,
+                            "shards", (int)(shards > 1 ? shards : 1), "processor", processor_facts(), "topology",
+                            taken(topology_summary(machine)), "load", load_average(), "steal_share", steal_share());
+    json_t *program = json_pack(
+        "{s:s, s:o, s:s, s:s, s:s#, s:o, s:o, s:o, s:o}", "version", CUVETTE_VERSION, "build_commit",
+        borrowed(build_commit()), "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config",
+        CUVETTE_COMPILER_FLAGS, (int)strcspn(CUVETTE_COMPILER_FLAGS, ":"), "kernel", taken(provenance_kernel()),
+        "binding", taken(provenance_binding()), "libraries", libraries(), "disturbances", disturbances);
+    json_t *texts = json_pack("{s:o, s:o, s:o, s:o}", "study_commit", taken(commit), "study_dirty", is_dirty,
+                              "study_text", borrowed(s->text), "scene_text", borrowed(s->scene_text));
+    json_object_update(run, program);
+    json_object_update(run, texts);
+    json_decref(program);
+    json_decref(texts);
+    return run;
 }

@@ -1,15 +1,15 @@
-/* Tests of a study's manifest: the provenance of rows, without names of hosts and paths. */
+/* Tests of a study's list of runs: the provenance and the environments of rows, without names of hosts and paths. */
 #include "study_fixture.h"
 #include "study/provenance.h"
 #include <jansson.h>
 
-static json_t *manifest_of(const fixture *f)
+static json_t *list_of(const fixture *f)
 {
     char path[400];
-    fixture_path(f, "results/test/manifest.json", path);
-    json_t *manifest = json_load_file(path, 0, NULL);
-    assert_non_null(manifest);
-    return manifest;
+    fixture_path(f, "results/test/runs.json", path);
+    json_t *list = json_load_file(path, 0, NULL);
+    assert_non_null(list);
+    return list;
 }
 
 static const char *text_at(const json_t *object, const char *key)
@@ -23,35 +23,42 @@ static const char *text_at(const json_t *object, const char *key)
 static const char first_text[] = "study: test\nscene: scene.yaml\nrepetitions: 1\nwarmups: 0\n";
 static const char second_text[] = "study: test\nscene: scene.yaml\nrepetitions: 2\nwarmups: 0\n";
 
-static void manifests_record_the_provenance_of_rows(void **state)
+static void runs_record_the_provenance_of_rows(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, first_text);
     fixture_run(f, s);
-    json_t *manifest = manifest_of(f);
-    const json_t *about = json_object_get(manifest, "study"), *machine = json_object_get(manifest, "machine");
+    json_t *list = list_of(f);
+    const json_t *about = json_object_get(list, "study"), *machine = json_object_get(list, "machine");
     assert_string_equal(text_at(about, "name"), "test");
     assert_string_equal(text_at(about, "file"), "test.study");
     assert_string_equal(text_at(about, "text"), first_text);
     assert_string_equal(text_at(about, "scene_file"), "scene.yaml");
     assert_string_equal(text_at(about, "scene_text"), fixture_scene);
-    assert_int_equal(strtoull(text_at(about, "definition"), NULL, 16), s->definition_hash);
     assert_non_null(strstr(text_at(machine, "hwloc_xml"), "<topology"));
     assert_true(text_at(machine, "topology")[0]);
     assert_true(json_integer_value(json_object_get(machine, "processing_units")) >= 1);
     assert_true(json_real_value(json_object_get(json_object_get(machine, "clocks"), "wall_tick_s")) > 0);
-    const json_t *runs = json_object_get(manifest, "runs");
+    const json_t *runs = json_object_get(list, "runs");
     assert_int_equal(json_array_size(runs), 1);
     const json_t *run = json_array_get(runs, 0);
-    static const char *const keys[] = {"started_utc", "version", "compiler", "flags",
-                                       "config",      "isa",     "kernel",   "binding"};
+    static const char *const keys[] = {"id",    "started_utc", "ended_utc", "version",    "compiler",
+                                       "flags", "config",      "kernel",    "study_text", "binding"};
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++)
         assert_true(text_at(run, keys[i])[0]);
+    const json_t *environment = json_object_get(run, "environment");
+    static const char *const facts[] = {"key",      "machine", "cpu_model", "microcode", "smt",
+                                        "governor", "limits",  "isa",       "build"};
+    for (size_t i = 0; i < sizeof facts / sizeof facts[0]; i++)
+        assert_true(text_at(environment, facts[i])[0]);
+    const json_t *sealed = json_object_get(json_object_get(run, "rows"), "rows");
+    assert_int_equal(json_integer_value(json_object_get(sealed, "count")), 1);
+    assert_int_equal(strlen(text_at(sealed, "check")), 16);
     static const char *const libraries[] = {"libpng", "libjpeg-turbo", "hwloc", "libyaml", "jansson"};
     for (size_t i = 0; i < sizeof libraries / sizeof libraries[0]; i++)
         assert_true(strchr(text_at(json_object_get(run, "libraries"), libraries[i]), '.') != NULL);
     assert_true(json_is_array(json_object_get(run, "disturbances")));
-    json_decref(manifest);
+    json_decref(list);
     study_destroy(s);
 }
 
@@ -62,13 +69,13 @@ static void each_run_is_added(void **state)
     study *s = fixture_study(f, first_text);
     fixture_run(f, s);
     study_destroy(s);
-    json_t *before = manifest_of(f);
+    json_t *before = list_of(f);
     assert_int_equal(setenv("SOURCE_DATE_EPOCH", "1000000001", 1), 0);
     s = fixture_study(f, second_text);
     assert_int_equal(fixture_run(f, s), 1);
     assert_int_equal(fixture_run(f, s), 0);
     unsetenv("SOURCE_DATE_EPOCH");
-    json_t *after = manifest_of(f);
+    json_t *after = list_of(f);
     assert_int_equal(json_array_size(json_object_get(after, "runs")), 2);
     assert_true(json_equal(json_object_get(before, "study"), json_object_get(after, "study")));
     assert_true(json_equal(json_array_get(json_object_get(before, "runs"), 0),
@@ -82,13 +89,13 @@ static void each_run_is_added(void **state)
     study_destroy(s);
 }
 
-static void manifests_contain_no_host_name_or_path(void **state)
+static void runs_contain_no_host_name_or_path(void **state)
 {
     const fixture *f = *state;
     char host[256] = "";
     study *s = fixture_study(f, first_text);
     fixture_run(f, s);
-    char *text = fixture_text(f, "results/test/manifest.json");
+    char *text = fixture_text(f, "results/test/runs.json");
     assert_int_equal(gethostname(host, sizeof host - 1), 0);
     assert_null(strstr(text, f->folder));
     /* A short name may be part of another word. */
@@ -101,19 +108,19 @@ static void manifests_contain_no_host_name_or_path(void **state)
     study_destroy(s);
 }
 
-static void damaged_manifests_are_refused(void **state)
+static void damaged_lists_are_refused(void **state)
 {
     const fixture *f = *state;
     study *s = fixture_study(f, first_text);
     fixture_run(f, s);
     study_destroy(s);
-    fixture_write(f, "results/test/manifest.json", "{\"study\": 1");
+    fixture_write(f, "results/test/runs.json", "{\"study\": 1");
     s = fixture_study(f, second_text);
     diagnostic why = {0};
     size_t ran;
     study_options options = {.results = f->results};
     assert_int_equal(study_run(s, &options, &ran, &why), STATUS_BAD_INPUT);
-    assert_non_null(strstr(why.file, "manifest.json"));
+    assert_non_null(strstr(why.file, "runs.json"));
     study_destroy(s);
 }
 
@@ -161,12 +168,12 @@ static void the_commit_of_a_repository_is_found(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(manifests_record_the_provenance_of_rows, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(runs_record_the_provenance_of_rows, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(each_run_is_added, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(manifests_contain_no_host_name_or_path, fixture_setup, fixture_teardown),
-        cmocka_unit_test_setup_teardown(damaged_manifests_are_refused, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(runs_contain_no_host_name_or_path, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(damaged_lists_are_refused, fixture_setup, fixture_teardown),
         cmocka_unit_test(identifying_entries_are_removed_from_the_topology),
         cmocka_unit_test_setup_teardown(the_commit_of_a_repository_is_found, fixture_setup, fixture_teardown),
     };
-    return cmocka_run_group_tests_name("study_manifest", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("study_runs", tests, NULL, NULL);
 }

@@ -1,0 +1,18 @@
+#include "base/build_id.h"
+
+#ifndef CUVETTE_BUILD_ID
+#define CUVETTE_BUILD_ID "unknown"
+#endif
+#ifndef CUVETTE_BUILD_COMMIT
+#define CUVETTE_BUILD_COMMIT ""
+#endif
+
+const char *build_id(void)
+{
+    return CUVETTE_BUILD_ID;
+}
+
+const char *build_commit(void)
+{
+    return CUVETTE_BUILD_COMMIT;
+}

@@ -1,0 +1,132 @@
+#include "study/environment.h"
+#include "base/build_id.h"
+#include "base/hash.h"
+#include <inttypes.h>
+#include <sched.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const environment_names[ENVIRONMENT_FACTS] = {"machine",  "cpu_model", "microcode", "smt",
+                                                          "governor", "limits",    "isa",       "build"};
+enum { MACHINE, CPU_MODEL, MICROCODE, SMT, GOVERNOR, LIMITS, ISA, BUILD };
+
+/* The rest of the first line that starts with prefix, without blanks and colon; false and "unknown" if there is none.
+ */
+static bool read_line(const char *root, const char *name, const char *prefix, char *text, size_t size)
+{
+    char path[512], line[1024];
+    bool found = false;
+    snprintf(path, sizeof path, "%s%s", root, name);
+    FILE *file = fopen(path, "re");
+    while (file && !found && fgets(line, sizeof line, file)) {
+        if (strncmp(line, prefix, strlen(prefix)) != 0)
+            continue;
+        char *value = line + strlen(prefix);
+        value += strspn(value, " \t:");
+        value[strcspn(value, "\n")] = 0;
+        found = value[0] != 0;
+        if (found)
+            snprintf(text, size, "%.*s", (int)size - 1, value);
+    }
+    if (file)
+        fclose(file);
+    if (!found)
+        snprintf(text, size, "unknown");
+    return found;
+}
+
+static uint64_t hash_text(uint64_t hash, const char *text)
+{
+    return hash_bytes(hash, text, strlen(text) + 1);
+}
+
+/* The id itself must not be published: machine-id(5) recommends a keyed hash. */
+static void read_machine(const char *root, char *text, size_t size)
+{
+    char id[ENVIRONMENT_FACT_MAX];
+    const char *own = getenv("CUVETTE_MACHINE");
+    const bool known = read_line(root, "/etc/machine-id", "", id, sizeof id) ||
+                       read_line(root, "/proc/sys/kernel/random/boot_id", "", id, sizeof id);
+    const bool named = own && own[0];
+    if (!known && !named) {
+        snprintf(text, size, "unknown");
+        return;
+    }
+    uint64_t hash = hash_text(hash_text(HASH_START, "cuvette machine"), known ? id : "");
+    snprintf(text, size, "%016" PRIx64, hash_finish(named ? hash_text(hash, own) : hash));
+}
+
+/* The path of the process' control group (version 2), "" if there is none: cgroups(7). */
+static void read_group(const char *root, char *text, size_t size)
+{
+    if (!read_line(root, "/proc/self/cgroup", "0::", text, size) || strcmp(text, "/") == 0)
+        text[0] = 0;
+}
+
+static int usable_units(void)
+{
+    cpu_set_t set;
+    return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
+}
+
+/* A limit of the group or of one above it; the innermost that is set. */
+static void read_limit(const char *root, const char *group, const char *name, char *text, size_t size)
+{
+    char path[400], folder[ENVIRONMENT_FACT_MAX];
+    snprintf(folder, sizeof folder, "%s", group);
+    for (;;) {
+        snprintf(path, sizeof path, "/sys/fs/cgroup%s/%s", folder, name);
+        if (read_line(root, path, "", text, size) && strncmp(text, "max", 3) != 0)
+            return;
+        char *slash = strrchr(folder, '/');
+        if (!slash)
+            break;
+        *slash = 0;
+    }
+    snprintf(text, size, "max");
+}
+
+static void read_limits(const char *root, char *text, size_t size)
+{
+    char group[ENVIRONMENT_FACT_MAX], cpu[32], memory[32];
+    read_group(root, group, sizeof group);
+    read_limit(root, group, "cpu.max", cpu, sizeof cpu);
+    read_limit(root, group, "memory.max", memory, sizeof memory);
+    snprintf(text, size, "cpu %s, memory %s, units %d", cpu, memory, usable_units());
+}
+
+void environment_close(run_environment *e)
+{
+    uint64_t hash = HASH_START;
+    for (int i = 0; i < ENVIRONMENT_FACTS; i++)
+        hash = hash_text(hash, e->fact[i]);
+    snprintf(e->key, sizeof e->key, "%08" PRIx32, (uint32_t)(hash_finish(hash) >> 32));
+}
+
+void environment_read(const char *root, isa level, run_environment *out)
+{
+    *out = (run_environment){.key = ""};
+    read_machine(root, out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
+    read_line(root, "/proc/cpuinfo", "model name", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX);
+    read_line(root, "/proc/cpuinfo", "microcode", out->fact[MICROCODE], ENVIRONMENT_FACT_MAX);
+    read_line(root, "/sys/devices/system/cpu/smt/active", "", out->fact[SMT], ENVIRONMENT_FACT_MAX);
+    read_line(root, "/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "", out->fact[GOVERNOR],
+              ENVIRONMENT_FACT_MAX);
+    read_limits(root, out->fact[LIMITS], ENVIRONMENT_FACT_MAX);
+    snprintf(out->fact[ISA], ENVIRONMENT_FACT_MAX, "%s", isa_name(level));
+    snprintf(out->fact[BUILD], ENVIRONMENT_FACT_MAX, "%s", build_id());
+    environment_close(out);
+}
+
+bool environment_difference(const run_environment *here, const run_environment *there, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = 0;
+    for (int i = 0; i < ENVIRONMENT_FACTS && used + 1 < size; i++)
+        if (strcmp(here->fact[i], there->fact[i]) != 0)
+            used += (size_t)snprintf(text + used, size - used, "%s%s %.40s instead of %.40s", used ? ", " : "",
+                                     environment_names[i], here->fact[i], there->fact[i]);
+    return text[0] != 0;
+}

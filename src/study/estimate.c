@@ -1,0 +1,225 @@
+#include "study/estimate.h"
+#include "measure/clock.h"
+#include "scene/model/scene.h"
+#include "study/keep.h"
+#include "study/order.h"
+#include "study/row_files.h"
+#include "study/run_state.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Pixels of the trial frames: two sizes, because a frame also has costs that do not depend on its pixels (starting
+ * threads, drawing triangles). */
+enum { SMALL_PIXELS = 4800, LARGE_PIXELS = 19200 };
+
+typedef struct trials {
+    run *r;
+    double deadline_s;
+    double *cell_s; /* by cell, the time of one frame; NaN: unknown */
+    double *once_s; /* by cell, the further time of loading it for the first time: a slime is simulated */
+} trials;
+
+static bool must_stop(void *context)
+{
+    const trials *t = context;
+    const study_options *o = t->r->options;
+    return (o->stop && o->stop(o->context)) || clock_wall_s() > t->deadline_s;
+}
+
+static double mean(const double *values, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += values[i];
+    return sum / (double)count;
+}
+
+static double pixels_of(const scene *s)
+{
+    return (double)s->render.width * (double)s->render.height;
+}
+
+/* Reduces the frame to at most that number of pixels, with the same aspect ratio. */
+static void shrink(scene *s, double width, double height, double most)
+{
+    const double scale = fmin(1.0, sqrt(most / (width * height)));
+    s->render.width = (int64_t)fmax(1.0, round(width * scale));
+    s->render.height = (int64_t)fmax(1.0, round(height * scale));
+}
+
+static status render(const trials *t, const scene *setting, double *wall_s, diagnostic *why)
+{
+    job_account made = {.result = NULL};
+    const status code = job_render(t->r->with, setting, NULL, &made, why);
+    if (code == STATUS_OK)
+        *wall_s = made.result->wall_s;
+    job_account_release(&made);
+    return code;
+}
+
+/* Loads the cell as a run does before each frame. */
+static status load(const trials *t, size_t cell, scene **out, double *took_s, diagnostic *why)
+{
+    const double began_s = clock_wall_s();
+    TRY(study_cell_scene(t->r->s, cell, out, why));
+    const status code = job_load(t->r->with, *out, NULL, why);
+    *took_s = clock_wall_s() - began_s;
+    return code;
+}
+
+/* Renders the cell twice with few pixels and once with more. The first frame and the first loading warm up. */
+static status try_cell(const trials *t, size_t cell, diagnostic *why)
+{
+    scene *first = NULL, *second = NULL;
+    double first_s = 0, load_s = 0, small_s = NAN, large_s = NAN, *frame_s = &t->cell_s[cell];
+    status code = load(t, cell, &first, &first_s, why);
+    const double width = code == STATUS_OK ? (double)first->render.width : 1.0;
+    const double height = code == STATUS_OK ? (double)first->render.height : 1.0;
+    if (code == STATUS_OK) {
+        shrink(first, width, height, SMALL_PIXELS);
+        code = render(t, first, &small_s, why);
+    }
+    THEN(code, load(t, cell, &second, &load_s, why));
+    THEN(code, render(t, first, &small_s, why));
+    if (code == STATUS_OK) {
+        shrink(second, width, height, LARGE_PIXELS);
+        code = render(t, second, &large_s, why);
+    }
+    if (!isnan(large_s)) {
+        const double more = pixels_of(second) - pixels_of(first);
+        const double slope = more > 0 ? fmax(0.0, large_s - small_s) / more : 0.0;
+        *frame_s = load_s + large_s + slope * (width * height - pixels_of(second));
+    } else if (!isnan(small_s)) {
+        *frame_s = load_s + small_s * width * height / pixels_of(first);
+    }
+    t->once_s[cell] = fmax(0.0, first_s - load_s);
+    scene_destroy(first);
+    scene_destroy(second);
+    return code;
+}
+
+static bool lacks_rows(const run *r, size_t cell)
+{
+    return !progress_index_cell_done(r->done, cell);
+}
+
+static bool lacks_files(const run *r, size_t cell)
+{
+    return keep_missing(r->s, r->folder, cell) || (r->s->reference.count && !r->compared[cell]);
+}
+
+/* Tries the cells without rows in a random order, so that those that are tried represent the others. */
+static status try_cells(trials *t, study_estimate *out, diagnostic *why)
+{
+    run *r = t->r;
+    const study_options *o = r->options;
+    for (size_t i = 0; i < r->cell_count; i++)
+        r->order[i] = i;
+    order_shuffle(r->s->seed, 0, r->order, r->cell_count);
+    for (size_t i = 0; i < r->cell_count; i++) {
+        const size_t cell = r->cells[r->order[i]];
+        if (!isnan(t->cell_s[cell]) || !(lacks_rows(r, cell) || lacks_files(r, cell)))
+            continue;
+        if (clock_wall_s() > t->deadline_s)
+            return STATUS_OK;
+        diagnostic error = {.what = ""};
+        status code = try_cell(t, cell, &error);
+        out->cut = code == STATUS_INTERRUPTED;
+        if (out->cut && !(o->stop && o->stop(o->context)))
+            code = STATUS_OK; /* the deadline */
+        else if (code != STATUS_OK && why)
+            *why = error;
+        TRY(code);
+        out->from_trials += isnan(t->cell_s[cell]) ? 0 : 1;
+    }
+    return STATUS_OK;
+}
+
+/* Counts what is missing, and takes the times of existing rows. */
+static void count(const trials *t, study_estimate *out)
+{
+    const run *r = t->r;
+    out->cells = r->cell_count;
+    for (size_t i = 0; i < r->cell_count; i++) {
+        const size_t cell = r->cells[i];
+        const progress_index_cell *at = &r->done->cells[cell];
+        const bool lacks = lacks_rows(r, cell), keeps = lacks_files(r, cell);
+        t->cell_s[cell] = at->counted ? mean(at->wall_s, at->counted) : NAN;
+        if (lacks) {
+            const size_t least = (size_t)progress_index_least(r->done), most = (size_t)progress_index_most(r->done);
+            out->cells_lacking++;
+            out->rows_least += at->counted < least ? least - at->counted : 1;
+            out->rows_most += most - at->counted;
+            out->warmups += (size_t)r->s->warmups;
+        }
+        out->cells_to_keep += keeps;
+        out->files += keep_missing_count(r->s, r->folder, cell);
+        out->comparisons += r->s->reference.count && !r->compared[cell] ? 1 : 0;
+        out->from_rows += (lacks || keeps) && at->counted ? 1 : 0;
+    }
+}
+
+/* The mean over the cells that were tried, for those that were not; NaN if none was. */
+static double mean_trial(const trials *t, const double *values)
+{
+    double sum = 0;
+    size_t tried = 0;
+    for (size_t i = 0; i < t->r->cell_count; i++) {
+        const size_t cell = t->r->cells[i];
+        if (!t->r->done->cells[cell].counted && !isnan(t->cell_s[cell])) {
+            sum += values[cell];
+            tried++;
+        }
+    }
+    return tried ? sum / (double)tried : NAN;
+}
+
+static void add_times(const trials *t, study_estimate *out)
+{
+    const run *r = t->r;
+    const double other_s = mean_trial(t, t->cell_s), other_once_s = mean_trial(t, t->once_s);
+    for (size_t i = 0; i < r->cell_count; i++) {
+        const size_t cell = r->cells[i], counted = r->done->cells[cell].counted;
+        const bool lacks = lacks_rows(r, cell), keeps = lacks_files(r, cell);
+        if (!lacks && !keeps)
+            continue;
+        const size_t least = (size_t)progress_index_least(r->done), most = (size_t)progress_index_most(r->done);
+        const size_t more = (lacks ? (size_t)r->s->warmups : 0) + (keeps ? 1 : 0);
+        const bool tried = !isnan(t->cell_s[cell]);
+        const double frame_s = tried ? t->cell_s[cell] : other_s, once_s = tried ? t->once_s[cell] : other_once_s;
+        out->from_others += !tried && !isnan(other_s) ? 1 : 0;
+        out->least_s += once_s + frame_s * (double)(more + (!lacks ? 0 : counted < least ? least - counted : 1));
+        out->most_s += once_s + frame_s * (double)(more + (lacks ? most - counted : 0));
+    }
+}
+
+status study_estimate_run(const study *s, const study_options *options, study_estimate *out, diagnostic *why)
+{
+    const size_t total = study_cell_count(s);
+    *out = (study_estimate){.least_s = 0};
+    run r = {.s = s,
+             .options = options,
+             .folder = study_folder(s, options->results),
+             .cells = calloc(total, sizeof *r.cells),
+             .order = calloc(total, sizeof *r.order),
+             .compared = calloc(total, sizeof *r.compared)};
+    trials t = {&r, clock_wall_s() + STUDY_ESTIMATE_TRIALS_S, calloc(total, sizeof *t.cell_s),
+                calloc(total, sizeof *t.once_s)};
+    const job_settings settings = {.keeps_meshes = true, .stop = must_stop, .context = &t};
+    status code = r.folder && r.cells && r.order && r.compared && t.cell_s && t.once_s ? STATUS_OK : out_of_memory(why);
+    THEN(code, job_create(&settings, &r.with, why));
+    if (code == STATUS_OK)
+        environment_read("", job_isa(r.with), &r.here);
+    THEN(code, run_read_rows(&r, why));
+    THEN(code, run_find_compared(&r, why));
+    if (code == STATUS_OK) {
+        run_choose_cells(&r);
+        count(&t, out);
+        code = try_cells(&t, out, why);
+        add_times(&t, out);
+    }
+    free(t.once_s);
+    free(t.cell_s);
+    run_release(&r);
+    return code;
+}

@@ -1,0 +1,26 @@
+/* What a run of a study would measure, and how long it would take, without measuring or writing anything. The time of a
+ * cell is that of its own rows; otherwise it is extrapolated from trial frames of the cell with fewer pixels, which
+ * take at most a few seconds for the whole study. Ownership: values; everything else is borrowed. */
+#pragma once
+
+#include "study/study.h"
+
+typedef struct study_estimate {
+    size_t cells, cells_lacking;  /* of the shard; lacking: with missing repetitions */
+    size_t rows_least, rows_most; /* missing repetitions; they differ if the study has a relative_width */
+    size_t warmups;
+    size_t cells_to_keep; /* cells with one more frame, for kept files or the comparison with their reference */
+    size_t files, comparisons;
+    /* Cells whose time is known from their rows, from trial frames, and from the mean of the trials of other cells
+     * because there was no time to try them all; 0, 0, 0 if nothing is missing. */
+    size_t from_rows, from_trials, from_others;
+    bool cut;               /* a trial took too long: the cells without one are probably slower than the others */
+    double least_s, most_s; /* time of loading and of all frames without those of references; NaN: unknown */
+} study_estimate;
+
+/* The time after which no further trial frame begins, and a running one is stopped. */
+#define STUDY_ESTIMATE_TRIALS_S 5.0
+
+/* options: as for study_run; only results, shard, shards, stop and context are used. STATUS_INTERRUPTED after a stop
+ * request; otherwise the errors of reading the rows and of loading the files of a cell. */
+status study_estimate_run(const study *s, const study_options *options, study_estimate *out, diagnostic *why);

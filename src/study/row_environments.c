@@ -1,0 +1,43 @@
+#include "study/row_environments.h"
+#include "base/grow.h"
+#include <stdlib.h>
+#include <string.h>
+
+status row_environments_find(const row_files *files, row_environment_count **out, size_t *count, diagnostic *why)
+{
+    *out = NULL;
+    *count = 0;
+    for (size_t i = 0, at = 0; i < files->row_count; i++) {
+        const row_ref *ref = &files->rows[i];
+        if (at >= *count || strcmp((*out)[at].key, ref->environment) != 0)
+            for (at = 0; at < *count && strcmp((*out)[at].key, ref->environment) != 0; at++) {
+            }
+        if (at == *count) {
+            if (!room_for_one(out, *count, sizeof **out)) {
+                free(*out);
+                *out = NULL;
+                return out_of_memory(why);
+            }
+            (*out)[(*count)++] = (row_environment_count){.rows = 0};
+            memcpy((*out)[at].key, ref->environment, ENVIRONMENT_KEY);
+        }
+        (*out)[at].rows += !ref->warmup;
+        if (ref->run >= 0)
+            (*out)[at].run = &files->runs->entry[ref->run];
+    }
+    return STATUS_OK;
+}
+
+status row_environments_main(const row_files *files, char key[ENVIRONMENT_KEY], diagnostic *why)
+{
+    row_environment_count *all;
+    size_t count, most = 0;
+    TRY(row_environments_find(files, &all, &count, why));
+    for (size_t i = 1; i < count; i++)
+        most = all[i].rows >= all[most].rows ? i : most;
+    key[0] = 0;
+    if (count > 0)
+        memcpy(key, all[most].key, ENVIRONMENT_KEY);
+    free(all);
+    return STATUS_OK;
+}

@@ -1,0 +1,261 @@
+#include "study/row_read.h"
+#include "base/hash.h"
+#include "base/number.h"
+#include "study/check.h"
+#include "study/identity.h"
+#include "study/row_type.h"
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- cells --- */
+
+static int compare_cells(const void *a, const void *b)
+{
+    const struct row_cell *x = a, *y = b;
+    return (x->identity > y->identity) - (x->identity < y->identity);
+}
+
+status row_cells_create(const study *s, row_kind kind, row_cells *out, diagnostic *why)
+{
+    *out = (row_cells){.count = study_cell_count(s)};
+    out->sorted = malloc(out->count * sizeof *out->sorted);
+    if (!out->sorted)
+        return out_of_memory(why);
+    for (size_t i = 0; i < out->count; i++)
+        out->sorted[i] =
+            (struct row_cell){kind == COMPARE_ROWS ? identity_compared(s, s->identity[i]) : s->identity[i], i};
+    qsort(out->sorted, out->count, sizeof *out->sorted, compare_cells);
+    return STATUS_OK;
+}
+
+void row_cells_free(row_cells *c)
+{
+    free(c->sorted);
+    *c = (row_cells){0};
+}
+
+static bool find_cell(const row_cells *c, uint64_t identity, size_t *cell)
+{
+    const struct row_cell wanted = {identity, 0};
+    const struct row_cell *found = bsearch(&wanted, c->sorted, c->count, sizeof wanted, compare_cells);
+    if (found)
+        *cell = found->cell;
+    return found != NULL;
+}
+
+/* --- one table --- */
+
+/* The columns that every reader needs, by index; -1: the table lacks it. */
+typedef struct columns {
+    int study, definition, identity, run, check, cell, repetition, warmup, worker, isa, config;
+} columns;
+
+typedef struct table_state {
+    row_reader *r;
+    const csv *table;
+    const char *path;
+    columns at;
+    check_columns hashes;
+    row_types types;
+    long last_run; /* of the previous row with a run */
+    bool gap;      /* the previous row is broken: its place in the chain is unknown */
+} table_state;
+
+static columns find_columns(const csv *t)
+{
+    return (columns){csv_column(t, "study"),      csv_column(t, "definition"), csv_column(t, "identity"),
+                     csv_column(t, "run"),        csv_column(t, "check"),      csv_column(t, "cell"),
+                     csv_column(t, "repetition"), csv_column(t, "warmup"),     csv_column(t, "worker"),
+                     csv_column(t, "isa"),        csv_column(t, "config")};
+}
+
+static bool read_integer(const csv *t, size_t row, int column, int64_t highest, int64_t *out)
+{
+    return number_parse_int(csv_field(t, row, column), out) && *out >= 0 && *out <= highest;
+}
+
+/* The numbers that identify a row; false if one is damaged. */
+static bool read_numbers(const table_state *st, size_t row, row_ref *ref, int64_t *cell)
+{
+    int64_t repetition = 0, warmup = 0, worker = 0;
+    const row_kind kind = st->r->kind;
+    if (!read_integer(st->table, row, st->at.cell, STUDY_CELLS_MAX, cell) ||
+        (kind != COMPARE_ROWS && (!read_integer(st->table, row, st->at.repetition, INT32_MAX, &repetition) ||
+                                  !read_integer(st->table, row, st->at.warmup, 1, &warmup))) ||
+        (kind == WORKER_ROWS && !read_integer(st->table, row, st->at.worker, INT32_MAX, &worker)))
+        return false;
+    ref->repetition = (long)repetition;
+    ref->warmup = warmup != 0;
+    ref->worker = (long)worker;
+    return true;
+}
+
+static bool parse_hash(const char *text, uint64_t *out)
+{
+    const bool is_one = strlen(text) == 16 && strspn(text, "0123456789abcdef") == 16;
+    *out = is_one ? strtoull(text, NULL, 16) : 0;
+    return is_one;
+}
+
+static status issue(table_state *st, row_fault fault, size_t row, const char *text)
+{
+    return row_files_add_issue(st->r->into, fault, st->path, (long)row + 2, "%s", text);
+}
+
+/* The place of a row with a check in the chain of its run. */
+static status follow_chain(table_state *st, size_t row, const row_ref *ref, uint32_t content, uint32_t chain)
+{
+    const char *text = csv_field(st->table, row, st->at.check);
+    row_chain *of = &st->r->chain[ref->run];
+    const char *previous = of->rows ? of->last : st->r->into->runs->entry[ref->run].id;
+    const bool continues = check_chain(previous, content) == chain, in_order = ref->run >= st->last_run;
+    snprintf(of->last, sizeof of->last, "%.16s", text);
+    of->rows++;
+    const bool excused = st->gap;
+    st->gap = false;
+    st->last_run = ref->run;
+    if ((continues || excused) && in_order)
+        return STATUS_OK;
+    return issue(st, ROW_MISPLACED, row, "rows before this one were removed, inserted or moved");
+}
+
+/* A row with an identity. *good: it can be used. */
+static status read_new(table_state *st, size_t row, row_ref *ref, uint64_t *identity, bool *good)
+{
+    char *const *fields = st->table->fields + row * st->table->column_count;
+    uint32_t content = 0, chain = 0;
+    int64_t cell;
+    *good = false;
+    if (!check_parse(csv_field(st->table, row, st->at.check), &content, &chain))
+        return issue(st, ROW_EDITED, row, "the check of the row is damaged");
+    const bool intact = check_content(&st->hashes, fields) == content;
+    ref->run = runs_find(st->r->into->runs, csv_field(st->table, row, st->at.run));
+    if (ref->run >= 0) {
+        if (!intact) /* the next row follows the check that this one states */
+            snprintf(st->r->chain[ref->run].last, RUN_ID, "%.16s", csv_field(st->table, row, st->at.check));
+        st->r->chain[ref->run].rows += !intact;
+    }
+    if (!intact)
+        return issue(st, ROW_EDITED, row, "the values do not agree with the row's check");
+    if (!parse_hash(csv_field(st->table, row, st->at.identity), identity) || !read_numbers(st, row, ref, &cell))
+        return issue(st, ROW_DAMAGED, row, "the row is damaged");
+    *good = true;
+    if (ref->run < 0)
+        return row_files_add_issue(st->r->into, ROW_UNKNOWN, st->path, (long)row + 2, "run %.16s is not in runs.json",
+                                   csv_field(st->table, row, st->at.run));
+    memcpy(ref->environment, st->r->into->runs->entry[ref->run].here.key, ENVIRONMENT_KEY);
+    return follow_chain(st, row, ref, content, chain);
+}
+
+static status another_definition(const table_state *st, size_t row, const char *reason, diagnostic *why)
+{
+    diagnostic_locate(why, st->path, (long)row + 2, 1);
+    return diagnose(why, STATUS_BAD_INPUT,
+                    st->r->kind == COMPARE_ROWS
+                        ? "move this file away: the images will be compared again; nothing is measured again"
+                        : "move this folder away, choose another with --results, or give the study another name",
+                    "these rows have another definition%s%s", reason[0] ? ": " : "", reason);
+}
+
+/* A row of a version without identities and runs. Its environment is what is known of it. */
+static status read_old(table_state *st, size_t row, row_ref *ref, uint64_t *identity, bool *good, diagnostic *why)
+{
+    int64_t cell;
+    char *const *fields = st->table->fields + row * st->table->column_count;
+    size_t column;
+    *good = false;
+    if (!read_numbers(st, row, ref, &cell))
+        return issue(st, ROW_DAMAGED, row, "the row is damaged");
+    if (!row_types_fit(&st->types, fields, &column))
+        return row_files_add_issue(st->r->into, ROW_DAMAGED, st->path, (long)row + 2, "%s is '%.60s'",
+                                   st->table->header[column], fields[column]);
+    if (!accepted_identity(st->r->known, csv_field(st->table, row, st->at.definition), (size_t)cell,
+                           st->r->kind == COMPARE_ROWS, identity))
+        return another_definition(st, row, accepted_why_not(st->r->known), why);
+    const char *isa_used = csv_field(st->table, row, st->at.isa), *config = csv_field(st->table, row, st->at.config);
+    uint64_t hash = hash_bytes(HASH_START, isa_used, strlen(isa_used) + 1);
+    hash = hash_finish(hash_bytes(hash, config, strlen(config) + 1));
+    snprintf(ref->environment, sizeof ref->environment, "%08" PRIx32, (uint32_t)(hash >> 32));
+    *good = true;
+    return STATUS_OK;
+}
+
+static status read_row(table_state *st, size_t row, diagnostic *why)
+{
+    row_reader *r = st->r;
+    row_ref ref = {.table = st->table, .row = row, .run = -1, .environment = "unknown"};
+    uint64_t identity = 0;
+    bool good = false;
+    if (st->table->broken[row]) {
+        st->gap = true;
+        return issue(st, ROW_DAMAGED, row, "the line is not a row of this file");
+    }
+    const bool is_new = strcmp(csv_field(st->table, row, st->at.identity), "NA") != 0;
+    const bool of_another = strcmp(csv_field(st->table, row, st->at.study), r->s->name) != 0;
+    if (of_another && !is_new)
+        return another_definition(st, row, "they belong to another study", why);
+    status code = is_new ? read_new(st, row, &ref, &identity, &good) : read_old(st, row, &ref, &identity, &good, why);
+    if (code != STATUS_OK)
+        return code == STATUS_BAD_INPUT ? code : out_of_memory(why);
+    if (good && of_another)
+        return another_definition(st, row, "they belong to another study", why);
+    if (good && !find_cell(&r->cells, identity, &ref.cell))
+        r->into->other_cells++;
+    else if (good)
+        r->into->rows[r->into->row_count++] = ref;
+    return STATUS_OK;
+}
+
+/* Keeps what is known of each run for the seals, which count a run's rows in one file. */
+static void finish_table(row_reader *r)
+{
+    for (size_t i = 0; i < r->into->runs->count; i++) {
+        row_chain *of = &r->chain[i];
+        if (of->rows > of->most) {
+            of->most = of->rows;
+            memcpy(of->end, of->last, sizeof of->end);
+        }
+        of->rows = 0;
+    }
+}
+
+status row_read_table(row_reader *r, const csv *table, const char *path, diagnostic *why)
+{
+    table_state st = {.r = r, .table = table, .path = path, .at = find_columns(table)};
+    status code = check_columns_create(table->header, table->column_count, &st.hashes, why);
+    THEN(code, row_types_create(table->header, table->column_count, r->kind, &st.types, why));
+    for (size_t row = 0; code == STATUS_OK && row < table->row_count; row++)
+        code = read_row(&st, row, why);
+    if (code == STATUS_OK && table->size > table->whole &&
+        row_files_add_issue(r->into, ROW_TORN, path, (long)table->row_count + 2,
+                            "an incomplete line: the process was killed; the next run moves it away") != STATUS_OK)
+        code = out_of_memory(why);
+    finish_table(r);
+    row_types_free(&st.types);
+    check_columns_free(&st.hashes);
+    return code;
+}
+
+status row_read_seals(row_reader *r, diagnostic *why)
+{
+    const run_list *all = r->into->runs;
+    const char *stem = row_file_stem(r->kind);
+    for (size_t i = 0; i < all->count; i++) {
+        run_seal seal;
+        const row_chain *of = &r->chain[i];
+        status code = STATUS_OK;
+        if (!all->entry[i].key_is_right)
+            code = row_files_add_issue(r->into, ROW_UNKNOWN, "runs.json", 0,
+                                       "the environment of run %.16s does not agree with its key", all->entry[i].id);
+        if (code == STATUS_OK && runs_seal(&all->entry[i], stem, &seal) && seal.rows > 0 &&
+            (of->most < seal.rows || strcmp(of->end, seal.check) != 0))
+            code = row_files_add_issue(r->into, ROW_MISSING, stem, 0, "run %.16s wrote %zu rows, %zu are there%s",
+                                       all->entry[i].id, seal.rows, of->most,
+                                       of->most < seal.rows ? "" : ", the last one is another");
+        if (code != STATUS_OK)
+            return out_of_memory(why);
+    }
+    return STATUS_OK;
+}

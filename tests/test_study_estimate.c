@@ -1,0 +1,137 @@
+/* Tests of study/estimate.h: what a run would measure and keep, and how long it would take. */
+#include "study_fixture.h"
+
+#include "measure/clock.h"
+#include "study/estimate.h"
+#include "study/row_files.h"
+
+static study_estimate estimate_part(const fixture *f, const study *s, long shard, long shards)
+{
+    diagnostic why = {0};
+    study_estimate e;
+    const study_options options = {.results = f->results, .shard = shard, .shards = shards};
+    if (study_estimate_run(s, &options, &e, &why) != STATUS_OK)
+        fail_msg("%s", why.what);
+    return e;
+}
+
+static study_estimate estimate(const fixture *f, const study *s)
+{
+    return estimate_part(f, s, 0, 1);
+}
+
+static void a_new_study_is_tried_and_nothing_is_written(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid:\n  - {render.depth: [0, 1, 2]}\n"
+                                "  - {ball.ior: [1.3, 1.5]}\nrepetitions: 4\nwarmups: 2\n"
+                                "reference: {render.depth: 9}\nkeep: {image: on, pixel_rays: on}\n");
+    const study_estimate e = estimate(f, s);
+    assert_true(e.cells == 6 && e.cells_lacking == 6 && e.rows_least == 24 && e.rows_most == 24);
+    assert_true(e.warmups == 12 && e.cells_to_keep == 6 && e.files == 18 && e.comparisons == 6);
+    assert_true(e.from_rows == 0 && e.from_trials == 6 && e.from_others == 0 && !e.cut);
+    assert_true(e.least_s > 0 && e.least_s == e.most_s);
+    assert_false(fixture_has(f, "results"));
+    const study_estimate half = estimate_part(f, s, 1, 4); /* 6 cells over 4 parts: 2, 2, 1, 1 */
+    assert_true(half.cells == 2 && half.rows_most == 8 && half.warmups == 4 && half.files == 6);
+    assert_int_equal(fixture_run(f, s), 36);
+    const study_estimate none = estimate(f, s);
+    assert_true(none.cells == 6 && none.cells_lacking == 0 && none.rows_most == 0 && none.warmups == 0);
+    assert_true(none.cells_to_keep == 0 && none.files == 0 && none.comparisons == 0 && none.most_s == 0);
+    assert_true(none.from_rows == 0 && none.from_trials == 0);
+    study_destroy(s);
+}
+
+/* The estimate of a cell with rows is their mean times the missing frames. */
+static void existing_rows_are_the_basis(void **state)
+{
+    const fixture *f = *state;
+    const char *grid = "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\nwarmups: 1\n";
+    char text[400];
+    snprintf(text, sizeof text, "%srepetitions: 2\n", grid);
+    study *s = fixture_study(f, text);
+    row_files *files = NULL;
+    assert_int_equal(fixture_run(f, s), 9);
+    assert_int_equal(row_files_read(s, f->results, ROWS, &files, NULL), STATUS_OK);
+    double sum_s = 0;
+    for (size_t i = 0; i < files->row_count; i++)
+        sum_s += files->rows[i].warmup ? 0 : row_field_real(&files->rows[i], "wall_s");
+    row_files_destroy(files);
+    study_destroy(s);
+
+    snprintf(text, sizeof text, "%srepetitions: 5\n", grid);
+    s = fixture_study(f, text);
+    study_estimate e = estimate(f, s);
+    assert_true(e.cells_lacking == 3 && e.rows_least == 9 && e.warmups == 3 && e.files == 0);
+    assert_true(e.from_rows == 3 && e.from_trials == 0);
+    const double expected_s = sum_s / 2 * 4; /* a warm-up and three repetitions of each cell */
+    assert_true(fabs(e.most_s - expected_s) < 1e-9 * expected_s);
+    study_destroy(s);
+
+    /* A narrow interval may end a cell after any further row. */
+    snprintf(text, sizeof text, "%srepetitions: {min: 2, max: 50, relative_width: 0.0000001}\n", grid);
+    s = fixture_study(f, text);
+    e = estimate(f, s);
+    assert_true(e.cells_lacking == 3 && e.rows_least == 3 && e.rows_most == 144);
+    assert_true(fabs(e.least_s - sum_s / 2 * 2) < 1e-9 && fabs(e.most_s - sum_s / 2 * 49) < 1e-9 * e.most_s);
+    study_destroy(s);
+}
+
+/* Trial frames have fewer pixels; the estimate is for all of them. The bounds are wide: other processes may run. */
+static void trial_frames_predict_the_time_of_large_ones(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\nset: {render.width: 1600, render.height: 1200}\n"
+                                "grid: [{render.depth: [2, 6]}]\nrepetitions: 2\nwarmups: 0\n");
+    const double began_s = clock_wall_s();
+    const study_estimate e = estimate(f, s);
+    const double tried_s = clock_wall_s() - began_s;
+    assert_int_equal(fixture_run(f, s), 4);
+    const double took_s = clock_wall_s() - began_s - tried_s;
+    assert_true(e.from_trials == 2);
+    assert_true(e.most_s > took_s / 5 && e.most_s < took_s * 5); /* the trial has a hundredth of the pixels */
+    study_destroy(s);
+}
+
+static void a_cell_that_takes_too_long_is_unknown(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.paths: [1048575, 1048576]}]\n"
+                                "set: {render.integrator: path, render.width: 800, render.height: 600}\n");
+    const double began_s = clock_wall_s();
+    const study_estimate e = estimate(f, s);
+    assert_true(clock_wall_s() - began_s < 2 * STUDY_ESTIMATE_TRIALS_S);
+    assert_true(e.cut && isnan(e.least_s) && isnan(e.most_s) && e.from_trials == 0 && e.from_others == 0);
+    assert_int_equal(e.rows_most, 12);
+    study_destroy(s);
+}
+
+static bool stop_at_once(void *context)
+{
+    (void)context;
+    return true;
+}
+
+static void a_stop_request_ends_the_trials(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\n");
+    study_estimate e;
+    const study_options options = {.results = f->results, .stop = stop_at_once};
+    assert_int_equal(study_estimate_run(s, &options, &e, NULL), STATUS_INTERRUPTED);
+    study_destroy(s);
+}
+
+#define CASE(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CASE(a_new_study_is_tried_and_nothing_is_written),
+        CASE(existing_rows_are_the_basis),
+        CASE(trial_frames_predict_the_time_of_large_ones),
+        CASE(a_cell_that_takes_too_long_is_unknown),
+        CASE(a_stop_request_ends_the_trials),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
