@@ -127,7 +127,7 @@ static void tiles_are_halved_for_many_workers(void **state)
     assert_int_equal(tiles_of(800, 600, 32, 1024, 1), 1900);
     assert_int_equal(tiles_of(800, 600, 32, 1024, 0), 475); /* 0: as render.tile says */
     assert_int_equal(tiles_of(800, 600, 65536, 1, 1), 1);
-    assert_int_equal(tiles_of(800, 600, 65536, 1, 2), 2); /* 512 pixels */
+    assert_int_equal(tiles_of(800, 600, 65536, 1, 2), 4); /* 512 pixels */
     assert_int_equal(tiles_of(7, 5, 32, 1024, 4), 35);    /* no more pieces than pixels */
 }
 
