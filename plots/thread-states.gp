@@ -4,6 +4,7 @@ width = 1000; height = 400
 load "plots/style.gp"
 
 shares = sprintf("< awk -f plots/thread-states.awk '%s/timeline/workers.csv'", results)
+lines = int(system(shares[3:*]." | wc -l"))
 schedules = "tiles dynamic"
 counts = "2 8 64 1024"
 # Runnable: waiting for a processing unit. No tile left: the frame goes on in other threads.
@@ -32,8 +33,13 @@ do for [i=1:2] {
         set ytics ("" 0)
         unset key
     }
-    plot for [k=1:5] shares using (100*of(word(schedules, i))*sum(k-1)):(place($2)):(100*sum(k-1)):(100*sum(k)): \
-        (place($2) - 0.38):(place($2) + 0.38) with boxxyerror lc rgb tone[k] title name[k]
+    if (lines == 0) {
+        set label 1 "this system does not measure them" at graph 0.5,0.5 center textcolor rgb grey
+        plot NaN notitle
+    } else {
+        plot for [k=1:5] shares using (100*of(word(schedules, i))*sum(k-1)):(place($2)):(100*sum(k-1)):(100*sum(k)): \
+            (place($2) - 0.38):(place($2) + 0.38) with boxxyerror lc rgb tone[k] title name[k]
+    }
     unset label 100
 }
 unset multiplot

@@ -19,7 +19,7 @@ set multiplot layout 1,2 margins 0.07,0.985,0.15,0.92 spacing 0.08
 set logscale x 2
 set xrange [0.8:1400]
 set xtics rotate by 0 1,4
-set yrange [0:*]
+set yrange [0:1.25*(units > 1 ? units : 2)]
 set samples 401
 set key bottom right font ",9" spacing 1.05
 set xlabel "threads"

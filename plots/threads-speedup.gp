@@ -8,7 +8,7 @@ load "plots/laws.gp"
 published_1 = first(published."threads.csv", "threads=1", "wall_s")
 
 set label 100 disturbed("threads") at screen 0.5,0.015 center font ",8" textcolor rgb grey
-set multiplot layout 2,2 margins 0.07,0.985,0.08,0.955 spacing 0.09,0.12
+set multiplot layout 2,2 margins 0.07,0.97,0.09,0.955 spacing 0.1,0.12
 set logscale x 2
 set xrange [0.9:1140]
 set xtics rotate by 0 1,4

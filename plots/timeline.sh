@@ -2,8 +2,8 @@
 # The tiles of a frame from its timeline (Chrome trace JSON): begin and end in ms, worker, and the tile's
 # position in the image in reading order (0 first, 1 last).
 #   plots/timeline.sh TIMELINE.json [GAP]
-# With GAP, tiles of one worker that follow within GAP ms are one, with their mean position: a thousand workers have more
-# tiles than a figure has pixels.
+# With GAP, tiles of one worker that follow within GAP ms are one, with their mean position: a thousand
+# workers have more tiles than a figure has pixels.
 export LC_ALL=C
 set -eu
 
