@@ -122,7 +122,7 @@ for file in "$root"/experiments/*.study; do
     clean || check "$(basename "$file") is drawn" false
     drawn=$((drawn + 1))
 done
-check "a figure of each study of experiments/ that has rows" test "$(find reference -name '*.png' -size +2k | wc -l)" = "$drawn"
+check "a figure of each study that has rows" test "$(find reference -name '*.png' -size +2k | wc -l)" = "$drawn"
 for script in reference/*.gp; do
     gnuplot -d -e "output = '$work/again'" "$script" >>warnings 2>&1
 done
