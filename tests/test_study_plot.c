@@ -222,7 +222,7 @@ static void wrong_choices_have_remedies(void **state)
 
 /* --- environments --- */
 
-/* Every block of the data has cells of one environment, as in the values of full_plan. */
+/* Every block of the data has cells of one environment: the values of full_plan distinguish them. */
 static void check_blocks(const fixture *f, size_t cells)
 {
     char *data = fixture_text(f, "fig.tsv");

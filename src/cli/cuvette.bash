@@ -107,7 +107,7 @@ _cuvette_study() # VERB
 {
     local -A options=([new]='--axis --set --name --repetitions --output --force'
         [run]='--results --shard --by --any-environment --dry-run --quiet' [status]=--results [merge]=--results
-        [verify]=--results [summary]='--results --environment' [list]=''
+        [verify]=--results [upgrade]='--results --to' [summary]='--results --environment' [list]=''
         [plot]='--output --format --x --y --by --log --where --images --published --results')
     if [[ $current == -* ]]; then
         _cuvette_words "${options[$1]} --help --usage --version"
@@ -124,7 +124,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='new run list status merge verify summary plot'
+    local command=${COMP_WORDS[1]-} verbs='new run list status merge verify upgrade summary plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine help --help --usage --version

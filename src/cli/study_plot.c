@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 static const char *const formats[] = {"png", "svg", "pdf"};
+static const double draw_limit_s = 300;
 enum { FORMAT_COUNT = sizeof formats / sizeof *formats };
 
 typedef struct request {
@@ -168,7 +169,7 @@ static status draw(const request *r, const char *base, const study *s, diagnosti
     THEN(code, study_plot_write(s, &r->plot, base, why));
     for (int i = 0; code == STATUS_OK && i < FORMAT_COUNT; i++)
         if (r->wanted[i]) {
-            code = study_plot_draw(base, formats[i], why);
+            code = study_plot_draw(base, formats[i], draw_limit_s, NULL, why);
             if (code == STATUS_OK)
                 printf("%s: %s.%s\n", s->name, base, formats[i]);
         }

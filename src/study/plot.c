@@ -34,7 +34,13 @@ status study_plot_write(const study *s, const plot_request *request, const char 
 
 /* --- gnuplot --- */
 
-static const double draw_limit_s = 120;
+/* A drawing, and when to end it. */
+typedef struct drawing {
+    const char *script, *scratch, *format; /* the figure appears at SCRATCH.FORMAT */
+    double limit_s;
+    const atomic_bool *stop;
+} drawing;
+
 enum { NOT_FOUND = 127 /* of env(1) */ };
 
 /* format='png'; output='/path/.figure.drawing-12' */
@@ -68,31 +74,31 @@ static status explain(const char *script, int code, char *output, diagnostic *wh
     return diagnose_at(why, script, STATUS_FAILURE, "", "gnuplot failed: %.300s", line);
 }
 
-/* Runs the script; the figure appears at SCRATCH.FORMAT. */
-static status run_gnuplot(const char *script, const char *scratch, const char *format, diagnostic *why)
+static status run_gnuplot(const drawing *d, diagnostic *why)
 {
-    static atomic_bool never;
-    char *settings = settings_of(scratch, format), *output = NULL;
+    static const atomic_bool never;
+    char *settings = settings_of(d->scratch, d->format), *output = NULL;
     int exit_code = -1;
     if (!settings)
         return out_of_memory(why);
-    const char *const arguments[] = {"/usr/bin/env", "gnuplot", "-d", "-e", settings, script, NULL};
-    status code = child_run((char *const *)(uintptr_t)arguments, draw_limit_s, &never, &output, &exit_code, why);
+    const char *const arguments[] = {"/usr/bin/env", "gnuplot", "-d", "-e", settings, d->script, NULL};
+    status code = child_run((char *const *)(uintptr_t)arguments, d->limit_s, d->stop ? d->stop : &never, &output,
+                            &exit_code, why);
     if (code == STATUS_OK && exit_code != 0)
-        code = explain(script, exit_code, output, why);
+        code = explain(d->script, exit_code, output, why);
     free(settings);
     free(output);
     return code;
 }
 
-status study_plot_draw(const char *base, const char *format, diagnostic *why)
+status study_plot_draw(const char *base, const char *format, double limit_s, const atomic_bool *stop, diagnostic *why)
 {
     const char *name = file_name_of(base);
     char *scratch = text_format("%.*s.%s.drawing-%d", (int)(name - base), base, name, (int)getpid());
     char *made = text_format("%s.%s", scratch ? scratch : "", format), *target = text_format("%s.%s", base, format);
     char *script = text_format("%s.gp", base);
     status code = scratch && made && target && script ? STATUS_OK : out_of_memory(why);
-    THEN(code, run_gnuplot(script, scratch, format, why));
+    THEN(code, run_gnuplot(&(drawing){script, scratch, format, limit_s, stop}, why));
     if (code == STATUS_OK && rename(made, target) != 0)
         code = diagnose_at(why, target, STATUS_FAILURE, "", "the figure cannot be written");
     if (code != STATUS_OK && made)

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "study/study.h"
+#include <stdatomic.h>
 
 typedef enum plot_log { PLOT_LOG_AUTO, PLOT_LOG_NONE, PLOT_LOG_X, PLOT_LOG_Y, PLOT_LOG_XY } plot_log;
 
@@ -25,5 +26,6 @@ typedef struct plot_request {
 /* Writes BASE.gp and, for a figure, BASE.tsv. */
 status study_plot_write(const study *s, const plot_request *request, const char *base, diagnostic *why);
 
-/* Runs gnuplot on BASE.gp; BASE.png, .svg or .pdf appears complete or not at all. */
-status study_plot_draw(const char *base, const char *format, diagnostic *why);
+/* Runs gnuplot on BASE.gp; BASE.png, .svg or .pdf (format: png, svg, pdf) appears complete or not at all.
+ * STATUS_INTERRUPTED after limit_s, or when stop, which may be NULL, is set. */
+status study_plot_draw(const char *base, const char *format, double limit_s, const atomic_bool *stop, diagnostic *why);

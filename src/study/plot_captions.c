@@ -87,7 +87,9 @@ static status add_spread(plot_plan *p, const facts *f, diagnostic *why)
     char n[60], wide[80] = "";
     snprintf(n, sizeof n, f->least_n < f->most_n ? "n = %g to %g" : "n = %g", f->least_n, f->most_n);
     if (p->kind == PLOT_HEAT && f->intervals + f->ranges > 0)
-        snprintf(wide, sizeof wide, ", at most ±%.2g %% of the value", 100 * f->widest);
+        snprintf(wide, sizeof wide,
+                 f->widest < 0.1 ? ", at most ±%.2g %% of the value" : ", at most ±%.0f %% of the value",
+                 100 * f->widest);
     const char *bars = p->kind == PLOT_HEAT ? "" : "bars: ";
     if (f->most_n < 2)
         return plot_caption_add(p, why, "%s: single measurements, without any spread.", n);

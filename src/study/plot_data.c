@@ -94,7 +94,12 @@ static void put_text(FILE *out, const plot_plan *p, double value)
     char text[NUMBER_TEXT_MAX];
     const double share =
         p->y.log ? log(value / p->y.from) / log(p->y.to / p->y.from) : (value - p->y.from) / (p->y.to - p->y.from);
-    fprintf(out, "\t%s\t%d", number_format_digits(value, 3, text), share < 0.6 ? 0xffffff : 0x222222);
+    const bool plain = fabs(value) >= 1000 && fabs(value) < 1e6; /* 8750, not 8.75e+03 */
+    if (plain)
+        snprintf(text, sizeof text, "%.0f", value);
+    else
+        number_format_digits(value, 3, text);
+    fprintf(out, "\t%s\t%d", text, share < 0.6 ? 0xffffff : 0x222222);
 }
 
 static void put_point(FILE *out, const plot_plan *p, const plot_point *point)

@@ -9,6 +9,7 @@
 enum {
     LETTER = 7,
     TITLE_LETTER = 8,
+    TURNED_LETTER = 9,
     TITLE = 36,
     LINE = 13 /* of captions */,
     GAP = 24,
@@ -123,7 +124,7 @@ static void find_margins(const plot_plan *p, grid *g)
     const bool turned = words && longest(p->along) * LETTER > slot;
     g->left = 46 + LETTER * (p->kind == PLOT_HEAT ? longest(p->up) : y_letters(p));
     g->right = 18 + (p->kind == PLOT_HEAT ? 96 : key_width(p));
-    g->bottom = 50 + (turned ? limited(longest(p->along) * LETTER - 12, 0, 200) : 0);
+    g->bottom = 50 + (turned ? limited(longest(p->along) * TURNED_LETTER - 8, 0, 240) : 0);
 }
 
 static void place_panels(plot_plan *p, const grid *g, int captions)

@@ -65,9 +65,14 @@ static void describe(plot_published *out, const csv *table, int x, int y)
 {
     const int machine = csv_column(table, "machine"), where = csv_column(table, "where");
     const char *place = csv_field(table, 0, where), *on = csv_field(table, 0, machine);
-    snprintf(out->caption, sizeof out->caption, "Published: %.40s by %.40s%s%.80s%s%.90s.", table->header[y],
+    const char *line = strstr(place, ", line "); /* each row has its own */
+    const int length = (int)(line ? line - place : (long)strlen(place));
+    snprintf(out->caption, sizeof out->caption, "Published: %.40s by %.40s%s%.80s%s%.*s.", table->header[y],
              table->header[x], machine < 0 ? "" : ", machine: ", machine < 0 ? "" : on, where < 0 ? "" : "; ",
-             where < 0 ? "" : place);
+             where < 0     ? 0
+             : length > 90 ? 90
+                           : length,
+             place);
 }
 
 static status take_rows(plot_plan *p, const csv *table, int x, int y, diagnostic *why)

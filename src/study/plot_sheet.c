@@ -2,7 +2,6 @@
 #include "study/plot_parts.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "image/image.h"
 #include "study/keep.h"
 #include "study/row_files.h"
 #include <math.h>
@@ -21,9 +20,9 @@ typedef struct frame {
 
 typedef struct sheet {
     frame frames[PLOT_SHEET_MAX];
-    size_t count, missing, columns, lines; /* lines of a caption */
-    int width, height;                     /* of an image on the sheet */
-    int image_width, image_height;
+    size_t count, missing, columns, lines;                    /* lines of a caption */
+    int width, height;                                        /* of an image on the sheet */
+    int image_width, image_height, least_width, least_height; /* in pixels */
 } sheet;
 
 static const char *last_part(const char *path)
@@ -60,14 +59,32 @@ static status take_frame(const plot_plan *p, const char *folder, size_t row, she
     return STATUS_OK;
 }
 
-/* All sizes are those of the first image, unless an axis changes them; gnuplot scales each to its place. */
-static status measure_first(sheet *out, diagnostic *why)
+/* The size in the head of a PNG: big-endian at bytes 16 and 20. False for another file. */
+static bool size_of(const char *path, int *width, int *height)
 {
-    image *img = NULL;
-    TRY(image_read(out->frames[0].path, &img, NULL, why));
-    out->image_width = img->width;
-    out->image_height = img->height;
-    image_destroy(img);
+    unsigned char head[24] = {0};
+    FILE *file = fopen(path, "rb");
+    const bool whole = file && fread(head, 1, sizeof head, file) == sizeof head && memcmp(head + 1, "PNG", 3) == 0;
+    if (file)
+        fclose(file);
+    *width = head[18] << 8 | head[19];
+    *height = head[22] << 8 | head[23];
+    return whole && *width > 0 && *height > 0;
+}
+
+/* The sizes of the smallest and the largest image. Places on the sheet have the aspect ratio of the largest. */
+static status measure(sheet *out, diagnostic *why)
+{
+    for (size_t i = 0; i < out->count; i++) {
+        int width, height;
+        if (!size_of(out->frames[i].path, &width, &height))
+            return diagnose_at(why, out->frames[i].path, STATUS_BAD_INPUT,
+                               "remove it, and run the study again: it is rendered again", "not a whole PNG file");
+        if (i == 0 || width > out->image_width)
+            out->image_width = width, out->image_height = height;
+        if (i == 0 || width < out->least_width)
+            out->least_width = width, out->least_height = height;
+    }
     return STATUS_OK;
 }
 
@@ -83,7 +100,7 @@ static status find_frames(const plot_plan *p, sheet *out, diagnostic *why)
         code = diagnose_at(why, p->s->path, STATUS_BAD_INPUT,
                            "write `keep: {image: on}` in the study, and run it again: only the images are added",
                            "the study has no kept images in %s", p->request->results);
-    THEN(code, measure_first(out, why));
+    THEN(code, measure(out, why));
     return code;
 }
 
@@ -123,8 +140,11 @@ static status lay_out(plot_plan *p, sheet *out, diagnostic *why)
     out->lines = caption_lines(p);
     p->width = 2 * MARGIN + columns * (width + GAP) - GAP;
     p->width = p->width < 420 ? 420 : p->width;
-    TRY(plot_caption_add(p, why, "%zu images of %d x %d pixels%s.", out->count, out->image_width, out->image_height,
-                         p->request->where_count ? ", of the cells chosen by --where" : ""));
+    char least[40] = "";
+    if (out->least_width != out->image_width)
+        snprintf(least, sizeof least, "%d x %d to ", out->least_width, out->least_height);
+    TRY(plot_caption_add(p, why, "%zu images of %s%d x %d pixels%s.", out->count, least, out->image_width,
+                         out->image_height, p->request->where_count ? ", of the cells chosen by --where" : ""));
     if (out->missing)
         TRY(plot_caption_add(p, why, "%zu of %zu cells have no kept image.", out->missing, out->missing + out->count));
     p->height = TITLE + rows * (out->height + (int)out->lines * LINE + GAP) + (int)p->caption_count * LINE + 12;
