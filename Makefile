@@ -335,19 +335,26 @@ run_fuzzers: $(fuzzers)
 
 # --- studies, figures, paper ---
 
-.PHONY: experiments tables figures claims paper bench
+.PHONY: experiments experiments-full tables figures claims paper bench
 # Nothing runs in parallel with a measurement.
 requested = $(filter $(1),$(MAKECMDGOALS))
 experiments: | $(call requested,test)
+experiments-full: | $(call requested,test experiments)
 bench: | $(call requested,test experiments)
 claims paper: | $(call requested,experiments figures)
 experiments: $(build)/cuvette-import
 experiments: $(build)/cuvette ## run the studies (resumes), make tables and figures
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
 	@$(MAKE) --no-print-directory build=$(build) tables figures
+experiments-full: $(build)/cuvette-import
+experiments-full: $(build)/cuvette ## run the long studies of experiments/full as well: half an hour more
+	$(build)/cuvette study run --results $(RESULTS) experiments/*.study experiments/full/*.study
+	@$(MAKE) --no-print-directory build=$(build) tables figures
 
 # A study's summary, if its rows are newer: of the environment with most rows.
-studies := $(patsubst experiments/%.study,%,$(wildcard experiments/*.study))
+study_files := $(wildcard experiments/*.study experiments/full/*.study)
+study_file = $(filter %/$(1).study,$(study_files))
+studies := $(basename $(notdir $(study_files)))
 measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s)))
 # Tables of single cells, concatenated for a study.
 strung = $(patsubst $(RESULTS)/%/images/0000-$(1).tsv,$(RESULTS)/tables/%-$(1).tsv,$(wildcard $(RESULTS)/*/images/0000-$(1).tsv))
@@ -359,9 +366,9 @@ $(RESULTS)/tables/%-$(1).tsv: $(RESULTS)/%/images/index.tsv
 endef
 $(foreach kind,metrics curves motion,$(eval $(call strung_rule,$(kind))))
 .SECONDEXPANSION:
-$(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
+$(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv $$(call study_file,$$*) $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
 	@mkdir -p $(@D)
-	$(build)/cuvette study summary --environment main --results $(RESULTS) experiments/$*.study >$@
+	$(build)/cuvette study summary --environment main --results $(RESULTS) $(call study_file,$*) >$@
 
 figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg ## draw the figures whose rows or scripts are newer
 	@mkdir -p $(RESULTS)

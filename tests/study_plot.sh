@@ -116,11 +116,12 @@ check "without gnuplot, the package is named" grep -q 'gnuplot-nox' err
 # --- the committed rows
 drawn=0
 for file in "$root"/experiments/*.study; do
+    [[ -e $root/results/reference/$(basename "$file" .study)/rows.csv ]] || continue
     run "$file" --results "$root/results/reference" -o reference/
     clean || check "$(basename "$file") is drawn" false
     drawn=$((drawn + 1))
 done
-check "a figure of each study of experiments/" test "$(find reference -name '*.png' -size +2k | wc -l)" = "$drawn"
+check "a figure of each study that has rows" test "$(find reference -name '*.png' -size +2k | wc -l)" = "$drawn"
 for script in reference/*.gp; do
     gnuplot -d -e "output = '$work/again'" "$script" >>warnings 2>&1
 done

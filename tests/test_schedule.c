@@ -37,8 +37,8 @@ static void every_pixel_goes_to_exactly_one_worker(void **state)
             for (size_t n = 0; n < COUNT(workers); n++)
                 for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++) {
                     const int width = sizes[i][0], height = sizes[i][1];
-                    const render_settings settings =
-                        settings_of((schedule_rule)rule, width, height, tiles[k], workers[n]);
+                    render_settings settings = settings_of((schedule_rule)rule, width, height, tiles[k], workers[n]);
+                    settings.pieces = 4 * (int64_t)(k % 2);
                     unsigned char *seen = calloc((size_t)(width * height), 1);
                     schedule s;
                     span piece;
