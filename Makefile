@@ -160,8 +160,8 @@ $(build)/build_id: always $(build)/flags
 	@{ git rev-parse --short HEAD && git diff --quiet HEAD -- src Makefile || echo +; } 2>/dev/null | tr -d '\n' >>$@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 $(build)/obj/base/build_id.o: $(build)/build_id
-$(build)/obj/base/build_id.o: private all_cflags += -DCUVETTE_BUILD_ID='"$(shell head -n 1 $(build)/build_id)"' \
-  -DCUVETTE_BUILD_COMMIT='"$(shell tail -n +2 $(build)/build_id)"'
+$(build)/obj/base/build_id.o: private all_cflags += -DCUVETTE_BUILD_ID='"$(shell sed -n 1p $(build)/build_id 2>/dev/null)"' \
+  -DCUVETTE_BUILD_COMMIT='"$(shell sed 1d $(build)/build_id 2>/dev/null)"'
 
 $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call say,$(CC) $<)
