@@ -129,8 +129,8 @@ static void intervals_cover_the_truth(void **state)
         size_t processes, repetitions;
         bool two, paired;
         double between;
-    } cases[] = {{4, 6, false, false, 1}, {8, 3, false, false, 2}, {20, 5, true, false, 1},
-                 {6, 4, true, true, 0.5}, {10, 2, true, true, 1},  {1, 15, false, false, 0}};
+    } cases[] = {{3, 4, true, true, 3},   {4, 6, false, false, 1}, {5, 2, true, true, 3},  {8, 3, false, false, 2},
+                 {20, 5, true, false, 1}, {6, 4, true, true, 0.5}, {10, 2, true, true, 1}, {1, 15, false, false, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const double share =
             coverage(cases[i].processes, cases[i].repetitions, cases[i].two, cases[i].paired, cases[i].between);

@@ -2,6 +2,7 @@
 #include "cli/study_request.h"
 #include "cli/options.h"
 #include "base/number.h"
+#include "study/study.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,6 +54,13 @@ static const command_option run_options[] = {
      .take = take_by},
     {"any-environment", 0, NULL, "count the rows of every environment, not only those of this machine and build",
      OPTION_FILLS(option_flag, study_request, any_environment)},
+    {"processes", 0, "P", "divide the repetitions among P fresh processes, with as many in each as the study file asks",
+     OPTION_FILLS(option_integer, study_request, processes), .lowest = 1, .highest = STUDY_PROCESSES_MAX},
+    {"process", 0, "K", "measure only the part of process K, from 1, of those of the study",
+     OPTION_FILLS(option_integer, study_request, process), .lowest = 1, .highest = 2 * STUDY_PROCESSES_MAX},
+    {"against", 0, "PROGRAM",
+     "alternate with PROGRAM, another build of cuvette, a fresh process each; its rows are written to DIR-against",
+     OPTION_FILLS(option_text, study_request, against)},
     {"dry-run", 'n', NULL, "print what would be measured and kept, and about how long it takes; write nothing",
      OPTION_FILLS(option_flag, study_request, dry_run)},
     {"quiet", 'q', NULL, "print errors only", OPTION_FILLS(option_flag, study_request, quiet)},

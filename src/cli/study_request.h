@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 typedef enum study_verb {
@@ -23,9 +24,11 @@ typedef struct study_request {
     const char **files; /* study files; for STUDY_LIST the folder */
     size_t file_count;
     const char *results;
-    const char *to;          /* of an upgrade: the results folder to write; NULL: results-upgraded */
-    const char *environment; /* of the summary: a key, "main", or NULL for all */
-    const char *columns;     /* of --interval, or NULL */
+    const char *to;             /* of an upgrade: the results folder to write; NULL: results-upgraded */
+    const char *environment;    /* of the summary: a key, "main", or NULL for all */
+    const char *columns;        /* of --interval, or NULL */
+    const char *against;        /* of a run: the program to alternate with, or NULL */
+    int64_t process, processes; /* of a run: see study_options; processes: 0: those of the study file */
     long shard, shards;
     bool by_repetition, any_environment, quiet, dry_run;
 } study_request;

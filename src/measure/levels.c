@@ -86,7 +86,7 @@ double level_difference(const level_sample *a, const level_sample *b, void *unus
 /* --- bootstrap --- */
 
 /* 2000 resamples place the ends of a 95% interval within about half a percent of probability. */
-enum { RESAMPLES = 2000 };
+enum { RESAMPLES = 2000, PERCENTILES_LEAST = 10 };
 
 /* A resampled sample; its arrays have the size of the original, and may hold larger processes than were drawn. */
 typedef struct resample {
@@ -122,18 +122,28 @@ static size_t draw(uint64_t seed, uint32_t round, uint32_t which, uint32_t proce
     return (size_t)(unit * (double)count);
 }
 
-/* One process is not drawn: with one there is nothing known of others. stream separates processes of unpaired samples.
- */
-static void resample_draw(resample *r, uint64_t seed, uint32_t round, uint32_t stream, uint32_t own)
+static void draw_repetitions(resample *r, uint64_t seed, uint32_t round, uint32_t stream)
+{
+    const size_t count = count_of(r->of, 0);
+    for (size_t i = 0; i < count; i++)
+        r->values[i] = r->of->values[r->of->start[0] + draw(seed, round, stream, 0, (uint32_t)i, count)];
+    r->start[1] = count;
+}
+
+/* Whole processes; with one, nothing is known of others. stream: equal for paired samples. */
+static void resample_draw(resample *r, uint64_t seed, uint32_t round, uint32_t stream)
 {
     const level_sample *s = r->of;
+    if (s->processes == 1) {
+        draw_repetitions(r, seed, round, stream);
+        return;
+    }
     size_t at = 0;
     for (size_t p = 0; p < s->processes; p++) {
-        const size_t from = s->processes > 1 ? draw(seed, round, stream, (uint32_t)p, 0, s->processes) : 0;
-        const size_t count = count_of(s, from);
+        const size_t from = draw(seed, round, stream, (uint32_t)p, 0, s->processes), count = count_of(s, from);
+        memcpy(r->values + at, s->values + s->start[from], count * sizeof *r->values);
         r->start[p] = at;
-        for (size_t i = 0; i < count; i++)
-            r->values[at++] = s->values[s->start[from] + draw(seed, round, own, (uint32_t)p, (uint32_t)i + 1, count)];
+        at += count;
     }
     r->start[s->processes] = at;
 }
@@ -165,10 +175,29 @@ static bool has_interval(const level_sample *a, const level_sample *b)
     return values >= 6 && processes != 2;
 }
 
+/* Resamples of a few processes never lie outside their range, which is too narrow (three of one sign are no
+ * evidence), so that percentiles do not suffice: Student's t with the bootstrap's standard error. */
+static void take_symmetric(const double *values, double t, level_interval *out)
+{
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < RESAMPLES; i++)
+        sum += values[i] - out->value;
+    const double bias = sum / RESAMPLES;
+    for (size_t i = 0; i < RESAMPLES; i++)
+        squares += (values[i] - out->value - bias) * (values[i] - out->value - bias);
+    const double half = t * sqrt(squares / (RESAMPLES - 1));
+    out->low = out->value - half;
+    out->high = out->value + half;
+}
+
 static void take_interval(double *values, size_t draws, level_interval *out)
 {
     const double n = (double)draws;
     const double z = student_quantile(0.975, n - 1) * sqrt(n / (n - 1)), tail = normal_below(-z);
+    if (draws < PERCENTILES_LEAST) {
+        take_symmetric(values, z, out);
+        return;
+    }
     qsort(values, RESAMPLES, sizeof *values, by_value);
     out->low = quantile(values, RESAMPLES, tail);
     out->high = quantile(values, RESAMPLES, 1.0 - tail);
@@ -184,9 +213,9 @@ status level_bootstrap(const level_sample *a, const level_sample *b, bool paired
     double *values = malloc(RESAMPLES * sizeof *values);
     const bool has_memory = resample_create(a, &first) & resample_create(b, &second);
     for (uint32_t round = 0; values && has_memory && round < RESAMPLES; round++) {
-        resample_draw(&first, seed, round, 0, 1);
+        resample_draw(&first, seed, round, 0);
         if (b)
-            resample_draw(&second, seed, round, paired ? 0 : 2, 3);
+            resample_draw(&second, seed, round, paired && a->processes > 1 ? 0 : 1);
         values[round] = statistic(&first.drawn, b ? &second.drawn : NULL, context);
     }
     if (values && has_memory)
