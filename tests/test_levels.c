@@ -172,6 +172,45 @@ static void few_values_have_no_interval(void **state)
     assert_true(isnan(interval.low));
 }
 
+static double pooled_median(const level_sample *a, const level_sample *b, void *unused)
+{
+    double copy[400];
+    const size_t count = a->start[a->processes];
+    (void)b;
+    (void)unused;
+    assert_true(count > 0 && count <= 400);
+    memcpy(copy, a->values, count * sizeof *copy);
+    return summarize(copy, count).median;
+}
+
+/* The fast median of resamples is that of the generic bootstrap; with one process it is that of order statistics. */
+static void medians_are_resampled_by_process(void **state)
+{
+    (void)state;
+    static drawn d;
+    uint64_t seed = 11;
+    level_interval fast, slow;
+    size_t inside = 0, inside_without = 0;
+    for (size_t processes = 3; processes < 14; processes++) {
+        draw_sample(&d, &seed, processes, 3 + processes % 4, 0, 1, 1);
+        assert_int_equal(level_median(&d.sample, 4, &fast, NULL), STATUS_OK);
+        assert_int_equal(level_bootstrap(&d.sample, NULL, false, pooled_median, NULL, 4, &slow, NULL), STATUS_OK);
+        close_to(fast.value, slow.value, 1e-14);
+        close_to(fast.low, slow.low, 1e-12);
+        close_to(fast.high, slow.high, 1e-12);
+    }
+    for (size_t trial = 0; trial < 400; trial++) {
+        draw_sample(&d, &seed, 8, 6, 0, 1, 0.5);
+        assert_int_equal(level_median(&d.sample, trial, &fast, NULL), STATUS_OK);
+        inside += fast.low <= 0 && 0 <= fast.high;
+        const size_t whole[] = {0, 48};
+        assert_int_equal(level_median(&(level_sample){d.values, whole, 1}, trial, &slow, NULL), STATUS_OK);
+        inside_without += slow.low <= 0 && 0 <= slow.high;
+    }
+    assert_true(inside >= 362); /* 0.905, as above */
+    assert_true(inside_without < 300);
+}
+
 static void the_bootstrap_is_reproducible(void **state)
 {
     (void)state;
@@ -230,13 +269,10 @@ static void upper_deviations_are_limits(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quantiles_are_those_of_tables),
-        cmocka_unit_test(variances_are_separated_by_level),
-        cmocka_unit_test(intervals_cover_the_truth),
-        cmocka_unit_test(levels_matter),
-        cmocka_unit_test(few_values_have_no_interval),
-        cmocka_unit_test(the_bootstrap_is_reproducible),
-        cmocka_unit_test(powers_are_reached),
+        cmocka_unit_test(quantiles_are_those_of_tables), cmocka_unit_test(variances_are_separated_by_level),
+        cmocka_unit_test(intervals_cover_the_truth),     cmocka_unit_test(levels_matter),
+        cmocka_unit_test(few_values_have_no_interval),   cmocka_unit_test(medians_are_resampled_by_process),
+        cmocka_unit_test(the_bootstrap_is_reproducible), cmocka_unit_test(powers_are_reached),
         cmocka_unit_test(upper_deviations_are_limits),
     };
     return cmocka_run_group_tests_name("levels", tests, NULL, NULL);

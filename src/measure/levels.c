@@ -1,6 +1,7 @@
 #include "measure/levels.h"
 #include "base/random.h"
 #include "measure/quantiles.h"
+#include "measure/statistics.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -226,4 +227,85 @@ status level_bootstrap(const level_sample *a, const level_sample *b, bool paired
     free(second.values);
     free(second.start);
     return values && has_memory ? STATUS_OK : out_of_memory(why);
+}
+
+/* --- median --- */
+
+typedef struct labelled {
+    double value;
+    size_t process;
+} labelled;
+
+static int by_labelled_value(const void *a, const void *b)
+{
+    const labelled *x = a, *y = b;
+    return (x->value > y->value) - (x->value < y->value);
+}
+
+/* The median of sorted values, each as often as its process was drawn, `total` in all. */
+static double weighted_median(const labelled *sorted, const size_t *drawn, size_t total)
+{
+    size_t seen = 0, i = 0;
+    for (; (seen += drawn[sorted[i].process]) < (total + 1) / 2; i++) {
+    }
+    const double lower = sorted[i].value;
+    if (total % 2 == 1 || seen > total / 2)
+        return lower;
+    do
+        i++;
+    while (drawn[sorted[i].process] == 0);
+    return 0.5 * (lower + sorted[i].value);
+}
+
+static void resample_medians(const level_sample *s, const labelled *sorted, uint64_t seed, size_t *drawn, double *out)
+{
+    for (uint32_t round = 0; round < RESAMPLES; round++) {
+        size_t total = 0;
+        memset(drawn, 0, s->processes * sizeof *drawn);
+        for (size_t p = 0; p < s->processes; p++) {
+            const size_t from = draw(seed, round, 0, (uint32_t)p, 0, s->processes);
+            drawn[from]++;
+            total += count_of(s, from);
+        }
+        out[round] = weighted_median(sorted, drawn, total);
+    }
+}
+
+static status median_of_few(const level_sample *s, size_t count, level_interval *out, diagnostic *why)
+{
+    double *copy = malloc((count + 1) * sizeof *copy);
+    if (!copy)
+        return out_of_memory(why);
+    memcpy(copy, s->values, count * sizeof *copy);
+    const summary all = summarize(copy, count);
+    *out = (level_interval){all.median, all.median_low, all.median_high};
+    free(copy);
+    return STATUS_OK;
+}
+
+status level_median(const level_sample *s, uint64_t seed, level_interval *out, diagnostic *why)
+{
+    const size_t count = s->processes ? s->start[s->processes] : 0;
+    *out = (level_interval){NAN, NAN, NAN};
+    if (count == 0)
+        return STATUS_OK;
+    TRY(median_of_few(s, count, out, why));
+    if (s->processes < 3 || count < 6)
+        return STATUS_OK;
+    labelled *sorted = malloc(count * sizeof *sorted);
+    size_t *drawn = malloc(s->processes * sizeof *drawn);
+    double *medians = malloc(RESAMPLES * sizeof *medians);
+    const bool has_memory = sorted && drawn && medians;
+    if (has_memory) {
+        for (size_t p = 0; p < s->processes; p++)
+            for (size_t i = s->start[p]; i < s->start[p + 1]; i++)
+                sorted[i] = (labelled){s->values[i], p};
+        qsort(sorted, count, sizeof *sorted, by_labelled_value);
+        resample_medians(s, sorted, seed, drawn, medians);
+        take_interval(medians, s->processes, out);
+    }
+    free(medians);
+    free(drawn);
+    free(sorted);
+    return has_memory ? STATUS_OK : out_of_memory(why);
 }

@@ -52,3 +52,8 @@ status level_bootstrap(const level_sample *a, const level_sample *b, bool paired
                        void *context, uint64_t seed, level_interval *out, diagnostic *why);
 /* Of two samples of logarithms, the difference of their centres: the logarithm of a ratio. */
 double level_difference(const level_sample *a, const level_sample *b, void *unused);
+
+/* The median of all values with its interval: processes are drawn as in level_bootstrap. For fewer than 3 processes it
+ * is that of the order statistics of all values (measure/statistics.h), as if they were independent. Values are
+ * sorted by process as given, and not changed. */
+status level_median(const level_sample *s, uint64_t seed, level_interval *out, diagnostic *why);

@@ -19,7 +19,8 @@ const char *contrast_verdict_text(contrast_verdict verdict)
 const char *contrast_reason_text(contrast_reason reason)
 {
     static const char *const texts[] = {"the interval includes 1", "a side has no rows",
-                                        "fewer than 6 repetitions or 3 processes", "the sides did not alternate", ""};
+                                        "there are fewer than 6 repetitions or 3 processes",
+                                        "the sides did not alternate", ""};
     return texts[reason];
 }
 

@@ -118,7 +118,7 @@ static status check_column(const contrast_rows *r, const char *column, diagnosti
 status contrast_rows_read(const study *s, const study_side *side, const char *column, contrast_rows *out,
                           diagnostic *why)
 {
-    *out = (contrast_rows){.files = NULL};
+    *out = (contrast_rows){.results = side->results};
     TRY(row_files_read(s, side->results, ROWS, &out->files, why));
     if (out->files->row_count == 0)
         return diagnose_at(why, s->path, STATUS_FAILURE, "run the study first, or give the folder of its results",
@@ -221,7 +221,7 @@ bool contrast_alternate(const contrast_rows *ra, const contrast_sample *a, const
                         const contrast_sample *b)
 {
     const size_t count = a->levels.processes;
-    bool same = count == b->levels.processes, in_turn = same;
+    bool in_turn = count == b->levels.processes, same = in_turn && strcmp(ra->results, rb->results) == 0;
     for (size_t k = 0; k < count && (same || in_turn); k++) {
         const contrast_process *pa = &ra->processes[a->process[k]], *pb = &rb->processes[b->process[k]];
         same = same && are_the_same(pa, pb);

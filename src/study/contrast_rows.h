@@ -21,6 +21,7 @@ typedef struct contrast_row {
 
 typedef struct contrast_rows {
     row_files *files;
+    const char *results; /* borrowed from the side */
     char environment[ENVIRONMENT_KEY];
     size_t left_out;             /* rows of other environments */
     contrast_row *rows;          /* by cell, process, repetition */

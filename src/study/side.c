@@ -32,7 +32,7 @@ static bool same_value(const char *a, const char *b)
 static void list_add(char *list, size_t size, const char *text)
 {
     const size_t length = strlen(list);
-    snprintf(list + length, size - length, "%s%.60s", length ? ", " : "", text);
+    snprintf(list + length, size - length, "%s%.60s", length && list[length - 1] != ' ' ? ", " : "", text);
 }
 
 static status no_such_parameter(const study *s, const char *path, diagnostic *why)

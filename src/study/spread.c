@@ -2,6 +2,7 @@
 #include "measure/statistics.h"
 #include "study/cell_table.h"
 #include "study/grid.h"
+#include "study/level_rows.h"
 #include "study/row_environments.h"
 #include "study/row_files.h"
 #include <math.h>
@@ -85,17 +86,23 @@ static double value_of(const row_ref *ref, const spread_column *c)
 }
 
 /* The line of one column over the rows of one cell and environment. values: room for as many numbers. */
-static void put_line(const study *s, const row_ref **rows, size_t count, const spread_column *c, double *values,
-                     FILE *out)
+static status put_line(const study *s, const row_ref **rows, size_t count, const spread_column *c, double *values,
+                       FILE *out, diagnostic *why)
 {
     size_t known = 0;
+    level_interval median;
+    for (size_t i = 0; i < count; i++) {
+        values[i] = value_of(rows[i], c);
+        values[i] = isfinite(values[i]) ? values[i] : NAN;
+    }
+    TRY(level_rows_median(rows, values, count, &median, why));
     for (size_t i = 0; i < count; i++) {
         const double value = value_of(rows[i], c);
         if (isfinite(value))
             values[known++] = value;
     }
     const summary of = known ? summarize(values, known) : (summary){0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
-    const double numbers[] = {of.median, of.median_low, of.median_high, of.minimum, of.maximum};
+    const double numbers[] = {median.value, median.low, median.high, of.minimum, of.maximum};
     fprintf(out, "%zu", rows[0]->cell);
     grid_put_values(s, rows[0]->cell, out);
     fprintf(out, "\t%s\t%s%s%s\t%zu", row_environment(rows[0]), c->name, c->below ? "/" : "", c->below ? c->below : "",
@@ -103,6 +110,7 @@ static void put_line(const study *s, const row_ref **rows, size_t count, const s
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         cell_table_number(out, numbers[i]);
     fputc('\n', out);
+    return STATUS_OK;
 }
 
 static void put_header(const study *s, FILE *out)
@@ -132,15 +140,16 @@ static status put_all(const study *s, const row_files *files, const column_list 
     }
     qsort(rows, count, sizeof *rows, by_cell_and_environment);
     put_header(s, out);
+    status code = STATUS_OK;
     for (size_t first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && by_cell_and_environment(&rows[first], &rows[end]) == 0; end++)
             ;
-        for (size_t i = 0; i < list->count; i++)
-            put_line(s, rows + first, end - first, &list->columns[i], values, out);
+        for (size_t i = 0; i < list->count && code == STATUS_OK; i++)
+            code = put_line(s, rows + first, end - first, &list->columns[i], values, out, why);
     }
     free(rows);
     free(values);
-    return STATUS_OK;
+    return code;
 }
 
 status study_spread(const study *s, const char *results, const char *columns, const summary_options *options, FILE *out,
