@@ -160,13 +160,14 @@ $(build)/build_id: always $(build)/flags
 	@{ git rev-parse --short HEAD && git diff --quiet HEAD -- src Makefile || echo +; } 2>/dev/null | tr -d '\n' >>$@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 $(build)/obj/base/build_id.o: $(build)/build_id
-$(build)/obj/base/build_id.o: private all_cflags += -DCUVETTE_BUILD_ID='"$(shell head -n 1 $(build)/build_id)"' \
-  -DCUVETTE_BUILD_COMMIT='"$(shell tail -n +2 $(build)/build_id)"'
+$(build)/obj/base/build_id.o: private all_cflags += -DCUVETTE_BUILD_ID='"$(shell sed -n 1p $(build)/build_id 2>/dev/null)"' \
+  -DCUVETTE_BUILD_COMMIT='"$(shell sed 1d $(build)/build_id 2>/dev/null)"'
 
 $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) $(room_cflags) -MMD -MP -c -o $@ $<
+$(build)/obj/study/plot_style.o: plots/style.gp
 $(build)/obj/geometry/hierarchy_embree.o: pkg_cflags += $(embree_cflags)
 web_cflags = $(eval web_cflags := $$(shell pkg-config --cflags libmicrohttpd))$(web_cflags)
 $(build)/obj/web/%.o: private room_cflags = $(web_cflags)
@@ -334,19 +335,26 @@ run_fuzzers: $(fuzzers)
 
 # --- studies, figures, paper ---
 
-.PHONY: experiments tables figures paper bench
+.PHONY: experiments experiments-full tables figures claims paper bench
 # Nothing runs in parallel with a measurement.
 requested = $(filter $(1),$(MAKECMDGOALS))
 experiments: | $(call requested,test)
+experiments-full: | $(call requested,test experiments)
 bench: | $(call requested,test experiments)
-paper: | $(call requested,experiments figures)
+claims paper: | $(call requested,experiments figures)
 experiments: $(build)/cuvette-import
 experiments: $(build)/cuvette ## run the studies (resumes), make tables and figures
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
 	@$(MAKE) --no-print-directory build=$(build) tables figures
+experiments-full: $(build)/cuvette-import
+experiments-full: $(build)/cuvette ## run the long studies of experiments/full as well: half an hour more
+	$(build)/cuvette study run --results $(RESULTS) experiments/*.study experiments/full/*.study
+	@$(MAKE) --no-print-directory build=$(build) tables figures
 
 # A study's summary, if its rows are newer: of the environment with most rows.
-studies := $(patsubst experiments/%.study,%,$(wildcard experiments/*.study))
+study_files := $(wildcard experiments/*.study experiments/full/*.study)
+study_file = $(filter %/$(1).study,$(study_files))
+studies := $(basename $(notdir $(study_files)))
 measured := $(foreach s,$(studies),$(if $(wildcard $(RESULTS)/$(s)/rows.csv),$(s)))
 # Tables of single cells, concatenated for a study.
 strung = $(patsubst $(RESULTS)/%/images/0000-$(1).tsv,$(RESULTS)/tables/%-$(1).tsv,$(wildcard $(RESULTS)/*/images/0000-$(1).tsv))
@@ -358,9 +366,9 @@ $(RESULTS)/tables/%-$(1).tsv: $(RESULTS)/%/images/index.tsv
 endef
 $(foreach kind,metrics curves motion,$(eval $(call strung_rule,$(kind))))
 .SECONDEXPANSION:
-$(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv experiments/%.study $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
+$(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv $$(call study_file,$$*) $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
 	@mkdir -p $(@D)
-	$(build)/cuvette study summary --environment main --results $(RESULTS) experiments/$*.study >$@
+	$(build)/cuvette study summary --environment main --results $(RESULTS) $(call study_file,$*) >$@
 
 figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg ## draw the figures whose rows or scripts are newer
 	@mkdir -p $(RESULTS)
@@ -374,8 +382,13 @@ $(RESULTS)/figures/trace.svg: experiments/scenes/rod.yaml | $(build)/cuvette
 	@mkdir -p $(@D)
 	$(build)/cuvette trace $< --ray=-3,1.5,0.6,1,0,0 --depth 5 --set rod.visible=off -o $@
 
-paper: ## rebuild the report from existing rows, without measuring
-	$(MAKE) -C paper
+# The rows of this clone, or the committed run if there are none and no folder is given.
+claimed = $(if $(filter-out file,$(origin RESULTS))$(wildcard $(RESULTS)/*/rows*.csv $(RESULTS)/tables/*.tsv),$(RESULTS),results/reference)
+claims: $(build)/cuvette ## judge each claim of the paper by the rows: reproduced, not reproduced, underpowered; RESULTS=DIR, ENVIRONMENT=HEX
+	@CUVETTE='$(abspath $(build)/cuvette)' ENVIRONMENT='$(ENVIRONMENT)' paper/claims.sh '$(claimed)' $(build)/claims
+
+paper: $(build)/cuvette ## rebuild the report from existing rows, without measuring
+	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)'
 
 bench: all peers $(build)/tests/bench_mesh ## benchmark frames and rays as ratios to other programs; REPS=7 rounds
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters $(build)/nocounters/cuvette

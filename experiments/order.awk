@@ -17,3 +17,10 @@ function spread(list, form,   n, v) {
     n = sorted(list, v)
     return sprintf(form " (" form " to " form ")", median(list), v[1], v[n])
 }
+# The same of the ratios of two lists, round by round.
+function spread_of_ratios(above, below, form,   n, a, b, i, list) {
+    n = split(above, a, " ")
+    split(below, b, " ")
+    for (i = 1; i <= n; i++) list = list " " a[i] / b[i]
+    return spread(list, form)
+}

@@ -1,5 +1,7 @@
 # Print every value of a study's table as a TeX number, \setval{study/axis values/column}{text}, formatted by its kind:
-# times in ms, rays in millions, shares in percent; and numbers derived from them. awk -v study=NAME -f numbers.awk TABLE.tsv
+# times in ms, rays in millions, shares in percent; and numbers derived from them: ratios and differences of measured values
+# have an interval, or with fewer than six repetitions a range.
+#   awk -v study=NAME -f interval.awk -f numbers.awk TABLE.tsv
 # NA defines no number: the paper then prints n/a.
 # For a study whose axes all depend on one of them, that one is the key: alias().
 function set(key, text) { if (text != "") printf "\\setval{%s}{%s}\n", key, text }
@@ -28,7 +30,7 @@ function formatted(column, v) {
     if (v == "NA" || v == "") return ""
     if (column ~ /_s(_[a-z]+)?$/) return digits(v * 1e3)
     if (column ~ /^rays_/) return sprintf("%.3f", v / 1e6)
-    if (column ~ /^(imbalance|others_share)$/) return sprintf("%.1f", v * 100)
+    if (column ~ /^others_share$/) return sprintf("%.1f", v * 100)
     if (column ~ /^(peak_rss|accel)_bytes$/) return sprintf("%.1f", v / 1048576)
     if (column == "psnr_db") return sprintf("%.1f", v)
     if (column == "ssim") return sprintf("%.4f", v)
@@ -51,6 +53,14 @@ function alias() {
     return ""
 }
 function value(column) { return (column in at) && $at[column] != "NA" ? $at[column] + 0 : "" }
+# The line's value of a column with its interval (interval.awk), 0 without one.
+function measured(column,   fields, i) {
+    for (i = at["n"]; i <= NF; i++) fields[name[i]] = $i
+    return value_of_fields(fields, column)
+}
+function set_value(key, v) { if (v) set(key, value_tex(v)) }
+# A cost is a difference of two times. It is a number only if it is certainly positive.
+function set_cost(key, v) { if (v && value_kind[v] != "unbounded" && value_low[v] > 0) set(key, value_tex(v)) }
 
 BEGIN {
     FS = "\t"
@@ -70,16 +80,20 @@ value("n") > 0 {
     key = study
     if (alias() != "") key = alias()
     else for (i = 2; i <= axes + 1; i++) key = key "/" ($i ~ /^[-+0-9.]+$/ ? $i + 0 : $i)
-    for (i = at["n"]; i <= NF; i++) set(key "/" name[i], formatted(name[i], $i))
+    for (i = at["n"]; i <= NF; i++)
+        if (name[i] !~ /\/|^imbalance/) set(key "/" name[i], formatted(name[i], $i))
+    if (measured("imbalance")) set_value(key "/imbalance", scaled(measured("imbalance"), 100))
     rays = value("rays_total")
-    cpu = value("cpu_s_median")
-    wall = value("wall_s_median")
-    if (rays && cpu) set(key "/rate", sprintf("%.1f", rays / cpu / 1e6))
+    cpu = measured("cpu_s")
+    wall = measured("wall_s")
+    rate = measured("rays_total/cpu_s")
+    if (!rate && rays && cpu) rate = combine("/", exact(rays), cpu)
+    if (rate) set_value(key "/rate", scaled(rate, 1e-6))
     if (value("rays_camera") && value("cut_depth_throughput") != "")
         set(key "/cut", scientific(value("cut_depth_throughput") / value("rays_camera")))
     if (value("triangles")) {
         set(key "/bytes-triangle", sprintf("%.0f", value("accel_bytes") / value("triangles")))
-        if (rays && cpu) set(key "/million-rays", significant(rays / cpu / 1e6))
+        if (rate) set_value(key "/million-rays", scaled(rate, 1e-6))
     }
     if (value("rays_camera"))
         set(key "/glass", sprintf("%.1f", (value("first_hits.vessel") + value("first_hits.liquid")) / value("rays_camera") * 100))
@@ -89,13 +103,13 @@ value("n") > 0 {
     marked += value("marked")
     if (study == "depth") {
         if ($2 == 0) { cpu_0 = cpu; rays_0 = rays }
-        if (cpu_0) set(key "/growth", digits(cpu / cpu_0))
+        if (cpu_0) set_value(key "/growth", combine("/", cpu, cpu_0))
         if (rays_0) set(key "/rays-growth", digits(rays / rays_0))
     }
     if (study == "threads") {
         if ($3 == 1) one[$2] = wall
-        if (one[$2]) set(key "/speedup", digits(one[$2] / wall))
-        if (!($2 in best) || wall < best[$2]) { best[$2] = wall; best_count[$2] = $3 }
+        if (one[$2]) set_value(key "/speedup", combine("/", one[$2], wall))
+        if (!($2 in best) || value_mid[wall] < value_mid[best[$2]]) { best[$2] = wall; best_count[$2] = $3 }
         if ($3 == 1024) most[$2] = wall
     }
     # The sufficient depth, by the rule of plots/convergence.gp.
@@ -116,32 +130,34 @@ value("n") > 0 {
     # Relative to the first cell.
     if (study ~ /^(spectral|polarised)$/) {
         if (!first_cpu) { first_cpu = cpu; first_rays = rays }
-        set(key "/cpu-ratio", digits(cpu / first_cpu))
+        set_value(key "/cpu-ratio", combine("/", cpu, first_cpu))
         set(key "/rays-ratio", digits(rays / first_rays))
     }
     if (study == "pool") wall_of[$2, $3] = wall
     if (study ~ /^(triangles|crowding|build|hidden)$/) {
         cpu_of[key] = cpu
-        build_of[key] = value("build_s")
-        if (rays) ray_of[key] = cpu / rays
+        build_of[key] = measured("build_s")
+        if (rate) ray_of[key] = combine("/", exact(1), rate)
     }
     # The memory of a method in addition to triangles and film: hierarchies, or the depth buffer and its triangles.
     if (study == "hidden" && value("accel_bytes") + value("drawn_bytes") > 0)
         set(key "/memory", sprintf("%.1f", (value("accel_bytes") + value("drawn_bytes")) / 1048576))
     # With one thread, its busy time is the frame's.
-    if (study == "slime-frame" && value("visibility_s_sum") && wall && rays) {
-        set(key "/visible-share", sprintf("%.0f", value("visibility_s_sum") / wall * 100))
-        set(key "/visible-ray", sprintf("%.0f", visible_of[key] = value("visibility_s_sum") / rays * 1e9))
+    if (study == "slime-frame" && measured("visibility_s_sum/wall_s")) {
+        share = scaled(measured("visibility_s_sum/wall_s"), 100)
+        set_value(key "/visible-share", share)
+        visible_of[key] = scaled(measured("visibility_s_sum/rays_total"), 1e9)
+        set_value(key "/visible-ray", visible_of[key])
         if ($4 == "bvh" && $2 == 0) {
-            least_share = least_share == "" || value("visibility_s_sum") / wall < least_share ? value("visibility_s_sum") / wall : least_share
-            if (value("visibility_s_sum") / wall > most_share) most_share = value("visibility_s_sum") / wall
+            if (!least_share || value_mid[share] < value_mid[least_share]) least_share = share
+            if (!most_share || value_mid[share] > value_mid[most_share]) most_share = share
         }
     }
     # Microseconds a step, and seconds simulated in a second.
-    if (study == "slime-step" && value("motion_steps") && value("motion_s")) {
-        step_of[key] = value("motion_s") / value("motion_steps")
-        set(key "/step", digits(step_of[key] * 1e6))
-        set(key "/simulated", $5 > value("motion_s") ? digits($5 / value("motion_s")) : significant($5 / value("motion_s")))
+    if (study == "slime-step" && value("motion_steps") && measured("motion_s/motion_steps")) {
+        step_of[key] = measured("motion_s/motion_steps")
+        set_value(key "/step", scaled(step_of[key], 1e6))
+        set_value(key "/simulated", combine("/", exact($5), measured("motion_s")))
     }
     # The cost of a shading: its frame minus the one without light. Shadow rays are not part of it, so that a frame with shadows has the
     # cost of the one without. The excess of Phong shading over flat shading is the cost of its normals.
@@ -150,13 +166,14 @@ value("n") > 0 {
         split(key, part, "/")
         frames = study "/" part[2] "/" (part[3] == "shadows" ? "whitted" : part[3])
         if ($7 + 0) {
-            shading_cost = light_of[frames "/" part[4]] - light_of[frames "/unlit"]
-            set(key "/cost", digits(shading_cost * 1e3))
-            set(key "/share", sprintf("%.1f", shading_cost / cpu * 100))
+            shading_cost = combine("-", light_of[frames "/" part[4]], light_of[frames "/unlit"])
+            share = scaled(combine("/", shading_cost, cpu), 100)
+            set_cost(key "/cost", scaled(shading_cost, 1e3))
+            set_cost(key "/share", share)
             cost_of[key] = shading_cost
             if (part[4] == "smooth") {
-                if (least_phong == "" || shading_cost / cpu < least_phong) least_phong = shading_cost / cpu
-                if (shading_cost / cpu > most_phong) most_phong = shading_cost / cpu
+                if (!least_phong || value_mid[share] < value_mid[least_phong]) least_phong = share
+                if (!most_phong || value_mid[share] > value_mid[most_phong]) most_phong = share
             }
             # Corners of the mesh, each of which Gouraud's original method would light once.
             if (part[4] == "gouraud" && part[3] == "zbuffer")
@@ -166,12 +183,12 @@ value("n") > 0 {
     }
     if (study == "sectors") {
         if ($4 == 1) one[$2, $3] = wall
-        if (one[$2, $3]) set(key "/speedup", digits(one[$2, $3] / wall))
+        if (one[$2, $3]) set_value(key "/speedup", combine("/", one[$2, $3], wall))
     }
 }
 # The ratio of the values of two keys.
 function ratio(result, of, above, below) {
-    if (of[below] > 0 && of[above] > 0) set(result, significant(of[above] / of[below]))
+    if ((above in of) && (below in of) && of[below] && of[above]) set_value(result, combine("/", of[above], of[below]))
 }
 END {
     set(study "/cells", cells)
@@ -183,7 +200,8 @@ END {
     if (n_xy > 1) set("methods/slope", digits((n_xy * sum_xy - sum_x * sum_y) / (n_xy * sum_xx - sum_x * sum_x)))
     for (s in best) {
         set("threads/" s "/best", best_count[s])
-        if (s in most) set("threads/" s "/loss", sprintf("%.1f", (most[s] / best[s] - 1) * 100))
+        if (s in most) set_value("threads/" s "/loss", most[s] == best[s] ? exact(0) : \
+            scaled(combine("-", combine("/", most[s], best[s]), exact(1)), 100))
     }
     for (accel in hierarchy) {
         ratio("triangles/" accel "/growth", cpu_of, "triangles/" accel "/50000", "triangles/" accel "/10000")
@@ -200,15 +218,14 @@ END {
     for (accel in hierarchy)
         for (i = 1; i <= 3; i++) {
             built = "build/" kind[i] "/50000/" accel "/1"
-            saved = ray_of["build/" kind[i] "/50000/none/1"] - ray_of[built]
-            if (build_of[built] > 0 && saved > 0) set("build/" kind[i] "/50000/" accel "/pays", sprintf("%.0f", build_of[built] / saved))
+            if (!build_of[built] || !ray_of[built] || !ray_of["build/" kind[i] "/50000/none/1"]) continue
+            saved = combine("-", ray_of["build/" kind[i] "/50000/none/1"], ray_of[built])
+            set_cost("build/" kind[i] "/50000/" accel "/pays", combine("/", build_of[built], saved))
         }
     ratio("triangles/octant-bvh", cpu_of, "triangles/octant/50000", "triangles/bvh/50000")
     ratio("crowding/octant-bvh", cpu_of, "crowding/octant/50000", "crowding/bvh/50000")
-    if (least_share != "") {
-        set("slime-frame/ball/bvh/least-share", sprintf("%.0f", least_share * 100))
-        set("slime-frame/ball/bvh/most-share", sprintf("%.0f", most_share * 100))
-    }
+    set_value("slime-frame/ball/bvh/least-share", least_share)
+    set_value("slime-frame/ball/bvh/most-share", most_share)
     for (level = 0; level <= 7; level++) {
         ratio("slime-frame/" level "/stretch", visible_of, "slime-frame/0.5/" level "/bvh", "slime-frame/0/" level "/bvh")
         ratio("slime-frame/" level "/gain", visible_of, "slime-frame/0/" level "/none", "slime-frame/0/" level "/bvh")
@@ -217,10 +234,8 @@ END {
         ratio("slime-step/" level "/speedup", step_of, "slime-step/" level "/euler/1", "slime-step/" level "/euler/2")
         ratio("slime-step/" level "/implicit-speedup", step_of, "slime-step/" level "/implicit/1", "slime-step/" level "/implicit/2")
     }
-    if (least_phong != "") {
-        set("shading/least-phong", sprintf("%.0f", least_phong * 100))
-        set("shading/most-phong", sprintf("%.0f", most_phong * 100))
-    }
+    set_cost("shading/least-phong", least_phong)
+    set_cost("shading/most-phong", most_phong)
     for (k in cost_of)
         if (sub(/\/gouraud$/, "", k)) ratio(k "/gouraud-phong", cost_of, k "/gouraud", k "/smooth")
     split("zbuffer raycast whitted", method, " ")
@@ -228,6 +243,6 @@ END {
     for (pair in wall_of) {
         split(pair, part, SUBSEP)
         if (part[1] == "off" && ("on", part[2]) in wall_of)
-            set("pool/" part[2] "/added", digits((wall_of[pair] - wall_of["on", part[2]]) * 1e3))
+            set_cost("pool/" part[2] "/added", scaled(combine("-", wall_of[pair], wall_of["on", part[2]]), 1e3))
     }
 }

@@ -1,13 +1,15 @@
 #!/bin/sh
-# Write all numbers of the paper, computed only from rows: OUT/numbers.tex (\setval lines that \val reads) and the
-# tables.
+# Write all numbers of the paper, computed only from rows: OUT/numbers.tex (\setval lines that \val reads), from the
+# tables that tables.sh writes to OUT/tables.
 #   paper/numbers.sh RESULTS OUT        run from the repository's root
+# Environment: as tables.sh. Without gnuplot the fitted laws are missing.
 export LC_ALL=C.UTF-8
 set -eu
 
 results=$(cd "$1" && pwd)
-out=$2
-here=$(dirname "$0")
+mkdir -p "$2"
+out=$(cd "$2" && pwd)
+here=$(cd "$(dirname "$0")" && pwd)
 published=$here/../experiments/published
 
 fact() { # the first text or number of that name in the study's list of runs
@@ -36,15 +38,16 @@ units() {
 }
 
 laws() {
-    [ -r "$results/tables/threads.tsv" ] || return 0
-    (cd "$here/.." && gnuplot -e "results = '$results'; units = $(units)" paper/laws.gp)
+    [ -r "$out/tables/threads.tsv" ] && command -v gnuplot >/dev/null || return 0
+    (cd "$here/.." && gnuplot -e "results = '$out'; units = $(units)" paper/laws.gp)
 }
 
 # Laws fitted to the studies of many triangles and of the area that they cover.
 polygons() {
+    command -v gnuplot >/dev/null || return 0
     for study in triangles coverage; do
-        [ -r "$results/tables/$study.tsv" ] || continue
-        (cd "$here/.." && gnuplot -e "results = '$results'" "paper/$study.gp")
+        [ -r "$out/tables/$study.tsv" ] || continue
+        (cd "$here/.." && gnuplot -e "results = '$out'" "paper/$study.gp")
     done
 }
 
@@ -76,8 +79,8 @@ published() {
 # Index
 # and coefficients are those of experiments/scenes/absorber.yaml, in 1/m; the law's R is Fresnel's at normal incidence.
 slab() {
-    [ -r "$results/tables/absorber.tsv" ] || return 0
-    lines=$(awk -f "$here/../plots/select.awk" -v columns='cell liquid.size.z' "$results/tables/absorber.tsv" |
+    [ -r "$out/tables/absorber.tsv" ] || return 0
+    lines=$(awk -f "$here/../plots/select.awk" -v columns='cell liquid.size.z' "$out/tables/absorber.tsv" |
         while read -r cell thickness; do
             picture=$(printf '%s/absorber/images/%04d.pfm' "$results" "$cell")
             [ ! -r "$picture" ] || printf '%s\t%s\n' "$thickness" "$("$here/../plots/pixel.sh" "$picture")"
@@ -106,9 +109,9 @@ slab() {
 # ball's
 # chord (rms over a row of pixels), and the light left by a surface that transmits a share, relative to its square.
 ball() {
-    [ -r "$results/tables/slime-light.tsv" ] || return 0
+    [ -r "$out/tables/slime-light.tsv" ] || return 0
     awk -f "$here/../plots/select.awk" -v columns='cell toy.level jelly.transparency' \
-        "$results/tables/slime-light.tsv" |
+        "$out/tables/slime-light.tsv" |
         while read -r cell level share; do
             picture=$(printf '%s/slime-light/images/%04d.pfm' "$results" "$cell")
             [ ! -r "$picture" ] || "$here/../plots/chord.sh" "$picture" 6 0.493 |
@@ -116,18 +119,19 @@ ball() {
         done
 }
 
-mkdir -p "$out"
+"$here/tables.sh" "$results" "$out"
 {
     echo "% made by paper/numbers.sh; change rows or scripts, not this"
     published
-    for table in "$results"/tables/*.tsv; do
+    for table in "$out"/tables/*.tsv; do
         [ -r "$table" ] || continue
         study=$(basename "$table" .tsv)
         case $study in
+        published-*) ;;
         *-metrics) awk -v study="${study%-metrics}" -f "$here/scientific.awk" -f "$here/metrics.awk" "$table" ;;
         *-curves) awk -v study="${study%-curves}" -f "$here/scientific.awk" -f "$here/curves.awk" "$table" ;;
         *-motion) awk -v study="${study%-motion}" -f "$here/scientific.awk" -f "$here/motion.awk" "$table" ;;
-        *) awk -v study="$study" -f "$here/numbers.awk" "$table" ;;
+        *) awk -v study="$study" -f "$here/interval.awk" -f "$here/numbers.awk" "$table" ;;
         esac
     done | sort
     slab

@@ -53,6 +53,12 @@ has_rows() {
         NR > 1 && (!n || $n > 0) { found = 1 } END { exit !found }' "$1"
 }
 
+# Whether a file of worker rows has one that is not a warm-up.
+has_worker_rows() {
+    awk -F , 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "warmup") w = i }
+        NR > 1 && w && $w == 0 { found = 1; exit } END { exit !found }' "$1"
+}
+
 # Sets `missing` to the first missing input of a figure, or to nothing, and `inputs` to the files that it is drawn from.
 look_for_inputs() {
     local pattern found needs
@@ -65,6 +71,8 @@ look_for_inputs() {
             missing=${missing:-$pattern}
         elif [[ $pattern == tables/* ]] && ! has_rows "${found[0]}"; then
             missing=${missing:-measured cells in $pattern}
+        elif [[ $pattern == */workers.csv ]] && ! has_worker_rows "${found[0]}"; then
+            missing=${missing:-measured rows in $pattern}
         fi
         inputs+=("${found[@]}")
     done

@@ -1,5 +1,5 @@
 # Common style of all figures. A figure sets `width` and `height` (CSS pixels)
-# and loads this file. draw.sh sets: results, output (a path without its ending), format (png or svg), units.
+# and loads this file. draw.sh sets: results, output (a path without its ending), format (png, svg or pdf), units.
 #
 # Colors: the eight of Okabe and Ito, distinguishable with any color vision; each has its own point type or dash as
 # well.
@@ -10,6 +10,9 @@ if (format eq "png") {
 }
 if (format eq "svg") {
     set terminal svg size width,height font "DejaVu Sans,10" background "#ffffff" linewidth 1 fontscale 1
+}
+if (format eq "pdf") {
+    set terminal pdfcairo size width/96.0,height/96.0 font "DejaVu Sans,7.5" linewidth 1 pointscale 0.8
 }
 set output output.".".format
 load "plots/rows.gp"

@@ -1,4 +1,5 @@
-# Speed-up by threads for each schedule, with the ideal line, two fitted laws (laws.gp), and the published numbers.
+# Speed-up by threads for each schedule, with the ideal line, a fitted law (laws.gp), and the published numbers. The ends
+# of an interval combine those of both times, so it contains the speed-up if both contain their medians.
 # needs: tables/threads.tsv
 width = 1000; height = 760
 load "plots/style.gp"
@@ -7,7 +8,7 @@ load "plots/laws.gp"
 published_1 = first(published."threads.csv", "threads=1", "wall_s")
 
 set label 100 disturbed("threads") at screen 0.5,0.015 center font ",8" textcolor rgb grey
-set multiplot layout 2,2 margins 0.07,0.985,0.08,0.955 spacing 0.09,0.12
+set multiplot layout 2,2 margins 0.07,0.97,0.09,0.955 spacing 0.1,0.12
 set logscale x 2
 set xrange [0.9:1140]
 set xtics rotate by 0 1,4
@@ -17,7 +18,8 @@ set key top left font ",9" spacing 1.05
 do for [i=1:4] {
     schedule = word(schedules, i)
     one = wall_1(schedule)
-    name_a = amdahl_fits[i] ? sprintf("Amdahl: σ = %.4f ± %.4f", amdahl_s[i], amdahl_s_error[i]) : "Amdahl: too few rows"
+    one_low = first(rows, "render.threads=1 render.schedule=".schedule, "wall_s_low")
+    one_high = first(rows, "render.threads=1 render.schedule=".schedule, "wall_s_high")
     name_g = gunther_fits[i] ? sprintf("Gunther: σ = %.4f ± %.4f, κ = (%.2f ± %.2f)·10^{-6}", \
         gunther_s[i], gunther_s_error[i], gunther_k[i], gunther_k_error[i]) : "Gunther: too few rows"
     set title "schedule: ".schedule
@@ -26,8 +28,7 @@ do for [i=1:4] {
     plot together(x) lt 8 title units > 0 ? sprintf("ideal on %d units, min(n, %d)", units, units) : "ideal", \
          select(published."threads.csv", "", "threads wall_s") using 1:(published_1/$2) with linespoints lt 7 title published_name, \
          (gunther_fits[i] ? gunther(x, gunther_s[i], gunther_k[i]) : NaN) with lines lc rgb orange lw 4 title name_g, \
-         (amdahl_fits[i] ? amdahl(x, amdahl_s[i]) : NaN) with lines lc rgb ink lw 1.2 title name_a, \
-         times(schedule) using 1:(one/$2):(one/$4):($3 > 0 ? one/$3 : 1e3) with yerrorbars lt i title "measured, wall"
+         times(schedule) using 1:(one/$2):(one_low/$4):($3 > 0 ? one_high/$3 : 1e3) with yerrorbars lt i title "measured, wall"
     unset label 100
 }
 unset multiplot

@@ -1,7 +1,9 @@
 #!/bin/sh
 # The tiles of a frame from its timeline (Chrome trace JSON): begin and end in ms, worker, and the tile's
 # position in the image in reading order (0 first, 1 last).
-#   plots/timeline.sh TIMELINE.json
+#   plots/timeline.sh TIMELINE.json [GAP]
+# With GAP, tiles of one worker that follow within GAP ms are one, with their mean position: a thousand
+# workers have more tiles than a figure has pixels.
 export LC_ALL=C
 set -eu
 
@@ -24,4 +26,11 @@ awk 'function value(name) {
     "$1" |
     sort -n -k 1,1 -k 2,2 |
     awk '{ begin[NR] = $3; end[NR] = $4; worker[NR] = $5 }
-         END { for (i = 1; i <= NR; i++) print begin[i], end[i], worker[i], (NR > 1 ? (i - 1) / (NR - 1) : 0) }'
+         END { for (i = 1; i <= NR; i++) print begin[i], end[i], worker[i], (NR > 1 ? (i - 1) / (NR - 1) : 0) }' |
+    if [ $# -lt 2 ]; then cat; else
+        sort -n -k 3,3 -k 1,1 |
+            awk -v gap="$2" 'function put() { if (count) print begin, end, worker, sum / count }
+                NR == 1 || $3 != worker || $1 - end > gap { put(); begin = $1; count = sum = 0 }
+                { end = $2; worker = $3; count++; sum += $4 }
+                END { put() }'
+    fi

@@ -123,6 +123,7 @@ scene: scenes/rod.yaml
 set: {render.width: 16, render.height: 12}
 grid: [{render.depth: [0, 1]}]
 repetitions: 6
+keep: {image: on}
 END
 blocks() { # FILE: the lines of its examples, continued lines joined
     awk '/^\.EE/ {on = 0} on; /^\.EX/ {on = 1}' | plain | sed 's/\\e$/\\/' |

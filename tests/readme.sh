@@ -36,7 +36,7 @@ words() { # PAGE
 }
 has_reference=0
 for file in "$root"/results/reference/*; do [[ -e $file ]] && has_reference=1; done
-pages=(README.md CONTRIBUTING.md src/web/README.md results/README.md experiments/published/README.md paper/claims.md)
+pages=(README.md CONTRIBUTING.md src/web/README.md results/README.md experiments/published/README.md)
 for page in "${pages[@]}"; do
     lost=
     while read -r target; do

@@ -209,6 +209,22 @@ static void formatted_reals_read_back(void **state)
     }
 }
 
+static void digits_are_cut_by_the_uncertainty(void **state)
+{
+    (void)state;
+    static const struct {
+        double value, half;
+        const char *text;
+    } cases[] = {{0.6402, 0.013, "0.640"}, {0.6402, 0.04, "0.64"},       {0.6402, 0.0962, "0.64"},
+                 {123456, 3000, "123000"}, {123456, 2400, "123500"},     {1.04567, 1e-4, "1.04567"},
+                 {12.34567, NAN, "12.35"}, {12.34567, 0, "12.35"},       {-2.5551, 0.29, "-2.56"},
+                 {NAN, 1, "nan"},          {3e-7, 1.1e-8, "0.000000300"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[NUMBER_TEXT_MAX];
+        assert_string_equal(number_format_within(cases[i].value, cases[i].half, text), cases[i].text);
+    }
+}
+
 static void numbers_ignore_the_locale(void **state)
 {
     (void)state;
@@ -725,6 +741,7 @@ int main(void)
         cmocka_unit_test(integers_are_parsed),
         cmocka_unit_test(reals_are_formatted_shortest),
         cmocka_unit_test(formatted_reals_read_back),
+        cmocka_unit_test(digits_are_cut_by_the_uncertainty),
         cmocka_unit_test(numbers_ignore_the_locale),
         cmocka_unit_test(distances_are_optimal_string_alignments),
         cmocka_unit_test(nearest_word_is_near),

@@ -58,7 +58,8 @@ for command in render animate scene trace fan params media mesh study compare re
     check "--help names $command" grep -q "^  $command " out
 done
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
-    "study new" "study list" "study status" "study merge" "study summary" "study exclude"; do
+    "study new" "study list" "study status" "study merge" "study verify" "study upgrade" \
+    "study summary" "study exclude" "study compare" "study plot"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"
@@ -106,7 +107,8 @@ check "there is one record per worker" is "$(json 'threads[].worker')" "$(lines 
 check "the workers' rays add up" is "$(json 'threads[].rays.total' | sum)" "$total"
 check "the workers' shadow rays add up" is "$(json 'threads[].rays.shadow' | sum)" "$(json rays.shadow)"
 check "keys of a worker" is "$(json 'threads[0]@keys' | sort | tr '\n' ' ')" \
-    "busy_s cpu_s pu rays start_s tiles visibility_s waiting_s wall_s worker "
+    "$(lines blocked_s busy_s cpu_s involuntary_switches pu rays runnable_s running_s start_s tiles visibility_s \
+        voluntary_switches waiting_s wall_s worker | tr '\n' ' ')"
 check "times and process" holds "$(json wall_s) > 0 && $(json cpu_s) > 0 && $(json peak_rss_bytes) > 0"
 check "context switches and the share of other processes" json voluntary_switches involuntary_switches others_share
 check "noise is null without random samples" is "$(json noise@type)" null

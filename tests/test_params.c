@@ -7,8 +7,10 @@
 
 #include "base/number.h"
 #include "scene/model/params.h"
+#include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 static const char example[] = "materials:\n"
@@ -127,7 +129,7 @@ static void an_empty_scene_has_the_defaults(void **state)
     assert_non_null(s);
     size_t count = 0;
     assert_int_equal(scene_each_param(s, same_as_fallback, &count), STATUS_OK);
-    assert_int_equal(count, 31 + 4 + 8);
+    assert_int_equal(count, 32 + 4 + 8);
     assert_int_equal(s->render.width, 800);
     assert_int_equal(s->render.shadows, SHADOWS_ATTENUATED);
     assert_int_equal(s->render.schedule, SCHEDULE_DYNAMIC);
@@ -433,6 +435,41 @@ static void an_assignment_splits_at_its_first_equals_sign(void **state)
     scene_destroy(s);
 }
 
+/* Identities of cells omit values at the first default of a parameter, so it must never change. A new parameter gets a
+ * line here; a parameter whose default changes gets a first_default in the table, and its line stays. */
+static void first_defaults_never_change(void **state)
+{
+    (void)state;
+    FILE *file = fopen("tests/data/first_defaults.tsv", "r");
+    assert_non_null(file);
+    char line[500];
+    size_t count = 0;
+    for (; fgets(line, sizeof line, file); count++) {
+        char *value = strchr(line, '\t');
+        assert_non_null(value);
+        *value++ = 0;
+        value[strcspn(value, "\n")] = 0;
+        const param *row = count < param_count() ? param_at(count) : NULL;
+        char name[100], *text = row ? param_first_default_text(row) : NULL;
+        if (row)
+            snprintf(name, sizeof name, "%s.%s", param_group_name(row->group), row->name);
+        for (size_t i = 0; !row || strcmp(name, line) != 0; i++) { /* the order may change */
+            if (i == param_count())
+                fail_msg("%s is gone: rows that set it would lose their cells", line);
+            row = param_at(i);
+            snprintf(name, sizeof name, "%s.%s", param_group_name(row->group), row->name);
+            free(text);
+            text = param_first_default_text(row);
+        }
+        if (strcmp(text, value) != 0)
+            fail_msg("the first default of %s was '%s', not '%s': set first_default", line, value, text);
+        free(text);
+    }
+    fclose(file);
+    if (count != param_count())
+        fail_msg("%zu of %zu parameters are in tests/data/first_defaults.tsv", count, param_count());
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -448,6 +485,7 @@ int main(void)
         cmocka_unit_test(errors_of_paths_and_values_name_the_valid_ones),
         cmocka_unit_test(malformed_paths_are_refused),
         cmocka_unit_test(an_assignment_splits_at_its_first_equals_sign),
+        cmocka_unit_test(first_defaults_never_change),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

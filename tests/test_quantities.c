@@ -132,7 +132,7 @@ static void rows_and_json_agree(void **state)
         fail_msg("%s", why.what);
     assert_int_equal(job_create(&(job_settings){.measured = true}, &j, NULL), STATUS_OK);
     assert_int_equal(job_load(j, s, NULL, NULL), STATUS_OK);
-    assert_int_equal(job_render(j, s, NULL, &made, NULL), STATUS_OK);
+    assert_int_equal(job_render(j, s, &(render_options){.usage = true}, &made, NULL), STATUS_OK);
     json_t *account = report_create(&made, false), *page = report_page(&made);
     assert_true(tell_apart(frame_quantities, frame_quantity_count, &made, -1, account) > 40);
     for (int i = 0; i < made.result->worker_count; i++) {

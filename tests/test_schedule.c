@@ -37,8 +37,8 @@ static void every_pixel_goes_to_exactly_one_worker(void **state)
             for (size_t n = 0; n < COUNT(workers); n++)
                 for (int rule = SCHEDULE_COLUMNS; rule <= SCHEDULE_DYNAMIC; rule++) {
                     const int width = sizes[i][0], height = sizes[i][1];
-                    const render_settings settings =
-                        settings_of((schedule_rule)rule, width, height, tiles[k], workers[n]);
+                    render_settings settings = settings_of((schedule_rule)rule, width, height, tiles[k], workers[n]);
+                    settings.pieces = 4 * (int64_t)(k % 2);
                     unsigned char *seen = calloc((size_t)(width * height), 1);
                     schedule s;
                     span piece;
@@ -105,6 +105,52 @@ static void static_tiles_are_assigned_round_robin(void **state)
     assert_false(schedule_next(&s, 1, 3, &piece));
 }
 
+static int64_t tiles_of(int width, int height, int tile, int workers, int pieces)
+{
+    render_settings settings = settings_of(SCHEDULE_DYNAMIC, width, height, tile, workers);
+    schedule s;
+    settings.pieces = pieces;
+    schedule_start(&s, &settings);
+    assert_int_equal(s.tile_count, (int64_t)((width + s.tile - 1) / s.tile) * ((height + s.tile - 1) / s.tile));
+    return s.tile_count;
+}
+
+/* Tiles of 32, 16 and 8 pixels cut 800 x 600 into 475, 1900 and 7500 pieces. */
+static void tiles_are_halved_for_many_workers(void **state)
+{
+    (void)state;
+    assert_int_equal(tiles_of(800, 600, 32, 2, 4), 475);
+    assert_int_equal(tiles_of(800, 600, 32, 118, 4), 475);
+    assert_int_equal(tiles_of(800, 600, 32, 119, 4), 1900);
+    assert_int_equal(tiles_of(800, 600, 32, 475, 4), 1900);
+    assert_int_equal(tiles_of(800, 600, 32, 1024, 4), 7500);
+    assert_int_equal(tiles_of(800, 600, 32, 1024, 1), 1900);
+    assert_int_equal(tiles_of(800, 600, 32, 1024, 0), 475); /* 0: as render.tile says */
+    assert_int_equal(tiles_of(800, 600, 65536, 1, 1), 1);
+    assert_int_equal(tiles_of(800, 600, 65536, 1, 2), 4); /* 512 pixels */
+    assert_int_equal(tiles_of(7, 5, 32, 1024, 4), 35);    /* no more pieces than pixels */
+}
+
+/* However late a worker starts, its first tile is waiting for it. */
+static void every_worker_has_a_tile_reserved(void **state)
+{
+    (void)state;
+    render_settings settings = settings_of(SCHEDULE_DYNAMIC, 800, 600, 32, 1024);
+    settings.pieces = 4;
+    schedule s;
+    span piece;
+    schedule_start(&s, &settings);
+    uint64_t taken = 0;
+    while (schedule_next(&s, 0, taken, &piece))
+        taken++;
+    assert_int_equal(taken, 7500 - 1023);
+    for (int w = 1; w < 1024; w++) {
+        assert_true(schedule_next(&s, w, 0, &piece));
+        assert_true(piece.x0 == w % 100 * 8 && piece.y0 == w / 100 * 8);
+        assert_false(schedule_next(&s, w, 1, &piece));
+    }
+}
+
 enum { WIDTH = 301, HEIGHT = 203, ASKERS = 8 };
 
 typedef struct asker {
@@ -151,6 +197,8 @@ int main(void)
         cmocka_unit_test(columns_and_rows_are_one_block_per_worker),
         cmocka_unit_test(workers_without_pixels_get_no_piece),
         cmocka_unit_test(static_tiles_are_assigned_round_robin),
+        cmocka_unit_test(tiles_are_halved_for_many_workers),
+        cmocka_unit_test(every_worker_has_a_tile_reserved),
         cmocka_unit_test(concurrent_threads_share_all_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -149,6 +149,10 @@ static void newer_parameters_have_no_first_definition(void **state)
     assert_false(definition_v1(s, &hash));
     assert_int_equal(scene_set_assignment(s->base, "ball.tint_distance=1", NULL), STATUS_OK);
     assert_true(definition_v1(s, &hash));
+    assert_int_equal(scene_set_assignment(s->base, "render.pieces=2", NULL), STATUS_OK);
+    assert_false(definition_v1(s, &hash));
+    assert_int_equal(scene_set_assignment(s->base, "render.pieces=0", NULL), STATUS_OK); /* as it was then */
+    assert_true(definition_v1(s, &hash));
     study_destroy(s);
 }
 

@@ -152,9 +152,8 @@ static void columns_are_in_the_expected_order(void **state)
     assert_string_equal(
         header,
         "study,identity,cell,repetition,warmup,render.schedule,ball.ior,lamp.position,worker,pu,tiles,rays_total,"
-        "rays_camera,rays_reflect,rays_refract,rays_shadow,start_s,wall_s,cpu_s,busy_s,visibility_s,waiting_s,schema,"
-        "run,"
-        "process,check\n");
+        "rays_camera,rays_reflect,rays_refract,rays_shadow,start_s,wall_s,cpu_s,busy_s,visibility_s,waiting_s,"
+        "running_s,runnable_s,blocked_s,voluntary_switches,involuntary_switches,schema,run,process,check\n");
     free(header);
     study_destroy(s);
 }

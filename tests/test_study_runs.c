@@ -89,6 +89,50 @@ static void each_run_is_added(void **state)
     study_destroy(s);
 }
 
+/* Each process measures its part of the repetitions of every cell, after its own warm-up, as a run of its own. */
+static void processes_divide_the_repetitions(void **state)
+{
+    const fixture *f = *state;
+    static const char text[] = "study: test\nscene: scene.yaml\ngrid: [{render.depth: [1, 2]}]\nrepetitions: 7\n"
+                               "processes: 3\nkeep: {image: on}\n";
+    static const size_t parts[] = {3, 2, 2};
+    study *s = fixture_study(f, text);
+    assert_int_equal(study_processes(s), 3);
+    for (long process = 1; process <= 3; process++) {
+        size_t ran = 0;
+        const study_options options = {.results = f->results, .process = process};
+        assert_int_equal(study_run(s, &options, &ran, NULL), STATUS_OK);
+        assert_int_equal(ran, 2 * (1 + parts[process - 1]));
+        assert_int_equal(study_run(s, &options, &ran, NULL), STATUS_OK);
+        assert_int_equal(ran, 0);
+        assert_false(fixture_has(f, "results/test/images/0000.png"));
+    }
+    json_t *list = list_of(f);
+    assert_int_equal(json_array_size(json_object_get(list, "runs")), 3);
+    json_decref(list);
+    assert_int_equal(fixture_run(f, s), 0); /* the last process makes the kept files */
+    assert_true(fixture_has(f, "results/test/images/0000.png"));
+    study_destroy(s);
+}
+
+/* With a rule there are as many processes again, which measure beyond the least number. */
+static void processes_divide_further_repetitions(void **state)
+{
+    const fixture *f = *state;
+    static const char text[] = "study: test\nscene: scene.yaml\nwarmups: 0\nprocesses: 2\n"
+                               "repetitions: {min: 4, max: 8, relative_width: 1e-9}\n";
+    study *s = fixture_study(f, text);
+    assert_int_equal(study_processes(s), 4);
+    for (long process = 1; process <= 4; process++) {
+        size_t ran = 0;
+        const study_options options = {.results = f->results, .process = process};
+        assert_int_equal(study_run(s, &options, &ran, NULL), STATUS_OK);
+        assert_int_equal(ran, 2);
+    }
+    assert_int_equal(fixture_run(f, s), 0);
+    study_destroy(s);
+}
+
 static void runs_contain_no_host_name_or_path(void **state)
 {
     const fixture *f = *state;
@@ -169,6 +213,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(runs_record_the_provenance_of_rows, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(processes_divide_the_repetitions, fixture_setup, fixture_teardown),
+        cmocka_unit_test_setup_teardown(processes_divide_further_repetitions, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(each_run_is_added, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(runs_contain_no_host_name_or_path, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(damaged_lists_are_refused, fixture_setup, fixture_teardown),

@@ -21,6 +21,7 @@ typedef struct stage {
     tracer_pool *set;
     tracer_target target;
     schedule pieces;
+    atomic_int started; /* workers */
 } stage;
 
 static void open_stage(stage *st)
@@ -105,7 +106,8 @@ static void *work(void *context)
     const atomic_bool stop = false;
     atomic_uint_fast64_t begun = 0;
     span piece;
-    while (schedule_next(&st->pieces, 0, 0, &piece)) {
+    const int worker = atomic_fetch_add(&st->started, 1);
+    for (uint64_t taken = 0; schedule_next(&st->pieces, worker, taken, &piece); taken++) {
         tracer *t = tracer_pool_take(st->set);
         tracer_span(t, &piece, &begun, &stop);
         tracer_finish(t, &stop);

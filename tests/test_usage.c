@@ -10,10 +10,12 @@
 #include "measure/disturbances.h"
 #include "measure/proc_stat.h"
 #include "measure/small_file.h"
+#include "measure/thread_usage.h"
 #include "measure/usage.h"
 
 #include <ftw.h>
 #include <pthread.h>
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -131,6 +133,73 @@ static void missing_values_stay_missing_in_a_difference(void **state)
     usage d = usage_since(&before);
     assert_int_equal(d.voluntary_switches, -1);
     assert_true(isnan(d.machine_busy_s));
+}
+
+/* --- one thread --- */
+
+static void schedstat_is_read(void **state)
+{
+    (void)state;
+    double runnable_s = 0.0;
+    assert_true(thread_usage_parse("2500000000 1250000000 42\n", &runnable_s));
+    assert_near(runnable_s, 1.25, 1e-12);
+    assert_true(thread_usage_parse("0 106848 1\n", &runnable_s)); /* a new thread: its running time lags */
+    assert_near(runnable_s, 106848e-9, 1e-15);
+    static const char *const bad[] = {"", "\n", "0 0 0\n", "1 2\n", "a b c\n", "-"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        assert_false(thread_usage_parse(bad[i], &runnable_s));
+}
+
+static void *burn_and_sleep(void *context)
+{
+    int spins = 0;
+    const thread_usage before = thread_usage_now();
+    burn(&spins);
+    nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+    *(thread_usage *)context = thread_usage_since(&before);
+    return NULL;
+}
+
+/* Each of the four threads on one unit needs 20 ms of it, so one that ends last waits for the other three. */
+static void a_thread_runs_waits_for_a_unit_or_is_blocked(void **state)
+{
+    (void)state;
+    enum { THREADS = 4 };
+    pthread_t threads[THREADS];
+    thread_usage made[THREADS];
+    cpu_set_t all, one;
+    assert_int_equal(sched_getaffinity(0, sizeof all, &all), 0);
+    CPU_ZERO(&one);
+    for (size_t i = 0; CPU_COUNT(&one) == 0; i++)
+        if (CPU_ISSET(i, &all))
+            CPU_SET(i, &one);
+    assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0); /* threads inherit it */
+    for (int i = 0; i < THREADS; i++)
+        assert_int_equal(pthread_create(&threads[i], NULL, burn_and_sleep, &made[i]), 0);
+    for (int i = 0; i < THREADS; i++)
+        assert_int_equal(pthread_join(threads[i], NULL), 0);
+    assert_int_equal(sched_setaffinity(0, sizeof all, &all), 0);
+    double longest_s = 0.0;
+    for (int i = 0; i < THREADS; i++) {
+        const thread_usage *u = &made[i];
+        assert_true(u->running_s >= 0.02 && u->wall_s >= 0.04);
+        assert_true(u->voluntary_switches >= 1 && u->involuntary_switches >= 0);
+        if (isnan(u->runnable_s)) /* not Linux, or without schedstat */
+            return;
+        assert_true(u->blocked_s >= 0.019);
+        assert_near(u->running_s + u->runnable_s + u->blocked_s, u->wall_s, 1e-4);
+        longest_s = fmax(longest_s, u->runnable_s);
+    }
+    assert_true(longest_s >= 0.03);
+}
+
+static void unknown_usage_of_a_thread_stays_unknown(void **state)
+{
+    (void)state;
+    const thread_usage none = thread_usage_unknown(), d = thread_usage_since(&none);
+    assert_true(isnan(d.wall_s) && isnan(d.running_s) && isnan(d.runnable_s) && isnan(d.blocked_s));
+    assert_int_equal(d.voluntary_switches, -1);
+    assert_int_equal(d.involuntary_switches, -1);
 }
 
 static void peak_memory_does_not_decrease_after_freeing(void **state)
@@ -275,6 +344,9 @@ int main(void)
         cmocka_unit_test(the_share_of_other_processes_is_computed),
         cmocka_unit_test(cpu_time_includes_all_threads),
         cmocka_unit_test(missing_values_stay_missing_in_a_difference),
+        cmocka_unit_test(schedstat_is_read),
+        cmocka_unit_test(a_thread_runs_waits_for_a_unit_or_is_blocked),
+        cmocka_unit_test(unknown_usage_of_a_thread_stays_unknown),
         cmocka_unit_test(peak_memory_does_not_decrease_after_freeing),
         cmocka_unit_test(hardware_counters_increase_or_are_unavailable),
         cmocka_unit_test(disturbances_of_the_machine_are_reported),

@@ -3,7 +3,8 @@
 #   experiments/peers/growth.sh [REPORT]      REPORT: the program of peers/report, build/peers/report (make peers)
 # Environment: REPS=5 (rounds), SIZE=800x600, THREADS="1 4 8 ..." (table 5's), FOVS="45 110" (fields of view, degrees).
 # Every round renders each depth, and then each number of threads, once. The published figures are read from
-# experiments/published. Times are medians (lowest to highest); counts are exact and the same in every round. Fits are
+# experiments/published. Times are medians (lowest to highest), and so are
+# ratios of times, formed in each round; counts are exact and the same in every round. Fits are
 # least squares of relative deviations, each row weighted alike.
 set -euo pipefail
 export LC_ALL=C
@@ -57,13 +58,13 @@ for fov in $fovs; do
           shaded[d] = $at["sky"] - $at["camera"]; glass = ($at["vessel"] + $at["liquid"]) / $at["camera"] }
         END {
             printf "field of view %g degrees: %.1f %% of the camera rays hit the glass\n", fov, 100 * glass
-            printf "%5s %12s %12s %12s  %-28s | %7s %7s %7s | %10s %7s\n",
+            printf "%5s %12s %12s %12s  %-28s | %7s %7s %-22s | %10s %7s\n",
                 "depth", "rays", "hits", "sky", "CPU s", "x rays", "x sky", "x CPU", "table 4", "growth"
             for (d = 0; d <= 8; d++) {
                 s[d] = median(cpu[d])
-                printf "%5d %12d %12d %12d  %-28s | %7.2f %7.2f %7.2f | %10.4f %7.2f\n",
+                printf "%5d %12d %12d %12d  %-28s | %7.2f %7.2f %-22s | %10.4f %7.2f\n",
                     d, rays[d], shaded[d], sky[d], spread(cpu[d], "%.4f"), rays[d] / rays[0], sky[d] / sky[0],
-                    s[d] / s[0], T[d], T[d] / T[0]
+                    spread_of_ratios(cpu[d], cpu[0], "%.2f"), T[d], T[d] / T[0]
             }
             printf "table 4 by                     offset        scale    worst    deviation by depth, %%\n"
             for (free = 0; free <= 1; free++) {
@@ -83,12 +84,12 @@ awk "$library"'
     END {
         print "depth 4 by threads; processors: CPU time by wall time, those that the frame had; bounds: all rays, or"
         print "colours of the sky, by those of the busiest thread: the speed-up that blocks of columns allow at best"
-        printf "%7s %-28s %9s %10s %7s %7s | %10s %9s\n",
+        printf "%7s %-28s %-22s %10s %7s %7s | %10s %9s\n",
             "threads", "wall s", "speed-up", "processors", "by rays", "by sky", "table 5", "speed-up"
         for (i = 1; i <= n; i++) {
             t = order[i]
-            printf "%7d %-28s %9.2f %10.2f %7.2f %7.2f |",
-                t, spread(wall[t], "%.4f"), median(wall[order[1]]) / median(wall[t]), median(busy[t]),
+            printf "%7d %-28s %-22s %10.2f %7.2f %7.2f |",
+                t, spread(wall[t], "%.4f"), spread_of_ratios(wall[order[1]], wall[t], "%.2f"), median(busy[t]),
                 by_rays[t], by_sky[t]
             if (t in T) printf " %10.4f %9.2f", T[t], T[1] / T[t]
             print ""

@@ -98,3 +98,22 @@ char *number_format(double value, char text[NUMBER_TEXT_MAX])
     }
     return text;
 }
+
+char *number_format_within(double value, double half, char text[NUMBER_TEXT_MAX])
+{
+    if (!isfinite(value))
+        return number_format(value, text);
+    if (!(half > 0) || isinf(half) || fabs(value) > 1e15)
+        return number_format_digits(value, 4, text);
+    const double exponent = floor(log10(half));
+    const bool two = half / pow(10.0, exponent) < 2.95;
+    const int decimals = (two ? 1 : 0) - (int)exponent;
+    const double unit = pow(10.0, -(double)decimals);
+    if (decimals > 14)
+        return number_format(value, text);
+    locale_t before = uselocale(c_locale());
+    snprintf(text, NUMBER_TEXT_MAX, "%.*f", decimals > 0 ? decimals : 0,
+             decimals < 0 ? round(value / unit) * unit : value);
+    uselocale(before);
+    return text;
+}

@@ -36,12 +36,32 @@ _cuvette_objects() # SUFFIX WORD...: completes the objects of the scene on the c
     _cuvette_words "$({ printf 'x %s\n' camera "$@"; [[ $scene ]] && "${COMP_WORDS[0]}" scene "$scene" --list 2>/dev/null; } | awk -v s="$suffix" '{ print $2 s }')"
 }
 
+_cuvette_axes() # OPTION: completes the parameters in the grid of the study on the command line
+{
+    local word study= suffix=
+    for word in "${COMP_WORDS[@]}"; do
+        [[ $word == *.study && -r $word ]] && study=$word
+    done
+    [[ $1 == -w || $1 == --where ]] && suffix='=' && compopt -o nospace
+    [[ -z $study ]] || _cuvette_words "$(sed -n '/^grid:/,/^[a-z]*:/p' "$study" |
+        grep -oE '[A-Za-z0-9_]+(\.[A-Za-z0-9_]+)+ *:' | sed "s/ *:/$suffix/" | sort -u)"
+}
+
 _cuvette_value() # OPTION: completes its value; false for a flag
 {
     case $1 in
     -s | --set | -a | --axis) _cuvette_parameters ;;
     --generate) _cuvette_words sparse dense sphere icosphere torus lathe box ;;
-    -f | --format) _cuvette_words obj bin ply ;;
+    -f | --format)
+        case ${COMP_WORDS[1]-} in
+        study) _cuvette_words png svg pdf ;;
+        *) _cuvette_words obj bin ply ;;
+        esac
+        ;;
+    --log) _cuvette_words x y xy none ;;
+    --y) _cuvette_words wall_s cpu_s rays_total busy_s_mean imbalance peak_rss_bytes build_s error_rms flip ;;
+    --x | --by | -w | --where) _cuvette_axes "$1" ;;
+    --published) _cuvette_files 'csv' ;;
     --curve) _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges ;;
     -o | --output | --diff)
         case ${COMP_WORDS[1]-} in
@@ -50,6 +70,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         scene) _cuvette_files 'yaml|yml' ;;
         study) _cuvette_files 'study' ;;
         mesh) _cuvette_files 'obj|bin|ply' ;;
+        study) _cuvette_files 'png|svg|pdf' ;;
         animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
         esac
@@ -84,9 +105,12 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 
 _cuvette_study() # VERB
 {
-    local -A options=([new]='--axis --set --name --repetitions --output --force' [status]=--results
-        [run]='--results --shard --by --any-environment --dry-run --quiet' [merge]=--results [verify]=--results
-        [summary]='--results --environment' [exclude]='--row --reason --results' [list]='')
+    local -A options=([new]='--axis --set --name --repetitions --output --force'
+        [run]='--results --shard --by --any-environment --processes --against --dry-run --quiet' [status]=--results [merge]=--results
+        [verify]=--results [upgrade]='--results --to' [summary]='--results --environment --interval' [list]=''
+        [exclude]='--row --reason --results'
+        [compare]='--results --column --detect --fail-if-slower --tsv --json'
+        [plot]='--output --format --x --y --by --log --where --images --published --results')
     if [[ $current == -* ]]; then
         _cuvette_words "${options[$1]} --help --usage --version"
     elif [[ $1 == list ]]; then
@@ -102,7 +126,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='new run list status merge verify summary exclude'
+    local command=${COMP_WORDS[1]-} verbs='new run list status merge verify upgrade summary compare exclude plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine help --help --usage --version

@@ -125,6 +125,7 @@ static status render_and_write(const render_request *request, const scene *s, jo
                                           .pixel_time = files->time,
                                           .timeline = files->timeline,
                                           .layers = files->layers,
+                                          .usage = request->json,
                                           .progress = show_progress,
                                           .context = &line};
     job_account measured;

@@ -8,18 +8,37 @@
 #include "cli/study_request.h"
 #include "cli/terminal.h"
 #include "study/excluded.h"
+#include "study/spread.h"
 #include "study/study.h"
 #include "study/summary.h"
+#include "study/upgrade.h"
 #include "study/verify.h"
 #include <dirent.h>
 #include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 /* The action of a subcommand on each given study. */
 typedef status study_action(const study *s, const study_request *request, diagnostic *why);
+
+/* With as many repetitions in each process as before. */
+static status divide(study *s, const study_request *request, diagnostic *why)
+{
+    const long asked = (long)request->processes, before = s->processes;
+    const long least = (s->repetitions_min + before - 1) / before * asked;
+    const long most = (s->repetitions_max + before - 1) / before * asked;
+    if (most > STUDY_REPETITIONS_MAX)
+        return options_wrong("--processes", NULL, why, "use fewer processes", "%ld repetitions are more than %d", most,
+                             STUDY_REPETITIONS_MAX);
+    s->processes = asked;
+    s->repetitions_min = least;
+    s->repetitions_max = most;
+    return STATUS_OK;
+}
 
 /* Reads all files before acting on the first, so that an error in the last one is reported at once. */
 static status read_and_act(const study_request *request, study_action *act, diagnostic *why)
@@ -29,7 +48,8 @@ static status read_and_act(const study_request *request, study_action *act, diag
         return out_of_memory(why);
     status result = STATUS_OK;
     for (size_t i = 0; i < request->file_count && result == STATUS_OK; i++)
-        result = study_read(request->files[i], &studies[i], why);
+        if ((result = study_read(request->files[i], &studies[i], why)) == STATUS_OK && request->processes)
+            result = divide(studies[i], request, why);
     for (size_t i = 0; i < request->file_count && result == STATUS_OK; i++)
         result = act(studies[i], request, why);
     for (size_t i = 0; i < request->file_count; i++)
@@ -88,7 +108,16 @@ static status print_notes(const study *s, const study_request *request, diagnost
     return study_notes_print_cells(s, why);
 }
 
-static status run_one(const study *s, const study_request *request, diagnostic *why)
+static status count_rows(const study *s, const study_request *request, size_t *rows, diagnostic *why)
+{
+    study_progress progress;
+    TRY(study_status(s, request->results, &progress, why));
+    *rows = progress.rows;
+    return STATUS_OK;
+}
+
+/* Measures what is missing, in fresh processes if the study or --against asks for them. *rows: the new ones. */
+static status measure(const study *s, const study_request *request, size_t *rows, diagnostic *why)
 {
     FILE *terminal = !request->quiet && terminal_is_smart(STDERR_FILENO) ? stderr : NULL;
     const study_options options = {.results = request->results,
@@ -96,20 +125,55 @@ static status run_one(const study *s, const study_request *request, diagnostic *
                                    .shards = request->shards,
                                    .by_repetition = request->by_repetition,
                                    .any_environment = request->any_environment,
+                                   .process = (long)request->process,
                                    .progress = terminal,
                                    .stop = terminal_stop_requested};
+    if (request->process || (s->processes == 1 && !request->against))
+        return study_run(s, &options, rows, why);
+    size_t before = 0, after = 0, further = 0;
+    TRY(count_rows(s, request, &before, why));
+    status result = study_run_processes(s, request, why);
+    const status counted = count_rows(s, request, &after, result == STATUS_OK ? why : NULL);
+    result = result == STATUS_OK ? counted : result;
+    THEN(result, study_run(s, &options, &further, why));
+    *rows = after - before + further;
+    return result;
+}
+
+static status say_interrupted(const study *s, size_t rows, diagnostic *why)
+{
+    diagnose(why, STATUS_INTERRUPTED,
+             study_keeps_files(s) ? "run it again to resume; images are written at the end" : "run it again to resume",
+             "interrupted; its %zu new rows are kept", rows);
+    diagnostic_locate(why, s->path, 0, 0);
+    return STATUS_INTERRUPTED;
+}
+
+/* One of several processes; the one that started it prints for all. */
+static status run_part(const study *s, const study_request *request, diagnostic *why)
+{
     size_t rows = 0;
+    if (request->process > study_processes(s))
+        return options_wrong("--process", NULL, why, "see processes in the study file", "%s has %ld processes", s->path,
+                             study_processes(s));
+    prctl(PR_SET_PDEATHSIG, SIGKILL); /* rows survive that, and the next run needs their files */
+    const status result = measure(s, request, &rows, why);
+    if (result == STATUS_INTERRUPTED)
+        *why = (diagnostic){.what = ""};
+    return result;
+}
+
+static status run_one(const study *s, const study_request *request, diagnostic *why)
+{
+    size_t rows = 0;
+    if (request->process)
+        return run_part(s, request, why);
     status result = request->quiet ? STATUS_OK : print_notes(s, request, why);
     if (result == STATUS_OK && request->dry_run)
         return study_dry_run(s, request, why);
-    THEN(result, study_run(s, &options, &rows, why));
-    if (result == STATUS_INTERRUPTED) {
-        diagnose(why, STATUS_INTERRUPTED,
-                 study_keeps_files(s) ? "run it again to resume; images are written at the end"
-                                      : "run it again to resume",
-                 "interrupted; its %zu new rows are kept", rows);
-        diagnostic_locate(why, s->path, 0, 0);
-    }
+    THEN(result, measure(s, request, &rows, why));
+    if (result == STATUS_INTERRUPTED)
+        return say_interrupted(s, rows, why);
     if (result != STATUS_OK || request->quiet)
         return result;
     if (rows)
@@ -175,6 +239,10 @@ static status print_summary(const study *s, const study_request *request, diagno
 {
     const summary_options options = {.environment = request->environment};
     diagnostic verdict = {.what = ""};
+    if (request->columns) {
+        TRY(study_spread(s, request->results, request->columns, &options, stdout, &verdict, why));
+        return judge(&verdict, why);
+    }
     char *text = NULL;
     text_writer writer;
     TRY(text_writer_open(&writer, why));
@@ -193,6 +261,22 @@ static status verify_one(const study *s, const study_request *request, diagnosti
     study_verdict verdict;
     TRY(study_verify(s, request->results, stdout, &verdict, why));
     return judge(&verdict.first, why);
+}
+
+static status upgrade_one(const study *s, const study_request *request, diagnostic *why)
+{
+    char folder[4096];
+    size_t rows = 0;
+    snprintf(folder, sizeof folder, "%s%s", request->to ? request->to : request->results,
+             request->to ? "" : "-upgraded");
+    TRY(study_upgrade(s, request->results, folder, &rows, why));
+    printf("%s: %zu rows written to %s/%s\n", s->name, rows, folder, s->name);
+    return STATUS_OK;
+}
+
+static status command_upgrade(int argc, char **argv, diagnostic *why)
+{
+    return for_each_study(STUDY_UPGRADE, upgrade_one, argc, argv, why);
 }
 
 static status command_verify(int argc, char **argv, diagnostic *why)
@@ -277,8 +361,11 @@ static const command commands[] = {
     {"status", "print the progress of studies", command_status},
     {"merge", "merge the rows of a study that was run in shards", command_merge},
     {"verify", "check every row: damaged, edited, missing, duplicate and marked ones", command_verify},
+    {"upgrade", "write rows of old versions in the present form", command_upgrade},
     {"summary", "print medians and confidence intervals for each cell", command_summary},
     {"exclude", "exclude a row from summaries, with the reason", study_exclude},
+    {"compare", "compare two runs, environments, cells or values: ratio, interval, verdict", study_compare},
+    {"plot", "draw a figure of studies with gnuplot", command_study_plot},
 };
 
 status command_study(int argc, char **argv, diagnostic *why)

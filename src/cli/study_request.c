@@ -2,6 +2,7 @@
 #include "cli/study_request.h"
 #include "cli/options.h"
 #include "base/number.h"
+#include "study/study.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,14 +48,21 @@ static const command_option run_options[] = {
      OPTION_FILLS(option_text, study_request, results)},
     {"shard", 0, "I/N", "run part I of N, counted from 0; parts can run concurrently, on one or several machines",
      .take = take_shard},
-    {"dry-run", 'n', NULL, "print what would be measured and kept, and about how long it takes; write nothing",
-     OPTION_FILLS(option_flag, study_request, dry_run)},
     {"by", 0, "WHAT",
      "what --shard divides: cell (default), or repetition, so that each part measures every cell and cells do not "
      "differ by machine",
      .take = take_by},
     {"any-environment", 0, NULL, "count the rows of every environment, not only those of this machine and build",
      OPTION_FILLS(option_flag, study_request, any_environment)},
+    {"processes", 0, "P", "divide the repetitions among P fresh processes, with as many in each as the study file asks",
+     OPTION_FILLS(option_integer, study_request, processes), .lowest = 1, .highest = STUDY_PROCESSES_MAX},
+    {"process", 0, "K", "measure only the part of process K, from 1, of those of the study",
+     OPTION_FILLS(option_integer, study_request, process), .lowest = 1, .highest = 2 * STUDY_PROCESSES_MAX},
+    {"against", 0, "PROGRAM",
+     "alternate with PROGRAM, another build of cuvette, a fresh process each; its rows are written to DIR-against",
+     OPTION_FILLS(option_text, study_request, against)},
+    {"dry-run", 'n', NULL, "print what would be measured and kept, and about how long it takes; write nothing",
+     OPTION_FILLS(option_flag, study_request, dry_run)},
     {"quiet", 'q', NULL, "print errors only", OPTION_FILLS(option_flag, study_request, quiet)},
     {0},
 };
@@ -65,11 +73,22 @@ static const command_option results_options[] = {
     {0},
 };
 
+static const command_option upgrade_options[] = {
+    {"results", 'r', "DIR", "folder of the results (default: results)",
+     OPTION_FILLS(option_text, study_request, results)},
+    {"to", 0, "DIR", "results folder to write (default: the name of the other with -upgraded)",
+     OPTION_FILLS(option_text, study_request, to)},
+    {0},
+};
+
 static const command_option summary_options_list[] = {
     {"results", 'r', "DIR", "folder of the results (default: results)",
      OPTION_FILLS(option_text, study_request, results)},
     {"environment", 0, "KEY", "only the rows of the environment KEY; main: of the one with most rows",
      OPTION_FILLS(option_text, study_request, environment)},
+    {"interval", 'i', "COLUMN[/COLUMN],...",
+     "medians and 95% intervals of these columns of rows.csv, or of quotients of two",
+     OPTION_FILLS(option_text, study_request, columns)},
     {0},
 };
 
@@ -98,6 +117,11 @@ static const command_form forms[STUDY_VERB_COUNT] = {
                       .synopsis = "FILE...",
                       .about = "Check every row of each study: damaged, edited, moved, missing, duplicate and marked "
                                "ones. Exit status 1 if there is one.\vNothing is changed."},
+    [STUDY_UPGRADE] = {.options = upgrade_options,
+                       .take_argument = take_file,
+                       .synopsis = "FILE...",
+                       .about = "Write rows of versions without runs and checks in the present form, to another "
+                                "folder.\vThe old rows stay as they are; they are readable without that, too."},
     [STUDY_SUMMARY] =
         {.options = summary_options_list,
          .take_argument = take_file,

@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 typedef enum study_verb {
@@ -14,6 +15,7 @@ typedef enum study_verb {
     STUDY_MERGE,
     STUDY_SUMMARY,
     STUDY_VERIFY,
+    STUDY_UPGRADE,
     STUDY_VERB_COUNT
 } study_verb;
 
@@ -22,7 +24,11 @@ typedef struct study_request {
     const char **files; /* study files; for STUDY_LIST the folder */
     size_t file_count;
     const char *results;
-    const char *environment; /* of the summary: a key, "main", or NULL for all */
+    const char *to;             /* of an upgrade: the results folder to write; NULL: results-upgraded */
+    const char *environment;    /* of the summary: a key, "main", or NULL for all */
+    const char *columns;        /* of --interval, or NULL */
+    const char *against;        /* of a run: the program to alternate with, or NULL */
+    int64_t process, processes; /* of a run: see study_options; processes: 0: those of the study file */
     long shard, shards;
     bool by_repetition, any_environment, quiet, dry_run;
 } study_request;
@@ -34,3 +40,6 @@ void study_request_release(study_request *request);
  * wall time, median CPU time, rays and marked rows; with a reference also flip and error_rms. tsv is the output of
  * study_summary and is modified. */
 status study_table_print(FILE *out, char *tsv, diagnostic *why);
+
+/* `cuvette study plot`, which has options of its own (study_plot.c). */
+status command_study_plot(int argc, char **argv, diagnostic *why);

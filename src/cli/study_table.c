@@ -1,7 +1,9 @@
 /* The summary of a study as an aligned table for a terminal. */
+#include "cli/aligned_table.h"
 #include "cli/study_request.h"
 #include "base/number.h"
 #include "base/text.h"
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,15 +44,21 @@ static size_t column_of(const fields *f, const char *name)
     return column;
 }
 
-/* A time with four digits; further ones are measurement noise. */
-static const char *rounded(const fields *f, size_t row, const char *name, char text[NUMBER_TEXT_MAX])
+static double real_of(const fields *f, size_t row, const char *name)
 {
     double value;
-    const char *field = f->field[row * f->columns + column_of(f, name)];
-    if (!number_parse_real(field, &value))
-        return field;
-    snprintf(text, NUMBER_TEXT_MAX, "%.4g", value);
-    return text;
+    return number_parse_real(f->field[row * f->columns + column_of(f, name)], &value) ? value : NAN;
+}
+
+/* A number of the summary with the digits that the interval of the column NAME_low, NAME_high allows, if it has one. */
+static const char *rounded(const fields *f, size_t row, const char *name, const char *of, char text[NUMBER_TEXT_MAX])
+{
+    char low[64], high[64];
+    const double value = real_of(f, row, name);
+    snprintf(low, sizeof low, "%s_low", of);
+    snprintf(high, sizeof high, "%s_high", of);
+    const double half = *of ? 0.5 * (real_of(f, row, high) - real_of(f, row, low)) : NAN;
+    return isnan(value) ? f->field[row * f->columns + column_of(f, name)] : number_format_within(value, half, text);
 }
 
 static bool has_column(const fields *f, const char *name)
@@ -82,24 +90,15 @@ static char *shown(const fields *f, size_t row, size_t column)
     switch (column - plain) {
     case 0:
         return row == 0 ? strdup("wall_s [95% interval]")
-                        : text_format("%s [%s, %s]", rounded(f, row, "wall_s_median", median),
-                                      rounded(f, row, "wall_s_low", low), rounded(f, row, "wall_s_high", high));
-    case 1: return strdup(row == 0 ? "cpu_s" : rounded(f, row, "cpu_s_median", median));
+                        : text_format("%s [%s, %s]", rounded(f, row, "wall_s_median", "wall_s", median),
+                                      rounded(f, row, "wall_s_low", "wall_s", low),
+                                      rounded(f, row, "wall_s_high", "wall_s", high));
+    case 1: return strdup(row == 0 ? "cpu_s" : rounded(f, row, "cpu_s_median", "cpu_s", median));
     case 2: return strdup(row == 0 ? "rays" : f->field[row * f->columns + column_of(f, "rays_total")]);
     case 3: return strdup(f->field[row * f->columns + column_of(f, "marked")]);
-    case 4: return strdup(row == 0 ? "flip" : rounded(f, row, "flip", median));
-    default: return strdup(row == 0 ? "error_rms" : rounded(f, row, "error_rms", median));
+    case 4: return strdup(row == 0 ? "flip" : rounded(f, row, "flip", "", median));
+    default: return strdup(row == 0 ? "error_rms" : rounded(f, row, "error_rms", "", median));
     }
-}
-
-static void print_aligned(FILE *out, char **text, size_t rows, size_t columns, int *width)
-{
-    for (size_t i = 0; i < rows * columns; i++) {
-        int length = (int)strlen(text[i]);
-        width[i % columns] = length > width[i % columns] ? length : width[i % columns];
-    }
-    for (size_t i = 0; i < rows * columns; i++)
-        fprintf(out, "%*s%s", width[i % columns], text[i], (i + 1) % columns ? "  " : "\n");
 }
 
 status study_table_print(FILE *out, char *tsv, diagnostic *why)
@@ -110,16 +109,13 @@ status study_table_print(FILE *out, char *tsv, diagnostic *why)
     size_t columns = good ? column_of(&f, "n") + 1 + (has_column(&f, "flip") ? 6 : 4) + f.excludes : 0;
     const size_t cells = f.rows * columns;
     char **text = calloc(cells + 1, sizeof *text);
-    int *width = calloc(columns + 1, sizeof *width);
-    good = good && text && width;
+    good = good && text;
     for (size_t i = 0; good && i < cells; i++)
         good = (text[i] = shown(&f, i / columns, i % columns)) != NULL;
-    if (good)
-        print_aligned(out, text, f.rows, columns, width);
+    const status printed = good ? aligned_table_print(out, text, f.rows, columns, why) : out_of_memory(why);
     for (size_t i = 0; text && i < cells; i++)
         free(text[i]);
     free(text);
-    free(width);
     free(f.field);
-    return good ? STATUS_OK : out_of_memory(why);
+    return printed;
 }

@@ -167,7 +167,8 @@ static status prepare(job *j, const scene *s, const render_options *requested, d
 /* Renders one frame, with or without the maps. */
 static status trace(work *w, const scene *s, bool maps, render_result **out, diagnostic *why)
 {
-    render_options options = {.progress = go_on, .progress_s = w->requested->progress_s, .context = w};
+    render_options options = {
+        .usage = w->requested->usage, .progress = go_on, .progress_s = w->requested->progress_s, .context = w};
     if (w->requested->piece_done)
         options.piece_done = pass_on_piece;
     if (maps) {

@@ -213,7 +213,19 @@ static size_t solids_of(const job_account *a)
  Q(visibility_s, "s", REAL, LAST, ROW, "visibility_s", NULL, \
    "part of busy_s spent in visibility queries (nearest hits and shadows); NA for scenes without meshes", \
    k->visibility_s) \
- Q(waiting_s, "s", REAL, LAST, ROW, "waiting_s", NULL, "wall time of the frame minus busy_s", k->waiting_s)
+ Q(waiting_s, "s", REAL, LAST, ROW, "waiting_s", NULL, "wall time of the frame minus busy_s", k->waiting_s) \
+ Q(running_s, "s", REAL, LAST, ROW, "running_s", NULL, \
+   "part of wall_s in which the thread ran: its CPU time, read together with the next four columns", \
+   k->usage.running_s) \
+ Q(runnable_s, "s", REAL, LAST, ROW, "runnable_s", NULL, \
+   "part of wall_s in which the thread could run, and waited for a processing unit (Linux, schedstat)", \
+   k->usage.runnable_s) \
+ Q(blocked_s, "s", REAL, LAST, ROW, "blocked_s", NULL, \
+   "the rest of wall_s: the thread waited for something other than a processing unit", k->usage.blocked_s) \
+ Q(voluntary_switches, "", COUNT, LAST, ROW, "voluntary_switches", NULL, \
+   "times that the thread gave up its processing unit because it was blocked", k->usage.voluntary_switches) \
+ Q(involuntary_switches, "", COUNT, LAST, ROW, "involuntary_switches", NULL, \
+   "times that the kernel took the processing unit from the running thread", k->usage.involuntary_switches)
 // clang-format on
 
 /* --- readers --- */

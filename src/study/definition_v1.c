@@ -76,8 +76,11 @@ static bool was_there(const scene *of, const char *path, const param *row)
     return false;
 }
 
+/* What a parameter that version 1 did not have must be for the same frames. Its tiles had the size render.tile. */
 static bool is_default(const param *row, const char *value)
 {
+    if (row->group == PARAM_RENDER && strcmp(row->name, "pieces") == 0 && strcmp(value, "0") == 0)
+        return true;
     char *usual = param_default_text(row);
     const bool same = usual && strcmp(usual, value) == 0;
     free(usual);

@@ -135,6 +135,14 @@ static status try_cells(trials *t, study_estimate *out, diagnostic *why)
     return STATUS_OK;
 }
 
+/* Each of the processes to come warms the cell up. */
+static size_t warmups_of(const run *r, size_t cell)
+{
+    const size_t least = (size_t)progress_index_least(r->done), counted = r->done->cells[cell].counted;
+    const size_t lacking = counted < least ? least - counted : 1, processes = (size_t)r->s->processes;
+    return (size_t)r->s->warmups * (least ? (lacking * processes + least - 1) / least : 1);
+}
+
 /* Counts what is missing, and takes the times of existing rows. */
 static void count(const trials *t, study_estimate *out)
 {
@@ -150,7 +158,7 @@ static void count(const trials *t, study_estimate *out)
             out->cells_lacking++;
             out->rows_least += at->counted < least ? least - at->counted : 1;
             out->rows_most += most - at->counted;
-            out->warmups += (size_t)r->s->warmups;
+            out->warmups += warmups_of(r, cell);
         }
         out->cells_to_keep += keeps;
         out->files += keep_missing_count(r->s, r->folder, cell);
@@ -184,7 +192,7 @@ static void add_times(const trials *t, study_estimate *out)
         if (!lacks && !keeps)
             continue;
         const size_t least = (size_t)progress_index_least(r->done), most = (size_t)progress_index_most(r->done);
-        const size_t more = (lacks ? (size_t)r->s->warmups : 0) + (keeps ? 1 : 0);
+        const size_t more = (lacks ? warmups_of(r, cell) : 0) + (keeps ? 1 : 0);
         const bool tried = !isnan(t->cell_s[cell]);
         const double frame_s = tried ? t->cell_s[cell] : other_s, once_s = tried ? t->once_s[cell] : other_once_s;
         out->from_others += !tried && !isnan(other_s) ? 1 : 0;

@@ -36,8 +36,8 @@ void study_destroy(study *s)
     free(s->text);
     free(s->scene_text);
     scene_destroy(s->base);
-    free(s->notes);
     free(s->identity);
+    free(s->notes);
     free(s);
 }
 

@@ -47,6 +47,11 @@ static char *kept_path(const char *folder, size_t cell, size_t what)
     return text_format("%s/images/%04zu%s", folder, cell, files[what].ending);
 }
 
+char *keep_image_path(const char *folder, size_t cell)
+{
+    return kept_path(folder, cell, 0);
+}
+
 size_t keep_missing_count(const study *s, const char *folder, size_t cell)
 {
     size_t missing = 0;

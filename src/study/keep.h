@@ -17,6 +17,9 @@ const char *keep_ending(const study *s, size_t i);
  * the first of them. *changed: files may have other names than before. */
 status keep_renumber(const study *s, const char *folder, bool create, bool *changed, diagnostic *why);
 
+/* The path of a cell's image in the study's folder; fresh memory, or NULL. */
+char *keep_image_path(const char *folder, size_t cell);
+
 /* The options of the frame; progress and context stay NULL. */
 render_options keep_options(const study *s);
 

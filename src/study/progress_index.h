@@ -50,7 +50,8 @@ typedef struct progress_index_filter {
 } progress_index_filter;
 status progress_index_read(const study *s, const char *results, const progress_index_filter *filter,
                            progress_index **out, diagnostic *why);
-/* The largest number of repetitions of a cell: all, or the part of a shard. */
+/* The smallest and the largest number of repetitions of a cell: all, or the part of a shard. */
+long progress_index_least(const progress_index *l);
 long progress_index_most(const progress_index *l);
 /* The least number, with a relative_width; otherwise the same. */
 long progress_index_least(const progress_index *l);

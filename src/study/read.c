@@ -145,6 +145,17 @@ static status read_repetitions(study *s, const document *d, const node *n, diagn
     return code;
 }
 
+static status read_processes(study *s, const document *d, const node *n, diagnostic *why)
+{
+    int64_t value = 1;
+    TRY(read_integer(d, n, "processes", 1, STUDY_PROCESSES_MAX, &value, why));
+    if (value > s->repetitions_min)
+        return node_error(d, n, why, "let there be a repetition for each process",
+                          "%lld processes are more than the %ld repetitions", (long long)value, s->repetitions_min);
+    s->processes = (long)value;
+    return STATUS_OK;
+}
+
 static status read_order(study *s, const document *d, const node *warmups, const node *order, diagnostic *why)
 {
     static const char *const keys[] = {"shuffle", "seed"};
@@ -229,8 +240,8 @@ static status check_loads(void *context, const study *s, size_t cell, scene *own
 
 static status read_root(study *s, const document *d, const void *context, diagnostic *why)
 {
-    static const char *const keys[] = {"study",     "title",       "scene",   "set",   "grid",
-                                       "reference", "repetitions", "warmups", "order", "keep"};
+    static const char *const keys[] = {"study",       "title",     "scene",   "set",   "grid", "reference",
+                                       "repetitions", "processes", "warmups", "order", "keep"};
     static status (*const checks[])(const study *s, diagnostic *why) = {grid_check_cells, reference_check,
                                                                         cell_tables_check};
     const study_guard *guard = context;
@@ -244,6 +255,7 @@ static status read_root(study *s, const document *d, const void *context, diagno
     TRY(node_check_keys(d, root, keys, COUNT(keys), why));
     TRY(read_names(s, d, root, why));
     TRY(read_repetitions(s, d, node_get(root, "repetitions"), why));
+    TRY(read_processes(s, d, node_get(root, "processes"), why));
     TRY(read_order(s, d, node_get(root, "warmups"), node_get(root, "order"), why));
     TRY(read_keep(s, d, node_get(root, "keep"), why));
     TRY(read_scene(s, d, root, guard, why));

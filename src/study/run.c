@@ -99,7 +99,7 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
     job_account made = {.result = NULL};
     status code = study_cell_scene(r->s, cell, &setting, why);
     THEN(code, run_load(r, setting, why));
-    THEN(code, run_render(r, setting, NULL, &made, why));
+    THEN(code, run_render(r, setting, &(render_options){.usage = r->s->keep_workers}, &made, why));
     if (code == STATUS_OK) {
         const study_row row = {.of = r->s,
                                .cell = cell,
@@ -125,9 +125,36 @@ static status measure_warm(run *r, size_t cell, diagnostic *why)
     return measure(r, cell, false, why);
 }
 
+long study_processes(const study *s)
+{
+    return s->processes * (s->processes > 1 && s->repetitions_max > s->repetitions_min ? 2 : 1);
+}
+
+/* The repetitions of a cell that exist when this process is done. */
+static long rounds_of(const run *r)
+{
+    const long least = progress_index_least(r->done), most = progress_index_most(r->done);
+    const long process = r->options->process, processes = r->s->processes;
+    if (process == 0)
+        return most;
+    if (process <= processes)
+        return (least * process + processes - 1) / processes;
+    return least + ((most - least) * (process - processes) + processes - 1) / processes;
+}
+
+static bool lacks_rounds(const run *r)
+{
+    bool lacks = false;
+    for (size_t i = 0; i < r->cell_count; i++) {
+        const size_t cell = r->cells[i];
+        lacks |= r->done->cells[cell].counted < (size_t)rounds_of(r) && !progress_index_cell_done(r->done, cell);
+    }
+    return lacks;
+}
+
 static status run_rounds(run *r, diagnostic *why)
 {
-    for (long round = 0; round < progress_index_most(r->done); round++) {
+    for (long round = 0; round < rounds_of(r); round++) {
         for (size_t i = 0; i < r->cell_count; i++)
             r->order[i] = i;
         if (r->s->shuffle)
@@ -154,6 +181,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
     size_t total = study_cell_count(s);
     run r = {.s = s,
              .options = options,
+             .process = (int)(options->process ? options->process - 1 : 0),
              .folder = study_folder(s, options->results),
              .cells = calloc(total, sizeof *r.cells),
              .warm = calloc(total, sizeof *r.warm),
@@ -178,11 +206,12 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
     THEN(code, keep_renumber(s, r.folder, false, &renumbered, why));
     if (code == STATUS_OK) {
         run_choose_cells(&r);
-        bool idle = run_complete(&r);
+        bool idle = options->process ? !lacks_rounds(&r) : run_complete(&r);
         if (!idle) {
             code = run_prepare(&r, why);
             THEN(code, run_rounds(&r, why));
-            THEN(code, run_keep_all(&r, why));
+            if (!options->process)
+                THEN(code, run_keep_all(&r, why));
             diagnostic unsealed = {.what = ""};
             const status sealed = r.id[0] ? run_seal_rows(&r, code == STATUS_OK ? why : &unsealed) : STATUS_OK;
             code = code == STATUS_OK ? sealed : code;

@@ -45,11 +45,10 @@ typedef struct run {
 status run_prepare(run *r, diagnostic *why);
 void run_release(run *r);
 
-/* Fills cells and cell_count with the cells of the shard; order is overwritten. */
-void run_choose_cells(run *r);
-
 /* Reads the existing rows into r->done. */
 status run_read_rows(run *r, diagnostic *why);
+/* Fills cells and cell_count with the cells of the shard; order is overwritten. */
+void run_choose_cells(run *r);
 
 /* Reads which cells have been compared from the existing files. */
 status run_find_compared(run *r, diagnostic *why);

@@ -12,7 +12,13 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { STUDY_CELLS_MAX = 65536, STUDY_AXES_MAX = 16, STUDY_REPETITIONS_MAX = 100000, STUDY_WARMUPS_MAX = 1000 };
+enum {
+    STUDY_CELLS_MAX = 65536,
+    STUDY_AXES_MAX = 16,
+    STUDY_REPETITIONS_MAX = 100000,
+    STUDY_WARMUPS_MAX = 1000,
+    STUDY_PROCESSES_MAX = 1000
+};
 
 /* One point of an axis sets one or more parameters together. Values are as scene_get writes them. */
 typedef struct study_point {
@@ -46,6 +52,7 @@ typedef struct study {
     long repetitions_min, repetitions_max; /* without warm-ups */
     double relative_width; /* stop after min repetitions as soon as the 95% interval of the mean wall time is narrower
                               than this fraction of it; 0: always max */
+    long processes;        /* fresh processes that divide the repetitions; 1: the program's own */
     long warmups;          /* unmeasured frames of a cell before its first measured one, in every process */
     bool shuffle;
     uint64_t seed;
@@ -105,12 +112,14 @@ typedef struct study_moment {
 } study_moment;
 
 typedef struct study_options {
-    const char *results;  /* results folder; results/<name>/ is created in it */
-    long shard, shards;   /* this process measures the cells whose position in the shuffled grid, modulo shards, is
+    const char *results; /* results folder; results/<name>/ is created in it */
+    long shard, shards;  /* this process measures the cells whose position in the shuffled grid, modulo shards, is
                             shard; 0 of 1 (or 0 of 0) for all */
-    bool by_repetition;   /* instead, this process measures all cells, and every shards-th repetition of each */
-    bool any_environment; /* rows of every environment count, not only those of the present one */
-    FILE *progress;       /* a terminal for the progress line with ETA, or NULL */
+    bool by_repetition;  /* instead, this process measures all cells, and every shards-th repetition of each */
+    long process; /* from 1: this is one of study_processes, and measures only its part of the repetitions; 0: this
+                             process measures all */
+    bool any_environment;        /* rows of every environment count, not only those of the present one */
+    FILE *progress;              /* a terminal for the progress line with ETA, or NULL */
     bool (*stop)(void *context); /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
     void (*progressed)(
         void *context,
@@ -118,6 +127,11 @@ typedef struct study_options {
                                      NULL */
     void *context;                /* passed to both */
 } study_options;
+
+/* The number of processes that the study divides its repetitions among: its processes for the least number of
+ * repetitions, and as many again for further ones. Each measures, cell by cell, until its share exists; fresh processes
+ * differ in memory layout and placement, which repetitions within one do not show (Kalibera and Jones, ISMM 2013). */
+long study_processes(const study *s);
 
 /* Measures what is missing; for a complete study *ran = 0 rows are written. */
 status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why);

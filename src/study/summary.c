@@ -5,6 +5,7 @@
 #include "study/compare_rows.h"
 #include "study/excluded.h"
 #include "study/grid.h"
+#include "study/level_rows.h"
 #include "study/row_environments.h"
 #include "study/rows.h"
 #include "scene/model/open.h"
@@ -56,16 +57,27 @@ static summary summarize_column(const cell_rows *cell, const char *name)
     return summarize(cell->values, count);
 }
 
-static void put_timed(const cell_rows *cell, const char *name)
+static status find_interval(const cell_rows *cell, const char *name, level_interval *out, diagnostic *why)
+{
+    for (size_t i = 0; i < cell->count; i++)
+        cell->values[i] = row_field_real(cell->rows[i], name);
+    return level_rows_median(cell->rows, cell->values, cell->count, out, why);
+}
+
+static status put_timed(const cell_rows *cell, const char *name, diagnostic *why)
 {
     static const char *const parts[] = {"median", "low", "high", "mean", "min", "max"};
+    level_interval median = {NAN, NAN, NAN};
+    if (!cell->header)
+        TRY(find_interval(cell, name, &median, why));
     const summary s = cell->header ? (summary){0} : summarize_column(cell, name);
-    const double values[] = {s.median, s.median_low, s.median_high, s.mean, s.minimum, s.maximum};
+    const double values[] = {median.value, median.low, median.high, s.mean, s.minimum, s.maximum};
     for (size_t part = 0; part < COUNT(parts); part++)
         if (cell->header)
             fprintf(cell->out, "\t%s_%s", name, parts[part]);
         else
             cell_table_number(cell->out, values[part]);
+    return STATUS_OK;
 }
 
 static void put_median(const cell_rows *cell, const char *name)
@@ -110,7 +122,7 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
         fprintf(cell->out, "\t%zu", cell->count);
     }
     for (size_t i = 0; i < COUNT(timed); i++)
-        put_timed(cell, timed[i]);
+        TRY(put_timed(cell, timed[i], why));
     for (size_t i = 0; i < COUNT(before_hash); i++)
         put_median(cell, before_hash[i]);
     if (cell->header)

@@ -70,6 +70,18 @@ export const cases = {
       'film hashes that the page does not show',
     );
 
+    for (const [format, start] of [
+      ['SVG', '<?xml'],
+      ['PNG', '\x89PNG'],
+    ]) {
+      const saved = screen.page.waitForEvent('download');
+      await study.getByRole('button', { name: `Save figure as ${format}` }).click();
+      const file = await saved;
+      t.equal(file.suggestedFilename(), `quick.${format.toLowerCase()}`, 'name of the saved figure');
+      const bytes = await readFile(await file.path(), 'latin1');
+      t.equal(bytes.slice(0, start.length), start, `the saved figure is ${format}`);
+    }
+
     await screen.showPanel('Parameters');
     await screen.settled();
     t.check(await screen.page.evaluate(() => window.lab.picture.final), 'the image is rendered after the study');

@@ -164,12 +164,15 @@ static void work(void *context, int worker)
     frame *f = context;
     worker_account *d = &f->accounts[worker];
     const double began_s = since(f), cpu_s = clock_thread_cpu_s();
+    const bool measured = f->options && f->options->usage;
+    const thread_usage before = measured ? thread_usage_now() : thread_usage_unknown();
     d->misplaced = !take_place(f, worker);
     span piece;
     if (!atomic_load_explicit(&f->stop, memory_order_relaxed) && schedule_next(&f->pieces, worker, 0, &piece))
         trace_pieces(f, worker, d, piece);
     d->report.start_s = began_s;
     d->report.pu = topology_current_pu();
+    d->report.usage = measured ? thread_usage_since(&before) : before;
     d->report.cpu_s = clock_thread_cpu_s() - cpu_s;
     d->report.wall_s = since(f) - began_s;
 }

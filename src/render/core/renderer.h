@@ -7,6 +7,7 @@
 #include "base/counters.h"
 #include "base/isa.h"
 #include "base/status.h"
+#include "measure/thread_usage.h"
 #include "measure/topology.h"
 #include "render/core/film.h"
 #include "render/core/layers.h"
@@ -35,6 +36,7 @@ typedef struct worker_report {
     uint64_t tiles;                            /* tiles that it rendered */
     uint64_t camera, reflect, refract, shadow; /* rays that it traced */
     int pu;                                    /* processing unit at the end; -1: unknown */
+    thread_usage usage;                        /* over the interval of wall_s; unknown unless requested */
 } worker_report;
 
 typedef struct tile_event {
@@ -49,6 +51,7 @@ typedef struct render_options {
     bool pixel_time; /* nanoseconds by pixel; a batch's time is divided among its rays */
     bool layers;     /* named layers, if the integrator supports them */
     bool timeline;   /* the worker and times of each tile */
+    bool usage;      /* how long each worker ran, could have run, and was blocked; costs it about 20 microseconds */
     /* Called every progress_s seconds (0: 0.1) on the thread that called renderer_render; return false to stop the
      * frame. May be NULL. */
     bool (*progress)(void *context, double share_done);

@@ -1,16 +1,30 @@
 /* Assignment of pieces of the image to workers. */
 #include "render/core/schedule.h"
 
+static void cut_into_tiles(schedule *s, int tile)
+{
+    s->tile = tile;
+    s->tiles_across = (s->width + tile - 1) / tile;
+    s->tile_count = s->tiles_across * ((s->height + tile - 1) / tile);
+}
+
+/* Halves the tiles until each worker can have the requested number of pieces, or a tile is a pixel. */
+static void set_tiles(schedule *s, const render_settings *settings)
+{
+    const int64_t least = settings->pieces * settings->threads;
+    cut_into_tiles(s, (int)settings->tile);
+    while (s->tile_count < least && s->tile > 1)
+        cut_into_tiles(s, s->tile / 2);
+}
+
 void schedule_start(schedule *s, const render_settings *settings)
 {
     s->rule = (schedule_rule)settings->schedule;
     s->width = (int)settings->width;
     s->height = (int)settings->height;
-    s->tile = (int)settings->tile;
     s->workers = (int)settings->threads;
-    s->tiles_across = (s->width + s->tile - 1) / s->tile;
-    s->tile_count = s->tiles_across * ((s->height + s->tile - 1) / s->tile);
-    atomic_store(&s->next, 0);
+    set_tiles(s, settings);
+    atomic_store(&s->next, s->workers); /* the tiles before it are reserved */
 }
 
 static int clamp(int64_t v, int most)
@@ -36,6 +50,12 @@ static bool tile(const schedule *s, int64_t index, span *out)
     return true;
 }
 
+/* The worker's reserved tile, then the next one that no worker has. */
+static bool tile_on_demand(schedule *s, int worker, uint64_t taken, span *out)
+{
+    return tile(s, taken == 0 ? worker : atomic_fetch_add_explicit(&s->next, 1, memory_order_relaxed), out);
+}
+
 bool schedule_next(schedule *s, int worker, uint64_t taken, span *out)
 {
     *out = (span){0, 0, s->width, s->height};
@@ -43,7 +63,7 @@ bool schedule_next(schedule *s, int worker, uint64_t taken, span *out)
     case SCHEDULE_COLUMNS: return taken == 0 && block(s->width, s->workers, worker, &out->x0, &out->x1);
     case SCHEDULE_ROWS: return taken == 0 && block(s->height, s->workers, worker, &out->y0, &out->y1);
     case SCHEDULE_TILES: return tile(s, worker + (int64_t)taken * s->workers, out);
-    case SCHEDULE_DYNAMIC: return tile(s, atomic_fetch_add_explicit(&s->next, 1, memory_order_relaxed), out);
+    case SCHEDULE_DYNAMIC: return tile_on_demand(s, worker, taken, out);
     }
     return false;
 }

@@ -1,6 +1,8 @@
 /* The schedule: which worker renders which piece of the image. columns and rows: one block per worker, as in the
- * report; tiles: square tiles assigned in turn; dynamic: the next tile to the next free worker. Ownership: a plain
- * value; next is the only field that workers share. */
+ * report; tiles: square tiles assigned in turn; dynamic: the next tile to the next free worker, except that the first
+ * tile of each worker is reserved for it. Without that, of a thousand threads on a few processing units most start when
+ * all tiles are taken, and the frame is in fact rendered by a few. Ownership: a plain value; next is the only field
+ * that workers share. Errors: none. */
 #pragma once
 
 #include "scene/model/render_settings.h"

@@ -15,6 +15,7 @@ enum { STACK_BYTES = 512 * 1024 }; /* not the usual 8 MiB: a pool may have a tho
 typedef struct worker {
     worker_pool *owner;
     int index;
+    bool quit;
     pthread_t thread;
     _Alignas(64) sem_t wake; /* on its own cache line: workers wake one another */
 } worker;
@@ -23,7 +24,6 @@ struct worker_pool {
     worker **workers;
     int count;   /* threads in the pool */
     int running; /* number of workers of this run */
-    bool quit;
     worker_pool_task *task;
     void *context;
     _Alignas(64) atomic_int left;
@@ -59,7 +59,7 @@ static void *kept_worker(void *argument)
     float_environment_set();
     for (;;) {
         wait_for(&w->wake);
-        if (p->quit)
+        if (w->quit)
             return NULL;
         for (int child = 2 * w->index + 1; child <= 2 * w->index + 2 && child < p->running; child++)
             sem_post(&p->workers[child]->wake);
@@ -93,10 +93,23 @@ static status no_thread(int have, int error, diagnostic *why)
                     "cannot start thread %d: %s", have + 1, strerror(error));
 }
 
-status worker_pool_reserve(worker_pool *p, int count, diagnostic *why)
+/* Ends all threads but the first count. */
+static void end_workers(worker_pool *p, int count)
 {
-    if (count <= p->count)
-        return STATUS_OK;
+    for (int i = count; i < p->count; i++) {
+        p->workers[i]->quit = true;
+        sem_post(&p->workers[i]->wake);
+    }
+    while (p->count > count) {
+        worker *w = p->workers[--p->count];
+        pthread_join(w->thread, NULL);
+        sem_destroy(&w->wake);
+        free(w);
+    }
+}
+
+static status grow_to(worker_pool *p, int count, diagnostic *why)
+{
     worker **grown = realloc(p->workers, (size_t)count * sizeof *grown);
     if (!grown)
         return out_of_memory(why);
@@ -120,18 +133,20 @@ status worker_pool_reserve(worker_pool *p, int count, diagnostic *why)
     return STATUS_OK;
 }
 
+status worker_pool_reserve(worker_pool *p, int count, diagnostic *why)
+{
+    const int before = p->count;
+    const status s = count > before ? grow_to(p, count, why) : STATUS_OK;
+    if (s != STATUS_OK)
+        end_workers(p, before); /* their stacks may be the memory that a frame with fewer threads needs */
+    return s;
+}
+
 void worker_pool_destroy(worker_pool *p)
 {
     if (!p)
         return;
-    p->quit = true;
-    for (int i = 0; i < p->count; i++)
-        sem_post(&p->workers[i]->wake);
-    for (int i = 0; i < p->count; i++) {
-        pthread_join(p->workers[i]->thread, NULL);
-        sem_destroy(&p->workers[i]->wake);
-        free(p->workers[i]);
-    }
+    end_workers(p, 0);
     sem_destroy(&p->done);
     free(p->workers);
     free(p);

@@ -145,6 +145,9 @@ static const param table[] = {
         "distribution of the image over the workers: fixed blocks of columns, of rows, fixed tiles, or tiles "
         "on demand"),
     PERFORMANCE_INTEGER(tile, "px", 1, 65536, "32", "edge of a tile"),
+    PERFORMANCE_INTEGER(pieces, "", 0, 1024, "4",
+                        "tiles per worker, at least: the edge is halved until there are that many; 0: always "
+                        "render.tile"),
     PERFORMANCE_CHOICE(pin, pin_words, "none",
                        "thread pinning: none, on adjacent processing units, or on distant ones"),
     PERFORMANCE_CHOICE(accel, accel_words, "bvh",

@@ -3,6 +3,7 @@
  * the diagnostic. */
 #pragma once
 
+#include "study/study.h"
 #include "web/lab_private.h"
 
 typedef struct call {
@@ -23,7 +24,7 @@ api_handler api_state, api_scene, api_set, api_reset, api_undo, api_redo, api_ca
     api_clear_reference, api_reference_image, api_compare, api_compare_map, api_add, api_remove, api_move, api_turn,
     api_scale, api_rename, api_material, api_copy, api_files, api_open, api_save, api_media, api_slime, api_grab,
     api_move_hand, api_release, api_studies, api_study, api_study_run, api_study_stop, api_study_rows,
-    api_study_compare, api_study_draw, api_figure, api_machine, api_notes;
+    api_study_compare, api_study_draw, api_study_figure, api_figure, api_machine, api_notes;
 
 /* Fills l->routes with all routes, bound to the lab. */
 status api_bind(lab *l, size_t *count, diagnostic *why);
@@ -71,6 +72,9 @@ bool api_take_gesture(call *c, const char **gesture);
 bool api_query_flag(const call *c, const char *key);
 /* Reads ?bits, the bit depth of a PNG; 8 by default. Returns false for values other than 8 and 16. */
 bool api_take_bits(const call *c, int *bits);
+
+/* Reads the study {name} of the path, whose results may be read too; the caller destroys it. */
+status api_take_study(call *c, study **s);
 
 /* Waits for the final image of the current scene document. */
 status api_wait_for_final(call *c, const shared_image **out);

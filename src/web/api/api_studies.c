@@ -93,7 +93,7 @@ static status find_study(call *c, study **s, char **file)
     return code;
 }
 
-static status take_study(call *c, study **s)
+status api_take_study(call *c, study **s)
 {
     char *file;
     const status code = find_study(c, s, &file);
@@ -133,7 +133,7 @@ static status reply_run(call *c, status code)
 status api_study_run(call *c)
 {
     study *s;
-    TRY(take_study(c, &s));
+    TRY(api_take_study(c, &s));
     return reply_run(c, studies_start(c->l->studies, s, &c->why));
 }
 
@@ -151,7 +151,7 @@ status api_study_rows(call *c)
     study *s;
     if (text && (!number_parse_int(text, &from) || from < 0))
         return api_refuse(c, 400, "'from' is not a row number", "use ?from=N with N >= 0");
-    status code = take_study(c, &s);
+    status code = api_take_study(c, &s);
     THEN(code, study_json_rows(s, c->l->settings.results, (size_t)from, &c->json, &c->why));
     study_destroy(s);
     return code;
@@ -177,7 +177,7 @@ status api_study_compare(call *c)
     char *other = NULL;
     if (!with || !with[0])
         return api_refuse(c, 400, "the folder to compare with is missing", "add ?with=FOLDER, one of the study's runs");
-    status code = take_study(c, &s);
+    status code = api_take_study(c, &s);
     THEN(code, take_run(c, with, s, &other));
     THEN(code, study_json_compare(s, c->l->settings.results, other, &c->json, &c->why));
     free(other);
@@ -219,7 +219,7 @@ static status draw(call *c, const study *s)
 status api_study_draw(call *c)
 {
     study *s;
-    status code = take_study(c, &s);
+    status code = api_take_study(c, &s);
     THEN(code, draw(c, s));
     study_destroy(s);
     return code;

@@ -52,6 +52,7 @@ static const struct api_route {
     {"GET", "/api/studies/{name}/rows", api_study_rows, NO_BODY},
     {"GET", "/api/studies/{name}/compare", api_study_compare, NO_BODY},
     {"POST", "/api/studies/{name}/draw", api_study_draw, EMPTY},
+    {"GET", "/api/studies/{name}/figure", api_study_figure, NO_BODY},
     {"GET", "/api/figures/{name}", api_figure, NO_BODY},
     {"GET", "/api/machine", api_machine, NO_BODY},
     {"GET", "/api/notes", api_notes, NO_BODY},

@@ -1,10 +1,12 @@
 /* A chart of a study's cells with controls for its axes, and the same data as a table.
- * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note})} */
+ * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note}),
+ * chosen(): {quantity, x, by, logX, logY} of the chart; null: none, or left to the values} */
 
 import { check, choice, digits, element, empty, group, replace, table } from './ui.js';
 import { plot } from './plot.js';
 import { axesFor, seriesOf } from './study_data.js';
 
+const BY_MAX = 12; /* lines of a figure that `cuvette study plot` can distinguish */
 const withUnit = (name, unit) => (unit ? `${name} / ${unit}` : name);
 const spread = (values) => {
   const some = values.filter((value) => Number.isFinite(value));
@@ -37,6 +39,7 @@ export function createChart({ caption, id }) {
   const alternative = group('Chart data as a table', { open: false, id }, below);
   const node = element('div', { class: 'study-chart' }, bar, place, alternative);
   let what = null;
+  let axesShown = {};
   let barOf = '';
   return {
     node,
@@ -44,6 +47,7 @@ export function createChart({ caption, id }) {
       what = next;
       draw();
     },
+    chosen: () => ({ ...chosen, ...axesShown }),
   };
 
   function pick(key, value) {
@@ -97,6 +101,8 @@ export function createChart({ caption, id }) {
     const axes = axesFor(cells, what.paths);
     const axis = axes.find(({ path }) => path === chosen.x) || axes[0];
     const { series, values, heading, left } = seriesOf(cells, what.paths, axis?.path);
+    const others = axes.filter((one) => one !== axis);
+    axesShown = { x: axis?.path ?? null, by: others.length === 1 && series.length <= BY_MAX ? others[0].path : null };
     const log = {
       x: chosen.logX ?? (!values && spread(series.flatMap((one) => one.points.map((point) => point.x))) >= 30),
       y: chosen.logY ?? spread(cells.map(({ y }) => y)) >= 50,

@@ -1,21 +1,13 @@
 /* Compares two runs of a study cell by cell: a chart of ratios and a table. exports: createCompare(lab) -> {node,
  * show(study, details, results), forget()} */
 
-import { choice, digits, element, empty, notice, replace } from './ui.js';
+import { choice, count, digits, element, empty, notice, replace } from './ui.js';
 import { createChart } from './study_chart.js';
 import { createSortTable } from './study_table.js';
 import { pathsOf } from './study_data.js';
 
 const text = (value) => (value === null || value === undefined ? 'NA' : String(value));
 const sameness = (value) => (value === null ? 'NA' : value ? 'yes' : 'no');
-
-/* Conservative bounds of the ratio from both intervals; its own interval is unknown. */
-function bounds({ a, b }) {
-  return {
-    low: b.low === null || a.high === null ? NaN : b.low / a.high,
-    high: b.high === null || a.low === null ? NaN : b.high / a.low,
-  };
-}
 
 const quantity = { key: 'ratio', label: 'wall time B / wall time A', unit: '' };
 
@@ -24,14 +16,13 @@ function rowsOf(answer) {
     'cell',
     ...answer.columns,
     'A / s',
-    'A low',
-    'A to',
     'A n',
     'B / s',
-    'B low',
-    'B to',
     'B n',
     'B / A',
+    'low',
+    'high',
+    'verdict',
     'same film',
   ];
   const rows = answer.cells.map((cell) =>
@@ -39,14 +30,13 @@ function rowsOf(answer) {
       cell.cell,
       ...answer.columns.map((path) => cell[path]),
       cell.a.median,
-      cell.a.low,
-      cell.a.high,
       cell.a.n,
       cell.b.median,
-      cell.b.low,
-      cell.b.high,
       cell.b.n,
       cell.ratio,
+      cell.low,
+      cell.high,
+      cell.reason ? `${cell.verdict}: ${cell.reason}` : cell.verdict,
     ]
       .map(text)
       .concat(sameness(cell.same_film)),
@@ -54,17 +44,22 @@ function rowsOf(answer) {
   return [columns, rows];
 }
 
-function verdict({ cells }) {
+function verdict({ cells, all }) {
   const others = cells.filter((cell) => cell.same_film === false).length;
   const both = cells.filter((cell) => cell.ratio !== null);
   if (!both.length) return notice('No cell was measured in both runs.', { kind: 'warning' });
-  const middle = Math.exp(both.reduce((sum, cell) => sum + Math.log(cell.ratio), 0) / both.length);
+  const { ratio, low, high, verdict: word, reason, pairs_needed: needed } = all;
+  const interval = low === null ? '' : ` (95% interval ${digits(low, 3)} to ${digits(high, 3)})`;
   return [
     element('p', {
       text:
         `${both.length} of ${cells.length} cells were measured in both runs; B takes ` +
-        `${digits(middle, 3)} times as long as A in the geometric mean.`,
+        `${digits(ratio, 3)} times as long as A in the geometric mean${interval}. Verdict: ${word}` +
+        `${reason ? `, because ${reason}` : ''}.`,
     }),
+    needed
+      ? element('p', { text: `${count(needed)} processes of each side, in turn, find a difference of 3%.` })
+      : null,
     others
       ? notice(`${others} ${others === 1 ? 'cell has' : 'cells have'} different films: the rendered images differ.`, {
           kind: 'warning',
@@ -134,7 +129,8 @@ export function createCompare(lab) {
     const cells = answer.cells.map((cell) => ({
       at: Object.fromEntries(paths.map(({ path }) => [path, cell[path]])),
       y: cell.ratio ?? NaN,
-      ...bounds(cell),
+      low: cell.low ?? NaN,
+      high: cell.high ?? NaN,
     }));
     replace(below, verdict(answer), chart.node, sorted.node);
     chart.show({
@@ -143,7 +139,7 @@ export function createCompare(lab) {
       quantities: [quantity],
       cells: () => cells,
       mark: 1,
-      note: 'Ratios of median wall times; the error bars are conservative bounds from the two 95% intervals.',
+      note: 'Ratios of typical wall times with 95% intervals.',
     });
     sorted.show(...rowsOf(answer));
   }

@@ -7,6 +7,7 @@ import { createChart } from './study_chart.js';
 import { createCompare } from './study_compare.js';
 import { createFigures } from './study_figures.js';
 import { createRows } from './study_rows.js';
+import { createSave } from './study_save.js';
 import { createSortTable } from './study_table.js';
 
 const FIRST =
@@ -109,6 +110,7 @@ export function createDetails(lab, { onrun, onstop }) {
   const trouble = element('div');
   const what = element('div');
   const chart = createChart({ caption: 'Chart of the study', id: 'study-figure-numbers' });
+  const save = createSave(lab, chart.chosen);
   const summary = createSummary();
   const rows = createRows(lab);
   const figures = createFigures(lab);
@@ -116,7 +118,12 @@ export function createDetails(lab, { onrun, onstop }) {
   const parts = element(
     'div',
     { class: 'study-groups' },
-    group('Chart', { id: 'study-figure', hint: 'medians with 95% intervals, updated during the run' }, chart.node),
+    group(
+      'Chart',
+      { id: 'study-figure', hint: 'medians with 95% intervals, updated during the run' },
+      chart.node,
+      save.node,
+    ),
     group('Summary', { id: 'study-summary', hint: 'one line per cell' }, summary.node),
     rows.node,
     group('Figures of plots/', { id: 'study-drawn', hint: 'drawn by gnuplot' }, figures.node),
@@ -151,6 +158,7 @@ export function createDetails(lab, { onrun, onstop }) {
       quantities: details.summary ? quantitiesOf(details.summary, paths) : [],
       cells: (quantity) => cellsOf(details.summary, paths, quantity),
     });
+    save.show(study, details.rows, running());
     summary.show(details.summary, paths);
     rows.show(study, details.rows);
     figures.show(study, details, running());

@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "study/summary.h"
-#include "web/session/child.h"
+#include "base/child.h"
 #include "web/session/figures.h"
 #include "web/session/studies.h"
 #include "web/session/study_files.h"

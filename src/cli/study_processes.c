@@ -1,0 +1,98 @@
+/* The fresh processes of `cuvette study run`: this program, or another build of it in turn, with --process=K. */
+#include "base/random.h"
+#include "base/spawn.h"
+#include "base/text.h"
+#include "cli/options.h"
+#include "cli/study_commands.h"
+#include "cli/terminal.h"
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { ARGUMENTS_MAX = 16 };
+
+char *study_against_folder(const study_request *request)
+{
+    return text_format("%s-against", request->results);
+}
+
+/* Waits for the program's end; a request to stop is passed on once. */
+static int wait_for_end(pid_t pid)
+{
+    int ended = 0;
+    bool told = false;
+    for (;;) {
+        const pid_t found = waitpid(pid, &ended, 0);
+        if (found == pid)
+            return WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended);
+        if (found < 0 && errno != EINTR)
+            return -1;
+        if (!told && terminal_stop_requested(NULL)) {
+            kill(pid, SIGTERM);
+            told = true;
+        }
+    }
+}
+
+static status ended(const study *s, const char *program, long process, int code, diagnostic *why)
+{
+    if (code == 0)
+        return STATUS_OK;
+    diagnostic_locate(why, s->path, 0, 0);
+    if (code == 130 || terminal_stop_requested(NULL))
+        return diagnose(why, STATUS_INTERRUPTED, "run it again to resume", "interrupted; all completed rows are kept");
+    return diagnose(why, code == 2 ? STATUS_BAD_INPUT : STATUS_FAILURE, "see its message above; rows so far are kept",
+                    "process %ld of %s ended with status %d", process, program, code);
+}
+
+/* One process of the study to its end. */
+static status run_process(const study *s, const study_request *request, const char *program, const char *results,
+                          long process, diagnostic *why)
+{
+    char number[32], processes[32], shard[64];
+    const char *arguments[ARGUMENTS_MAX] = {"cuvette",   "study", "run",         "--results", results,
+                                            "--process", number,  "--processes", processes};
+    size_t count = 9;
+    snprintf(number, sizeof number, "%ld", process);
+    snprintf(processes, sizeof processes, "%ld", s->processes);
+    snprintf(shard, sizeof shard, "--shard=%ld/%ld", request->shard, request->shards);
+    if (request->shards > 1)
+        arguments[count++] = shard;
+    if (request->by_repetition)
+        arguments[count++] = "--by=repetition";
+    if (request->any_environment)
+        arguments[count++] = "--any-environment";
+    if (request->quiet)
+        arguments[count++] = "--quiet";
+    arguments[count++] = "--";
+    arguments[count++] = s->path;
+    pid_t pid = 0;
+    char *copies[ARGUMENTS_MAX] = {NULL};
+    memcpy(copies, arguments, sizeof copies);
+    const int error = spawn_program(&pid, program, copies, STDOUT_FILENO, STDERR_FILENO, false);
+    if (error)
+        return options_wrong("--against", program, why, "give the path of a cuvette program", "cannot start it: %s",
+                             strerrordesc_np(error));
+    return ended(s, program, process, wait_for_end(pid), why);
+}
+
+status study_run_processes(const study *s, const study_request *request, diagnostic *why)
+{
+    static const char own[] = "/proc/self/exe";
+    char *against = request->against ? study_against_folder(request) : NULL;
+    if (request->against && !against)
+        return out_of_memory(why);
+    status code = STATUS_OK;
+    for (long process = 1; process <= study_processes(s) && code == STATUS_OK; process++) {
+        const bool other_first = against && random_at(s->seed, (uint32_t)process, 0, 0, 0).word[0] & 1;
+        for (int turn = 0; turn < (against ? 2 : 1) && code == STATUS_OK; turn++)
+            code = against && (turn == 0) == other_first
+                       ? run_process(s, request, request->against, against, process, why)
+                       : run_process(s, request, own, request->results, process, why);
+    }
+    free(against);
+    return code;
+}

@@ -1,0 +1,59 @@
+/* Repeated measurements on two levels: repetitions within processes. The times of one process are more alike than those
+ * of several, because memory layout, address randomisation and placement differ, so that repetitions in one process
+ * alone give intervals that are too narrow (Kalibera and Jones, Rigorous benchmarking in reasonable time, ISMM 2013).
+ * Pure, except that level_bootstrap allocates its resamples. */
+#pragma once
+
+#include "base/status.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* values[start[p]] .. values[start[p + 1] - 1] are of process p; start has processes + 1 elements. */
+typedef struct level_sample {
+    const double *values;
+    const size_t *start;
+    size_t processes;
+} level_sample;
+
+/* Components of the variance (their section 5: T1^2 and T2^2): of repetitions within a process, and of processes,
+ * without the part that the repetitions cause; below 0: none. NaN if unknown: processes with one repetition, one
+ * process. */
+typedef struct level_variance {
+    double within, between, mean, repetitions; /* repetitions: harmonic mean per process */
+} level_variance;
+level_variance level_variances(const level_sample *sample);
+
+/* The number of repetitions in each process that costs least for a given width, if starting a process (with its
+ * warm-ups) takes as long as cost repetitions: their equation 3. At least 1. */
+double level_repetitions(const level_variance *v, double cost);
+
+/* The centre of a sample: the mean over processes of the median in each. With the logarithms of times it is that of a
+ * typical time, and differences are logarithms of ratios. */
+double level_centre(const level_sample *sample);
+
+/* An estimate with its 95% interval; low and high are NaN if there is none. */
+typedef struct level_interval {
+    double value, low, high;
+} level_interval;
+
+/* A function of one or two samples, of resampled ones too; b is NULL for one. */
+typedef double level_statistic(const level_sample *a, const level_sample *b, void *context);
+
+/* The statistic with the interval of a hierarchical bootstrap: whole processes are drawn with replacement. Drawing their
+ * repetitions again would count the variance of repetitions twice (Davison and Hinkley, Bootstrap Methods and their
+ * Application, 1997, 3.8; Ren et al., Nonparametric bootstrapping for hierarchical data, Journal of Applied Statistics
+ * 37, 2010). With one process its repetitions are drawn. paired: process i of both was run at about the same time, so
+ * both are drawn together; needs equal numbers. From 10 processes on it is the expanded percentile interval, which has
+ * the width of Student's t; for fewer, Student's t with the bootstrap's standard error (Hesterberg, What teachers should
+ * know about the bootstrap, The American Statistician 69, 2015). seed makes it reproducible. No interval for fewer than
+ * 6 values in all, or fewer than 3 processes if there is more than one. */
+status level_bootstrap(const level_sample *a, const level_sample *b, bool paired, level_statistic *statistic,
+                       void *context, uint64_t seed, level_interval *out, diagnostic *why);
+/* Of two samples of logarithms, the difference of their centres: the logarithm of a ratio. */
+double level_difference(const level_sample *a, const level_sample *b, void *unused);
+
+/* The median of all values with its interval: processes are drawn as in level_bootstrap. For fewer than 3 processes it
+ * is that of the order statistics of all values (measure/statistics.h), as if they were independent. Values are
+ * sorted by process as given, and not changed. */
+status level_median(const level_sample *s, uint64_t seed, level_interval *out, diagnostic *why);

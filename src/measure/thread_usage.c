@@ -1,0 +1,70 @@
+/* Readings of one thread's clocks, switches and schedstat. */
+#include "measure/thread_usage.h"
+
+#include "measure/clock.h"
+#include "measure/small_file.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <sys/resource.h>
+
+bool thread_usage_parse(const char *schedstat, double *runnable_s)
+{
+    uint64_t running_ns, runnable_ns, slices;
+    if (sscanf(schedstat, "%" SCNu64 " %" SCNu64 " %" SCNu64, &running_ns, &runnable_ns, &slices) != 3)
+        return false;
+    if (running_ns == 0 && runnable_ns == 0 && slices == 0)
+        return false;
+    *runnable_s = (double)runnable_ns * 1e-9;
+    return true;
+}
+
+thread_usage thread_usage_unknown(void)
+{
+    return (thread_usage){(double)NAN, (double)NAN, (double)NAN, (double)NAN, -1, -1};
+}
+
+static void read_switches(thread_usage *u)
+{
+#ifdef RUSAGE_THREAD
+    struct rusage r;
+    if (getrusage(RUSAGE_THREAD, &r) == 0) {
+        u->voluntary_switches = r.ru_nvcsw;
+        u->involuntary_switches = r.ru_nivcsw;
+    }
+#else
+    (void)u;
+#endif
+}
+
+/* Running time comes from the thread's clock: it counts the same as schedstat, which lags by up to a tick (4 ms). */
+thread_usage thread_usage_now(void)
+{
+    char text[128];
+    thread_usage u = thread_usage_unknown();
+    if (small_file_read("", "/proc/thread-self/schedstat", text, sizeof text))
+        (void)thread_usage_parse(text, &u.runnable_s);
+    read_switches(&u);
+    u.running_s = clock_thread_cpu_s();
+    u.wall_s = clock_wall_s();
+    return u;
+}
+
+static int64_t difference(int64_t before, int64_t after)
+{
+    return before < 0 || after < 0 ? -1 : after - before;
+}
+
+thread_usage thread_usage_since(const thread_usage *before)
+{
+    thread_usage u = thread_usage_now();
+    u.wall_s -= before->wall_s;
+    u.running_s -= before->running_s;
+    u.runnable_s -= before->runnable_s;
+    u.voluntary_switches = difference(before->voluntary_switches, u.voluntary_switches);
+    u.involuntary_switches = difference(before->involuntary_switches, u.involuntary_switches);
+    const double rest_s = u.wall_s - u.running_s - u.runnable_s;
+    u.blocked_s = rest_s < 0.0 ? 0.0 : rest_s; /* the clocks are read one after another; NaN remains */
+    return u;
+}

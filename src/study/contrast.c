@@ -1,0 +1,211 @@
+/* Ratios and verdicts of a comparison. */
+#include "study/contrast.h"
+#include "measure/power.h"
+#include "study/contrast_rows.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FEWEST_VALUES = 6, FEWEST_PROCESSES = 3 };
+
+static const double DETECT = 0.03, POWER = 0.95, UPPER = 0.9;
+
+const char *contrast_verdict_text(contrast_verdict verdict)
+{
+    static const char *const texts[] = {"cannot tell", "faster", "slower"};
+    return texts[verdict];
+}
+
+const char *contrast_reason_text(contrast_reason reason)
+{
+    static const char *const texts[] = {"the interval includes 1", "a side has no rows",
+                                        "there are fewer than 6 repetitions or 3 processes",
+                                        "the sides did not alternate", ""};
+    return texts[reason];
+}
+
+static level_interval exponential(level_interval of)
+{
+    return (level_interval){exp(of.value), exp(of.low), exp(of.high)};
+}
+
+/* Standard deviation of the centres of the processes, or of the differences of pairs. */
+static double deviation_of(const level_sample *a, const level_sample *b)
+{
+    double sum = 0, squares = 0;
+    const double n = (double)a->processes;
+    for (size_t k = 0; k < a->processes; k++) {
+        const level_sample one = {a->values, a->start + k, 1};
+        double d = level_centre(&one);
+        if (b) {
+            const level_sample other = {b->values, b->start + k, 1};
+            d = level_centre(&other) - d;
+        }
+        sum += d;
+        squares += d * d;
+    }
+    return a->processes > 1 ? sqrt(fmax(0.0, (squares - sum * sum / n) / (n - 1))) : NAN;
+}
+
+static size_t pairs_needed(const level_sample *a, const level_sample *b, bool paired, double detect)
+{
+    const size_t count = a->processes < b->processes ? a->processes : b->processes;
+    const double deviation = paired ? deviation_of(a, b) : hypot(deviation_of(a, NULL), deviation_of(b, NULL));
+    return power_pairs(power_upper_deviation(deviation, count, UPPER), log1p(detect), POWER);
+}
+
+static void decide(contrast_line *line, const level_sample *a, const level_sample *b)
+{
+    const size_t values_a = a->start[a->processes], values_b = b->start[b->processes];
+    line->verdict = CONTRAST_CANNOT_TELL;
+    if (values_a < FEWEST_VALUES || values_b < FEWEST_VALUES || a->processes < FEWEST_PROCESSES ||
+        b->processes < FEWEST_PROCESSES)
+        line->reason = CONTRAST_FEW;
+    else if (!line->alternate)
+        line->reason = CONTRAST_NO_TURNS;
+    else if (!(line->ratio.low > 1) && !(line->ratio.high < 1))
+        line->reason = CONTRAST_INTERVAL;
+    else {
+        line->reason = CONTRAST_CLEAR;
+        line->verdict = line->ratio.low > 1 ? CONTRAST_SLOWER : CONTRAST_FASTER;
+    }
+}
+
+/* The line of two samples; seed: of its bootstrap. */
+static status judge(const contrast_rows *ra, const contrast_sample *a, const contrast_rows *rb,
+                    const contrast_sample *b, const contrast_options *options, uint64_t seed, contrast_line *line,
+                    diagnostic *why)
+{
+    const level_sample *la = &a->levels, *lb = &b->levels;
+    line->a.processes = la->processes;
+    line->b.processes = lb->processes;
+    line->a.count = la->start[la->processes];
+    line->b.count = lb->start[lb->processes];
+    line->ratio = (level_interval){NAN, NAN, NAN};
+    line->reason = CONTRAST_NO_ROWS;
+    if (!la->processes || !lb->processes)
+        return STATUS_OK;
+    line->alternate = contrast_alternate(ra, a, rb, b);
+    level_interval difference;
+    TRY(level_bootstrap(la, lb, line->alternate, level_difference, NULL, seed, &difference, why));
+    line->ratio = exponential(difference);
+    line->pairs_needed = pairs_needed(la, lb, line->alternate, options->detect > 0 ? options->detect : DETECT);
+    decide(line, la, lb);
+    return STATUS_OK;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static status describe(const contrast_rows *r, size_t cell, contrast_half *out, diagnostic *why)
+{
+    const size_t from = r->first_of[cell], count = r->first_of[cell + 1] - from;
+    *out = (contrast_half){.cell = cell, .median = NAN};
+    if (count == 0)
+        return STATUS_OK;
+    double *values = malloc(count * sizeof *values);
+    if (!values)
+        return out_of_memory(why);
+    for (size_t i = 0; i < count; i++)
+        values[i] = r->rows[from + i].value;
+    qsort(values, count, sizeof *values, by_value);
+    out->median = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+    out->film = row_field(r->rows[from].ref, "film_expected");
+    free(values);
+    return STATUS_OK;
+}
+
+static status make_line(const contrast_rows *a, const contrast_rows *b, const size_t pair[2],
+                        const contrast_options *options, contrast_line *line, diagnostic *why)
+{
+    contrast_sample sa = {.values = NULL}, sb = {.values = NULL};
+    status code = describe(a, pair[0], &line->a, why);
+    THEN(code, describe(b, pair[1], &line->b, why));
+    THEN(code, contrast_sample_of_cell(a, pair[0], &sa, why));
+    THEN(code, contrast_sample_of_cell(b, pair[1], &sb, why));
+    THEN(code, judge(a, &sa, b, &sb, options, pair[0] * 2 + 1, line, why));
+    contrast_sample_free(&sa);
+    contrast_sample_free(&sb);
+    return code;
+}
+
+static status make_all(const contrast_rows *a, const contrast_rows *b, const contrast_options *options, contrast *c,
+                       diagnostic *why)
+{
+    size_t *cells = calloc(2 * c->count + 1, sizeof *cells), count = 0;
+    contrast_sample sa = {.values = NULL}, sb = {.values = NULL};
+    status code = cells ? STATUS_OK : out_of_memory(why);
+    for (size_t i = 0; cells && i < c->count; i++)
+        if (c->lines[i].reason != CONTRAST_NO_ROWS) {
+            cells[count] = c->lines[i].a.cell;
+            cells[c->count + count++] = c->lines[i].b.cell;
+        }
+    c->all.a.median = c->all.b.median = NAN;
+    THEN(code, contrast_sample_of_cells(a, cells, count, &sa, why));
+    THEN(code, contrast_sample_of_cells(b, cells + c->count, count, &sb, why));
+    THEN(code, judge(a, &sa, b, &sb, options, 0, &c->all, why));
+    contrast_sample_free(&sa);
+    contrast_sample_free(&sb);
+    free(cells);
+    return code;
+}
+
+static status make_lines(const study *s, const study_side *a, const study_side *b, const contrast_options *options,
+                         const contrast_rows rows[2], contrast *c, diagnostic *why)
+{
+    size_t(*pairs)[2];
+    TRY(side_cells(s, a, b, &pairs, &c->count, why));
+    c->lines = calloc(c->count + 1, sizeof *c->lines);
+    status code = c->lines ? STATUS_OK : out_of_memory(why);
+    for (size_t i = 0; code == STATUS_OK && i < c->count; i++)
+        code = make_line(&rows[0], &rows[1], pairs[i], options, &c->lines[i], why);
+    free(pairs);
+    THEN(code, make_all(&rows[0], &rows[1], options, c, why));
+    return code;
+}
+
+/* The comparison keeps the files, into which it points. */
+static void keep(contrast *c, contrast_rows rows[2], diagnostic *verdict)
+{
+    for (int i = 0; i < 2; i++) {
+        memcpy(c->environment[i], rows[i].environment, sizeof c->environment[i]);
+        c->left_out[i] = rows[i].left_out;
+        c->rows[i] = rows[i].files;
+        rows[i].files = NULL;
+        if (verdict && !verdict->what[0])
+            (void)row_files_judge(c->rows[i], verdict);
+    }
+}
+
+status contrast_make(const study *s, const study_side *a, const study_side *b, const contrast_options *options,
+                     contrast **out, diagnostic *verdict, diagnostic *why)
+{
+    const char *column = options->column ? options->column : "wall_s";
+    contrast_rows rows[2] = {{.files = NULL}, {.files = NULL}};
+    contrast *c = *out = calloc(1, sizeof *c);
+    status code = c ? contrast_rows_read(s, a, column, &rows[0], why) : out_of_memory(why);
+    THEN(code, contrast_rows_read(s, b, column, &rows[1], why));
+    THEN(code, make_lines(s, a, b, options, rows, c, why));
+    if (code == STATUS_OK)
+        keep(c, rows, verdict);
+    contrast_rows_release(&rows[0]);
+    contrast_rows_release(&rows[1]);
+    if (code != STATUS_OK) {
+        contrast_destroy(c);
+        *out = NULL;
+    }
+    return code;
+}
+
+void contrast_destroy(contrast *c)
+{
+    if (!c)
+        return;
+    free(c->lines);
+    row_files_destroy(c->rows[0]);
+    row_files_destroy(c->rows[1]);
+    free(c);
+}

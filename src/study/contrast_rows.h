@@ -1,0 +1,54 @@
+/* The rows of one side of a comparison, by cell and process. Ownership: contrast_rows_read gives,
+ * contrast_rows_release releases; samples belong to the caller (contrast_sample_free) and point to processes of the
+ * rows. */
+#pragma once
+
+#include "measure/levels.h"
+#include "study/row_files.h"
+#include "study/side.h"
+
+/* A process of the program: a run. first, last: the times of its rows, as text that sorts like them. */
+typedef struct contrast_process {
+    const char *id, *first, *last;
+} contrast_process;
+
+typedef struct contrast_row {
+    size_t cell, process; /* process: index in contrast_rows.processes */
+    long repetition;
+    double value;
+    const row_ref *ref;
+} contrast_row;
+
+typedef struct contrast_rows {
+    row_files *files;
+    const char *results; /* borrowed from the side */
+    char environment[ENVIRONMENT_KEY];
+    size_t left_out;             /* rows of other environments */
+    contrast_row *rows;          /* by cell, process, repetition */
+    size_t *first_of;            /* index of a cell's first row; of cells + 1 */
+    contrast_process *processes; /* in the order of their starts */
+    size_t process_count;
+} contrast_rows;
+
+/* Rows of the side with a positive value of the column, without warm-ups and marked ones. */
+status contrast_rows_read(const study *s, const study_side *side, const char *column, contrast_rows *out,
+                          diagnostic *why);
+void contrast_rows_release(contrast_rows *r);
+
+/* The logarithms of values by process. process[k]: the index of its k-th process. */
+typedef struct contrast_sample {
+    double *values;
+    size_t *start, *process;
+    level_sample levels;
+} contrast_sample;
+
+status contrast_sample_of_cell(const contrast_rows *r, size_t cell, contrast_sample *out, diagnostic *why);
+/* The mean over several cells, repetition by repetition, of the processes that have rows of all of them. */
+status contrast_sample_of_cells(const contrast_rows *r, const size_t *cells, size_t count, contrast_sample *out,
+                                diagnostic *why);
+void contrast_sample_free(contrast_sample *s);
+
+/* Whether the processes of both samples are the same ones, or follow one another in pairs, one of each side, without
+ * overlap. */
+bool contrast_alternate(const contrast_rows *ra, const contrast_sample *a, const contrast_rows *rb,
+                        const contrast_sample *b);

@@ -1,0 +1,31 @@
+/* A figure of a study's summary, chosen from its grid and drawn by gnuplot. One numeric parameter gives lines, two with
+ * at least three values each a heat map, words dots; the other parameters become lines or panels. Cells of unlike
+ * environments are never joined by a line, nor in one cell of a heat map. A second kind of figure, the sheet, shows the
+ * kept images with captions.
+ *
+ * A figure is a script, BASE.gp, which contains the style and can be edited, and its data, BASE.tsv. Ownership: nothing
+ * is kept. STATUS_BAD_INPUT: no such column, value or file, or more lines than a figure can show; STATUS_FAILURE:
+ * gnuplot is missing or fails. */
+#pragma once
+
+#include "study/study.h"
+#include <stdatomic.h>
+
+typedef enum plot_log { PLOT_LOG_AUTO, PLOT_LOG_NONE, PLOT_LOG_X, PLOT_LOG_Y, PLOT_LOG_XY } plot_log;
+
+typedef struct plot_request {
+    const char *results;      /* results folder */
+    const char *x, *y, *by;   /* NULL: chosen; x: a parameter of the grid or a column; y: a column; by: a parameter */
+    const char *const *where; /* PATH=VALUE: only cells with this value */
+    size_t where_count;
+    plot_log log;
+    const char *published; /* CSV file with numbers to compare with, or NULL */
+    bool images;           /* the sheet instead of the figure */
+} plot_request;
+
+/* Writes BASE.gp and, for a figure, BASE.tsv. */
+status study_plot_write(const study *s, const plot_request *request, const char *base, diagnostic *why);
+
+/* Runs gnuplot on BASE.gp; BASE.png, .svg or .pdf (format: png, svg, pdf) appears complete or not at all.
+ * STATUS_INTERRUPTED after limit_s, or when stop, which may be NULL, is set. */
+status study_plot_draw(const char *base, const char *format, double limit_s, const atomic_bool *stop, diagnostic *why);

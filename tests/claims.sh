@@ -1,0 +1,347 @@
+#!/bin/bash
+# The claims of the paper (paper/claims.tsv): each has a verdict on the committed rows; a wrong row turns exactly the
+# claim about it to "not reproduced"; few, disturbed or missing rows make it "underpowered"; the paper's sentences
+# follow, and no number in them is nonsense. tests/claims.sh [PROGRAM]. One line per check ("ok ...", "not ok ...").
+set -uo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+CUVETTE=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
+export CUVETTE
+unset ENVIRONMENT RESULTS
+work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-claims.XXXXXX") || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$root" || exit 1
+
+count=0 failed=0
+verdict() { # STATUS WHAT [WHY]
+    count=$((count + 1))
+    if (($1 == 0)); then
+        echo "ok $count - $2"
+    else
+        failed=$((failed + 1))
+        echo "not ok $count - $2"
+        [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3" | head -20
+    fi
+}
+empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
+    [[ -z $2 ]]
+    verdict $? "$1" "$2"
+}
+same() { # WHAT HAVE WANT
+    [[ $2 == "$3" ]]
+    verdict $? "$1" "have '$2', expected '$3'"
+}
+
+reference=results/reference
+[[ -d $reference ]] || {
+    echo "ok 1 # SKIP there is no reference run"
+    exit 0
+}
+with_gnuplot=1
+command -v gnuplot >/dev/null || with_gnuplot=0
+
+judge() { # RESULTS OUT: the verdicts in OUT/claims.tsv; sets code
+    paper/claims.sh "$1" "$2" >"$work/said" 2>&1
+    code=$?
+}
+with() { # OUT VERDICT: ids with that verdict, in one line
+    awk -F'\t' -v verdict="$2" '$2 == verdict { printf "%s%s", space, $1; space = " " }' "$1/claims.tsv"
+}
+of() { # OUT ID FIELD
+    awk -F'\t' -v id="$2" -v field="$3" '$1 == id { print $field }' "$1/claims.tsv"
+}
+# Claims whose verdict is another one than on the reference, as "id: verdict".
+changed() { # OUT
+    join -t "$(printf '\t')" <(cut -f 1,2 "$work/reference/claims.tsv" | sort) <(cut -f 1,2 "$1/claims.tsv" | sort) |
+        awk -F'\t' '$2 != $3 { printf "%s%s: %s", comma, $1, $3; comma = ", " }'
+}
+# A folder of results in which only one study is a copy that can be edited.
+copy() { # NAME STUDY
+    mkdir -p "$work/$1"
+    local entry
+    for entry in "$root/$reference"/*; do
+        [[ ${entry##*/} == "$2" ]] || ln -s "$entry" "$work/$1/"
+    done
+    cp -r "$root/$reference/$2" "$work/$1/$2"
+    # Edited rows no longer fit their checksums: leave them as rows of the first format, which had none.
+    edit_columns "$work/$1/$2/rows.csv"
+}
+edit_columns() { # FILE: without the columns of later formats
+    awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) drop[i] = $i ~ /^(schema|identity|run|process|check)$/ }
+        { line = ""; first = 1
+          for (i = 1; i <= NF; i++) if (!drop[i]) { line = line (first ? "" : ",") $i; first = 0 }
+          print line }' "$1" >"$1.new" && mv "$1.new" "$1"
+}
+# Sets a column of the rows where an awk condition over the function f("column") holds.
+edit() { # FILE CONDITION COLUMN VALUE (awk expressions)
+    awk -F, -v OFS=, 'function f(name) { return $at[name] }
+        NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; print; next }
+        '"$2"' { $at["'"$3"'"] = '"$4"' } { print }' "$1" >"$1.new" && mv "$1.new" "$1"
+}
+
+# --- the list
+claims() { grep -v '^#' paper/claims.tsv | tail -n +2; }
+empty "ids of claims are unique" "$(claims | cut -f 1 | sort | uniq -d)"
+empty "every claim has a sentence, numbers and a predicate" "$(claims | awk -F'\t' '
+    NF != 9 || length($2) < 20 || $5 !~ /^[0-9]+$/ || $6 $7 !~ /^[0-9.]+$/ || $9 == "" { print $1 }')"
+needs=$(claims | while IFS=$'\t' read -r id _ _ needs _ _ _ _ predicate; do
+    if [[ $predicate == - ]]; then
+        [[ $needs == make\ * || -x $needs ]] || echo "$id: $needs"
+        continue
+    fi
+    for study in $needs; do
+        [[ -r experiments/$study.study || $study == published ]] || echo "$id: $study"
+    done
+done)
+empty "every claim needs studies or a command that exist" "$needs"
+in_paper() { grep -v '^%' paper/paper.tex | grep -o '\\claim{[a-z-]*}' | sed 's/.*{//; s/}//' | sort -u; }
+empty "the paper states every claim that rows decide, and no other" \
+    "$(diff <(claims | awk -F'\t' '$9 != "-" { print $1 }' | sort) <(in_paper))"
+
+# --- the committed rows
+judge "$reference" "$work/reference"
+same "make claims succeeds on the committed rows" "$code" 0
+same "every claim has a verdict" "$(cut -f 1 "$work/reference/claims.tsv" | sort | tr '\n' ' ')" \
+    "$(claims | cut -f 1 | sort | tr '\n' ' ')"
+empty "each is reproduced or underpowered" \
+    "$(awk -F'\t' '$2 != "reproduced" && $2 != "underpowered" { print $1 ": " $2 }' "$work/reference/claims.tsv")"
+empty "a claim without a figure has a reason" \
+    "$(awk -F'\t' '$4 == "-" && ($3 == "-" || $2 == "underpowered") { print $1 }' "$work/reference/claims.tsv")"
+grep -qE '^environment [0-9a-z]+: [0-9]+ studies$' "$work/said"
+verdict $? "the environment is printed" "$(<"$work/said")"
+if ((with_gnuplot)); then
+    same "claims without rows are the only undecided ones, but for small costs" \
+        "$(with "$work/reference" underpowered | tr ' ' '\n' | grep -v '^pool-' | sort | tr '\n' ' ')" \
+        "$(claims | awk -F'\t' '$9 == "-" { print $1 }' | sort | tr '\n' ' ')"
+fi
+
+# LaTeX may not be installed: what it reads is well formed.
+empty "numbers.tex and claims.tex have balanced braces and no special characters" "$(awk '
+    { line = $0; gsub(/\\./, "", line); open = gsub(/[{]/, "", line); close_ = gsub(/[}]/, "", line) }
+    /^\\setval|^\\setclaim/ && (open != close_ || line ~ /[&#_%]/) && $0 !~ /^\\setval[{][^}]*_/ { print }
+    /^\\setval[{][^}]*_/ && open != close_ { print }' "$work/reference/numbers.tex" "$work/reference/claims.tex")"
+empty "every \\begin of the paper has its \\end, and braces are balanced" "$(awk '
+    /^[ \t]*%/ { next }
+    { line = $0; gsub(/\\\\/, "", line); gsub(/\\[{}%]/, "", line); sub(/%.*/, "", line)
+      text = line; depth += gsub(/[{]/, "", text) - gsub(/[}]/, "", text)
+      # Those of \newenvironment are in two parts.
+      if (line ~ /newenvironment/) next
+      while (match(line, /\\(begin|end)[{][a-z*]+[}]/)) {
+          name = substr(line, RSTART, RLENGTH)
+          line = substr(line, RSTART + RLENGTH)
+          kind = name ~ /begin/ ? 1 : -1
+          gsub(/.*[{]|[}]/, "", name)
+          if (kind > 0) stack[++top] = name
+          else if (stack[top--] != name) print FNR ": \\end{" name "}"
+      } }
+    END { if (depth) print "braces: " depth; if (top) print "open: " stack[top] }' paper/paper.tex)"
+
+# --- wrong rows: exactly one claim turns
+copy film profile
+edit "$work/film/profile/rows.csv" 'NR == 9' film_hash '"00000000000000aa"'
+edit "$work/film/profile/rows.csv" 'NR == 9' marked 1
+judge "$work/film" "$work/out"
+same "another film in one row: not reproduced" "$(changed "$work/out")" "film-threads: not reproduced"
+same "a claim that is not reproduced gives status 1" "$code" 1
+
+copy metrics realism
+awk -F'\t' -v OFS='\t' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
+    NR > 1 && !done && $at["passes"] == 1 { $at["passes"] = 0; done = 1 } { print }' \
+    "$reference/realism/images/0003-metrics.tsv" >"$work/metrics/realism/images/0003-metrics.tsv"
+judge "$work/metrics" "$work/out"
+same "a metric beyond its tolerance: not reproduced" "$(changed "$work/out")" "theory: not reproduced"
+
+copy flip lighting
+edit "$work/flip/lighting/compare.csv" 'f("render.lighting") == "whitted"' flip 0.5
+judge "$work/flip" "$work/out"
+same "a larger error of an image: not reproduced" "$(changed "$work/out")" "lighting: not reproduced"
+
+copy slow polarised
+edit "$work/slow/polarised/rows.csv" 'f("render.polarisation") == "on"' cpu_s 'f("cpu_s") * 10'
+judge "$work/slow" "$work/out"
+same "slower rows: not reproduced" "$(changed "$work/out")" "polarised-cost: not reproduced"
+[[ $(of "$work/out" polarised-cost 3) =~ ^19\.7[0-9]\ \[19\.[0-9]+,\ 20\.[0-9]+\]$ ]]
+verdict $? "the figure has its interval" "$(of "$work/out" polarised-cost 3)"
+
+# --- rows that cannot decide
+copy few polarised
+awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } NR == 1 || $at["repetition"] < 4' \
+    "$work/few/polarised/rows.csv" >"$work/rows" && cp "$work/rows" "$work/few/polarised/rows.csv"
+judge "$work/few" "$work/out"
+same "few rows: underpowered" "$(changed "$work/out")" "polarised-cost: underpowered"
+same "underpowered alone gives status 0" "$code" 0
+[[ $(of "$work/out" polarised-cost 4) == "3 rows of a cell, 6 are needed" ]]
+verdict $? "the reason says how many are needed" "$(of "$work/out" polarised-cost 4)"
+
+copy loud profile
+edit "$work/loud/profile/rows.csv" 'NR > 1' others_share 0.7
+judge "$work/loud" "$work/out"
+same "disturbed rows: underpowered" "$(changed "$work/out")" "profile-blocks: underpowered"
+grep -q 'disturbed or marked' <<<"$(of "$work/out" profile-blocks 4)"
+verdict $? "the reason names them" "$(of "$work/out" profile-blocks 4)"
+
+copy wide polarised
+edit "$work/wide/polarised/rows.csv" 'NR % 2' cpu_s 'f("cpu_s") * 4'
+judge "$work/wide" "$work/out"
+same "a wide interval: underpowered" "$(changed "$work/out")" "polarised-cost: underpowered"
+
+copy none polarised
+rm -r "$work/none/polarised"
+judge "$work/none" "$work/out"
+same "no rows: underpowered" "$(changed "$work/out")" \
+    "polarised-cost: underpowered, polarised-image: underpowered"
+grep -q '^for the missing rows: cuvette study run experiments/polarised.study$' "$work/said"
+verdict $? "with the command that measures them" "$(tail -n 3 "$work/said")"
+mkdir "$work/empty"
+judge "$work/empty" "$work/out"
+same "a folder without rows is an error" "$code" 2
+grep -q 'make experiments' "$work/said"
+verdict $? "with a remedy" "$(<"$work/said")"
+
+# --- the paper: its text with the sentences that it chooses, the numbers filled in
+text() { # OUT
+    awk -f tests/paper_text.awk "$1/numbers.tex" "$1/claims.tex" paper/paper.tex
+}
+# Numbers that say nothing: costs that are negative, and none at all. Tables may have n/a.
+nonsense() { # OUT
+    local ends='(~|\\(within|ranging)\{[^}]*\}\{[^}]*\})?'
+    text "$1" | tr '\n' ' ' |
+        grep -oE ".{0,60}(n/a|[^a-z](nan|inf)[^a-z]|ensuremath\{-\}[0-9.]+$ends\\\\,(ms|\\\\%|s|MiB)).{0,20}"
+}
+# The check itself: one negative cost in numbers.tex, where no claim protects it.
+mkdir -p "$work/bad"
+sed 's/^\\setval{pool\/1024\/added}.*/\\setval{pool\/1024\/added}{\\ensuremath{-}35.57}/' \
+    "$work/reference/numbers.tex" >"$work/bad/numbers.tex"
+touch "$work/bad/claims.tex"
+nonsense "$work/bad" | grep -q -- '-}35.57'
+verdict $? "a negative cost would be noticed" "$(nonsense "$work/bad")"
+if ((with_gnuplot)); then
+    empty "the paper has every number, and no negative cost" "$(nonsense "$work/reference")"
+fi
+text "$work/reference" >"$work/plain"
+grep -q 'These rows cannot establish whether} new threads for every frame cost time with 2 threads' "$work/plain"
+verdict $? "an undecided sentence is replaced" "$(grep -n 'New threads add' "$work/plain")"
+grep -q 'They add.*ms to a frame with 1024 threads\|31.0.within' "$work/plain"
+verdict $? "a reproduced one is kept, with its interval" "$(grep -n 'frame with 1024' "$work/plain")"
+
+copy loaded pool
+edit "$work/loaded/pool/rows.csv" 'f("render.pool") == "off" && f("render.threads") > 1' wall_s 'f("wall_s") * 0.3'
+judge "$work/loaded" "$work/out"
+same "new threads that make frames faster: not reproduced" "$(changed "$work/out")" \
+    "pool-few: not reproduced, pool-many: not reproduced, pool-some: not reproduced"
+text "$work/out" >"$work/plain"
+instead='Not reproduced on these rows:} new threads for every frame cost time with 1024 threads'
+grep -q "$instead (measured: -[0-9.]* \[-[0-9., -]*\] ms)" "$work/plain"
+verdict $? "the paper says so instead of adding negative times" "$(grep -n '1024 threads' "$work/plain")"
+if ((with_gnuplot)); then
+    empty "and has no negative cost anywhere" "$(nonsense "$work/out")"
+fi
+
+# A cost that is lost in noise is no number; a sentence that has it is replaced, though its claim is reproduced.
+copy flat shading
+edit "$work/flat/shading/rows.csv" \
+    'f("model.shading") == "flat" && f("model.diffuse") > 0 && f("render.integrator") == "raycast"' \
+    cpu_s 'f("cpu_s") * (NR % 2 ? 0.9 : 1.1)'
+judge "$work/flat" "$work/out"
+same "a noisy cost of flat shading changes no verdict" "$(changed "$work/out")" ""
+text "$work/out" >"$work/plain"
+grep -q 'Reproduced, but without all numbers of this sentence:} Phong shading takes more' "$work/plain"
+verdict $? "its sentence does not print the cost" "$(grep -n 'flat shading' "$work/plain")"
+
+# --- intervals of any column agree with those of the summary
+spread=$("$CUVETTE" study summary --results "$reference" --interval wall_s,wall_s/wall_s experiments/depth.study)
+summary=$("$CUVETTE" study summary --results "$reference" experiments/depth.study)
+columns='$1, $at["n"]'
+for part in median low high min max; do columns+=", \$at[\"wall_s_$part\"]"; done
+named() { # PROGRAM: awk with the columns of the header line in at
+    awk -F'\t' "NR == 1 { for (i = 1; i <= NF; i++) at[\$i] = i; next } $1"
+}
+of_column() { # COLUMN: cell, n, median, low, high, min, max
+    named "\$at[\"column\"] == \"$1\" { print ${columns//wall_s_/} }" <<<"$spread"
+}
+same "summary --interval wall_s is the summary's interval" "$(of_column wall_s)" \
+    "$(named "{ print $columns }" <<<"$summary")"
+empty "a quotient is formed row by row" "$(of_column wall_s/wall_s | grep -v ' 10 1 1 1 1 1$')"
+refuses() { # WHAT ARGUMENT PART
+    local said
+    said=$("$CUVETTE" study summary --results "$reference" --interval "$2" experiments/depth.study 2>&1)
+    (($? == 2)) && [[ $said == *"$3"* ]]
+    verdict $? "$1" "$said"
+}
+refuses "an unknown column is an error" wall_z "no column 'wall_z'"
+refuses "an empty column is an error" wall_s, "invalid list"
+refuses "a quotient without a divisor is an error" wall_s/ "invalid list"
+
+# --- environments are not pooled
+tabs() { tr ' ' '\t'; }
+tabs >"$work/summary" <<'END'
+cell a.b environment n wall_s_median
+0 1 aaaaaaaa 6 1
+0 1 bbbbbbbb 9 2
+1 2 bbbbbbbb 9 3
+END
+tabs >"$work/spread" <<'END'
+cell a.b environment column n median low high min max
+0 1 aaaaaaaa x 6 5 4 6 3 7
+0 1 bbbbbbbb x 9 8 7 9 6 9
+END
+chosen() { awk -v wanted="$1" -f paper/environment.awk "$work/summary"; }
+same "the environment with most rows is taken" "$(chosen '')" bbbbbbbb
+same "or the one that is given" "$(chosen aaaaaaaa)" aaaaaaaa
+same "and no rows of another" \
+    "$(awk -v chosen=aaaaaaaa -f paper/join.awk "$work/spread" "$work/summary" | tr '\t\n' ' |')" \
+    "cell a.b n wall_s_median x_median x_low x_high x_min x_max|0 1 6 1 5 4 6 3 7|"
+ENVIRONMENT=0123abcd paper/claims.sh "$reference" "$work/out" >"$work/said" 2>&1
+same "an environment without rows decides nothing" "$?$(with "$work/out" "not reproduced")" 0
+
+# --- the language of predicates
+mkdir -p "$work/small/tables"
+tabs >"$work/small/tables/t.tsv" <<'END'
+cell a.b kind n cpu_s_median cpu_s_low cpu_s_high rays marked
+0 1 x 9 1 0.9 1.1 100 0
+1 2 x 9 2 1.9 2.1 200 0
+2 3 y 9 2.05 1.95 2.15 300 1
+END
+cat >"$work/small/numbers" <<'END'
+\setval{fit/a}{\ensuremath{2.5\cdot 10^{-3}}}
+\setval{fit/b}{\ensuremath{-}0.5}
+END
+predicate() { # PREDICATE: the verdict and the figure
+    printf 'id\tsentence\tneeds\trows\tdisturbed\ttolerance\tunit\tpredicate\nc\ts\tt\t6\t0.5\t0.2\t-\t%s\n' "$1" |
+        awk -v tables="$work/small/tables" -v numbers="$work/small/numbers" \
+            -f paper/interval.awk -f paper/claims.awk 2>&1 | cut -f 2,3
+}
+while IFS='|' read -r text wanted; do
+    same "$text" "$(predicate "$text" | tr '\t' ' ')" "$wanted"
+done <<'END'
+t[b=1].cpu_s < 1.2|reproduced 1.00 [0.90, 1.10]
+t[b=1].cpu_s > 1.2|not reproduced 1.00 [0.90, 1.10]
+t[b=1].cpu_s > 1|underpowered 1.00 [0.90, 1.10]
+t[b=2].cpu_s / t[b=1].cpu_s > 1|reproduced 2.00 [1.73, 2.33]
+t[b=2].cpu_s - t[b=1].cpu_s > 0.5|reproduced 1.00 [0.80, 1.20]
+t[b=2].cpu_s / t[b=3].cpu_s ~ 1|reproduced 0.976 [0.884, 1.077]
+t[b=2].cpu_s / t[b=1].cpu_s ~ 1|not reproduced 2.00 [1.73, 2.33]
+t[b=2].cpu_s / t[b=1].cpu_s ~ 1.9|underpowered 2.00 [1.73, 2.33]
+1 / (t[b=3].cpu_s - t[b=2].cpu_s) > 0|underpowered 20 (unknown error)
+t[b=2].rays = 200 and t[b=3].rays >= 300|reproduced 200; 300
+t[b=2].rays = 200 and t[b=3].rays < 300|not reproduced 200; 300
+sum(t[kind=x].rays) = 300|reproduced 300
+most(t[].rays) - least(t[b>1].rays) = 100|reproduced 100
+count(t[b<=2 kind!=y].rays) = 2|reproduced 2
+distinct(t[].kind) = 2|reproduced 2
+rises(t[].rays) = 1|reproduced 1
+falls(t[].rays) = 1|not reproduced 0
+rises(t[].cpu_s) = 1|underpowered 0.50 [0.00, 1.00]
+rises(t[kind=x].cpu_s) = 1|reproduced 1
+{fit/a} * 2 = 0.005 and -{fit/b} = 0.5|reproduced 0.005; 0.5
+t[b=4].rays = 1|underpowered -
+u[].rays = 1|underpowered -
+{fit/c} = 1|underpowered -
+t[b=1].none = 1|underpowered -
+t[none=1].rays = 1|underpowered -
+END
+for text in 't[b=1].rays' 't[].rays = 1' 't[b=1].rays = ' 't[b=1].rays = 1 or 2' 't[b~1].rays = 1' 'x = 1'; do
+    [[ $(predicate "$text") == *": claim c: "* ]]
+    verdict $? "malformed: $text" "$(predicate "$text")"
+done
+((failed == 0))

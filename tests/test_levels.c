@@ -1,0 +1,279 @@
+/* Tests of quantiles, variance components, the hierarchical bootstrap and powers against tables, closed forms and
+ * simulations of normal samples. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "measure/levels.h"
+#include "measure/power.h"
+#include "measure/quantiles.h"
+#include "measure/statistics.h"
+#include "random_stream.h"
+#include <math.h>
+#include <string.h>
+
+static void close_to(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance))
+        fail_msg("%.12g instead of %.12g", value, expected);
+}
+
+/* Abramowitz and Stegun, tables 26.5 (normal), 26.10 (t), 26.8 (chi-squared). */
+static void quantiles_are_those_of_tables(void **state)
+{
+    (void)state;
+    close_to(normal_quantile(0.975), 1.959963984540054, 1e-12);
+    close_to(normal_quantile(0.001), -3.090232306167814, 1e-11);
+    close_to(normal_below(1.0), 0.8413447460685429, 1e-14);
+    close_to(student_quantile(0.975, 1), 12.706204736, 1e-8);
+    close_to(student_quantile(0.95, 5), 2.015048373, 1e-8);
+    close_to(student_quantile(0.995, 10), 3.169272673, 1e-8);
+    for (size_t v = 1; v < 300; v += 7)
+        close_to(student_quantile(0.975, (double)v), student_t_975(v), 1e-8);
+    close_to(chi_squared_quantile(0.95, 1), 3.841458821, 1e-8);
+    close_to(chi_squared_quantile(0.05, 10), 3.940299136, 1e-8);
+    close_to(chi_squared_quantile(0.5, 2), 2 * log(2.0), 1e-10);
+    close_to(chi_squared_quantile(0.99, 100), 135.806723, 1e-5);
+}
+
+/* Box and Muller, 1958. */
+static double normal(uint64_t *seed)
+{
+    const double u = random_real(seed, 1e-300, 1), v = random_real(seed, 0, 1);
+    return sqrt(-2 * log(u)) * cos(6.283185307179586 * v);
+}
+
+enum { PROCESSES_MAX = 400, VALUES_MAX = 4000 };
+typedef struct drawn {
+    double values[VALUES_MAX];
+    size_t start[PROCESSES_MAX + 1];
+    level_sample sample;
+} drawn;
+
+/* Normal repetitions in normal processes around a mean. */
+static void draw_sample(drawn *d, uint64_t *seed, size_t processes, size_t repetitions, double mean, double between,
+                        double within)
+{
+    for (size_t p = 0; p < processes; p++) {
+        const double centre = mean + between * normal(seed);
+        d->start[p] = p * repetitions;
+        for (size_t i = 0; i < repetitions; i++)
+            d->values[p * repetitions + i] = centre + within * normal(seed);
+    }
+    d->start[processes] = processes * repetitions;
+    d->sample = (level_sample){d->values, d->start, processes};
+}
+
+/* By hand: processes {1, 3} and {5, 7}. Within 2; of the means 2 and 6: 8; between 8 - 2/2 = 7. */
+static void variances_are_separated_by_level(void **state)
+{
+    (void)state;
+    const double values[] = {1, 3, 5, 7};
+    const size_t start[] = {0, 2, 4};
+    const level_sample s = {values, start, 2};
+    level_variance v = level_variances(&s);
+    close_to(v.within, 2, 1e-15);
+    close_to(v.between, 7, 1e-15);
+    close_to(v.mean, 4, 1e-15);
+    close_to(level_repetitions(&v, 14), 2, 0); /* sqrt(14 2 / 7) */
+    close_to(level_centre(&s), 4, 1e-15);
+    static drawn d;
+    uint64_t seed = 1;
+    draw_sample(&d, &seed, 400, 10, 5, 0.3, 0.8);
+    v = level_variances(&d.sample);
+    close_to(v.within, 0.64, 0.05); /* deviation 0.64 sqrt(2 / 3600) = 0.015 */
+    close_to(v.between, 0.09, 0.04);
+    close_to(v.repetitions, 10, 1e-12);
+}
+
+static double centre(const level_sample *a, const level_sample *b, void *unused)
+{
+    (void)b;
+    (void)unused;
+    return level_centre(a);
+}
+
+/* The share of intervals that contain the true value, for few and many processes, and for one. */
+static double coverage(size_t processes, size_t repetitions, bool two, bool paired, double between)
+{
+    static drawn a, b;
+    uint64_t seed = 7 + processes;
+    size_t inside = 0;
+    enum { TRIALS = 400 };
+    for (size_t trial = 0; trial < TRIALS; trial++) {
+        level_interval interval;
+        draw_sample(&a, &seed, processes, repetitions, 0, between, 1);
+        draw_sample(&b, &seed, processes, repetitions, two ? 0.5 : 0, between, 1);
+        if (paired) /* drift that both have */
+            for (size_t p = 0; p < processes; p++) {
+                const double drift = 3 * normal(&seed);
+                for (size_t i = a.start[p]; i < a.start[p + 1]; i++)
+                    a.values[i] += drift, b.values[i] += drift;
+            }
+        assert_int_equal(level_bootstrap(&a.sample, two ? &b.sample : NULL, paired, two ? level_difference : centre,
+                                         NULL, trial, &interval, NULL),
+                         STATUS_OK);
+        inside += interval.low <= (two ? 0.5 : 0) && (two ? 0.5 : 0) <= interval.high;
+        assert_true(interval.low <= interval.value && interval.value <= interval.high);
+    }
+    return (double)inside / TRIALS;
+}
+
+/* Four standard errors of a share of 400 at 0.95 are 0.044. */
+static void intervals_cover_the_truth(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t processes, repetitions;
+        bool two, paired;
+        double between;
+    } cases[] = {{3, 4, true, true, 3},   {4, 6, false, false, 1}, {5, 2, true, true, 3},  {8, 3, false, false, 2},
+                 {20, 5, true, false, 1}, {6, 4, true, true, 0.5}, {10, 2, true, true, 1}, {1, 15, false, false, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const double share =
+            coverage(cases[i].processes, cases[i].repetitions, cases[i].two, cases[i].paired, cases[i].between);
+        if (share < 0.905 || share > 0.996)
+            fail_msg("case %zu covers %.3f", i, share);
+    }
+}
+
+/* Repetitions of one process alone say nothing about others: the same values without levels give intervals that miss.
+ */
+static void levels_matter(void **state)
+{
+    (void)state;
+    static drawn d;
+    uint64_t seed = 3;
+    size_t inside = 0;
+    for (size_t trial = 0; trial < 200; trial++) {
+        level_interval interval;
+        draw_sample(&d, &seed, 6, 10, 0, 1, 0.3);
+        const size_t whole[] = {0, 60};
+        const level_sample flat = {d.values, whole, 1};
+        assert_int_equal(level_bootstrap(&flat, NULL, false, centre, NULL, trial, &interval, NULL), STATUS_OK);
+        inside += interval.low <= 0 && 0 <= interval.high;
+    }
+    assert_true(inside < 160);
+}
+
+static void few_values_have_no_interval(void **state)
+{
+    (void)state;
+    const double values[] = {1, 2, 3, 4, 5, 6};
+    const size_t one[] = {0, 5}, two[] = {0, 3, 6};
+    level_interval interval;
+    assert_int_equal(level_bootstrap(&(level_sample){values, one, 1}, NULL, false, centre, NULL, 1, &interval, NULL),
+                     STATUS_OK);
+    assert_true(isnan(interval.low) && isnan(interval.high) && interval.value == 3);
+    assert_int_equal(level_bootstrap(&(level_sample){values, two, 2}, NULL, false, centre, NULL, 1, &interval, NULL),
+                     STATUS_OK);
+    assert_true(isnan(interval.low));
+}
+
+static double pooled_median(const level_sample *a, const level_sample *b, void *unused)
+{
+    double copy[400];
+    const size_t count = a->start[a->processes];
+    (void)b;
+    (void)unused;
+    assert_true(count > 0 && count <= 400);
+    memcpy(copy, a->values, count * sizeof *copy);
+    return summarize(copy, count).median;
+}
+
+/* The fast median of resamples is that of the generic bootstrap; with one process it is that of order statistics. */
+static void medians_are_resampled_by_process(void **state)
+{
+    (void)state;
+    static drawn d;
+    uint64_t seed = 11;
+    level_interval fast, slow;
+    size_t inside = 0, inside_without = 0;
+    for (size_t processes = 3; processes < 14; processes++) {
+        draw_sample(&d, &seed, processes, 3 + processes % 4, 0, 1, 1);
+        assert_int_equal(level_median(&d.sample, 4, &fast, NULL), STATUS_OK);
+        assert_int_equal(level_bootstrap(&d.sample, NULL, false, pooled_median, NULL, 4, &slow, NULL), STATUS_OK);
+        close_to(fast.value, slow.value, 1e-14);
+        close_to(fast.low, slow.low, 1e-12);
+        close_to(fast.high, slow.high, 1e-12);
+    }
+    for (size_t trial = 0; trial < 400; trial++) {
+        draw_sample(&d, &seed, 8, 6, 0, 1, 0.5);
+        assert_int_equal(level_median(&d.sample, trial, &fast, NULL), STATUS_OK);
+        inside += fast.low <= 0 && 0 <= fast.high;
+        const size_t whole[] = {0, 48};
+        assert_int_equal(level_median(&(level_sample){d.values, whole, 1}, trial, &slow, NULL), STATUS_OK);
+        inside_without += slow.low <= 0 && 0 <= slow.high;
+    }
+    assert_true(inside >= 362); /* 0.905, as above */
+    assert_true(inside_without < 300);
+}
+
+static void the_bootstrap_is_reproducible(void **state)
+{
+    (void)state;
+    static drawn d;
+    uint64_t seed = 5;
+    level_interval first, again, other;
+    draw_sample(&d, &seed, 5, 5, 0, 1, 1);
+    level_bootstrap(&d.sample, NULL, false, centre, NULL, 9, &first, NULL);
+    level_bootstrap(&d.sample, NULL, false, centre, NULL, 9, &again, NULL);
+    level_bootstrap(&d.sample, NULL, false, centre, NULL, 10, &other, NULL);
+    assert_memory_equal(&first, &again, sizeof first);
+    assert_true(first.low != other.low);
+}
+
+/* For many pairs (1.96 + 1.645)^2 s^2 / d^2 = 12.99 s^2 / d^2; for few, by simulated t tests. */
+static void powers_are_reached(void **state)
+{
+    (void)state;
+    close_to((double)power_pairs(10, 1, 0.95), 1302, 2);
+    assert_int_equal(power_pairs(1000, 1, 0.95), 0);
+    assert_int_equal(power_pairs(NAN, 1, 0.95), 0);
+    assert_int_equal(power_pairs(0, 1, 0.95), 3);
+    static const double deviations[] = {0.4, 1, 2};
+    uint64_t seed = 11;
+    for (size_t k = 0; k < 3; k++) {
+        const size_t pairs = power_pairs(deviations[k], 1, 0.95);
+        size_t found = 0;
+        double values[200];
+        assert_true(pairs < 200);
+        for (size_t trial = 0; trial < 2000; trial++) {
+            for (size_t i = 0; i < pairs; i++)
+                values[i] = 1 + deviations[k] * normal(&seed);
+            const summary s = summarize(values, pairs);
+            found += s.mean_low > 0;
+        }
+        if (found < 1860 || found > 1990) /* 0.93: the approximation of the non-central t */
+            fail_msg("deviation %g, %zu pairs: found in %zu of 2000", deviations[k], pairs, found);
+    }
+}
+
+/* 90% of the limits from samples are above the true deviation. */
+static void upper_deviations_are_limits(void **state)
+{
+    (void)state;
+    uint64_t seed = 13;
+    size_t above = 0;
+    for (size_t trial = 0; trial < 2000; trial++) {
+        double values[8];
+        for (size_t i = 0; i < 8; i++)
+            values[i] = normal(&seed);
+        above += power_upper_deviation(summarize(values, 8).deviation, 8, 0.9) > 1;
+    }
+    close_to((double)above / 2000, 0.9, 0.027); /* four standard errors */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quantiles_are_those_of_tables), cmocka_unit_test(variances_are_separated_by_level),
+        cmocka_unit_test(intervals_cover_the_truth),     cmocka_unit_test(levels_matter),
+        cmocka_unit_test(few_values_have_no_interval),   cmocka_unit_test(medians_are_resampled_by_process),
+        cmocka_unit_test(the_bootstrap_is_reproducible), cmocka_unit_test(powers_are_reached),
+        cmocka_unit_test(upper_deviations_are_limits),
+    };
+    return cmocka_run_group_tests_name("levels", tests, NULL, NULL);
+}

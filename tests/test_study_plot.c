@@ -1,0 +1,447 @@
+/* Tests of the figure of a study: kind, lines and panels, linked parameters, environments, scales, captions, data. The
+ * summary is made by hand where a test needs certain numbers, and by a run for the whole path. */
+#include "study_fixture.h"
+#include "study/plot_parts.h"
+
+/* --- summaries by hand --- */
+
+typedef struct hand {
+    int cell, n, marked;
+    const char *environment, *value, *low, *high;
+} hand;
+
+/* A plan whose summary has these lines: paths and values as the study has them. */
+static plot_plan plan_of(const study *s, const plot_request *request, const hand *lines, size_t count, bool environment)
+{
+    plot_plan p = {.s = s, .request = request};
+    diagnostic why = {0};
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    fputs("cell", out);
+    fputs(environment ? "\tenvironment" : "", out);
+    for (size_t a = 0; a < s->axis_count; a++)
+        for (size_t i = 0; i < s->axes[a].points[0].count; i++)
+            fprintf(out, "\t%s", s->axes[a].points[0].paths[i]);
+    fputs(
+        "\tn\twall_s_median\twall_s_low\twall_s_high\twall_s_mean\twall_s_min\twall_s_max\trays_total\tmarked\tothers_"
+        "share\n",
+        out);
+    for (size_t i = 0; i < count; i++) {
+        fprintf(out, "%d", lines[i].cell);
+        if (environment)
+            fprintf(out, "\t%s", lines[i].environment);
+        for (size_t a = 0; a < s->axis_count; a++) {
+            const study_point *point = &s->axes[a].points[study_cell_point(s, (size_t)lines[i].cell, a)];
+            for (size_t k = 0; k < point->count; k++)
+                fprintf(out, "\t%s", point->values[k]);
+        }
+        fprintf(out, "\t%d\t%s\t%s\t%s\t%s\t%s\t%s\t%d\t%d\t0.03\n", lines[i].n, lines[i].value, lines[i].low,
+                lines[i].high, lines[i].value, lines[i].value, lines[i].value, 1000000 * (lines[i].cell + 1),
+                lines[i].marked);
+    }
+    fclose(out);
+    assert_int_equal(plot_table_split(text, &p.table, &why), STATUS_OK);
+    return p;
+}
+
+/* A summary of every cell of the study in each of the environments, 10 rows each. */
+static plot_plan full_plan(const study *s, const plot_request *request, size_t environments)
+{
+    static const char *const names[] = {"11112222", "aaaabbbb", "00000003"};
+    const size_t cells = study_cell_count(s), count = cells * (environments ? environments : 1);
+    hand *lines = calloc(count, sizeof *lines);
+    char(*values)[32] = calloc(count, sizeof *values);
+    for (size_t i = 0; i < count; i++) {
+        snprintf(values[i], sizeof values[i], "%g", 0.1 + 0.01 * (double)(i + 1));
+        lines[i] =
+            (hand){(int)(i % cells), 10, 0, environments ? names[i / cells] : "", values[i], values[i], values[i]};
+    }
+    const plot_plan p = plan_of(s, request, lines, count, environments > 0);
+    free(lines);
+    free(values);
+    return p;
+}
+
+static char *base_in(const fixture *f)
+{
+    static char path[400];
+    fixture_path(f, "fig", path);
+    return path;
+}
+
+static void draw(const fixture *f, plot_plan *p)
+{
+    char message[DIAGNOSTIC_TEXT_MAX];
+    diagnostic why = {0};
+    if (plot_figure_write(p, base_in(f), &why) != STATUS_OK)
+        fail_msg("%s", diagnostic_text(&why, message, sizeof message));
+}
+
+/* The error of a figure, whose remedy must contain this text. */
+static void refuse(const fixture *f, plot_plan *p, const char *what, const char *remedy)
+{
+    diagnostic why = {0};
+    assert_int_equal(plot_figure_write(p, base_in(f), &why), STATUS_BAD_INPUT);
+    if (!strstr(why.what, what) || !strstr(why.remedy, remedy))
+        fail_msg("'%s' lacks '%s', or '%s' lacks '%s'", why.what, what, why.remedy, remedy);
+    plot_plan_free(p);
+}
+
+static bool has_caption(const plot_plan *p, const char *part)
+{
+    for (size_t i = 0; i < p->caption_count; i++)
+        if (strstr(p->captions[i], part))
+            return true;
+    return false;
+}
+
+static const plot_request plain = {.results = "unused"};
+
+static study *study_of(const fixture *f, const char *grid)
+{
+    char text[2000];
+    snprintf(text, sizeof text, "study: test\nscene: scene.yaml\ngrid: %s\nrepetitions: 10\n", grid);
+    return fixture_study(f, text);
+}
+
+/* --- kinds --- */
+
+static void check_kind(const fixture *f, const char *grid, plot_kind kind, const char *along, const char *by,
+                       size_t panels)
+{
+    study *s = study_of(f, grid);
+    plot_plan p = full_plan(s, &plain, 0);
+    draw(f, &p);
+    assert_int_equal(p.kind, kind);
+    assert_string_equal(p.along ? p.along->name : "", along);
+    assert_string_equal(p.by ? p.by->name : "", by);
+    assert_int_equal(p.panel_count, panels);
+    plot_plan_free(&p);
+    study_destroy(s);
+}
+
+static void the_grid_gives_the_kind(void **state)
+{
+    const fixture *f = *state;
+    check_kind(f, "[{render.depth: [0, 1, 2]}]", PLOT_LINES, "render.depth", "", 1);
+    check_kind(f, "[{render.depth: [0, 1]}]", PLOT_LINES, "render.depth", "", 1);
+    check_kind(f, "[{render.depth: [0, 1, 2]}, {render.schedule: [rows, tiles]}]", PLOT_LINES, "render.depth",
+               "render.schedule", 1);
+    check_kind(f, "[{render.depth: [0, 1, 2]}, {ball.ior: [1.1, 1.2, 1.3, 1.4]}]", PLOT_HEAT, "ball.ior", "", 1);
+    check_kind(f, "[{render.depth: [0, 1]}, {ball.ior: [1.1, 1.2]}]", PLOT_LINES, "ball.ior", "render.depth", 1);
+    check_kind(f, "[{render.schedule: [rows, tiles, dynamic]}]", PLOT_DOTS, "render.schedule", "", 1);
+    check_kind(f, "[{render.schedule: [rows, tiles, dynamic]}, {render.depth: [1, 2]}]", PLOT_DOTS, "render.schedule",
+               "render.depth", 1);
+    check_kind(
+        f, "[{render.depth: [0, 1, 2]}, {render.schedule: [rows, tiles, dynamic]}, {render.shadows: [off, opaque]}]",
+        PLOT_LINES, "render.depth", "render.schedule", 2);
+}
+
+static void parameters_set_together_count_once(void **state)
+{
+    const fixture *f = *state;
+    check_kind(
+        f,
+        "[{name: a, points: [{render.depth: 1, render.width: 10, render.shadows: off}, {render.depth: 2, render.width: "
+        "20, render.shadows: off}, {render.depth: 3, render.width: 40, render.shadows: opaque}]}]",
+        PLOT_LINES, "render.depth", "", 1);
+    /* Two independent ones, and a third that has a value for each pair */
+    check_kind(f,
+               "[{name: a, points: [{render.seed: 1, render.depth: 1, render.schedule: rows}, {render.seed: 2, "
+               "render.depth: 2, "
+               "render.schedule: rows}, {render.seed: 3, render.depth: 3, render.schedule: rows}, {render.seed: 4, "
+               "render.depth: 1, render.schedule: tiles}, {render.seed: 5, render.depth: 2, render.schedule: tiles}, "
+               "{render.seed: 6, render.depth: 3, render.schedule: tiles}]}]",
+               PLOT_LINES, "render.depth", "render.schedule", 1);
+    /* Not determined by each other: both count */
+    check_kind(
+        f,
+        "[{name: a, points: [{render.depth: 1, render.schedule: rows}, {render.depth: 2, render.schedule: rows}, "
+        "{render.depth: 3, render.schedule: tiles}, {render.depth: 1, render.schedule: tiles}]}]",
+        PLOT_LINES, "render.depth", "render.schedule", 1);
+}
+
+static void the_user_chooses(void **state)
+{
+    const fixture *f = *state;
+    study *s =
+        study_of(f, "[{render.depth: [0, 1, 2]}, {ball.ior: [1.1, 1.2, 1.3]}, {render.schedule: [rows, tiles]}]");
+    const char *const where[] = {"ball.ior=1.20", "render.schedule=tiles"};
+    const plot_request r = {.x = "render.schedule", .by = "render.depth", .y = "rays_total"};
+    plot_plan p = full_plan(s, &r, 0);
+    draw(f, &p);
+    assert_int_equal(p.kind, PLOT_DOTS);
+    assert_string_equal(p.by->name, "render.depth");
+    assert_int_equal(p.panel_count, 3);
+    assert_string_equal(p.y.unit, "10⁶");
+    assert_true(has_caption(&p, "no interval of it"));
+    plot_plan_free(&p);
+    const plot_request part = {.where = where, .where_count = 2};
+    p = full_plan(s, &part, 0);
+    draw(f, &p);
+    assert_int_equal(p.kind, PLOT_LINES);
+    assert_int_equal(p.point_count, 3);
+    assert_true(has_caption(&p, "Only cells with ball.ior=1.20, render.schedule=tiles."));
+    plot_plan_free(&p);
+    const plot_request quantity = {.x = "rays_total", .by = "render.schedule"};
+    p = full_plan(s, &quantity, 0);
+    draw(f, &p);
+    assert_string_equal(p.x_label, "rays_total / 10⁶");
+    plot_plan_free(&p);
+    study_destroy(s);
+}
+
+static void wrong_choices_have_remedies(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_of(f, "[{render.depth: [0, 1, 2]}, {render.schedule: [rows, tiles]}]");
+    static const char *const nowhere[] = {"render.depth=7"}, *const no_path[] = {"render.width=7"},
+                             *const no_condition[] = {"render.depth"};
+    const struct {
+        plot_request request;
+        const char *what, *remedy;
+    } wrong[] = {
+        {{.y = "wal_s"}, "no column of numbers 'wal_s'", "did you mean"},
+        {{.y = "render.depth"}, "no column of numbers", ""},
+        {{.x = "render.dept"}, "no parameter 'render.dept'", "render.depth"},
+        {{.by = "schedule"}, "no parameter 'schedule'", "render.schedule"},
+        {{.x = "render.depth", .by = "render.depth"}, "the x axis already", "another"},
+        {{.where = nowhere, .where_count = 1}, "no cell has render.depth=7", "0, 1, 2"},
+        {{.where = no_path, .where_count = 1}, "no parameter 'render.width'", "render.depth"},
+        {{.where = no_condition, .where_count = 1}, "not a condition", "PATH=VALUE"},
+        {{.log = PLOT_LOG_X}, "positive values", "--where"},
+        {{.x = "render.schedule", .log = PLOT_LOG_X}, "no scale", "--log y"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        plot_plan p = full_plan(s, &wrong[i].request, 0);
+        refuse(f, &p, wrong[i].what, wrong[i].remedy);
+    }
+    study_destroy(s);
+}
+
+/* --- environments --- */
+
+/* Every block of the data has cells of one environment: the values of full_plan distinguish them. */
+static void check_blocks(const fixture *f, size_t cells)
+{
+    char *data = fixture_text(f, "fig.tsv");
+    const bool heat = strstr(data, "color") != NULL;
+    long known = -1;
+    size_t lines = 0;
+    for (char *rest = data, *line; (line = strsep(&rest, "\n"));) {
+        double x, value, up;
+        int cell;
+        if (line[0] == '\0')
+            known = -1;
+        if (line[0] == '#' || line[0] == '\0')
+            continue;
+        char *copy = strdup(line);
+        const int fields = sscanf(copy, "%d\t%lf\t%lf\t%lf", &cell, &x, &up, &value);
+        free(copy);
+        assert_true(fields >= 3);
+        const double seen = heat ? value : up; /* in ms; of full_plan: 100 + 10 (i + 1) */
+        const long environment = lround((seen - 100) / 10 - 1) / (long)cells;
+        assert_int_equal(lround((seen - 100) / 10 - 1) % (long)cells, cell);
+        if (known >= 0)
+            assert_int_equal(environment, known);
+        known = environment;
+        lines++;
+    }
+    free(data);
+    assert_int_equal(lines, 3 * cells);
+}
+
+static void environments_are_never_joined(void **state)
+{
+    const fixture *f = *state;
+    static const char *const grids[] = {
+        "[{render.depth: [0, 1, 2]}]",
+        "[{render.depth: [0, 1, 2]}, {render.schedule: [rows, tiles]}]",
+        "[{render.depth: [0, 1, 2]}, {ball.ior: [1.1, 1.2, 1.3]}]",
+        "[{render.schedule: [rows, tiles, dynamic]}]",
+        "[{name: a, points: [{render.depth: 1, render.width: 10}, {render.depth: 2, render.width: 20}]}]",
+    };
+    const plot_request requests[] = {plain, {.by = "render.depth"}, {.by = "render.schedule"}, {.x = "render.depth"}};
+    for (size_t g = 0; g < sizeof grids / sizeof *grids; g++) {
+        study *s = study_of(f, grids[g]);
+        for (size_t r = 0; r < sizeof requests / sizeof *requests; r++) {
+            plot_plan p = full_plan(s, &requests[r], 3);
+            diagnostic why = {0};
+            if (plot_figure_write(&p, base_in(f), &why) == STATUS_OK) { /* not every grid has these parameters */
+                check_blocks(f, study_cell_count(s));
+                assert_true(has_caption(&p, "3 environments, not joined: 11112222, aaaabbbb, 00000003."));
+            } else {
+                assert_int_not_equal(r, 0);
+            }
+            plot_plan_free(&p);
+        }
+        study_destroy(s);
+    }
+}
+
+static void one_environment_is_named(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_of(f, "[{render.depth: [0, 1, 2]}]");
+    const hand lines[] = {
+        {0, 9, 0, "0000beef", "1", "1", "1"}, {1, 0, 0, "NA", "NA", "NA", "NA"}, {2, 9, 0, "0000beef", "1", "1", "1"}};
+    plot_plan p = plan_of(s, &plain, lines, 3, true);
+    draw(f, &p);
+    assert_null(p.by);
+    assert_true(has_caption(&p, "Environment: 0000beef."));
+    assert_true(has_caption(&p, "1 of 3 cells have no value of wall_s."));
+    plot_plan_free(&p);
+    study_destroy(s);
+}
+
+/* --- captions and scales --- */
+
+static void captions_say_interval_or_range(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_of(f, "[{render.depth: [0, 1, 2]}]");
+    const struct {
+        hand lines[3];
+        const char *caption;
+    } cases[] = {
+        {{{0, 10, 0, "", "1", "0.9", "1.1"}, {1, 12, 0, "", "1", "0.9", "1.1"}, {2, 10, 0, "", "1", "0.9", "1.1"}},
+         "Medians, n = 10 to 12; bars: 95 % interval of the median."},
+        {{{0, 3, 0, "", "1", "NA", "NA"}, {1, 3, 0, "", "1", "NA", "NA"}, {2, 3, 0, "", "1", "NA", "NA"}},
+         "Medians, n = 3; bars: range of the repetitions; fewer than 6 give no interval."},
+        {{{0, 3, 0, "", "1", "NA", "NA"}, {1, 8, 0, "", "1", "0.9", "1.1"}, {2, 3, 0, "", "1", "NA", "NA"}},
+         "95 % interval of the median where n ≥ 6, elsewhere the range."},
+        {{{0, 1, 0, "", "1", "NA", "NA"}, {1, 1, 0, "", "1", "NA", "NA"}, {2, 1, 0, "", "1", "NA", "NA"}},
+         "n = 1: single measurements"},
+        {{{0, 9, 2, "", "1", "1", "1"}, {1, 9, 1, "", "1", "1", "1"}, {2, 9, 0, "", "1", "1", "1"}},
+         "Rows marked and left out: 3. Other processes: at most 3 % of the machine."},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        plot_plan p = plan_of(s, &plain, cases[i].lines, 3, false);
+        draw(f, &p);
+        char all[2000] = "";
+        for (size_t k = 0; k < p.caption_count; k++)
+            snprintf(all + strlen(all), sizeof all - strlen(all), "%s ", p.captions[k]);
+        if (!strstr(all, cases[i].caption))
+            fail_msg("'%s' is not in '%s'", cases[i].caption, all);
+        plot_plan_free(&p);
+    }
+    const hand none[] = {{0, 0, 0, "", "NA", "NA", "NA"}};
+    plot_plan p = plan_of(s, &plain, none, 1, false);
+    refuse(f, &p, "no column of numbers", "");
+    study_destroy(s);
+}
+
+static void scales_follow_the_values(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_of(f, "[{render.threads: [1, 2, 4, 8, 16]}]");
+    plot_plan p = full_plan(s, &plain, 0);
+    draw(f, &p);
+    assert_true(p.x.log);
+    assert_false(p.y.log);
+    assert_string_equal(p.y.unit, "ms");
+    plot_plan_free(&p);
+    const plot_request none = {.log = PLOT_LOG_NONE}, both = {.log = PLOT_LOG_XY};
+    p = full_plan(s, &none, 0);
+    draw(f, &p);
+    assert_false(p.x.log || p.y.log);
+    plot_plan_free(&p);
+    p = full_plan(s, &both, 0);
+    draw(f, &p);
+    assert_true(p.x.log && p.y.log);
+    plot_plan_free(&p);
+    study_destroy(s);
+    s = study_of(f, "[{render.depth: [1, 2, 3, 4, 5, 6, 7, 8]}]");
+    p = full_plan(s, &plain, 0);
+    draw(f, &p);
+    assert_false(p.x.log);
+    plot_plan_free(&p);
+    study_destroy(s);
+}
+
+static void published_numbers_have_the_unit_of_the_axis(void **state)
+{
+    const fixture *f = *state;
+    char path[400];
+    study *s = study_of(f, "[{render.depth: [0, 1, 2]}]");
+    fixture_path(f, "published.csv", path);
+    fixture_write(f, "published.csv",
+                  "depth,cpu_s,source,machine\n0,0.1,\"a, b\",old\n1,0.2,\"a, b\",old\n9,0.3,c,old\n");
+    const plot_request r = {.published = path};
+    plot_plan p = full_plan(s, &r, 0);
+    draw(f, &p);
+    assert_int_equal(p.published.count, 3);
+    assert_int_equal(p.published.series_count, 2);
+    assert_true(fabs(p.published.y[1] - 200) < 1e-9); /* ms, as the measured values */
+    assert_true(p.x.to > 9);
+    assert_true(has_caption(&p, "Published: cpu_s by depth, machine: old."));
+    plot_plan_free(&p);
+    fixture_write(f, "published.csv", "threads,cpu_s\n0,0.1\n");
+    p = full_plan(s, &r, 0);
+    refuse(f, &p, "no column for 'render.depth'", "threads, cpu_s");
+    fixture_write(f, "published.csv", "depth,cpu_s\nx,NA\n");
+    p = full_plan(s, &r, 0);
+    refuse(f, &p, "no row has numbers", "CSV");
+    study_destroy(s);
+}
+
+/* --- the whole path --- */
+
+static void a_script_quotes_what_it_shows(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\ntitle: \"it's `x` {a_b} \\\\ \\\"q\\\"\"\nscene: scene.yaml\n"
+                                "grid: [{render.depth: [0, 1]}]\nrepetitions: 2\n");
+    diagnostic why = {0};
+    fixture_run(f, s);
+    const plot_request r = {.results = f->results};
+    assert_int_equal(study_plot_write(s, &r, base_in(f), &why), STATUS_OK);
+    char *script = fixture_text(f, "fig.gp");
+    assert_non_null(strstr(script, "'it''s `x` {a_b} \\ \"q\"'"));
+    assert_null(strstr(script, "load "));
+    assert_null(strstr(script, f->folder));
+    free(script);
+    study_destroy(s);
+}
+
+static void a_sheet_needs_images(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_of(f, "[{render.depth: [0, 1]}]");
+    diagnostic why = {0};
+    fixture_run(f, s);
+    const plot_request r = {.results = f->results, .images = true};
+    assert_int_equal(study_plot_write(s, &r, base_in(f), &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.remedy, "keep: {image: on}"));
+    study_destroy(s);
+    s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1]}]\nrepetitions: 10\n"
+                         "keep: {image: on}\n");
+    fixture_run(f, s);
+    assert_int_equal(study_plot_write(s, &r, base_in(f), &why), STATUS_OK);
+    char *script = fixture_text(f, "fig.gp");
+    assert_non_null(strstr(script, "here.'results/test/images/0001.png'"));
+    assert_non_null(strstr(script, "'render.depth = 1'"));
+    free(script);
+    study_destroy(s);
+}
+
+#define CASE(function) cmocka_unit_test_setup_teardown(function, fixture_setup, fixture_teardown)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CASE(the_grid_gives_the_kind),
+        CASE(parameters_set_together_count_once),
+        CASE(the_user_chooses),
+        CASE(wrong_choices_have_remedies),
+        CASE(environments_are_never_joined),
+        CASE(one_environment_is_named),
+        CASE(captions_say_interval_or_range),
+        CASE(scales_follow_the_values),
+        CASE(published_numbers_have_the_unit_of_the_axis),
+        CASE(a_script_quotes_what_it_shows),
+        CASE(a_sheet_needs_images),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
