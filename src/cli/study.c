@@ -116,7 +116,7 @@ static status count_rows(const study *s, const study_request *request, size_t *r
     return STATUS_OK;
 }
 
-/* Measures what is missing, in fresh processes if the study or --against asks for them. *rows: the new ones. */
+/* Measures what is missing, in fresh processes for a study that has some, or with --against. *rows: the new ones. */
 static status measure(const study *s, const study_request *request, size_t *rows, diagnostic *why)
 {
     FILE *terminal = !request->quiet && terminal_is_smart(STDERR_FILENO) ? stderr : NULL;

@@ -14,8 +14,8 @@ status study_exclude(int argc, char **argv, diagnostic *why);
 status study_compare(int argc, char **argv, diagnostic *why);
 
 /* The repetitions of a study that divides them among processes, each a program of its own, one after the other; with
- * --against=PROGRAM each followed or preceded, at random, by the same process of the other program, whose rows go to the
- * folder of study_against_folder (allocated): two builds that alternate can be compared. */
+ * --against=PROGRAM each followed or preceded, at random, by the same process of the other program, whose rows go to
+ * the folder of study_against_folder (allocated): two builds that alternate can be compared. */
 status study_run_processes(const study *s, const study_request *request, diagnostic *why);
 char *study_against_folder(const study_request *request);
 

@@ -40,14 +40,14 @@ typedef struct level_interval {
 /* A function of one or two samples, of resampled ones too; b is NULL for one. */
 typedef double level_statistic(const level_sample *a, const level_sample *b, void *context);
 
-/* The statistic with the interval of a hierarchical bootstrap: whole processes are drawn with replacement. Drawing their
- * repetitions again would count the variance of repetitions twice (Davison and Hinkley, Bootstrap Methods and their
- * Application, 1997, 3.8; Ren et al., Nonparametric bootstrapping for hierarchical data, Journal of Applied Statistics
- * 37, 2010). With one process its repetitions are drawn. paired: process i of both was run at about the same time, so
- * both are drawn together; needs equal numbers. From 10 processes on it is the expanded percentile interval, which has
- * the width of Student's t; for fewer, Student's t with the bootstrap's standard error (Hesterberg, What teachers should
- * know about the bootstrap, The American Statistician 69, 2015). seed makes it reproducible. No interval for fewer than
- * 6 values in all, or fewer than 3 processes if there is more than one. */
+/* The statistic with the interval of a hierarchical bootstrap: whole processes are drawn with replacement. Drawing
+ * their repetitions again would count the variance of repetitions twice (Davison and Hinkley, Bootstrap Methods and
+ * their Application, 1997, 3.8; Ren et al., Nonparametric bootstrapping for hierarchical data, Journal of Applied
+ * Statistics 37, 2010). With one process its repetitions are drawn. paired: process i of both was run at about the same
+ * time, so both are drawn together; needs equal numbers. From 10 processes on it is the expanded percentile interval,
+ * which has the width of Student's t; for fewer, Student's t with the bootstrap's standard error (Hesterberg, What
+ * teachers should know about the bootstrap, The American Statistician 69, 2015). seed makes it reproducible. No
+ * interval for fewer than 6 values in all, or fewer than 3 processes if there is more than one. */
 status level_bootstrap(const level_sample *a, const level_sample *b, bool paired, level_statistic *statistic,
                        void *context, uint64_t seed, level_interval *out, diagnostic *why);
 /* Of two samples of logarithms, the difference of their centres: the logarithm of a ratio. */

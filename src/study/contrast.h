@@ -1,10 +1,9 @@
 /* A comparison of two sides of a study (study/side.h), cell by cell: the ratio of a quantity, its 95% interval, and a
- * verdict. Rows of one run are one process; processes, then repetitions within each, are resampled
- * (measure/levels.h), because repetitions of one process are more alike than those of several. Only sides that
- * alternate can be told apart: in each process both were measured, in rounds of random order, or the processes of the
- * sides follow one another in pairs. Otherwise a drift of the machine would look like a difference. Warm-ups, marked and
- * excluded rows are left out; rows of one side are of one environment. Ownership: contrast_make gives, contrast_destroy
- * releases. */
+ * verdict. Rows of one run are one process; processes, then repetitions within each, are resampled (measure/levels.h),
+ * because repetitions of one process are more alike than those of several. Only sides that alternate have a verdict: in
+ * each process both were measured, in rounds of random order, or the processes of the sides follow one another in
+ * pairs. Otherwise a drift of the machine would look like a difference. Warm-ups, marked and excluded rows are left
+ * out; rows of one side are of one environment. Ownership: contrast_make gives, contrast_destroy releases. */
 #pragma once
 
 #include "measure/levels.h"
@@ -35,8 +34,8 @@ typedef struct contrast_line {
     contrast_verdict verdict;
     contrast_reason reason;
     /* Pairs of processes, each with as many repetitions as now, that find a difference of contrast_options.detect with
-     * 95% probability; 0: unknown or more than 10000. Its standard deviation is the upper limit, at 90%, of the one that
-     * was observed. */
+     * 95% probability; 0: unknown or more than 10000. Its standard deviation is the upper limit, at 90%, of the one
+     * that was observed. */
     size_t pairs_needed;
 } contrast_line;
 

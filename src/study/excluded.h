@@ -1,6 +1,6 @@
-/* Rows that a person excluded from summaries, with the reason: results/<study>/excluded.csv, one line per row, only ever
- * appended to. The rows themselves stay as they are, and count as measured, so that a value that displeases cannot be
- * measured again. Ownership: excluded_read gives, excluded_destroy releases. */
+/* Rows that a person excluded from summaries, with the reason: results/<study>/excluded.csv, one line per row, only
+ * ever appended to. The rows themselves stay as they are, and count as measured, so that a value that displeases cannot
+ * be measured again. Ownership: excluded_read gives, excluded_destroy releases. */
 #pragma once
 
 #include "study/row_files.h"
