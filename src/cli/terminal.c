@@ -146,10 +146,13 @@ void progress_draw(progress_line *line, double share_done)
     double elapsed_s = clock_wall_s() - line->started_s;
     if (!line->enabled || elapsed_s < 0.5)
         return;
+    static const char full[] = "####################";
+    const int whole = (int)sizeof full - 1, done = (int)(share_done * whole);
     char text[160], left[48] = "?";
     if (share_done > 0)
         write_duration(elapsed_s * (1 - share_done) / share_done, left, sizeof left);
-    snprintf(text, sizeof text, "%.64s: %3d%%, %s left", line->label, (int)(share_done * 100), left);
+    snprintf(text, sizeof text, "%.64s: [%-*.*s] %3d%%, %s left", line->label, whole, done, full,
+             (int)(share_done * 100), left);
     int wide = terminal_columns(STDERR_FILENO) - 1;
     int length = (int)strlen(text) < wide ? (int)strlen(text) : wide;
     int blanks = line->shown > length ? line->shown - length : 0;

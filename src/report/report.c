@@ -3,6 +3,7 @@
 #include "report/json.h"
 #include "report/param_rows.h"
 #include "base/number.h"
+#include "measure/statistics.h"
 #include "scene/model/scene.h"
 #include <inttypes.h>
 #include <stdio.h>
@@ -172,6 +173,19 @@ static json_t *workers(const job_account *a)
     return list;
 }
 
+/* The 95% interval of the median; nulls for fewer than 6 values. */
+static int put_interval(json_t *o, const char *key, const double *values, size_t count)
+{
+    double *sorted = malloc((count + 1) * sizeof *sorted);
+    if (!sorted)
+        return -1;
+    memcpy(sorted, values, count * sizeof *sorted);
+    const summary s = summarize(sorted, count);
+    free(sorted);
+    return json_object_set_new(
+        o, key, json_pack("[o, o]", json_of_real(s.median_low), json_of_real(s.median_high)));
+}
+
 json_t *report_create(const job_account *a, bool repeated)
 {
     json_t *o = json_pack("{s:i}", "schema", REPORT_SCHEMA);
@@ -182,6 +196,8 @@ json_t *report_create(const job_account *a, bool repeated)
         bad |= json_object_set_new(o, "repeat", json_integer((json_int_t)a->count));
         bad |= json_object_set_new(o, "wall_s_all", list_of_reals(a->wall_s, a->count));
         bad |= json_object_set_new(o, "cpu_s_all", list_of_reals(a->cpu_s, a->count));
+        bad |= put_interval(o, "wall_s_interval", a->wall_s, a->count);
+        bad |= put_interval(o, "cpu_s_interval", a->cpu_s, a->count);
     }
     bad |= json_object_set_new(o, "threads", workers(a));
     bad |= json_object_set_new(o, "version", json_string(CUVETTE_VERSION));
