@@ -134,12 +134,14 @@ CUVETTE_ISA=sse2 run render "$scene" --json "${small[@]}"
 check "CUVETTE_ISA is used and does not change the film" is "$(json isa film_hash)" "$(lines sse2 "$hash")"
 run render "$scene" --json "${small[@]}" --repeat 5
 check "--repeat gives all times" is "$(json wall_s_all@length cpu_s_all@length)" "$(lines 5 5)"
-check "--repeat: fewer than six frames have no interval" is "$(json 'wall_s_interval[0]' 'wall_s_interval[1]')" "$(lines null null)"
+check "--repeat: fewer than six frames have no interval" is \
+    "$(json 'wall_s_interval[0]' 'wall_s_interval[1]')" "$(lines null null)"
 run render "$scene" "${small[@]}" -o repeat.png --repeat 6
 check "--repeat prints median, interval, range and number" grep -qE \
     '^wall time: median [0-9.]+ s, 95% interval [0-9.]+ to [0-9.]+ s, range [0-9.]+ to [0-9.]+ s, n = 6$' out
 run render "$scene" "${small[@]}" -o repeat.png --repeat 3
-check "--repeat of few frames prints the range" grep -qE '^CPU time: median [0-9.]+ s, range [0-9.]+ to [0-9.]+ s, n = 3$' out
+check "--repeat of few frames prints the range" grep -qE \
+    '^CPU time: median [0-9.]+ s, range [0-9.]+ to [0-9.]+ s, n = 3$' out
 run render "$scene" --json "${small[@]}" --repeat 5
 check "--repeat gives the medians" is "$(json wall_s cpu_s)" \
     "$(lines "$(json 'wall_s_all[]' | sort -g | sed -n 3p)" "$(json 'cpu_s_all[]' | sort -g | sed -n 3p)")"

@@ -182,8 +182,7 @@ static int put_interval(json_t *o, const char *key, const double *values, size_t
     memcpy(sorted, values, count * sizeof *sorted);
     const summary s = summarize(sorted, count);
     free(sorted);
-    return json_object_set_new(
-        o, key, json_pack("[o, o]", json_of_real(s.median_low), json_of_real(s.median_high)));
+    return json_object_set_new(o, key, json_pack("[o, o]", json_of_real(s.median_low), json_of_real(s.median_high)));
 }
 
 json_t *report_create(const job_account *a, bool repeated)
