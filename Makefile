@@ -390,11 +390,13 @@ claims: $(build)/cuvette ## judge each claim of the paper by the rows: reproduce
 paper: $(build)/cuvette ## rebuild the report from existing rows, without measuring
 	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)'
 
-bench: all peers $(build)/tests/bench_mesh ## benchmark frames and rays as ratios to other programs; REPS=7 rounds
+bench: all peers $(build)/tests/bench_mesh $(build)/tests/bench_rows ## benchmark frames and rays as ratios to other programs; REPS=7 rounds
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters $(build)/nocounters/cuvette
 	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' experiments/bench.sh
 	@echo
 	experiments/mesh_bench.sh $(build)/tests/bench_mesh
+	@echo
+	$(build)/tests/bench_rows
 
 # --- installation, upkeep ---
 

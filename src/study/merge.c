@@ -32,42 +32,82 @@ static int compare_runs(const void *a, const void *b)
     return (x->position > y->position) - (x->position < y->position);
 }
 
-static status list_table(const row_files *files, const csv *of, merged_line *lines, size_t *count, diagnostic *why)
+static void list_table(const row_files *files, const csv *of, merged_line *lines, size_t *count)
 {
     const int run = csv_column(of, "run");
-    check_columns columns;
-    TRY(check_columns_create(of->header, of->column_count, &columns, why));
     for (size_t row = 0; row < of->row_count; row++, ++*count)
         lines[*count] = (merged_line){.of = of,
                                       .row = row,
                                       .position = *count,
-                                      .run = runs_find(files->runs, csv_field(of, row, run)),
-                                      .values = check_values(&columns, of->fields + row * of->column_count)};
-    check_columns_free(&columns);
+                                      .run = runs_find(files->runs, csv_field(of, row, run))};
+}
+
+/* Whether two files have lines of one run, so that lines may be there twice. Unknown runs count as one. */
+static status shares_runs(const row_files *files, const merged_line *lines, size_t count, bool *shares, diagnostic *why)
+{
+    const csv **first = calloc(files->runs->count + 1, sizeof *first);
+    *shares = false;
+    if (!first)
+        return out_of_memory(why);
+    for (size_t i = 0; i < count; i++) {
+        const csv **of = &first[lines[i].run + 1];
+        *shares = *shares || (*of && *of != lines[i].of);
+        *of = lines[i].of;
+    }
+    free(first);
     return STATUS_OK;
 }
 
-/* All different lines of all files. A line that two files have is there once. */
-static status list_lines(const row_files *files, merged_line **out, size_t *count, diagnostic *why)
+static status hash_lines(merged_line *lines, size_t count, diagnostic *why)
 {
-    size_t total = 0, kept = 0;
-    for (size_t i = 0; i < files->count; i++)
-        total += files->tables[i]->row_count;
-    merged_line *lines = malloc((total + 1) * sizeof *lines);
-    *out = lines;
-    *count = 0;
-    status code = lines ? STATUS_OK : out_of_memory(why);
-    for (size_t i = 0; code == STATUS_OK && i < files->count; i++)
-        if (files->tables[i]->header)
-            code = list_table(files, files->tables[i], lines, count, why);
-    if (code != STATUS_OK)
-        return code;
+    check_columns columns = {.count = 0};
+    const csv *of = NULL;
+    status code = STATUS_OK;
+    for (size_t i = 0; i < count && code == STATUS_OK; i++) {
+        if (lines[i].of != of) {
+            check_columns_free(&columns);
+            of = lines[i].of;
+            code = check_columns_create(of->header, of->column_count, &columns, why);
+        }
+        if (code == STATUS_OK)
+            lines[i].values = check_values(&columns, of->fields + lines[i].row * of->column_count);
+    }
+    check_columns_free(&columns);
+    return code;
+}
+
+/* Keeps one of the equal lines of different files. */
+static status drop_copies(merged_line *lines, size_t *count, diagnostic *why)
+{
+    size_t kept = 0;
+    TRY(hash_lines(lines, *count, why));
     qsort(lines, *count, sizeof *lines, compare_values);
     for (size_t i = 0; i < *count; i++)
         if (kept == 0 || lines[kept - 1].values != lines[i].values || lines[kept - 1].of == lines[i].of)
             lines[kept++] = lines[i];
     *count = kept;
-    qsort(lines, kept, sizeof *lines, compare_runs);
+    return STATUS_OK;
+}
+
+/* All different lines of all files. */
+static status list_lines(const row_files *files, merged_line **out, size_t *count, diagnostic *why)
+{
+    size_t total = 0;
+    bool shares;
+    for (size_t i = 0; i < files->count; i++)
+        total += files->tables[i]->row_count;
+    merged_line *lines = malloc((total + 1) * sizeof *lines);
+    *out = lines;
+    *count = 0;
+    if (!lines)
+        return out_of_memory(why);
+    for (size_t i = 0; i < files->count; i++)
+        if (files->tables[i]->header)
+            list_table(files, files->tables[i], lines, count);
+    TRY(shares_runs(files, lines, *count, &shares, why));
+    if (shares)
+        TRY(drop_copies(lines, count, why));
+    qsort(lines, *count, sizeof *lines, compare_runs);
     return STATUS_OK;
 }
 

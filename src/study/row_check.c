@@ -131,6 +131,7 @@ typedef struct equal_columns {
     int column[128];
     size_t count;
     int marked, film, expected;
+    bool usual; /* it has the header of the first table, so that columns have the same numbers */
 } equal_columns;
 
 static equal_columns find_equal_columns(const csv *table)
@@ -151,6 +152,11 @@ static equal_columns find_equal_columns(const csv *table)
     return c;
 }
 
+static bool same_header(const csv *a, const csv *b)
+{
+    return a->header && b->header && a->start[0] == b->start[0] && memcmp(a->raw, b->raw, a->start[0]) == 0;
+}
+
 typedef struct equal_check {
     row_files *files;
     equal_columns *of; /* of each table */
@@ -164,13 +170,14 @@ static const equal_columns *columns_of(const equal_check *c, const csv *table)
     return &c->of[i];
 }
 
-/* The first column of a in which b has another value, or -1. Columns are compared by name only if the tables differ. */
+/* The first column of a in which b has another value, or -1. Columns are looked up by name only if the headers differ. */
 static int first_difference(const equal_check *c, const row_ref *a, const row_ref *b)
 {
     const equal_columns *of = columns_of(c, a->table);
+    const bool alike = a->table == b->table || (of->usual && columns_of(c, b->table)->usual);
     for (size_t i = 0; i < of->count; i++) {
         const int here = of->column[i];
-        const int there = a->table == b->table ? here : csv_column(b->table, a->table->header[here]);
+        const int there = alike ? here : csv_column(b->table, a->table->header[here]);
         const char *x = csv_field(a->table, a->row, here), *y = csv_field(b->table, b->row, there);
         if (strcmp(x, y) != 0 && strcmp(x, "NA") != 0 && strcmp(y, "NA") != 0)
             return here;
@@ -245,8 +252,10 @@ status row_check_quantities(row_files *files, diagnostic *why)
     equal_check c = {files, malloc((files->count + 1) * sizeof *c.of)};
     size_t count = 0;
     status code = sorted && c.of ? STATUS_OK : out_of_memory(why);
-    for (size_t i = 0; code == STATUS_OK && i < files->count; i++)
+    for (size_t i = 0; code == STATUS_OK && i < files->count; i++) {
         c.of[i] = find_equal_columns(files->tables[i]);
+        c.of[i].usual = same_header(files->tables[0], files->tables[i]);
+    }
     THEN(code, skip_marked(&c, sorted, &count, why));
     if (code == STATUS_OK)
         qsort(sorted, count, sizeof *sorted, compare_groups);

@@ -37,21 +37,27 @@ typedef struct cell_rows {
     FILE *out;
 } cell_rows;
 
-/* Known values of one column over the cell's rows. */
-static summary summarize_column(const cell_rows *cell, const char *name)
+/* The values of one column over the cell's rows, NaN where unknown. */
+static void gather(const cell_rows *cell, const char *name)
 {
     const csv *table = NULL;
     int column = -1;
-    size_t count = 0;
     for (size_t i = 0; i < cell->count; i++) {
         if (cell->rows[i]->table != table) {
             table = cell->rows[i]->table;
             column = csv_column(table, name);
         }
-        const double value = csv_field_real(table, cell->rows[i]->row, column);
-        if (!isnan(value))
-            cell->values[count++] = value;
+        cell->values[i] = csv_field_real(table, cell->rows[i]->row, column);
     }
+}
+
+static summary summarize_column(const cell_rows *cell, const char *name)
+{
+    size_t count = 0;
+    gather(cell, name);
+    for (size_t i = 0; i < cell->count; i++)
+        if (!isnan(cell->values[i]))
+            cell->values[count++] = cell->values[i];
     if (count == 0)
         return (summary){0, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     return summarize(cell->values, count);
@@ -59,8 +65,7 @@ static summary summarize_column(const cell_rows *cell, const char *name)
 
 static status find_interval(const cell_rows *cell, const char *name, level_interval *out, diagnostic *why)
 {
-    for (size_t i = 0; i < cell->count; i++)
-        cell->values[i] = row_field_real(cell->rows[i], name);
+    gather(cell, name);
     return level_rows_median(cell->rows, cell->values, cell->count, out, why);
 }
 
