@@ -1,9 +1,10 @@
 #!/bin/bash
-# experiments/aa.sh: can one believe `cuvette study compare`? Compares the program with itself under a load that comes and
-# goes (A/A: every verdict is wrong), then looks for a known difference of 3% with the number of processes that a pilot
-# predicts for a power of 95% (A/B). Prints one line per comparison, separated by tabs, and the numbers of wrong and found.
+# experiments/aa.sh: can one believe `cuvette study compare`? Compares the program with itself under a load that comes
+# and goes (A/A: every verdict is wrong), then looks for a known difference of 3% with the number of processes that a
+# pilot predicts for a power of 95% (A/B). Prints one line per comparison, separated by tabs, and the numbers of wrong
+# and found.
 # TRIES (20) comparisons of each kind; PROCESSES (8) of an A/A comparison. CUVETTE: the program (build/cuvette).
-# About 5 minutes. Exit status 1 if more than 2 in 25 are wrong, or fewer than 4 in 5 found.
+# About 10 minutes. Exit status 1 if more than 2 in 25 are wrong, or fewer than 4 in 5 found.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LC_ALL=C
@@ -55,7 +56,10 @@ for ((try = 1; try <= tries; try++)); do
     # A load on every unit that starts or ends in the middle of every second comparison.
     if ((try % 2)); then
         for ((unit = 0; unit < $(nproc); unit++)); do
-            (sleep 0.$((RANDOM % 10)); exec timeout $((1 + RANDOM % 4)) sh -c 'while :; do :; done') &
+            (
+                sleep 0.$((RANDOM % 10))
+                exec timeout $((1 + RANDOM % 4)) sh -c 'while :; do :; done'
+            ) &
             load+=($!)
         done
     fi

@@ -53,8 +53,10 @@ static char *write_row(const study *s, const scene *setting, bool workers)
                                         .involuntary_switches = 0,
                                         .machine_busy_s = NAN,
                                         .machine_units = 2},
+                              .noise = {NAN, 0.125, 2e9},
                               .hardware = {-1, -1, 5, 0}};
-    study_row row = {.of = s, .cell = 3, .repetition = 2, .order = 17, .film_expected = 0xabd, .made = &made};
+    study_row row = {
+        .of = s, .cell = 3, .repetition = 2, .order = 17, .film_expected = 0xabd, .disturbed = true, .made = &made};
     csv_line line = {0};
     row_columns_header(&line, s, workers ? worker_each_column : row_each_column);
     (workers ? worker_rows_write : row_write)(&line, &row);
@@ -128,6 +130,9 @@ static void rows_record_the_measured_values(void **state)
         {"voluntary_switches", "1"},
         {"involuntary_switches", "0"},
         {"others_share", "NA"},
+        {"steal_share", "0.125"},
+        {"frequency_hz", "2000000000"},
+        {"disturbed", "1"},
         {"cycles", "NA"},
         {"branch_misses", "5"},
         {"cache_misses", "0"},
@@ -145,7 +150,7 @@ static void columns_are_in_the_expected_order(void **state)
     char *header = row_file_header(s, ROWS);
     static const char start[] =
         "study,identity,cell,repetition,warmup,order,time_utc,render.schedule,ball.ior,lamp.position,"
-        "film_hash,film_expected,marked,wall_s,cpu_s,rays_camera,";
+        "film_hash,film_expected,marked,disturbed,wall_s,cpu_s,rays_camera,";
     assert_memory_equal(header, start, sizeof start - 1);
     free(header);
     header = row_file_header(s, WORKER_ROWS);

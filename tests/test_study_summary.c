@@ -159,7 +159,9 @@ static void columns_are_in_the_expected_order(void **state)
         "cut_depth_throughput\ttotal_internal\tfilm_hash\tmarked\texcluded\tbusy_s_mean\tbusy_s_max\twaiting_s_"
         "mean\timbalance\tothers_share\t"
         "worker_cpu_s_sum\tpeak_rss_bytes\tnoise_rms\ttriangles\tinstances\taccel_bytes\tbuild_s\tdrawn\tdrawn_bytes\t"
-        "visibility_s_sum\tmotion_steps\tmotion_s\tfirst_hits.ground\tfirst_hits.ball\tenvironment\n";
+        "visibility_s_sum\tmotion_steps\tmotion_s\tfirst_hits.ground\tfirst_hits.ball\tdisturbed\tundisturbed_"
+        "n\tundisturbed_wall_s_median\t"
+        "undisturbed_wall_s_low\tundisturbed_wall_s_high\tenvironment\n";
     assert_memory_equal(text, header, sizeof header - 1);
     size_t columns = fixture_count(header, "\t");
     assert_int_equal(fixture_count(text, "\t"), 4 * columns);

@@ -8,6 +8,7 @@
 
 #include "measure/clock.h"
 #include "measure/disturbances.h"
+#include "measure/machine_noise.h"
 #include "measure/proc_stat.h"
 #include "measure/small_file.h"
 #include "measure/thread_usage.h"
@@ -39,6 +40,104 @@ static void proc_stat_is_read(void **state)
     assert_near(machine.busy_s, 2.19, 1e-12);
     assert_near(machine.idle_s, 10.5, 1e-12);
     assert_int_equal(machine.units, 2);
+}
+
+/* Two units, 10 ms ticks: in one second 50 ticks of others, 20 of them steal, and 30 of this process. */
+static void noise_is_the_rest_of_the_machine(void **state)
+{
+    (void)state;
+    const noise_reading before = {.wall_s = 10, .busy_s = 100, .steal_s = 5, .own_s = 1, .units = 2};
+    const noise_reading after = {
+        .wall_s = 11, .busy_s = 100.8, .steal_s = 5.2, .own_s = 1.3, .units = 2, .frequency_hz = 2e9};
+    const machine_noise noise = noise_between(&before, &after);
+    assert_true(fabs(noise.others_share - 0.25) < 1e-12);
+    assert_true(fabs(noise.steal_share - 0.1) < 1e-12);
+    assert_true(noise.frequency_hz == 2e9);
+    const noise_reading unknown = {.wall_s = 11, .busy_s = NAN, .steal_s = NAN, .own_s = 1.3, .units = NAN};
+    assert_true(isnan(noise_between(&before, &unknown).others_share));
+    assert_true(isnan(noise_between(&before, &unknown).steal_share));
+}
+
+/* A short interval looks back half a second, a long one to its beginning, whatever readings lie between. */
+static void the_window_looks_back_half_a_second(void **state)
+{
+    (void)state;
+    noise_window w = {.count = 0};
+    assert_true(isnan(noise_window_since(&w, 0, &(noise_reading){.wall_s = 1}).others_share));
+    noise_reading at = {.units = 1, .own_s = 0};
+    for (int i = 0; i <= 3000; i++) { /* others are busy in every second from 1 s to 1.5 s after its start */
+        at.wall_s = 0.001 * i;
+        at.busy_s = floor(at.wall_s) * 0.5 + fmin(at.wall_s - floor(at.wall_s), 0.5);
+        if (i < 3000)
+            noise_window_add(&w, &at);
+        assert_true(w.count <= NOISE_READINGS);
+    }
+    /* At 3 s: the last half second was quiet, the last 0.75 s had a third of use. */
+    assert_true(noise_window_since(&w, 2.999, &at).others_share < 0.13);
+    assert_true(fabs(noise_window_since(&w, 2.25, &at).others_share - 1.0 / 3) < 0.06);
+}
+
+static void rules_never_look_at_times(void **state)
+{
+    (void)state;
+    const noise_rule usual = noise_rule_default(), all = {0.1, 0.01, 0.2}, none = {NAN, NAN, NAN};
+    static const struct {
+        machine_noise noise;
+        bool usual, all;
+    } cases[] = {
+        {{0.05, 0, 2e9}, false, false},  {{0.051, 0, 2e9}, true, false}, {{0.2, 0, 2e9}, true, true},
+        {{0, 0.02, 2e9}, false, true},   {{0, 0, 1.5e9}, false, true},   {{0, 0, 1.7e9}, false, false},
+        {{NAN, NAN, NAN}, false, false},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        bool broken[NOISE_KINDS];
+        assert_int_equal(noise_disturbs(&usual, &cases[i].noise, 2e9, broken), cases[i].usual);
+        assert_int_equal(broken[NOISE_OTHERS], cases[i].usual);
+        assert_int_equal(noise_disturbs(&all, &cases[i].noise, 2e9, NULL), cases[i].all);
+        assert_false(noise_disturbs(&none, &cases[i].noise, 2e9, NULL));
+    }
+    assert_false(noise_disturbs(&all, &(machine_noise){0, 0, 1e9}, 0, NULL)); /* no usual frequency is known */
+}
+
+static void noise_is_read_from_any_root(void **state)
+{
+    (void)state;
+    char root[] = "/tmp/cuvette-noise-XXXXXX", line[1600];
+    assert_non_null(mkdtemp(root));
+    snprintf(line, sizeof line,
+             "mkdir -p %s/proc %s/sys/devices/system/cpu/cpu0/cpufreq %s/sys/devices/system/cpu/cpu1/cpufreq && "
+             "echo 'cpu  100 0 50 800 50 0 0 25 0 0\ncpu0 1\ncpu1 1' >%s/proc/stat && "
+             "echo 2000000 >%s/sys/devices/system/cpu/cpu0/cpufreq/scaling_cur_freq && "
+             "echo 3000000 >%s/sys/devices/system/cpu/cpu1/cpufreq/scaling_cur_freq",
+             root, root, root, root, root, root);
+    assert_int_equal(system(line), 0);
+    const noise_reading r = noise_read(root);
+    const double tick_s = 1.0 / (double)sysconf(_SC_CLK_TCK);
+    assert_true(fabs(r.busy_s - 175 * tick_s) < 1e-9 && fabs(r.steal_s - 25 * tick_s) < 1e-9);
+    assert_true(r.units == 2 && r.frequency_hz == 2.5e9);
+    snprintf(line, sizeof line, "rm -r %s/sys %s/proc/stat && echo 'cpu MHz : 2500.123' >%s/proc/cpuinfo", root, root,
+             root);
+    assert_int_equal(system(line), 0);
+    const noise_reading other = noise_read(root);
+    assert_true(isnan(other.busy_s) && isnan(other.units) && other.frequency_hz == 2.5e9);
+    snprintf(line, sizeof line, "rm -r %s", root);
+    assert_int_equal(system(line), 0);
+}
+
+static void every_disturbance_has_advice(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"governor powersave",
+                                        "turbo on",
+                                        "threads share cores (SMT on)",
+                                        "load 3.2",
+                                        "control group limits the process to 1.5 units",
+                                        "swap in use, 12 MiB",
+                                        "others use 40% of the machine",
+                                        "built with a sanitizer"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        assert_true(strlen(usage_advice(texts[i])) > 10);
+    assert_string_equal(usage_advice("something else"), "");
 }
 
 static void proc_stat_of_other_machines(void **state)
@@ -339,6 +438,11 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(proc_stat_is_read),
+        cmocka_unit_test(noise_is_the_rest_of_the_machine),
+        cmocka_unit_test(the_window_looks_back_half_a_second),
+        cmocka_unit_test(rules_never_look_at_times),
+        cmocka_unit_test(noise_is_read_from_any_root),
+        cmocka_unit_test(every_disturbance_has_advice),
         cmocka_unit_test(proc_stat_of_other_machines),
         cmocka_unit_test(fields_of_proc_files_are_found),
         cmocka_unit_test(the_share_of_other_processes_is_computed),

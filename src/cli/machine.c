@@ -3,6 +3,7 @@
 #include "report/json.h"
 #include "cli/options.h"
 #include "cli/terminal.h"
+#include "measure/usage.h"
 #include "report/machine.h"
 #include "report/wrap.h"
 #include <stdio.h>
@@ -21,6 +22,12 @@ static const command_form form = {
     .about = "Describe this machine: processors and caches, resolution and overhead of the clocks, the vector "
              "instruction set in use, and what could currently disturb a measurement.",
 };
+
+static void print_disturbance(int columns, const char *label, const char *text)
+{
+    const char *advice = usage_advice(text);
+    wrap_row(stdout, columns, label, "%s%s%s", text, advice[0] ? ": " : "", advice);
+}
 
 static void print_text(const machine_account *a)
 {
@@ -43,7 +50,7 @@ static void print_text(const machine_account *a)
     size_t i;
     json_t *line;
     json_array_foreach(a->disturbances, i, line)
-        wrap_row(stdout, columns, i == 0 ? "disturbances    " : "                ", "%s", json_string_value(line));
+        print_disturbance(columns, i == 0 ? "disturbances    " : "                ", json_string_value(line));
     if (json_array_size(a->disturbances) == 0)
         wrap_row(stdout, columns, "disturbances    ", "none found");
 }

@@ -20,14 +20,14 @@ typedef struct getopt_table {
     char short_options[2 * OPTIONS_MAX + 8];
 } getopt_table;
 
-static void add(getopt_table *table, const char *name, int key, bool takes_value)
+static void add(getopt_table *table, const char *name, int key, int takes_value)
 {
-    table->options[table->count] = (struct option){name, takes_value ? required_argument : no_argument, NULL, key};
+    table->options[table->count] = (struct option){name, takes_value, NULL, key};
     table->names[table->count++] = name;
     if (key > ' ' && key < 127) {
         size_t end = strlen(table->short_options);
         table->short_options[end] = (char)key;
-        if (takes_value)
+        if (takes_value == required_argument)
             table->short_options[end + 1] = ':';
     }
 }
@@ -37,10 +37,13 @@ static void make_table(const struct argp *argp, unsigned flags, getopt_table *ta
     memset(table, 0, sizeof *table);
     strcpy(table->short_options, flags & ARGP_IN_ORDER ? "+:" : ":");
     for (const struct argp_option *o = argp->options; o && o->name && table->count < OPTIONS_MAX; o++)
-        add(table, o->name, o->key, o->arg != NULL);
-    add(table, "help", KEY_HELP, false);
-    add(table, "usage", KEY_USAGE, false);
-    add(table, "version", 'V', false);
+        add(table, o->name, o->key,
+            !o->arg                          ? no_argument
+            : o->flags & OPTION_ARG_OPTIONAL ? optional_argument
+                                             : required_argument);
+    add(table, "help", KEY_HELP, no_argument);
+    add(table, "usage", KEY_USAGE, no_argument);
+    add(table, "version", 'V', no_argument);
 }
 
 static const char *name_of_key(const getopt_table *table, int key)
@@ -189,7 +192,9 @@ status command_form_read(const command_form *form, int argc, char **argv, void *
     const unsigned flags = form->ends_at_argument ? ARGP_IN_ORDER : 0;
     for (int i = 0; form->options && form->options[i].name && i < OPTIONS_MAX; i++) {
         const command_option *o = &form->options[i];
-        options[i] = (struct argp_option){o->name, o->letter ? o->letter : KEY_FIRST + i, o->form, 0, o->purpose, 0};
+        options[i] = (struct argp_option){o->name,    o->letter ? o->letter : KEY_FIRST + i,
+                                          o->form,    o->optional ? OPTION_ARG_OPTIONAL : 0,
+                                          o->purpose, 0};
     }
     struct argp argp = {.options = options, .parser = take_key, .args_doc = form->synopsis};
     TRY(check(&argp, flags, argc, argv, why));

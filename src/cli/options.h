@@ -19,6 +19,7 @@ typedef struct command_option {
     size_t at;
     int64_t lowest, highest; /* range of an option_integer */
     const char *parameter;   /* scene parameter that the option sets, or NULL */
+    bool optional;           /* the value may be missing (--name or --name=VALUE); take gets NULL then */
 } command_option;
 
 /* Initialisers of take and at for one field of the request, and the usual functions with the field's type. */

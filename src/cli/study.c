@@ -7,6 +7,7 @@
 #include "cli/study_notes.h"
 #include "cli/study_request.h"
 #include "cli/terminal.h"
+#include "measure/usage.h"
 #include "study/excluded.h"
 #include "study/spread.h"
 #include "study/study.h"
@@ -96,6 +97,24 @@ static void note_rows(const study *s, const study_request *request, const study_
     }
 }
 
+static void note_disturbance(void *context, const char *text)
+{
+    char line[400];
+    const char *advice = usage_advice(text);
+    (void)context;
+    snprintf(line, sizeof line, "this machine: %s%s%s", text, advice[0] ? ": " : "", advice);
+    terminal_note(line);
+}
+
+/* Once per command: what disturbs measurements on this machine, and what to do. */
+static void note_machine(void)
+{
+    static bool noted;
+    if (!noted)
+        usage_disturbances(0, note_disturbance, NULL);
+    noted = true;
+}
+
 /* Prints notes before anything is measured, unless nothing will be. */
 static status print_notes(const study *s, const study_request *request, diagnostic *why)
 {
@@ -104,6 +123,7 @@ static status print_notes(const study *s, const study_request *request, diagnost
     if (progress.cells_done == progress.cells)
         return STATUS_OK;
     note_rows(s, request, &progress);
+    note_machine();
     study_notes_print_file(s);
     return study_notes_print_cells(s, why);
 }
@@ -114,6 +134,12 @@ static status count_rows(const study *s, const study_request *request, size_t *r
     TRY(study_status(s, request->results, &progress, why));
     *rows = progress.rows;
     return STATUS_OK;
+}
+
+static void print_news(void *context, const char *text)
+{
+    (void)context;
+    terminal_note(text);
 }
 
 /* Measures what is missing, in fresh processes for a study that has some, or with --against. *rows: the new ones. */
@@ -127,6 +153,8 @@ static status measure(const study *s, const study_request *request, size_t *rows
                                    .any_environment = request->any_environment,
                                    .process = (long)request->process,
                                    .progress = terminal,
+                                   .wait_quiet_s = request->wait_quiet_s,
+                                   .news = request->quiet || request->process ? NULL : print_news,
                                    .stop = terminal_stop_requested};
     if (request->process || (s->processes == 1 && !request->against))
         return study_run(s, &options, rows, why);
@@ -215,6 +243,8 @@ static status print_status(const study *s, const study_request *request, diagnos
     printf("%s: %zu of %zu cells done, %zu rows and %zu warm-ups in %s/%s, %zu marked\n", s->name, progress.cells_done,
            progress.cells, progress.rows - progress.warmups, progress.warmups, request->results, s->name,
            progress.rows_marked);
+    if (progress.rows_disturbed)
+        printf("%s: %zu of these rows are disturbed by the study's rule\n", s->name, progress.rows_disturbed);
     if (progress.rows_elsewhere)
         printf("%s: %zu other rows, of other environments than this one (%s), are not counted\n", s->name,
                progress.rows_elsewhere, progress.environment);

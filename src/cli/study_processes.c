@@ -5,6 +5,7 @@
 #include "cli/options.h"
 #include "cli/study_commands.h"
 #include "cli/terminal.h"
+#include "measure/clock.h"
 #include <errno.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -52,7 +53,7 @@ static status ended(const study *s, const char *program, long process, int code,
 static status run_process(const study *s, const study_request *request, const char *program, const char *results,
                           long process, diagnostic *why)
 {
-    char number[32], processes[32], shard[64];
+    char number[32], processes[32], shard[64], wait[64];
     const char *arguments[ARGUMENTS_MAX] = {"cuvette",   "study", "run",         "--results", results,
                                             "--process", number,  "--processes", processes};
     size_t count = 9;
@@ -63,6 +64,9 @@ static status run_process(const study *s, const study_request *request, const ch
         arguments[count++] = shard;
     if (request->by_repetition)
         arguments[count++] = "--by=repetition";
+    snprintf(wait, sizeof wait, "--wait-quiet=%g", request->wait_quiet_s);
+    if (request->wait_quiet_s > 0)
+        arguments[count++] = wait;
     if (request->any_environment)
         arguments[count++] = "--any-environment";
     if (request->quiet)
@@ -79,19 +83,48 @@ static status run_process(const study *s, const study_request *request, const ch
     return ended(s, program, process, wait_for_end(pid), why);
 }
 
+/* Each process would repeat the news of the one before; so their rows are counted instead, once per minute. */
+typedef struct disturbed_rows {
+    size_t rows;
+    double next_s;
+} disturbed_rows;
+
+static status note_disturbed(const study *s, const study_request *request, disturbed_rows *last, diagnostic *why)
+{
+    char text[300];
+    study_progress now;
+    if (request->quiet)
+        return STATUS_OK;
+    TRY(study_status(s, request->results, &now, why));
+    const bool more = now.rows_disturbed > last->rows;
+    last->rows = now.rows_disturbed;
+    if (!more || clock_wall_s() < last->next_s)
+        return STATUS_OK;
+    last->next_s = clock_wall_s() + 60;
+    snprintf(text, sizeof text,
+             "%s: %zu of %zu rows are disturbed: see others_share and steal_share in the rows; stop other programs, or "
+             "measure with --wait-quiet",
+             s->name, now.rows_disturbed, now.rows - now.warmups);
+    terminal_note(text);
+    return STATUS_OK;
+}
+
 status study_run_processes(const study *s, const study_request *request, diagnostic *why)
 {
     static const char own[] = "/proc/self/exe";
     char *against = request->against ? study_against_folder(request) : NULL;
     if (request->against && !against)
         return out_of_memory(why);
-    status code = STATUS_OK;
+    study_progress before = {.rows_disturbed = 0};
+    status code = study_status(s, request->results, &before, why);
+    disturbed_rows disturbed = {.rows = before.rows_disturbed};
     for (long process = 1; process <= study_processes(s) && code == STATUS_OK; process++) {
         const bool other_first = against && random_at(s->seed, (uint32_t)process, 0, 0, 0).word[0] & 1;
         for (int turn = 0; turn < (against ? 2 : 1) && code == STATUS_OK; turn++)
             code = against && (turn == 0) == other_first
                        ? run_process(s, request, request->against, against, process, why)
                        : run_process(s, request, own, request->results, process, why);
+        THEN(code, note_disturbed(s, request, &disturbed, why));
     }
     free(against);
     return code;

@@ -37,6 +37,18 @@ static status take_by(const command_option *o, void *context, const char *value,
     return STATUS_OK;
 }
 
+static status take_wait(const command_option *o, void *context, const char *value, diagnostic *why)
+{
+    study_request *request = context;
+    (void)o;
+    request->wait_quiet_s = 60;
+    if (value && (!number_parse_real(value, &request->wait_quiet_s) || !(request->wait_quiet_s > 0) ||
+                  request->wait_quiet_s > 86400))
+        return options_wrong("--wait-quiet", value, why, "give seconds, up to a day, such as 60",
+                             "invalid time '%.64s'", value);
+    return STATUS_OK;
+}
+
 static void take_file(void *request, const char *file)
 {
     study_request *r = request;
@@ -61,6 +73,9 @@ static const command_option run_options[] = {
     {"against", 0, "PROGRAM",
      "alternate with PROGRAM, another build of cuvette, a fresh process each; its rows are written to DIR-against",
      OPTION_FILLS(option_text, study_request, against)},
+    {"wait-quiet", 0, "SECONDS",
+     "before each repetition, wait until other processes, steal and frequency do not disturb; at most 60 s by default",
+     .take = take_wait, .optional = true},
     {"dry-run", 'n', NULL, "print what would be measured and kept, and about how long it takes; write nothing",
      OPTION_FILLS(option_flag, study_request, dry_run)},
     {"quiet", 'q', NULL, "print errors only", OPTION_FILLS(option_flag, study_request, quiet)},

@@ -28,6 +28,7 @@ typedef struct study_request {
     const char *environment;    /* of the summary: a key, "main", or NULL for all */
     const char *columns;        /* of --interval, or NULL */
     const char *against;        /* of a run: the program to alternate with, or NULL */
+    double wait_quiet_s;        /* of a run; 0: do not wait */
     int64_t process, processes; /* of a run: see study_options; processes: 0: those of the study file */
     long shard, shards;
     bool by_repetition, any_environment, quiet, dry_run;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/isa.h"
+#include "measure/machine_noise.h"
 #include "measure/usage.h"
 #include "render/core/renderer.h"
 
@@ -16,6 +17,7 @@ typedef struct job_account {
     size_t count;             /* number of finished frames */
     double *wall_s, *cpu_s;   /* of each finished frame, in order */
     usage spent;              /* over all frames, if the job measures it */
+    machine_noise noise;      /* over all frames, or NOISE_WINDOW_S before their end, if the job measures it */
     hardware_counts hardware; /* over all frames, including pool threads, if the job measures it */
     int64_t ended_ms;         /* end of the last frame, milliseconds since 1970 UTC */
     uint64_t film_hash;       /* 0: not computed yet; use job_account_hash */

@@ -15,6 +15,7 @@ struct job {
     renderer *renderer;
     topology *machine;          /* NULL until needed: reading it takes longer than many frames */
     hardware_counter *hardware; /* NULL unless measured */
+    noise_window noise;         /* empty unless measured */
     shelf meshes;               /* empty unless keeps_meshes */
     atomic_bool cancelled;
 };
@@ -26,8 +27,11 @@ status job_create(const job_settings *settings, job **out, diagnostic *why)
     if (!j)
         return out_of_memory(why);
     j->settings = *settings;
-    if (settings->measured)
+    if (settings->measured) {
         j->hardware = hardware_counter_create(); /* before the pool: it counts only threads that start after it */
+        const noise_reading first = noise_read("");
+        noise_window_add(&j->noise, &first);
+    }
     status code = STATUS_OK;
     if (settings->level)
         j->level = *settings->level;
@@ -249,16 +253,34 @@ static int64_t now_ms(void)
     return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
+/* The noise since a time; the window gets a reading. */
+static machine_noise noise_since(job *j, double since_s)
+{
+    const noise_reading now = noise_read("");
+    const machine_noise noise = noise_window_since(&j->noise, since_s, &now);
+    noise_window_add(&j->noise, &now);
+    return noise;
+}
+
+machine_noise job_noise(job *j)
+{
+    return noise_since(j, INFINITY);
+}
+
 /* The counters are read first and last, so that they cover only the frames. */
 static status measure_all(work *w, const scene *s, size_t count, bool maps, job_account *a, diagnostic *why)
 {
-    const job *j = w->of;
+    job *j = w->of;
     const bool measured = j->settings.measured;
     hardware_counts counted = a->hardware;
     usage used = a->spent;
     if (j->settings.fresh_peak)
         usage_forget_peak();
+    double began_s = NAN;
     if (measured) {
+        const noise_reading before = noise_read("");
+        noise_window_add(&j->noise, &before);
+        began_s = before.wall_s;
         used = usage_now();
         counted = hardware_counter_read(j->hardware);
     }
@@ -268,6 +290,7 @@ static status measure_all(work *w, const scene *s, size_t count, bool maps, job_
     if (measured) {
         a->hardware = hardware_counts_since(j->hardware, &counted);
         a->spent = usage_since(&used);
+        a->noise = noise_since(j, began_s);
         a->film_hash = a->result ? job_account_hash(a) : 0;
     }
     a->ended_ms = now_ms();

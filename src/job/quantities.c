@@ -177,8 +177,14 @@ static size_t solids_of(const job_account *a)
  Q(involuntary_switches, "", COUNT, OVER, ROW, "involuntary_switches", NULL, \
    "involuntary context switches of the process during the frame", a->spent.involuntary_switches) \
  Q(others_share, "", REAL, OVER, ROW, "others_share", NULL, \
-   "share of the machine used by other processes during the frame, 0..1; imprecise below 0.1 s", \
-   usage_others_share(&a->spent)) \
+   "share of the machine used by other processes, 0..1: during the frame, or the last 0.5 s before its end if it is " \
+   "shorter; includes steal_share", \
+   a->noise.others_share) \
+ Q(steal_share, "", REAL, OVER, ROW, "steal_share", NULL, \
+   "share of the machine that a hypervisor withheld, 0..1, in the same time", a->noise.steal_share) \
+ Q(frequency_hz, "Hz", REAL, OVER, ROW, "frequency_hz", NULL, \
+   "clock frequency at the end of the frame, mean over at most 16 units; NA if the system does not report it", \
+   a->noise.frequency_hz) \
  Q(cycles, "", COUNT, OVER, ROW, "hardware.cycles", NULL, \
    "processor cycles of the process during the frame, user mode (hardware counter)", a->hardware.cycles) \
  Q(instructions, "", COUNT, OVER, ROW, "hardware.instructions", NULL, \

@@ -157,3 +157,23 @@ void usage_disturbances(double sample_s, void (*line)(void *context, const char 
     if (!isnan(share) && share >= 0.02)
         say(&to, "others use %ld%% of the machine", lround(100.0 * share));
 }
+
+const char *usage_advice(const char *disturbance)
+{
+    static const char *const advice[][2] = {
+        {"governor ", "set the governor performance (cpupower frequency-set -g performance)"},
+        {"turbo on", "the frequency depends on load and heat; switch turbo off to compare small differences"},
+        {"threads share cores", "pin workers to cores (render.pin: scatter), or switch SMT off"},
+        {"virtual machine", "look at steal_share in the rows; repeat at other times"},
+        {"control group", "use at most that many threads, or raise the limit"},
+        {"load ", "stop other programs, or measure with --wait-quiet"},
+        {"swap in use", "close programs that use much memory"},
+        {"built without", "measure with make (config=release)"},
+        {"built with a sanitizer", "measure with make (config=release)"},
+        {"others use", "stop other programs, or measure with --wait-quiet"},
+    };
+    for (size_t i = 0; i < sizeof advice / sizeof *advice; i++)
+        if (strncmp(disturbance, advice[i][0], strlen(advice[i][0])) == 0)
+            return advice[i][1];
+    return "";
+}

@@ -46,6 +46,9 @@ bool proc_stat_parse(const char *text, double ticks_per_s, proc_stat *out)
     double idle = ticks[IDLE] + ticks[IOWAIT];
     if (!found || busy + idle == 0.0 || !(ticks_per_s > 0.0))
         return false;
-    *out = (proc_stat){.busy_s = busy / ticks_per_s, .idle_s = idle / ticks_per_s, .units = units};
+    *out = (proc_stat){.busy_s = busy / ticks_per_s,
+                       .idle_s = idle / ticks_per_s,
+                       .steal_s = ticks[STEAL] / ticks_per_s,
+                       .units = units};
     return true;
 }

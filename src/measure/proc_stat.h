@@ -5,9 +5,10 @@
 #include <stdbool.h>
 
 typedef struct proc_stat {
-    double busy_s; /* user, nice, system, irq, softirq and steal, sum over all units, since boot */
-    double idle_s; /* idle and iowait */
-    int units;     /* lines cpu0, cpu1, ...: processing units online */
+    double busy_s;  /* user, nice, system, irq, softirq and steal, sum over all units, since boot */
+    double idle_s;  /* idle and iowait */
+    double steal_s; /* in which the hypervisor ran others; part of busy_s */
+    int units;      /* lines cpu0, cpu1, ...: processing units online */
 } proc_stat;
 
 /* text is the content of the file; ticks_per_s is sysconf(_SC_CLK_TCK). False when it has no line "cpu " with at least

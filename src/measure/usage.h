@@ -40,3 +40,6 @@ void hardware_counter_destroy(hardware_counter *counter);
  * on", "load 3.2", "others use 40% of the machine"), never if nothing is found. The load is observed for sample_s
  * seconds (0: not at all, and nothing is reported about other processes). */
 void usage_disturbances(double sample_s, void (*line)(void *context, const char *text), void *context);
+
+/* What to do about such a disturbance; "" if nothing is known to help. Static text. */
+const char *usage_advice(const char *disturbance);

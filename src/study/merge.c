@@ -36,10 +36,8 @@ static void list_table(const row_files *files, const csv *of, merged_line *lines
 {
     const int run = csv_column(of, "run");
     for (size_t row = 0; row < of->row_count; row++, ++*count)
-        lines[*count] = (merged_line){.of = of,
-                                      .row = row,
-                                      .position = *count,
-                                      .run = runs_find(files->runs, csv_field(of, row, run))};
+        lines[*count] = (merged_line){
+            .of = of, .row = row, .position = *count, .run = runs_find(files->runs, csv_field(of, row, run))};
 }
 
 /* Whether two files have lines of one run, so that lines may be there twice. Unknown runs count as one. */

@@ -55,6 +55,8 @@ status progress_index_add(progress_index *l, const progress_index_entry *entry, 
         if (!room_for_one(&cell->wall_s, cell->counted, sizeof *cell->wall_s))
             return out_of_memory(why);
         cell->wall_s[cell->counted++] = entry->wall_s;
+        cell->disturbed += entry->disturbed;
+        l->disturbed += entry->disturbed;
     }
     TRY(expect_film(l, entry, why));
     cell->rows++;
@@ -74,7 +76,7 @@ status progress_index_add(progress_index *l, const progress_index_entry *entry, 
 /* The columns that the index reads, of one table. */
 typedef struct index_columns {
     const csv *table;
-    int film_hash, wall_s;
+    int film_hash, wall_s, disturbed;
     bool of_other_shard;
 } index_columns;
 
@@ -100,7 +102,7 @@ static status add_rows(progress_index *l, const row_files *files, diagnostic *wh
         const row_ref *ref = &files->rows[i];
         if (ref->table != at.table)
             at = (index_columns){ref->table, csv_column(ref->table, "film_hash"), csv_column(ref->table, "wall_s"),
-                                 is_of_other_shard(l, files, ref->table)};
+                                 csv_column(ref->table, "disturbed"), is_of_other_shard(l, files, ref->table)};
         if (ref->run < 0)
             build = hash_text(ref->environment);
         else if (ref->run != last_run)
@@ -111,6 +113,7 @@ static status add_rows(progress_index *l, const row_files *files, diagnostic *wh
             &(progress_index_entry){.cell = ref->cell,
                                     .repetition = ref->repetition,
                                     .warmup = ref->warmup,
+                                    .disturbed = strcmp(csv_field(ref->table, ref->row, at.disturbed), "1") == 0,
                                     .film_hash = strtoull(csv_field(ref->table, ref->row, at.film_hash), NULL, 16),
                                     .build = build,
                                     .wall_s = csv_field_real(ref->table, ref->row, at.wall_s),
@@ -182,6 +185,8 @@ bool progress_index_cell_done(const progress_index *l, size_t cell)
     const progress_index_cell *at = &l->cells[cell];
     if (at->counted >= (size_t)progress_index_most(l))
         return true;
+    if (s->undisturbed > 0)
+        return at->counted - at->disturbed >= (size_t)progress_index_least(l);
     if (at->counted < (size_t)progress_index_least(l) || s->relative_width <= 0)
         return false;
     summary walls = summarize(at->wall_s, at->counted); /* safe to sort in place */
@@ -201,6 +206,7 @@ status study_status(const study *s, const char *results, study_progress *out, di
                             .rows = l->rows - l->elsewhere,
                             .warmups = l->warmups,
                             .rows_marked = l->marked,
+                            .rows_disturbed = l->disturbed,
                             .rows_elsewhere = l->elsewhere,
                             .rows_other_cells = l->other_cells,
                             .faults = l->fault_count,

@@ -12,6 +12,7 @@ typedef struct progress_index_expected {
 
 typedef struct progress_index_cell {
     size_t rows, counted, marked; /* counted: repetitions of the environment that are not warm-ups; rows: all */
+    size_t disturbed;             /* of the counted rows */
     long next_repetition;         /* one more than the highest existing number */
     /* Of the first row of each build, stored at the first of the cells that share one film (study_cell_film). */
     progress_index_expected *film;
@@ -24,7 +25,7 @@ typedef struct progress_index {
     char environment[ENVIRONMENT_KEY]; /* whose rows count; "": all */
     long shard, shards;                /* as in the filter */
     progress_index_cell *cells;
-    size_t cell_count, rows, marked, warmups;
+    size_t cell_count, rows, marked, warmups, disturbed;
     size_t elsewhere;                       /* rows of other environments */
     size_t other_cells;                     /* rows of cells that the study does not have */
     size_t fault_count;                     /* rows that fail a check, or are missing (study/row_files.h) */
@@ -36,7 +37,7 @@ typedef struct progress_index {
 typedef struct progress_index_entry {
     size_t cell;
     long repetition;
-    bool warmup;
+    bool warmup, disturbed;
     uint64_t film_hash, build;
     double wall_s;
     const char *environment;

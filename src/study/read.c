@@ -27,6 +27,7 @@
 #include "study/read_grid.h"
 #include "study/reference.h"
 #include <libgen.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -135,14 +136,60 @@ static status read_interval_rule(study *s, const document *d, const node *n, dia
     return STATUS_OK;
 }
 
+/* {undisturbed: 6, max: 20} */
+static status read_undisturbed(study *s, const document *d, const node *n, diagnostic *why)
+{
+    static const char *const keys[] = {"undisturbed", "max"};
+    const node *max = node_get(n, "max");
+    int64_t least = 0, most = 0;
+    TRY(node_check_keys(d, n, keys, COUNT(keys), why));
+    TRY(read_integer(d, node_get(n, "undisturbed"), "undisturbed", 1, STUDY_REPETITIONS_MAX, &least, why));
+    if (!max)
+        return node_error(d, n, why, "write {undisturbed: 6, max: 20}", "repetitions has no max");
+    TRY(read_integer(d, max, "max", 1, STUDY_REPETITIONS_MAX, &most, why));
+    if (most < least)
+        return node_error(d, max, why, "let max be at least undisturbed", "max %lld is less than undisturbed %lld",
+                          (long long)most, (long long)least);
+    s->repetitions_min = s->undisturbed = (long)least;
+    s->repetitions_max = (long)most;
+    return STATUS_OK;
+}
+
 static status read_repetitions(study *s, const document *d, const node *n, diagnostic *why)
 {
     int64_t value = REPETITIONS_DEFAULT;
     if (n && n->kind == NODE_MAP)
-        return read_interval_rule(s, d, n, why);
+        return node_get(n, "undisturbed") ? read_undisturbed(s, d, n, why) : read_interval_rule(s, d, n, why);
     status code = read_integer(d, n, "repetitions", 1, STUDY_REPETITIONS_MAX, &value, why);
     s->repetitions_min = s->repetitions_max = (long)value;
     return code;
+}
+
+static status read_share(const document *d, const node *n, const char *name, double *out, diagnostic *why)
+{
+    if (!n)
+        return STATUS_OK;
+    if (n->kind != NODE_SCALAR || !number_parse_real(n->text, out) || *out < 0 || *out > 1)
+        return node_error(d, n, why, "write a number from 0 to 1", "%s is not a share", name);
+    return STATUS_OK;
+}
+
+/* {others_share: 0.05, steal_share: 0.01, frequency_drop: 0.1} */
+static status read_noise_rule(study *s, const document *d, const node *n, diagnostic *why)
+{
+    static const char *const keys[] = {"others_share", "steal_share", "frequency_drop"};
+    s->disturbed = noise_rule_default();
+    if (!n)
+        return STATUS_OK;
+    if (n->kind != NODE_MAP)
+        return node_error(d, n, why, "write {others_share: 0.05}", "disturbed is not a map");
+    double *const parts[] = {&s->disturbed.others_share, &s->disturbed.steal_share, &s->disturbed.frequency_drop};
+    TRY(node_check_keys(d, n, keys, COUNT(keys), why));
+    for (size_t i = 0; i < COUNT(keys); i++) {
+        *parts[i] = NAN;
+        TRY(read_share(d, node_get(n, keys[i]), keys[i], parts[i], why));
+    }
+    return STATUS_OK;
 }
 
 static status read_processes(study *s, const document *d, const node *n, diagnostic *why)
@@ -240,8 +287,8 @@ static status check_loads(void *context, const study *s, size_t cell, scene *own
 
 static status read_root(study *s, const document *d, const void *context, diagnostic *why)
 {
-    static const char *const keys[] = {"study",       "title",     "scene",   "set",   "grid", "reference",
-                                       "repetitions", "processes", "warmups", "order", "keep"};
+    static const char *const keys[] = {"study",       "title",     "scene",     "set",     "grid",  "reference",
+                                       "repetitions", "processes", "disturbed", "warmups", "order", "keep"};
     static status (*const checks[])(const study *s, diagnostic *why) = {grid_check_cells, reference_check,
                                                                         cell_tables_check};
     const study_guard *guard = context;
@@ -255,6 +302,7 @@ static status read_root(study *s, const document *d, const void *context, diagno
     TRY(node_check_keys(d, root, keys, COUNT(keys), why));
     TRY(read_names(s, d, root, why));
     TRY(read_repetitions(s, d, node_get(root, "repetitions"), why));
+    TRY(read_noise_rule(s, d, node_get(root, "disturbed"), why));
     TRY(read_processes(s, d, node_get(root, "processes"), why));
     TRY(read_order(s, d, node_get(root, "warmups"), node_get(root, "order"), why));
     TRY(read_keep(s, d, node_get(root, "keep"), why));

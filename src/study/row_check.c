@@ -170,7 +170,8 @@ static const equal_columns *columns_of(const equal_check *c, const csv *table)
     return &c->of[i];
 }
 
-/* The first column of a in which b has another value, or -1. Columns are looked up by name only if the headers differ. */
+/* The first column of a in which b has another value, or -1. Columns are looked up by name only if the headers differ.
+ */
 static int first_difference(const equal_check *c, const row_ref *a, const row_ref *b)
 {
     const equal_columns *of = columns_of(c, a->table);

@@ -9,9 +9,9 @@ typedef enum column_type { ANY, COUNTED, SWITCH, REAL, POSITIVE, HASHED, LISTED,
 static const struct {
     const char *name;
     column_type type;
-} own[] = {{"cell", COUNTED},   {"repetition", COUNTED},   {"warmup", SWITCH},  {"order", COUNTED},
-           {"time_utc", TIME},  {"film_expected", HASHED}, {"marked", SWITCH},  {"definition", HASHED},
-           {"worker", COUNTED}, {"film_hash", HASHED},     {"wall_s", POSITIVE}};
+} own[] = {{"cell", COUNTED},      {"repetition", COUNTED},   {"warmup", SWITCH},    {"order", COUNTED},
+           {"time_utc", TIME},     {"film_expected", HASHED}, {"marked", SWITCH},    {"disturbed", SWITCH},
+           {"definition", HASHED}, {"worker", COUNTED},       {"film_hash", HASHED}, {"wall_s", POSITIVE}};
 
 static column_type type_of_quantity(const quantity *q)
 {

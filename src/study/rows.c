@@ -95,7 +95,10 @@ static void put_time(csv_line *line, const study_row *r)
       "pool, schedule, tile, pin, hierarchies)",                                                                       \
       csv_hash(line, r->film_expected))                                                                                \
     X("marked", "", "1: film_hash differs from film_expected; do not use this row",                                    \
-      csv_count(line, job_account_hash(r->made) != r->film_expected))
+      csv_count(line, job_account_hash(r->made) != r->film_expected))                                                  \
+    X("disturbed", "",                                                                                                 \
+      "1: others_share, steal_share or frequency_hz breaks the study's rule (key disturbed of the study file)",        \
+      csv_count(line, r->disturbed))
 
 #define DESCRIBE(name, unit, meaning, put) take(context, &(row_column){name, unit, meaning});
 #define PUT(name, unit, meaning, put) put;

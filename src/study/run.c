@@ -6,6 +6,7 @@
 #include "study/order.h"
 #include "study/row_files.h"
 #include "study/rows.h"
+#include "study/run_noise.h"
 #include "study/run_state.h"
 #include <stdlib.h>
 #include <string.h>
@@ -53,6 +54,7 @@ static status append_row(run *r, const study_row *row, diagnostic *why)
     const progress_index_entry entry = {.cell = row->cell,
                                         .repetition = row->repetition,
                                         .warmup = row->warmup,
+                                        .disturbed = row->disturbed,
                                         .film_hash = row->made->film_hash,
                                         .build = r->build,
                                         .wall_s = row->made->result->wall_s,
@@ -99,6 +101,7 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
     job_account made = {.result = NULL};
     status code = study_cell_scene(r->s, cell, &setting, why);
     THEN(code, run_load(r, setting, why));
+    THEN(code, run_noise_wait(r, why));
     THEN(code, run_render(r, setting, &(render_options){.usage = r->s->keep_workers}, &made, why));
     if (code == STATUS_OK) {
         const study_row row = {.of = r->s,
@@ -107,6 +110,7 @@ static status measure(run *r, size_t cell, bool warmup, diagnostic *why)
                                .warmup = warmup,
                                .order = r->row_number,
                                .film_expected = progress_index_film(r->done, cell, r->build, made.film_hash),
+                               .disturbed = run_noise_judge(r, &made.noise),
                                .run = r->id,
                                .process = r->process,
                                .made = &made};

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "measure/machine_noise.h"
 #include "scene/model/inert/note.h"
 #include "scene/model/open.h"
 #include <stdbool.h>
@@ -52,6 +53,8 @@ typedef struct study {
     long repetitions_min, repetitions_max; /* without warm-ups */
     double relative_width; /* stop after min repetitions as soon as the 95% interval of the mean wall time is narrower
                               than this fraction of it; 0: always max */
+    long undisturbed;      /* measure up to repetitions_max until that many rows are not disturbed; 0: no such rule */
+    noise_rule disturbed;  /* which rows are */
     long processes;        /* fresh processes that divide the repetitions; 1: the program's own */
     long warmups;          /* unmeasured frames of a cell before its first measured one, in every process */
     bool shuffle;
@@ -125,7 +128,11 @@ typedef struct study_options {
         void *context,
         const study_moment *now); /* at most about ten times per second, from the thread that runs the study. May be
                                      NULL */
-    void *context;                /* passed to both */
+    /* News for the user: other processes, steal or a frequency drop disturb the measurement, or stopped to; at most one
+     * of a kind per minute. May be NULL. */
+    void (*news)(void *context, const char *text);
+    double wait_quiet_s; /* before each measured repetition, wait that long at most until nothing disturbs; 0: never */
+    void *context;       /* passed to all */
 } study_options;
 
 /* The number of processes that the study divides its repetitions among: its processes for the least number of
@@ -140,6 +147,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
  * present environment (study/environment.h). */
 typedef struct study_progress {
     size_t cells, cells_done, rows, warmups, rows_marked;
+    size_t rows_disturbed;   /* by the rule of the study when they were measured; warm-ups do not count */
     size_t rows_elsewhere;   /* rows of other environments */
     size_t rows_other_cells; /* rows of cells that the study does not have (any more) */
     size_t faults;           /* rows that are marked, fail a check, or are missing */

@@ -30,7 +30,8 @@ typedef struct cell_rows {
     const char *environment;   /* whose rows these are; "NA" without a row */
     const char *film_expected; /* NULL without a row */
     const row_ref **rows;
-    size_t count, marked, excluded;
+    size_t count, marked, excluded, disturbed,
+        judged;              /* judged: rows for which it is known whether they are disturbed */
     const excluded *without; /* the rows that a person excluded */
     double *values;
     const row_ref *compared; /* the cell's row of compare.csv, or NULL */
@@ -82,6 +83,31 @@ static status put_timed(const cell_rows *cell, const char *name, diagnostic *why
             fprintf(cell->out, "\t%s_%s", name, parts[part]);
         else
             cell_table_number(cell->out, values[part]);
+    return STATUS_OK;
+}
+
+/* The rows that nothing disturbed, by the rule that the study had when they were measured. */
+static status put_undisturbed(const cell_rows *cell, diagnostic *why)
+{
+    if (cell->header) {
+        fputs("\tdisturbed\tundisturbed_n\tundisturbed_wall_s_median\tundisturbed_wall_s_low\tundisturbed_wall_s_high",
+              cell->out);
+        return STATUS_OK;
+    }
+    if (cell->judged == 0) {
+        fputs("\tNA\tNA\tNA\tNA\tNA", cell->out);
+        return STATUS_OK;
+    }
+    level_interval median = {NAN, NAN, NAN};
+    gather(cell, "wall_s");
+    for (size_t i = 0; i < cell->count; i++)
+        if (strcmp(row_field(cell->rows[i], "disturbed"), "0") != 0)
+            cell->values[i] = NAN;
+    TRY(level_rows_median(cell->rows, cell->values, cell->count, &median, why));
+    fprintf(cell->out, "\t%zu\t%zu", cell->disturbed, cell->judged - cell->disturbed);
+    cell_table_number(cell->out, median.value);
+    cell_table_number(cell->out, median.low);
+    cell_table_number(cell->out, median.high);
     return STATUS_OK;
 }
 
@@ -137,8 +163,9 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
                 cell->excluded);
     for (size_t i = 0; i < COUNT(after_marked); i++)
         put_median(cell, after_marked[i]);
-    const status code = put_solids(s, cell, why);
+    status code = put_solids(s, cell, why);
     put_compared(s, cell);
+    THEN(code, put_undisturbed(cell, why));
     fprintf(cell->out, "\t%s\n", cell->header ? "environment" : cell->environment);
     return code;
 }
@@ -147,7 +174,7 @@ static status put_line(const study *s, const cell_rows *cell, diagnostic *why)
 static void collect(cell_rows *cell, row_ref *const *rows, size_t count)
 {
     cell->film_expected = NULL;
-    cell->count = cell->marked = cell->excluded = 0;
+    cell->count = cell->marked = cell->excluded = cell->disturbed = cell->judged = 0;
     for (size_t i = 0; i < count; i++) {
         const bool marked = strcmp(row_field(rows[i], "marked"), "0") != 0;
         cell->film_expected = cell->film_expected ? cell->film_expected : row_field(rows[i], "film_expected");
@@ -156,6 +183,11 @@ static void collect(cell_rows *cell, row_ref *const *rows, size_t count)
         cell->excluded += is_excluded;
         if (!marked && !is_excluded && !rows[i]->warmup)
             cell->rows[cell->count++] = rows[i];
+    }
+    for (size_t i = 0; i < cell->count; i++) {
+        const char *disturbed = row_field(cell->rows[i], "disturbed");
+        cell->disturbed += strcmp(disturbed, "1") == 0;
+        cell->judged += strcmp(disturbed, "NA") != 0;
     }
 }
 

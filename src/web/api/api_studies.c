@@ -19,9 +19,10 @@ static void add_progress(const lab *l, const study *s, json_t *json)
     diagnostic why = {.what = ""};
     status code = study_check_results(l, results, s->name, &why);
     THEN(code, study_status(s, results, &progress, &why));
-    json_object_update_new(json, json_pack("{s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
+    json_object_update_new(json, json_pack("{s:I, s:I, s:I, s:I, s:I}", "cells_done", (json_int_t)progress.cells_done,
                                            "rows", (json_int_t)progress.rows, "warmups", (json_int_t)progress.warmups,
-                                           "marked", (json_int_t)progress.rows_marked));
+                                           "marked", (json_int_t)progress.rows_marked, "disturbed",
+                                           (json_int_t)progress.rows_disturbed));
     if (code != STATUS_OK)
         json_object_set_new(json, "error", json_of_diagnostic(&why));
 }

@@ -28,7 +28,7 @@ const NAMES = {
   ssim: 'SSIM against the reference',
   others_share: 'CPU share of other programs',
 };
-const NOT_SHOWN = new Set(['cell', 'n', 'marked', 'excluded']);
+const NOT_SHOWN = new Set(['cell', 'n', 'marked', 'excluded', 'disturbed', 'undisturbed_n']);
 
 export const numberOf = (text) =>
   text === undefined || text === null || text === '' || text === 'NA' ? NaN : Number(text);

@@ -35,6 +35,12 @@ const about = (study, details) =>
       ],
       ['Cells', `${count(details.cells_done)} of ${count(details.cells)} done`],
       ['Rows', `${count(details.rows)}, of which ${count(details.warmups)} warm-ups`],
+      details.disturbed
+        ? [
+            'Disturbed',
+            `${count(details.disturbed)} rows, by the rule of the study: other programs, steal or the frequency`,
+          ]
+        : null,
       details.marked
         ? ['Marked', `${count(details.marked)} rows with another film than the first row of their cell`]
         : null,

@@ -1,0 +1,127 @@
+/* Readings of the machine's load, and the rule that calls a measurement disturbed. */
+#include "measure/machine_noise.h"
+#include "measure/clock.h"
+#include "measure/proc_stat.h"
+#include "measure/small_file.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Units share frequencies in groups; more files would cost more than a small frame. */
+enum { UNITS_READ = 16, PROC_STAT_MAX = 65536, CPUINFO_MAX = 16384 };
+
+static double frequency_of_sysfs(const char *root)
+{
+    double sum = 0;
+    int count = 0;
+    for (int unit = 0; unit < UNITS_READ; unit++) {
+        char path[96], text[32];
+        snprintf(path, sizeof path, "/sys/devices/system/cpu/cpu%d/cpufreq/scaling_cur_freq", unit);
+        if (!small_file_read(root, path, text, sizeof text))
+            break;
+        sum += (double)strtoll(text, NULL, 10) * 1e3;
+        count++;
+    }
+    return count && sum > 0 ? sum / count : NAN;
+}
+
+/* "cpu MHz\t\t: 2445.406"; parsed as integers, because the kernel writes a point whatever LC_NUMERIC is. */
+static double frequency_of_cpuinfo(const char *root)
+{
+    char text[CPUINFO_MAX];
+    double sum = 0;
+    int count = 0;
+    if (!small_file_read(root, "/proc/cpuinfo", text, sizeof text))
+        return NAN;
+    for (const char *at = text; (at = strstr(at, "cpu MHz")) != NULL; at++) {
+        const char *colon = strchr(at, ':');
+        if (!colon)
+            break;
+        sum += (double)strtoll(colon + 1, NULL, 10) * 1e6;
+        count++;
+    }
+    return count && sum > 0 ? sum / count : NAN;
+}
+
+noise_reading noise_read(const char *root)
+{
+    char text[PROC_STAT_MAX];
+    proc_stat machine;
+    noise_reading r = {.busy_s = NAN, .steal_s = NAN, .units = NAN};
+    if (small_file_read(root, "/proc/stat", text, sizeof text) &&
+        proc_stat_parse(text, (double)sysconf(_SC_CLK_TCK), &machine)) {
+        r.busy_s = machine.busy_s;
+        r.steal_s = machine.steal_s;
+        r.units = machine.units;
+    }
+    const double hz = frequency_of_sysfs(root);
+    r.frequency_hz = isnan(hz) ? frequency_of_cpuinfo(root) : hz;
+    r.own_s = clock_process_cpu_s();
+    r.wall_s = clock_wall_s();
+    return r;
+}
+
+machine_noise noise_unknown(void)
+{
+    return (machine_noise){NAN, NAN, NAN};
+}
+
+/* Rounding to ticks can exceed either end. */
+static double share(double part_s, double capacity_s)
+{
+    return capacity_s > 0 && !isnan(part_s) ? fmin(fmax(part_s / capacity_s, 0.0), 1.0) : NAN;
+}
+
+machine_noise noise_between(const noise_reading *before, const noise_reading *after)
+{
+    const double capacity_s = (after->wall_s - before->wall_s) * after->units;
+    const double others_s = (after->busy_s - before->busy_s) - (after->own_s - before->own_s);
+    const double steal_s = after->steal_s - before->steal_s;
+    return (machine_noise){share(others_s, capacity_s), share(steal_s, capacity_s), after->frequency_hz};
+}
+
+/* --- window --- */
+
+void noise_window_add(noise_window *w, const noise_reading *now)
+{
+    const double apart_s = 2 * NOISE_WINDOW_S / NOISE_READINGS;
+    if (w->count > 1 && now->wall_s - w->reading[w->count - 2].wall_s < apart_s)
+        w->count--; /* the last one is replaced */
+    if (w->count == NOISE_READINGS) {
+        memmove(w->reading, w->reading + 1, (NOISE_READINGS - 1) * sizeof *w->reading);
+        w->count--;
+    }
+    w->reading[w->count++] = *now;
+}
+
+machine_noise noise_window_since(const noise_window *w, double since_s, const noise_reading *now)
+{
+    const double latest_s = fmin(since_s, now->wall_s - NOISE_WINDOW_S);
+    size_t i = w->count;
+    if (i == 0)
+        return noise_unknown();
+    while (i > 1 && w->reading[i - 1].wall_s > latest_s)
+        i--;
+    return noise_between(&w->reading[i - 1], now);
+}
+
+/* --- rule --- */
+
+noise_rule noise_rule_default(void)
+{
+    return (noise_rule){.others_share = 0.05, .steal_share = NAN, .frequency_drop = NAN};
+}
+
+bool noise_disturbs(const noise_rule *rule, const machine_noise *noise, double usual_hz, bool broken[NOISE_KINDS])
+{
+    const bool parts[NOISE_KINDS] = {
+        [NOISE_OTHERS] = noise->others_share > rule->others_share,
+        [NOISE_STEAL] = noise->steal_share > rule->steal_share,
+        [NOISE_FREQUENCY] = usual_hz > 0 && noise->frequency_hz < (1 - rule->frequency_drop) * usual_hz,
+    };
+    if (broken)
+        memcpy(broken, parts, sizeof parts);
+    return parts[NOISE_OTHERS] || parts[NOISE_STEAL] || parts[NOISE_FREQUENCY];
+}

@@ -1,0 +1,57 @@
+/* What the rest of the machine did during a measurement: other processes, the hypervisor, the clock frequency.
+ * Differences between two readings of /proc and /sys. The counters there tick in 10 ms, so a difference over less than
+ * half a second means little: a noise_window keeps the readings that are needed to look back that far. Plain values,
+ * nothing to release. Unknown values are NaN. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct noise_reading {
+    double wall_s;          /* monotonic */
+    double busy_s, steal_s; /* CPU seconds of all processes since boot; of them, those that the hypervisor withheld */
+    double own_s;           /* CPU seconds of this process */
+    double units;           /* processing units online */
+    double frequency_hz;    /* the present clock frequency, mean over the units that report one */
+} noise_reading;
+
+typedef struct machine_noise {
+    double others_share; /* of the machine, 0..1: busy but not with this process; includes steal */
+    double steal_share;  /* of the machine, 0..1 */
+    double frequency_hz; /* at the end */
+} machine_noise;
+
+/* Reads /proc/stat, /sys/devices/system/cpu/cpuN/cpufreq (or /proc/cpuinfo) below root, "" for this machine. */
+noise_reading noise_read(const char *root);
+machine_noise noise_between(const noise_reading *before, const noise_reading *after);
+/* All unknown. */
+machine_noise noise_unknown(void);
+
+#define NOISE_WINDOW_S 0.5
+enum { NOISE_READINGS = 16 };
+
+/* The last readings, at least a thirtieth of a window apart. */
+typedef struct noise_window {
+    noise_reading reading[NOISE_READINGS];
+    size_t count;
+} noise_window;
+
+/* Adds a reading; readings that are older than necessary are dropped. */
+void noise_window_add(noise_window *w, const noise_reading *now);
+/* The noise up to now of an interval that began at since_s (wall_s of a reading), or of NOISE_WINDOW_S if that is
+ * longer: from the latest sufficiently old reading, or the oldest one. noise_unknown without a reading. */
+machine_noise noise_window_since(const noise_window *w, double since_s, const noise_reading *now);
+
+/* A rule that calls a measurement disturbed. It never looks at the measured time. NaN: not part of the rule. */
+typedef struct noise_rule {
+    double others_share, steal_share; /* disturbed above */
+    double frequency_drop;            /* disturbed if the frequency is that share below usual_hz */
+} noise_rule;
+
+/* others_share above 0.05. */
+noise_rule noise_rule_default(void);
+
+typedef enum noise_kind { NOISE_OTHERS, NOISE_STEAL, NOISE_FREQUENCY, NOISE_KINDS } noise_kind;
+/* Which parts of the rule the noise breaks, by noise_kind; returns whether any does. Unknown noise breaks none.
+ * usual_hz: the highest frequency that was seen, 0 or NaN: unknown. broken may be NULL. */
+bool noise_disturbs(const noise_rule *rule, const machine_noise *noise, double usual_hz, bool broken[NOISE_KINDS]);

@@ -1,0 +1,85 @@
+#include "study/run_noise.h"
+#include "measure/clock.h"
+#include <math.h>
+#include <stdio.h>
+#include <time.h>
+
+/* News of one kind are at least so far apart. */
+static const double NEWS_APART_S = 60;
+
+/* The rule for news: that of the study, and defaults for what is not part of it. */
+static noise_rule rule_of_news(const noise_rule *rule)
+{
+    return (noise_rule){.others_share = isnan(rule->others_share) ? 0.05 : rule->others_share,
+                        .steal_share = isnan(rule->steal_share) ? 0.01 : rule->steal_share,
+                        .frequency_drop = isnan(rule->frequency_drop) ? 0.1 : rule->frequency_drop};
+}
+
+static void describe(noise_kind kind, const machine_noise *noise, double usual_hz, char *text, size_t size)
+{
+    switch (kind) {
+    case NOISE_OTHERS:
+        snprintf(text, size, "other processes use %.0f%% of the machine: stop them, or measure with --wait-quiet",
+                 100 * noise->others_share);
+        return;
+    case NOISE_STEAL:
+        snprintf(text, size, "the hypervisor withholds %.1f%% of the machine: measure at another time or place",
+                 100 * noise->steal_share);
+        return;
+    case NOISE_FREQUENCY:
+        snprintf(text, size, "the clock frequency fell from %.2f to %.2f GHz: heat, or the governor", usual_hz * 1e-9,
+                 noise->frequency_hz * 1e-9);
+        return;
+    case NOISE_KINDS: break;
+    }
+    text[0] = '\0';
+}
+
+static void tell(run *r, const char *text)
+{
+    if (r->options->news)
+        r->options->news(r->options->context, text);
+}
+
+bool run_noise_judge(run *r, const machine_noise *noise)
+{
+    bool broken[NOISE_KINDS];
+    const noise_rule news = rule_of_news(&r->s->disturbed);
+    const double now_s = clock_wall_s();
+    if (noise->frequency_hz > r->usual_hz)
+        r->usual_hz = noise->frequency_hz;
+    noise_disturbs(&news, noise, r->usual_hz, broken);
+    for (noise_kind kind = 0; kind < NOISE_KINDS; kind++) {
+        char text[200];
+        if (!broken[kind] || now_s < r->next_news_s[kind])
+            continue;
+        r->next_news_s[kind] = now_s + NEWS_APART_S;
+        describe(kind, noise, r->usual_hz, text, sizeof text);
+        tell(r, text);
+    }
+    return noise_disturbs(&r->s->disturbed, noise, r->usual_hz, NULL);
+}
+
+status run_noise_wait(run *r, diagnostic *why)
+{
+    const double most_s = r->options->wait_quiet_s, began_s = clock_wall_s();
+    const noise_rule rule = rule_of_news(&r->s->disturbed);
+    while (most_s > 0) {
+        const machine_noise noise = job_noise(r->with);
+        if (!noise_disturbs(&rule, &noise, r->usual_hz, NULL))
+            return STATUS_OK;
+        if (clock_wall_s() - began_s >= most_s) {
+            char text[120];
+            snprintf(text, sizeof text, "the machine is not quiet after %g s; measuring all the same", most_s);
+            if (!r->said_waiting)
+                tell(r, text);
+            r->said_waiting = true;
+            return STATUS_OK;
+        }
+        if (r->options->stop && r->options->stop(r->options->context))
+            return diagnose(why, STATUS_INTERRUPTED, "run the command again to resume",
+                            "interrupted; all completed rows are kept");
+        nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,213 @@
+/* Tests of disturbed rows: rule, further repetitions up to the limit, news, waiting, and the numbers in status and
+ * summary. A rule that every row breaks, or none, makes them independent of the machine. */
+#include "study_fixture.h"
+#include "measure/clock.h"
+#include "study/row_files.h"
+#include "study/summary.h"
+#include <signal.h>
+#include <sys/wait.h>
+
+static const char study_format[] = "study: test\nscene: scene.yaml\nwarmups: 0\nrepetitions: %s\ndisturbed: %s\n";
+static const char never[] = "{others_share: 1}", always[] = "{others_share: 0}";
+
+static study *study_with(const fixture *f, const char *repetitions, const char *rule)
+{
+    char text[400];
+    snprintf(text, sizeof text, study_format, repetitions, rule);
+    return fixture_study(f, text);
+}
+
+typedef struct said {
+    size_t count;
+    char last[200];
+} said;
+
+static void hear(void *context, const char *text)
+{
+    said *s = context;
+    s->count++;
+    snprintf(s->last, sizeof s->last, "%s", text);
+}
+
+/* Keeps a processing unit busy until it is killed. */
+static pid_t start_load(void)
+{
+    const pid_t pid = fork();
+    if (pid == 0)
+        for (volatile unsigned i = 0;; i++) {
+        }
+    assert_true(pid > 0);
+    const double began_s = clock_wall_s();
+    while (clock_wall_s() - began_s < 0.7)
+        usleep(10000);
+    return pid;
+}
+
+static void end_load(pid_t pid)
+{
+    assert_int_equal(kill(pid, SIGKILL), 0);
+    waitpid(pid, NULL, 0);
+}
+
+static char *summary_of(const fixture *f, const study *s)
+{
+    char *text = NULL;
+    size_t size;
+    FILE *out = open_memstream(&text, &size);
+    assert_int_equal(study_summary(s, f->results, out, NULL), STATUS_OK);
+    fclose(out);
+    return text;
+}
+
+/* The field of a column of the first line of the summary. */
+static char *field_of(const char *summary, const char *column)
+{
+    char *copy = strdup(summary), *rest = copy, *header = strsep(&rest, "\n"), *line = strsep(&rest, "\n"),
+         *found = NULL;
+    for (char *name, *field; (name = strsep(&header, "\t")) && (field = strsep(&line, "\t"));)
+        if (strcmp(name, column) == 0)
+            found = strdup(field);
+    free(copy);
+    if (!found)
+        fail_msg("no column %s", column);
+    return found;
+}
+
+static void expect_field(const char *summary, const char *column, const char *expected)
+{
+    char *field = field_of(summary, column);
+    assert_string_equal(field, expected);
+    free(field);
+}
+
+static void quiet_rows_suffice(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_with(f, "{undisturbed: 3, max: 9}", never);
+    assert_int_equal(s->undisturbed, 3);
+    assert_int_equal(fixture_run(f, s), 3);
+    char *summary = summary_of(f, s);
+    expect_field(summary, "disturbed", "0");
+    expect_field(summary, "undisturbed_n", "3");
+    char *all = field_of(summary, "wall_s_median");
+    expect_field(summary, "undisturbed_wall_s_median", all);
+    free(all);
+    free(summary);
+    study_destroy(s);
+}
+
+/* Under a load every row is disturbed: the limit is reached, all rows are kept, and news are reported once. */
+static void disturbed_rows_are_kept_and_repeated_up_to_the_limit(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_with(f, "{undisturbed: 3, max: 9}", always);
+    const pid_t load = start_load();
+    said heard = {0};
+    size_t ran = 0;
+    const study_options options = {.results = f->results, .news = hear, .context = &heard};
+    usleep(600000); /* the window of the first frame begins with the run */
+    assert_int_equal(study_run(s, &options, &ran, NULL), STATUS_OK);
+    end_load(load);
+    if (sysconf(_SC_NPROCESSORS_ONLN) > 64)
+        skip(); /* one busy unit is less than 5% of others */
+    study_progress progress;
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+    assert_int_equal(progress.rows, ran);
+    assert_int_equal(progress.faults, 0);
+    assert_true(ran >= 3 && ran <= 9);
+    assert_true(ran == 9 || progress.rows - progress.rows_disturbed >= 3);
+    assert_true(progress.rows_disturbed > 0);
+    char *summary = summary_of(f, s), text[40];
+    snprintf(text, sizeof text, "%zu", progress.rows_disturbed);
+    expect_field(summary, "disturbed", text);
+    snprintf(text, sizeof text, "%zu", ran);
+    expect_field(summary, "n", text);
+    free(summary);
+    study_destroy(s);
+}
+
+/* The rule is no part of a cell's identity: the rows stay. */
+static void another_rule_keeps_the_rows(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_with(f, "3", never);
+    assert_int_equal(fixture_run(f, s), 3);
+    study_destroy(s);
+    s = study_with(f, "3", "{steal_share: 0.5, frequency_drop: 0.9}");
+    assert_true(isnan(s->disturbed.others_share) && s->disturbed.steal_share == 0.5);
+    assert_int_equal(fixture_run(f, s), 0);
+    study_destroy(s);
+    s = fixture_study(f, "study: test\nscene: scene.yaml\nwarmups: 0\nrepetitions: 3\n");
+    assert_true(s->disturbed.others_share == 0.05 && isnan(s->disturbed.steal_share));
+    assert_int_equal(fixture_run(f, s), 0);
+    study_destroy(s);
+}
+
+static bool stop_after_a_while(void *context)
+{
+    return clock_wall_s() > *(const double *)context;
+}
+
+static void waiting_ends_with_the_time_or_a_stop_request(void **state)
+{
+    const fixture *f = *state;
+    study *s = study_with(f, "1", always);
+    const pid_t load = start_load();
+    double until_s = clock_wall_s() + 0.5;
+    size_t ran = 0;
+    study_options options = {
+        .results = f->results, .wait_quiet_s = 60, .stop = stop_after_a_while, .context = &until_s};
+    const status stopped = study_run(s, &options, &ran, NULL);
+    const double began_s = clock_wall_s();
+    options = (study_options){.results = f->results, .wait_quiet_s = 0.3};
+    const status waited = study_run(s, &options, &ran, NULL);
+    const double took_s = clock_wall_s() - began_s;
+    end_load(load);
+    if (stopped == STATUS_OK)
+        skip(); /* the machine does not report other processes */
+    assert_int_equal(stopped, STATUS_INTERRUPTED);
+    assert_int_equal(waited, STATUS_OK);
+    assert_int_equal(ran, 1);
+    assert_true(took_s >= 0.3);
+    study_destroy(s);
+}
+
+static void invalid_rules_are_refused(void **state)
+{
+    const fixture *f = *state;
+    static const struct {
+        const char *repetitions, *rule, *what;
+    } cases[] = {
+        {"3", "0.1", "disturbed is not a map"},
+        {"3", "{others: 0.1}", "unknown key 'others'"},
+        {"3", "{others_share: 1.5}", "others_share is not a share"},
+        {"3", "{steal_share: much}", "steal_share is not a share"},
+        {"{undisturbed: 3}", never, "repetitions has no max"},
+        {"{undisturbed: 5, max: 4}", never, "max 4 is less than undisturbed 5"},
+        {"{undisturbed: 5, max: 8, min: 2}", never, "unknown key 'min'"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[400], path[400];
+        study *s = NULL;
+        diagnostic why = {.what = ""};
+        snprintf(text, sizeof text, study_format, cases[i].repetitions, cases[i].rule);
+        fixture_write(f, "test.study", text);
+        fixture_path(f, "test.study", path);
+        assert_int_equal(study_read(path, &s, &why), STATUS_BAD_INPUT);
+        if (!strstr(why.what, cases[i].what))
+            fail_msg("%s: %s", cases[i].what, why.what);
+        assert_true(why.line >= 4);
+    }
+}
+
+#define CASE(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CASE(quiet_rows_suffice),          CASE(disturbed_rows_are_kept_and_repeated_up_to_the_limit),
+        CASE(another_rule_keeps_the_rows), CASE(waiting_ends_with_the_time_or_a_stop_request),
+        CASE(invalid_rules_are_refused),
+    };
+    return cmocka_run_group_tests_name("study_noise", tests, NULL, NULL);
+}
