@@ -94,10 +94,23 @@ units() {
         sed -n 's/.*"processing_units": *\([0-9][0-9]*\).*/\1/p' | sed -n 1p
 }
 
+# The environments of the tables among the inputs, whose rows a figure shows: "3d2be922", or several.
+environments() {
+    local file tables=()
+    for file in "${inputs[@]}"; do
+        [[ $file != */tables/*.tsv ]] || tables+=("$file")
+    done
+    [ ${#tables[@]} -gt 0 ] || return 0
+    awk -F '\t' 'FNR == 1 { at = 0; for (i = 1; i <= NF; i++) if ($i == "environment") at = i; next }
+        at && $at != "NA" && !seen[$at]++ { text = text (text ? ", " : "") $at } END { print text }' "${tables[@]}"
+}
+
 draw() {
-    local format scratch=$out/.$1.drawing
+    local format scratch=$out/.$1.drawing shown
+    shown=$(environments)
     for format in "${formats[@]}"; do
-        if ! gnuplot -e "results = '$results'; output = '$scratch'; format = '$format'; units = ${machine_units:-0}" \
+        if ! gnuplot -e "results = '$results'; output = '$scratch'; format = '$format'; units = ${machine_units:-0}; \
+            environment = '$shown'" \
             "plots/$1.gp" \
             2>"$scratch.log" || [ ! -s "$scratch.$format" ]; then
             sed "s/^/    /" "$scratch.log" | grep -v '^ *$' | head -n 5 >&2 || true

@@ -1,5 +1,6 @@
 # Common style of all figures. A figure sets `width` and `height` (CSS pixels)
-# and loads this file. draw.sh sets: results, output (a path without its ending), format (png, svg or pdf), units.
+# and loads this file. draw.sh sets: results, output (a path without its ending), format (png, svg or pdf), units,
+# environment (the keys of the environments whose rows it shows, or nothing).
 #
 # Colors: the eight of Okabe and Ito, distinguishable with any color vision; each has its own point type or dash as
 # well.
@@ -45,3 +46,7 @@ published = "experiments/published/"
 published_name = "published (4 cores, 8 logical)"
 viridis = "(0 '#440154', 1 '#472d7b', 2 '#3b528b', 3 '#2c728e', 4 '#21918c', 5 '#28ae80', 6 '#5ec962', 7 '#addc30', 8 '#fde725')"
 signed = "(-3 '#003a5c', -2 '#0072b2', -1 '#8fc3e0', 0 '#ffffff', 1 '#f0b48a', 2 '#d55e00', 3 '#7a3000')"
+
+if (exists("environment") && environment ne "") {
+    set label 9999 "environment ".environment at screen 0.995, screen 0.012 right font ",6" textcolor rgb grey
+}

@@ -38,8 +38,8 @@ status study_request_parse(study_verb verb, int argc, char **argv, study_request
 void study_request_release(study_request *request);
 
 /* Prints the summary of a study for a terminal, with aligned columns: cell, axes, n, median and 95% interval of the
- * wall time, median CPU time, rays and marked rows; with a reference also flip and error_rms. tsv is the output of
- * study_summary and is modified. */
+ * wall time, median CPU time, rays and marked rows, excluded and disturbed ones if there are some; with a reference
+ * also flip and error_rms. tsv is the output of study_summary and is modified. */
 status study_table_print(FILE *out, char *tsv, diagnostic *why);
 
 /* `cuvette study plot`, which has options of its own (study_plot.c). */

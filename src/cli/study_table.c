@@ -12,7 +12,8 @@
 typedef struct fields {
     char **field;
     size_t rows, columns;
-    bool excludes; /* a row is excluded: its column is shown */
+    const char *extra[2]; /* columns that are shown after marked, because a row is excluded or disturbed */
+    size_t extra_count;
 } fields;
 
 static size_t count_of(const char *text, const char *end, char wanted)
@@ -66,24 +67,25 @@ static bool has_column(const fields *f, const char *name)
     return strcmp(f->field[column_of(f, name)], name) == 0;
 }
 
-/* Whether a column has other values than 0. */
+/* Whether a column has other values than 0 and NA. */
 static bool has_any(const fields *f, const char *name)
 {
     const size_t column = column_of(f, name);
     for (size_t row = 1; has_column(f, name) && row < f->rows; row++)
-        if (strcmp(f->field[row * f->columns + column], "0") != 0)
+        if (strcmp(f->field[row * f->columns + column], "0") != 0 &&
+            strcmp(f->field[row * f->columns + column], "NA") != 0)
             return true;
     return false;
 }
 
-/* The text of a field of the table: the columns from cell to n unchanged, then wall_s, cpu_s, rays and marked, excluded
- * where a row is, and the image difference of a study with a reference. Allocated. */
+/* The text of a field of the table: the columns from cell to n unchanged, then wall_s, cpu_s, rays and marked, the
+ * extra ones, and the image difference of a study with a reference. Allocated. */
 static char *shown(const fields *f, size_t row, size_t column)
 {
     size_t plain = column_of(f, "n") + 1;
-    if (f->excludes && column == plain + 4)
-        return strdup(f->field[row * f->columns + column_of(f, "excluded")]);
-    column -= f->excludes && column > plain + 4;
+    if (column >= plain + 4 && column < plain + 4 + f->extra_count)
+        return strdup(f->field[row * f->columns + column_of(f, f->extra[column - plain - 4])]);
+    column -= column >= plain + 4 ? f->extra_count : 0;
     char median[NUMBER_TEXT_MAX], low[NUMBER_TEXT_MAX], high[NUMBER_TEXT_MAX];
     if (column < plain)
         return strdup(f->field[row * f->columns + column]);
@@ -105,8 +107,11 @@ status study_table_print(FILE *out, char *tsv, diagnostic *why)
 {
     fields f = {0};
     bool good = split(tsv, &f);
-    f.excludes = good && has_any(&f, "excluded");
-    size_t columns = good ? column_of(&f, "n") + 1 + (has_column(&f, "flip") ? 6 : 4) + f.excludes : 0;
+    static const char *const extra[] = {"excluded", "disturbed"};
+    for (size_t i = 0; good && i < sizeof extra / sizeof *extra; i++)
+        if (has_any(&f, extra[i]))
+            f.extra[f.extra_count++] = extra[i];
+    size_t columns = good ? column_of(&f, "n") + 1 + (has_column(&f, "flip") ? 6 : 4) + f.extra_count : 0;
     const size_t cells = f.rows * columns;
     char **text = calloc(cells + 1, sizeof *text);
     good = good && text;

@@ -1,0 +1,31 @@
+#!/bin/bash
+# experiments/reference.sh [RESULTS]: makes results/reference, the committed run, from a complete run in RESULTS
+# (results). It keeps what cannot be computed again from it: rows, runs, comparisons and metrics of cells, and the drawn
+# figures; not the images of single cells. `make setup experiments` in a fresh clone comes first.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+from=${1:-results}
+to=results/reference
+
+for study in experiments/*.study; do
+    name=$(basename "$study" .study)
+    [[ -e $from/$name/rows.csv ]] || {
+        echo "reference.sh: $from has no rows of $name; run make experiments" >&2
+        exit 1
+    }
+done
+rm -rf "$to"
+mkdir -p "$to/tables" "$to/figures"
+for rows in "$from"/*/rows.csv; do
+    name=$(basename "$(dirname "$rows")")
+    [[ $from/$name == "$to" ]] && continue
+    mkdir -p "$to/$name"
+    for file in rows.csv workers.csv compare.csv runs.json excluded.csv; do
+        [[ ! -e $from/$name/$file ]] || cp "$from/$name/$file" "$to/$name/"
+    done
+done
+for table in "$from"/tables/*-{metrics,curves,motion}.tsv; do
+    [[ ! -e $table ]] || cp "$table" "$to/tables/"
+done
+cp "$from"/figures/*.png "$from"/figures/{fan,trace}.svg "$to/figures/"
+printf '%s: %s files, %s\n' "$to" "$(find "$to" -type f | wc -l)" "$(du -sh "$to" | cut -f1)"
