@@ -290,7 +290,7 @@ static void a_summary_has_time_and_error_on_one_line(void **state)
     csv *table = read_table(f, "results/test/compare.csv");
     char *text = summary_of(f, s), values[400], compare[400];
     assert_int_equal(fixture_count(text, "\treference\tmse\tpsnr_db\tssim\tflip\tlargest\tdiffering_share\terror_"
-                                         "rms\treference_noise_rms\tenvironment\n"),
+                                         "rms\treference_noise_rms\tdisturbed\t"),
                      1);
     char *lines = text, *line = NULL;
     for (int i = 0; i < 2; i++)
@@ -298,7 +298,7 @@ static void a_summary_has_time_and_error_on_one_line(void **state)
     snprintf(values, sizeof values, "\t%s\t%s\t", text_of(table, 0, "reference"), text_of(table, 0, "mse"));
     assert_non_null(strstr(line, values));
     snprintf(values, sizeof values, "\t%s\tNA\t", text_of(table, 0, "error_rms"));
-    assert_string_equal(line + strlen(line) - strlen(values) - 8, strstr(line, values)); /* then the environment */
+    assert_non_null(strstr(line, values)); /* then disturbed rows and the environment */
     free(text);
     csv_destroy(table);
     /* Without comparisons the columns exist and are empty. */

@@ -137,6 +137,19 @@ static void another_rule_keeps_the_rows(void **state)
     assert_true(isnan(s->disturbed.others_share) && s->disturbed.steal_share == 0.5);
     assert_int_equal(fixture_run(f, s), 0);
     study_destroy(s);
+    s = study_with(f, "3", "{others_share: 0, steal_share: 0, frequency_drop: 0}"); /* the present rule judges */
+    row_files *files;
+    study_progress progress;
+    size_t above = 0;
+    assert_int_equal(row_files_read(s, f->results, ROWS, &files, NULL), STATUS_OK);
+    for (size_t i = 0; i < files->row_count; i++)
+        above += row_field_real(&files->rows[i], "others_share") > 0 ||
+                 row_field_real(&files->rows[i], "steal_share") > 0 ||
+                 row_field_real(&files->rows[i], "frequency_drop") > 0;
+    row_files_destroy(files);
+    assert_int_equal(study_status(s, f->results, &progress, NULL), STATUS_OK);
+    assert_int_equal(progress.rows_disturbed, above);
+    study_destroy(s);
     s = fixture_study(f, "study: test\nscene: scene.yaml\nwarmups: 0\nrepetitions: 3\n");
     assert_true(s->disturbed.others_share == 0.05 && isnan(s->disturbed.steal_share));
     assert_int_equal(fixture_run(f, s), 0);

@@ -53,10 +53,15 @@ static char *write_row(const study *s, const scene *setting, bool workers)
                                         .involuntary_switches = 0,
                                         .machine_busy_s = NAN,
                                         .machine_units = 2},
-                              .noise = {NAN, 0.125, 2e9},
+                              .noise = {NAN, 0.125, 2e9, 0.25},
                               .hardware = {-1, -1, 5, 0}};
-    study_row row = {
-        .of = s, .cell = 3, .repetition = 2, .order = 17, .film_expected = 0xabd, .disturbed = true, .made = &made};
+    study_row row = {.of = s,
+                     .cell = 3,
+                     .repetition = 2,
+                     .order = 17,
+                     .film_expected = 0xabd,
+                     .disturbed = NOISE_DISTURBED,
+                     .made = &made};
     csv_line line = {0};
     row_columns_header(&line, s, workers ? worker_each_column : row_each_column);
     (workers ? worker_rows_write : row_write)(&line, &row);
@@ -132,6 +137,7 @@ static void rows_record_the_measured_values(void **state)
         {"others_share", "NA"},
         {"steal_share", "0.125"},
         {"frequency_hz", "2000000000"},
+        {"frequency_drop", "0.25"},
         {"disturbed", "1"},
         {"cycles", "NA"},
         {"branch_misses", "5"},

@@ -83,20 +83,38 @@ static void rules_never_look_at_times(void **state)
     const noise_rule usual = noise_rule_default(), all = {0.1, 0.01, 0.2}, none = {NAN, NAN, NAN};
     static const struct {
         machine_noise noise;
-        bool usual, all;
+        noise_verdict usual, all;
     } cases[] = {
-        {{0.05, 0, 2e9}, false, false},  {{0.051, 0, 2e9}, true, false}, {{0.2, 0, 2e9}, true, true},
-        {{0, 0.02, 2e9}, false, true},   {{0, 0, 1.5e9}, false, true},   {{0, 0, 1.7e9}, false, false},
-        {{NAN, NAN, NAN}, false, false},
+        {{0.05, 0, 2e9, 0}, NOISE_UNDISTURBED, NOISE_UNDISTURBED},
+        {{0.051, 0, 2e9, 0}, NOISE_DISTURBED, NOISE_UNDISTURBED},
+        {{0.2, 0, 2e9, 0}, NOISE_DISTURBED, NOISE_DISTURBED},
+        {{0, 0.02, 2e9, 0}, NOISE_UNDISTURBED, NOISE_DISTURBED},
+        {{0, 0, 1.5e9, 0.25}, NOISE_UNDISTURBED, NOISE_DISTURBED},
+        {{0, 0, 1.7e9, 0.15}, NOISE_UNDISTURBED, NOISE_UNDISTURBED},
+        {{NAN, 0.02, NAN, NAN}, NOISE_NOT_KNOWN, NOISE_DISTURBED},
+        {{NAN, NAN, NAN, NAN}, NOISE_NOT_KNOWN, NOISE_NOT_KNOWN},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         bool broken[NOISE_KINDS];
-        assert_int_equal(noise_disturbs(&usual, &cases[i].noise, 2e9, broken), cases[i].usual);
-        assert_int_equal(broken[NOISE_OTHERS], cases[i].usual);
-        assert_int_equal(noise_disturbs(&all, &cases[i].noise, 2e9, NULL), cases[i].all);
-        assert_false(noise_disturbs(&none, &cases[i].noise, 2e9, NULL));
+        assert_int_equal(noise_judge(&usual, &cases[i].noise, broken), cases[i].usual);
+        assert_int_equal(broken[NOISE_OTHERS], cases[i].usual == NOISE_DISTURBED);
+        assert_int_equal(noise_judge(&all, &cases[i].noise, NULL), cases[i].all);
+        assert_int_equal(noise_judge(&none, &cases[i].noise, NULL), NOISE_NOT_KNOWN);
     }
-    assert_false(noise_disturbs(&all, &(machine_noise){0, 0, 1e9}, 0, NULL)); /* no usual frequency is known */
+}
+
+/* The highest frequency so far is that of frames; a lower one is a drop. */
+static void frequencies_drop_from_the_highest(void **state)
+{
+    (void)state;
+    noise_window w = {.count = 0};
+    static const double hz[] = {2e9, 2.5e9, 2e9, NAN, 2.5e9}, drop[] = {0, 0, 0.2, NAN, 0};
+    for (int i = 0; i < 5; i++) {
+        const noise_reading at = {.wall_s = i, .units = 1, .frequency_hz = hz[i]};
+        noise_window_add(&w, &at);
+        const double found = noise_window_since(&w, i, &at).frequency_drop;
+        assert_true(isnan(drop[i]) ? isnan(found) : fabs(found - drop[i]) < 1e-12);
+    }
 }
 
 static void noise_is_read_from_any_root(void **state)
@@ -114,7 +132,7 @@ static void noise_is_read_from_any_root(void **state)
     const noise_reading r = noise_read(root);
     const double tick_s = 1.0 / (double)sysconf(_SC_CLK_TCK);
     assert_true(fabs(r.busy_s - 175 * tick_s) < 1e-9 && fabs(r.steal_s - 25 * tick_s) < 1e-9);
-    assert_true(r.units == 2 && r.frequency_hz == 2.5e9);
+    assert_true(r.units == 2 && r.frequency_hz == 3e9);
     snprintf(line, sizeof line, "rm -r %s/sys %s/proc/stat && echo 'cpu MHz : 2500.123' >%s/proc/cpuinfo", root, root,
              root);
     assert_int_equal(system(line), 0);
@@ -441,6 +459,7 @@ int main(void)
         cmocka_unit_test(noise_is_the_rest_of_the_machine),
         cmocka_unit_test(the_window_looks_back_half_a_second),
         cmocka_unit_test(rules_never_look_at_times),
+        cmocka_unit_test(frequencies_drop_from_the_highest),
         cmocka_unit_test(noise_is_read_from_any_root),
         cmocka_unit_test(every_disturbance_has_advice),
         cmocka_unit_test(proc_stat_of_other_machines),

@@ -262,9 +262,12 @@ static machine_noise noise_since(job *j, double since_s)
     return noise;
 }
 
+/* Idle units are slow, so that the frequency between frames says nothing. */
 machine_noise job_noise(job *j)
 {
-    return noise_since(j, INFINITY);
+    machine_noise noise = noise_since(j, INFINITY);
+    noise.frequency_drop = NAN;
+    return noise;
 }
 
 /* The counters are read first and last, so that they cover only the frames. */

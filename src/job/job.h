@@ -37,7 +37,7 @@ isa job_isa(const job *j);
 /* The machine's topology, read at the first call; the job owns it. */
 status job_machine(job *j, const topology **out, diagnostic *why);
 
-/* What the rest of the machine did in the last NOISE_WINDOW_S; unknown without measured. */
+/* What the rest of the machine did in the last NOISE_WINDOW_S, without frequency_drop; unknown without measured. */
 machine_noise job_noise(job *j);
 
 /* Stops the current operation, and all further ones until job_renew. */

@@ -183,8 +183,10 @@ static size_t solids_of(const job_account *a)
  Q(steal_share, "", REAL, OVER, ROW, "steal_share", NULL, \
    "share of the machine that a hypervisor withheld, 0..1, in the same time", a->noise.steal_share) \
  Q(frequency_hz, "Hz", REAL, OVER, ROW, "frequency_hz", NULL, \
-   "clock frequency at the end of the frame, mean over at most 16 units; NA if the system does not report it", \
+   "clock frequency at the end of the frame, the highest of 16 units; NA if the system does not report it", \
    a->noise.frequency_hz) \
+ Q(frequency_drop, "", REAL, OVER, ROW, "frequency_drop", NULL, \
+   "share by which frequency_hz is below the highest one so far in the process, 0..1", a->noise.frequency_drop) \
  Q(cycles, "", COUNT, OVER, ROW, "hardware.cycles", NULL, \
    "processor cycles of the process during the frame, user mode (hardware counter)", a->hardware.cycles) \
  Q(instructions, "", COUNT, OVER, ROW, "hardware.instructions", NULL, \

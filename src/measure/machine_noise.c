@@ -14,35 +14,31 @@ enum { UNITS_READ = 16, PROC_STAT_MAX = 65536, CPUINFO_MAX = 16384 };
 
 static double frequency_of_sysfs(const char *root)
 {
-    double sum = 0;
-    int count = 0;
+    double most = 0;
     for (int unit = 0; unit < UNITS_READ; unit++) {
         char path[96], text[32];
         snprintf(path, sizeof path, "/sys/devices/system/cpu/cpu%d/cpufreq/scaling_cur_freq", unit);
         if (!small_file_read(root, path, text, sizeof text))
             break;
-        sum += (double)strtoll(text, NULL, 10) * 1e3;
-        count++;
+        most = fmax(most, (double)strtoll(text, NULL, 10) * 1e3);
     }
-    return count && sum > 0 ? sum / count : NAN;
+    return most > 0 ? most : NAN;
 }
 
 /* "cpu MHz\t\t: 2445.406"; parsed as integers, because the kernel writes a point whatever LC_NUMERIC is. */
 static double frequency_of_cpuinfo(const char *root)
 {
     char text[CPUINFO_MAX];
-    double sum = 0;
-    int count = 0;
+    double most = 0;
     if (!small_file_read(root, "/proc/cpuinfo", text, sizeof text))
         return NAN;
     for (const char *at = text; (at = strstr(at, "cpu MHz")) != NULL; at++) {
         const char *colon = strchr(at, ':');
         if (!colon)
             break;
-        sum += (double)strtoll(colon + 1, NULL, 10) * 1e6;
-        count++;
+        most = fmax(most, (double)strtoll(colon + 1, NULL, 10) * 1e6);
     }
-    return count && sum > 0 ? sum / count : NAN;
+    return most > 0 ? most : NAN;
 }
 
 noise_reading noise_read(const char *root)
@@ -65,7 +61,7 @@ noise_reading noise_read(const char *root)
 
 machine_noise noise_unknown(void)
 {
-    return (machine_noise){NAN, NAN, NAN};
+    return (machine_noise){NAN, NAN, NAN, NAN};
 }
 
 /* Rounding to ticks can exceed either end. */
@@ -79,7 +75,7 @@ machine_noise noise_between(const noise_reading *before, const noise_reading *af
     const double capacity_s = (after->wall_s - before->wall_s) * after->units;
     const double others_s = (after->busy_s - before->busy_s) - (after->own_s - before->own_s);
     const double steal_s = after->steal_s - before->steal_s;
-    return (machine_noise){share(others_s, capacity_s), share(steal_s, capacity_s), after->frequency_hz};
+    return (machine_noise){share(others_s, capacity_s), share(steal_s, capacity_s), after->frequency_hz, NAN};
 }
 
 /* --- window --- */
@@ -96,7 +92,7 @@ void noise_window_add(noise_window *w, const noise_reading *now)
     w->reading[w->count++] = *now;
 }
 
-machine_noise noise_window_since(const noise_window *w, double since_s, const noise_reading *now)
+machine_noise noise_window_since(noise_window *w, double since_s, const noise_reading *now)
 {
     const double latest_s = fmin(since_s, now->wall_s - NOISE_WINDOW_S);
     size_t i = w->count;
@@ -104,7 +100,11 @@ machine_noise noise_window_since(const noise_window *w, double since_s, const no
         return noise_unknown();
     while (i > 1 && w->reading[i - 1].wall_s > latest_s)
         i--;
-    return noise_between(&w->reading[i - 1], now);
+    machine_noise noise = noise_between(&w->reading[i - 1], now);
+    if (now->frequency_hz > w->fastest_hz)
+        w->fastest_hz = now->frequency_hz;
+    noise.frequency_drop = isnan(now->frequency_hz) ? NAN : 1.0 - now->frequency_hz / w->fastest_hz;
+    return noise;
 }
 
 /* --- rule --- */
@@ -114,14 +114,19 @@ noise_rule noise_rule_default(void)
     return (noise_rule){.others_share = 0.05, .steal_share = NAN, .frequency_drop = NAN};
 }
 
-bool noise_disturbs(const noise_rule *rule, const machine_noise *noise, double usual_hz, bool broken[NOISE_KINDS])
+noise_verdict noise_judge(const noise_rule *rule, const machine_noise *noise, bool broken[NOISE_KINDS])
 {
-    const bool parts[NOISE_KINDS] = {
-        [NOISE_OTHERS] = noise->others_share > rule->others_share,
-        [NOISE_STEAL] = noise->steal_share > rule->steal_share,
-        [NOISE_FREQUENCY] = usual_hz > 0 && noise->frequency_hz < (1 - rule->frequency_drop) * usual_hz,
-    };
-    if (broken)
-        memcpy(broken, parts, sizeof parts);
-    return parts[NOISE_OTHERS] || parts[NOISE_STEAL] || parts[NOISE_FREQUENCY];
+    const double bound[NOISE_KINDS] = {rule->others_share, rule->steal_share, rule->frequency_drop};
+    const double value[NOISE_KINDS] = {noise->others_share, noise->steal_share, noise->frequency_drop};
+    noise_verdict verdict = NOISE_NOT_KNOWN;
+    for (noise_kind kind = 0; kind < NOISE_KINDS; kind++) {
+        const bool breaks = value[kind] > bound[kind];
+        if (broken)
+            broken[kind] = breaks;
+        if (breaks)
+            verdict = NOISE_DISTURBED;
+        else if (verdict == NOISE_NOT_KNOWN && !isnan(bound[kind]) && !isnan(value[kind]))
+            verdict = NOISE_UNDISTURBED;
+    }
+    return verdict;
 }

@@ -12,17 +12,19 @@ typedef struct noise_reading {
     double busy_s, steal_s; /* CPU seconds of all processes since boot; of them, those that the hypervisor withheld */
     double own_s;           /* CPU seconds of this process */
     double units;           /* processing units online */
-    double frequency_hz;    /* the present clock frequency, mean over the units that report one */
+    double frequency_hz;    /* the present clock frequency, the highest of the units: idle ones are slow */
 } noise_reading;
 
 typedef struct machine_noise {
-    double others_share; /* of the machine, 0..1: busy but not with this process; includes steal */
-    double steal_share;  /* of the machine, 0..1 */
-    double frequency_hz; /* at the end */
+    double others_share;   /* of the machine, 0..1: busy but not with this process; includes steal */
+    double steal_share;    /* of the machine, 0..1 */
+    double frequency_hz;   /* at the end */
+    double frequency_drop; /* share by which that is below the highest one so far, 0..1 */
 } machine_noise;
 
 /* Reads /proc/stat, /sys/devices/system/cpu/cpuN/cpufreq (or /proc/cpuinfo) below root, "" for this machine. */
 noise_reading noise_read(const char *root);
+/* frequency_drop is NaN: it depends on earlier readings. */
 machine_noise noise_between(const noise_reading *before, const noise_reading *after);
 /* All unknown. */
 machine_noise noise_unknown(void);
@@ -34,24 +36,25 @@ enum { NOISE_READINGS = 16 };
 typedef struct noise_window {
     noise_reading reading[NOISE_READINGS];
     size_t count;
+    double fastest_hz; /* of all readings at the end of an interval; 0: none */
 } noise_window;
 
 /* Adds a reading; readings that are older than necessary are dropped. */
 void noise_window_add(noise_window *w, const noise_reading *now);
 /* The noise up to now of an interval that began at since_s (wall_s of a reading), or of NOISE_WINDOW_S if that is
  * longer: from the latest sufficiently old reading, or the oldest one. noise_unknown without a reading. */
-machine_noise noise_window_since(const noise_window *w, double since_s, const noise_reading *now);
+machine_noise noise_window_since(noise_window *w, double since_s, const noise_reading *now);
 
-/* A rule that calls a measurement disturbed. It never looks at the measured time. NaN: not part of the rule. */
+/* A rule that calls a measurement disturbed: it is, if one of these is above its bound. The rule never looks at the
+ * measured time. NaN: not part of the rule. */
 typedef struct noise_rule {
-    double others_share, steal_share; /* disturbed above */
-    double frequency_drop;            /* disturbed if the frequency is that share below usual_hz */
+    double others_share, steal_share, frequency_drop;
 } noise_rule;
 
 /* others_share above 0.05. */
 noise_rule noise_rule_default(void);
 
 typedef enum noise_kind { NOISE_OTHERS, NOISE_STEAL, NOISE_FREQUENCY, NOISE_KINDS } noise_kind;
-/* Which parts of the rule the noise breaks, by noise_kind; returns whether any does. Unknown noise breaks none.
- * usual_hz: the highest frequency that was seen, 0 or NaN: unknown. broken may be NULL. */
-bool noise_disturbs(const noise_rule *rule, const machine_noise *noise, double usual_hz, bool broken[NOISE_KINDS]);
+typedef enum noise_verdict { NOISE_UNDISTURBED, NOISE_DISTURBED, NOISE_NOT_KNOWN } noise_verdict;
+/* Not known if nothing that the rule looks at is. broken, by noise_kind, may be NULL: which parts are. */
+noise_verdict noise_judge(const noise_rule *rule, const machine_noise *noise, bool broken[NOISE_KINDS]);

@@ -6,6 +6,7 @@
 #include "base/isa.h"
 #include "measure/statistics.h"
 #include "study/row_files.h"
+#include "study/row_noise.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -55,8 +56,9 @@ status progress_index_add(progress_index *l, const progress_index_entry *entry, 
         if (!room_for_one(&cell->wall_s, cell->counted, sizeof *cell->wall_s))
             return out_of_memory(why);
         cell->wall_s[cell->counted++] = entry->wall_s;
-        cell->disturbed += entry->disturbed;
-        l->disturbed += entry->disturbed;
+        cell->disturbed += entry->disturbed == NOISE_DISTURBED;
+        cell->undisturbed += entry->disturbed == NOISE_UNDISTURBED;
+        l->disturbed += entry->disturbed == NOISE_DISTURBED;
     }
     TRY(expect_film(l, entry, why));
     cell->rows++;
@@ -76,7 +78,7 @@ status progress_index_add(progress_index *l, const progress_index_entry *entry, 
 /* The columns that the index reads, of one table. */
 typedef struct index_columns {
     const csv *table;
-    int film_hash, wall_s, disturbed;
+    int film_hash, wall_s;
     bool of_other_shard;
 } index_columns;
 
@@ -96,13 +98,14 @@ static bool is_of_other_shard(const progress_index *l, const row_files *files, c
 static status add_rows(progress_index *l, const row_files *files, diagnostic *why)
 {
     index_columns at = {.table = NULL};
+    row_noise_columns noise = {.table = NULL};
     long last_run = -2;
     uint64_t build = 0;
     for (size_t i = 0; i < files->row_count; i++) {
         const row_ref *ref = &files->rows[i];
         if (ref->table != at.table)
             at = (index_columns){ref->table, csv_column(ref->table, "film_hash"), csv_column(ref->table, "wall_s"),
-                                 csv_column(ref->table, "disturbed"), is_of_other_shard(l, files, ref->table)};
+                                 is_of_other_shard(l, files, ref->table)};
         if (ref->run < 0)
             build = hash_text(ref->environment);
         else if (ref->run != last_run)
@@ -113,7 +116,7 @@ static status add_rows(progress_index *l, const row_files *files, diagnostic *wh
             &(progress_index_entry){.cell = ref->cell,
                                     .repetition = ref->repetition,
                                     .warmup = ref->warmup,
-                                    .disturbed = strcmp(csv_field(ref->table, ref->row, at.disturbed), "1") == 0,
+                                    .disturbed = row_noise_judge(&l->s->disturbed, &noise, ref),
                                     .film_hash = strtoull(csv_field(ref->table, ref->row, at.film_hash), NULL, 16),
                                     .build = build,
                                     .wall_s = csv_field_real(ref->table, ref->row, at.wall_s),
@@ -186,7 +189,7 @@ bool progress_index_cell_done(const progress_index *l, size_t cell)
     if (at->counted >= (size_t)progress_index_most(l))
         return true;
     if (s->undisturbed > 0)
-        return at->counted - at->disturbed >= (size_t)progress_index_least(l);
+        return at->undisturbed >= (size_t)progress_index_least(l);
     if (at->counted < (size_t)progress_index_least(l) || s->relative_width <= 0)
         return false;
     summary walls = summarize(at->wall_s, at->counted); /* safe to sort in place */

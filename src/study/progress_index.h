@@ -11,9 +11,9 @@ typedef struct progress_index_expected {
 } progress_index_expected;
 
 typedef struct progress_index_cell {
-    size_t rows, counted, marked; /* counted: repetitions of the environment that are not warm-ups; rows: all */
-    size_t disturbed;             /* of the counted rows */
-    long next_repetition;         /* one more than the highest existing number */
+    size_t rows, counted, marked;  /* counted: repetitions of the environment that are not warm-ups; rows: all */
+    size_t disturbed, undisturbed; /* of the counted rows; the others are not known */
+    long next_repetition;          /* one more than the highest existing number */
     /* Of the first row of each build, stored at the first of the cells that share one film (study_cell_film). */
     progress_index_expected *film;
     size_t film_count;
@@ -37,7 +37,8 @@ typedef struct progress_index {
 typedef struct progress_index_entry {
     size_t cell;
     long repetition;
-    bool warmup, disturbed;
+    bool warmup;
+    noise_verdict disturbed;
     uint64_t film_hash, build;
     double wall_s;
     const char *environment;

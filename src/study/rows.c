@@ -66,6 +66,14 @@ static void put_time(csv_line *line, const study_row *r)
     csv_text(line, row_time(r->made->ended_ms, text));
 }
 
+static void put_verdict(csv_line *line, noise_verdict verdict)
+{
+    if (verdict == NOISE_NOT_KNOWN)
+        csv_text(line, NULL);
+    else
+        csv_count(line, verdict == NOISE_DISTURBED);
+}
+
 /* The study's own columns: name, unit, meaning and writer in one place, so that header, dictionary and row always
  * agree. The last macro argument uses line and r (the row). The other columns are those of job/quantities.h. */
 #define WHOSE(X)                                                                                                \
@@ -97,8 +105,9 @@ static void put_time(csv_line *line, const study_row *r)
     X("marked", "", "1: film_hash differs from film_expected; do not use this row",                                    \
       csv_count(line, job_account_hash(r->made) != r->film_expected))                                                  \
     X("disturbed", "",                                                                                                 \
-      "1: others_share, steal_share or frequency_hz breaks the study's rule (key disturbed of the study file)",        \
-      csv_count(line, r->disturbed))
+      "1: others_share, steal_share or frequency_drop broke the study's rule (key disturbed) when the row was "        \
+      "measured; readers apply the present rule",                                                                      \
+      put_verdict(line, r->disturbed))
 
 #define DESCRIBE(name, unit, meaning, put) take(context, &(row_column){name, unit, meaning});
 #define PUT(name, unit, meaning, put) put;

@@ -27,9 +27,9 @@ typedef struct study_row {
     bool warmup;
     size_t order; /* number in the file */
     uint64_t film_expected;
-    bool disturbed;  /* by the study's rule */
-    const char *run; /* its id (study/runs.h) */
-    int process;     /* number of the process within the run, from 0 */
+    noise_verdict disturbed; /* by the study's rule */
+    const char *run;         /* its id (study/runs.h) */
+    int process;             /* number of the process within the run, from 0 */
     const job_account *made;
 } study_row;
 

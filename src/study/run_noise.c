@@ -15,7 +15,7 @@ static noise_rule rule_of_news(const noise_rule *rule)
                         .frequency_drop = isnan(rule->frequency_drop) ? 0.1 : rule->frequency_drop};
 }
 
-static void describe(noise_kind kind, const machine_noise *noise, double usual_hz, char *text, size_t size)
+static void describe(noise_kind kind, const machine_noise *noise, char *text, size_t size)
 {
     switch (kind) {
     case NOISE_OTHERS:
@@ -27,8 +27,8 @@ static void describe(noise_kind kind, const machine_noise *noise, double usual_h
                  100 * noise->steal_share);
         return;
     case NOISE_FREQUENCY:
-        snprintf(text, size, "the clock frequency fell from %.2f to %.2f GHz: heat, or the governor", usual_hz * 1e-9,
-                 noise->frequency_hz * 1e-9);
+        snprintf(text, size, "the clock frequency fell by %.0f%% to %.2f GHz: heat, or the governor",
+                 100 * noise->frequency_drop, noise->frequency_hz * 1e-9);
         return;
     case NOISE_KINDS: break;
     }
@@ -41,23 +41,21 @@ static void tell(run *r, const char *text)
         r->options->news(r->options->context, text);
 }
 
-bool run_noise_judge(run *r, const machine_noise *noise)
+noise_verdict run_noise_judge(run *r, const machine_noise *noise)
 {
     bool broken[NOISE_KINDS];
     const noise_rule news = rule_of_news(&r->s->disturbed);
     const double now_s = clock_wall_s();
-    if (noise->frequency_hz > r->usual_hz)
-        r->usual_hz = noise->frequency_hz;
-    noise_disturbs(&news, noise, r->usual_hz, broken);
+    (void)noise_judge(&news, noise, broken);
     for (noise_kind kind = 0; kind < NOISE_KINDS; kind++) {
         char text[200];
         if (!broken[kind] || now_s < r->next_news_s[kind])
             continue;
         r->next_news_s[kind] = now_s + NEWS_APART_S;
-        describe(kind, noise, r->usual_hz, text, sizeof text);
+        describe(kind, noise, text, sizeof text);
         tell(r, text);
     }
-    return noise_disturbs(&r->s->disturbed, noise, r->usual_hz, NULL);
+    return noise_judge(&r->s->disturbed, noise, NULL);
 }
 
 status run_noise_wait(run *r, diagnostic *why)
@@ -66,7 +64,7 @@ status run_noise_wait(run *r, diagnostic *why)
     const noise_rule rule = rule_of_news(&r->s->disturbed);
     while (most_s > 0) {
         const machine_noise noise = job_noise(r->with);
-        if (!noise_disturbs(&rule, &noise, r->usual_hz, NULL))
+        if (noise_judge(&rule, &noise, NULL) != NOISE_DISTURBED)
             return STATUS_OK;
         if (clock_wall_s() - began_s >= most_s) {
             char text[120];

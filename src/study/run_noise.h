@@ -4,8 +4,8 @@
 
 #include "study/run_state.h"
 
-/* Whether the row is disturbed; reports what is. */
-bool run_noise_judge(run *r, const machine_noise *noise);
+/* The verdict of the study's rule; reports what disturbs. */
+noise_verdict run_noise_judge(run *r, const machine_noise *noise);
 
 /* With options->wait_quiet_s: waits until nothing disturbs, at most that long. STATUS_INTERRUPTED after a stop
  * request. */

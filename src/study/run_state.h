@@ -36,7 +36,6 @@ typedef struct run {
     int process;
     run_environment here;
     uint64_t build;                  /* progress_index_build */
-    double usual_hz;                 /* the highest clock frequency so far; 0: unknown */
     double next_news_s[NOISE_KINDS]; /* when news of this kind may be reported again, monotonic */
     bool said_waiting;               /* that the machine did not become quiet */
     job *with;

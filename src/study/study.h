@@ -147,7 +147,7 @@ status study_run(const study *s, const study_options *options, size_t *ran, diag
  * present environment (study/environment.h). */
 typedef struct study_progress {
     size_t cells, cells_done, rows, warmups, rows_marked;
-    size_t rows_disturbed;   /* by the rule of the study when they were measured; warm-ups do not count */
+    size_t rows_disturbed;   /* by the rule of the study; warm-ups do not count */
     size_t rows_elsewhere;   /* rows of other environments */
     size_t rows_other_cells; /* rows of cells that the study does not have (any more) */
     size_t faults;           /* rows that are marked, fail a check, or are missing */

@@ -7,6 +7,7 @@
 #include "study/grid.h"
 #include "study/level_rows.h"
 #include "study/row_environments.h"
+#include "study/row_noise.h"
 #include "study/rows.h"
 #include "scene/model/open.h"
 #include <math.h>
@@ -31,7 +32,8 @@ typedef struct cell_rows {
     const char *film_expected; /* NULL without a row */
     const row_ref **rows;
     size_t count, marked, excluded, disturbed,
-        judged;              /* judged: rows for which it is known whether they are disturbed */
+        judged; /* judged: rows for which it is known whether they are disturbed */
+    const noise_rule *rule;
     const excluded *without; /* the rows that a person excluded */
     double *values;
     const row_ref *compared; /* the cell's row of compare.csv, or NULL */
@@ -86,7 +88,7 @@ static status put_timed(const cell_rows *cell, const char *name, diagnostic *why
     return STATUS_OK;
 }
 
-/* The rows that nothing disturbed, by the rule that the study had when they were measured. */
+/* The rows that nothing disturbed, by the study's present rule. */
 static status put_undisturbed(const cell_rows *cell, diagnostic *why)
 {
     if (cell->header) {
@@ -99,9 +101,10 @@ static status put_undisturbed(const cell_rows *cell, diagnostic *why)
         return STATUS_OK;
     }
     level_interval median = {NAN, NAN, NAN};
+    row_noise_columns at = {.table = NULL};
     gather(cell, "wall_s");
     for (size_t i = 0; i < cell->count; i++)
-        if (strcmp(row_field(cell->rows[i], "disturbed"), "0") != 0)
+        if (row_noise_judge(cell->rule, &at, cell->rows[i]) != NOISE_UNDISTURBED)
             cell->values[i] = NAN;
     TRY(level_rows_median(cell->rows, cell->values, cell->count, &median, why));
     fprintf(cell->out, "\t%zu\t%zu", cell->disturbed, cell->judged - cell->disturbed);
@@ -184,10 +187,11 @@ static void collect(cell_rows *cell, row_ref *const *rows, size_t count)
         if (!marked && !is_excluded && !rows[i]->warmup)
             cell->rows[cell->count++] = rows[i];
     }
+    row_noise_columns at = {.table = NULL};
     for (size_t i = 0; i < cell->count; i++) {
-        const char *disturbed = row_field(cell->rows[i], "disturbed");
-        cell->disturbed += strcmp(disturbed, "1") == 0;
-        cell->judged += strcmp(disturbed, "NA") != 0;
+        const noise_verdict verdict = row_noise_judge(cell->rule, &at, cell->rows[i]);
+        cell->disturbed += verdict == NOISE_DISTURBED;
+        cell->judged += verdict != NOISE_NOT_KNOWN;
     }
 }
 
@@ -223,6 +227,7 @@ static status put_cells(const study *s, const row_files *files, const row_files 
     row_ref **sorted = malloc(room * sizeof *sorted);
     cell_rows cell = {.rows = malloc(room * sizeof *cell.rows),
                       .values = malloc(room * sizeof *cell.values),
+                      .rule = &s->disturbed,
                       .without = without,
                       .out = out};
     const row_ref **compared_with = calloc(study_cell_count(s), sizeof *compared_with);

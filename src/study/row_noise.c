@@ -1,0 +1,13 @@
+#include "study/row_noise.h"
+#include <math.h>
+
+noise_verdict row_noise_judge(const noise_rule *rule, row_noise_columns *at, const row_ref *ref)
+{
+    if (ref->table != at->table)
+        *at = (row_noise_columns){ref->table, csv_column(ref->table, "others_share"),
+                                  csv_column(ref->table, "steal_share"), csv_column(ref->table, "frequency_drop")};
+    const machine_noise noise = {csv_field_real(ref->table, ref->row, at->others),
+                                 csv_field_real(ref->table, ref->row, at->steal), NAN,
+                                 csv_field_real(ref->table, ref->row, at->drop)};
+    return noise_judge(rule, &noise, NULL);
+}
