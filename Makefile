@@ -193,7 +193,7 @@ $(build)/tests/fuzz_%: tests/fuzz_%.c $(build)/libcuvette.a $(build)/flags
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -fsanitize=fuzzer -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
 
-$(build)/tests/bench_%: tests/bench_%.c $(build)/libcuvette.a $(build)/flags
+$(benches) $(build)/tests/recheck: $(build)/tests/%: tests/%.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
@@ -252,7 +252,7 @@ test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverag
 
 .PHONY: test
 # Programs that test scripts run.
-tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh peers
+tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh $(build)/tests/recheck peers
 test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c alone
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
@@ -432,7 +432,7 @@ uninstall: ## remove the installed files
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
 by_scripts := tests/fail_allocation.c tests/json_get.c $(wildcard experiments/engine/*.c)
-compiled: all peers $(test_programs) $(benches) $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
+compiled: all peers $(test_programs) $(benches) $(build)/tests/recheck $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
 $(build)/by-scripts/%.o: %.c $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)

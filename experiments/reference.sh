@@ -1,7 +1,7 @@
 #!/bin/bash
 # experiments/reference.sh [RESULTS]: makes results/reference, the committed run, from a complete run in RESULTS
-# (results). It keeps what cannot be computed again from it: rows, runs, comparisons and metrics of cells, and the drawn
-# figures; not the images of single cells. `make setup experiments` in a fresh clone comes first.
+# (results). It keeps what cannot be computed again from it: rows, runs, comparisons and metrics of cells, and figures of
+# images; not the images of single cells. `make setup experiments` in a fresh clone comes first.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 from=${1:-results}
@@ -27,5 +27,18 @@ done
 for table in "$from"/tables/*-{metrics,curves,motion}.tsv; do
     [[ ! -e $table ]] || cp "$table" "$to/tables/"
 done
-cp "$from"/figures/*.png "$from"/figures/{fan,trace}.svg "$to/figures/"
+# Small float images that numbers of the paper are read from; of a large one, what the paper says about it.
+for name in absorber slime-light; do
+    mkdir -p "$to/$name/images"
+    cp "$from/$name"/images/*.pfm "$to/$name/images/"
+done
+paper/blocks.sh "$from/maps/images/0000-rays.pfm" >"$to/tables/maps-blocks.tex"
+# Figures that need images; the others are drawn from the rows. And those of the README.
+for script in plots/*.gp; do
+    name=$(basename "$script" .gp)
+    if [[ $(sed -n 's/^# needs: *//p' "$script") == */images/* || $(<README.md) == */figures/"$name".png* ]]; then
+        cp "$from/figures/$name.png" "$to/figures/"
+    fi
+done
+cp "$from"/figures/{fan,trace}.svg "$to/figures/"
 printf '%s: %s files, %s\n' "$to" "$(find "$to" -type f | wc -l)" "$(du -sh "$to" | cut -f1)"

@@ -7,6 +7,7 @@ set -uo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 CUVETTE=$(realpath "${1:-${CUVETTE:-$root/build/cuvette}}")
 export CUVETTE
+build=$(realpath "${BUILD:-$root/build}")
 unset ENVIRONMENT RESULTS
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-claims.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -63,20 +64,14 @@ copy() { # NAME STUDY
         [[ ${entry##*/} == "$2" ]] || ln -s "$entry" "$work/$1/"
     done
     cp -r "$root/$reference/$2" "$work/$1/$2"
-    # Edited rows no longer fit their checksums: leave them as rows of the first format, which had none.
-    edit_columns "$work/$1/$2/rows.csv"
 }
-edit_columns() { # FILE: without the columns of later formats
-    awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) drop[i] = $i ~ /^(schema|identity|run|process|check)$/ }
-        { line = ""; first = 1
-          for (i = 1; i <= NF; i++) if (!drop[i]) { line = line (first ? "" : ",") $i; first = 0 }
-          print line }' "$1" >"$1.new" && mv "$1.new" "$1"
-}
+recheck() { "$build/tests/recheck" "$1" "$(dirname "$1")/runs.json"; } # FILE: of edited rows
 # Sets a column of the rows where an awk condition over the function f("column") holds.
 edit() { # FILE CONDITION COLUMN VALUE (awk expressions)
     awk -F, -v OFS=, 'function f(name) { return $at[name] }
         NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; print; next }
         '"$2"' { $at["'"$3"'"] = '"$4"' } { print }' "$1" >"$1.new" && mv "$1.new" "$1"
+    recheck "$1"
 }
 
 # --- the list
@@ -144,10 +139,10 @@ judge "$work/film" "$work/out"
 same "another film in one row: not reproduced" "$(changed "$work/out")" "film-threads: not reproduced"
 same "a claim that is not reproduced gives status 1" "$code" 1
 
-copy metrics realism
+copy metrics tables
 awk -F'\t' -v OFS='\t' 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
     NR > 1 && !done && $at["passes"] == 1 { $at["passes"] = 0; done = 1 } { print }' \
-    "$reference/realism/images/0003-metrics.tsv" >"$work/metrics/realism/images/0003-metrics.tsv"
+    "$reference/tables/realism-metrics.tsv" >"$work/metrics/tables/realism-metrics.tsv"
 judge "$work/metrics" "$work/out"
 same "a metric beyond its tolerance: not reproduced" "$(changed "$work/out")" "theory: not reproduced"
 
@@ -165,8 +160,9 @@ verdict $? "the figure has its interval" "$(of "$work/out" polarised-cost 3)"
 
 # --- rows that cannot decide
 copy few polarised
-awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } NR == 1 || $at["repetition"] < 4' \
+awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i } NR == 1 || $at["repetition"] < 5' \
     "$work/few/polarised/rows.csv" >"$work/rows" && cp "$work/rows" "$work/few/polarised/rows.csv"
+recheck "$work/few/polarised/rows.csv"
 judge "$work/few" "$work/out"
 same "few rows: underpowered" "$(changed "$work/out")" "polarised-cost: underpowered"
 same "underpowered alone gives status 0" "$code" 0

@@ -123,7 +123,8 @@ static status print_notes(const study *s, const study_request *request, diagnost
     if (progress.cells_done == progress.cells)
         return STATUS_OK;
     note_rows(s, request, &progress);
-    note_machine();
+    if (!request->dry_run)
+        note_machine();
     study_notes_print_file(s);
     return study_notes_print_cells(s, why);
 }
