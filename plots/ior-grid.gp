@@ -7,10 +7,10 @@ load "plots/image_panels.gp"
 rows = table("ior-grid")
 vessel = system(select(rows, "", "vessel.ior")[3:*]." | sort -gu | tr '\\n' ' '")
 liquid = system(select(rows, "", "liquid.ior")[3:*]." | sort -gu | tr '\\n' ' '")
-set multiplot layout words(vessel),words(liquid) margins 0.085,0.995,0.005,0.953 spacing 0.006,0.004
+set multiplot layout words(vessel),words(liquid) margins 0.115,0.995,0.005,0.953 spacing 0.006,0.004
 # Crop of each image, the vessel: fractions of the width from the left and of the height from the bottom.
 set label 1 "refractive index of the liquid" at screen 0.54,0.983 center font ",10"
-set label 2 "refractive index of the vessel" at screen 0.018,0.48 center rotate font ",10"
+set label 2 "refractive index of the vessel" at screen 0.014,0.48 center rotate font ",10"
 do for [i=1:words(vessel)] {
     do for [k=1:words(liquid)] {
         cell = first(rows, sprintf("vessel.ior=%s liquid.ior=%s", word(vessel, i), word(liquid, k)), "cell")
