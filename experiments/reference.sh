@@ -1,7 +1,7 @@
 #!/bin/bash
 # experiments/reference.sh [RESULTS]: makes results/reference, the committed run, from a complete run in RESULTS
-# (results). It keeps what cannot be computed again from it: rows, runs, comparisons and metrics of cells, and figures of
-# images; not the images of single cells. `make setup experiments` in a fresh clone comes first.
+# (results). It keeps what cannot be computed again from it: rows, runs, comparisons and metrics of cells, and figures
+# of images; not the images of single cells. `make setup experiments` in a fresh clone comes first.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 from=${1:-results}
