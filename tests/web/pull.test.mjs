@@ -44,12 +44,22 @@ async function fallen(t) {
   return { lab, screen, rest: silhouette(await screen.pixels()) };
 }
 
-async function drawnOut(t, screen, rest) {
-  let now = silhouette(await screen.pixels());
-  while (now.high < DRAWN_OUT * rest.high || now.top > rest.top - LIFT + IN) {
+/** Waits until the held body hangs still: its top and height change by at most STILL pixels in as many pictures. */
+async function hangsStill(screen) {
+  const [STILL, PICTURES] = [4, 8];
+  let [reference, unchanged] = [silhouette(await screen.pixels()), 0];
+  while (unchanged < PICTURES) {
     await nextPicture(screen);
-    now = silhouette(await screen.pixels());
+    const now = silhouette(await screen.pixels());
+    const moved = Math.max(Math.abs(now.top - reference.top), Math.abs(now.high - reference.high)) > STILL;
+    [reference, unchanged] = moved ? [now, 0] : [reference, unchanged + 1];
   }
+  return reference;
+}
+
+async function drawnOut(t, screen, rest) {
+  const now = await hangsStill(screen);
+  t.more(now.high, DRAWN_OUT * rest.high, 'the height while it is held, pixels');
   t.more(
     rest.wide / rest.high,
     (1.1 * now.wide) / now.high,
