@@ -44,11 +44,11 @@ async function fallen(t) {
   return { lab, screen, rest: silhouette(await screen.pixels()) };
 }
 
-/** Waits until the held body hangs still: its top and height change by at most STILL pixels in as many pictures. */
+/** Waits until the held body is still: its top and height change by at most STILL pixels over FRAMES frames. */
 async function hangsStill(screen) {
-  const [STILL, PICTURES] = [4, 8];
+  const [STILL, FRAMES] = [4, 8];
   let [reference, unchanged] = [silhouette(await screen.pixels()), 0];
-  while (unchanged < PICTURES) {
+  while (unchanged < FRAMES) {
     await nextPicture(screen);
     const now = silhouette(await screen.pixels());
     const moved = Math.max(Math.abs(now.top - reference.top), Math.abs(now.high - reference.high)) > STILL;
