@@ -3,8 +3,8 @@
 # and goes (A/A: every verdict is wrong), then looks for a known difference of 3% with the number of processes that a
 # pilot predicts for a power of 95% (A/B). Prints one line per comparison, separated by tabs, and the numbers of wrong
 # and found.
-# TRIES (20) comparisons of each kind; PROCESSES (8) of an A/A comparison. CUVETTE: the program (build/cuvette).
-# About 10 minutes. Exit status 1 if more than 2 in 25 are wrong, or fewer than 4 in 5 found.
+# TRIES (20) comparisons of each kind; PROCESSES (8) of an A/A comparison, PILOT (12) of a pilot. CUVETTE: the program
+# (build/cuvette). About 15 minutes. Exit status 1 if more than 2 in 25 are wrong, or fewer than 4 in 5 found.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export LC_ALL=C
@@ -12,6 +12,7 @@ export LC_ALL=C
 cuvette=$(realpath "${CUVETTE:-build/cuvette}")
 tries=${TRIES:-20}
 processes=${PROCESSES:-8}
+pilot=${PILOT:-12}
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-aa.XXXXXX")
 load=()
 unload() {
@@ -75,7 +76,7 @@ done
 found=0 looked=0
 for ((try = 1; try <= tries; try++)); do
     results=$work/slower$try
-    "$cuvette" study run "$work/slower.study" --quiet --processes=6 --results "$results"
+    "$cuvette" study run "$work/slower.study" --quiet --processes="$pilot" --results "$results"
     compare slower render.paths=1600 render.paths=1648 "$results" >"$work/table"
     needed=$(field pairs_needed <"$work/table")
     rm -rf "$results"
