@@ -66,12 +66,16 @@ static bool parse_shard(const char *name, row_kind kind, shard_name *out)
     return strcmp(name, again) == 0;
 }
 
-/* The files of the shards in a folder, sorted. *list is owned by the caller. */
+/* The files of the shards in a folder, sorted. *list is owned by the caller; NULL after an error. */
 static status list_shards(const char *folder, row_kind kind, shard_name **list, size_t *count, diagnostic *why)
 {
     struct dirent **entries = NULL;
     const int found = scandir(folder, &entries, NULL, NULL);
     *count = 0;
+    *list = NULL;
+    if (found < 0 && errno != ENOENT)
+        return diagnose_at(why, folder, STATUS_FAILURE, "make the folder readable", "cannot be read: %s",
+                           strerror(errno));
     *list = calloc(found > 0 ? (size_t)found : 1, sizeof **list);
     for (int i = 0; i < found; i++) {
         *count += *list && parse_shard(entries[i]->d_name, kind, &(*list)[*count]);
@@ -80,9 +84,6 @@ static status list_shards(const char *folder, row_kind kind, shard_name **list, 
     free(entries);
     if (!*list)
         return out_of_memory(why);
-    if (found < 0 && errno != ENOENT)
-        return diagnose_at(why, folder, STATUS_FAILURE, "make the folder readable", "cannot be read: %s",
-                           strerror(errno));
     qsort(*list, *count, sizeof **list, compare_shards);
     return STATUS_OK;
 }
