@@ -212,7 +212,8 @@ status level_bootstrap(const level_sample *a, const level_sample *b, bool paired
         return STATUS_OK;
     resample first, second;
     double *values = malloc(RESAMPLES * sizeof *values);
-    const bool has_memory = resample_create(a, &first) & resample_create(b, &second);
+    const bool has_first = resample_create(a, &first), has_second = resample_create(b, &second);
+    const bool has_memory = has_first && has_second;
     for (uint32_t round = 0; values && has_memory && round < RESAMPLES; round++) {
         resample_draw(&first, seed, round, 0);
         if (b)
