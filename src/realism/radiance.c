@@ -109,8 +109,8 @@ status realism_radiance(const metrics *m, diagnostic *why)
 {
     static const char *const names[] = {"radiance.sky_under_water", "radiance.floor_under_water",
                                         "radiance.lamp_under_water"};
-    static const char *const what[] = {("radiance of a sky of 1 seen from within the liquid, with "
-                                        "render.radiance=basic; largest error for 0 to 85 degrees"),
+    static const char *const what[] = {("radiance of a sky of radiance 1, seen from inside the liquid "
+                                        "(render.radiance=basic); largest error at 0 to 85 degrees"),
                                        "radiance of a floor of radiance 1 below the liquid, seen from above",
                                        "radiance of a diffuse floor below the liquid, lit by a light above it"};
     const bool fresnel = !scene_has_constant_shares(&m->traced->render);

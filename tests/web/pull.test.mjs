@@ -45,7 +45,7 @@ async function fallen(t) {
 }
 
 /** Waits until the held body is still: its top and height change by at most STILL pixels over FRAMES frames. */
-async function hangsStill(screen) {
+async function untilStill(screen) {
   const [STILL, FRAMES] = [4, 8];
   let [reference, unchanged] = [silhouette(await screen.pixels()), 0];
   while (unchanged < FRAMES) {
@@ -58,7 +58,7 @@ async function hangsStill(screen) {
 }
 
 async function drawnOut(t, screen, rest) {
-  const now = await hangsStill(screen);
+  const now = await untilStill(screen);
   t.more(now.high, DRAWN_OUT * rest.high, 'the height while it is held, pixels');
   t.more(
     rest.wide / rest.high,
