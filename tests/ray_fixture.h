@@ -57,7 +57,7 @@ static inline one_hit nearest_interface(const scene_geometry *a, one_ray r)
     if (!a->primitives[h.hit_primitive].rule)
         instance_set_surface(a->meshes, &batch, meshes.hit, false, &points, NULL);
     else
-        kernels->surface(&a->primitives[h.hit_primitive], &batch, hits.t, h.hit_primitive, &points);
+        kernels->surface(a, h.hit_primitive, &batch, hits.t, &points);
     h.point = vec3_make(points.px[0], points.py[0], points.pz[0]);
     h.normal = vec3_make(points.nx[0], points.ny[0], points.nz[0]);
     h.cos_i = points.cos_i[0];
@@ -85,6 +85,6 @@ static inline scene_geometry *scene_geometry_of(const solid_shape *shapes, int c
         sources[i] = (region_source){
             .shape = &shapes[i], .priority = count - i, .medium = i + 1, .shadow_transmittance = 1.0, .solid = i};
     scene_geometry *a = NULL;
-    assert_int_equal(scene_geometry_build(sources, count, 0, &a, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(sources, count, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
     return a;
 }

@@ -32,7 +32,7 @@ static inline void room_build(room *m)
                                      .opaque = m->opaque[i],
                                      .shadow_transmittance = m->opaque[i] ? 0.0 : m->shadow_transmittance[i],
                                      .solid = i};
-    assert_int_equal(scene_geometry_build(sources, m->count, 0, &m->solids, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(sources, m->count, 0, TREE_IF_MANY, &m->solids, NULL), STATUS_OK);
 }
 
 /* The definition: the highest priority wins; of equal ones the first. */

@@ -25,7 +25,7 @@ static scene_geometry *halves(double gap, double x, bool upper_wins, bool far_so
         {.shape = &shapes[2], .priority = 9, .medium = 3, .shadow_transmittance = 1.0, .solid = 2},
     };
     scene_geometry *a = NULL;
-    assert_int_equal(scene_geometry_build(sources, far_solid ? 3 : 2, 0, &a, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(sources, far_solid ? 3 : 2, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
     return a;
 }
 
@@ -113,7 +113,7 @@ static void a_film_in_contact_is_entered(void **state)
                 {.shape = &shapes[1], .priority = 1 - order % 2, .medium = 2, .shadow_transmittance = 1.0, .solid = 1},
             };
             scene_geometry *a = NULL;
-            assert_int_equal(scene_geometry_build(sources, 2, 0, &a, NULL), STATUS_OK);
+            assert_int_equal(scene_geometry_build(sources, 2, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
             one_ray r = downwards_ray(a, 0.0, 0.3 * (order / 2), 0.5);
             one_hit h = nearest_interface(a, r);
             assert_int_equal(a->regions[h.after].medium, 2);
@@ -142,7 +142,7 @@ static double light_through_discs(double gap, const vec3 *turn_deg)
             .shape = &shapes[i], .priority = i, .medium = i + 1, .shadow_transmittance = 0.5, .solid = i};
     }
     scene_geometry *a = NULL;
-    assert_int_equal(scene_geometry_build(sources, 2, 0, &a, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(sources, 2, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
     const vec3 from = mat3_apply(turn, vec3_make(0.1, 3.0, 0.2)), to = mat3_apply(turn, vec3_make(0.6, -4.0, -0.3));
     const double light = light_through(a, (one_ray){from, vec3_sub(to, from), FACE_NONE, 0}, 0);
     scene_geometry_destroy(a);

@@ -175,7 +175,7 @@ static void instruction_sets_give_bit_identical_hits(void **state)
             memset(&points[level], 0, sizeof points[level]);
             memset(light[level], 0, sizeof light[level]);
             kernels->nearest(m.solids, &rays, &scratch, &hits[level]);
-            kernels->surface(&m.solids->primitives[0], &rays, hits[level].t, 0, &points[level]);
+            kernels->surface(m.solids, 0, &rays, hits[level].t, &points[level]);
             kernels->shadow(m.solids, &rays, 0, &scratch, light[level][0]);
             kernels->shadow(m.solids, &rays, 1, &scratch, light[level][1]);
             assert_memory_equal(&hits[level], &hits[0], sizeof hits[0]);

@@ -15,7 +15,7 @@ static scene_geometry *arrange(const solid_shape *shape)
 {
     const region_source source = {.shape = shape, .medium = 1, .shadow_transmittance = 1.0};
     scene_geometry *a = NULL;
-    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
     return a;
 }
 

@@ -129,7 +129,7 @@ static void primitives(const shape_rule *rule, const placed_shape *placed)
     const solid_shape *shape = &placed->shape;
     const region_source source = {.shape = shape, .medium = 1, .shadow_transmittance = 1.0};
     scene_geometry *a = NULL;
-    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
     for (int n = 0; n < POINTS; n++) {
         const vec3 p = point_in(rule->extent(shape).box, 0.3), at = in_world(placed, p);
         bool inside = primitive_contains(&a->primitives[0], at);
@@ -209,7 +209,7 @@ static void surfaces(const shape_rule *rule, const placed_shape *placed)
     const region_source source = {.shape = shape, .medium = 1, .shadow_transmittance = 1.0};
     const vec3 scale = rule->tessellation_scale ? rule->tessellation_scale(shape) : vec3_make(1, 1, 1);
     scene_geometry *a = NULL;
-    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
     for (int part = 0; part < rule->primitive_count && !rule->hollow; part++) {
         mesh *m = NULL;
         assert_int_equal(rule->tessellation(shape, part, &m, NULL), STATUS_OK);

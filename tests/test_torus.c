@@ -154,7 +154,7 @@ static void shadows_include_both_tubes_of_a_torus(void **state)
     const solid_shape s = torus_of(1.0, 0.25);
     region_source source = {.shape = &s, .medium = 1, .shadow_transmittance = 0.5};
     scene_geometry *a = NULL;
-    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
     const one_ray whole = {{-3.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, FACE_NONE, 0},
                   half = {{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}, FACE_NONE, 0};
     const one_ray hole = {{0.0, -3.0, 0.0}, {0.1, 6.0, 0.0}, FACE_NONE, 0},
@@ -163,7 +163,7 @@ static void shadows_include_both_tubes_of_a_torus(void **state)
     assert_true(light_through(a, hole, 0) == 1.0 && light_through(a, far, 0) == 0.25);
     scene_geometry_destroy(a);
     source.opaque = true;
-    assert_int_equal(scene_geometry_build(&source, 1, 0, &a, NULL), STATUS_OK);
+    assert_int_equal(scene_geometry_build(&source, 1, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
     assert_true(light_through(a, whole, 0) == 0.0 && light_through(a, far, 0) == 0.0);
     assert_true(light_through(a, hole, 0) == 1.0);
     scene_geometry_destroy(a);

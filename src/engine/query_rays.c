@@ -131,7 +131,7 @@ static void report_hits(const cuvette_query *q, bench *b, int hit_primitive, int
             b->mesh_hits[k] = b->meshes.hit[b->list[k]];
         instance_set_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);
     } else {
-        q->kernels->surface(&a->primitives[hit_primitive], &rays, b->t, hit_primitive, &b->points);
+        q->kernels->surface(a, hit_primitive, &rays, b->t, &b->points);
     }
     for (int k = 0; k < count; k++)
         out[b->list[k]] = hit_of(q, b, b->list[k], k, hit_primitive);

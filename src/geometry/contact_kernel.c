@@ -19,12 +19,6 @@ typedef struct crossing {
     double t, bound, extent;
 } crossing;
 
-static ray_batch ray_of(const ray_batch *rays, int i, const uint64_t *inside)
-{
-    return (ray_batch){
-        1, &rays->ox[i], &rays->oy[i], &rays->oz[i], &rays->dx[i], &rays->dy[i], &rays->dz[i], &rays->start[i], inside};
-}
-
 /* -d . n at the point: the cosine of incidence (for a shadow ray times its length), which converts a distance across
  * the surface into one in t. */
 static double facing(const surface_batch *point, const ray_batch *one)
@@ -35,10 +29,10 @@ static double facing(const surface_batch *point, const ray_batch *one)
 
 static crossing crossing_of(const scene_geometry *a, const ray_batch *rays, int i, int p, double t, bool leaving)
 {
-    const uint64_t inside = (uint64_t)leaving << p;
-    const ray_batch one = ray_of(rays, i, &inside);
+    const uint64_t inside = leaving;
+    const ray_batch one = ray_batch_one(rays, i, &inside);
     surface_batch point;
-    a->primitives[p].rule->KERNEL_ISA->points(&a->primitives[p], &one, &t, p, &point);
+    a->primitives[p].rule->KERNEL_ISA->points(&a->primitives[p], &one, &t, 0, &point);
     return (crossing){p, t, point.error[0] / facing(&point, &one), a->primitives[p].extent};
 }
 
@@ -47,7 +41,7 @@ static crossing crossing_of(const scene_geometry *a, const ray_batch *rays, int 
 static crossing mesh_crossing_of(const scene_geometry *a, const ray_batch *rays, int i, const instance_hit *hit)
 {
     const uint64_t inside = 0;
-    const ray_batch one = ray_of(rays, i, &inside);
+    const ray_batch one = ray_batch_one(rays, i, &inside);
     surface_batch point;
     instance_set_surface(a->meshes, &one, hit, false, &point, NULL);
     const instanced_mesh *part = &a->meshes->parts[a->meshes->by_primitive[mesh_face_primitive(hit->face)]];
@@ -90,6 +84,61 @@ static void set_bit(uint64_t *set, int bit, bool on)
     *set = (*set & ~((uint64_t)1 << bit)) | (uint64_t)on << bit;
 }
 
+/* The intervals of a primitive ahead of column k: of a direct one from its rows. */
+static void intervals_in_column(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, int p,
+                                interval found[CHORDS_MAX])
+{
+    if (p >= a->direct_count) {
+        KERNEL(tree_intervals)(a, rays, k, s, p, found);
+        return;
+    }
+    for (int row = 0; row < a->primitives[p].rows; row++)
+        found[row] = (interval){s->in[p + row][k], s->out[p + row][k]};
+}
+
+/* The sides of a crossing on which a primitive contains the ray, where boundaries in contact with it are no longer, or
+ * already, crossed. */
+typedef struct sides {
+    bool before, after;
+} sides;
+
+static sides sides_of(const scene_geometry *a, const ray_batch *rays, int i, const crossing *c, int p,
+                      const interval *found)
+{
+    sides in = {false, false};
+    for (int row = 0; row < a->primitives[p].rows; row++) {
+        const int entry = side_of(a, rays, i, c, p, found[row].in, false),
+                  exit = side_of(a, rays, i, c, p, found[row].out, true);
+        in.before |= entry < 0 && exit >= 0;
+        in.after |= entry <= 0 && exit > 0;
+    }
+    return in;
+}
+
+/* The primitives of the solid tree on both sides of a crossing. */
+typedef struct tree_contact {
+    const scene_geometry *a;
+    const ray_batch *rays;
+    ray_scratch *s;
+    int column;
+    const crossing *at;
+} tree_contact;
+
+static void merge_tree_primitive(void *context, int p, const interval *found)
+{
+    const tree_contact *m = context;
+    const sides in = sides_of(m->a, m->rays, m->s->ray[m->column], m->at, p, found);
+    uint64_t *before = &m->s->tree.before[m->column], *after = &m->s->tree.after[m->column];
+    *before = set_table_put(m->a->tree->sets, *before, p, in.before);
+    *after = set_table_put(m->a->tree->sets, *after, p, in.after);
+}
+
+static void merge_tree(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, const crossing *at)
+{
+    tree_contact m = {a, rays, s, k, at};
+    KERNEL(tree_each_near)(a, rays, k, s, at->t, merge_tree_primitive, &m);
+}
+
 /* The boundaries of a mesh in contact with a crossing, and the distance of the farthest of them; negative for none. */
 typedef struct mesh_contact {
     const scene_geometry *a;
@@ -120,7 +169,7 @@ static double mesh_reach(const scene_geometry *a, const ray_batch *rays, int k, 
 static void merge_meshes(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
                          const crossing *at)
 {
-    for (int p = 0; p < a->primitive_count; p++) {
+    for (int p = 0; p < a->direct_count; p++) {
         const uint64_t bit = (uint64_t)1 << p;
         if (!(s->meshes->near[k] & bit))
             continue;
@@ -163,9 +212,11 @@ static void select_owner(const scene_geometry *a, const ray_batch *rays, int k, 
     }
     for (int piece = 0; piece < 2 && pieces[piece] >= 0; piece++) {
         const int p = pieces[piece];
+        interval found[CHORDS_MAX];
+        intervals_in_column(a, rays, k, s, p, found);
         for (int end = 0; end < 2 * a->primitives[p].rows; end++) {
             const bool leaving = end % 2;
-            const double t = leaving ? s->out[p + end / 2][k] : s->in[p + end / 2][k];
+            const double t = leaving ? found[end / 2].out : found[end / 2].in;
             if (side_of(a, rays, s->ray[k], at, p, t, leaving) == 0) {
                 c->t[k] = t;
                 c->hit_primitive[k] = p;
@@ -179,26 +230,26 @@ void KERNEL(merge_contacts)(const scene_geometry *a, const ray_batch *rays, int 
                             instance_hit *mesh_hits)
 {
     const int i = s->ray[k], hit_primitive = (int)c->hit_primitive[k];
+    interval found[CHORDS_MAX];
+    if (!is_mesh(a, hit_primitive))
+        intervals_in_column(a, rays, k, s, hit_primitive, found);
     const crossing at = is_mesh(a, hit_primitive)
                             ? mesh_crossing_of(a, rays, i, &mesh_hits[k])
-                            : crossing_of(a, rays, i, hit_primitive, c->t[k], c->t[k] != s->in[hit_primitive][k]);
-    const uint64_t meshes = a->meshes ? a->meshes->primitives : 0;
-    for (int p = 0; p < a->primitive_count; p++) {
-        if (!((s->near[k] & ~meshes) >> p & 1))
-            continue;
-        bool before = false, after = false;
-        for (int row = p; row < p + a->primitives[p].rows; row++) {
-            const int entry = side_of(a, rays, i, &at, p, s->in[row][k], false),
-                      exit = side_of(a, rays, i, &at, p, s->out[row][k], true);
-            before |= entry < 0 && exit >= 0;
-            after |= entry <= 0 && exit > 0;
-        }
-        set_bit(&c->inside_before[k], p, before);
-        set_bit(&c->inside_after[k], p, after);
+                            : crossing_of(a, rays, i, hit_primitive, c->t[k], c->t[k] != found[0].in);
+    for (uint64_t left = s->near[k] & ~(a->meshes ? a->meshes->primitives : 0); left; left &= left - 1) {
+        const int p = __builtin_ctzll(left);
+        intervals_in_column(a, rays, k, s, p, found);
+        const sides in = sides_of(a, rays, i, &at, p, found);
+        set_bit(&c->inside_before[k], p, in.before);
+        set_bit(&c->inside_after[k], p, in.after);
     }
+    if (a->tree)
+        merge_tree(a, rays, k, s, &at);
     if (a->meshes)
         merge_meshes(a, rays, k, s, c, &at);
-    c->after[k] = scene_geometry_priority_index(a, c->inside_after[k]);
+    const uint64_t after = c->inside_after[k];
+    c->after[k] = scene_geometry_priority_index(
+        a, a->tree ? solid_tree_join(a->tree, (split_set){after, s->tree.after[k]}) : after);
     c->surface[k] = scene_geometry_surface(a, (int)c->before[k], (int)c->after[k]);
     select_owner(a, rays, k, s, c, mesh_hits, &at);
 }

@@ -127,16 +127,20 @@ static status make_top(instance_set *f, diagnostic *why)
     return code == STATUS_OK ? hierarchy_build(f->proxies, HIERARCHY_BVH, 1, &f->top, why) : code;
 }
 
-status instance_set_build(const instance_source *sources, int count, instance_set **out, diagnostic *why)
+status instance_set_build(const instance_source *sources, int count, int region_count, instance_set **out,
+                          diagnostic *why)
 {
     instance_set *f = calloc(1, sizeof *f);
     instanced_mesh *parts = calloc((size_t)count, sizeof *parts);
-    if (!f || !parts) {
+    uint64_t *closed_under = calloc((size_t)region_count + 1, sizeof *closed_under);
+    if (!f || !parts || !closed_under) {
         free(f);
         free(parts);
+        free(closed_under);
         return out_of_memory(why);
     }
     f->parts = parts;
+    f->closed_under = closed_under;
     f->part_count = count;
     f->lowest = f->lowest_closed = INT_MAX;
     memset(f->by_primitive, -1, sizeof f->by_primitive);
@@ -153,7 +157,7 @@ status instance_set_build(const instance_source *sources, int count, instance_se
         if (p->closed && p->priority_index < f->lowest_closed)
             f->lowest_closed = p->priority_index;
     }
-    for (int priority_index = 0; priority_index <= PRIMITIVES_MAX; priority_index++)
+    for (int priority_index = 0; priority_index <= region_count; priority_index++)
         for (int i = 0; i < count; i++)
             if (parts[i].closed && parts[i].priority_index < priority_index)
                 f->closed_under[priority_index] |= (uint64_t)1 << parts[i].primitive;
@@ -178,6 +182,7 @@ void instance_set_destroy(instance_set *f)
     hierarchy_destroy(f->top);
     mesh_release(f->proxies);
     free(f->parts);
+    free(f->closed_under);
     free(f);
 }
 

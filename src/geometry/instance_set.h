@@ -32,9 +32,9 @@ typedef struct instance_set {
     uint64_t primitives;            /* sets of primitives: all meshes ... */
     uint64_t closed, open_surfaces; /* ... and separately the closed meshes and the open surfaces */
     int lowest;                     /* the lowest priority index of a mesh */
-    uint64_t closed_under[PRIMITIVES_MAX + 1]; /* by priority index: the closed meshes below it */
-    int lowest_closed;                         /* the lowest priority index of a closed mesh; INT_MAX for none */
-    int by_primitive[PRIMITIVES_MAX];          /* index of the mesh, or -1 */
+    uint64_t *closed_under;         /* by priority index: the closed meshes below it */
+    int lowest_closed;              /* the lowest priority index of a closed mesh; INT_MAX for none */
+    int by_primitive[PRIMITIVES_MAX]; /* index of the mesh, or -1 */
 } instance_set;
 
 /* A ray for the instance set: its range of t, its current medium, and what it looks for. */
@@ -79,7 +79,9 @@ typedef struct instance_source {
     int primitive, priority_index;
 } instance_source;
 
-status instance_set_build(const instance_source *sources, int count, instance_set **out, diagnostic *why);
+/* region_count: the highest priority index of the scene. */
+status instance_set_build(const instance_source *sources, int count, int region_count, instance_set **out,
+                          diagnostic *why);
 void instance_set_destroy(instance_set *f);
 
 /* Origin of a copy's frame in the world. */

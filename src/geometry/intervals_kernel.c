@@ -38,7 +38,7 @@ static void shared_terms(const ray_batch *rays, ray_scratch *restrict s)
 void KERNEL(intervals_of)(const scene_geometry *a, const ray_batch *rays, uint64_t wanted, ray_scratch *s)
 {
     shared_terms(rays, s);
-    for (int k = 0; k < a->primitive_count; k++) {
+    for (int k = 0; k < a->direct_count; k++) {
         if (!(wanted >> k & 1))
             continue;
         const primitive *p = &a->primitives[k];

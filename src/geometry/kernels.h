@@ -3,7 +3,9 @@
 
 #include "base/kernel.h"
 #include "geometry/instance_set.h"
+#include "geometry/primitives/primitive.h"
 #include "geometry/rays.h"
+#include "geometry/solid_tree.h"
 #include <math.h>
 
 /* Fills scratch->in and out of every wanted primitive (a set) for every ray; leaves scratch->slack unchanged. */
@@ -13,10 +15,35 @@ void KERNEL(intervals_of)(const scene_geometry *a, const ray_batch *rays, uint64
  * crossing one by one (contact_kernel.c). It filters and decides nothing: a contact is never wider than half of it. */
 #define BOUNDARY_CLOSE 0x1p-24
 
+/* A crossing beyond this distance counts as infinite: see roots.h. */
+#define NEVER 1e120
+
 /* Returns whether the primitive is a mesh. */
 static inline bool is_mesh(const scene_geometry *a, int p)
 {
-    return a->meshes && (a->meshes->primitives >> p & 1);
+    return a->meshes && p < PRIMITIVES_MAX && (a->meshes->primitives >> p & 1);
+}
+
+/* The bit of a direct primitive; 0 for one of the solid tree. */
+static inline uint64_t direct_bit(const scene_geometry *a, int64_t p)
+{
+    return p < a->direct_count ? (uint64_t)1 << p : 0;
+}
+
+/* Advances the intervals of one primitive past t, where the ray is inside it or not: finished intervals are replaced by
+ * the next ones. */
+static inline void intervals_advance(interval *found, int count, bool inside, double t)
+{
+    int spent = 0;
+    while (spent < count && (inside ? found[spent].out : found[spent].in) <= t)
+        spent++;
+    const bool leaves_now = inside && spent == count;
+    for (int j = 0; j < count; j++)
+        found[j] = j + spent < count ? found[j + spent] : (interval){HUGE_VAL, -HUGE_VAL};
+    if (inside)
+        found[0].in = -HUGE_VAL;
+    if (leaves_now)
+        found[0].out = t;
 }
 
 /* The length of a scene unit along ray i, in units of its t: 1 for a ray that looks for its nearest interface. */
@@ -31,6 +58,33 @@ static inline double steps_per_unit(const ray_batch *rays, int i)
  * indices on both sides. */
 void KERNEL(merge_contacts)(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
                             instance_hit *mesh_hits);
+
+/* --- solid_tree_kernel.c: for a geometry with a solid tree --- */
+
+/* Fills s->tree.start, and writes the bits of the direct primitives that contain the rays' starts. */
+void KERNEL(tree_split)(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, uint64_t *direct);
+/* Column k begins at the start of ray i. */
+void KERNEL(tree_begin)(int i, int k, ray_scratch *s);
+/* Column m goes on where column k crosses at t. */
+void KERNEL(tree_advance)(int k, int m, double t, ray_scratch *s);
+
+/* The intervals of one of the tree's primitives ahead of column k; returns their number. */
+int KERNEL(tree_intervals)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, int p,
+                           interval found[CHORDS_MAX]);
+
+/* Finds the next changes by the tree's solids where they come before those in c, for the first n columns, and fills
+ * s->tree for the crossings that are then the nearest. */
+void KERNEL(tree_changes)(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
+                          const instance_hit *mesh_hits);
+
+/* Calls `found` for each of the tree's primitives that may have a boundary close to t on column k (BOUNDARY_CLOSE). */
+typedef void tree_found(void *context, int p, const interval *found);
+void KERNEL(tree_each_near)(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s, double t,
+                            tree_found *found, void *context);
+
+/* Marks the shadow rays that the tree's solids block for certain, or may. s->low: the length of a scene unit along each
+ * ray. */
+void KERNEL(tree_shadows)(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s);
 
 /* --- mesh_changes_kernel.c --- */
 

@@ -72,10 +72,11 @@ static void collect_others(void *context, const instance_hit *hit)
 
 /* The meshes with a boundary close to column k's crossing. For a single visible mesh the nearest query has covered this
  * range already. */
-static uint64_t near_meshes(const instance_set *f, const ray_batch *rays, int k, const ray_scratch *s,
+static uint64_t near_meshes(const scene_geometry *a, const ray_batch *rays, int k, const ray_scratch *s,
                             const hit_batch *c, const instance_hit *hit)
 {
-    const bool on_mesh = f->primitives >> c->hit_primitive[k] & 1;
+    const instance_set *f = a->meshes;
+    const bool on_mesh = (f->primitives & direct_bit(a, c->hit_primitive[k])) != 0;
     if (f->instance_count == 1 && (on_mesh || f->lowest >= c->before[k]))
         return on_mesh ? 0 : s->meshes->near[k];
     const double close = close_to(s, k, c->t[k]);
@@ -114,12 +115,12 @@ void KERNEL(mesh_sets)(const scene_geometry *a, const ray_batch *rays, int n, ra
         c->inside_before[k] =
             set_at(f, rays, k, s, c->before[k], c->t[k] - close_to(s, k, c->t[k]), c->inside_before[k]);
         c->inside_after[k] = (c->inside_after[k] & ~hidden) | (c->inside_before[k] & hidden);
-        const uint64_t bit = (uint64_t)1 << c->hit_primitive[k];
+        const uint64_t bit = direct_bit(a, c->hit_primitive[k]);
         if (f->primitives & bit) {
             const bool leaves = (f->closed & bit) && hits[k].facing == FACING_BACK;
             c->inside_after[k] = leaves ? c->inside_after[k] & ~bit : c->inside_after[k] | bit;
         }
-        s->meshes->near[k] = near_meshes(f, rays, k, s, c, &hits[k]);
+        s->meshes->near[k] = near_meshes(a, rays, k, s, c, &hits[k]);
         s->near[k] = (s->near[k] & ~f->primitives) | s->meshes->near[k] | (bit & f->primitives);
     }
 }

@@ -11,11 +11,10 @@
 
 #include "base/lanes.h"
 #include "geometry/instance_set.h"
+#include "geometry/next_change.h"
 #include "geometry/primitives/primitive.h"
 #include <math.h>
 
-/* A crossing beyond this distance counts as infinite: see roots.h. */
-#define NEVER 1e120
 ALWAYS_INLINE int64_t set_mask(uint64_t set, int bit)
 {
     return -(int64_t)((set & (uint64_t)1 << bit) != 0);
@@ -27,7 +26,8 @@ static void priority_indices_of(const scene_geometry *a, int n, const uint64_t *
 {
     for (int i = 0; i < n; i++)
         priority_index[i] = 0;
-    for (int r = 1; r <= a->region_count; r++) {
+    for (int k = 0; k < a->direct_region_count; k++) {
+        const int r = a->direct_regions[k];
         const int outside = a->regions[r].outside, hollow = a->regions[r].hollow;
         const uint64_t wanted = (uint64_t)1 << outside, both = wanted | (hollow < 0 ? 0 : (uint64_t)1 << hollow);
         /* VECTORISE */
@@ -43,16 +43,14 @@ static void next_of_plain(int n, int64_t priority_index, int64_t hit_primitive, 
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
         int64_t within = set_mask(s->inside[i], (int)hit_primitive);
-        double t = blend(within, out[i], in[i]);
+        double t = next_of_convex(within, in[i], out[i]);
         int64_t take = mask_less(t, c->t[i]) & -(int64_t)(c->before[i] <= priority_index);
         c->t[i] = blend(take, t, c->t[i]);
         c->hit_primitive[i] = blend_int(take, hit_primitive, c->hit_primitive[i]);
     }
 }
 
-/* Next change by a region with a hollow. If the ray is in the region, its one boundary ahead is the exit: out of its
- * outside or into its hollow. Otherwise it is the entry: through its outside, or out of the hollow if that covers the
- * entry. */
+/* Next change by a region with a hollow. */
 static void next_of_hollow(int n, int64_t priority_index, int64_t outside, int64_t hollow, const double *restrict in,
                            const double *restrict out, const double *restrict hollow_in,
                            const double *restrict hollow_out, const ray_scratch *restrict s, hit_batch *restrict c)
@@ -61,16 +59,10 @@ static void next_of_hollow(int n, int64_t priority_index, int64_t outside, int64
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
         int64_t within = -(int64_t)((s->inside[i] & both) == wanted);
-        int64_t by_hollow = mask_less(hollow_in[i], out[i]);
-        double leave = blend(by_hollow, hollow_in[i], out[i]);
-        int64_t covered = mask_less_equal(hollow_in[i], in[i]) & mask_less(in[i], hollow_out[i]);
-        double emerge = blend(mask_less(hollow_out[i], out[i]), hollow_out[i], HUGE_VAL);
-        double enter = blend(covered, emerge, in[i]);
-        double t = blend(within, leave, enter);
-        int64_t through_hollow = blend_int(within, by_hollow, covered);
-        int64_t take = mask_less(t, c->t[i]) & -(int64_t)(c->before[i] <= priority_index);
-        c->t[i] = blend(take, t, c->t[i]);
-        c->hit_primitive[i] = blend_int(take, blend_int(through_hollow, hollow, outside), c->hit_primitive[i]);
+        next_change next = next_of_hollowed(within, in[i], out[i], hollow_in[i], hollow_out[i]);
+        int64_t take = mask_less(next.t, c->t[i]) & -(int64_t)(c->before[i] <= priority_index);
+        c->t[i] = blend(take, next.t, c->t[i]);
+        c->hit_primitive[i] = blend_int(take, blend_int(next.through_hollow, hollow, outside), c->hit_primitive[i]);
     }
 }
 
@@ -112,6 +104,12 @@ static void fold_row(const scene_geometry *a, int row, int n, ray_scratch *restr
     }
 }
 
+static void clear_sets(int n, ray_scratch *s, hit_batch *c)
+{
+    for (int i = 0; i < n; i++)
+        c->inside_before[i] = c->inside_after[i] = s->near[i] = 0;
+}
+
 /* Calls with constant counts, so that the inner loop unrolls. */
 static void all_sets_around(const scene_geometry *a, int n, ray_scratch *s, hit_batch *c)
 {
@@ -121,11 +119,14 @@ static void all_sets_around(const scene_geometry *a, int n, ray_scratch *s, hit_
         s->low[i] = c->t[i] - close;
         s->high[i] = c->t[i] + close;
     }
-    sets_around(n, 0, 1, s, c);
-    int k = 1;
-    for (; k + 4 <= a->primitive_count; k += 4)
+    if (a->direct_count == 0)
+        clear_sets(n, s, c);
+    int k = 0;
+    for (; k < 1 && k < a->direct_count; k++)
+        sets_around(n, k, 1, s, c);
+    for (; k + 4 <= a->direct_count; k += 4)
         sets_around(n, k, 4, s, c);
-    for (; k < a->primitive_count; k++)
+    for (; k < a->direct_count; k++)
         sets_around(n, k, 1, s, c);
     /* An interval that overlaps the range and does not contain both its ends has a boundary in it. */
     /* VECTORISE */
@@ -172,17 +173,46 @@ static void mark_attention(const scene_geometry *a, int n, const ray_scratch *re
     }
 }
 
+/* The higher of the priority indices of the direct primitives and of the tree's, for each column. */
+static void raise_priority_indices(const scene_geometry *a, int n, const uint64_t *others, int64_t *priority_index)
+{
+    for (int k = 0; k < n; k++) {
+        const int64_t r = others[k] ? solid_tree_priority_index(a->tree, others[k]) : 0;
+        priority_index[k] = r > priority_index[k] ? r : priority_index[k];
+    }
+}
+
+/* Is the crossing of column k, up to the media, one that needs no exact check? */
+static bool is_simple(const scene_geometry *a, int k, const ray_scratch *s, const hit_batch *c)
+{
+    const uint64_t only = direct_bit(a, c->hit_primitive[k]);
+    return s->near[k] == only && (c->inside_before[k] ^ c->inside_after[k]) == only && (!a->tree || s->tree.simple[k]);
+}
+
+/* The same two passes for a geometry with a solid tree, where priority indices have no bits. */
+static void surfaces_and_attention(const scene_geometry *a, int n, ray_scratch *s, hit_batch *c)
+{
+    for (int k = 0; k < n; k++) {
+        c->surface[k] = scene_geometry_surface(a, (int)c->before[k], (int)c->after[k]);
+        s->attention[k] =
+            mask_of(c->hit_primitive[k] >= 0 &&
+                    (!is_simple(a, k, s, c) || a->regions[c->before[k]].medium == a->regions[c->after[k]].medium));
+    }
+}
+
 /* The next change of medium for the first n columns. */
 static void next_changes(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
                          instance_hit *mesh_hits)
 {
     priority_indices_of(a, n, s->inside, c->before);
+    if (a->tree)
+        raise_priority_indices(a, n, s->tree.within, c->before);
     for (int i = 0; i < n; i++) {
         c->t[i] = NEVER;
         c->hit_primitive[i] = -1;
     }
-    for (int r = 1; r <= a->region_count; r++) {
-        const int o = a->regions[r].outside, h = a->regions[r].hollow;
+    for (int k = 0; k < a->direct_region_count; k++) {
+        const int r = a->direct_regions[k], o = a->regions[r].outside, h = a->regions[r].hollow;
         if (is_mesh(a, o))
             continue;
         if (h < 0)
@@ -192,12 +222,19 @@ static void next_changes(const scene_geometry *a, const ray_batch *rays, int n, 
     }
     if (a->meshes)
         KERNEL(mesh_changes)(a, rays, n, s, c, mesh_hits);
+    if (a->tree)
+        KERNEL(tree_changes)(a, rays, n, s, c, mesh_hits);
     all_sets_around(a, n, s, c);
     if (a->meshes)
         KERNEL(mesh_sets)(a, rays, n, s, c, mesh_hits);
     priority_indices_of(a, n, c->inside_after, c->after);
-    surfaces(a->opaque_regions, n, c->before, c->after, c->surface);
-    mark_attention(a, n, s, c, s->attention);
+    if (a->tree) {
+        raise_priority_indices(a, n, s->tree.after, c->after);
+        surfaces_and_attention(a, n, s, c);
+    } else {
+        surfaces(a->opaque_regions, n, c->before, c->after, c->surface);
+        mark_attention(a, n, s, c, s->attention);
+    }
     for (int k = 0; a->meshes && k < n; k++) {
         s->attention[k] |= -(int64_t)(c->hit_primitive[k] >= 0 && s->meshes->near[k]);
         s->meshes->until[k] = greater(c->t[k], s->meshes->from[k]);
@@ -216,28 +253,20 @@ static void next_changes(const scene_geometry *a, const ray_batch *rays, int n, 
 static bool is_interface(const scene_geometry *a, const ray_batch *rays, int k, ray_scratch *s, hit_batch *c,
                          instance_hit *mesh_hits)
 {
-    const uint64_t only = (uint64_t)1 << c->hit_primitive[k];
-    if (s->near[k] != only || (c->inside_before[k] ^ c->inside_after[k]) != only || (a->meshes && s->meshes->near[k]))
+    if (!is_simple(a, k, s, c) || (a->meshes && s->meshes->near[k]))
         KERNEL(merge_contacts)(a, rays, k, s, c, mesh_hits);
     return a->regions[c->before[k]].medium != a->regions[c->after[k]].medium;
 }
 
-/* Advances the rows of a primitive with several intervals past t: finished intervals are replaced by the next ones. */
+/* Advances the rows of a primitive past t: those of column k become those of column m. */
 static void advance_rows(int first, int rows, bool inside, int k, int m, double t, ray_scratch *s)
 {
-    int spent = 0;
-    while (spent < rows && (inside ? s->out[first + spent][k] : s->in[first + spent][k]) <= t)
-        spent++;
-    const bool leaves_now = inside && spent == rows;
-    for (int j = 0; j < rows; j++) {
-        const bool left = j + spent < rows;
-        s->in[first + j][m] = left ? s->in[first + spent + j][k] : HUGE_VAL;
-        s->out[first + j][m] = left ? s->out[first + spent + j][k] : -HUGE_VAL;
-    }
-    if (inside)
-        s->in[first][m] = -HUGE_VAL;
-    if (leaves_now)
-        s->out[first][m] = t;
+    interval found[CHORDS_MAX];
+    for (int j = 0; j < rows; j++)
+        found[j] = (interval){s->in[first + j][k], s->out[first + j][k]};
+    intervals_advance(found, rows, inside, t);
+    for (int j = 0; j < rows; j++)
+        s->in[first + j][m] = found[j].in, s->out[first + j][m] = found[j].out;
 }
 
 /* Column k's crossing has no effect: the ray after the crossing becomes column m, for another search. */
@@ -246,21 +275,15 @@ static void skip_crossing(const scene_geometry *a, int k, int m, ray_scratch *s,
 {
     const uint64_t set = c->inside_after[k] & ~(a->meshes ? a->meshes->open_surfaces : 0);
     const double t = c->t[k];
-    for (int p = 0; p < a->primitive_count; p++) {
-        double in = s->in[p][k], out = s->out[p][k];
-        const bool endless = is_mesh(a, p);
-        if (a->primitives[p].rows > 1) {
-            const int rows = a->primitives[p].rows;
-            advance_rows(p, rows, set >> p & 1, k, m, t, s);
-            p += rows - 1;
-            continue;
-        }
-        bool inside = set >> p & 1, spent = !inside && in <= t;
-        s->in[p][m] = inside ? -HUGE_VAL : spent ? HUGE_VAL : in;
-        s->out[p][m] = spent ? -HUGE_VAL : inside && out < t ? t : out;
-        if (endless)
+    for (int p = 0; p < a->direct_count; p += a->primitives[p].rows) {
+        const bool inside = set >> p & 1;
+        if (is_mesh(a, p))
             s->in[p][m] = inside ? -HUGE_VAL : HUGE_VAL, s->out[p][m] = -s->in[p][m];
+        else
+            advance_rows(p, a->primitives[p].rows, inside, k, m, t, s);
     }
+    if (a->tree)
+        KERNEL(tree_advance)(k, m, t, s);
     if (a->meshes) {
         s->meshes->from[m] = s->meshes->until[k];
         s->meshes->last[m] = is_mesh(a, (int)c->hit_primitive[k]) ? mesh_hits[k].face : s->meshes->last[k];
@@ -290,6 +313,8 @@ static void begin(const scene_geometry *a, const ray_batch *rays, ray_scratch *s
         s->inside[i] = rays->inside[i];
         s->ray[i] = i;
     }
+    for (int i = 0; a->tree && i < rays->count; i++)
+        KERNEL(tree_begin)(i, i, s);
     for (int i = 0; a->meshes && i < rays->count; i++) {
         s->meshes->from[i] = 0.0;
         s->meshes->last[i] = rays->start[i];
@@ -319,8 +344,31 @@ static void copy_hit(const hit_batch *from, int k, hit_batch *to, int i)
     to->inside_after[i] = from->inside_after[k];
 }
 
-static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
+/* The batch with the sets of the direct primitives alone; `direct` is room for them. */
+static ray_batch with_direct_sets(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, uint64_t *direct)
 {
+    ray_batch view = *rays;
+    if (a->tree) {
+        KERNEL(tree_split)(a, rays, s, direct);
+        view.inside = direct;
+    }
+    return view;
+}
+
+/* Joins the sets of ray i, whose crossing column k found. */
+static void join_sets(const scene_geometry *a, int k, const ray_scratch *s, hit_batch *hits, int i)
+{
+    if (!a->tree)
+        return;
+    const uint64_t open = a->meshes ? a->meshes->open_surfaces : 0;
+    hits->inside_before[i] = solid_tree_join(a->tree, (split_set){hits->inside_before[i], s->tree.before[k]});
+    hits->inside_after[i] = solid_tree_join(a->tree, (split_set){hits->inside_after[i] & ~open, s->tree.after[k]});
+}
+
+static void nearest(const scene_geometry *a, const ray_batch *given, ray_scratch *s, hit_batch *hits)
+{
+    uint64_t direct[ROW];
+    const ray_batch view = with_direct_sets(a, given, s, direct), *rays = &view;
     KERNEL(intervals_of)(a, rays, UINT64_MAX, s);
     instance_hit *mesh_hits = a->meshes ? s->meshes->hit : NULL, *again = a->meshes ? s->meshes->again : NULL;
     begin(a, rays, s);
@@ -333,6 +381,8 @@ static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch 
     for (int i = 0; i < rays->count; i++)
         if (s->attention[i] && !is_interface(a, rays, i, s, hits, mesh_hits))
             skip_crossing(a, i, left++, s, hits, mesh_hits);
+        else
+            join_sets(a, i, s, hits, i);
     while (left > 0) {
         const int n = left;
         next_changes(a, rays, n, s, &s->again, again);
@@ -345,11 +395,12 @@ static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch 
                 continue;
             }
             copy_hit(&s->again, k, hits, s->ray[k]);
+            join_sets(a, k, s, hits, s->ray[k]);
             if (again)
                 mesh_hits[s->ray[k]] = again[k];
         }
     }
-    for (int i = 0; a->meshes && i < rays->count; i++)
+    for (int i = 0; a->meshes && !a->tree && i < rays->count; i++)
         hits->inside_after[i] &= ~a->meshes->open_surfaces; /* a set never contains open surfaces */
 }
 
@@ -365,32 +416,28 @@ static void mark_overlap(const scene_geometry *a, const region *b, int row, bool
     if (b->hollow < 0) {
         /* VECTORISE */
         for (int i = 0; i < n; i++) {
-            const int64_t overlap = mask_less(in[i], 1.0) & mask_less(0.0, out[i]);
-            blocked[i] |= overlap & certain & mask_less(BOUNDARY_CLOSE * (1.0 + extent * steps[i]), out[i] - in[i]);
-            undecided[i] |= overlap;
+            const overlap o = overlap_of_convex(in[i], out[i], BOUNDARY_CLOSE * (1.0 + extent * steps[i]));
+            blocked[i] |= o.thick & certain;
+            undecided[i] |= o.any;
         }
         return;
     }
     const double *restrict hollow_in = s->in[b->hollow], *restrict hollow_out = s->out[b->hollow];
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        const double thin = BOUNDARY_CLOSE * (1.0 + extent * steps[i]);
-        const double first_out = lesser(out[i], hollow_in[i]), second_in = greater(in[i], hollow_out[i]);
-        const int64_t first = mask_less(in[i], lesser(first_out, 1.0)) & mask_less(0.0, first_out);
-        const int64_t second = mask_less(second_in, lesser(out[i], 1.0)) & mask_less(0.0, out[i]);
-        const int64_t thick =
-            (first & mask_less(thin, first_out - in[i])) | (second & mask_less(thin, out[i] - second_in));
-        blocked[i] |= thick & certain;
-        undecided[i] |= first | second;
+        const overlap o =
+            overlap_of_hollowed(in[i], out[i], hollow_in[i], hollow_out[i], BOUNDARY_CLOSE * (1.0 + extent * steps[i]));
+        blocked[i] |= o.thick & certain;
+        undecided[i] |= o.any;
     }
 }
 
-/* The primitives of the regions that cast shadows. */
+/* The direct primitives of the regions that cast shadows. */
 static uint64_t shadow_casting_primitives(const scene_geometry *a, int solid_shadows)
 {
     uint64_t wanted = 0;
-    for (int r = 1; r <= a->region_count; r++) {
-        const region *b = &a->regions[r];
+    for (int k = 0; k < a->direct_region_count; k++) {
+        const region *b = &a->regions[a->direct_regions[k]];
         if (region_casts_shadow(b, solid_shadows))
             wanted |= (uint64_t)1 << b->outside | (b->hollow < 0 ? 0 : (uint64_t)1 << b->hollow);
     }
@@ -417,17 +464,19 @@ static void quick_shadow_test(const scene_geometry *a, const ray_batch *rays, in
         s->low[i] = steps_per_unit(rays, i);
     }
     uint64_t sure = 0, unsure = 0; /* meshes */
-    bool hidden = false;           /* can a transparent region of higher priority hide this one? */
-    for (int r = a->region_count; r >= 1; r--) {
+    for (int j = 0; j < a->direct_region_count; j++) {
+        const int r = a->direct_regions[j];
         const region *b = &a->regions[r];
-        const bool doubtful = hidden || !b->opaque, casts = region_casts_shadow(b, solid_shadows);
+        /* a transparent region of higher priority may hide it */
+        const bool doubtful = r < a->highest_clear || !b->opaque, casts = region_casts_shadow(b, solid_shadows);
         if (casts && is_mesh(a, b->outside))
             *(doubtful ? &unsure : &sure) |= (uint64_t)1 << b->outside;
         else if (casts)
             for (int k = 0; k < a->primitives[b->outside].rows; k++)
                 mark_overlap(a, b, b->outside + k, doubtful, n, s->low, s, s->blocked, s->undecided);
-        hidden |= !b->opaque;
     }
+    if (a->tree)
+        KERNEL(tree_shadows)(a, rays, solid_shadows, s);
     if (sure)
         KERNEL(mesh_shadows)(a, rays, sure, s->blocked, s->blocked);
     if (unsure)
@@ -464,12 +513,13 @@ static void record_crossing(const scene_geometry *a, int k, ray_scratch *s, cons
     if (x->count == CROSSINGS_MAX)
         x->full(x->context);
     const int p = (int)c->hit_primitive[k];
+    const split_set before = {c->inside_before[k], s->tree.before[k]};
     x->crossings[x->count++] = (ray_crossing){.ray = s->ray[k],
                                               .primitive = p,
                                               .before = (int)c->before[k],
                                               .after = (int)c->after[k],
                                               .t = c->t[k],
-                                              .inside = c->inside_before[k],
+                                              .inside = a->tree ? solid_tree_join(a->tree, before) : before.direct,
                                               .mesh = is_mesh(a, p) ? mesh_hits[k] : (instance_hit){.face = FACE_NONE}};
 }
 
@@ -484,6 +534,8 @@ static int compact_undecided(const scene_geometry *a, const ray_batch *rays, ray
         s->slack[n] = a->extent / length;
         s->inside[n] = rays->inside[i];
         s->ray[n] = i;
+        if (a->tree)
+            KERNEL(tree_begin)(i, n, s);
         if (a->meshes) {
             s->meshes->from[n] = 0.0;
             s->meshes->last[n] = rays->start[i];
@@ -492,7 +544,7 @@ static int compact_undecided(const scene_geometry *a, const ray_batch *rays, ray
             s->segments->passed[n] = 0.0;
             s->segments->unit[n] = length;
         }
-        for (int p = 0; p < a->primitive_count; p++) {
+        for (int p = 0; p < a->direct_count; p++) {
             s->in[p][n] = s->in[p][i];
             s->out[p][n] = s->out[p][i];
         }
@@ -501,9 +553,11 @@ static int compact_undecided(const scene_geometry *a, const ray_batch *rays, ray
     return n;
 }
 
-static void shadow(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s,
+static void shadow(const scene_geometry *a, const ray_batch *given, int solid_shadows, ray_scratch *s,
                    double *transmitted)
 {
+    uint64_t direct[ROW];
+    const ray_batch view = with_direct_sets(a, given, s, direct), *rays = &view;
     const uint64_t wanted = shadow_casting_primitives(a, solid_shadows);
     if (s->segments)
         s->segments->count = 0;
@@ -540,9 +594,20 @@ static void shadow(const scene_geometry *a, const ray_batch *rays, int solid_sha
     }
 }
 
-static void surface(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points)
+static void surface(const scene_geometry *a, int hit_primitive, const ray_batch *rays, const double *t,
+                    surface_batch *points)
 {
-    p->rule->KERNEL_ISA->points(p, rays, t, bit, points);
+    const primitive *p = &a->primitives[hit_primitive];
+    if (!a->tree) {
+        p->rule->KERNEL_ISA->points(p, rays, t, hit_primitive, points);
+        return;
+    }
+    uint64_t inside[ROW];
+    for (int i = 0; i < rays->count; i++)
+        inside[i] = set_table_has(a->tree->sets, rays->inside[i], hit_primitive);
+    ray_batch view = *rays;
+    view.inside = inside;
+    p->rule->KERNEL_ISA->points(p, &view, t, 0, points);
 }
 
 const geometry_kernels KERNEL(geometry_kernels) = {nearest, shadow, surface};

@@ -23,6 +23,13 @@ typedef struct ray_batch {
     const uint64_t *inside;
 } ray_batch;
 
+/* Ray i alone; with another set, which is borrowed. */
+static inline ray_batch ray_batch_one(const ray_batch *rays, int i, const uint64_t *inside)
+{
+    return (ray_batch){
+        1, &rays->ox[i], &rays->oy[i], &rays->oz[i], &rays->dx[i], &rays->dy[i], &rays->dz[i], &rays->start[i], inside};
+}
+
 /* Nearest interface by ray. */
 typedef struct hit_batch {
     double t[ROW];              /* infinite for a miss */
@@ -91,6 +98,15 @@ typedef struct ray_crossings {
     ray_crossing crossings[CROSSINGS_MAX];
 } ray_crossings;
 
+/* Per-column state of the search in a solid tree (geometry/solid_tree.h). */
+typedef struct tree_columns {
+    uint64_t start[ROW];              /* by ray: the tree's primitives that contain its start */
+    double from[ROW];                 /* the t up to which a column has been traced; -infinity at first */
+    uint64_t within[ROW];             /* the tree's primitives that contain the ray there */
+    uint64_t before[ROW], after[ROW]; /* those just before and just after the crossing */
+    bool simple[ROW]; /* the crossing itself is the only change of the tree's primitives near it, or none is */
+} tree_columns;
+
 /* Intervals [in, out] by row and ray, and values derived from them. Apart from the segments and crossings, nothing is
  * kept between calls. */
 typedef struct ray_scratch {
@@ -106,6 +122,7 @@ typedef struct ray_scratch {
     medium_segments *segments; /* the caller's; NULL: medium segments are not recorded */
     mesh_scratch *meshes;      /* the caller's; may be NULL without meshes */
     ray_crossings *crossings;  /* the caller's; NULL: interfaces of shadow rays are not recorded */
+    tree_columns tree;
 } ray_scratch;
 
 /* Points on the surface of one primitive. normal is a unit vector against the ray; cos_i = -d.n, in (0, 1] for a unit
@@ -125,9 +142,10 @@ typedef struct geometry_kernels {
     /* The share of light, 0..1, that arrives from the other end (t = 1). With solid_shadows any interface blocks. */
     void (*shadow)(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *scratch,
                    double *transmitted);
-    /* The points where rays hit primitive p (numbered bit) at t; all rays hit it. Here rays->inside is the set just
+    /* The points where rays hit a primitive at t; all rays hit it. Here rays->inside is the set just
      * before the point, which determines whether a ray enters or leaves the primitive. */
-    void (*surface)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);
+    void (*surface)(const scene_geometry *a, int hit_primitive, const ray_batch *rays, const double *t,
+                    surface_batch *points);
 } geometry_kernels;
 
 extern const geometry_kernels geometry_kernels_sse2, geometry_kernels_avx2, geometry_kernels_avx512;

@@ -4,21 +4,29 @@
 #include "geometry/instance_set.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/shapes/shape.h"
+#include "geometry/solid_tree.h"
 
 #include <stdlib.h>
 
-/* Indices of the sources in the order of priority indices: ascending priority, and of equal priorities the later source
- * first. */
-static void order_by_priority(const region_source *sources, int count, int *order)
+typedef struct ordered_source {
+    int64_t priority;
+    int index; /* of the source */
+} ordered_source;
+
+static int compare_priorities(const void *one, const void *other)
 {
-    for (int i = 0; i < count; i++) {
-        int at = i;
-        while (at > 0 && sources[order[at - 1]].priority >= sources[i].priority) {
-            order[at] = order[at - 1];
-            at--;
-        }
-        order[at] = i;
-    }
+    const ordered_source *a = one, *b = other;
+    if (a->priority != b->priority)
+        return a->priority < b->priority ? -1 : 1;
+    return a->index > b->index ? -1 : 1;
+}
+
+/* The sources in the order of priority indices: ascending priority, and of equal priorities the later source first. */
+static void order_by_priority(const region_source *sources, int count, ordered_source *order)
+{
+    for (int i = 0; i < count; i++)
+        order[i] = (ordered_source){sources[i].priority, i};
+    qsort(order, (size_t)count, sizeof *order, compare_priorities);
 }
 
 /* Outward unit normals; the corner before the first side is in front, at -z, the next ones follow to its right as seen
@@ -57,7 +65,8 @@ static void add_region(scene_geometry *a, int priority_index, const region_sourc
     const shape_rule *shape = shape_of(source->shape);
     const int n = shape->primitive_count;
     shape->primitives(source->shape, parts);
-    a->opaque_regions |= (uint64_t)source->opaque << (priority_index - 1);
+    if (!source->opaque && priority_index > a->highest_clear)
+        a->highest_clear = priority_index;
     region *b = &a->regions[priority_index];
     a->shapes[priority_index] = *source->shape;
     *b = (region){.outside = a->primitive_count,
@@ -74,6 +83,7 @@ static void add_region(scene_geometry *a, int priority_index, const region_sourc
         add_primitive(a, priority_index, &parts[k]);
 }
 
+/* Only for a geometry without a tree: with many solids there are nearly always equal media. */
 static bool media_are_distinct(const scene_geometry *a)
 {
     for (int r = 1; r <= a->region_count; r++)
@@ -84,36 +94,99 @@ static bool media_are_distinct(const scene_geometry *a)
 }
 
 /* Builds the instance set. order: the sources by priority index. */
-static status build_instance_set(scene_geometry *a, const region_source *sources, const int *order, diagnostic *why)
+static status build_instance_set(scene_geometry *a, const region_source *sources, const ordered_source *order,
+                                 diagnostic *why)
 {
     instance_source mesh_sources[PRIMITIVES_MAX];
     int count = 0;
-    for (int r = 1; r <= a->region_count; r++) {
-        const region_source *source = &sources[order[r - 1]];
+    for (int k = 0; k < a->direct_region_count; k++) {
+        const int r = a->direct_regions[k];
+        const region_source *source = &sources[order[r - 1].index];
         if (shape_of(source->shape)->triangles)
             mesh_sources[count++] = (instance_source){source->shape, source->tree, a->regions[r].outside, r};
     }
-    return count > 0 ? instance_set_build(mesh_sources, count, &a->meshes, why) : STATUS_OK;
+    return count > 0 ? instance_set_build(mesh_sources, count, a->region_count, &a->meshes, why) : STATUS_OK;
 }
 
-status scene_geometry_build(const region_source *sources, int count, int64_t outside_medium, scene_geometry **out,
-                            diagnostic *why)
+/* Can the hierarchy find the solid? */
+static bool can_be_in_tree(const region_source *source)
 {
-    int primitives = 0;
-    for (int i = 0; i < count; i++)
-        primitives += shape_places(sources[i].shape);
-    if (primitives > PRIMITIVES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "use at most 64; a cup and a torus count as two",
-                        "the visible solids have %d primitives", primitives);
+    const shape_rule *rule = shape_of(source->shape);
+    return !rule->unbounded && !rule->triangles;
+}
+
+/* From this number of primitives on, a hierarchy over the bounded ones was measured to be faster. */
+enum { MANY = 24 };
+
+/* The primitives of a scene, counted by how rays find them. */
+typedef struct primitive_counts {
+    int all, findable; /* findable: those that a tree can find */
+    int normals;       /* of all their sides */
+} primitive_counts;
+
+static primitive_counts count_primitives(const region_source *sources, int count)
+{
+    primitive_counts n = {0, 0, 0};
+    for (int i = 0; i < count; i++) {
+        const int places = shape_places(sources[i].shape);
+        n.all += places;
+        n.findable += can_be_in_tree(&sources[i]) ? places : 0;
+        n.normals += (int)sources[i].shape->sides;
+    }
+    return n;
+}
+
+static bool uses_tree(tree_use use, const primitive_counts *n)
+{
+    return n->findable > 0 &&
+           (n->all > PRIMITIVES_MAX || use == TREE_ALWAYS || (use == TREE_IF_MANY && n->findable >= MANY));
+}
+
+/* Adds the regions: first the direct ones, then those for the tree. */
+static void add_regions(scene_geometry *a, const region_source *sources, const ordered_source *order, bool with_tree)
+{
+    for (int r = 1; r <= a->region_count; r++) {
+        const region_source *source = &sources[order[r - 1].index];
+        if (with_tree && can_be_in_tree(source))
+            continue;
+        add_region(a, r, source);
+        a->opaque_regions |= with_tree ? 0 : (uint64_t)source->opaque << (r - 1);
+        a->direct_regions[a->direct_region_count++] = r;
+    }
+    a->direct_count = a->primitive_count;
+    for (int r = 1; with_tree && r <= a->region_count; r++)
+        if (can_be_in_tree(&sources[order[r - 1].index]))
+            add_region(a, r, &sources[order[r - 1].index]);
+}
+
+static status check_counts(const primitive_counts *n, bool with_tree, diagnostic *why)
+{
+    const int direct = with_tree ? n->all - n->findable : n->all;
+    if (direct > PRIMITIVES_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 64", "the visible solids are %d planes and meshes", direct);
+    if (n->all > SET_PRIMITIVES_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "use at most 2097151", "the visible solids have %d primitives", n->all);
+    return STATUS_OK;
+}
+
+status scene_geometry_build(const region_source *sources, int count, int64_t outside_medium, tree_use use,
+                            scene_geometry **out, diagnostic *why)
+{
+    const primitive_counts n = count_primitives(sources, count);
+    const bool with_tree = uses_tree(use, &n);
+    status code = check_counts(&n, with_tree, why);
+    if (code != STATUS_OK)
+        return code;
     scene_geometry *a = calloc(1, sizeof *a);
-    int *order = calloc((size_t)count + 1, sizeof *order);
+    ordered_source *order = calloc((size_t)count + 1, sizeof *order);
     if (a) {
-        a->primitives = calloc((size_t)primitives + 1, sizeof *a->primitives);
+        a->primitives = calloc((size_t)n.all + 1, sizeof *a->primitives);
         a->regions = calloc((size_t)count + 1, sizeof *a->regions);
         a->shapes = calloc((size_t)count + 1, sizeof *a->shapes);
-        a->normals = calloc((size_t)primitives * FACES_MAX + 1, sizeof *a->normals);
+        a->normals = calloc((size_t)n.normals + 1, sizeof *a->normals);
+        a->direct_regions = calloc((size_t)count + 1, sizeof *a->direct_regions);
     }
-    if (!a || !order || !a->primitives || !a->regions || !a->shapes || !a->normals) {
+    if (!a || !order || !a->primitives || !a->regions || !a->shapes || !a->normals || !a->direct_regions) {
         free(order);
         scene_geometry_destroy(a);
         return out_of_memory(why);
@@ -122,15 +195,16 @@ status scene_geometry_build(const region_source *sources, int count, int64_t out
         (region){.outside = -1, .hollow = -1, .medium = outside_medium, .shadow_transmittance = 1.0, .solid = -1};
     a->region_count = count;
     order_by_priority(sources, count, order);
-    for (int r = 0; r < count; r++)
-        add_region(a, r + 1, &sources[order[r]]);
-    status code = build_instance_set(a, sources, order, why);
+    add_regions(a, sources, order, with_tree);
+    code = build_instance_set(a, sources, order, why);
+    if (code == STATUS_OK && with_tree)
+        code = solid_tree_build(a, &a->tree, why);
     free(order);
     if (code != STATUS_OK) {
         scene_geometry_destroy(a);
         return code;
     }
-    a->distinct = media_are_distinct(a);
+    a->distinct = !a->tree && media_are_distinct(a);
     *out = a;
     return STATUS_OK;
 }
@@ -140,6 +214,8 @@ void scene_geometry_destroy(scene_geometry *a)
     if (!a)
         return;
     instance_set_destroy(a->meshes);
+    solid_tree_destroy(a->tree);
+    free(a->direct_regions);
     free(a->primitives);
     free(a->regions);
     free(a->normals);
@@ -155,20 +231,30 @@ void scene_geometry_surroundings_absorb(scene_geometry *a)
 uint64_t scene_geometry_inside(const scene_geometry *a, vec3 point)
 {
     uint64_t inside = a->meshes ? instance_set_inside(a->meshes, point) : 0;
-    for (int i = 0; i < a->primitive_count; i++)
+    for (int i = 0; i < a->direct_count; i++)
         inside |= (uint64_t)primitive_contains(&a->primitives[i], point) << i;
-    return inside;
+    return a->tree ? solid_tree_inside(a->tree, inside, point) : inside;
 }
 
-static bool set_has(uint64_t inside, int bit)
+bool scene_geometry_set_has(const scene_geometry *a, uint64_t set, int p)
 {
-    return bit >= 0 && (inside >> bit & 1);
+    if (a->tree && p >= 0)
+        return set_table_has(a->tree->sets, set, p);
+    return p >= 0 && (set >> p & 1);
+}
+
+bool scene_geometry_failed(const scene_geometry *a)
+{
+    return a->tree && set_table_failed(a->tree->sets);
 }
 
 int scene_geometry_priority_index(const scene_geometry *a, uint64_t inside)
 {
+    if (a->tree)
+        return solid_tree_priority_index(a->tree, inside);
     for (int r = a->region_count; r > 0; r--)
-        if (set_has(inside, a->regions[r].outside) && !set_has(inside, a->regions[r].hollow))
+        if (scene_geometry_set_has(a, inside, a->regions[r].outside) &&
+            !scene_geometry_set_has(a, inside, a->regions[r].hollow))
             return r;
     return 0;
 }

@@ -5,8 +5,12 @@
  * (ray_scratch), in order. The entries after its own in the list of primitives reserve these rows and hold nothing
  * else; their bits are never set in a ray's set.
  *
+ * Where a scene has many bounded solids, a hierarchy finds those that a ray may meet (geometry/solid_tree.h); the other
+ * primitives are direct: every batch of rays is tested against each of them.
+ *
  * The medium at a point is that of the containing region with the highest priority index (0: the surrounding medium). A
- * ray carries a set with one bit per primitive that contains it. A closed mesh is a primitive too, though not convex;
+ * ray carries the set of primitives that contain it: with one bit each if all are direct, otherwise as geometry/set_table.h
+ * describes. A closed mesh is a primitive too, though not convex;
  * an open mesh is an open surface and contains no points. An interface is a point of the ray where the medium changes:
  * a boundary that a region of higher priority hides, or that leads into an equal medium, is not an interface (Schmidt
  * and Budge, "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2), 2002).
@@ -22,7 +26,7 @@
 #include <stdint.h>
 
 enum {
-    PRIMITIVES_MAX = 64, /* one bit each in a ray's set */
+    PRIMITIVES_MAX = 64, /* direct primitives: one bit each in a ray's set */
     FACES_MAX = 64,      /* a face's number is primitive * FACES_MAX + face; a power of two */
     HOLLOW_FACES = 8,    /* number of a hollow's first face among the faces of its solid */
     FACE_NONE = -1
@@ -62,13 +66,18 @@ typedef struct region {
 
 typedef struct scene_geometry {
     int primitive_count;
-    primitive *primitives;
+    primitive *primitives;       /* the direct ones first */
+    int direct_count;            /* at most PRIMITIVES_MAX */
+    int *direct_regions;         /* the priority indices of their regions, ascending ... */
+    int direct_region_count;     /* ... and how many */
+    struct solid_tree *tree;     /* the others; NULL if all are direct */
     int region_count;            /* priority indices 1 .. region_count */
+    int highest_clear;           /* the highest priority index of a region that is not opaque; 0 for none */
     region *regions;             /* [0] is the surrounding medium */
     solid_shape *shapes;         /* by priority index, the shapes of the regions; [0] is unused */
     double extent;               /* the largest of the primitives' */
     uint64_t further;            /* rows for further intervals of the primitive before them */
-    uint64_t opaque_regions;     /* bit r - 1: the region of priority index r is opaque */
+    uint64_t opaque_regions;     /* bit r - 1: the region of priority index r is opaque; without a tree */
     bool distinct;               /* no two regions have equal media, and none has the surrounding medium */
     bool attenuates;             /* a region or the surrounding medium does */
     struct instance_set *meshes; /* all meshes; NULL without meshes */
@@ -95,16 +104,29 @@ typedef struct region_source {
     int solid;
 } region_source;
 
-/* outside_medium is the surrounding medium. STATUS_BAD_INPUT for more than PRIMITIVES_MAX primitives. */
-status scene_geometry_build(const region_source *sources, int count, int64_t outside_medium, scene_geometry **out,
-                            diagnostic *why);
+/* Which solids a hierarchy finds. The hits, and so the film, are the same with each. */
+typedef enum tree_use {
+    TREE_IF_MANY,     /* all bounded ones without triangles, if there are so many that it is faster */
+    TREE_IF_TOO_MANY, /* only if there are more primitives than bits */
+    TREE_ALWAYS
+} tree_use;
+
+/* outside_medium is the surrounding medium. STATUS_BAD_INPUT for more than PRIMITIVES_MAX planes and meshes. */
+status scene_geometry_build(const region_source *sources, int count, int64_t outside_medium, tree_use use,
+                            scene_geometry **out, diagnostic *why);
 void scene_geometry_destroy(scene_geometry *a);
 
 /* Declares that the surrounding medium absorbs: the media of every shadow ray are then recorded. */
 void scene_geometry_surroundings_absorb(scene_geometry *a);
 
-/* The set of primitives that contain a point, bit by bit, by the primitives' own definitions (surfaces included). */
+/* The set of primitives that contain a point, by the primitives' own definitions (surfaces included). */
 uint64_t scene_geometry_inside(const scene_geometry *a, vec3 point);
+
+/* Is the primitive in the set? False for -1. */
+bool scene_geometry_set_has(const scene_geometry *a, uint64_t set, int p);
+
+/* Was there no memory for a set of this geometry? What was traced since is then wrong. */
+bool scene_geometry_failed(const scene_geometry *a);
 
 /* The priority index of the region that owns the interface between two media: an opaque region if either is opaque (the
  * one after, if both are), otherwise the one with the higher priority index. */

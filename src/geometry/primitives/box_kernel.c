@@ -78,4 +78,4 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
     }
 }
 
-const primitive_functions KERNEL(box_functions) = {1, rows, points, contains, chords, flats, mapping};
+const primitive_functions KERNEL(box_functions) = {1, rows, one, points, contains, chords, flats, mapping};

@@ -105,4 +105,4 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
     return mapping_flat(q.x + r, face == 1 ? r - q.z : q.z + r, 2.0 * r, 2.0 * r, size);
 }
 
-const primitive_functions KERNEL(cone_functions) = {1, rows, points, contains, chords, flats, mapping};
+const primitive_functions KERNEL(cone_functions) = {1, rows, one, points, contains, chords, flats, mapping};

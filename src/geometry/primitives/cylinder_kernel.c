@@ -85,4 +85,4 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
     return mapping_flat(q.x + r, face == 1 && !hollow ? r - q.z : q.z + r, whole, whole, size);
 }
 
-const primitive_functions KERNEL(cylinder_functions) = {1, rows, points, contains, chords, flats, mapping};
+const primitive_functions KERNEL(cylinder_functions) = {1, rows, one, points, contains, chords, flats, mapping};

@@ -48,4 +48,4 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
     return mapping_flat(q.x, q.z, 1.0, 1.0, size);
 }
 
-const primitive_functions KERNEL(halfspace_functions) = {1, rows, points, contains, chords, flats, mapping};
+const primitive_functions KERNEL(halfspace_functions) = {1, rows, one, points, contains, chords, flats, mapping};

@@ -82,6 +82,15 @@ ALWAYS_INLINE void spans_in(const primitive *p, span_function *span, bool genera
     }
 }
 
+ALWAYS_INLINE void span_of_one(const primitive *p, span_function *span, bool general, const ray_batch *rays, int i,
+                               bool inside, const ray_scratch *s, interval *found)
+{
+    local_ray r =
+        ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+    ray_span m = span(p, general, r, rays->start[i] - p->first_face, s, i);
+    store_interval(m.near, m.far, m.hit, m.own, mask_of(inside), &found->in, &found->out);
+}
+
 /* The crossings of a line with a primitive that is not convex: an even number, in order. */
 enum { CROSSINGS_OF_ONE_MAX = 2 * CHORDS_MAX };
 typedef struct crossings_of_one {
@@ -115,13 +124,13 @@ static inline crossings_of_one crossings_ahead(const crossings_of_one *line, boo
     return ahead;
 }
 
-/* Stores the intervals ahead, one per row. */
-static inline void store_rows(const crossings_of_one *ahead, bool inside, int bit, int i, ray_scratch *s)
+/* The intervals ahead. */
+static inline void intervals_of_crossings(const crossings_of_one *ahead, bool inside, interval found[CHORDS_MAX])
 {
     int next = 0;
-    for (int row = bit; row < bit + CHORDS_MAX; row++) {
-        s->in[row][i] = row == bit && inside ? -HUGE_VAL : next < ahead->count ? ahead->t[next++] : HUGE_VAL;
-        s->out[row][i] = next < ahead->count ? ahead->t[next++] : -HUGE_VAL;
+    for (int k = 0; k < CHORDS_MAX; k++) {
+        found[k].in = k == 0 && inside ? -HUGE_VAL : next < ahead->count ? ahead->t[next++] : HUGE_VAL;
+        found[k].out = next < ahead->count ? ahead->t[next++] : -HUGE_VAL;
     }
 }
 
@@ -187,7 +196,15 @@ ALWAYS_INLINE void points_on(const primitive *p, point_function *project, bool g
     {                                                                                                          \
         spans_in(p, span, general, bit, rays, s);                                                              \
     }                                                                                                          \
-    DEFINE_ROWS(is_general, spans)
+    DEFINE_ROWS(is_general, spans)                                                                             \
+    static void one(const primitive *p, const ray_batch *rays, int i, bool inside, const ray_scratch *s,       \
+                    interval *found)                                                                           \
+    {                                                                                                          \
+        if (is_general)                                                                                        \
+            span_of_one(p, span, true, rays, i, inside, s, found);                                             \
+        else                                                                                                   \
+            span_of_one(p, span, false, rays, i, inside, s, found);                                            \
+    }
 #define DEFINE_POINTS(is_general, point)                                                               \
     static void points(const primitive *__restrict p, const ray_batch *rays, const double *t, int bit, \
                        surface_batch *out)                                                             \

@@ -18,9 +18,9 @@ ALWAYS_INLINE plane_root side_cross(vec3 normal, double reach, double x, double 
     return r;
 }
 
-ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
+ALWAYS_INLINE void intervals(const primitive *p, bool general, int bit, const ray_batch *rays, double *restrict in,
+                             double *restrict out)
 {
-    double *restrict in = s->in[bit], *restrict out = s->out[bit];
     double x[ROW], z[ROW], dx[ROW], dz[ROW], near[ROW], far[ROW];
     const int64_t first = p->first_face;
     /* VECTORISE */
@@ -51,7 +51,20 @@ ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_bat
     }
 }
 
+ALWAYS_INLINE void loop(const primitive *p, bool general, int bit, const ray_batch *rays, ray_scratch *s)
+{
+    intervals(p, general, bit, rays, s->in[bit], s->out[bit]);
+}
+
 DEFINE_ROWS(p->turned, loop)
+
+static void one(const primitive *p, const ray_batch *rays, int i, bool inside, const ray_scratch *s, interval *found)
+{
+    (void)s;
+    const uint64_t set = inside;
+    const ray_batch ray = ray_batch_one(rays, i, &set);
+    intervals(p, p->turned, 0, &ray, &found->in, &found->out);
+}
 
 /* The face that bounds the interval, by the same roots: the last of those that are entered, or the first of those that
  * are left. An inner loop over faces, so the loop over rays is not vectorised. */
@@ -128,4 +141,4 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
     return mapping_flat(right + half, q.y - p->bottom, 2.0 * half, p->top - p->bottom, size);
 }
 
-const primitive_functions KERNEL(prism_functions) = {1, rows, points, contains, chords, flats, mapping};
+const primitive_functions KERNEL(prism_functions) = {1, rows, one, points, contains, chords, flats, mapping};

@@ -49,4 +49,4 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
     return mapping_around(q.x, q.z, r, latitude / 180.0 * 3.141592653589793 * r, 3.141592653589793 * r, size);
 }
 
-const primitive_functions KERNEL(sphere_functions) = {1, rows, points, contains, chords, NULL, mapping};
+const primitive_functions KERNEL(sphere_functions) = {1, rows, one, points, contains, chords, NULL, mapping};

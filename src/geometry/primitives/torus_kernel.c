@@ -160,17 +160,26 @@ static crossings_of_one torus_cross(const primitive *p, local_ray r, bool own)
     return found;
 }
 
+static void one(const primitive *p, const ray_batch *rays, int i, bool inside, const ray_scratch *s, interval *found)
+{
+    (void)s;
+    const bool own = rays->start[i] == p->first_face;
+    const local_ray r =
+        ray_to_local(p, p->turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
+    const crossings_of_one line = torus_cross(p, r, own);
+    const double length = sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
+    const crossings_of_one ahead = crossings_ahead(&line, own, inside, 0x1p-20 * p->second_radius / length);
+    intervals_of_crossings(&ahead, inside, found);
+}
+
 /* Few rays hit a torus, so a vectorised loop over all rays would waste most of its work. */
 static void rows(const primitive *p, int bit, const ray_batch *rays, ray_scratch *s)
 {
     for (int i = 0; i < rays->count; i++) {
-        const bool inside = rays->inside[i] >> bit & 1, own = rays->start[i] == p->first_face;
-        const local_ray r =
-            ray_to_local(p, p->turned, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);
-        const crossings_of_one line = torus_cross(p, r, own);
-        const double length = sqrt(r.dx * r.dx + r.dy * r.dy + r.dz * r.dz);
-        const crossings_of_one ahead = crossings_ahead(&line, own, inside, 0x1p-20 * p->second_radius / length);
-        store_rows(&ahead, inside, bit, i, s);
+        interval found[CHORDS_MAX];
+        one(p, rays, i, rays->inside[i] >> bit & 1, s, found);
+        for (int k = 0; k < CHORDS_MAX; k++)
+            s->in[bit + k][i] = found[k].in, s->out[bit + k][i] = found[k].out;
     }
 }
 
@@ -214,4 +223,4 @@ static surface_mapping mapping(const primitive *p, int64_t face, vec3 q, double 
     return mapping_around(q.x, q.z, p->radius, turn * arc, arc, size);
 }
 
-const primitive_functions KERNEL(torus_functions) = {2, rows, points, contains, chords, NULL, mapping};
+const primitive_functions KERNEL(torus_functions) = {2, rows, one, points, contains, chords, NULL, mapping};

@@ -120,7 +120,8 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
     }
-    THEN(code, scene_geometry_build(sources, count, 0, &p->geometry, why));
+    const tree_use use = s->render.accel == HIERARCHY_NONE ? TREE_IF_TOO_MANY : TREE_IF_MANY;
+    THEN(code, scene_geometry_build(sources, count, 0, use, &p->geometry, why));
     if (code == STATUS_OK && surroundings_absorb(&s->background))
         scene_geometry_surroundings_absorb(p->geometry);
     free(shapes);

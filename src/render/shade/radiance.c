@@ -121,7 +121,7 @@ static void cross_surface(tracer *t, int hit_primitive, straight_rays *s)
                              p->shading_materials[surface->priority_index].shading == SHADING_SMOOTH, &w->points,
                              &w->on_mesh);
     else
-        t->geometry->surface(surface, &rays, s->t, hit_primitive, &w->points);
+        t->geometry->surface(p->geometry, hit_primitive, &rays, s->t, &w->points);
     for (int k = 0; k < s->count; k++) {
         const ray_crossing *x = &w->crossings.crossings[s->number[k]];
         w->transmittances[s->number[k]] = transmittance(p, w->sample_keys[x->ray], x, w->points.cos_i[k]);

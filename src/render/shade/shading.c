@@ -346,7 +346,7 @@ static void shade_one_material(tracer *t, int depth, int first, int hit_primitiv
     if (t->surface.on_mesh)
         mesh_surface(t, priority_index, list);
     else
-        t->geometry->surface(surface, &rays, g->t, hit_primitive, &g->points);
+        t->geometry->surface(p->geometry, hit_primitive, &rays, g->t, &g->points);
     t->surface.texture_at = NULL;
     if (t->rule->place)
         t->rule->place(t, list);
