@@ -98,7 +98,7 @@ check() {
             scalar+=("$line: scalar, $(sed -n "s|^$line ||p" "$folder/scalar" | paste -sd '|')")
         # a header's loop that this file does not use is not compiled
         elif [[ $line == "$2":* ]] && ! grep -q "^$line " "$folder/vectorised"; then
-            scalar+=("${line%!}: $([[ $line == *! ]] && echo 'no for loop follows the mark' || echo 'not in the report')")
+            scalar+=("${line%!}: $([[ $line == *! ]] && echo 'no for loop follows' || echo 'not in the report')")
         fi
     done
     summary=$(awk -v own="$2:" '{ sub(own, ""); printf " %s(%s)", $1, $2 }' "$folder/vectorised")
