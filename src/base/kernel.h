@@ -1,6 +1,6 @@
 /* Names of functions that are compiled once per instruction set: KERNEL(f) is f_sse2, f_avx2 or f_avx512, by the
  * KERNEL_ISA that the Makefile defines for *_kernel.c. A loop under the comment VECTORISE must be vectorised for AVX2
- * and AVX-512; `make vectorise` checks it. */
+ * and AVX-512 by gcc and clang; `make vectorise` checks it. */
 #pragma once
 
 #define KERNEL_PASTE(name, isa) name##_##isa
@@ -8,3 +8,11 @@
 #define KERNEL(name) KERNEL_NAME(name, KERNEL_ISA)
 
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
+
+/* Before a loop none of whose iterations reads what another writes. clang ignores restrict of local variables; it would
+ * otherwise compare every pair of arrays, and leaves loops with many arrays scalar. */
+#ifdef __clang__
+#define INDEPENDENT_LANES _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define INDEPENDENT_LANES _Pragma("GCC ivdep")
+#endif

@@ -74,6 +74,7 @@ ALWAYS_INLINE void spans_in(const primitive *p, span_function *span, bool genera
     double *__restrict in = s->in[bit], *__restrict out = s->out[bit];
     const int64_t first = p->first_face;
     /* VECTORISE */
+    INDEPENDENT_LANES
     for (int i = 0; i < rays->count; i++) {
         local_ray r =
             ray_to_local(p, general, rays->ox[i], rays->oy[i], rays->oz[i], rays->dx[i], rays->dy[i], rays->dz[i]);

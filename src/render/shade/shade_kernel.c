@@ -281,6 +281,7 @@ static void append(const group *g, const double *dx, const double *dy, const dou
         memcpy(q->inside + at, inside, bytes);
     double *restrict wr = to.wr, *restrict wg = to.wg, *restrict wb = to.wb;
     /* VECTORISE */
+    INDEPENDENT_LANES
     for (int i = 0; i < n; i++) {
         wr[i] = g->wr[i] * weight[i];
         wg[i] = g->wg[i] * weight[i];
