@@ -108,6 +108,10 @@ cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t i
                                       "solid index %zu is out of range: the scene has %zu solids", index,
                                       frame->solid_count),
                              &inner, why);
+    if (index >= COUNTERS_SOLID_MAX)
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "only the first 64 solids are counted one by one",
+                                      "solid %zu has no counters", index),
+                             &inner, why);
     const ray_counters *c = &frame->account.result->counters;
     const cuvette_solid_counters result = {
         .tests = c->tests[index], .hits = c->hits[index], .first_hits = c->first_hits[index]};

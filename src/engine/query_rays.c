@@ -2,6 +2,8 @@
  * scene's terms. */
 #include "engine/query_private.h"
 
+#include "geometry/solid_tree.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -16,6 +18,12 @@ static cuvette_start start_at(int64_t face, uint64_t inside)
 bool engine_is_finite(const double *v)
 {
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+/* True if the word is a set that a hit of this query can have. */
+static bool is_set(const scene_geometry *a, uint64_t word)
+{
+    return !a->tree || set_table_knows(a->tree->sets, word);
 }
 
 /* True if the word is the number of an existing face. */
@@ -43,7 +51,8 @@ status engine_check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnos
         what = "has no direction", remedy = "give a finite direction that is not 0,0,0";
     else if (!(ray->reach >= 0.0))
         what = "has a negative reach", remedy = "give a distance, or 0 for no limit";
-    else if (p && (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !is_face(p->geometry, ray->start.word[1]))))
+    else if (p && (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !(is_face(p->geometry, ray->start.word[1]) &&
+                                                                         is_set(p->geometry, ray->start.word[2])))))
         what = "has an invalid start", remedy = "copy it from a hit of this query, or zero it";
     if (!what)
         return STATUS_OK;
@@ -154,13 +163,17 @@ static void nearest_batch(const cuvette_query *q, bench *b, const cuvette_ray *r
             hits[i] = no_hit(q, scene_geometry_priority_index(a, b->inside[i]));
             b->hits.hit_primitive[i] = -1;
         }
-    for (int hit_primitive = 0; hit_primitive < a->primitive_count; hit_primitive++) {
+    for (int first = 0; first < count; first++) {
+        const int64_t hit_primitive = b->hits.hit_primitive[first];
         int listed = 0;
-        for (int i = 0; i < count; i++)
-            if (b->hits.hit_primitive[i] == hit_primitive)
+        for (int i = first; i < count && hit_primitive >= 0; i++) {
+            if (b->hits.hit_primitive[i] == hit_primitive) {
                 b->list[listed++] = i;
+                b->hits.hit_primitive[i] = -1;
+            }
+        }
         if (listed > 0)
-            report_hits(q, b, hit_primitive, listed, hits);
+            report_hits(q, b, (int)hit_primitive, listed, hits);
     }
 }
 

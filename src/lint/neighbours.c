@@ -39,9 +39,9 @@ static double *component(vec3 *v, int axis)
     return axis == 0 ? &v->x : axis == 1 ? &v->y : &v->z;
 }
 
-static bool is_in(const region *b, uint64_t inside)
+static bool is_in(const scene_geometry *a, const region *b, uint64_t inside)
 {
-    return (inside >> b->outside & 1) && !(b->hollow >= 0 && (inside >> b->hollow & 1));
+    return scene_geometry_set_has(a, inside, b->outside) && !scene_geometry_set_has(a, inside, b->hollow);
 }
 
 /* The minimum depth of an overlap. */
@@ -59,7 +59,7 @@ static bool overlap_at(const pair *p, vec3 point)
         vec3 at = point;
         *component(&at, i / 2) += i % 2 ? far : -far;
         const uint64_t inside = scene_geometry_inside(a, at);
-        if (!is_in(p->a->of, inside) || !is_in(p->b->of, inside))
+        if (!is_in(a, p->a->of, inside) || !is_in(a, p->b->of, inside))
             return false;
     }
     return true;

@@ -48,14 +48,21 @@ static vec3 end_of(const drawing *a, const ray_node *node)
 }
 
 /* Marks the solids that the rays of the tree hit or pass through. */
-static void mark_hit_solids(const ray_tree *tree, bool *hit)
+static void include_solid(diagram_box *box, const section_plane *plane, const scene *s, int solid_index)
 {
-    for (size_t i = 0; i < tree->count; i++) {
-        const ray_node *node = &tree->node[i];
-        if (node->medium >= 0)
-            hit[node->medium] = true;
-        if (node->end == RAY_END_HIT)
-            hit[node->hit.solid] = hit[node->hit.face_solid] = true;
+    if (solid_index >= 0 && s->solids[solid_index].visible)
+        diagram_include_solid(box, plane, &s->solids[solid_index]);
+}
+
+static void include_hit_solids(diagram_box *box, const section_plane *plane, const traced *t)
+{
+    for (size_t i = 0; i < t->tree->count; i++) {
+        const ray_node *node = &t->tree->node[i];
+        include_solid(box, plane, t->s, node->medium);
+        if (node->end == RAY_END_HIT) {
+            include_solid(box, plane, t->s, node->hit.solid);
+            include_solid(box, plane, t->s, node->hit.face_solid);
+        }
     }
 }
 
@@ -70,12 +77,7 @@ static diagram_box box_of(const traced *t, const section_plane *plane)
     diagram_box box = DIAGRAM_BOX_EMPTY;
     const ray_tree *tree = t->tree;
     const ray_node *root = &tree->node[0];
-    bool hit[SCENE_PRIMITIVES_MAX * 4] = {false};
-    if (t->s->solid_count <= sizeof hit / sizeof *hit)
-        mark_hit_solids(tree, hit);
-    for (size_t i = 0; i < t->s->solid_count && i < sizeof hit / sizeof *hit; i++)
-        if (hit[i] && t->s->solids[i].visible)
-            diagram_include_solid(&box, plane, &t->s->solids[i]);
+    include_hit_solids(&box, plane, t);
     diagram_box wide = box;
     diagram_include(&wide, plane, root->origin);
     const double solids = diagonal(&box);

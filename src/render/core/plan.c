@@ -120,8 +120,12 @@ static status arrange(const scene *s, const index_law *laws, plan *p, diagnostic
             code = fetch_mesh(s, (size_t)i, p, &shapes[i], &sources[count], why);
         count++;
     }
-    const tree_use use = s->render.accel == HIERARCHY_NONE ? TREE_IF_TOO_MANY : TREE_IF_MANY;
+    const bool drawn = integrator_traits_of(&s->render)->drawn;
+    const tree_use use = drawn || s->render.accel == HIERARCHY_NONE ? TREE_IF_TOO_MANY : TREE_IF_MANY;
     THEN(code, scene_geometry_build(sources, count, 0, use, &p->geometry, why));
+    if (code == STATUS_OK && drawn && p->geometry->tree)
+        code = diagnose(why, STATUS_BAD_INPUT, "use another render.method, or fewer solids",
+                        "the z-buffer draws at most 64 solids; a cup and a torus count as two");
     if (code == STATUS_OK && surroundings_absorb(&s->background))
         scene_geometry_surroundings_absorb(p->geometry);
     free(shapes);
@@ -187,6 +191,8 @@ static status fill_priority_indices(const scene *s, const index_law *laws, plan 
             return out_of_memory(why);
         p->absorption[r] = material_extinction(p->materials[r], s->render.unit_m);
     }
+    if (!plan_find_alike(p))
+        return out_of_memory(why);
     p->absorption[0] = vec3_scale(s->background.absorb_per_m, s->render.unit_m);
     if (s->render.spectrum == SPECTRUM_SPECTRAL &&
         !(p->spectral = spectra_create(s, p->materials, p->laws, priority_indices)))
@@ -235,6 +241,7 @@ void plan_destroy(plan *p)
     for (int r = 0; p->shading_materials && r <= p->geometry->region_count; r++)
         free(p->shading_materials[r].mat);
     free(p->shading_materials);
+    free(p->alike);
     scene_geometry_destroy(p->geometry);
     for (size_t i = 0; p->own_trees && i < p->own_tree_count; i++)
         hierarchy_destroy(p->own_trees[i]);

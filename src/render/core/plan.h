@@ -29,6 +29,7 @@ typedef struct plan {
     scene_geometry *geometry;
     const material **materials;          /* by priority index; [0] is NULL */
     region_materials *shading_materials; /* by priority index; [0] is empty */
+    int *alike;            /* by priority index: equal numbers for regions whose hits may be shaded together */
     hierarchy **own_trees; /* by solid; hierarchies that the plan owns because the meshes do not keep them */
     size_t own_tree_count;
     double **shadow_transmittance; /* by solid: that of its faces by slot, or NULL; own_tree_count entries */
@@ -55,6 +56,9 @@ typedef struct plan {
 /* Call scene_load first. */
 status plan_build(const scene *s, plan **out, diagnostic *why);
 void plan_destroy(plan *p);
+
+/* Fills p->alike from the shading materials; false when out of memory. For plan.c. */
+bool plan_find_alike(plan *p);
 
 /* Fills *out with the shading materials of a region of the solid `owner`, with `surface` as the solid's own surface;
  * false when out of memory. For plan.c. */

@@ -212,12 +212,14 @@ static bool join_events(const worker_account *accounts, int count, render_result
 }
 
 /* Rays that search for their nearest interface are tested against every visible solid, shadow rays against those that
- * cast shadows. */
+ * cast shadows; solids of the solid tree are not counted. */
 static void count_tests(const plan *p, ray_counters *c)
 {
     const uint64_t nearest = c->camera + c->reflect + c->refract;
-    for (int r = 1; r <= p->geometry->region_count; r++) {
-        const region *b = &p->geometry->regions[r];
+    for (int k = 0; k < p->geometry->direct_region_count; k++) {
+        const region *b = &p->geometry->regions[p->geometry->direct_regions[k]];
+        if (b->solid >= COUNTERS_SOLID_MAX)
+            continue;
         c->tests[b->solid] =
             nearest + (region_casts_shadow(b, p->solid_shadows) || p->geometry->regions[0].attenuates ? c->shadow : 0);
     }

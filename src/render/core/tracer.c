@@ -35,6 +35,7 @@ void tracer_destroy(tracer *t)
     for (int d = 0; d < t->queues.made; d++)
         queue_destroy(&t->queues.waiting[d]);
     free(t->queues.waiting);
+    free(t->marks);
     absorption_end(t);
     mesh_end(t);
     radiance_end(t);
@@ -74,6 +75,19 @@ static bool take_integrator(tracer *t)
     return !rule->begin || rule->begin(t);
 }
 
+/* One mark for each primitive and each priority index: see hit_groups_make. */
+static bool make_marks(tracer *t, const scene_geometry *a)
+{
+    const size_t count = (size_t)a->primitive_count + (size_t)a->region_count + 1;
+    int16_t *grown = count > t->mark_count ? realloc(t->marks, count * sizeof *grown) : t->marks;
+    if (!grown)
+        return false;
+    t->marks = grown;
+    for (; t->mark_count < count; t->mark_count++)
+        grown[t->mark_count] = -1;
+    return true;
+}
+
 bool tracer_begin(tracer *t, const tracer_target *target)
 {
     const plan *p = target->frame_plan;
@@ -88,7 +102,7 @@ bool tracer_begin(tracer *t, const tracer_target *target)
         if (!queue_create(&t->queues.shadows, shadows_at_once))
             return false;
     }
-    if (!make_queues(t, t->queues.depth_limit + 1) || !mesh_begin(t) || !radiance_begin(t) || !take_integrator(t) ||
+    if (!make_queues(t, t->queues.depth_limit + 1) || !make_marks(t, p->geometry) || !mesh_begin(t) || !radiance_begin(t) || !take_integrator(t) ||
         !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
         return false;
     t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic;
@@ -112,48 +126,6 @@ double tracer_visibility_s(const tracer *t)
 bool tracer_overflowed(const tracer *t)
 {
     return t->account.overflow < 0;
-}
-
-/* Lists rays by the primitive that they hit. Rays that hit another region's surface there (an opaque one behind a clear
- * one's, or two in one place) are in the last list but one, misses in the last. */
-static void sort_by_primitive(tracer *t, int count)
-{
-    const scene_geometry *a = t->target.frame_plan->geometry;
-    const int foreign = a->primitive_count, none = foreign + 1;
-    memset(t->batch.listed, 0, ((size_t)none + 1) * sizeof *t->batch.listed);
-    for (int i = 0; i < count;) {
-        const int64_t hit_primitive = t->batch.hits.hit_primitive[i], priority_index = t->batch.hits.surface[i];
-        const int at = hit_primitive < 0                                               ? none
-                       : priority_index == a->primitives[hit_primitive].priority_index ? (int)hit_primitive
-                                                                                       : foreign;
-        int *list = t->batch.list[at], listed = t->batch.listed[at];
-        do /* neighbours often hit the same primitive */
-            list[listed++] = i++;
-        while (i < count && t->batch.hits.hit_primitive[i] == hit_primitive &&
-               (t->batch.hits.surface[i] == priority_index || hit_primitive < 0));
-        t->batch.listed[at] = listed;
-    }
-}
-
-/* Shades the few rays on foreign surfaces, in groups of one primitive and one region. */
-static void shade_foreign(tracer *t, int depth, int first)
-{
-    const int foreign = t->target.frame_plan->geometry->primitive_count;
-    int *list = t->batch.list[foreign], left = t->batch.listed[foreign], same[BATCH];
-    while (left > 0) {
-        const int64_t hit_primitive = t->batch.hits.hit_primitive[list[0]],
-                      priority_index = t->batch.hits.surface[list[0]];
-        int count = 0, others = 0;
-        for (int k = 0; k < left; k++) {
-            const int i = list[k];
-            if (t->batch.hits.hit_primitive[i] == hit_primitive && t->batch.hits.surface[i] == priority_index)
-                same[count++] = i;
-            else
-                list[others++] = i;
-        }
-        shading_group(t, depth, first, (int)hit_primitive, (int)priority_index, same, count);
-        left = others;
-    }
 }
 
 /* The continuation of a depth buffer's view behind a layer does not count as another ray. */
@@ -192,15 +164,17 @@ static void trace_batch(tracer *t, int depth)
         absorption_exempt_sky(t);
         absorption_dim(t, q, first, rays.count);
     }
-    sort_by_primitive(t, rays.count);
-    const int primitives = p->geometry->primitive_count, none = primitives + 1;
-    if (t->batch.listed[none] > 0)
-        t->rule->background(t, q, first, t->batch.list[none], t->batch.listed[none]);
-    for (int hit_primitive = 0; hit_primitive < primitives; hit_primitive++)
-        if (t->batch.listed[hit_primitive] > 0)
-            shading_group(t, depth, first, hit_primitive, p->geometry->primitives[hit_primitive].priority_index,
-                          t->batch.list[hit_primitive], t->batch.listed[hit_primitive]);
-    shade_foreign(t, depth, first);
+    hit_groups *groups = &t->batch.groups;
+    hit_groups_make(&t->batch.hits, rays.count, p->alike, t->marks, t->marks + p->geometry->primitive_count, groups);
+    if (groups->missed > 0)
+        t->rule->background(t, q, first, groups->miss, groups->missed);
+    for (int g = 0, together; g < groups->count; g += together) {
+        const int kind = p->alike[groups->group[g].priority_index];
+        for (together = 1; g + together < groups->count; together++)
+            if (p->alike[groups->group[g + together].priority_index] != kind)
+                break;
+        shading_groups(t, depth, first, &groups->group[g], together);
+    }
 }
 
 static void trace_shadows(tracer *t)

@@ -1,6 +1,7 @@
 /* Internals of the tracer, shared by tracer.c (order of rays), the shading code (render/shade) and the integrators. */
 #pragma once
 
+#include "render/core/hit_groups.h"
 #include "render/core/sample_key.h"
 #include "render/integrators/integrator.h"
 #include "render/shade/absorption.h"
@@ -30,7 +31,7 @@ typedef struct tracer_batch {
      * defines (path.c: a light's sphere) */
     _Alignas(64) hit_batch hits;
     _Alignas(64) double transmitted[ROW];                          /* of shadow rays */
-    int list[PRIMITIVES_MAX + 2][ROW], listed[PRIMITIVES_MAX + 2]; /* see sort_by_primitive */
+    hit_groups groups;
 } tracer_batch;
 
 /* Stokes vectors relative to their first element, of a group and of its two branches. */
@@ -60,6 +61,8 @@ struct tracer {
     bool by_sample_key; /* the film uses more of the sample key than its pixel */
     tracer_queues queues;
     tracer_account account;
+    int16_t *marks; /* see hit_groups_make */
+    size_t mark_count;
     mesh_work *meshes;               /* NULL until a scene with meshes is traced; the next two likewise */
     media_work *media;               /* for a scene with absorption */
     radiance_work *basic;            /* for a scene with basic radiance */

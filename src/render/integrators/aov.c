@@ -30,9 +30,9 @@ static status prepare(const plan *p, void **frame, diagnostic *why)
     int count = 0;
     if (!scale)
         return out_of_memory(why);
-    for (int i = 0; i < p->geometry->primitive_count; i++) {
+    for (int i = 0; i < p->geometry->primitive_count; i += p->geometry->primitives[i].rows) {
         const primitive *one = &p->geometry->primitives[i];
-        if (p->geometry->further >> i & 1 || shape_of(&p->geometry->shapes[one->priority_index])->unbounded)
+        if (shape_of(&p->geometry->shapes[one->priority_index])->unbounded)
             continue;
         sum += vec3_length(vec3_sub(one->origin, p->view.eye));
         count++;
@@ -129,6 +129,7 @@ static void leave_empty(tracer *t, const ray_queue *q, int first, const int *lis
 }
 
 const integrator integrator_of_aov = {.traced = true,
+                                      .by_solid = true,
                                       .sampling = one_ray,
                                       .prepare = prepare,
                                       .release = free,

@@ -38,6 +38,7 @@ typedef struct integrator_step {
 
 typedef struct integrator {
     bool traced;    /* hits are found by ray tests of the solids: all rays count, and media absorb */
+    bool by_solid;  /* its values depend on which solid a ray hits, beyond the material */
     bool by_sample; /* it needs the sample number of each ray within its pixel */
 
     /* --- a frame --- */

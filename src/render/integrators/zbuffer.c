@@ -404,7 +404,8 @@ static void release(void *frame)
 
 static const integrator_step steps[] = {{project, sort}, {NULL, NULL}};
 
-const integrator integrator_of_zbuffer = {.by_sample = true,
+const integrator integrator_of_zbuffer = {.by_solid = true,
+                                          .by_sample = true,
                                           .sampling = camera_samples,
                                           .prepare = prepare,
                                           .steps = steps,

@@ -136,12 +136,14 @@ static void take_crossings(void *context)
     tracer *t = context;
     radiance_work *w = t->basic;
     straight_rays s;
+    bool taken[CROSSINGS_MAX] = {false};
     s.count = 0;
-    for (int hit_primitive = 0;
-         w->crossings.count > 0 && hit_primitive < t->target.frame_plan->geometry->primitive_count; hit_primitive++) {
-        for (int k = 0; k < w->crossings.count; k++) {
+    for (int first = 0; first < w->crossings.count; first++) {
+        const int hit_primitive = w->crossings.crossings[first].primitive;
+        for (int k = first; k < w->crossings.count && !taken[first]; k++) {
             if (w->crossings.crossings[k].primitive != hit_primitive)
                 continue;
+            taken[k] = k > first;
             add_ray(w, k, &s);
             if (s.count == BATCH)
                 cross_surface(t, hit_primitive, &s);

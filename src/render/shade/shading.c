@@ -330,49 +330,114 @@ static void color(tracer *t, int priority_index, const primitive *surface)
     spectral_colors(t, priority_index);
 }
 
-static void shade_one_material(tracer *t, int depth, int first, int hit_primitive, int priority_index, const int *list,
-                               int count)
+/* The points of the gathered rays where they hit a primitive: rays from .. to - 1 of the group. */
+static void surface_points(tracer *t, int hit_primitive, int from, int to, surface_batch *points)
+{
+    const group *g = &t->surface.gathered;
+    const ray_batch rays = {to - from,     g->ox + from, g->oy + from,    g->oz + from,           g->dx + from,
+                            g->dy + from, g->dz + from, g->start + from, g->inside_before + from};
+    t->geometry->surface(t->target.frame_plan->geometry, hit_primitive, &rays, g->t + from, points);
+}
+
+static void copy_points(const surface_batch *from, int count, surface_batch *to, int at)
+{
+    const size_t bytes = (size_t)count * sizeof(double);
+    memcpy(to->px + at, from->px, bytes), memcpy(to->py + at, from->py, bytes), memcpy(to->pz + at, from->pz, bytes);
+    memcpy(to->nx + at, from->nx, bytes), memcpy(to->ny + at, from->ny, bytes), memcpy(to->nz + at, from->nz, bytes);
+    memcpy(to->cos_i + at, from->cos_i, bytes), memcpy(to->error + at, from->error, bytes);
+    memcpy(to->face + at, from->face, bytes);
+}
+
+/* The points on several analytic primitives; the last group's include the padding. */
+static void points_of_groups(tracer *t, const hit_group *groups, int count)
+{
+    group *g = &t->surface.gathered;
+    surface_batch some;
+    for (int k = 0, from = 0; k < count; k++) {
+        const int to = k + 1 < count ? from + groups[k].count : g->padded;
+        surface_points(t, groups[k].hit_primitive, from, to, &some);
+        copy_points(&some, to - from, &g->points, from);
+        from = to;
+    }
+}
+
+static void count_hits(tracer *t, int depth, int priority_index, int count)
+{
+    const int owner = t->target.frame_plan->geometry->regions[priority_index].solid;
+    if (owner >= COUNTERS_SOLID_MAX)
+        return;
+    COUNT(t->account.counters.hits[owner] += (uint64_t)count);
+    if (depth == 0)
+        COUNT(t->account.counters.first_hits[owner] += (uint64_t)count);
+}
+
+/* Shades rays on one material: list[0 .. count - 1], of these groups. */
+static void shade_one_material(tracer *t, int depth, int first, const hit_group *groups, int group_count,
+                               const int *list, int count)
 {
     const plan *p = t->target.frame_plan;
-    const primitive *surface = &p->geometry->primitives[hit_primitive];
+    const int priority_index = groups->priority_index;
+    const primitive *surface = &p->geometry->primitives[groups->hit_primitive];
     group *g = &t->surface.gathered;
     group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, g);
     if (p->spectral)
         spectral_indices(t, list);
     if (p->render.polarisation)
         polarised_gather(t, &t->queues.waiting[depth], first, list);
-    const ray_batch rays = {g->padded, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
     t->surface.on_mesh = !surface->rule;
     if (t->surface.on_mesh)
         mesh_surface(t, priority_index, list);
+    else if (group_count == 1)
+        surface_points(t, groups->hit_primitive, 0, g->padded, &g->points);
     else
-        t->geometry->surface(p->geometry, hit_primitive, &rays, g->t, &g->points);
+        points_of_groups(t, groups, group_count);
     t->surface.texture_at = NULL;
     if (t->rule->place)
         t->rule->place(t, list);
-    const int owner = p->geometry->regions[priority_index].solid;
-    COUNT(t->account.counters.hits[owner] += (uint64_t)count);
-    if (depth == 0)
-        COUNT(t->account.counters.first_hits[owner] += (uint64_t)count);
+    if (group_count == 1)
+        count_hits(t, depth, priority_index, count);
+    for (int k = 0; group_count > 1 && k < group_count; k++)
+        count_hits(t, depth, groups[k].priority_index, groups[k].count);
     color(t, priority_index, surface);
     t->rule->shade(t, depth, priority_index);
 }
 
-void shading_group(tracer *t, int depth, int first, int hit_primitive, int priority_index, const int *list, int count)
+/* Shades groups whose hits may be shaded together, as far as they fit. */
+static void shade_alike(tracer *t, int depth, int first, const hit_group *groups, int count)
 {
-    const region_materials *shading_materials = &t->target.frame_plan->shading_materials[priority_index];
-    t->surface.mat = shading_materials->mat;
-    if (shading_materials->count == 1) {
-        shade_one_material(t, depth, first, hit_primitive, priority_index, list, count);
+    const region_materials *materials = &t->target.frame_plan->shading_materials[groups->priority_index];
+    const int *list = &t->batch.groups.list[groups->first];
+    int rays = 0;
+    for (int k = 0; k < count; k++)
+        rays += groups[k].count;
+    t->surface.mat = materials->mat;
+    if (materials->count == 1) {
+        shade_one_material(t, depth, first, groups, count, list, rays);
         return;
     }
     int left[BATCH];
-    memcpy(left, list, (size_t)count * sizeof left[0]);
-    for (int begin = 0; begin < count;) {
+    memcpy(left, list, (size_t)rays * sizeof left[0]);
+    for (int begin = 0; begin < rays;) {
         int slot;
-        const int alike = mesh_next_material(t, left + begin, count - begin, &slot);
-        t->surface.mat = &shading_materials->mat[slot < shading_materials->count ? slot : 0];
-        shade_one_material(t, depth, first, hit_primitive, priority_index, left + begin, alike);
+        const int alike = mesh_next_material(t, left + begin, rays - begin, &slot);
+        t->surface.mat = &materials->mat[slot < materials->count ? slot : 0];
+        shade_one_material(t, depth, first, groups, 1, left + begin, alike);
         begin += alike;
+    }
+}
+
+/* Can these hits be shaded with others? Not on a mesh's surface, and not by an integrator that distinguishes solids. */
+static bool can_be_together(const tracer *t, const hit_group *g)
+{
+    return !t->rule->by_solid && t->target.frame_plan->geometry->primitives[g->hit_primitive].rule;
+}
+
+void shading_groups(tracer *t, int depth, int first, const hit_group *groups, int count)
+{
+    for (int k = 0, together; k < count; k += together) {
+        together = 1;
+        while (k + together < count && can_be_together(t, &groups[k]) && can_be_together(t, &groups[k + together]))
+            together++;
+        shade_alike(t, depth, first, &groups[k], together);
     }
 }

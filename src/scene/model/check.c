@@ -2,7 +2,7 @@
  * range of one value is checked when it is set (params_value.c). */
 #include "scene/model/check.h"
 #include "geometry/shapes/shape.h"
-#include "base/counters.h"
+#include "geometry/scene_geometry.h"
 #include "scene/model/face_materials.h"
 #include "scene/model/medium.h"
 #include "scene/model/objects.h"
@@ -12,8 +12,7 @@
 
 #include <string.h>
 
-/* A solid has at least one primitive, so the counters' limit on solids follows. */
-_Static_assert((int)SCENE_PRIMITIVES_MAX <= (int)COUNTERS_SOLID_MAX, "a counter for every solid");
+_Static_assert((int)SCENE_UNBOUNDED_MAX == (int)PRIMITIVES_MAX, "each can be a direct primitive");
 
 static bool is_reserved(const char *name)
 {
@@ -245,12 +244,18 @@ static status check_solid(const scene *s, const solid *owner, diagnostic *why)
 
 status check_limits(const scene *s, diagnostic *why)
 {
-    size_t primitives = 0;
-    for (size_t i = 0; i < s->solid_count; i++)
+    size_t primitives = 0, unbounded = 0;
+    for (size_t i = 0; i < s->solid_count; i++) {
+        const shape_rule *rule = shape_of(&s->solids[i].shape);
         primitives += (size_t)shape_places(&s->solids[i].shape);
+        unbounded += rule->unbounded || rule->triangles;
+    }
     if (primitives > SCENE_PRIMITIVES_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64; a cup and a torus count as two",
-                        "more than 64 solids");
+        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 2097151; a cup and a torus count as two",
+                        "more than 2097151 solids");
+    if (unbounded > SCENE_UNBOUNDED_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64 of them together, and any number of other solids",
+                        "more than 64 planes and solids of meshes");
     if (s->light_count > SCENE_LIGHTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64", "more than 64 lights");
     if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX)

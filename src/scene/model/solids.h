@@ -6,8 +6,8 @@
 
 typedef enum shading_rule { SHADING_FLAT, SHADING_SMOOTH, SHADING_GOURAUD } shading_rule;
 
-/* Maximum number of all solids together (shape_rule.primitive_count). */
-enum { SCENE_PRIMITIVES_MAX = 64 };
+/* Maximum numbers of all solids together (shape_places), and of those among them that have no bounds, or triangles. */
+enum { SCENE_PRIMITIVES_MAX = (1 << 21) - 1, SCENE_UNBOUNDED_MAX = 64 };
 
 typedef struct solid {
     char *name;
