@@ -5,31 +5,27 @@
 #include "geometry/shapes/shape.h"
 #include <stdlib.h>
 
-/* Writes the proxy of a solid: a triangle that spans its bounds, widened beyond the rounding errors of its crossings
- * (POINT_ERROR of the magnitudes that enter them). */
-static void span_solid(solid_tree *t, size_t i)
+/* The bounds of a solid, widened beyond the rounding errors of its crossings (POINT_ERROR of the magnitudes that enter
+ * them). */
+static bounds3 bounds_of(const solid_tree *t, int i)
 {
     const scene_geometry *a = t->of;
     const bounds3 box = shape_world_box(&a->shapes[t->region[i]]);
     const double slack = 0x1p-40 * a->primitives[a->regions[t->region[i]].outside].extent;
-    const vec3 wider = vec3_make(slack, slack, slack), low = vec3_sub(box.low, wider), high = vec3_add(box.high, wider);
-    vec3 *corner = &t->proxies->vertices[3 * i];
-    corner[0] = low;
-    corner[1] = high;
-    corner[2] = vec3_make(low.x, high.y, low.z);
-    t->proxies->triangles[i] = (mesh_triangle){{(uint32_t)(3 * i), (uint32_t)(3 * i + 1), (uint32_t)(3 * i + 2)}};
+    const vec3 wider = vec3_make(slack, slack, slack);
+    return (bounds3){vec3_sub(box.low, wider), vec3_add(box.high, wider)};
 }
 
 static status build_boxes(solid_tree *t, diagnostic *why)
 {
-    const size_t n = (size_t)t->count;
-    status code = mesh_create(3 * n, n, false, false, false, &t->proxies, why);
-    if (code != STATUS_OK)
-        return code;
-    for (size_t i = 0; i < n; i++)
-        span_solid(t, i);
-    THEN(code, mesh_finish(t->proxies, why));
-    return code == STATUS_OK ? hierarchy_build(t->proxies, HIERARCHY_BVH, 1, &t->boxes, why) : code;
+    bounds3 *bounds = calloc((size_t)t->count, sizeof *bounds);
+    if (!bounds)
+        return out_of_memory(why);
+    for (int i = 0; i < t->count; i++)
+        bounds[i] = bounds_of(t, i);
+    const status code = solid_boxes_build(bounds, t->count, &t->boxes, why);
+    free(bounds);
+    return code;
 }
 
 status solid_tree_build(const scene_geometry *a, solid_tree **out, diagnostic *why)
@@ -57,8 +53,7 @@ void solid_tree_destroy(solid_tree *t)
 {
     if (!t)
         return;
-    hierarchy_destroy(t->boxes);
-    mesh_release(t->proxies);
+    solid_boxes_destroy(&t->boxes);
     set_table_destroy(t->sets);
     free(t->region);
     free(t);

@@ -5,16 +5,15 @@
  * Ownership: solid_tree_build creates, solid_tree_destroy frees; it borrows the scene geometry that it is part of. */
 #pragma once
 
-#include "geometry/hierarchy.h"
 #include "geometry/rays.h"
 #include "geometry/set_table.h"
+#include "geometry/solid_boxes.h"
 
 typedef struct solid_tree {
     const scene_geometry *of;
     int count;
-    int *region;      /* priority indices of the tree's solids, ascending: proxy i is of region[i] */
-    mesh *proxies;    /* one triangle spanning each solid's bounds */
-    hierarchy *boxes; /* over the proxies */
+    int *region;       /* priority indices of the tree's solids, ascending: item i of the boxes is region[i] */
+    solid_boxes boxes;
     set_table *sets;
 } solid_tree;
 

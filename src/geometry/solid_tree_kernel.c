@@ -6,8 +6,7 @@
 #include "geometry/kernels.h"
 #include "geometry/next_change.h"
 #include "geometry/primitives/primitive.h"
-
-#define TREES KERNEL(hierarchy_kernels)
+#include "geometry/solid_boxes_query.h"
 
 void KERNEL(tree_split)(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, uint64_t *direct)
 {
@@ -151,10 +150,10 @@ static bool contains_start(const tree_search *w, const region *b)
            (set_table_has(sets, within, b->outside) || (b->hollow >= 0 && set_table_has(sets, within, b->hollow)));
 }
 
-static double visit_solid(void *context, uint32_t proxy, double t_max)
+static double visit_solid(void *context, int item, double t_max)
 {
     tree_search *w = context;
-    const int r = w->a->tree->region[proxy];
+    const int r = w->a->tree->region[item];
     if (contains_start(w, &w->a->regions[r])) /* considered already */
         return t_max;
     if (r < w->priority_index) { /* hidden: it matters only where the medium changes */
@@ -179,15 +178,12 @@ static void consider_containing(tree_search *w)
     }
 }
 
-static void walk(const tree_search *w, double t_min, double t_max, box_visit *visit, void *context)
+ALWAYS_INLINE void walk(const tree_search *w, double t_min, double t_max, boxes_visit *visit, void *context)
 {
     const int i = w->s->ray[w->column];
     const ray_batch *r = w->rays;
-    const mesh_ray ray = {.origin = vec3_make(r->ox[i], r->oy[i], r->oz[i]),
-                          .direction = vec3_make(r->dx[i], r->dy[i], r->dz[i]),
-                          .t_min = t_min,
-                          .t_max = t_max};
-    TREES.boxes(w->a->tree->boxes, &ray, visit, context);
+    boxes_walk(&w->a->tree->boxes, vec3_make(r->ox[i], r->oy[i], r->oz[i]), vec3_make(r->dx[i], r->dy[i], r->dz[i]),
+               t_min, t_max, visit, context);
 }
 
 /* The tree's primitives on both sides of a crossing, and which of them have a boundary near it. */
@@ -238,10 +234,10 @@ static void report(const tree_visit *v, int p)
     v->found(v->context, p, found);
 }
 
-static double visit_near(void *context, uint32_t proxy, double t_max)
+static double visit_near(void *context, int item, double t_max)
 {
     const tree_visit *v = context;
-    const region *b = &v->w->a->regions[v->w->a->tree->region[proxy]];
+    const region *b = &v->w->a->regions[v->w->a->tree->region[item]];
     if (!contains_start(v->w, b)) {
         report(v, b->outside);
         if (b->hollow >= 0)
@@ -351,11 +347,11 @@ static void start_intervals(const shadow_search *w, int p, interval *found)
 }
 
 /* As the pass over the direct regions: a quick test of the range 0..1. */
-static double visit_shadow(void *context, uint32_t proxy, double t_max)
+static double visit_shadow(void *context, int item, double t_max)
 {
     shadow_search *w = context;
     const scene_geometry *a = w->a;
-    const int r = a->tree->region[proxy];
+    const int r = a->tree->region[item];
     const region *b = &a->regions[r];
     if (!region_casts_shadow(b, w->solid_shadows))
         return t_max;
@@ -380,9 +376,7 @@ void KERNEL(tree_shadows)(const scene_geometry *a, const ray_batch *rays, int so
         if (s->blocked[i])
             continue;
         shadow_search w = {a, rays, s, i, solid_shadows};
-        const mesh_ray ray = {.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
-                              .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
-                              .t_max = 1.0};
-        TREES.boxes(a->tree->boxes, &ray, visit_shadow, &w);
+        boxes_walk(&a->tree->boxes, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
+                   vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]), 0.0, 1.0, visit_shadow, &w);
     }
 }

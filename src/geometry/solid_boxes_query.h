@@ -1,0 +1,133 @@
+/* Conservative ray-box tests over a hierarchy of boxes: of one ray with the eight boxes of a node, and of a batch of
+ * rays with one box. No box that the exact ray enters between t_min and t_max is missed: box planes are rounded
+ * outwards, and distances are widened by more than the rounding errors (Ize, "Robust BVH ray traversal", JCGT 2(2),
+ * 2013), those of the origin by widening the boxes. */
+#pragma once
+
+#include "base/kernel.h"
+#include "base/lanes.h"
+#include "geometry/rays.h"
+#include "geometry/solid_boxes.h"
+
+#define BOXES_SLACK 0x1p-20f /* relative; more than the roundings of an origin, an inverse, a difference, a product */
+#define BOXES_TINY 1e-30f    /* a component below it is replaced by it: its inverse is finite */
+
+typedef struct boxes_ray {
+    float origin[3], inverse[3];
+    float margin; /* of the boxes, for the rounding of the origin */
+    float t_min, t_max;
+} boxes_ray;
+
+ALWAYS_INLINE float boxes_inverse(double d)
+{
+    const float f = (float)d, size = __builtin_fabsf(f);
+    return 1.0f / (size < BOXES_TINY ? __builtin_copysignf(BOXES_TINY, f) : f);
+}
+
+ALWAYS_INLINE float boxes_margin(float reach, double x, double y, double z)
+{
+    const double far = greater(magnitude(x), greater(magnitude(y), magnitude(z)));
+    return 0x1p-22f * (reach + (float)far);
+}
+
+/* Is the widened range of a slab's two distances, and then of three slabs, not empty? */
+ALWAYS_INLINE float boxes_less(float t)
+{
+    return t - __builtin_fabsf(t) * BOXES_SLACK;
+}
+ALWAYS_INLINE float boxes_more(float t)
+{
+    return t + __builtin_fabsf(t) * BOXES_SLACK;
+}
+ALWAYS_INLINE float boxes_min(float a, float b)
+{
+    return a < b ? a : b;
+}
+ALWAYS_INLINE float boxes_max(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+/* Called with each item whose box the ray may enter before t_max. Returns t_max or a smaller bound; a negative one ends
+ * the search. */
+typedef double boxes_visit(void *context, int item, double t_max);
+
+/* Which children of a node the ray may enter before its t_max, as bits; near: where. */
+ALWAYS_INLINE unsigned boxes_entered(const boxes_node *n, const boxes_ray *r, float near[BOXES_WIDE])
+{
+    int32_t entered[BOXES_WIDE];
+    const float *in[3], *out[3];
+    float offset_in[3], offset_out[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const bool down = r->inverse[axis] < 0.0f;
+        in[axis] = down ? n->high[axis] : n->low[axis];
+        out[axis] = down ? n->low[axis] : n->high[axis];
+        offset_in[axis] = down ? r->origin[axis] - r->margin : r->origin[axis] + r->margin;
+        offset_out[axis] = down ? r->origin[axis] + r->margin : r->origin[axis] - r->margin;
+    }
+    /* VECTORISE */
+    for (int i = 0; i < BOXES_WIDE; i++) {
+        const float x = (in[0][i] - offset_in[0]) * r->inverse[0], y = (in[1][i] - offset_in[1]) * r->inverse[1],
+                    z = (in[2][i] - offset_in[2]) * r->inverse[2];
+        const float u = (out[0][i] - offset_out[0]) * r->inverse[0], v = (out[1][i] - offset_out[1]) * r->inverse[1],
+                    w = (out[2][i] - offset_out[2]) * r->inverse[2];
+        const float first = boxes_less(boxes_max(boxes_max(x, y), z)), last = boxes_more(boxes_min(boxes_min(u, v), w));
+        near[i] = boxes_max(first, r->t_min);
+        entered[i] = -(int32_t)(near[i] <= boxes_min(last, r->t_max));
+    }
+    unsigned set = 0;
+    for (int i = 0; i < BOXES_WIDE; i++)
+        set |= (unsigned)(entered[i] & 1) << i;
+    return set & ((1u << n->count) - 1);
+}
+
+/* A child that waits, and where the ray enters it. */
+typedef struct boxes_waiting {
+    float near;
+    int32_t child;
+} boxes_waiting;
+
+/* Puts a node's entered children on the stack, the nearest last; returns the new size. */
+ALWAYS_INLINE int boxes_push(boxes_waiting *stack, int size, const boxes_node *n, unsigned entered, const float *near)
+{
+    const int first = size;
+    for (; entered; entered &= entered - 1) {
+        const int child = __builtin_ctz(entered);
+        int at = size++;
+        for (; at > first && stack[at - 1].near < near[child]; at--)
+            stack[at] = stack[at - 1];
+        stack[at] = (boxes_waiting){near[child], n->child[child]};
+    }
+    return size;
+}
+
+/* Visits the items whose boxes a ray may enter in t_min .. t_max, roughly the nearest first. */
+ALWAYS_INLINE void boxes_walk(const solid_boxes *b, vec3 origin, vec3 direction, double t_min, double t_max,
+                              boxes_visit *visit, void *context)
+{
+    boxes_waiting stack[BOXES_DEPTH_MAX * (BOXES_WIDE - 1) + 1];
+    float near[BOXES_WIDE];
+    boxes_ray r = {.origin = {(float)origin.x, (float)origin.y, (float)origin.z},
+                   .inverse = {boxes_inverse(direction.x), boxes_inverse(direction.y), boxes_inverse(direction.z)},
+                   .margin = boxes_margin(b->reach, origin.x, origin.y, origin.z),
+                   .t_min = boxes_less((float)t_min),
+                   .t_max = boxes_more((float)t_max)};
+    int size = boxes_push(stack, 0, b->nodes, boxes_entered(b->nodes, &r, near), near);
+    while (size > 0) {
+        const boxes_waiting next = stack[--size];
+        if (next.near > r.t_max)
+            continue;
+        if (next.child >= 0) {
+            const boxes_node *n = &b->nodes[next.child];
+            size = boxes_push(stack, size, n, boxes_entered(n, &r, near), near);
+            continue;
+        }
+        const double bound = visit(context, ~next.child, t_max);
+        if (bound < 0.0)
+            return;
+        if (bound < t_max) {
+            t_max = bound;
+            r.t_max = boxes_more((float)t_max);
+        }
+    }
+}
