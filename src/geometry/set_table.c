@@ -2,6 +2,7 @@
  * looking one up takes no lock. */
 #include "geometry/set_table.h"
 
+#include "base/hash.h"
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -106,13 +107,9 @@ bool set_table_has(const set_table *t, uint64_t set, int primitive)
     return low < s->count && s->primitive[low] == (uint32_t)primitive;
 }
 
-/* FNV-1a over 32-bit words, with a final mix. */
 static uint64_t hash_of(const uint32_t *primitive, int count)
 {
-    uint64_t h = UINT64_C(14695981039346656037);
-    for (int k = 0; k < count; k++)
-        h = (h ^ primitive[k]) * UINT64_C(1099511628211);
-    return h ^ h >> 29;
+    return hash_finish(hash_bytes(HASH_START, primitive, (size_t)count * sizeof *primitive));
 }
 
 static const large_set *find(const large_set *s, uint64_t hash, const uint32_t *primitive, int count)

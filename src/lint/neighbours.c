@@ -306,6 +306,8 @@ static void look_at_all(const lint_room *room, const neighbour *all, int count, 
 status lint_neighbours(const lint_room *room, diagnostic *why)
 {
     const scene_geometry *a = room->made->geometry;
+    if (a->region_count > COVER_SOLIDS_MAX)
+        return STATUS_OK;
     neighbour *all = calloc((size_t)a->region_count + 1, sizeof *all);
     float *gap = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *gap);
     double *middle = calloc(LATTICE_MOST * LATTICE_MOST, sizeof *middle);

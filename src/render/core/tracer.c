@@ -279,9 +279,10 @@ typedef struct pixel_block {
 } pixel_block;
 static pixel_block block_of(const plan *p, const span *piece, int64_t each)
 {
-    if (p->geometry->meshes && each == 1)
+    const bool by_hierarchy = p->geometry->meshes || p->geometry->tree;
+    if (by_hierarchy && each == 1)
         return (pixel_block){16, BATCH / 16};
-    if (p->geometry->meshes && each == 4)
+    if (by_hierarchy && each == 4)
         return (pixel_block){8, BATCH / 32};
     return (pixel_block){piece->x1 - piece->x0, 1};
 }

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIZE_LIMIT = 1 << 20, DEPTH_LIMIT = 16, NODE_LIMIT = 65536 };
+enum { SIZE_LIMIT = 64 << 20, DEPTH_LIMIT = 16, NODE_LIMIT = 1 << 23 };
 
 struct document {
     char *name;
@@ -32,7 +32,7 @@ static void node_destroy(node *n)
 static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, node **out)
 {
     if (++r->node_count > NODE_LIMIT)
-        return events_error(r, mark, "make the file smaller", "the file has more than 65536 values");
+        return events_error(r, mark, "make the file smaller", "the file has more than 8388608 values");
     node *n = calloc(1, sizeof *n);
     if (!n)
         return out_of_memory(r->why);
@@ -221,7 +221,7 @@ status document_parse(const char *name, const char *text, size_t size, document 
     event_reader r = {.name = name, .text = text, .size = size, .node_count = 0, .why = why};
     if (size > SIZE_LIMIT) {
         diagnostic_locate(why, name, 1, 1);
-        return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 1 MiB");
+        return diagnose(why, STATUS_BAD_INPUT, "make the file smaller", "the file is larger than 64 MiB");
     }
     if (is_image(text, size))
         return events_error(&r, (yaml_mark_t){0}, "give the file that describes it",

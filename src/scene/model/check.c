@@ -48,6 +48,9 @@ status check_name(const char *name, diagnostic *why)
 
 static size_t count_name(const scene *s, const char *name)
 {
+    const size_t most = name_tally_most(&s->names, name);
+    if (most <= 1)
+        return most;
     size_t count = 0;
     for (int g = PARAM_MESH; g < PARAM_GROUP_COUNT; g++)
         for (size_t i = 0; i < param_place_group_size(s, (param_group)g); i++)

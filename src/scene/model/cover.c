@@ -17,6 +17,8 @@ static placed_shape placed(const scene *s, const solid *owner)
 
 const solid *scene_cover(const scene *s, const solid *hidden)
 {
+    if (s->solid_count > COVER_SOLIDS_MAX)
+        return NULL;
     const placed_shape h = placed(s, hidden);
     for (size_t i = 0; i < s->solid_count; i++) {
         const solid *cover = &s->solids[i];

@@ -5,8 +5,11 @@
 #include "scene/model/open.h"
 #include "scene/model/solids.h"
 
+/* Pairs of solids are compared only in scenes with at most this number. */
+enum { COVER_SOLIDS_MAX = 1000 };
+
 /* A visible solid of s that contains all of `hidden`, a solid of s, and has precedence there; NULL if none is known.
- * Not detected: cover by several solids together, solids inside meshes, some cylinders at an angle inside curved
+ * Not detected: cover in a scene of more than COVER_SOLIDS_MAX solids, by several solids together, solids inside meshes, some cylinders at an angle inside curved
  * solids. Meshes must be loaded. */
 const solid *scene_cover(const scene *s, const solid *hidden);
 

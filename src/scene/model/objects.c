@@ -72,7 +72,9 @@ const char *param_place_group_name(const scene *s, param_group group, size_t ind
 
 int object_find(const scene *s, param_group group, const char *name)
 {
-    for (size_t i = 0; i < param_place_group_size(s, group); i++)
+    if (group_has_names(group) && name_tally_most(&s->names, name) == 0)
+        return -1;
+    for (size_t i = param_place_group_size(s, group); i-- > 0;) /* new objects are at the end */
         if (strcmp(param_place_group_name(s, group, i), name) == 0)
             return (int)i;
     return -1;
@@ -123,6 +125,7 @@ void *object_append(scene *s, param_group group, const char *name)
     }
     char *added = memset(grown + count * size, 0, size);
     *(char **)added = copy;
+    name_tally_add(&s->names, copy);
     ++*count_of(s, group);
     return added;
 }
@@ -131,6 +134,7 @@ void object_remove(scene *s, param_group group, size_t index)
 {
     const size_t size = lists[group].size, left = --*count_of(s, group);
     char *gap = object_at(s, group, index);
+    name_tally_remove(&s->names, *(char **)gap);
     release(group, gap);
     memmove(gap, gap + size, (left - index) * size);
 }
@@ -170,8 +174,10 @@ static bool clone_list(scene *s, const scene *original, param_group group)
     set_array(s, group, array);
     *count_of(s, group) = count;
     bool whole = true;
-    for (char *object = array; object < array + count * size; object += size)
+    for (char *object = array; object < array + count * size; object += size) {
         whole &= own(group, object);
+        name_tally_add(&s->names, *(char **)object ? *(char **)object : "");
+    }
     return whole;
 }
 
@@ -190,6 +196,16 @@ void objects_release(scene *s)
             release((param_group)g, object_at(s, (param_group)g, i));
         free(array_of(s, (param_group)g));
     }
+    name_tally_clear(&s->names);
+}
+
+void object_rename(scene *s, param_group group, size_t index, char *name)
+{
+    char **field = object_at(s, group, index);
+    name_tally_remove(&s->names, *field);
+    name_tally_add(&s->names, name);
+    free(*field);
+    *field = name;
 }
 
 char *object_remedy(const scene *s, param_group group, const char *wrong, char *text, size_t size)

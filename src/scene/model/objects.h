@@ -21,6 +21,9 @@ int object_find(const scene *s, param_group group, const char *name);
 void *object_append(scene *s, param_group group, const char *name);
 void object_remove(scene *s, param_group group, size_t index);
 
+/* Takes over the new name. */
+void object_rename(scene *s, param_group group, size_t index, char *name);
+
 /* Copies everything except the name to another object of the group. Loaded data is shared; false if memory runs out:
  * the partial copy is released with the scene. */
 bool object_assign(scene *s, param_group group, size_t to, size_t from);

@@ -5,6 +5,7 @@
 
 #include "scene/model/light.h"
 #include "scene/model/mesh_entry.h"
+#include "scene/model/name_tally.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
 #include "scene/model/solids.h"
@@ -26,6 +27,7 @@ struct scene {
     size_t light_count;
     solid *solids;
     size_t solid_count;
+    name_tally names;   /* of meshes, textures, materials, lights and solids */
     load_limits limits; /* none by default; set by scene_limit */
 };
 

@@ -116,9 +116,7 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     if (!(copy = strdup(new_name)))
         return out_of_memory(why);
     follow_name(s, &at, name, copy);
-    char **field = object_at(s, at.object_group, at.index);
-    free(*field);
-    *field = copy;
+    object_rename(s, at.object_group, at.index, copy);
     return STATUS_OK;
 }
 

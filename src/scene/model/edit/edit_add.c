@@ -1,4 +1,5 @@
 /* New objects at the end of their sections. */
+#include "geometry/shapes/shape.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/objects.h"
@@ -21,7 +22,10 @@ static status add(scene *s, param_group group, shape_kind shape, const char *nam
         new->material_index = -1;
         code = param_set_defaults(PARAM_MATERIAL, &new->surface, why);
     }
-    THEN(code, check_limits(s, why));
+    /* A bounded solid is within the limits as long as there are few. */
+    const shape_rule *rule = shape_of_kind(shape);
+    if (group != PARAM_SOLID || rule->unbounded || rule->triangles || s->solid_count > SCENE_PRIMITIVES_MAX / 3)
+        THEN(code, check_limits(s, why));
     if (code != STATUS_OK)
         object_remove(s, group, at);
     else if (index)
