@@ -83,16 +83,27 @@ typedef struct range {
     int first, count;
 } range;
 
-/* Halves the largest of the ranges until there are eight, or one for each item; returns their number. */
+/* The items below a full child of a node over that many. */
+static int full_child(int items)
+{
+    int full = 1;
+    while (items / full > BOXES_WIDE || full * BOXES_WIDE < items)
+        full *= BOXES_WIDE;
+    return full;
+}
+
+/* Halves the largest of the ranges until there are eight, or each fits below a full child, so that the lowest nodes are
+ * nearly full; returns their number. */
 static int split(boxes_build *b, range ranges[BOXES_WIDE])
 {
+    const int full = full_child(ranges[0].count);
     int count = 1;
     while (count < BOXES_WIDE) {
         int largest = 0;
         for (int k = 1; k < count; k++)
             largest = ranges[k].count > ranges[largest].count ? k : largest;
         range *r = &ranges[largest];
-        if (r->count == 1)
+        if (r->count <= full)
             break;
         const int half = r->count / 2;
         select_first(b, longest_axis(b, r->first, r->count), r->first, r->count, half);
@@ -135,9 +146,8 @@ static int build_node(boxes_build *b, range all)
 status solid_boxes_build(const bounds3 *items, int count, solid_boxes *out, diagnostic *why)
 {
     boxes_build b = {.items = items, .order = malloc((size_t)count * sizeof *b.order), .out = out};
-    /* A node without full nodes below it has at least two items, and every other one eight children:
-     * count / 2 (1 + 1/8 + 1/64 ...) nodes at most. */
-    const size_t bytes = ((size_t)count * 5 / 8 + 2) * sizeof *out->nodes;
+    /* A node has at least two children. */
+    const size_t bytes = ((size_t)count + 1) * sizeof *out->nodes;
     *out = (solid_boxes){.nodes = aligned_alloc(64, (bytes + 63) / 64 * 64)};
     if (!b.order || !out->nodes) {
         free(b.order);
