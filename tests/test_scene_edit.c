@@ -210,13 +210,14 @@ static void lights_and_solids_above_the_limit_are_refused(void **state)
         snprintf(name, sizeof name, "l%d", i);
         assert_int_equal(scene_add(s, PARAM_LIGHT, name, NULL, NULL), STATUS_OK);
         snprintf(name, sizeof name, "s%d", i);
-        assert_int_equal(scene_add_solid(s, name, SHAPE_SPHERE, NULL, NULL), STATUS_OK);
+        assert_int_equal(scene_add_solid(s, name, SHAPE_PLANE, NULL, NULL), STATUS_OK);
     }
     assert_refused(s, scene_add(s, PARAM_LIGHT, "more", NULL, &why), "more than 64 lights");
-    assert_refused(s, scene_add_solid(s, "more", SHAPE_PLANE, NULL, &why), "more than 64 solids");
-    assert_refused(s, scene_put(s, "s5.shape", "cup", &why), "more than 64 solids"); /* which counts as two */
+    assert_refused(s, scene_add_solid(s, "more", SHAPE_PLANE, NULL, &why), "more than 64 planes and solids of meshes");
+    assert_int_equal(scene_add_solid(s, "bounded", SHAPE_SPHERE, NULL, NULL), STATUS_OK);
+    assert_refused(s, scene_put(s, "bounded.shape", "plane", &why), "more than 64 planes and solids of meshes");
     assert_int_equal(scene_remove(s, "s0", NULL), STATUS_OK);
-    assert_int_equal(scene_put(s, "s5.shape", "cup", NULL), STATUS_OK);
+    assert_int_equal(scene_put(s, "bounded.shape", "plane", NULL), STATUS_OK);
     scene_destroy(s);
 }
 

@@ -8,21 +8,22 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "geometry/set_table.h"
+#include "mesh_room.h"
 #include "optics/interface.h"
-#include "room_fixture.h"
 
 /* The same solids, built both ways. Primitives have other numbers in the tree's geometry: planes first. */
 typedef struct both_ways {
     scene_geometry *direct, *tree;
 } both_ways;
 
-static both_ways build_both(const room *m)
+/* trees: of the solids that are meshes; NULL if none is. */
+static both_ways build_both(const room *m, hierarchy *const *trees)
 {
     both_ways b;
     region_source sources[SOLIDS_MAX];
     for (int i = 0; i < m->count; i++)
         sources[i] = (region_source){.shape = &m->shape[i],
+                                     .tree = trees ? trees[i] : NULL,
                                      .priority = m->priority[i],
                                      .medium = m->medium[i],
                                      .opaque = m->opaque[i],
@@ -94,7 +95,7 @@ static int walks_agree(void (*fill)(room *m, uint64_t *seed), uint64_t seed, int
     for (int trial = 0; trial < rooms; trial++) {
         room m;
         fill(&m, &seed);
-        const both_ways b = build_both(&m);
+        const both_ways b = build_both(&m, NULL);
         for (int k = 0; k < 12; k++)
             interfaces += walk_both(&b, random_point(&seed, k % 2 ? 0.7 : 4.0), random_direction(&seed), &seed);
         destroy_both(&b);
@@ -115,11 +116,144 @@ static void hits_at_coincident_faces_are_those_of_direct_primitives(void **state
     assert_true(walks_agree(room_fill_on_a_grid, 302, 1000) > 10000);
 }
 
+/* Between random points; half of the pairs share one. */
+static void compare_shadows(const both_ways *b, uint64_t *seed, double blocked[2])
+{
+    for (int k = 0; k < 24; k++) {
+        const vec3 from = random_point(seed, k % 2 ? 0.7 : 3.0), to = random_point(seed, 3.0);
+        const one_ray one = {from, vec3_sub(to, from), FACE_NONE, scene_geometry_inside(b->direct, from)};
+        const one_ray other = {from, vec3_sub(to, from), FACE_NONE, scene_geometry_inside(b->tree, from)};
+        for (int opaque = 0; opaque < 2; opaque++) {
+            const double light = light_through(b->direct, one, opaque), same = light_through(b->tree, other, opaque);
+            assert_memory_equal(&light, &same, sizeof light);
+            blocked[light == 0.0]++;
+        }
+    }
+}
+
+static void shadows_are_those_of_direct_primitives(void **state)
+{
+    (void)state;
+    uint64_t seed = 303;
+    double blocked[2] = {0.0, 0.0};
+    for (int trial = 0; trial < 1000; trial++) {
+        room m;
+        (trial % 2 ? room_fill_on_a_grid : room_fill)(&m, &seed);
+        const both_ways b = build_both(&m, NULL);
+        compare_shadows(&b, &seed, blocked);
+        destroy_both(&b);
+        scene_geometry_destroy(m.solids);
+    }
+    assert_true(blocked[0] > 5000.0 && blocked[1] > 5000.0);
+}
+
+static void hits_among_meshes_are_those_of_direct_primitives(void **state)
+{
+    (void)state;
+    uint64_t seed = 304;
+    int interfaces = 0;
+    double blocked[2] = {0.0, 0.0};
+    for (int trial = 0; trial < 400; trial++) {
+        mesh_room m;
+        mesh_room_fill(&m, &seed, trial % 2);
+        const both_ways b = build_both(&m.r, m.tree);
+        for (int k = 0; k < 12; k++)
+            interfaces += walk_both(&b, random_point(&seed, k % 2 ? 0.9 : 4.0), random_direction(&seed), &seed);
+        compare_shadows(&b, &seed, blocked);
+        destroy_both(&b);
+        mesh_room_empty(&m);
+    }
+    assert_true(interfaces > 4000);
+}
+
+enum { SHELLS = 200 };
+
+/* Concentric balls, the smaller the denser and of higher priority: the shells of a lens with a gradient. */
+static scene_geometry *shells(double n[SHELLS + 1])
+{
+    static solid_shape ball[SHELLS];
+    region_source sources[SHELLS];
+    n[0] = 1.0; /* by solid, from 1; outside: 0 */
+    for (int i = 0; i < SHELLS; i++) {
+        ball[i] = (solid_shape){.kind = SHAPE_SPHERE, .radius = 1.0 - i / (double)SHELLS};
+        n[i + 1] = 1.0 + 0.5 * (i + 1) / SHELLS;
+        sources[i] =
+            (region_source){.shape = &ball[i], .priority = i, .medium = i + 1, .shadow_transmittance = 1.0, .solid = i};
+    }
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(sources, SHELLS, 0, TREE_IF_TOO_MANY, &a, NULL), STATUS_OK);
+    assert_non_null(a->tree);
+    return a;
+}
+
+static double index_of(const scene_geometry *a, const double *n, int priority_index)
+{
+    return n[a->regions[priority_index].solid + 1];
+}
+
+/* Bouguer's law: in spherical shells n r sin(theta) is the same along the whole path (Born and Wolf, Principles of
+ * Optics, 3.2.1). More than 64 solids contain the middle of the path. */
+static void a_ray_through_200_shells_obeys_the_law_of_bouguer(void **state)
+{
+    (void)state;
+    double n[SHELLS + 1];
+    scene_geometry *a = shells(n);
+    for (int k = 0; k < 40; k++) {
+        const double off = 0.01 + 0.024 * k;
+        one_ray r = {vec3_make(off, 0.0, -3.0), vec3_make(0.0, 0.0, 1.0), FACE_NONE, 0};
+        int interfaces = 0, deepest = 0;
+        for (one_hit h = nearest_interface(a, r); h.hit_primitive >= 0; h = nearest_interface(a, r), interfaces++) {
+            const double from = index_of(a, n, h.before), to = index_of(a, n, h.after);
+            assert_true(fabs(from * vec3_length(vec3_cross(h.point, r.d)) - off) < 1e-12);
+            const fresnel f = fresnel_dielectric(h.cos_i, from, to);
+            assert_false(f.total);
+            r = (one_ray){h.point, direction_refract(r.d, h.normal, h.cos_i, f.eta, f.cos_t), h.face, h.inside_after};
+            deepest = h.after > deepest ? h.after : deepest;
+            assert_int_equal(scene_geometry_set_has(a, h.inside_after, a->regions[1].outside), h.after > 0);
+        }
+        assert_int_equal(interfaces, 2 * deepest); /* in through each shell, and out again */
+        assert_int_equal(r.inside, 0);
+        assert_true(k > 0 || deepest > 64);
+    }
+    scene_geometry_destroy(a);
+}
+
+/* Balls in one place: of all boundaries that coincide, the highest priority's is the interface. */
+static void a_hundred_equal_balls_in_one_place_are_one(void **state)
+{
+    (void)state;
+    enum { BALLS = 100 };
+    const solid_shape ball = {.kind = SHAPE_SPHERE, .radius = 1.0};
+    region_source sources[BALLS];
+    for (int i = 0; i < BALLS; i++)
+        sources[i] = (region_source){
+            .shape = &ball, .priority = i * 37 % BALLS, .medium = i + 1, .shadow_transmittance = 0.5, .solid = i};
+    scene_geometry *a = NULL;
+    assert_int_equal(scene_geometry_build(sources, BALLS, 0, TREE_IF_MANY, &a, NULL), STATUS_OK);
+    one_ray r = {vec3_make(0.3, 0.2, -3.0), vec3_make(0.0, 0.0, 1.0), FACE_NONE, 0};
+    const double light = light_through(a, (one_ray){r.o, vec3_make(0.0, 0.0, 6.0), FACE_NONE, 0}, 0);
+    assert_true(light == 0.25);
+    for (int side = 0; side < 2; side++) {
+        const one_hit h = nearest_interface(a, r);
+        assert_int_equal(h.surface, BALLS);
+        assert_int_equal(side ? h.before : h.after, BALLS);
+        assert_int_equal(side ? h.after : h.before, 0);
+        assert_true(fabs(vec3_length(h.point) - 1.0) < 1e-15);
+        r = (one_ray){h.point, r.d, h.face, h.inside_after};
+    }
+    assert_int_equal(nearest_interface(a, r).hit_primitive, -1);
+    scene_geometry_destroy(a);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hits_are_those_of_direct_primitives),
         cmocka_unit_test(hits_at_coincident_faces_are_those_of_direct_primitives),
+        cmocka_unit_test(hits_among_meshes_are_those_of_direct_primitives),
+        cmocka_unit_test(shadows_are_those_of_direct_primitives),
+        cmocka_unit_test(a_ray_through_200_shells_obeys_the_law_of_bouguer),
+        cmocka_unit_test(a_hundred_equal_balls_in_one_place_are_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,7 +52,7 @@ status engine_check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnos
     else if (!(ray->reach >= 0.0))
         what = "has a negative reach", remedy = "give a distance, or 0 for no limit";
     else if (p && (ray->start.word[0] > 1 || (ray->start.word[0] == 1 && !(is_face(p->geometry, ray->start.word[1]) &&
-                                                                         is_set(p->geometry, ray->start.word[2])))))
+                                                                           is_set(p->geometry, ray->start.word[2])))))
         what = "has an invalid start", remedy = "copy it from a hit of this query, or zero it";
     if (!what)
         return STATUS_OK;

@@ -53,10 +53,8 @@ static void add_primitive(scene_geometry *a, int priority_index, const primitive
     p->normals = p->sides > 0 ? add_normals(a, p->sides) : NULL;
     if (p->extent > a->extent)
         a->extent = p->extent;
-    for (int row = 1; row < p->rows; row++) {
-        a->further |= (uint64_t)1 << a->primitive_count;
+    for (int row = 1; row < p->rows; row++)
         a->primitives[a->primitive_count++] = (primitive){.priority_index = priority_index, .rows = 1};
-    }
 }
 
 static void add_region(scene_geometry *a, int priority_index, const region_source *source)
@@ -154,6 +152,9 @@ static void add_regions(scene_geometry *a, const region_source *sources, const o
         a->direct_regions[a->direct_region_count++] = r;
     }
     a->direct_count = a->primitive_count;
+    for (int p = 0; p < a->direct_count; p += a->primitives[p].rows)
+        for (int row = 1; row < a->primitives[p].rows; row++)
+            a->further |= (uint64_t)1 << (p + row);
     for (int r = 1; with_tree && r <= a->region_count; r++)
         if (can_be_in_tree(&sources[order[r - 1].index]))
             add_region(a, r, &sources[order[r - 1].index]);

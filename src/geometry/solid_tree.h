@@ -12,7 +12,7 @@
 typedef struct solid_tree {
     const scene_geometry *of;
     int count;
-    int *region;       /* priority indices of the tree's solids, ascending: item i of the boxes is region[i] */
+    int *region; /* priority indices of the tree's solids, ascending: item i of the boxes is region[i] */
     solid_boxes boxes;
     set_table *sets;
 } solid_tree;

@@ -102,8 +102,8 @@ bool tracer_begin(tracer *t, const tracer_target *target)
         if (!queue_create(&t->queues.shadows, shadows_at_once))
             return false;
     }
-    if (!make_queues(t, t->queues.depth_limit + 1) || !make_marks(t, p->geometry) || !mesh_begin(t) || !radiance_begin(t) || !take_integrator(t) ||
-        !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
+    if (!make_queues(t, t->queues.depth_limit + 1) || !make_marks(t, p->geometry) || !mesh_begin(t) ||
+        !radiance_begin(t) || !take_integrator(t) || !absorption_begin(t, p->geometry->attenuates && t->rule->traced))
         return false;
     t->by_sample_key = t->rule->by_sample || r->spectrum == SPECTRUM_SPECTRAL || p->basic;
     drop_all(t);

@@ -30,7 +30,7 @@ typedef struct tracer_batch {
     /* hit_primitive is -1 for rays that hit nothing, and less than -1 for rays with an end that only the integrator
      * defines (path.c: a light's sphere) */
     _Alignas(64) hit_batch hits;
-    _Alignas(64) double transmitted[ROW];                          /* of shadow rays */
+    _Alignas(64) double transmitted[ROW]; /* of shadow rays */
     hit_groups groups;
 } tracer_batch;
 

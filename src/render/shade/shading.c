@@ -334,7 +334,7 @@ static void color(tracer *t, int priority_index, const primitive *surface)
 static void surface_points(tracer *t, int hit_primitive, int from, int to, surface_batch *points)
 {
     const group *g = &t->surface.gathered;
-    const ray_batch rays = {to - from,     g->ox + from, g->oy + from,    g->oz + from,           g->dx + from,
+    const ray_batch rays = {to - from,    g->ox + from, g->oy + from,    g->oz + from,           g->dx + from,
                             g->dy + from, g->dz + from, g->start + from, g->inside_before + from};
     t->geometry->surface(t->target.frame_plan->geometry, hit_primitive, &rays, g->t + from, points);
 }
