@@ -98,6 +98,12 @@ void film_read(const film *f, int x0, int y0, int x1, int y1, float *rgb, size_t
 {
     for (int y = y0; y < y1; y++) {
         float *row = rgb + (size_t)(y - y0) * stride;
+        if (f->space == FILM_RGB && f->shares == 1) { /* the same, faster */
+            const int64_t *sum = f->sum + 3 * ((size_t)y * (size_t)f->width + (size_t)x0);
+            for (size_t i = 0; i < 3 * (size_t)(x1 - x0); i++)
+                row[i] = (float)((double)sum[i] / FILM_ONE);
+            continue;
+        }
         for (int x = x0; x < x1; x++, row += 3) {
             double value[3];
             pixel_rgb(f, (size_t)y * (size_t)f->width + (size_t)x, value);
