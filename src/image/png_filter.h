@@ -1,6 +1,6 @@
 /* Row filters of PNG (PNG specification, 9): before compression a byte is replaced by its difference to a neighbour,
- * modulo 256. Only Sub (the pixel to the left) and Up (the row above) are used. On the shipped scenes Average, Paeth and
- * None together with them made the files larger or saved nothing, and cost more time. Pure; cannot fail. */
+ * modulo 256. Only Sub (the pixel to the left) and Up (the row above) are used. On the shipped scenes the others, added
+ * to these, made the files larger or saved nothing, and took more time. Pure; cannot fail. */
 #pragma once
 
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Reading PNG through libpng. Everything that must survive a longjmp is in a job, which belongs to a function that does not
- * call setjmp; the function that does has no modified local variables. */
+/* Reading PNG through libpng. Everything that must survive a longjmp is in a job, which belongs to a function that does
+ * not call setjmp; the function that does has no modified local variables. */
 #include "image/codec.h"
 
 #include <png.h>
