@@ -1,5 +1,5 @@
-/* Writing PNG: libpng writes the chunks, png_bands.c compresses the pixels. Everything that must survive a longjmp is in
- * a job, which belongs to a function that does not call setjmp; the function that does has no modified local
+/* Writing PNG: libpng writes the chunks, png_bands.c compresses the pixels. Everything that must survive a longjmp is
+ * in a job, which belongs to a function that does not call setjmp; the function that does has no modified local
  * variables. */
 #include "image/png_bands.h"
 
