@@ -28,7 +28,7 @@ else
 build := build/$(config)$(clang:%=-%)
 endif
 
-PACKAGES := libpng libjpeg hwloc yaml-0.1 jansson
+PACKAGES := libpng zlib libjpeg hwloc yaml-0.1 jansson
 warnings := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla
 # A user's newer compiler may give more warnings: they are errors only in CI (STRICT=1) and in test programs.
 STRICT ?=

@@ -3,9 +3,11 @@
 
 #include "base/float_environment.h"
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 typedef struct member {
     thread_team *of;
@@ -116,4 +118,19 @@ void thread_team_run(thread_team *t, thread_team_task *task, void *context, size
     while (t->busy > 0)
         pthread_cond_wait(&t->end, &t->lock);
     pthread_mutex_unlock(&t->lock);
+}
+
+/* The mask has room for more units than any machine has; a smaller mask is an error on a machine with more units. */
+int thread_team_units(void)
+{
+    enum { UNITS_MAX = 16384 };
+    cpu_set_t *set = CPU_ALLOC(UNITS_MAX);
+    const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
+    int count = 0;
+    if (set && sched_getaffinity(getpid(), size, set) == 0)
+        count = CPU_COUNT_S(size, set);
+    CPU_FREE(set);
+    if (count < 1)
+        count = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    return count > 1 ? count : 1;
 }

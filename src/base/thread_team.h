@@ -13,6 +13,9 @@ thread_team *thread_team_start(int threads);
 void thread_team_stop(thread_team *t); /* NULL is allowed */
 int thread_team_size(const thread_team *t);
 
+/* The number of processing units that the process may use now (its CPU affinity), at least 1. */
+int thread_team_units(void);
+
 /* Calls task for each index 0 .. count - 1, in any order and by any member, and returns when all calls have
  * returned. */
 void thread_team_run(thread_team *t, thread_team_task *task, void *context, size_t count);

@@ -68,8 +68,7 @@ void canvas_bytes(const film *f, const codec_bytes *bytes, int x0, int y0, int x
             const int end = lesser(x + CHUNK, x1);
             unsigned char *row = srgb + (size_t)(y - y0) * stride + 3 * (size_t)(x - x0);
             film_read(f, x, y, end, y + 1, rgb, sizeof rgb / sizeof *rgb);
-            for (int k = 0; k < 3 * (end - x); k++)
-                row[k] = codec_byte(bytes, rgb[k]);
+            codec_bytes_encode(bytes, rgb, 3 * (size_t)(end - x), row);
         }
 }
 

@@ -7,7 +7,9 @@
 #include "image/image.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Maximum number of pixels of an image file, 2^28. */
 #define CODEC_PIXELS_MAX 268435456LL
@@ -29,19 +31,44 @@ status codec_begin(long long width, long long height, size_t file_bytes, unsigne
 /* The sRGB-encoded value, correctly rounded to 0..maximum; 0 for NaN. */
 unsigned codec_quantize(float linear, unsigned maximum);
 
-/* The same for 0..255, faster: least[b] is the least linear value that is encoded as the byte b or a greater one. */
+/* The same for 0..255, faster: least[b] is the least linear value that is encoded as the byte b or a greater one
+ * (least[256] is infinity). The floats from 2^-13 (less than least[1]) to 1 are cut into cells of equal sign, exponent
+ * and first 7 bits of the mantissa; first[cell] is the byte of a cell's least value, and no cell has more than two
+ * bytes. */
+enum { CODEC_CELL_SHIFT = 16, CODEC_CELLS_FROM = 0x3900, CODEC_CELLS = 13 * 128 };
 typedef struct codec_bytes {
-    float least[256];
+    float least[257];
+    unsigned char first[CODEC_CELLS + 1];
 } codec_bytes;
 void codec_bytes_prepare(codec_bytes *table);
-unsigned char codec_byte(const codec_bytes *table, float linear);
+
+static inline unsigned char codec_byte(const codec_bytes *table, float linear)
+{
+    float value = linear > 0.0f ? linear : 0.0f; /* NaN too */
+    uint32_t word;
+    value = value < 1.0f ? value : 1.0f;
+    memcpy(&word, &value, sizeof word);
+    const int32_t cell = (int32_t)(word >> CODEC_CELL_SHIFT) - CODEC_CELLS_FROM;
+    const unsigned byte = table->first[cell > 0 ? cell : 0];
+    return (unsigned char)(byte + (value >= table->least[byte + 1]));
+}
+
+/* Encodes count values as bytes. */
+void codec_bytes_encode(const codec_bytes *table, const float *linear, size_t count, unsigned char *bytes);
+
+/* The same as codec_quantize for 0..65535, faster. free releases the table; NULL without memory. */
+typedef struct codec_words codec_words;
+codec_words *codec_words_create(void);
+/* Encodes count values as two bytes each, the high one first. */
+void codec_words_encode(const codec_words *table, const float *linear, size_t count, unsigned char *bytes);
+
 /* Decoding table of the encoded values 0..maximum to linear values; free it. NULL without memory. */
 float *codec_decode_table(unsigned maximum);
 
 /* fast: less compression effort, a larger file. */
-status codec_png_write(const image *img, FILE *stream, int bits, bool fast, diagnostic *why);
-status codec_jpeg_write(const image *img, FILE *stream, diagnostic *why);
-status codec_pfm_write(const image *img, FILE *stream, diagnostic *why);
+status codec_png_write(const image_rows *rows, FILE *stream, int bits, bool fast, diagnostic *why);
+status codec_jpeg_write(const image_rows *rows, FILE *stream, diagnostic *why);
+status codec_pfm_write(const image_rows *rows, FILE *stream, diagnostic *why);
 
 status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why);
 status codec_jpeg_read(const unsigned char *bytes, size_t size, image **out, diagnostic *why);

@@ -89,12 +89,24 @@ status codec_begin(long long width, long long height, size_t file_bytes, unsigne
     return STATUS_OK;
 }
 
-static status write_as(const image *img, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
+static void copy_row(const void *of, int y, float *rgb)
+{
+    const image *img = of;
+    const size_t count = (size_t)img->width * 3;
+    memcpy(rgb, img->pixel + (size_t)y * count, count * sizeof *rgb);
+}
+
+image_rows image_rows_of(const image *img)
+{
+    return (image_rows){img->width, img->height, copy_row, img};
+}
+
+static status write_as(const image_rows *rows, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
 {
     switch (format) {
-    case IMAGE_PNG: return codec_png_write(img, stream, bits, fast, why);
-    case IMAGE_JPEG: return codec_jpeg_write(img, stream, why);
-    case IMAGE_PFM: return codec_pfm_write(img, stream, why);
+    case IMAGE_PNG: return codec_png_write(rows, stream, bits, fast, why);
+    case IMAGE_JPEG: return codec_jpeg_write(rows, stream, why);
+    case IMAGE_PFM: return codec_pfm_write(rows, stream, why);
     case IMAGE_BMP:
     case IMAGE_UNKNOWN: break;
     }
@@ -108,13 +120,20 @@ status image_encode(const image *img, image_format format, int bits, bool fast, 
     text_writer writer;
     *bytes = NULL;
     TRY(text_writer_open(&writer, why));
+    const image_rows rows = image_rows_of(img);
     const status code =
-        text_writer_end(&writer, write_as(img, format, writer.stream, bits, fast, why), &text, size, why);
+        text_writer_end(&writer, write_as(&rows, format, writer.stream, bits, fast, why), &text, size, why);
     *bytes = (unsigned char *)text;
     return code;
 }
 
 status image_write(const image *img, const char *path, int bits, diagnostic *why)
+{
+    const image_rows rows = image_rows_of(img);
+    return image_write_rows(&rows, path, bits, why);
+}
+
+status image_write_rows(const image_rows *rows, const char *path, int bits, diagnostic *why)
 {
     image_format format = image_format_of(path);
     if (format == IMAGE_UNKNOWN)
@@ -124,7 +143,7 @@ status image_write(const image *img, const char *path, int bits, diagnostic *why
         return diagnose_at(why, path, STATUS_BAD_INPUT, "8 or 16", "a PNG image cannot have %d bits per channel", bits);
     file_writer writer;
     TRY(file_writer_open(&writer, path, why));
-    status code = write_as(img, format, writer.stream, bits, false, why);
+    status code = write_as(rows, format, writer.stream, bits, false, why);
     if (code == STATUS_OK || ferror(writer.stream))
         return file_writer_commit(&writer, why); /* errno has the reason of the stream's failure */
     file_writer_abandon(&writer);

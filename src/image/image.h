@@ -38,9 +38,20 @@ typedef enum image_format {
 } image_format; /* IMAGE_BMP: for reading only, has no extension */
 image_format image_format_of(const char *path);
 
+/* An image that is computed row by row while it is written. read writes row y, 3 x width values as in image, to rgb;
+ * several threads call it at once. */
+typedef struct image_rows {
+    int width, height;
+    void (*read)(const void *of, int y, float *rgb);
+    const void *of;
+} image_rows;
+image_rows image_rows_of(const image *img);
+
 /* PNG with 8 or 16 bits and JPEG (quality 92, 4:4:4) are sRGB-encoded, with a PNG sRGB chunk, correctly rounded, NaN as
- * 0; PFM has linear, little-endian floats. bits applies to PNG only. */
+ * 0; PFM has linear, little-endian floats. bits applies to PNG only. PNG is compressed with a thread per processing
+ * unit, at most 16; the file does not depend on their number. */
 status image_write(const image *img, const char *path, int bits, diagnostic *why);
+status image_write_rows(const image_rows *rows, const char *path, int bits, diagnostic *why);
 
 /* The same to fresh memory, owned by the caller. bits: 8 or 16. fast: PNG with less compression effort, for interactive
  * use. */

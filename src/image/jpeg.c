@@ -15,6 +15,7 @@ typedef struct jpeg_job {
     jmp_buf escape;
     char message[JMSG_LENGTH_MAX];
     unsigned char *row;
+    float *rgb; /* writing: one row, linear */
     image *img;
     float *linear;
     status code;
@@ -53,12 +54,12 @@ static void prepare(jpeg_job *job)
 
 /* ---- writing ---- */
 
-static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image *img, FILE *stream)
+static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image_rows *rows, FILE *stream)
 {
     jpeg_create_compress(cinfo);
     jpeg_stdio_dest(cinfo, stream);
-    cinfo->image_width = (JDIMENSION)img->width;
-    cinfo->image_height = (JDIMENSION)img->height;
+    cinfo->image_width = (JDIMENSION)rows->width;
+    cinfo->image_height = (JDIMENSION)rows->height;
     cinfo->input_components = 3;
     cinfo->in_color_space = JCS_RGB;
     jpeg_set_defaults(cinfo);
@@ -70,28 +71,26 @@ static void write_rows(jpeg_job *job, struct jpeg_compress_struct *cinfo, const 
     jpeg_start_compress(cinfo, TRUE);
     codec_bytes bytes;
     codec_bytes_prepare(&bytes);
-    size_t count = (size_t)img->width * 3;
     while (cinfo->next_scanline < cinfo->image_height) {
-        const float *pixel = img->pixel + cinfo->next_scanline * count;
-        for (size_t i = 0; i < count; i++)
-            job->row[i] = codec_byte(&bytes, pixel[i]);
+        rows->read(rows->of, (int)cinfo->next_scanline, job->rgb);
+        codec_bytes_encode(&bytes, job->rgb, (size_t)rows->width * 3, job->row);
         JSAMPROW row = job->row;
         jpeg_write_scanlines(cinfo, &row, 1);
     }
     jpeg_finish_compress(cinfo);
 }
 
-static bool write_guarded(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image *img, FILE *stream)
+static bool write_guarded(jpeg_job *job, struct jpeg_compress_struct *cinfo, const image_rows *rows, FILE *stream)
 {
     if (setjmp(job->escape))
         return false;
-    write_rows(job, cinfo, img, stream);
+    write_rows(job, cinfo, rows, stream);
     return true;
 }
 
-status codec_jpeg_write(const image *img, FILE *stream, diagnostic *why)
+status codec_jpeg_write(const image_rows *rows, FILE *stream, diagnostic *why)
 {
-    if (img->width > JPEG_MAX_DIMENSION || img->height > JPEG_MAX_DIMENSION)
+    if (rows->width > JPEG_MAX_DIMENSION || rows->height > JPEG_MAX_DIMENSION)
         return diagnose(why, STATUS_BAD_INPUT, "write a PNG instead", "a JPEG image has at most %ld pixels per side",
                         JPEG_MAX_DIMENSION);
     struct jpeg_compress_struct cinfo = {0};
@@ -99,15 +98,17 @@ status codec_jpeg_write(const image *img, FILE *stream, diagnostic *why)
     status code = STATUS_FAILURE;
     prepare(&job);
     cinfo.err = &job.errors;
-    job.row = malloc((size_t)img->width * 3);
-    if (!job.row)
+    job.row = malloc((size_t)rows->width * 3);
+    job.rgb = malloc((size_t)rows->width * 3 * sizeof *job.rgb);
+    if (!job.row || !job.rgb)
         diagnose(why, code, NULL, "out of memory");
-    else if (!write_guarded(&job, &cinfo, img, stream))
+    else if (!write_guarded(&job, &cinfo, rows, stream))
         diagnose(why, code, NULL, "cannot write the JPEG file: %s", job.message);
     else
         code = STATUS_OK;
     jpeg_destroy_compress(&cinfo);
     free(job.row);
+    free(job.rgb);
     return code;
 }
 

@@ -10,15 +10,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-status codec_pfm_write(const image *img, FILE *stream, diagnostic *why)
+status codec_pfm_write(const image_rows *rows, FILE *stream, diagnostic *why)
 {
-    size_t count = (size_t)img->width * 3;
+    size_t count = (size_t)rows->width * 3;
     unsigned char *row = malloc(count * 4);
-    if (!row)
+    float *pixel = malloc(count * sizeof *pixel);
+    if (!row || !pixel) {
+        free(row);
+        free(pixel);
         return out_of_memory(why);
-    fprintf(stream, "PF\n%d %d\n-1.0\n", img->width, img->height);
-    for (int y = img->height - 1; y >= 0; y--) {
-        const float *pixel = img->pixel + (size_t)y * count;
+    }
+    fprintf(stream, "PF\n%d %d\n-1.0\n", rows->width, rows->height);
+    for (int y = rows->height - 1; y >= 0; y--) {
+        rows->read(rows->of, y, pixel);
         for (size_t i = 0; i < count; i++) {
             uint32_t word;
             memcpy(&word, &pixel[i], sizeof word);
@@ -29,6 +33,7 @@ status codec_pfm_write(const image *img, FILE *stream, diagnostic *why)
             break; /* a write error stays set in the stream */
     }
     free(row);
+    free(pixel);
     return STATUS_OK;
 }
 

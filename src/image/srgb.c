@@ -27,36 +27,50 @@ unsigned codec_quantize(float linear, unsigned maximum)
     return (unsigned)floor(srgb_encode(linear) * maximum + 0.5);
 }
 
-/* Positive floats are ordered as their bits, so bisection on the bits finds the threshold. */
+static float float_of(uint32_t word)
+{
+    float value;
+    memcpy(&value, &word, sizeof value);
+    return value;
+}
+
+static uint32_t word_of(float value)
+{
+    uint32_t word;
+    memcpy(&word, &value, sizeof word);
+    return word;
+}
+
+/* Positive floats are ordered as their bits; the inverse curve is a few of them from the threshold. */
 static float least_value(unsigned byte)
 {
-    uint32_t under = 0, enough = 0x3f800000; /* 0.0f and 1.0f */
-    float value;
-    while (enough - under > 1) {
-        uint32_t middle = under + (enough - under) / 2;
-        memcpy(&value, &middle, sizeof value);
-        if (codec_quantize(value, 255) >= byte)
-            enough = middle;
-        else
-            under = middle;
-    }
-    memcpy(&value, &enough, sizeof value);
-    return value;
+    uint32_t word = word_of((float)srgb_decode((byte - 0.5) / 255.0));
+    while (codec_quantize(float_of(word), 255) >= byte)
+        word--;
+    while (codec_quantize(float_of(word), 255) < byte)
+        word++;
+    return float_of(word);
 }
 
 void codec_bytes_prepare(codec_bytes *table)
 {
+    unsigned byte = 0;
     table->least[0] = 0.0f;
-    for (unsigned byte = 1; byte < 256; byte++)
-        table->least[byte] = least_value(byte);
+    for (unsigned i = 1; i < 256; i++)
+        table->least[i] = least_value(i);
+    table->least[256] = INFINITY;
+    for (uint32_t cell = 0; cell <= CODEC_CELLS; cell++) {
+        const float value = float_of((cell + CODEC_CELLS_FROM) << CODEC_CELL_SHIFT);
+        while (value >= table->least[byte + 1])
+            byte++;
+        table->first[cell] = (unsigned char)byte;
+    }
 }
 
-unsigned char codec_byte(const codec_bytes *table, float linear)
+void codec_bytes_encode(const codec_bytes *table, const float *linear, size_t count, unsigned char *bytes)
 {
-    unsigned byte = 0;
-    for (unsigned step = 128; step > 0; step /= 2)
-        byte += linear >= table->least[byte + step] ? step : 0; /* never true for NaN */
-    return (unsigned char)byte;
+    for (size_t i = 0; i < count; i++)
+        bytes[i] = codec_byte(table, linear[i]);
 }
 
 float *codec_decode_table(unsigned maximum)

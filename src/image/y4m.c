@@ -70,8 +70,7 @@ static void convert(const planes *p, const image *img)
 {
     codec_bytes bytes;
     codec_bytes_prepare(&bytes);
-    for (size_t i = 0; i < 3 * p->wide * p->high; i++)
-        p->rgb[i] = codec_byte(&bytes, img->pixel[i]);
+    codec_bytes_encode(&bytes, img->pixel, 3 * p->wide * p->high, p->rgb);
     const luma_shares k = shares_for(img->height);
     put_luma(p, &k);
     for (size_t y = 0; y < p->chroma_high; y++)

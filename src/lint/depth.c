@@ -1,5 +1,7 @@
 /* Compares small images of the scene at its depth limit and at greater depths, until deeper images stop changing or the
- * ray budget is spent. */
+ * ray budget is spent. A thread per processing unit traces stripes of an image; the images, their ray counts and so the
+ * notes do not depend on the number of threads. */
+#include "base/thread_team.h"
 #include "lint/parts.h"
 #include "render/core/tracer.h"
 #include "scene/model/scene.h"
@@ -14,31 +16,48 @@
 #define CHANGED_VALUE 0.05   /* ... that change by more than this fraction of the brighter value */
 #define SETTLED_PIXELS 0.002 /* if fewer pixels change, deeper images count as equal */
 #define DARK (1.0 / 255.0)   /* darker values are displayed as black */
-enum { DEEPER_MAX = 24, SAFE_DEPTH = 8 };
+enum { DEEPER_MAX = 24, SAFE_DEPTH = 8, THREADS_MAX = 8, STRIPES_PER_THREAD = 4 };
 
 typedef struct depth_probe {
     plan *made;
-    tracer *rays;
+    thread_team *team;
+    tracer *rays[THREADS_MAX]; /* one per member of the team */
+    int stripes;
+    atomic_int next_stripe;
     film *image[DEEPER_MAX + 1]; /* by depth, starting at the scene's */
     double *pixel_rays;
     double spent;
 } depth_probe;
 
+static const atomic_bool go_on = false;
+
+/* Traces stripes, whichever is next, with one of the tracers. */
+static void trace_stripes(void *context, size_t index, int member)
+{
+    depth_probe *p = context;
+    const int width = (int)p->made->render.width, height = (int)p->made->render.height;
+    atomic_uint_fast64_t begun = 0;
+    (void)member;
+    for (int i; (i = atomic_fetch_add(&p->next_stripe, 1)) < p->stripes;) {
+        const span stripe = {0, i * height / p->stripes, width, (i + 1) * height / p->stripes};
+        tracer_span(p->rays[index], &stripe, &begun, &go_on);
+    }
+    tracer_finish(p->rays[index], &go_on);
+}
+
 static status trace_image(depth_probe *p, int deeper, diagnostic *why)
 {
     const render_settings *r = &p->made->render;
-    const span whole = {0, 0, (int)r->width, (int)r->height};
-    const size_t pixels = (size_t)(r->width * r->height);
-    atomic_uint_fast64_t begun = 0;
-    const atomic_bool stop = false;
-    TRY(film_create(whole.x1, whole.y1, 1, FILM_RGB, &p->image[deeper], why));
+    const size_t pixels = (size_t)(r->width * r->height), members = (size_t)thread_team_size(p->team);
+    TRY(film_create((int)r->width, (int)r->height, 1, FILM_RGB, &p->image[deeper], why));
     const tracer_target target = {.frame_plan = p->made, .img = p->image[deeper], .pixel_rays = p->pixel_rays};
     for (size_t i = 0; i < pixels; i++)
         p->pixel_rays[i] = 0.0;
-    if (!tracer_begin(p->rays, &target))
-        return out_of_memory(why);
-    tracer_span(p->rays, &whole, &begun, &stop);
-    tracer_finish(p->rays, &stop);
+    for (size_t i = 0; i < members; i++)
+        if (!tracer_begin(p->rays[i], &target))
+            return out_of_memory(why);
+    atomic_store(&p->next_stripe, 0);
+    thread_team_run(p->team, trace_stripes, p, members);
     for (size_t i = 0; i < pixels; i++)
         p->spent += p->pixel_rays[i];
     return STATUS_OK;
@@ -138,21 +157,50 @@ static void note_depth(const lint_room *room, const depth_probe *p, int depth, i
               depth, 100.0 * share);
 }
 
+static bool begin(depth_probe *p, isa level)
+{
+    const render_settings *r = &p->made->render;
+    const int units = thread_team_units();
+    p->pixel_rays = calloc((size_t)(r->width * r->height), sizeof *p->pixel_rays);
+    p->team = thread_team_start(units < THREADS_MAX ? units : THREADS_MAX);
+    if (!p->pixel_rays || !p->team)
+        return false;
+    const int members = thread_team_size(p->team), most = members == 1 ? 1 : members * STRIPES_PER_THREAD;
+    p->stripes = r->height < most ? (int)r->height : most;
+    for (int i = 0; i < members; i++)
+        if (!(p->rays[i] = tracer_create(level)))
+            return false;
+    return true;
+}
+
+static bool overflowed(const depth_probe *p)
+{
+    bool any = false;
+    for (int i = 0; i < thread_team_size(p->team); i++)
+        any |= tracer_overflowed(p->rays[i]);
+    return any;
+}
+
+static void end(depth_probe *p)
+{
+    for (int d = 0; d <= DEEPER_MAX; d++)
+        film_destroy(p->image[d]);
+    for (int i = 0; i < THREADS_MAX; i++)
+        tracer_destroy(p->rays[i]);
+    thread_team_stop(p->team);
+    free(p->pixel_rays);
+}
+
 status lint_depth(const lint_room *room, diagnostic *why)
 {
     const int depth = (int)room->made->render.depth;
-    const render_settings *r = &room->made->render;
-    depth_probe p = {.made = room->made, .rays = tracer_create(room->level)};
-    p.pixel_rays = calloc((size_t)(r->width * r->height), sizeof *p.pixel_rays);
+    depth_probe p = {.made = room->made};
     int last = 0;
     bool settled = false;
-    status code = p.rays && p.pixel_rays ? look_deeper(&p, depth, &last, &settled, why) : out_of_memory(why);
-    if (code == STATUS_OK && last > 0 && !tracer_overflowed(p.rays))
+    status code = begin(&p, room->level) ? look_deeper(&p, depth, &last, &settled, why) : out_of_memory(why);
+    if (code == STATUS_OK && last > 0 && !overflowed(&p))
         note_depth(room, &p, depth, last, settled);
     room->made->render.depth = depth;
-    for (int d = 0; d <= DEEPER_MAX; d++)
-        film_destroy(p.image[d]);
-    tracer_destroy(p.rays);
-    free(p.pixel_rays);
+    end(&p);
     return code;
 }

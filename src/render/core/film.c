@@ -5,29 +5,43 @@
 #include "optics/observer.h"
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 /* Two cache lines, which processors fetch together: if the widths of the image and the tiles are multiples of 16, tiles
- * share no line, and workers do not contend for lines. */
-enum { ALIGNMENT = 128 };
+ * share no line, and workers do not contend for lines. A film of several large pages begins with one. */
+enum { ALIGNMENT = 128, PAGE = 4096, LARGE_PAGE = 1 << 21 };
 
 static size_t values_of(const film *f)
 {
     return (size_t)f->width * (size_t)f->height * 3;
 }
 
+/* Zeroed memory for the sums, whose pages exist already, so that no worker waits for them while the clock runs. Large
+ * pages, if the system has them, are created in a third of the time. calloc does not write what is zero already. */
+static bool allocate_sums(film *f, size_t bytes)
+{
+    const bool large = bytes >= 2 * (size_t)LARGE_PAGE;
+    const size_t alignment = large ? LARGE_PAGE : ALIGNMENT;
+    f->memory = calloc(1, bytes + alignment); /* aligned_alloc would leave gaps that are too small for the next film */
+    if (!f->memory)
+        return false;
+    f->sum = (int64_t *)(((uintptr_t)f->memory + alignment - 1) / alignment * alignment);
+    if (large)
+        madvise(f->sum, bytes, MADV_HUGEPAGE); /* advice: a failure has no effect */
+    for (size_t i = 0; i < bytes; i += PAGE)
+        ((volatile int64_t *)f->sum)[i / sizeof *f->sum] = 0;
+    return true;
+}
+
 status film_create(int width, int height, int shares, film_space space, film **out, diagnostic *why)
 {
     const size_t bytes = (size_t)width * (size_t)height * 3 * sizeof(int64_t) * (size_t)shares;
     film *f = calloc(1, sizeof *f);
-    if (f)
-        f->memory = malloc(bytes + ALIGNMENT); /* aligned_alloc would leave gaps that are too small for the next film */
-    if (!f || !f->memory) {
+    if (!f || !allocate_sums(f, bytes)) {
         free(f);
         return diagnose(why, STATUS_FAILURE, "render a smaller image", "out of memory for a film of %d x %d", width,
                         height);
     }
-    f->sum = (int64_t *)(((uintptr_t)f->memory + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
-    memset(f->sum, 0, bytes); /* allocates the pages before the clock starts */
     f->width = width;
     f->height = height;
     f->shares = shares;
@@ -98,6 +112,12 @@ void film_read(const film *f, int x0, int y0, int x1, int y1, float *rgb, size_t
 {
     for (int y = y0; y < y1; y++) {
         float *row = rgb + (size_t)(y - y0) * stride;
+        if (f->space == FILM_RGB && f->shares == 1) { /* the same, faster */
+            const int64_t *sum = f->sum + 3 * ((size_t)y * (size_t)f->width + (size_t)x0);
+            for (size_t i = 0; i < 3 * (size_t)(x1 - x0); i++)
+                row[i] = (float)((double)sum[i] / FILM_ONE);
+            continue;
+        }
         for (int x = x0; x < x1; x++, row += 3) {
             double value[3];
             pixel_rgb(f, (size_t)y * (size_t)f->width + (size_t)x, value);

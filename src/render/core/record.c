@@ -8,13 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void read_row(const void *of, int y, float *rgb)
+{
+    const film *f = of;
+    film_read(f, 0, y, f->width, y + 1, rgb, 0);
+}
+
 status record_image(const film *f, const char *path, int bits, diagnostic *why)
 {
-    image *img = NULL;
-    status code = film_image(f, &img, why);
-    THEN(code, image_write(img, path, bits, why));
-    image_destroy(img);
-    return code;
+    const image_rows rows = {f->width, f->height, read_row, f};
+    return image_write_rows(&rows, path, bits, why);
 }
 
 static status image_of_values(const double *values, const film *f, image **out, diagnostic *why)

@@ -3,7 +3,8 @@
 #include "scene/model/params_value.h"
 #include "scene/model/scene.h"
 
-#include <sched.h>
+#include "base/thread_team.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -124,26 +125,13 @@ int scene_find_solid(const scene *s, const char *name)
     return object_find(s, PARAM_SOLID, name);
 }
 
-/* The mask has room for more units than any machine has; a smaller mask is an error on a machine with more units. */
-static int units_of_process(void)
-{
-    enum { UNITS_MAX = 16384 };
-    cpu_set_t *set = CPU_ALLOC(UNITS_MAX);
-    const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
-    int count = 0;
-    if (set && sched_getaffinity(getpid(), size, set) == 0)
-        count = CPU_COUNT_S(size, set);
-    CPU_FREE(set);
-    return count > 0 ? count : (int)sysconf(_SC_NPROCESSORS_ONLN);
-}
-
 int scene_threads(const render_settings *r)
 {
     enum { THREADS_MAX = 1024 };
     if (r->threads > 0)
         return (int)r->threads;
-    const int units = units_of_process();
-    return units < 1 ? 1 : units > THREADS_MAX ? THREADS_MAX : units;
+    const int units = thread_team_units();
+    return units > THREADS_MAX ? THREADS_MAX : units;
 }
 
 int scene_build_threads(const render_settings *r)

@@ -1,5 +1,5 @@
-/* PNG through libpng. Everything that must survive a longjmp is in a job, which belongs to a function that does not
- * call setjmp; the function that does has no modified local variables. */
+/* Reading PNG through libpng. Everything that must survive a longjmp is in a job, which belongs to a function that does
+ * not call setjmp; the function that does has no modified local variables. */
 #include "image/codec.h"
 
 #include <png.h>
@@ -12,12 +12,11 @@ typedef struct png_job {
     png_infop info;
     char message[256];          /* libpng's error message */
     unsigned char *raw;         /* one row, or the whole image if it is interlaced */
-    const unsigned char *bytes; /* reading: the file, and the number of bytes consumed */
+    const unsigned char *bytes; /* the file, and the number of bytes consumed */
     size_t size, used;
     image *img;
-    float *linear; /* reading: sRGB decoding table */
+    float *linear; /* sRGB decoding table */
     int bits;
-    bool fast;   /* writing: faster, a larger file */
     status code; /* for errors not from libpng */
     diagnostic *why;
 } png_job;
@@ -34,65 +33,6 @@ static void on_warning(png_structp png, png_const_charp message)
     (void)png;
     (void)message;
 }
-
-/* ---- writing ---- */
-
-static void write_rows(png_job *job, const image *img, FILE *stream)
-{
-    png_init_io(job->png, stream);
-    png_set_IHDR(job->png, job->info, (png_uint_32)img->width, (png_uint_32)img->height, job->bits, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_compression_level(job->png, job->fast ? 1 : 6);
-    if (job->fast)
-        png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-    png_write_info(job->png, job->info);
-    codec_bytes bytes;
-    codec_bytes_prepare(&bytes);
-    size_t count = (size_t)img->width * 3;
-    for (int y = 0; y < img->height; y++) {
-        const float *pixel = img->pixel + (size_t)y * count;
-        for (size_t i = 0; i < count; i++) {
-            if (job->bits == 8) {
-                job->raw[i] = codec_byte(&bytes, pixel[i]);
-            } else {
-                unsigned value = codec_quantize(pixel[i], 65535);
-                job->raw[2 * i] = (unsigned char)(value >> 8); /* PNG is big-endian */
-                job->raw[2 * i + 1] = (unsigned char)value;
-            }
-        }
-        png_write_row(job->png, job->raw);
-    }
-    png_write_end(job->png, job->info);
-}
-
-static bool write_guarded(png_job *job, const image *img, FILE *stream)
-{
-    if (setjmp(png_jmpbuf(job->png)))
-        return false;
-    write_rows(job, img, stream);
-    return true;
-}
-
-status codec_png_write(const image *img, FILE *stream, int bits, bool fast, diagnostic *why)
-{
-    png_job job = {.bits = bits, .fast = fast};
-    status code = STATUS_FAILURE;
-    job.raw = malloc((size_t)img->width * 3 * (size_t)(bits / 8));
-    job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
-    job.info = job.png ? png_create_info_struct(job.png) : NULL;
-    if (!job.raw || !job.info)
-        diagnose(why, code, NULL, "out of memory");
-    else if (!write_guarded(&job, img, stream))
-        diagnose(why, code, NULL, "cannot write the PNG file: %s", job.message);
-    else
-        code = STATUS_OK;
-    png_destroy_write_struct(&job.png, &job.info);
-    free(job.raw);
-    return code;
-}
-
-/* ---- reading ---- */
 
 static void take_bytes(png_structp png, png_bytep to, size_t count)
 {

@@ -1,0 +1,19 @@
+/* The pixels of a PNG file, compressed by several threads. The rows are cut into bands, whose size depends on the image
+ * alone; each band is compressed by itself and ends at a byte (deflate's empty stored block, RFC 1951, 3.2.4), so that
+ * the bands one after another are one zlib stream: the file is the same for any number of threads. Ownership:
+ * png_bands_create allocates, png_bands_destroy releases; for one caller at a time. */
+#pragma once
+
+#include "image/codec.h"
+
+typedef struct png_bands png_bands;
+
+/* bits: 8 or 16. fast: less effort, a larger file. rows must exist until the bands are destroyed. */
+status png_bands_create(const image_rows *rows, int bits, bool fast, png_bands **out, diagnostic *why);
+void png_bands_destroy(png_bands *b); /* NULL is allowed */
+
+/* Compresses the next bands, and returns how many; 0 after the last one. */
+size_t png_bands_compress(png_bands *b);
+
+/* A part of the zlib stream, one of those that png_bands_compress has just made; false if zlib failed. */
+bool png_bands_get(const png_bands *b, size_t index, const unsigned char **bytes, size_t *size);
