@@ -32,6 +32,12 @@ typedef struct assembly {
 
 /* ---- order and materials ---- */
 
+static void write_text(const obj_part *o, size_t from, size_t to, FILE *stream)
+{
+    if (to > from)
+        fwrite(o->text + from, 1, to - from, stream);
+}
+
 /* Lists the runs, and writes the text for assimp. */
 static bool list_runs(const obj_file *f, run **runs, char **text, size_t *length)
 {
@@ -48,14 +54,14 @@ static bool list_runs(const obj_file *f, run **runs, char **text, size_t *length
         const obj_part *o = &f->parts[i];
         size_t done = 0;
         for (size_t r = 0; r < o->run_count; r++) {
-            fwrite(o->text + done, 1, o->runs[r].text_end - done, to);
+            write_text(o, done, o->runs[r].text_end, to);
             done = o->runs[r].text_end;
             (*runs)[count] = (run){o->triangles + o->runs[r].first, o->runs[r].count};
             fprintf(to, "v %zu 0 0\n", count);
             count++;
             fprintf(to, "f %zu %zu %zu\n", count, count, count);
         }
-        fwrite(o->text + done, 1, o->text_length - done, to);
+        write_text(o, done, o->text_length, to);
     }
     return fclose(to) == 0;
 }
