@@ -95,6 +95,27 @@ static void vertices_at_equal_positions_are_merged_whatever_the_sign_of_zero(voi
     mesh_release(m);
 }
 
+/* With `distinct`, the positions are not compared, until the next mesh_finish. */
+static void the_search_for_equal_positions_can_be_skipped(void **state)
+{
+    (void)state;
+    mesh *m = NULL, *cube = cubes(1);
+    assert_int_equal(mesh_create(36, 12, false, false, false, &m, NULL), STATUS_OK);
+    for (size_t k = 0; k < 36; k++) {
+        m->vertices[k] = cube->vertices[cube->triangles[k / 3].corner[k % 3]];
+        m->triangles[k / 3].corner[k % 3] = (uint32_t)k;
+    }
+    m->distinct = cube->distinct = true;
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_false(m->closed);
+    assert_int_equal(mesh_finish(m, NULL), STATUS_OK);
+    assert_true(m->closed);
+    assert_int_equal(mesh_finish(cube, NULL), STATUS_OK);
+    assert_true(cube->closed);
+    mesh_release(cube);
+    mesh_release(m);
+}
+
 static void triangles_with_two_equal_corners_are_ignored_for_closedness(void **state)
 {
     (void)state;
@@ -332,6 +353,7 @@ int main(void)
         cmocka_unit_test(a_missing_triangle_is_reported_by_an_edge_of_its_neighbour),
         cmocka_unit_test(an_edge_of_three_triangles_is_reported),
         cmocka_unit_test(vertices_at_equal_positions_are_merged_whatever_the_sign_of_zero),
+        cmocka_unit_test(the_search_for_equal_positions_can_be_skipped),
         cmocka_unit_test(triangles_with_two_equal_corners_are_ignored_for_closedness),
         cmocka_unit_test(each_inverted_triangle_is_reoriented),
         cmocka_unit_test(an_inside_out_cube_is_reoriented),

@@ -44,6 +44,7 @@ typedef struct mesh {
     uint8_t *slots;                   /* material slot by triangle; NULL: all 0 */
     int slot_count;                   /* at least 1 */
     char *slot_names[MESH_SLOTS_MAX]; /* owned; NULL where a slot has no name */
+    bool distinct; /* no two vertices have the same position (-0 equals 0): mesh_finish need not look; it resets this */
     /* set by mesh_finish: */
     bounds3 bounds;           /* of the vertices that triangles use; low > high without triangles */
     bool closed;              /* closed, with every front facing outwards */

@@ -110,5 +110,6 @@ status mesh_finish(mesh *m, diagnostic *why)
     status result = mesh_close(m, why);
     if (result == STATUS_OK && m->normals)
         mesh_normalize(m);
+    m->distinct = false; /* the caller may move vertices */
     return result;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define NO_MEMORY "out of memory for the vertices of a mesh"
+
 static uint64_t bits_of(double x)
 {
     uint64_t bits;
@@ -26,8 +28,19 @@ static bool same_place(vec3 a, vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
+/* Every vertex is its own. */
+static status weld_distinct(const mesh *m, uint32_t **same, diagnostic *why)
+{
+    uint32_t *own = *same = malloc((m->vertex_count + 1) * sizeof *own);
+    for (size_t v = 0; own && v < m->vertex_count; v++)
+        own[v] = (uint32_t)v;
+    return own ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_MEMORY);
+}
+
 status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
 {
+    if (m->distinct)
+        return weld_distinct(m, same, why);
     enum { AHEAD = 16 }; /* the table exceeds the caches: prefetch its lines */
     size_t size = 16;
     while (size < 2 * m->vertex_count)
@@ -36,7 +49,7 @@ status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
     if (!table || !found) {
         free(table);
         free(found);
-        return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the vertices of a mesh");
+        return diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_MEMORY);
     }
     memset(table, 0xff, size * sizeof *table);
     uint64_t hashes[AHEAD];

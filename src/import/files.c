@@ -82,8 +82,10 @@ static size_t on_tell(struct aiFile *file)
 
 static size_t on_size(struct aiFile *file)
 {
-    struct stat about;
-    return fstat(fileno(stream_of(file)), &about) == 0 && about.st_size > 0 ? (size_t)about.st_size : 0;
+    FILE *stream = stream_of(file);
+    const long at = ftell(stream);
+    const long size = at >= 0 && fseek(stream, 0, SEEK_END) == 0 ? ftell(stream) : -1;
+    return size > 0 && fseek(stream, at, SEEK_SET) == 0 ? (size_t)size : 0;
 }
 
 static enum aiReturn on_seek(struct aiFile *file, size_t offset, enum aiOrigin origin)
@@ -103,7 +105,10 @@ static struct aiFile *on_open(struct aiFileIO *io, const char *path, const char 
     const char *reason = "is not writable";
     struct aiFile *file = NULL;
     bool outside = false;
-    FILE *stream = strpbrk(mode, "wa+") ? NULL : open_regular(path, access->root, &reason, &outside);
+    FILE *stream = strpbrk(mode, "wa+") ? NULL
+                   : access->text && strcmp(path, access->path) == 0
+                       ? fmemopen((char *)(uintptr_t)access->text, access->text_length, "rb")
+                       : open_regular(path, access->root, &reason, &outside);
     if (stream && (file = calloc(1, sizeof *file))) {
         *file = (struct aiFile){on_read, on_write, on_tell, on_size, on_seek, on_flush, (char *)(void *)stream};
     } else if (stream) {

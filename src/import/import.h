@@ -23,6 +23,7 @@ typedef struct request {
     uint64_t memory_mib, seconds; /* limits on this process */
     uint64_t triangles, vertices; /* limits on the mesh */
     const char *root;             /* all files that are opened must be below it (base/below.h); "": anywhere */
+    enum { READER_ANY, READER_PLAIN, READER_ASSIMP } reader; /* of OBJ files; plain: obj.h */
 } request;
 
 /* ---- files.c ---- */
@@ -32,6 +33,8 @@ typedef struct request {
 typedef struct file_access {
     struct aiFileIO io;
     const char *root;
+    const char *path, *text; /* the text that is read in place of this file, or NULL */
+    size_t text_length;
     char missing[512];  /* the first file that could not be opened; "": none */
     const char *reason; /* why it could not be opened */
     bool outside;       /* it is not below the root */
@@ -52,6 +55,8 @@ status check_whole(const request *req, diagnostic *why);
 
 /* Reads the file and triangulates it. Fails if a file that it names cannot be opened. */
 status read_scene(const request *req, const struct aiScene **out, diagnostic *why);
+/* The same for a text in place of the mesh file's; NULL: it cannot be read. */
+const struct aiScene *read_scene_text(const request *req, const char *text, size_t length);
 status no_memory_for(const request *req, diagnostic *why);
 
 /* ---- flatten.c ---- */
@@ -73,14 +78,21 @@ status flatten(const request *req, const struct aiScene *scene, flat_mesh *flat,
 
 /* ---- join.c ---- */
 
-/* A hash table of the vertices of flat. join_vertex finds the vertex with these numbers or adds it. */
+/* A hash table of the vertices of flat, by the bits of their position, normal and texture coordinates; 0 for what they
+ * lack, and never -0. join_vertex finds the vertex with these numbers or adds it. */
 typedef struct joiner {
     uint32_t *table;
     size_t size;
     size_t room;
 } joiner;
 enum joined { JOINED, JOIN_NO_MEMORY, JOIN_TOO_MANY };
-enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double numbers[8], uint32_t *index);
+uint64_t join_hash(const double numbers[8]);
+/* Starts to load what join_vertex will read: tables of large meshes exceed the caches. */
+void join_prefetch(const joiner *j, uint64_t hash);
+enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double numbers[8], uint64_t hash,
+                        uint32_t *index);
+/* Makes room for `count` vertices; false: out of memory. */
+bool join_reserve(joiner *j, flat_mesh *flat, size_t count);
 
 /* ---- write.c ---- */
 

@@ -14,8 +14,7 @@ static void vertex_numbers(const flat_mesh *flat, uint32_t index, double numbers
     memcpy(numbers, (double[NUMBERS]){p.x, p.y, p.z, n.x, n.y, n.z, u, v}, NUMBERS * sizeof *numbers);
 }
 
-/* The table index of the vertex with these numbers, or of the empty entry for it. Entries are index + 1; 0 is empty. */
-static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[NUMBERS])
+uint64_t join_hash(const double numbers[NUMBERS])
 {
     uint64_t hash = 0x9e3779b97f4a7c15u;
     for (int i = 0; i < NUMBERS; i++) {
@@ -24,6 +23,18 @@ static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[
         hash = (hash ^ bits) * 0xff51afd7ed558ccdu; /* MurmurHash3's finaliser, Appleby */
         hash ^= hash >> 32;
     }
+    return hash;
+}
+
+void join_prefetch(const joiner *j, uint64_t hash)
+{
+    if (j->size)
+        __builtin_prefetch(&j->table[hash & (j->size - 1)]);
+}
+
+/* The table index of the vertex with these numbers, or of the empty entry for it. Entries are index + 1; 0 is empty. */
+static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[NUMBERS], uint64_t hash)
+{
     size_t at = hash & (j->size - 1);
     while (j->table[at]) {
         double other[NUMBERS];
@@ -35,25 +46,24 @@ static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[
     return at;
 }
 
-static bool grow_table(joiner *j, const flat_mesh *flat)
+static bool resize_table(joiner *j, const flat_mesh *flat, size_t size)
 {
-    joiner larger = {.size = j->size ? j->size * 2 : 1024, .room = j->room};
+    joiner larger = {.size = size, .room = j->room};
     larger.table = calloc(larger.size, sizeof *larger.table);
     if (!larger.table)
         return false;
     for (size_t i = 0; i < flat->vertex_count; i++) {
         double numbers[NUMBERS];
         vertex_numbers(flat, (uint32_t)i, numbers);
-        larger.table[find(&larger, flat, numbers)] = (uint32_t)i + 1;
+        larger.table[find(&larger, flat, numbers, join_hash(numbers))] = (uint32_t)i + 1;
     }
     free(j->table);
     *j = larger;
     return true;
 }
 
-static bool grow_arrays(joiner *j, flat_mesh *flat)
+static bool resize_arrays(joiner *j, flat_mesh *flat, size_t room)
 {
-    size_t room = j->room ? j->room + j->room / 2 : 1024;
     vec3 *positions = realloc(flat->positions, room * sizeof *positions);
     flat->positions = positions ? positions : flat->positions;
     vec3 *normals = flat->with_normals ? realloc(flat->normals, room * sizeof *normals) : NULL;
@@ -66,18 +76,27 @@ static bool grow_arrays(joiner *j, flat_mesh *flat)
     return true;
 }
 
-enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double numbers[NUMBERS], uint32_t *index)
+bool join_reserve(joiner *j, flat_mesh *flat, size_t count)
 {
-    if (flat->vertex_count * 2 >= j->size && !grow_table(j, flat))
+    size_t size = 1024;
+    while (size < 2 * count)
+        size *= 2;
+    return resize_table(j, flat, size) && resize_arrays(j, flat, count);
+}
+
+enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double numbers[NUMBERS], uint64_t hash,
+                        uint32_t *index)
+{
+    if (flat->vertex_count * 2 >= j->size && !resize_table(j, flat, j->size ? j->size * 2 : 1024))
         return JOIN_NO_MEMORY;
-    size_t at = find(j, flat, numbers);
+    size_t at = find(j, flat, numbers, hash);
     if (j->table[at]) {
         *index = j->table[at] - 1;
         return JOINED;
     }
     if (flat->vertex_count >= limit)
         return JOIN_TOO_MANY;
-    if (flat->vertex_count >= j->room && !grow_arrays(j, flat))
+    if (flat->vertex_count >= j->room && !resize_arrays(j, flat, j->room ? j->room + j->room / 2 : 1024))
         return JOIN_NO_MEMORY;
     *index = (uint32_t)flat->vertex_count++;
     j->table[at] = *index + 1;

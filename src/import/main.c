@@ -4,6 +4,7 @@
 
 #include "base/float_environment.h"
 #include "base/number.h"
+#include "import/obj.h"
 #include <argp.h>
 #include <signal.h>
 #include <string.h>
@@ -33,6 +34,11 @@ static error_t parse_option(int key, char *value, struct argp_state *state)
     int64_t got;
     switch (key) {
     case 'r': req->root = value; return 0;
+    case 'o':
+        if (strcmp(value, "plain") != 0 && strcmp(value, "assimp") != 0)
+            argp_error(state, "'%s' is not plain or assimp", value);
+        req->reader = *value == 'p' ? READER_PLAIN : READER_ASSIMP;
+        return 0;
     case 'm':
     case 's':
     case 't':
@@ -60,6 +66,10 @@ static const struct argp_option options[] = {
      .key = 'r',
      .arg = "FOLDER",
      .doc = "Open only files below this folder, an absolute path without links"},
+    {.name = "obj",
+     .key = 'o',
+     .arg = "READER",
+     .doc = "Read OBJ files only with the fast reader of plain files, or only with assimp: plain or assimp"},
     {0},
 };
 
@@ -90,6 +100,10 @@ static status convert(const request *req, diagnostic *why)
 {
     const struct aiScene *scene;
     flat_mesh flat = {0};
+    if (req->kind == FILE_OBJ && req->reader != READER_ASSIMP && obj_read(req, &flat, &scene))
+        return write_mesh(req, scene, &flat, stdout, why);
+    if (req->reader == READER_PLAIN)
+        return diagnose_at(why, req->path, STATUS_BAD_INPUT, "leave out --obj", "this is not a plain OBJ file");
     TRY(read_scene(req, &scene, why));
     TRY(flatten(req, scene, &flat, why));
     return write_mesh(req, scene, &flat, stdout, why);

@@ -3,7 +3,8 @@
  * (scene/assets/mesh_stream.h). In this order:
  *
  * - the header;
- * - positions: vertex_count x 3 doubles;
+ * - positions: vertex_count x 3 doubles; no two vertices are equal in position, normal and texture coordinates. The
+ *   reader relies on it: if there are equal ones, edges between them count as open;
  * - normals, with MESH_WIRE_NORMALS: the same, of any length;
  * - uvs, with MESH_WIRE_UVS: vertex_count x 2 doubles;
  * - triangles: triangle_count x 3 uint32;

@@ -7,6 +7,9 @@
 #include <jansson.h>
 #include <string.h>
 
+/* Equal vertices are joined in join.c: assimp's own step also joins vertices that differ by up to 1e-5. */
+enum { STEPS = aiProcess_ValidateDataStructure | aiProcess_Triangulate };
+
 status no_memory_for(const request *req, diagnostic *why)
 {
     return diagnose_at(why, req->path, STATUS_BAD_INPUT, "use a mesh of less detail, if the file is complete",
@@ -62,13 +65,22 @@ status read_scene(const request *req, const struct aiScene **out, diagnostic *wh
                         "unknown mesh format");
     TRY(check_whole(req, why));
     files_prepare(&access, req);
-    /* Equal vertices are joined in join.c: assimp's own step also joins vertices that differ by up to 1e-5. */
-    const struct aiScene *scene =
-        aiImportFileEx(req->path, aiProcess_ValidateDataStructure | aiProcess_Triangulate, &access.io);
+    const struct aiScene *scene = aiImportFileEx(req->path, STEPS, &access.io);
     if (!scene || access.missing[0]) {
         const char *message = scene ? "" : aiGetErrorString();
         return explain(req, &access, message ? message : "", why);
     }
     *out = scene;
     return STATUS_OK;
+}
+
+const struct aiScene *read_scene_text(const request *req, const char *text, size_t length)
+{
+    file_access access;
+    files_prepare(&access, req);
+    access.path = req->path;
+    access.text = text;
+    access.text_length = length;
+    const struct aiScene *scene = aiImportFileEx(req->path, STEPS, &access.io);
+    return access.missing[0] ? NULL : scene;
 }

@@ -193,6 +193,7 @@ static status read_all(const mesh_source *source, const mesh_limits *limits, mes
         return no_room(why);
     TRY(read_arrays(source, into->mesh, why));
     TRY(read_materials(source, into, why));
+    into->mesh->distinct = !into->mesh->normals && !into->mesh->uvs; /* equal vertices are joined: mesh_wire.h */
     return mesh_finish(into->mesh, why);
 }
 

@@ -1,0 +1,179 @@
+/* Puts the triangles of a plain OBJ file into the order in which assimp returns them, and joins their vertices. To find
+ * the order, the materials and what the statements on groups mean, assimp reads a text with the same statements and one
+ * triangle for each run of faces, whose vertex has the run's number as its x. */
+#include "import/obj.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    RUNS_MAX = 1 << 24, /* a float holds their numbers */
+    AHEAD = 64          /* corners whose table entries are loaded together */
+};
+
+/* A run of faces in the whole file. */
+typedef struct run {
+    obj_corner (*triangles)[3];
+    size_t count;
+} run;
+
+/* The vertex that a place had last; 0: none. */
+typedef struct last_vertex {
+    uint32_t uv, normal, index_plus_1;
+} last_vertex;
+
+typedef struct assembly {
+    const request *req;
+    flat_mesh *flat;
+    float (*places)[3], (*uvs)[2], (*normals)[3];
+    last_vertex *last;
+    joiner join;
+} assembly;
+
+/* ---- order and materials ---- */
+
+static void write_text(const obj_part *o, size_t from, size_t to, FILE *stream)
+{
+    if (to > from)
+        fwrite(o->text + from, 1, to - from, stream);
+}
+
+/* Lists the runs, and writes the text for assimp. */
+static bool list_runs(const obj_file *f, run **runs, char **text, size_t *length)
+{
+    size_t count = 0;
+    for (int i = 0; i < f->part_count; i++)
+        count += f->parts[i].run_count;
+    FILE *to = count <= RUNS_MAX ? open_memstream(text, length) : NULL;
+    *runs = malloc(count * sizeof **runs);
+    if (!to || !*runs)
+        return false;
+    fprintf(to, "# the order of faces\n");
+    count = 0;
+    for (int i = 0; i < f->part_count; i++) {
+        const obj_part *o = &f->parts[i];
+        size_t done = 0;
+        for (size_t r = 0; r < o->run_count; r++) {
+            write_text(o, done, o->runs[r].text_end, to);
+            done = o->runs[r].text_end;
+            (*runs)[count] = (run){o->triangles + o->runs[r].first, o->runs[r].count};
+            fprintf(to, "v %zu 0 0\n", count);
+            count++;
+            fprintf(to, "f %zu %zu %zu\n", count, count, count);
+        }
+        write_text(o, done, o->text_length, to);
+    }
+    return fclose(to) == 0;
+}
+
+/* ---- vertices ---- */
+
+static void numbers_of(const assembly *a, obj_corner c, double numbers[8])
+{
+    memset(numbers, 0, 8 * sizeof *numbers);
+    for (int k = 0; k < 3; k++) /* + 0.0: -0 becomes 0 */
+        numbers[k] = (double)a->places[c.place - 1][k] + 0.0;
+    for (int k = 0; c.normal && k < 3; k++)
+        numbers[3 + k] = (double)a->normals[c.normal - 1][k] + 0.0;
+    for (int k = 0; c.uv && k < 2; k++)
+        numbers[6 + k] = (double)a->uvs[c.uv - 1][k] + 0.0;
+}
+
+static bool is_last(const last_vertex *v, obj_corner c)
+{
+    return v->index_plus_1 && v->uv == c.uv && v->normal == c.normal;
+}
+
+/* Sets the vertices of up to AHEAD corners. False: out of memory, or too many. */
+static bool take_corners(assembly *a, const obj_corner *corners, size_t count, uint32_t *indices)
+{
+    double numbers[AHEAD][8];
+    uint64_t hashes[AHEAD];
+    bool ready[AHEAD];
+    for (size_t i = 0; i < count; i++) {
+        ready[i] = !is_last(&a->last[corners[i].place - 1], corners[i]);
+        if (!ready[i])
+            continue;
+        numbers_of(a, corners[i], numbers[i]);
+        hashes[i] = join_hash(numbers[i]);
+        join_prefetch(&a->join, hashes[i]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        last_vertex *last = &a->last[corners[i].place - 1];
+        if (!is_last(last, corners[i])) {
+            if (!ready[i]) { /* it was the last one before this block */
+                numbers_of(a, corners[i], numbers[i]);
+                hashes[i] = join_hash(numbers[i]);
+            }
+            if (join_vertex(&a->join, a->flat, a->req->vertices, numbers[i], hashes[i], &indices[i]) != JOINED)
+                return false;
+            *last = (last_vertex){corners[i].uv, corners[i].normal, indices[i] + 1};
+        }
+        indices[i] = last->index_plus_1 - 1;
+    }
+    return true;
+}
+
+static bool take_run(assembly *a, const run *r, uint8_t slot)
+{
+    const obj_corner *corners = r->triangles[0];
+    uint32_t *indices = a->flat->triangles[a->flat->triangle_count];
+    memset(a->flat->slots + a->flat->triangle_count, slot, r->count);
+    a->flat->triangle_count += r->count;
+    for (size_t i = 0; i < 3 * r->count; i += AHEAD) {
+        const size_t left = 3 * r->count - i;
+        if (!take_corners(a, corners + i, left < AHEAD ? left : AHEAD, indices + i))
+            return false;
+    }
+    return true;
+}
+
+/* Fills flat with the runs in the order of `order`, whose triangles stand for them. */
+static bool assemble(const request *req, const obj_file *f, const flat_mesh *order, const run *runs, flat_mesh *flat)
+{
+    const obj_part *all = &f->parts[0];
+    for (int i = 0; i < f->part_count; i++) {
+        flat->with_uvs |= f->parts[i].highest.uv > 0;
+        flat->with_normals |= f->parts[i].highest.normal > 0;
+    }
+    flat->material_count = order->material_count;
+    memcpy(flat->materials, order->materials, sizeof flat->materials);
+    flat->triangles = malloc(f->triangle_count * sizeof *flat->triangles);
+    flat->slots = malloc(f->triangle_count);
+    assembly a = {req, flat, all->places, all->uvs, all->normals, calloc(all->place_count, sizeof *a.last), {0}};
+    bool good = flat->triangles && flat->slots && a.last && join_reserve(&a.join, flat, all->place_count);
+    for (size_t t = 0; t < order->triangle_count && good; t++)
+        good = take_run(&a, &runs[(size_t)order->positions[order->triangles[t][0]].x], order->slots[t]);
+    free(a.last);
+    free(a.join.table);
+    return good;
+}
+
+static bool read_all(const request *req, obj_file *f, flat_mesh *flat, const struct aiScene **scene)
+{
+    run *runs = NULL;
+    char *text = NULL;
+    size_t length;
+    flat_mesh order = {0};
+    bool good = list_runs(f, &runs, &text, &length) && (*scene = read_scene_text(req, text, length)) &&
+                flatten(req, *scene, &order, NULL) == STATUS_OK && assemble(req, f, &order, runs, flat);
+    free(runs);
+    free(text);
+    return good;
+}
+
+bool obj_read(const request *req, flat_mesh *flat, const struct aiScene **scene)
+{
+    obj_file *f = calloc(1, sizeof *f);
+    const bool good = f && obj_load(req, f) && read_all(req, f, flat, scene);
+    if (!good) { /* all memory is for assimp */
+        free(flat->triangles), free(flat->slots), free(flat->positions), free(flat->normals), free(flat->uvs);
+        *flat = (flat_mesh){0};
+    }
+    for (int i = 0; f && i < f->part_count; i++) {
+        obj_part *o = &f->parts[i];
+        free(o->places), free(o->uvs), free(o->normals), free(o->triangles), free(o->runs), free(o->text);
+    }
+    free(f);
+    return good;
+}
