@@ -1,4 +1,4 @@
-/* Forces and steps over arrays. One source for all instruction sets, with bit-identical results. */
+/* Steps over arrays. One source for all instruction sets, with bit-identical results. */
 #include "base/kernel.h"
 #include "base/lanes.h"
 #include "softbody/softbody_private.h"
@@ -13,123 +13,6 @@ static void clear(vectors v, size_t begin, size_t end)
 {
     for (size_t i = begin; i < end; i++)
         v.x[i] = v.y[i] = v.z[i] = 0.0;
-}
-
-static void pack(vectors at, vectors velocity, double *state, size_t begin, size_t end)
-{
-    for (size_t i = begin; i < end; i++) {
-        double *s = state + STATE * i;
-        s[0] = at.x[i];
-        s[1] = at.y[i];
-        s[2] = at.z[i];
-        s[4] = velocity.x[i];
-        s[5] = velocity.y[i];
-        s[6] = velocity.z[i];
-    }
-}
-
-/* Four vertices at a time. The state of a neighbour is one cache line; transposing four of them costs half as much as
- * gathering numbers. */
-typedef double four __attribute__((vector_size(32)));
-typedef int64_t four_int __attribute__((vector_size(32)));
-typedef struct columns {
-    four x, y, z;
-} columns;
-
-ALWAYS_INLINE four load(const double *from)
-{
-    return *(const four *)from;
-}
-
-/* The first three numbers at each of four places, by column. */
-ALWAYS_INLINE columns turn(const double *a, const double *b, const double *c, const double *d)
-{
-    const four p = load(a), q = load(b), r = load(c), s = load(d);
-    const four even_low = __builtin_shufflevector(p, q, 0, 4, 2, 6),
-               even_high = __builtin_shufflevector(r, s, 0, 4, 2, 6);
-    const four odd_low = __builtin_shufflevector(p, q, 1, 5, 3, 7),
-               odd_high = __builtin_shufflevector(r, s, 1, 5, 3, 7);
-    return (columns){__builtin_shufflevector(even_low, even_high, 0, 1, 4, 5),
-                     __builtin_shufflevector(odd_low, odd_high, 0, 1, 4, 5),
-                     __builtin_shufflevector(even_low, even_high, 2, 3, 6, 7)};
-}
-
-ALWAYS_INLINE columns minus(columns a, columns b)
-{
-    return (columns){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-ALWAYS_INLINE four dot(columns a, columns b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-ALWAYS_INLINE columns load_columns(vectors v, size_t i)
-{
-    return (columns){load(v.x + i), load(v.y + i), load(v.z + i)};
-}
-
-ALWAYS_INLINE void store_columns(vectors v, size_t i, columns a)
-{
-    *(four *)(v.x + i) = a.x;
-    *(four *)(v.y + i) = a.y;
-    *(four *)(v.z + i) = a.z;
-}
-
-ALWAYS_INLINE void add_cross(columns *sum, columns a, columns b)
-{
-    sum->x += a.y * b.z - a.z * b.y;
-    sum->y += a.z * b.x - a.x * b.z;
-    sum->z += a.x * b.y - a.y * b.x;
-}
-
-/* One slot of four vertices: Hooke and damping of softbody.h with opposite signs, since x points to the other end. The
- * result is in *away. */
-ALWAYS_INLINE void add_spring(const springs *s, size_t at, const double *state, columns place, columns velocity,
-                              columns *force, columns *away)
-{
-    const int32_t *other = s->other + at;
-    const double *a = state + STATE * (size_t)other[0], *b = state + STATE * (size_t)other[1];
-    const double *c = state + STATE * (size_t)other[2], *d = state + STATE * (size_t)other[3];
-    const columns x = minus(turn(a, b, c, d), place), v = minus(turn(a + 4, b + 4, c + 4, d + 4), velocity);
-    const four one = {1.0, 1.0, 1.0, 1.0}, zero = {0.0, 0.0, 0.0, 0.0}, square = dot(x, x);
-    const four_int apart = square > zero; /* two masses at one position have no direction of force */
-    const four safe = (four)(((four_int)square & apart) | ((four_int)one & ~apart)), inverse = one / safe;
-    four length;
-    for (int lane = 0; lane < 4; lane++)
-        length[lane] = sqrt(safe[lane]);
-    const four pull = load(s->stiffness + at) * (one - load(s->rest + at) * length * inverse) +
-                      load(s->damping + at) * (dot(v, x) * inverse);
-    force->x += pull * x.x;
-    force->y += pull * x.y;
-    force->z += pull * x.z;
-    *away = x;
-}
-
-/* The volume of a closed mesh is the sum of a . (b x c) / 6 over its faces (the divergence theorem). Its gradient with
- * respect to a mass is the sum of b x c / 6 over the closed ring of faces around the mass, which does not depend on the
- * origin. The ring's neighbours are the first slots of each mass. */
-static void forces(const springs *s, const double *state, vectors at, vectors velocity, vectors force, vectors gradient,
-                   size_t begin, size_t end)
-{
-    for (size_t i = begin; i < end; i += 4) {
-        const columns place = load_columns(at, i), speed = load_columns(velocity, i);
-        columns sum = {0}, area = {0}, first = {0}, before, now;
-        int slot = 0;
-        if (s->ring_slots > 0) {
-            add_spring(s, i, state, place, speed, &sum, &first);
-            before = first;
-            for (slot = 1; slot < s->ring_slots; slot++, before = now) {
-                add_spring(s, (size_t)slot * s->stride + i, state, place, speed, &sum, &now);
-                add_cross(&area, before, now);
-            }
-            add_cross(&area, before, first);
-            store_columns(gradient, i, area);
-        }
-        for (; slot < s->slots; slot++)
-            add_spring(s, (size_t)slot * s->stride + i, state, place, speed, &sum, &now);
-        store_columns(force, i, sum);
-    }
 }
 
 /* The state of a mass after contact with the floor. */
@@ -156,32 +39,61 @@ ALWAYS_INLINE int64_t blew_up(const push *p, landed a)
     return 1 & ~mask_less_equal(a.u * a.u + a.v * a.v + a.w * a.w, p->speed_limit * p->speed_limit);
 }
 
-static int64_t euler_arrays(push q, const double *__restrict m, FIXED3(f), FIXED3(g), ARRAYS3(p), ARRAYS3(v),
-                            size_t begin, size_t end)
+/* Returns the number of masses below the floor. */
+static int64_t fly(push q, const double *__restrict m, FIXED3(f), FIXED3(g), ARRAYS3(p), ARRAYS3(v), size_t begin,
+                   size_t end)
 {
-    int64_t bad = 0;
+    int64_t under = 0;
     /* VECTORISE */
     for (size_t i = begin; i < end; i++) {
         const int64_t free = mask_less(0.0, m[i]);
         const double u = vx[i] + q.dt_s * (m[i] * (fx[i] + q.pressure * gx[i]) + blend(free, q.gravity.x, 0.0));
         const double v = vy[i] + q.dt_s * (m[i] * (fy[i] + q.pressure * gy[i]) + blend(free, q.gravity.y, 0.0));
         const double w = vz[i] + q.dt_s * (m[i] * (fz[i] + q.pressure * gz[i]) + blend(free, q.gravity.z, 0.0));
-        const landed a = meet_floor(&q, free, py[i] + q.dt_s * v, u, v, w);
+        const double y = py[i] + q.dt_s * v;
         px[i] += q.dt_s * u;
-        py[i] = a.y;
+        py[i] = y;
         pz[i] += q.dt_s * w;
+        vx[i] = u;
+        vy[i] = v;
+        vz[i] = w;
+        under += 1 & free & mask_less(y, q.ground_y);
+    }
+    return under;
+}
+
+static void land(push q, const double *__restrict m, double *__restrict py, ARRAYS3(v), size_t begin, size_t end)
+{
+    /* VECTORISE */
+    for (size_t i = begin; i < end; i++) {
+        const landed a = meet_floor(&q, mask_less(0.0, m[i]), py[i], vx[i], vy[i], vz[i]);
+        py[i] = a.y;
         vx[i] = a.u;
         vy[i] = a.v;
         vz[i] = a.w;
-        bad += blew_up(&q, a);
     }
+}
+
+static int64_t count_blown(push q, FIXED3(v), size_t begin, size_t end)
+{
+    int64_t bad = 0;
+    /* VECTORISE */
+    for (size_t i = begin; i < end; i++)
+        bad += blew_up(&q, (landed){.u = vx[i], .v = vy[i], .w = vz[i]});
     return bad;
 }
 
+/* Contact takes longer than the flight, and few masses are near the floor: only their blocks are tested. */
 static int64_t euler(const push *p, const double *inverse_mass, vectors force, vectors area, vectors at,
                      vectors velocity, size_t begin, size_t end)
 {
-    return euler_arrays(*p, inverse_mass, PASS3(force), PASS3(area), PASS3(at), PASS3(velocity), begin, end);
+    enum { BLOCK = 8 * LANES };
+    for (size_t i = begin; i < end; i += BLOCK) {
+        const size_t last = i + BLOCK < end ? i + BLOCK : end;
+        if (fly(*p, inverse_mass, PASS3(force), PASS3(area), PASS3(at), PASS3(velocity), i, last) > 0)
+            land(*p, inverse_mass, at.y, PASS3(velocity), i, last);
+    }
+    return count_blown(*p, PASS3(velocity), begin, end);
 }
 
 static void drift(const push *p, vectors acceleration, vectors at, vectors velocity, vectors guess, size_t begin,
@@ -314,11 +226,5 @@ static int64_t settle(const push *p, const double *inverse_mass, vectors change,
     return settle_arrays(*p, inverse_mass, PASS3(change), PASS3(at), PASS3(velocity), begin, end);
 }
 
-const softbody_kernels KERNEL(softbody_kernels) = {.pack = pack,
-                                                   .forces = forces,
-                                                   .euler = euler,
-                                                   .drift = drift,
-                                                   .kick = kick,
-                                                   .stiffen = stiffen,
-                                                   .resist = resist,
-                                                   .settle = settle};
+const softbody_kernels KERNEL(softbody_kernels) = {
+    .euler = euler, .drift = drift, .kick = kick, .stiffen = stiffen, .resist = resist, .settle = settle};

@@ -135,6 +135,7 @@ static int useful_threads(const softbody *b)
 static status fill(softbody *b, const softbody_net *net, diagnostic *why)
 {
     TRY(springs_build(&b->net, net, why));
+    TRY(batches_build(&b->batches, &b->net, net, why));
     b->workers = thread_team_start(useful_threads(b));
     if (!make_arrays(b) || !copy_net(b, net) || !b->workers)
         return diagnose(why, STATUS_FAILURE, "use a lower level", "out of memory for a slime");
@@ -180,6 +181,8 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
 {
     static const softbody_kernels *const kernels[ISA_COUNT] = {&softbody_kernels_sse2, &softbody_kernels_avx2,
                                                                &softbody_kernels_avx512};
+    static const softbody_force_kernels *const force_kernels[ISA_COUNT] = {
+        &softbody_force_kernels_sse2, &softbody_force_kernels_avx2, &softbody_force_kernels_avx512};
     *out = NULL;
     TRY(softbody_check(s, why));
     TRY(check_net(net, why));
@@ -189,6 +192,7 @@ status softbody_create_net(const softbody_net *net, const softbody_settings *s, 
     b->set = *s;
     b->surface_level = -1;
     b->kernels = kernels[level];
+    b->force_kernels = force_kernels[level];
     status code = fill(b, net, why);
     if (code != STATUS_OK) {
         softbody_destroy(b);
@@ -240,6 +244,7 @@ void softbody_destroy(softbody *b)
         free(b->hands[i].masses);
     thread_team_stop(b->workers);
     springs_release(&b->net);
+    batches_release(&b->batches);
     free(b->spring_list);
     free(b->faces);
     free(b->mass_kg);

@@ -3,14 +3,14 @@
  * Vectors are structures of arrays, a multiple of LANES long; padding masses are at rest, held, and without springs.
  * Springs are stored by vertex, at both of their ends: slot s of vertex i at [s * stride + i], so that a loop over
  * vertices accesses arrays sequentially. A spring's force at one end is the exact negative of that at the other,
- * because all its inputs only change sign. */
+ * because all its inputs only change sign: so it is computed once, in batches. */
 #pragma once
 
 #include "base/thread_team.h"
 #include "softbody/softbody.h"
 
 /* Vertices are processed and summed in chunks of a fixed size. */
-enum { LANES = 8, CHUNK = 512, STATE = 8 };
+enum { LANES = 8, CHUNK = 512, STATE = 8, FOUR = 4 };
 
 typedef struct vectors {
     double *x, *y, *z;
@@ -23,7 +23,20 @@ typedef struct springs {
                        first is repeated if they are fewer, without a spring); 0 without faces */
     int32_t *other; /* the other end; the vertex itself for an empty slot */
     double *rest, *stiffness, *damping; /* 0 for an empty slot */
+    int32_t *row;                       /* STATE times `other` */
+    uint32_t *place; /* of its spring in the batches; before they are built its number, NO_SPRING for an empty slot */
 } springs;
+#define NO_SPRING UINT32_MAX
+
+/* Each spring once, by one of its ends, its owner: for the masses from LANES g on, a spring of each, then another, at
+ * first[g] .. first[g + 1] - 1. Where an owner has fewer than its neighbours, its spring is one to itself without a
+ * force; so is the last of all, for empty slots. */
+typedef struct spring_batches {
+    size_t *first;
+    int32_t *row;                       /* STATE times the end that is not the owner */
+    double *rest, *stiffness, *damping; /* 0 without a spring */
+    double *pull;                       /* the current force on the owner over the distance to the other end */
+} spring_batches;
 
 /* For the solver: the slot's direction, and the coefficients of a velocity difference across and along it. */
 typedef struct stiff_slots {
@@ -41,13 +54,6 @@ typedef struct push {
 } push;
 
 typedef struct softbody_kernels {
-    /* Positions and velocities, one cache line per mass: STATE numbers, x, y, z, -, u, v, w, -. */
-    void (*pack)(vectors at, vectors velocity, double *state, size_t begin, size_t end);
-    /* For vertices begin .. end - 1 the sum of the springs' forces; and with faces six times the volume's gradient with
-     * respect to the vertex's position, which is twice the sum of the area vectors around it. begin and end are
-     * multiples of LANES. */
-    void (*forces)(const springs *s, const double *state, vectors at, vectors velocity, vectors force, vectors gradient,
-                   size_t begin, size_t end);
     /* velocity += dt (force / mass + gravity), then at += dt velocity, then the floor. Returns the number of diverged
      * masses. */
     int64_t (*euler)(const push *p, const double *inverse_mass, vectors force, vectors gradient, vectors at,
@@ -66,6 +72,21 @@ typedef struct softbody_kernels {
                       size_t begin, size_t end);
 } softbody_kernels;
 
+/* begin and end are multiples of LANES. */
+typedef struct softbody_force_kernels {
+    /* Positions and velocities, one cache line per mass: STATE numbers, x, y, z, 0, u, v, w, 0. */
+    void (*pack)(vectors at, vectors velocity, double *state, size_t begin, size_t end);
+    /* t->pull of the springs that masses begin .. end - 1 own. */
+    void (*pull)(const spring_batches *t, const double *state, vectors at, vectors velocity, size_t begin, size_t end);
+    /* For masses begin .. end - 1 the sum of the springs' forces; and with faces six times the volume's gradient with
+     * respect to the mass's position, which is twice the sum of the area vectors around it.
+     * Returns 18 times their share of the volume, 0 without faces. */
+    double (*forces)(const springs *s, const double *pulls, const double *state, vectors at, vectors force,
+                     vectors gradient, size_t begin, size_t end);
+} softbody_force_kernels;
+
+extern const softbody_force_kernels softbody_force_kernels_sse2, softbody_force_kernels_avx2,
+    softbody_force_kernels_avx512;
 extern const softbody_kernels softbody_kernels_sse2, softbody_kernels_avx2, softbody_kernels_avx512;
 
 typedef struct held_mass {
@@ -91,6 +112,7 @@ typedef struct track_play {
 struct softbody {
     softbody_settings set;
     springs net;
+    spring_batches batches;
     softbody_spring *spring_list;
     size_t spring_count;
     mesh_triangle *faces;
@@ -113,6 +135,7 @@ struct softbody {
     const hand_script *script;
     track_play *plays;
     const softbody_kernels *kernels;
+    const softbody_force_kernels *force_kernels;
     thread_team *workers;
     uint32_t *mass_of; /* for the toy: by vertex of its surface */
     int surface_level; /* -1: none */
@@ -159,6 +182,10 @@ void toy_net_release(toy_net *n);
 /* Stores springs and rings by vertex. STATUS_BAD_INPUT unless the faces are closed around every vertex. */
 status springs_build(springs *s, const softbody_net *net, diagnostic *why);
 void springs_release(springs *s);
+
+/* Batches of the springs that springs_build has stored. STATUS_FAILURE if memory runs out. */
+status batches_build(spring_batches *t, springs *s, const softbody_net *net, diagnostic *why);
+void batches_release(spring_batches *t);
 
 /* Forces of springs and the volume's gradient in the current state, then the pressure. Damping uses these velocities:
  * the body's own; Verlet's prediction; or none, in which case `change` has it. */

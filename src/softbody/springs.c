@@ -11,9 +11,13 @@ static bool make_slots(springs *s)
     s->rest = softbody_array(count);
     s->stiffness = softbody_array(count);
     s->damping = softbody_array(count);
-    for (size_t i = 0; s->other && i < count; i++)
+    s->row = malloc((count + 1) * sizeof *s->row);
+    s->place = malloc((count + 1) * sizeof *s->place);
+    for (size_t i = 0; s->other && s->row && s->place && i < count; i++) {
         s->other[i] = (int32_t)(i % s->stride);
-    return s->other && s->rest && s->stiffness && s->damping;
+        s->place[i] = NO_SPRING;
+    }
+    return s->other && s->row && s->place && s->rest && s->stiffness && s->damping;
 }
 
 /* A face seen from one of its corners: the next corner and the one after; whether the first has a spring already. */
@@ -115,6 +119,7 @@ static void assign_slots(springs *s, const softbody_net *net, rings r, int *behi
         if (!fill)
             continue;
         s->other[k] = (int32_t)other;
+        s->place[k] = (uint32_t)(i / 2);
         s->rest[k] = one->rest;
         s->stiffness[k] = one->stiffness;
         s->damping[k] = one->damping;
@@ -147,6 +152,8 @@ status springs_build(springs *s, const softbody_net *net, diagnostic *why)
 void springs_release(springs *s)
 {
     free(s->other);
+    free(s->row);
+    free(s->place);
     free(s->rest);
     free(s->stiffness);
     free(s->damping);

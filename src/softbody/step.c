@@ -41,25 +41,19 @@ double softbody_sum(const softbody *b)
 static void pack(softbody *b, size_t begin, size_t end, size_t chunk)
 {
     (void)chunk;
-    b->kernels->pack(b->at, *b->damped, b->state, begin, end);
+    b->force_kernels->pack(b->at, *b->damped, b->state, begin, end);
 }
 
-/* Volume is homogeneous of degree 3 in the positions, so it is a third of the sum of position times gradient (Euler);
- * relative to one mass, for the least cancellation. */
-static double volume_of_chunk(const softbody *b, size_t begin, size_t end)
+static void pull(softbody *b, size_t begin, size_t end, size_t chunk)
 {
-    const double x = b->at.x[0], y = b->at.y[0], z = b->at.z[0];
-    double sum = 0.0;
-    for (size_t i = begin; i < end; i++)
-        sum += (b->at.x[i] - x) * b->gradient.x[i] + (b->at.y[i] - y) * b->gradient.y[i] +
-               (b->at.z[i] - z) * b->gradient.z[i];
-    return sum;
+    (void)chunk;
+    b->force_kernels->pull(&b->batches, b->state, b->at, *b->damped, begin, end);
 }
 
 static void find(softbody *b, size_t begin, size_t end, size_t chunk)
 {
-    b->kernels->forces(&b->net, b->state, b->at, *b->damped, b->force, b->gradient, begin, end);
-    b->sums[chunk] = b->face_count > 0 ? volume_of_chunk(b, begin, end) : 0.0;
+    b->sums[chunk] =
+        b->force_kernels->forces(&b->net, b->batches.pull, b->state, b->at, b->force, b->gradient, begin, end);
 }
 
 double softbody_volume_of_gradient(softbody *b)
@@ -71,6 +65,7 @@ void softbody_find_forces(softbody *b, const vectors *velocity)
 {
     b->damped = velocity;
     softbody_for_chunks(b, pack);
+    softbody_for_chunks(b, pull);
     softbody_for_chunks(b, find);
     const double at_rest = b->volume_at_rest;
     b->pushing.pressure =

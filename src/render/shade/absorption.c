@@ -1,10 +1,7 @@
 /* Beer and Lambert: light falls by exp(-a d) over a length d of a medium with absorption coefficient a. */
 #include "render/shade/shading.h"
 
-#include "base/elementary_inline.h"
 #include <stdlib.h>
-
-#define LOG2_E 1.4426950408889634074
 
 /* Coefficients of a priority index, by channel; in a spectral film at the ray's wavelength. */
 static vec3 coefficients(const plan *p, int priority_index, int64_t sample_key)
@@ -13,11 +10,6 @@ static vec3 coefficients(const plan *p, int priority_index, int64_t sample_key)
         return p->absorption[priority_index];
     const double a = spectra_region(p->spectral, sample_key, priority_index)->absorption;
     return vec3_make(a, a, a);
-}
-
-double absorption_left(double optical_depth)
-{
-    return elementary_exp2_inline(-LOG2_E * optical_depth);
 }
 
 /* Adds the optical depths of the segments to transmittance. */
@@ -75,10 +67,8 @@ void absorption_announce(tracer *t, const int64_t *sample_keys, int count)
 static void absorption_shares(tracer *t, int count)
 {
     add_depths(t);
-    for (int i = 0; i < count; i++)
-        for (int c = 0; c < 3; c++)
-            t->media->transmittance[c][i] =
-                t->media->transmittance[c][i] > 0.0 ? absorption_left(t->media->transmittance[c][i]) : 1.0;
+    for (int c = 0; c < 3; c++)
+        t->shade->absorb(t->media->transmittance[c], count);
 }
 
 /* A path to the sky has no finite length: its light is taken to arrive unattenuated at the surface where the path

@@ -2,6 +2,7 @@
  * absorption_end frees it. */
 #pragma once
 
+#include "base/elementary_inline.h"
 #include "render/core/queue.h"
 #include "render/core/tracer.h"
 
@@ -21,4 +22,10 @@ void absorption_end(tracer *t);
 void absorption_announce(tracer *t, const int64_t *sample_keys, int count);
 void absorption_exempt_sky(tracer *t);
 void absorption_dim(tracer *t, ray_queue *q, int first, int count);
-double absorption_left(double optical_depth);
+
+/* exp(-d), Beer and Lambert's law. */
+static inline double absorption_left(double optical_depth)
+{
+    const double log2_e = 1.4426950408889634074;
+    return elementary_exp2_inline(-log2_e * optical_depth);
+}

@@ -68,6 +68,8 @@ typedef struct shade_kernels {
     /* Directions of camera rays through the image points (u, v), in units of the half height. */
     void (*camera)(const camera_frame *view, int count, const double *u, const double *v, double *dx, double *dy,
                    double *dz);
+    /* Transmittances of optical depths, in place: 1 for 0. */
+    void (*absorb)(double *depth, int count);
 } shade_kernels;
 
 extern const shade_kernels shade_kernels_sse2, shade_kernels_avx2, shade_kernels_avx512;

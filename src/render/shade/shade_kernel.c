@@ -7,6 +7,7 @@
 #include "geometry/primitives/primitive.h"
 #include "optics/interface.h"
 #include "render/core/film.h"
+#include "render/shade/absorption.h"
 
 /* Largest integer exponent that is computed by repeated squaring, with a relative error below 4.6e-13. */
 enum { SHININESS_SQUARED_MAX = 4096 };
@@ -303,5 +304,13 @@ static void camera_directions(const camera_frame *view, int count, const double 
     }
 }
 
+static void absorb(double *restrict depth, int count)
+{
+    /* VECTORISE */
+    for (int i = 0; i < count; i++)
+        depth[i] = blend(mask_less(0.0, depth[i]), absorption_left(depth[i]), 1.0);
+}
+
 const shade_kernels KERNEL(shade_kernels) = {
-    color, direct, spot, fresnel_branches, constant_branches, straight_branches, cut, append, camera_directions};
+    color, direct, spot, fresnel_branches, constant_branches, straight_branches, cut, append, camera_directions,
+    absorb};
