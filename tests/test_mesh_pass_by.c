@@ -24,7 +24,7 @@ static placed_mesh place(mesh *m, vec3 position)
     const vec3 ones = {1.0, 1.0, 1.0};
     const solid_shape shape = {.mesh = m, .position = position, .scale = ones, .copies = ones};
     const instance_source source = {.shape = &shape, .tree = p.tree, .primitive = 0, .priority_index = 1};
-    assert_int_equal(instance_set_build(&source, 1, &p.set, NULL), STATUS_OK);
+    assert_int_equal(instance_set_build(&source, 1, source.priority_index, &p.set, NULL), STATUS_OK);
     return p;
 }
 

@@ -358,8 +358,6 @@ static ray_batch with_direct_sets(const scene_geometry *a, const ray_batch *rays
 /* Joins the sets of ray i, whose crossing column k found. */
 static void join_sets(const scene_geometry *a, int k, const ray_scratch *s, hit_batch *hits, int i)
 {
-    if (!a->tree)
-        return;
     const uint64_t open = a->meshes ? a->meshes->open_surfaces : 0;
     hits->inside_before[i] = solid_tree_join(a->tree, (split_set){hits->inside_before[i], s->tree.before[k]});
     hits->inside_after[i] = solid_tree_join(a->tree, (split_set){hits->inside_after[i] & ~open, s->tree.after[k]});
@@ -381,7 +379,7 @@ static void nearest(const scene_geometry *a, const ray_batch *given, ray_scratch
     for (int i = 0; i < rays->count; i++)
         if (s->attention[i] && !is_interface(a, rays, i, s, hits, mesh_hits))
             skip_crossing(a, i, left++, s, hits, mesh_hits);
-        else
+        else if (a->tree)
             join_sets(a, i, s, hits, i);
     while (left > 0) {
         const int n = left;
@@ -395,7 +393,8 @@ static void nearest(const scene_geometry *a, const ray_batch *given, ray_scratch
                 continue;
             }
             copy_hit(&s->again, k, hits, s->ray[k]);
-            join_sets(a, k, s, hits, s->ray[k]);
+            if (a->tree)
+                join_sets(a, k, s, hits, s->ray[k]);
             if (again)
                 mesh_hits[s->ray[k]] = again[k];
         }

@@ -1,52 +1,56 @@
 /* Groups of rays that are shaded together. */
 #include "render/core/hit_groups.h"
 
-/* The batch's rays by group, as lists linked through the rays. */
+/* The batch's rays by group, as lists of runs: neighbours in the batch often belong to one group. */
 typedef struct linked_groups {
-    int count;
+    int count, runs;
     int hit_primitive[BATCH], priority_index[BATCH];
-    int16_t head[BATCH], tail[BATCH], size[BATCH];
-    int16_t next_same[BATCH]; /* another group of the same primitive, on another surface; -1 for none */
-    int16_t next_ray[BATCH];
+    int16_t head[BATCH], tail[BATCH]; /* runs */
+    int16_t next_same[BATCH];         /* another group of the same primitive, on another surface; -1 for none */
+    int16_t start[BATCH], length[BATCH], next[BATCH]; /* of each run: its rays, and the next run of its group or -1 */
 } linked_groups;
 
-static int new_group(linked_groups *l, int hit_primitive, int priority_index, int ray)
+static int new_group(linked_groups *l, int hit_primitive, int priority_index, int run)
 {
     const int g = l->count++;
     l->hit_primitive[g] = hit_primitive;
     l->priority_index[g] = priority_index;
-    l->head[g] = l->tail[g] = (int16_t)ray;
-    l->size[g] = 1;
+    l->head[g] = l->tail[g] = (int16_t)run;
     l->next_same[g] = -1;
     return g;
 }
 
-static void append(linked_groups *l, int g, int ray)
+/* Adds a run of rays to its group. */
+static void add_run(linked_groups *l, int16_t *marks, int hit_primitive, int priority_index, int start, int length)
 {
-    l->next_ray[l->tail[g]] = (int16_t)ray;
-    l->tail[g] = (int16_t)ray;
-    l->size[g]++;
-}
-
-/* Adds a ray to its group; returns the group. */
-static int add_ray(linked_groups *l, int16_t *marks, int hit_primitive, int priority_index, int ray)
-{
+    const int run = l->runs++;
+    l->start[run] = (int16_t)start;
+    l->length[run] = (int16_t)length;
+    l->next[run] = -1;
     int g = marks[hit_primitive];
-    if (g < 0)
-        return marks[hit_primitive] = (int16_t)new_group(l, hit_primitive, priority_index, ray);
+    if (g < 0) {
+        marks[hit_primitive] = (int16_t)new_group(l, hit_primitive, priority_index, run);
+        return;
+    }
     while (l->priority_index[g] != priority_index && l->next_same[g] >= 0)
         g = l->next_same[g];
-    if (l->priority_index[g] != priority_index)
-        return l->next_same[g] = (int16_t)new_group(l, hit_primitive, priority_index, ray);
-    append(l, g, ray);
-    return g;
+    if (l->priority_index[g] != priority_index) {
+        l->next_same[g] = (int16_t)new_group(l, hit_primitive, priority_index, run);
+        return;
+    }
+    l->next[l->tail[g]] = (int16_t)run;
+    l->tail[g] = (int16_t)run;
 }
 
 static void write_group(const linked_groups *l, int g, hit_groups *out, int *written)
 {
-    out->group[out->count++] = (hit_group){l->hit_primitive[g], l->priority_index[g], *written, l->size[g]};
-    for (int n = 0, ray = l->head[g]; n < l->size[g]; n++, ray = l->next_ray[ray])
-        out->list[(*written)++] = ray;
+    const int first = *written;
+    int to = first;
+    for (int run = l->head[g]; run >= 0; run = l->next[run])
+        for (int k = 0; k < l->length[run]; k++)
+            out->list[to++] = l->start[run] + k;
+    out->group[out->count++] = (hit_group){l->hit_primitive[g], l->priority_index[g], first, to - first};
+    *written = to;
 }
 
 /* Writes the groups so that those that look alike are neighbours: each group is linked to the next of its kind. */
@@ -78,16 +82,19 @@ void hit_groups_make(const hit_batch *hits, int count, const int *alike, int16_t
                      hit_groups *out)
 {
     linked_groups l;
-    l.count = 0;
+    l.count = l.runs = 0;
     out->missed = 0;
-    for (int i = 0, g = -1; i < count; i++) {
+    for (int i = 0; i < count;) {
         const int64_t p = hits->hit_primitive[i], surface = hits->surface[i];
-        if (p < 0)
-            out->miss[out->missed++] = i;
-        else if (g >= 0 && l.hit_primitive[g] == p && l.priority_index[g] == surface) /* as neighbours often do */
-            append(&l, g, i);
-        else
-            g = add_ray(&l, marks, (int)p, (int)surface, i);
+        const int start = i;
+        if (p < 0) {
+            out->miss[out->missed++] = i++;
+            continue;
+        }
+        do
+            i++;
+        while (i < count && hits->hit_primitive[i] == p && hits->surface[i] == surface);
+        add_run(&l, marks, (int)p, (int)surface, start, i - start);
     }
     for (int g = 0; g < l.count; g++)
         marks[l.hit_primitive[g]] = -1;

@@ -26,22 +26,13 @@ static void gather_one(const ray_queue *q, int from, const hit_batch *hits, int 
     g->inside_after[k] = hits->inside_after[i];
 }
 
-/* Are the rays neighbours in the batch, in its order? */
-static bool is_contiguous(const int *list, int count)
-{
-    bool same = list[count - 1] - list[0] == count - 1;
-    for (int k = 1; k < count && same; k++)
-        same = list[k] == list[0] + k;
-    return same;
-}
-
 void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count,
-                  group *g)
+                  bool ascending, group *g)
 {
     const int last = list[count - 1], before = list[0];
     g->count = count;
     g->padded = (count + LANES_MAX - 1) / LANES_MAX * LANES_MAX;
-    const bool whole = is_contiguous(list, count);
+    const bool whole = ascending && last - before == count - 1;
     if (whole)
         gather_segment(q, first + before, hits, before, g);
     for (int k = 0; k < count && !whole; k++)

@@ -34,11 +34,11 @@ typedef struct branch_group {
     int64_t total; /* number of total internal reflections in the group */
 } branch_group;
 
-/* Fills g from rays list[0..count-1] of a batch, in ascending order; first is the batch's start in the queue; ior: by
+/* Fills g from rays list[0..count-1] of a batch; ascending: the list is; first is the batch's start in the queue; ior: by
  * priority index. Not a kernel: scalar copies are faster than the gather instructions of the processors it was measured
  * on. */
 void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count,
-                  group *g);
+                  bool ascending, group *g);
 
 typedef struct cut_sum {
     int64_t branches, throughput[3];

@@ -379,7 +379,7 @@ static void shade_one_material(tracer *t, int depth, int first, const hit_group 
     const int priority_index = groups->priority_index;
     const primitive *surface = &p->geometry->primitives[groups->hit_primitive];
     group *g = &t->surface.gathered;
-    group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, g);
+    group_gather(&t->queues.waiting[depth], first, &t->batch.hits, p->ior, list, count, group_count == 1, g);
     if (p->spectral)
         spectral_indices(t, list);
     if (p->render.polarisation)
