@@ -283,6 +283,7 @@ static status make_result(const scene *s, const render_options *options, render_
     render_result *result = calloc(1, sizeof *result);
     if (!result)
         return out_of_memory(why);
+    result->replicates = shares_of(s);
     const film_space space = s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
     status code = film_create((int)s->render.width, (int)s->render.height, shares_of(s), space, &result->img, why);
     if (code == STATUS_OK) {

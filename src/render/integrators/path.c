@@ -13,7 +13,6 @@
 
 #include "base/elementary.h"
 #include "optics/mueller.h"
-#include "render/core/draw.h"
 #include <string.h>
 
 /* Below this depth every path continues; from it on faint paths end by Russian roulette. */
@@ -150,10 +149,9 @@ static void sample_light(tracer *t, int k, const material *m, bool opaque, int l
         return;
     /* cap = 1 - least_cos, without cancellation. */
     const double least_cos = sqrt(1.0 - share2), cap = share2 / (1.0 + least_cos);
-    const random_words drawn = draw(p->render.seed, g->sample_key[k], depth, DRAW_LIGHT + lamp);
-    const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
-    const vec3 to =
-        direction_about(vec3_scale(to_light, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
+    const unit_pair drawn = path_draw(&p->draws, g->sample_key[k], depth, DRAW_LIGHT + lamp);
+    const double below = drawn.u * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
+    const vec3 to = direction_about(vec3_scale(to_light, 1.0 / sqrt(distance2)), cosine, sine, drawn.v);
     const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to),
                  within = l->radius * l->radius - distance2 * sine * sine;
     if (!(n_l > 0.0) || radiance == 0.0 || !mesh_lets_out(t, k, to))
@@ -215,10 +213,10 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
         c->share = vec3_make(mirror / odds, mirror / odds, mirror / odds);
         return true;
     }
-    const random_words drawn = draw(t->target.frame_plan->render.seed, g->sample_key[k], depth, DRAW_DIRECTION);
-    const double sine2 = random_unit(drawn.word[0]);
+    const unit_pair drawn = path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_DIRECTION);
+    const double sine2 = drawn.u;
     const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
-    c->direction = direction_about(n, sqrt(1.0 - sine2), sqrt(sine2), random_unit(drawn.word[1]));
+    c->direction = direction_about(n, sqrt(1.0 - sine2), sqrt(sine2), drawn.v);
     c->share = vec3_scale(vec3_make(g->cr[k], g->cg[k], g->cb[k]), m->diffuse / odds);
     return mesh_lets_out(t, k, c->direction);
 }
@@ -233,7 +231,7 @@ static bool survives(const tracer *t, int k, int depth, vec3 *share)
     const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)r->paths;
     if (weight >= 1.0)
         return true;
-    if (random_unit(draw(r->seed, g->sample_key[k], depth, DRAW_ROULETTE).word[0]) >= weight)
+    if (path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_ROULETTE).u >= weight)
         return false;
     *share = vec3_scale(*share, 1.0 / weight);
     return true;
@@ -266,9 +264,8 @@ static void go_on(tracer *t, int k, int depth, const continuation *c)
 
 static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth)
 {
-    const random_words drawn =
-        draw(t->target.frame_plan->render.seed, t->surface.gathered.sample_key[k], depth, DRAW_BRANCH);
-    const double chance = random_unit(drawn.word[0]);
+    const double chance =
+        path_draw(&t->target.frame_plan->draws, t->surface.gathered.sample_key[k], depth, DRAW_BRANCH).u;
     continuation c = {.refracted = false};
     if (!(opaque ? draw_matte(t, m, k, depth, chance, &c) : draw_clear(t, k, chance, &c)))
         return;
@@ -295,21 +292,21 @@ static void shade(tracer *t, int depth, int priority_index)
         continue_one(t, m, opaque, k, depth);
 }
 
-/* Uses fewer sample points if there are fewer paths than samples: with only the first rows of the grid the image would
- * shift. */
+/* Through the centres of cells: with fewer paths than samples there are fewer cells, because with only the first rows
+ * of the grid the image would shift. */
 static camera_sampling paths_of(const render_settings *r)
 {
     const int64_t points = r->paths < r->samples ? r->paths : r->samples;
-    return (camera_sampling){.rays = r->paths, .points = points, .together = 1, .marks = SAMPLE_KEY_SPECULAR_BOUNCE};
+    return (camera_sampling){.rays = r->paths,
+                             .points = points,
+                             .together = 1,
+                             .jittered = r->filter == PIXEL_FILTER_BOX,
+                             .marks = SAMPLE_KEY_SPECULAR_BOUNCE};
 }
 
-/* The largest possible number of shares. Each covers all sample points of the pixel. */
 static int shares(const render_settings *r)
 {
-    int count = r->paths % r->samples == 0 ? FILM_SHARES_MAX : 1;
-    while (r->paths / r->samples % count != 0)
-        count--;
-    return count;
+    return (int)path_sampling_of(r).replicates;
 }
 
 const integrator integrator_of_path = {.traced = true,

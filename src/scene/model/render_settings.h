@@ -16,6 +16,8 @@ typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SC
 typedef enum pin_rule { PIN_RULE_NONE, PIN_RULE_COMPACT, PIN_RULE_SCATTER } pin_rule;
 typedef enum lighting_rule { LIGHTING_LAMBERT, LIGHTING_PHONG, LIGHTING_WHITTED } lighting_rule;
 typedef enum spectrum_rule { SPECTRUM_RGB, SPECTRUM_SPECTRAL } spectrum_rule;
+typedef enum sampler_rule { SAMPLER_PHILOX, SAMPLER_SOBOL } sampler_rule;
+typedef enum pixel_filter { PIXEL_FILTER_CENTRE, PIXEL_FILTER_BOX } pixel_filter;
 typedef enum texturing_rule { TEXTURING_PERSPECTIVE, TEXTURING_AFFINE } texturing_rule;
 
 enum { SCENE_SAMPLES_MAX = 64 };
@@ -35,6 +37,8 @@ typedef struct render_settings {
     int64_t shadows;       /* shadow_rule */
     double min_weight;     /* rays with a lower throughput in every channel are not traced; 0: all are */
     int64_t paths;         /* per pixel, for the path integrator */
+    int64_t sampler;       /* sampler_rule: of the path integrator */
+    int64_t filter;        /* pixel_filter: of the path integrator */
     int64_t roulette;      /* 1: Russian roulette in the path integrator */
     int64_t seed;          /* of all random numbers */
     int64_t polarisation;  /* 1: rays carry Stokes vectors */

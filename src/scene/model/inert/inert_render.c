@@ -18,6 +18,12 @@ static bool seed(const inert_case *c)
     return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
 }
 
+static bool samples(const inert_case *c)
+{
+    return is_path(c->s) && c->s->render.filter == PIXEL_FILTER_BOX &&
+           inert_say(c, "path-box", "set render.filter=centre", "every path has its own random point of the pixel");
+}
+
 /* Russian roulette starts after the third surface: render/integrators/path.c. */
 static bool roulette(const inert_case *c)
 {
@@ -238,6 +244,9 @@ bool inert_render(const inert_case *c)
         {"shadows", shadows},
         {"min_weight", min_weight},
         {"paths", path_only},
+        {"samples", samples},
+        {"sampler", path_only},
+        {"filter", path_only},
         {"roulette", roulette},
         {"seed", seed},
         {"radiance", inert_radiance},

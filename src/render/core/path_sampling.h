@@ -1,0 +1,48 @@
+/* The sample points of random paths: which point of which replicate a path has, and its coordinates for each random
+ * choice. A pixel's paths are divided into equal replicates, whose means are independent estimates: their differences
+ * give the standard error. Under render.sampler=philox all paths are independent, and consecutive ones take turns;
+ * under sobol the points of one replicate are a low-discrepancy set, and each replicate has its own scrambling (Owen,
+ * "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995): the differences between parts of one such set would
+ * overestimate its error. Every pair of dimensions has its own scrambling and order (padding). Pure; plain values. */
+#pragma once
+
+#include "base/sobol.h"
+#include "render/core/draw.h"
+#include "scene/model/render_settings.h"
+
+typedef struct path_sampling {
+    int64_t seed, sampler;
+    int64_t replicates;
+    int64_t paths; /* per pixel */
+    int64_t turns; /* consecutive paths of one replicate under philox */
+} path_sampling;
+
+path_sampling path_sampling_of(const render_settings *r);
+
+/* The replicate of a path. */
+static inline int64_t path_replicate(const path_sampling *p, int64_t sample_key)
+{
+    const int64_t sample = sample_key_sample(sample_key);
+    if (p->replicates == 1)
+        return 0;
+    return p->sampler == SAMPLER_SOBOL ? sample / (p->paths / p->replicates) : sample / p->turns % p->replicates;
+}
+
+typedef struct unit_pair {
+    double u, v; /* uniform in (0, 1) */
+} unit_pair;
+
+/* For one random choice of a path: purpose is one of draw.h. */
+static inline unit_pair path_draw(const path_sampling *p, int64_t sample_key, int depth, int purpose)
+{
+    if (p->sampler == SAMPLER_SOBOL) {
+        const int64_t replicate = path_replicate(p, sample_key),
+                      index = sample_key_sample(sample_key) - replicate * (p->paths / p->replicates);
+        const uint64_t where = (uint64_t)sample_key_pixel(sample_key) << 32 | (uint64_t)replicate << 24 |
+                               (uint64_t)depth << 16 | (uint64_t)purpose;
+        const sobol_point s = sobol_at((uint32_t)index, sobol_mix(where ^ sobol_mix((uint64_t)p->seed + 1)));
+        return (unit_pair){random_unit(s.x), random_unit(s.y)};
+    }
+    const random_words drawn = draw(p->seed, sample_key, depth, purpose);
+    return (unit_pair){random_unit(drawn.word[0]), random_unit(drawn.word[1])};
+}
