@@ -272,13 +272,14 @@ static void lamps_are_sampled_independently(void **state)
 {
     (void)state;
     enum { DRAWS = 64 };
-    scene *s = path_scene("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 64, beyond: black}\n"
-                          "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.01}\n"
-                          "background: {color: [0, 0, 0]}\n"
-                          "lights:\n"
-                          "  red: {position: [0, 4, 0], color: [1, 0, 0], reach: 2, radius: 2}\n"
-                          "  green: {position: [0, 4, 0], color: [0, 1, 0], reach: 2, radius: 2}\n"
-                          "solids: {floor: {shape: plane, diffuse: 1}}\n");
+    scene *s = path_scene(
+        "render: {width: 1, height: 1, depth: 0, integrator: path, light_sampling: all, paths: 64, beyond: black}\n"
+        "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.01}\n"
+        "background: {color: [0, 0, 0]}\n"
+        "lights:\n"
+        "  red: {position: [0, 4, 0], color: [1, 0, 0], reach: 2, radius: 2}\n"
+        "  green: {position: [0, 4, 0], color: [0, 1, 0], reach: 2, radius: 2}\n"
+        "solids: {floor: {shape: plane, diffuse: 1}}\n");
     const double expected = 0.25; /* intensity (reach / d)^2, as above */
     double own = 0.0, difference = 0.0;
     for (int seed = 0; seed < DRAWS; seed++) {

@@ -198,7 +198,8 @@ static bool has_sampling(const fixture *f, const char *assignments)
     bool found = false;
     assert_int_equal(meaning_of_scene(&m, s->base, false), STATUS_OK);
     for (size_t i = 0; i < m.count; i++)
-        found |= strcmp(m.items[i].name, "render.sampler") == 0 || strcmp(m.items[i].name, "render.filter") == 0;
+        found |= strcmp(m.items[i].name, "render.sampler") == 0 || strcmp(m.items[i].name, "render.filter") == 0 ||
+                 strcmp(m.items[i].name, "render.light_sampling") == 0;
     meaning_free(&m);
     study_destroy(s);
     return found;
@@ -213,7 +214,8 @@ static void changed_defaults_of_paths_concern_only_paths(void **state)
     assert_false(has_sampling(f, "render.integrator: whitted, render.sampler: philox"));
     assert_true(has_sampling(f, "render.integrator: path"));
     assert_true(has_sampling(f, "render.integrator: path, render.sampler: philox"));
-    assert_false(has_sampling(f, "render.integrator: path, render.sampler: philox, render.filter: centre"));
+    assert_false(has_sampling(f, "render.integrator: path, render.sampler: philox, render.filter: centre, "
+                                 "render.light_sampling: all"));
 }
 
 /* For a parameter anywhere in the table, with and without an explicit default. */

@@ -1,7 +1,7 @@
 /* Points of a two-dimensional low-discrepancy sequence with nested uniform (Owen) scrambling by hashing: Burley,
- * "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020. The points are those of Sobol's first two dimensions (Joe and
- * Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30, 2008: van der
- * Corput's sequence and Pascal's triangle mod 2), a (0, 2)-sequence in base 2: of each aligned block of 2^m indices,
+ * "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020. The points are those of Sobol's first two dimensions (Joe
+ * and Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30, 2008): van
+ * der Corput's sequence and Pascal's triangle mod 2, a (0, 2)-sequence in base 2: of each aligned block of 2^m indices,
  * one point is in every elementary interval of area 2^-m. Each key has its own scrambling of both coordinates and its
  * own order of the points, which keeps aligned blocks; points of different keys can be combined into points of more
  * dimensions. Integer arithmetic only: the same bits everywhere. Pure; cannot fail. */
@@ -34,8 +34,8 @@ static inline uint32_t sobol_pascal(uint32_t x)
     return x ^ x >> 16;
 }
 
-/* Nested uniform scrambling of a number whose bits are in reverse order: each bit is flipped by a hash of the bits below
- * it. Laine and Karras, "Stratified sampling for stochastic transparency", CGF 30(4), 2011, with the constants of
+/* Nested uniform scrambling of a number whose bits are in reverse order: each bit is flipped by a hash of the bits
+ * below it. Laine and Karras, "Stratified sampling for stochastic transparency", CGF 30(4), 2011, with the constants of
  * Vegdahl, "Building a better LK hash", 2021. */
 static inline uint32_t sobol_scramble_reversed(uint32_t x, uint32_t seed)
 {

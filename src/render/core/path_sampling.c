@@ -16,7 +16,7 @@ static int64_t philox_replicates(int64_t rounds)
 }
 
 /* Under sobol few: n paths in R replicates have R^0.25 to R times the error of one set of n points (errors that fall
- * like n^-0.75 to n^-1.5). Where four do not divide the paths, the least number that does. least: paths per replicate. */
+ * like n^-0.75 to n^-1.5). Where four do not divide the paths, the least number that does. least: paths of one. */
 static int64_t sobol_replicates(int64_t rounds, int64_t least)
 {
     if (rounds % SOBOL_REPLICATES == 0 && rounds >= SOBOL_REPLICATES * least)

@@ -183,7 +183,7 @@ static void send_out(tracer *t, int priority_index, light_terms terms)
         m = &dull;
     }
     expose_own_light(t, m, terms.ambient);
-    if (m->diffuse == 0.0 && m->specular == 0.0)
+    if (terms.emission_only || (m->diffuse == 0.0 && m->specular == 0.0))
         return;
     for (int k = 0; k < p->light_count; k++) {
         if (!terms.spheres && p->lights[k].radius > 0.0)

@@ -23,6 +23,7 @@ static const char *const spectrum_words[] = {"rgb", "spectral", NULL};
 static const char *const accel_words[] = {"none", "sphere", "octant", "bvh", "embree", NULL};
 static const char *const sampler_words[] = {"philox", "sobol", NULL};
 static const char *const pixel_filter_words[] = {"centre", "box", NULL};
+static const char *const light_sampling_words[] = {"all", "one", NULL};
 static const char *const texturing_words[] = {"perspective", "affine", NULL};
 static const char *const shading_words[] = {"flat", "smooth", "gouraud", NULL};
 /* arrays: meshes given by a program, which files cannot contain */
@@ -134,6 +135,9 @@ static const param table[] = {
         "pixel filter of integrator path: through the centres of the grid of render.samples only, or the mean over the "
         "pixel (random points)",
         pixel_filter_words, PATHS(filter), .first_default = "centre"),
+    ROW(PARAM_RENDER, "light_sampling", PARAM_CHOICE, "", 0, 0, false, "one",
+        "lights that integrator path samples at a matte surface: all, or one, chosen at random by its brightness there",
+        light_sampling_words, PATHS(light_sampling), .first_default = "all"),
     CHOICE(PARAM_RENDER, render_settings, roulette, off_on, "off",
            "Russian roulette: faint paths end at random, and the surviving ones are weighted up; integrator path"),
     INTEGER(PARAM_RENDER, render_settings, seed, "", 0, 2147483647, "1", "seed of the random numbers"),

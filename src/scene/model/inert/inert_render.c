@@ -150,6 +150,13 @@ static bool nothing_lit(const inert_case *c)
                                     "no visible surface is lit by lights"));
 }
 
+static bool light_sampling(const inert_case *c)
+{
+    if (path_only(c) || nothing_lit(c))
+        return true;
+    return shining_lights(c->s) < 2 && inert_say(c, "one-light", "add a second light", "the scene has one light");
+}
+
 static bool shadows(const inert_case *c)
 {
     const scene *s = c->s;
@@ -247,6 +254,7 @@ bool inert_render(const inert_case *c)
         {"samples", samples},
         {"sampler", path_only},
         {"filter", path_only},
+        {"light_sampling", light_sampling},
         {"roulette", roulette},
         {"seed", seed},
         {"radiance", inert_radiance},
