@@ -24,7 +24,9 @@ void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
     double u[ROW], v[ROW];
     const camera_pixel pixel = camera_pixel_of(&p->view, r);
     const camera_sampling need = t->rule->sampling(r);
-    const int64_t each = need.rays, cells = cells_across(need.points);
+    /* If pixels have their own numbers of rays, all of these are in pixel x0. */
+    const int64_t each = p->draws.by_pixel ? path_count(&p->draws, (int64_t)y * r->width + x0) : need.rays,
+                  cells = cells_across(need.points);
     const int at = q->count;
     for (int k = 0; k < count; k++) {
         int64_t x = x0 + first + k, ray = 0;

@@ -13,11 +13,18 @@
 typedef struct path_sampling {
     int64_t seed, sampler;
     int64_t replicates;
-    int64_t paths; /* per pixel */
-    int64_t turns; /* consecutive paths of one replicate under philox */
+    int64_t paths;            /* per pixel */
+    const uint32_t *by_pixel; /* borrowed: the number of paths of each pixel instead; NULL: none */
+    int64_t turns;            /* consecutive paths of one replicate under philox */
 } path_sampling;
 
 path_sampling path_sampling_of(const render_settings *r);
+
+/* The pixel's number of paths. */
+static inline int64_t path_count(const path_sampling *p, int64_t pixel)
+{
+    return p->by_pixel ? p->by_pixel[pixel] : p->paths;
+}
 
 /* The replicate of a path. */
 static inline int64_t path_replicate(const path_sampling *p, int64_t sample_key)
@@ -25,7 +32,9 @@ static inline int64_t path_replicate(const path_sampling *p, int64_t sample_key)
     const int64_t sample = sample_key_sample(sample_key);
     if (p->replicates == 1)
         return 0;
-    return p->sampler == SAMPLER_SOBOL ? sample / (p->paths / p->replicates) : sample / p->turns % p->replicates;
+    if (p->sampler == SAMPLER_SOBOL)
+        return sample / (path_count(p, sample_key_pixel(sample_key)) / p->replicates);
+    return sample / p->turns % p->replicates;
 }
 
 typedef struct unit_pair {
@@ -37,7 +46,8 @@ static inline unit_pair path_draw(const path_sampling *p, int64_t sample_key, in
 {
     if (p->sampler == SAMPLER_SOBOL) {
         const int64_t replicate = path_replicate(p, sample_key),
-                      index = sample_key_sample(sample_key) - replicate * (p->paths / p->replicates);
+                      index = sample_key_sample(sample_key) -
+                              replicate * (path_count(p, sample_key_pixel(sample_key)) / p->replicates);
         const uint64_t where = (uint64_t)sample_key_pixel(sample_key) << 32 | (uint64_t)replicate << 24 |
                                (uint64_t)depth << 16 | (uint64_t)purpose;
         const sobol_point s = sobol_at((uint32_t)index, sobol_mix(where ^ sobol_mix((uint64_t)p->seed + 1)));

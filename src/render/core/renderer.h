@@ -79,6 +79,7 @@ typedef struct render_result {
      * spectral film under render.sampler=philox it is an overestimate: each replicate has its own wavelengths, so that
      * they differ by more than random noise. */
     double *variance;
+    /* Under render.error, rays and times include those of the pilot, pixel_rays and pixel_ns do not. */
     int replicates;     /* of the paths of a pixel, 1 if the variance is unknown */
     tile_event *events; /* in order of begin_s; NULL unless requested */
     size_t event_count;

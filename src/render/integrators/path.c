@@ -157,7 +157,8 @@ static bool survives(const tracer *t, int k, int depth, vec3 *share)
     const group *g = &t->surface.gathered;
     if (!r->roulette || depth < ROULETTE_DEPTH)
         return true;
-    const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)r->paths;
+    const int64_t paths = path_count(&t->target.frame_plan->draws, sample_key_pixel(g->sample_key[k]));
+    const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)paths;
     if (weight >= 1.0)
         return true;
     if (path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_ROULETTE).u >= weight)

@@ -127,6 +127,10 @@ static const param table[] = {
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",
          "rays with a throughput below this are not traced; 0: trace the whole tree"),
     INTEGER(PARAM_RENDER, render_settings, paths, "", 1, 1048576, "16", "paths per pixel of integrator path"),
+    ROW(PARAM_RENDER, "error", PARAM_REAL, "", 0, 1e3, false, "0",
+        "standard error of a pixel that integrator path aims at, with at most render.paths paths, which a pilot render "
+        "chooses; 0: render.paths everywhere",
+        NULL, PATHS(error)),
     ROW(PARAM_RENDER, "sampler", PARAM_CHOICE, "", 0, 0, false, "sobol",
         "sample points of integrator path: independent random numbers (Philox), or a scrambled Sobol sequence, whose "
         "error falls faster",

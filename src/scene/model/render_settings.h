@@ -38,6 +38,7 @@ typedef struct render_settings {
     int64_t shadows;        /* shadow_rule */
     double min_weight;      /* rays with a lower throughput in every channel are not traced; 0: all are */
     int64_t paths;          /* per pixel, for the path integrator */
+    double error;           /* standard error of a pixel that the path integrator aims at; 0: render.paths everywhere */
     int64_t sampler;        /* sampler_rule: of the path integrator */
     int64_t filter;         /* pixel_filter: of the path integrator */
     int64_t light_sampling; /* light_sampling_rule: of the path integrator */

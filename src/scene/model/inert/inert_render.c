@@ -150,6 +150,16 @@ static bool nothing_lit(const inert_case *c)
                                     "no visible surface is lit by lights"));
 }
 
+/* A pilot has 16 paths: render/core/path_counts.h. */
+static bool error(const inert_case *c)
+{
+    enum { PILOT_PATHS = 16 };
+    return path_only(c) ||
+           (c->s->render.paths <= PILOT_PATHS &&
+            inert_say(c, "few-paths", "set render.paths=256",
+                      "render.paths, the largest number of paths, is not above the pilot's %d", PILOT_PATHS));
+}
+
 static bool light_sampling(const inert_case *c)
 {
     if (path_only(c) || nothing_lit(c))
@@ -252,6 +262,7 @@ bool inert_render(const inert_case *c)
         {"min_weight", min_weight},
         {"paths", path_only},
         {"samples", samples},
+        {"error", error},
         {"sampler", path_only},
         {"filter", path_only},
         {"light_sampling", light_sampling},
