@@ -50,8 +50,8 @@ static void the_noise_is_what_was_requested(void **state)
 }
 
 /* Rare bright paths: a floor under a small bright emitter that paths find by chance. A pixel that stopped when its own
- * samples agree would stop while it has found none, and be too dark. The mean over seeds and pixels is that with a fixed
- * number, within four standard errors. */
+ * samples agree would stop while it has found none, and be too dark. The mean over seeds and pixels is that with a
+ * fixed number, within four standard errors. */
 static void the_mean_is_unbiased(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
 /* Adaptive numbers of random paths (render.error): a pilot render of PILOT_PATHS paths per pixel gives the variance of
  * each pixel, from which the number of paths for the requested standard error follows. The pilot's paths do not enter
- * the film: a mean that stops when its own samples look good is biased (Kirk and Arvo, "Unbiased sampling techniques for
- * image synthesis", SIGGRAPH 1991). The caller owns and frees the counts. */
+ * the film: a mean that stops when its own samples look good is biased (Kirk and Arvo, "Unbiased sampling techniques
+ * for image synthesis", SIGGRAPH 1991). The caller owns and frees the counts. */
 #pragma once
 
 #include "render/core/renderer.h"
