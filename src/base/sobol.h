@@ -58,8 +58,8 @@ static inline uint64_t sobol_mix(uint64_t x)
 /* Point number `index` of the sequence of that key; keys need not look random. */
 static inline sobol_point sobol_at(uint32_t index, uint64_t key)
 {
-    const uint64_t order = sobol_mix(key + 0x9e3779b97f4a7c15U), seeds = sobol_mix(order + 0x9e3779b97f4a7c15U);
-    const uint32_t i = sobol_reverse(sobol_scramble_reversed(sobol_reverse(index), (uint32_t)order));
-    return (sobol_point){sobol_reverse(sobol_scramble_reversed(i, (uint32_t)seeds)),
-                         sobol_reverse(sobol_scramble_reversed(sobol_pascal(i), (uint32_t)(seeds >> 32)))};
+    const uint64_t first = sobol_mix(key + 0x9e3779b97f4a7c15U), second = sobol_mix(first + 0x9e3779b97f4a7c15U);
+    const uint32_t i = sobol_reverse(sobol_scramble_reversed(sobol_reverse(index), (uint32_t)first));
+    return (sobol_point){sobol_reverse(sobol_scramble_reversed(i, (uint32_t)(first >> 32))),
+                         sobol_reverse(sobol_scramble_reversed(sobol_pascal(i), (uint32_t)second))};
 }

@@ -36,6 +36,11 @@ path_sampling path_sampling_of(const render_settings *r)
     if (r->paths % turns == 0) /* each replicate covers the whole grid */
         count = r->sampler == SAMPLER_SOBOL ? sobol_replicates(r->paths / turns, least)
                                             : philox_replicates(r->paths / turns);
-    return (path_sampling){
-        .seed = r->seed, .sampler = r->sampler, .replicates = count, .paths = r->paths, .turns = turns};
+    return (path_sampling){.seed = r->seed,
+                           .sampler = r->sampler,
+                           .seed_hash = sobol_mix((uint64_t)r->seed + 1),
+                           .replicates = count,
+                           .each = r->paths / count,
+                           .paths = r->paths,
+                           .turns = turns};
 }

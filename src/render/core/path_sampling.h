@@ -12,7 +12,8 @@
 
 typedef struct path_sampling {
     int64_t seed, sampler;
-    int64_t replicates;
+    uint64_t seed_hash;
+    int64_t replicates, each; /* paths in each */
     int64_t paths;            /* per pixel */
     const uint32_t *by_pixel; /* borrowed: the number of paths of each pixel instead; NULL: none */
     int64_t turns;            /* consecutive paths of one replicate under philox */
@@ -26,15 +27,21 @@ static inline int64_t path_count(const path_sampling *p, int64_t pixel)
     return p->by_pixel ? p->by_pixel[pixel] : p->paths;
 }
 
+/* The pixel's number of paths in each replicate. 32 bits, of which there are enough, are divided faster. */
+static inline uint32_t path_replicate_count(const path_sampling *p, int64_t pixel)
+{
+    return p->by_pixel ? p->by_pixel[pixel] / (uint32_t)p->replicates : (uint32_t)p->each;
+}
+
 /* The replicate of a path. */
 static inline int64_t path_replicate(const path_sampling *p, int64_t sample_key)
 {
-    const int64_t sample = sample_key_sample(sample_key);
+    const uint32_t sample = (uint32_t)sample_key_sample(sample_key);
     if (p->replicates == 1)
         return 0;
     if (p->sampler == SAMPLER_SOBOL)
-        return sample / (path_count(p, sample_key_pixel(sample_key)) / p->replicates);
-    return sample / p->turns % p->replicates;
+        return sample / path_replicate_count(p, sample_key_pixel(sample_key));
+    return sample / (uint32_t)p->turns % (uint32_t)p->replicates;
 }
 
 typedef struct unit_pair {
@@ -45,12 +52,12 @@ typedef struct unit_pair {
 static inline unit_pair path_draw(const path_sampling *p, int64_t sample_key, int depth, int purpose)
 {
     if (p->sampler == SAMPLER_SOBOL) {
-        const int64_t replicate = path_replicate(p, sample_key),
-                      index = sample_key_sample(sample_key) -
-                              replicate * (path_count(p, sample_key_pixel(sample_key)) / p->replicates);
+        const uint32_t sample = (uint32_t)sample_key_sample(sample_key),
+                       each = path_replicate_count(p, sample_key_pixel(sample_key)), replicate = sample / each,
+                       index = sample - replicate * each;
         const uint64_t where = (uint64_t)sample_key_pixel(sample_key) << 32 | (uint64_t)replicate << 24 |
                                (uint64_t)depth << 16 | (uint64_t)purpose;
-        const sobol_point s = sobol_at((uint32_t)index, sobol_mix(where ^ sobol_mix((uint64_t)p->seed + 1)));
+        const sobol_point s = sobol_at(index, where ^ p->seed_hash);
         return (unit_pair){random_unit(s.x), random_unit(s.y)};
     }
     const random_words drawn = draw(p->seed, sample_key, depth, purpose);
