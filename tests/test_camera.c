@@ -99,9 +99,11 @@ static void path_traced_images_rotate_with_the_roll(void **state)
     static const char mirrors[] =
         HEAD "  ball: {shape: sphere, reflectivity: 1, radius: 0.8, position: [-0.8, 1, -1]}\n"
              "  block: {shape: box, reflectivity: 1, position: [1, 1, 1], rotation: [10, 30, 0]}\n";
-    assert_true(pixels_beyond(mirrors, "render.integrator=path render.paths=1", 1, 1e-12) == 0);
-    assert_true(pixels_beyond(mirrors, "render.integrator=path render.paths=4 render.samples=4", 3, 1e-12) == 0);
-    assert_true(pixels_beyond(room, "render.integrator=path render.paths=400", 1, 0.15) < SIDE * SIDE / 50);
+    assert_true(pixels_beyond(mirrors, "render.integrator=path render.filter=centre render.paths=1", 1, 1e-12) == 0);
+    assert_true(pixels_beyond(mirrors, "render.integrator=path render.filter=centre render.paths=4 render.samples=4", 3,
+                              1e-12) == 0);
+    assert_true(pixels_beyond(room, "render.integrator=path render.filter=centre render.paths=400", 1, 0.15) <
+                SIDE * SIDE / 50);
 }
 
 /* A point on a triangle's edge belongs to the triangle on its right or below, which is another one when the film is

@@ -74,7 +74,7 @@ static void clear_solids_emit_at_any_index(void **state)
 static void mirrors_reflect_and_glass_transmits_emission(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 1, height: 1, depth: 6, beyond: black, paths: 64}\n"
+    scene *s = scene_from("render: {width: 1, height: 1, depth: 6, beyond: black, paths: 64, filter: centre}\n"
                           "camera: {position: [0, 3, -4], target: [0, 0, 0]}\n"
                           "background: {color: [0, 0, 0], ambient: [0, 0, 0]}\n"
                           "solids:\n  ground: {shape: plane, reflectivity: 0.5}\n"

@@ -114,6 +114,7 @@ static void light_falls_off_with_the_squared_distance(void **state)
             s->lights[0].reach = reaches[k];
             for (int path = 0; path <= 1; path++) { /* a point light is the same with random paths, under a black sky */
                 s->render.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
+                s->render.filter = PIXEL_FILTER_CENTRE;
                 s->render.beyond = DEPTH_LIMIT_BLACK;
                 s->background.color = vec3_make(0.0, 0.0, 0.0);
                 assert_near(look(s).x, expected, 1e-12 + 1e-12 * expected);

@@ -114,8 +114,9 @@ static void no_shadow_rays_are_traced_outside_a_cone(void **state)
 {
     (void)state;
     need_counters();
-    static const char *const films[] = {"render.spectrum=rgb", "render.spectrum=spectral render.wavelengths=8",
-                                        "render.spectrum=rgb render.integrator=path render.paths=4"};
+    static const char *const films[] = {
+        "render.spectrum=rgb", "render.spectrum=spectral render.wavelengths=8",
+        "render.spectrum=rgb render.integrator=path render.filter=centre render.paths=4"};
     static const int rays[] = {1, 8, 4};
     scene *s = scene_from(floor_scene);
     for (size_t k = 0; k < COUNT(films); k++) {
@@ -136,9 +137,10 @@ static void no_shadow_rays_are_traced_outside_a_cone(void **state)
 static void all_integrators_have_the_same_cone_falloff(void **state)
 {
     (void)state;
-    static const char *const films[] = {"render.spectrum=spectral", "render.polarisation=on", "render.shadows=off",
-                                        "render.spectrum=rgb render.integrator=raycast",
-                                        "render.polarisation=off render.integrator=path render.shadows=attenuated"};
+    static const char *const films[] = {
+        "render.spectrum=spectral", "render.polarisation=on", "render.shadows=off",
+        "render.spectrum=rgb render.integrator=raycast",
+        "render.polarisation=off render.integrator=path render.filter=centre render.shadows=attenuated"};
     static const double angles[] = {0.0, 12.0, 29.0, 31.0};
     for (size_t k = 0; k < COUNT(films); k++) {
         scene *s = scene_from(floor_scene);
@@ -185,7 +187,8 @@ static void a_spheres_cone_is_visible_only_from_inside(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
-    set_all(s, "render.integrator=path lamp.kind=soft_cone lamp.radius=0.5 lamp.reach=2 floor.visible=off "
+    set_all(s, "render.integrator=path render.filter=centre lamp.kind=soft_cone lamp.radius=0.5 lamp.reach=2 "
+               "floor.visible=off "
                "camera.position=0,0,0 "
                "camera.target=3,4,0");
     for (double angle_deg = 0.0; angle_deg < 40.0; angle_deg += 8.0) {
@@ -202,8 +205,10 @@ static void irradiance_by_a_soft_sphere_equals_its_integral(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
-    set_all(s, "render.integrator=path render.paths=65536 lamp.kind=soft_cone lamp.radius=2 lamp.reach=5 "
-               "lamp.half_angle_deg=70");
+    set_all(
+        s,
+        "render.integrator=path render.filter=centre render.paths=65536 lamp.kind=soft_cone lamp.radius=2 lamp.reach=5 "
+        "lamp.half_angle_deg=70");
     aim(s, 30.0, 0.0);
     const double pi = acos(-1.0), c = sqrt(1.0 - 4.0 / 25.0), q = 1.0 - cos(70.0 * DEGREE);
     const double trace = 2.0 * pi * (1.0 - c), along = 2.0 * pi * (1.0 - c * c * c) / 3.0, A = (trace - along) / 2.0,

@@ -12,6 +12,17 @@
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
+static const char *sampler; /* of all scenes */
+
+/* Through the centres of the pixels, for which closed forms and Whitted ray tracing are exact. */
+static scene *path_scene(const char *text)
+{
+    scene *s = scene_from(text);
+    set(s, "render.filter=centre");
+    set(s, sampler);
+    return s;
+}
+
 /* --- the whole tree, sampled at random --- */
 
 static const char clear_scene[] =
@@ -52,7 +63,7 @@ static agreement agree(scene *s, const char *settings, double unseen)
 static void paths_through_clear_solids_have_the_mean_of_whitted_ray_tracing(void **state)
 {
     (void)state;
-    scene *s = scene_from(clear_scene);
+    scene *s = path_scene(clear_scene);
     static const char *const settings[] = {"render.paths=512 render.depth=6", "render.paths=512 render.depth=2",
                                            "render.paths=512 render.depth=12 render.beyond=black render.roulette=on",
                                            "render.paths=512 render.depth=6 render.samples=4 render.beyond=sky"};
@@ -79,7 +90,7 @@ static const char certain_scene[] = "render: {width: 32, height: 24, depth: 5, i
 static void deterministic_light_is_exact(void **state)
 {
     (void)state;
-    scene *s = scene_from(certain_scene);
+    scene *s = path_scene(certain_scene);
     assert_int_equal(agree(s, "lamp.reach=0", ROUNDINGS).count, 0);
     assert_int_equal(agree(s, "lamp.reach=5", ROUNDINGS).count, 0);
     set_all(s, "floor.diffuse=0 floor.reflectivity=0.7 background.kind=gradient background.color=1,0.5,0.2");
@@ -93,7 +104,7 @@ static void paths_have_highlights_under_every_lighting(void **state)
 {
     (void)state;
     static const char *const rules[] = {"render.lighting=lambert", "render.lighting=phong"};
-    scene *s = scene_from(certain_scene);
+    scene *s = path_scene(certain_scene);
     render_result *expected = render(s);
     for (size_t k = 0; k < COUNT(rules); k++) {
         set(s, rules[k]);
@@ -128,7 +139,7 @@ static void a_matte_mirror_reflects_the_diffuse_and_the_specular_share(void **st
 {
     (void)state;
     static const double high[3] = {1.0, 0.2, 0.5}, low[3] = {0.0, 0.8, 0.1}, color[3] = {0.9, 0.6, 0.3};
-    scene *s = scene_from(glossy_scene);
+    scene *s = path_scene(glossy_scene);
     for (double mirror = 0.0; mirror < 0.6; mirror += 0.25) {
         char assignment[64];
         snprintf(assignment, sizeof assignment, "floor.reflectivity=%g", mirror);
@@ -162,7 +173,7 @@ static void a_sphere_lights_a_floor_by_lamberts_law(void **state)
     (void)state;
     static const double shares[] = {0.001, 0.1, 0.4, 0.7}, cosines[] = {1.0, 0.9, 0.75, 0.45, 0.11},
                         distances[] = {0.5, 4.0, 11.0};
-    scene *s = scene_from(lamp_scene);
+    scene *s = path_scene(lamp_scene);
     agreement a = {0};
     for (size_t i = 0; i < COUNT(shares); i++)
         for (size_t j = 0; j < COUNT(cosines); j++)
@@ -192,7 +203,7 @@ static void a_sphere_light_has_phongs_highlight(void **state)
 {
     (void)state;
     static const double shares[] = {0.05, 0.3, 0.55}, shininess[] = {1.0, 2.5, 40.0};
-    scene *s = scene_from(lamp_scene);
+    scene *s = path_scene(lamp_scene);
     set_all(s, "floor.diffuse=0 floor.specular=0.4");
     s->lights[0].position = vec3_make(0.0, 3.0, 4.0);
     for (size_t i = 0; i < COUNT(shares); i++)
@@ -216,7 +227,7 @@ static void a_sphere_light_has_phongs_highlight(void **state)
 static void a_matte_mirror_counts_a_visible_lamp_once_per_lobe(void **state)
 {
     (void)state;
-    scene *s = scene_from(lamp_scene);
+    scene *s = path_scene(lamp_scene);
     set_all(s, "lamp.position=0,3,4 lamp.radius=2 floor.reflectivity=0.25 render.depth=1 render.paths=4096");
     const double lamp = 3.0 * 4.0 / 4.0, lit = 0.7 * 0.9 * 3.0 * 4.0 / 25.0 * 0.6;
     estimate e = look_by_chance(s, 0);
@@ -240,7 +251,7 @@ static void with_a_light_sphere_clear_solids_block_point_lights(void **state)
                                         "one.radius=0 two.radius=0.5"};
     for (size_t k = 0; k < COUNT(radii); k++) {
         scene *s =
-            scene_from("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 8, beyond: black}\n"
+            path_scene("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 8, beyond: black}\n"
                        "camera: {position: [0, 1, 0], target: [0, 0, 0]}\n"
                        "background: {color: [0, 0, 0]}\n"
                        "lights: {one: {position: [0, 4, 0], reach: 4}, two: {position: [0, 4, 0], reach: 4}}\n"
@@ -261,13 +272,14 @@ static void lamps_are_sampled_independently(void **state)
 {
     (void)state;
     enum { DRAWS = 64 };
-    scene *s = scene_from("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 64, beyond: black}\n"
-                          "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.01}\n"
-                          "background: {color: [0, 0, 0]}\n"
-                          "lights:\n"
-                          "  red: {position: [0, 4, 0], color: [1, 0, 0], reach: 2, radius: 2}\n"
-                          "  green: {position: [0, 4, 0], color: [0, 1, 0], reach: 2, radius: 2}\n"
-                          "solids: {floor: {shape: plane, diffuse: 1}}\n");
+    scene *s = path_scene(
+        "render: {width: 1, height: 1, depth: 0, integrator: path, light_sampling: all, paths: 64, beyond: black}\n"
+        "camera: {position: [0, 60, -80], target: [0, 0, 0], fov_deg: 0.01}\n"
+        "background: {color: [0, 0, 0]}\n"
+        "lights:\n"
+        "  red: {position: [0, 4, 0], color: [1, 0, 0], reach: 2, radius: 2}\n"
+        "  green: {position: [0, 4, 0], color: [0, 1, 0], reach: 2, radius: 2}\n"
+        "solids: {floor: {shape: plane, diffuse: 1}}\n");
     const double expected = 0.25; /* intensity (reach / d)^2, as above */
     double own = 0.0, difference = 0.0;
     for (int seed = 0; seed < DRAWS; seed++) {
@@ -286,7 +298,7 @@ static void lamps_are_sampled_independently(void **state)
 static void only_the_part_of_a_lamp_above_the_horizon_contributes(void **state)
 {
     (void)state;
-    scene *s = scene_from(lamp_scene);
+    scene *s = path_scene(lamp_scene);
     set_all(s, "render.paths=16384 lamp.position=2,0,0 lamp.radius=1.2");
     const double share = 0.6, factor = (asin(share) - share * sqrt(1.0 - share * share)) / acos(-1.0);
     expect_estimate(look_by_chance(s, 1), 0.7 * 0.6 * 3.0 * 4.0 / (1.2 * 1.2) * factor);
@@ -300,7 +312,7 @@ static void the_width_of_a_penumbra_follows_from_similar_triangles(void **state)
     (void)state;
     const double r = 1.5, edge = r / sqrt(16.0 - r * r);
     diagnostic why = {0};
-    scene *shaded = scene_from("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 4096, beyond: black}\n"
+    scene *shaded = path_scene("render: {width: 1, height: 1, depth: 0, integrator: path, paths: 4096, beyond: black}\n"
                                "camera: {position: [0, 0.4, -6], target: [0, 0, 0], fov_deg: 0.01}\n"
                                "background: {color: [0, 0, 0]}\n"
                                "lights: {lamp: {position: [0, 5, 0], intensity: 3, reach: 2, radius: 1.5}}\n"
@@ -322,7 +334,7 @@ static void the_width_of_a_penumbra_follows_from_similar_triangles(void **state)
         else if (places[k] == 0.0)
             expect_estimate(e, 0.5 * open); /* the halves are symmetric */
         else
-            assert_true(e.value > 0.0 && e.value < open - T7_95 * e.standard_error && e.value > before);
+            assert_true(e.value > 0.0 && e.value < open - e.t_95 * e.standard_error && e.value > before);
         before = e.value;
     }
     scene_destroy(shaded);
@@ -344,7 +356,7 @@ static const char slab_scene[] =
 static void a_slab_reduces_the_lamps_light_by_its_reflections(void **state)
 {
     (void)state;
-    scene *s = scene_from(slab_scene);
+    scene *s = path_scene(slab_scene);
     for (int k = 0; k < 2; k++) {
         set(s, k == 0 ? "slab.ior=1.5" : "slab.ior=2.4");
         const double n = s->solids[1].surface.ior, R = (n - 1.0) * (n - 1.0) / ((n + 1.0) * (n + 1.0));
@@ -370,7 +382,7 @@ static void a_lamp_behind_a_glass_ball_has_the_balls_transmittance(void **state)
 {
     (void)state;
     scene *s =
-        scene_from("render: {width: 1, height: 1, depth: 30, integrator: path, paths: 16384, beyond: black}\n"
+        path_scene("render: {width: 1, height: 1, depth: 30, integrator: path, paths: 16384, beyond: black}\n"
                    "camera: {position: [0, 0, -6], target: [0, 0, 0], fov_deg: 0.001}\n"
                    "background: {color: [0, 0, 0]}\n"
                    "lights: {lamp: {position: [0, 0, 9], color: [1, 0.5, 0.25], intensity: 3, reach: 2, radius: 1}}\n"
@@ -393,7 +405,7 @@ static void a_lamp_behind_a_glass_ball_has_the_balls_transmittance(void **state)
 static void every_pixel_of_a_white_furnace_is_white(void **state)
 {
     (void)state;
-    scene *s = scene_from(clear_scene);
+    scene *s = path_scene(clear_scene);
     set_all(
         s,
         "background.kind=uniform background.color=1,1,1 block.transparency=0 block.diffuse=1 mirror.reflectivity=0.5 "
@@ -422,7 +434,7 @@ static const char hollow_scene[] =
 
 static void check_hollow_series(const char *settings)
 {
-    scene *s = scene_from(hollow_scene);
+    scene *s = path_scene(hollow_scene);
     set_all(s, settings);
     for (int depth = 0; depth <= 60; depth += depth < 3 ? 1 : 19) {
         s->render.depth = depth;
@@ -473,7 +485,7 @@ static uint64_t rays_of(const scene *s)
 static void roulette_is_independent_of_the_choice_between_matte_and_mirror(void **state)
 {
     (void)state;
-    scene *s = scene_from(hollow_scene);
+    scene *s = path_scene(hollow_scene);
     set_all(s, "stone.diffuse=0.5 stone.reflectivity=0.3 render.roulette=on render.paths=1024");
     agreement a = {0};
     render_result *r = render(s);
@@ -494,7 +506,7 @@ static void roulette_is_independent_of_the_choice_between_matte_and_mirror(void 
 static void roulette_keeps_the_mean_and_saves_rays(void **state)
 {
     (void)state;
-    scene *s = scene_from(hollow_scene);
+    scene *s = path_scene(hollow_scene);
     const uint64_t all = rays_of(s);
     set_all(s, "render.roulette=on render.paths=512");
     const agreement a = hollow_ball(s);
@@ -510,7 +522,7 @@ static void roulette_keeps_the_mean_and_saves_rays(void **state)
 static void a_light_sphere_in_a_hollow_ball_is_a_geometric_series(void **state)
 {
     (void)state;
-    scene *s = scene_from(hollow_scene);
+    scene *s = path_scene(hollow_scene);
     set_all(s, "lamp.radius=0.05 camera.position=0,0,-1 camera.target=0.9,0,-2");
     const agreement a = hollow_ball(s);
     print_message("sphere: %.1f%% of %d in their 95%% interval, mean off by %.2f standard errors\n",
@@ -523,7 +535,7 @@ static void a_light_sphere_in_a_hollow_ball_is_a_geometric_series(void **state)
 static void the_medium_before_a_lamp_absorbs_and_the_one_behind_does_not(void **state)
 {
     (void)state;
-    scene *s = scene_from(
+    scene *s = path_scene(
         "render: {width: 1, height: 1, depth: 1, integrator: path, paths: 16, beyond: black}\n"
         "camera: {position: [0, 0, -3.5], target: [0, 0, 0], fov_deg: 0.001}\n"
         "lights: {lamp: {position: [0, 0, 0], intensity: 3, reach: 1, radius: 0.5}}\n"
@@ -586,7 +598,7 @@ static void spread_over_seeds(scene *s, spread *out)
  * sigma; a few outliers from heavier tails are allowed. */
 static void check_spread(const char *settings)
 {
-    scene *s = scene_from(unsure_scene);
+    scene *s = path_scene(unsure_scene);
     set_all(s, settings);
     spread d;
     spread_over_seeds(s, &d);
@@ -621,7 +633,7 @@ static void the_reported_standard_error_equals_that_over_seeds(void **state)
 static void the_reported_standard_error_of_a_spectral_film_is_a_bound(void **state)
 {
     (void)state;
-    scene *s = scene_from(unsure_scene);
+    scene *s = path_scene(unsure_scene);
     set(s, "render.spectrum=spectral");
     spread d;
     spread_over_seeds(s, &d);
@@ -641,7 +653,7 @@ static void any_number_of_paths_is_valid(void **state)
         int paths;
         bool known;
     } cases[] = {{1, false}, {2, true}, {7, true}, {12, true}, {17, false}, {22, true}};
-    scene *s = scene_from(clear_scene);
+    scene *s = path_scene(clear_scene);
     set_all(s, "background.kind=uniform background.color=1,1,1 block.transparency=1 mirror.reflectivity=1 "
                "render.integrator=path");
     for (size_t k = 0; k < COUNT(cases); k++) {
@@ -710,5 +722,8 @@ int main(void)
         cmocka_unit_test(any_number_of_paths_is_valid),
         cmocka_unit_test(the_sum_and_variance_of_shares),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    sampler = "render.sampler=philox";
+    const int failed = cmocka_run_group_tests_name("philox", tests, NULL, NULL);
+    sampler = "render.sampler=sobol";
+    return failed + cmocka_run_group_tests_name("sobol", tests, NULL, NULL);
 }

@@ -14,8 +14,10 @@
 
 static const char *const variants[] = {
     SMALL "render.integrator=path render.paths=17",
-    SMALL "render.integrator=path render.paths=16 render.samples=4 render.roulette=on",
+    SMALL "render.integrator=path render.paths=16 render.sampler=philox",
+    SMALL "render.integrator=path render.paths=16 render.samples=4 render.filter=centre render.roulette=on",
     SMALL "render.integrator=path render.spectrum=spectral render.paths=8 liquid.medium=water vessel.medium=sf11",
+    SMALL "render.integrator=path render.spectrum=spectral render.paths=8 render.sampler=philox",
     SMALL "render.spectrum=spectral render.wavelengths=9 liquid.medium=water vessel.medium=sf11",
     SMALL "render.spectrum=spectral render.wavelengths=5 render.polarisation=on render.samples=4 vessel.medium=sf11",
     SMALL "render.polarisation=on render.min_weight=0.01",

@@ -69,7 +69,9 @@ static void random_paths_see_the_same_sky(void **state)
 {
     (void)state;
     for (int degrees = 0; degrees <= 60; degrees += 20) {
-        scene *s = diver_at(degrees, 1.5, 1.0, "render.integrator=path render.paths=4096 render.radiance=basic");
+        scene *s = diver_at(degrees, 1.5, 1.0,
+                            "render.integrator=path render.filter=centre render.sampler=philox render.paths=4096 "
+                            "render.radiance=basic");
         expect_estimate(look_by_chance(s, 1), 2.25 * through(degrees * DEGREE, 1.5, 1.0));
         scene_destroy(s);
     }
@@ -257,7 +259,7 @@ static void panes_shade_by_fresnel_on_both_faces(void **state)
     assert_true(fabs(shaded(pane, "render.radiance=classic") - 0.8) < 1e-9);
     assert_true(fabs(shaded(pane, "render.weights=constant") - 0.8) < 1e-9);
     assert_true(fabs(shaded(pane, "render.transmission=simple") - 0.8) < 1e-9);
-    assert_true(fabs(shaded(pane, "render.integrator=path render.paths=1") - 0.8 * T * T) < 1e-9);
+    assert_true(fabs(shaded(pane, "render.integrator=path render.filter=centre render.paths=1") - 0.8 * T * T) < 1e-9);
     assert_true(fabs(shaded(pane, "render.integrator=raycast") - 0.8 * T * T) < 1e-9);
     assert_true(shaded(pane, "render.shadows=opaque") == 0.0);
 }
@@ -382,8 +384,9 @@ static void whitted_ray_tracing_and_paths_agree_on_a_dark_floor_under_water(void
 static void the_radiance_of_a_light_sphere_refers_to_its_medium(void **state)
 {
     (void)state;
-    const char *const lamp = "render.integrator=path render.paths=4096 lamp.position=0,0.4,0 "
-                             "lamp.intensity=1 lamp.reach=0.2 lamp.radius=0.2";
+    const char *const lamp =
+        "render.integrator=path render.filter=centre render.sampler=philox render.paths=4096 lamp.position=0,0.4,0 "
+        "lamp.intensity=1 lamp.reach=0.2 lamp.radius=0.2";
     double unused;
     scene *s = pond_from_above(0.0, 1.5, lamp, &unused);
     expect_estimate(look_by_chance(s, 0), 0.96 / 2.25);

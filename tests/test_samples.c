@@ -69,7 +69,8 @@ static void other_films_use_the_same_points(void **state)
     s->solids[0].shape.position = vec3_make(0.2 - 10.0, 0.0, 1.0); /* the fifth column's middle is 0.125 */
     assert_near(look(s).y, 5.0 / 8.0, 1e-9);
     /* here the wall is black in front of a white sky */
-    set_all(s, "render.spectrum=rgb render.integrator=path render.paths=64 background.color=1,1,1");
+    set_all(s,
+            "render.spectrum=rgb render.integrator=path render.paths=64 render.filter=centre background.color=1,1,1");
     assert_near(look(s).y, 3.0 / 8.0, 1e-9);
     s->render.paths = 16; /* middles -0.75, -0.25, 0.25, 0.75 */
     assert_near(look(s).y, 2.0 / 4.0, 1e-9);

@@ -386,7 +386,7 @@ static void light_of_an_absorbed_band_is_removed(void **state)
 static void random_paths_have_the_same_colours(void **state)
 {
     (void)state;
-    scene *s = scene_from("render: {width: 12, height: 12, integrator: path, paths: 1024}\n"
+    scene *s = scene_from("render: {width: 12, height: 12, integrator: path, paths: 1024, filter: centre}\n"
                           "camera: {position: [0, 0, -5], target: [0, 0, 0], fov_deg: 30}\n"
                           "background: {color: [1, 1, 1]}\n"
                           "solids: {ball: {shape: sphere, color: [0.8, 0.3, 0.1], diffuse: 1}}\n");

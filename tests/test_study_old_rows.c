@@ -189,6 +189,35 @@ static void default_values_are_not_part_of_a_definition(void **state)
     study_destroy(s);
 }
 
+static bool has_sampling(const fixture *f, const char *assignments)
+{
+    char text[300];
+    snprintf(text, sizeof text, "study: x\nscene: scene.yaml\nset: {%s}\n", assignments);
+    study *s = fixture_study(f, text);
+    meaning m = {0};
+    bool found = false;
+    assert_int_equal(meaning_of_scene(&m, s->base, false), STATUS_OK);
+    for (size_t i = 0; i < m.count; i++)
+        found |= strcmp(m.items[i].name, "render.sampler") == 0 || strcmp(m.items[i].name, "render.filter") == 0 ||
+                 strcmp(m.items[i].name, "render.light_sampling") == 0;
+    meaning_free(&m);
+    study_destroy(s);
+    return found;
+}
+
+/* Defaults of random paths that have changed: older rows of other integrators keep their cells, and those of paths have
+ * the cells of their own sampling. */
+static void changed_defaults_of_paths_concern_only_paths(void **state)
+{
+    const fixture *f = *state;
+    assert_false(has_sampling(f, "render.integrator: whitted"));
+    assert_false(has_sampling(f, "render.integrator: whitted, render.sampler: philox"));
+    assert_true(has_sampling(f, "render.integrator: path"));
+    assert_true(has_sampling(f, "render.integrator: path, render.sampler: philox"));
+    assert_false(has_sampling(f, "render.integrator: path, render.sampler: philox, render.filter: centre, "
+                                 "render.light_sampling: all"));
+}
+
 /* For a parameter anywhere in the table, with and without an explicit default. */
 static void order_and_explicit_defaults_do_not_change_a_definition(void **state)
 {
@@ -651,6 +680,7 @@ int main(void)
         cmocka_unit_test(newer_parameters_have_no_first_definition),
         cmocka_unit_test(default_values_are_not_part_of_a_definition),
         CASE(order_and_explicit_defaults_do_not_change_a_definition),
+        CASE(changed_defaults_of_paths_concern_only_paths),
         CASE(objects_are_part_of_a_definition),
         CASE(columns_are_identified_by_name),
         CASE(a_study_resumes_in_a_file_with_other_columns),

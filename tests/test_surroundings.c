@@ -42,6 +42,7 @@ static void paths_to_the_camera_and_to_the_light_are_both_attenuated(void **stat
             s->camera.position = vec3_make(0.0, 0.6 * eye, -0.8 * eye);
             s->lights[0].position = vec3_make(0.6 * lamp, 0.8 * lamp, 0.0);
             for (int path = 0; path <= 1; path++) {
+                s->render.filter = PIXEL_FILTER_CENTRE;
                 s->render.integrator = path ? INTEGRATOR_PATH : INTEGRATOR_WHITTED;
                 expect(look(s), 0.8, eye + lamp);
             }
@@ -173,7 +174,8 @@ static void the_path_to_a_visible_light_is_attenuated(void **state)
 {
     (void)state;
     scene *s = scene_from(floor_scene);
-    set_all(s, "render.integrator=path camera.position=0,0.1,0 camera.target=3,4.1,0 lamp.position=3,4.1,0 "
+    set_all(s, "render.integrator=path render.filter=centre camera.position=0,0.1,0 camera.target=3,4.1,0 "
+               "lamp.position=3,4.1,0 "
                "lamp.radius=0.5 lamp.reach=1");
     expect(look(s), 4.0, 4.5);
     scene_destroy(s);

@@ -23,13 +23,13 @@ static status add(meaning *m, char *name, char *value)
 
 typedef struct visit_state {
     meaning *into;
-    bool without_performance;
+    bool without_performance, by_chance;
 } visit_state;
 
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
     visit_state *state = context;
-    if (state->without_performance && row->performance_only)
+    if ((state->without_performance && row->performance_only) || (row->by_chance && !state->by_chance))
         return STATUS_OK;
     char *usual = param_first_default_text(row);
     status code = STATUS_FAILURE;
@@ -58,7 +58,7 @@ static status add_solid(meaning *m, const scene *of, const solid *owner)
 status meaning_of_scene(meaning *m, const scene *of, bool without_performance)
 {
     static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE, PARAM_LIGHT, PARAM_MATERIAL, PARAM_SOLID};
-    visit_state state = {m, without_performance};
+    visit_state state = {m, without_performance, integrator_traits_of(&of->render)->by_chance};
     TRY(scene_each_param(of, add_param, &state));
     TRY(add(m, strdup("the camera's direction"), strdup(of->camera.aimed ? "its target" : "its angles")));
     for (size_t i = 0; i < sizeof groups / sizeof *groups; i++)

@@ -1,6 +1,7 @@
 /* The meaning of a row: everything that determines its frame, as pairs of name and value. Values at their first
  * defaults (param.first_default) are omitted, so that a version of the program with more parameters, shapes or words,
- * or with other defaults, gives the same meaning for the same values; objects and shapes are identified by name. For
+ * or with other defaults, gives the same meaning for the same values; so are parameters of random paths in a scene of
+ * another integrator (param.by_chance); objects and shapes are identified by name. For
  * this, a published name or word must never change. Ownership: meaning_free releases what was filled. */
 #pragma once
 

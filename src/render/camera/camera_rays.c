@@ -24,7 +24,9 @@ void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
     double u[ROW], v[ROW];
     const camera_pixel pixel = camera_pixel_of(&p->view, r);
     const camera_sampling need = t->rule->sampling(r);
-    const int64_t each = need.rays, cells = cells_across(need.points);
+    /* If pixels have their own numbers of rays, all of these are in pixel x0. */
+    const int64_t each = p->draws.by_pixel ? path_count(&p->draws, (int64_t)y * r->width + x0) : need.rays,
+                  cells = cells_across(need.points);
     const int at = q->count;
     for (int k = 0; k < count; k++) {
         int64_t x = x0 + first + k, ray = 0;
@@ -34,13 +36,17 @@ void camera_rays_enqueue(tracer *t, int y, int x0, int64_t first, int count)
             const int64_t s = ray / need.together % (cells * cells); /* row by row */
             sx = ((double)(s % cells) + 0.5) / (double)cells, sy = ((double)(s / cells) + 0.5) / (double)cells;
         }
-        u[k] = camera_u(&p->view, pixel, (double)x + sx);
-        v[k] = camera_v(&p->view, pixel, y + sy);
         const int i = at + k;
         q->ox[i] = p->view.eye.x, q->oy[i] = p->view.eye.y, q->oz[i] = p->view.eye.z;
         q->wr[i] = q->wg[i] = q->wb[i] = 1.0 / (double)each;
         q->start[i] = FACE_NONE;
         q->sample_key[i] = sample_key_make((int64_t)y * r->width + x, t->by_sample_key ? ray : 0);
+        if (need.jittered) {
+            const unit_pair point = path_draw(&p->draws, q->sample_key[i], 0, DRAW_PIXEL);
+            sx = point.u, sy = point.v;
+        }
+        u[k] = camera_u(&p->view, pixel, (double)x + sx);
+        v[k] = camera_v(&p->view, pixel, y + sy);
         if (p->spectral) {
             const double *white;
             q->sample_key[i] = spectra_choose(p->spectral, r, q->sample_key[i], &white);

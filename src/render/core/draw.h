@@ -7,17 +7,18 @@
 #include "scene/model/light.h"
 #include <assert.h>
 
-/* These numbers affect every image and must never change. New purposes are numbered from DRAW_NEXT; each light has its
- * own number from DRAW_LIGHT on. */
+/* These numbers affect every image and must never change. New purposes are numbered from DRAW_NEXT, below 2^16; each
+ * light has its own number from DRAW_LIGHT on. */
 enum {
     DRAW_WAVELENGTH = 0,
     DRAW_BRANCH = 1,
     DRAW_DIRECTION = 2,
     DRAW_ROULETTE = 3,
     DRAW_LIGHT = 4,
-    DRAW_NEXT = 0x1000
+    DRAW_PIXEL = 0x1000,
+    DRAW_NEXT = 0x1001
 };
-static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_NEXT,
+static_assert(DRAW_LIGHT + SCENE_LIGHTS_MAX <= DRAW_PIXEL,
               "the lights' numbers must not overlap those of the next purpose");
 
 static inline random_words draw(int64_t seed, int64_t sample_key, int depth, int purpose)

@@ -217,6 +217,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     }
     p->view = camera_frame_of(s);
     p->render = s->render;
+    p->draws = path_sampling_of(&s->render);
     if (integrator_traits_of(&s->render)->drawn)
         p->render.shadows = SHADOWS_OFF;
     else

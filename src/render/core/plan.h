@@ -6,6 +6,7 @@
 #include "geometry/scene_geometry.h"
 #include "geometry/hierarchy.h"
 #include "render/core/mesh_report.h"
+#include "render/core/path_sampling.h"
 #include "render/shade/light_cone.h"
 #include "render/shade/spectra.h"
 #include "scene/model/camera.h"
@@ -44,6 +45,7 @@ typedef struct plan {
     int camera_priority_index; /* and of the medium there */
     bool basic;                /* rays carry basic radiance (L / n^2): see radiance.c */
     render_settings render;
+    path_sampling draws; /* of random paths */
     /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
     const background *sky;

@@ -3,6 +3,7 @@
 
 #include "base/grow.h"
 #include "measure/clock.h"
+#include "render/core/path_counts.h"
 #include "render/core/plan.h"
 #include "render/core/worker_pool.h"
 #include "render/core/schedule.h"
@@ -285,6 +286,7 @@ static status make_result(const scene *s, const render_options *options, render_
     render_result *result = calloc(1, sizeof *result);
     if (!result)
         return out_of_memory(why);
+    result->replicates = shares_of(s);
     const film_space space = s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
     status code = film_create((int)s->render.width, (int)s->render.height, shares_of(s), space, &result->img, why);
     if (code == STATUS_OK) {
@@ -379,8 +381,9 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
     return code;
 }
 
-static status render_with_threads(renderer *r, const scene *s, const render_options *options, render_result **out,
-                                  diagnostic *why)
+/* counts: the number of paths of each pixel, or NULL. */
+static status render_with_threads(renderer *r, const scene *s, const render_options *options, const uint32_t *counts,
+                                  render_result **out, diagnostic *why)
 {
     status code = scene_check(s, why);
     plan *p = NULL;
@@ -389,6 +392,8 @@ static status render_with_threads(renderer *r, const scene *s, const render_opti
     if (code == STATUS_OK && s->background.kind == BACKGROUND_IMAGE && !s->background.img)
         code = diagnose(why, STATUS_FAILURE, "call scene_load first", "the sky's image is not loaded");
     THEN(code, plan_build(s, &p, why));
+    if (code == STATUS_OK)
+        p->draws.by_pixel = counts;
     const integrator *rule = code == STATUS_OK ? integrator_for(&s->render) : NULL;
     if (rule && rule->prepare)
         code = rule->prepare(p, &state, why);
@@ -408,10 +413,60 @@ static status render_with_threads(renderer *r, const scene *s, const render_opti
     return code;
 }
 
+/* A pilot can be stopped, and has no progress of its own. */
+static bool watch_pilot(void *context, double share_done)
+{
+    render_options *const *options = context;
+    (void)share_done;
+    return (*options)->progress((*options)->context, 0.0);
+}
+
+static void add_pilot(render_result *result, const render_result *pilot)
+{
+    ray_counters_add(&result->counters, &pilot->counters);
+    result->wall_s += pilot->wall_s;
+    result->cpu_s += pilot->cpu_s;
+    for (int i = 0; i < result->worker_count; i++) {
+        worker_report *to = &result->workers[i];
+        const worker_report *from = &pilot->workers[i];
+        to->wall_s += from->wall_s, to->cpu_s += from->cpu_s, to->busy_s += from->busy_s;
+        to->visibility_s += from->visibility_s, to->waiting_s += from->waiting_s, to->tiles += from->tiles;
+        to->camera += from->camera, to->reflect += from->reflect;
+        to->refract += from->refract, to->shadow += from->shadow;
+    }
+}
+
+/* A pilot, then the frame with the number of paths that it gives each pixel. */
+static status render_by_error(renderer *r, const scene *s, const render_options *options, render_result **out,
+                              diagnostic *why)
+{
+    scene first = *s; /* borrows what s owns */
+    first.render = path_counts_pilot(&s->render);
+    render_options watched = {.context = &options};
+    if (options && options->progress)
+        watched.progress = watch_pilot, watched.progress_s = options->progress_s;
+    render_result *pilot = NULL;
+    uint32_t *counts = NULL;
+    status code = render_with_threads(r, &first, &watched, NULL, &pilot, why);
+    if (code == STATUS_INTERRUPTED) {
+        *out = pilot;
+        return code;
+    }
+    THEN(code, path_counts_create(&s->render, pilot, &counts, why));
+    THEN(code, render_with_threads(r, s, options, counts, out, why));
+    if (code == STATUS_OK)
+        add_pilot(*out, pilot);
+    free(counts);
+    render_result_destroy(pilot);
+    return code;
+}
+
 /* `auto` is resolved once, so that all parts of a frame agree on the number of workers. */
 status renderer_render(renderer *r, const scene *s, const render_options *options, render_result **out, diagnostic *why)
 {
     scene resolved = *s; /* borrows what s owns */
     resolved.render.threads = scene_threads(&s->render);
-    return render_with_threads(r, &resolved, options, out, why);
+    if (path_counts_apply(&s->render))
+        return render_by_error(r, &resolved, options, out, why);
+    return render_with_threads(r, &resolved, options, NULL, out, why);
 }

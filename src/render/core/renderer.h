@@ -75,10 +75,12 @@ typedef struct render_result {
     double *pixel_rays; /* NULL unless requested; width * height */
     double *pixel_ns;
     /* For random paths: square of the standard error of each film value, [(y * width + x) * 3 + channel] in the film's
-     * own space, from the differences between 8 equal shares of the paths, or fewer so that their number divides paths
-     * / samples. NULL if unknown. For a spectral film it is an overestimate: each share has its own wavelengths, so the
-     * shares differ by more than random noise. */
+     * own space, from the differences between the replicates (render/core/path_sampling.h). NULL if unknown. For a
+     * spectral film under render.sampler=philox it is an overestimate: each replicate has its own wavelengths, so that
+     * they differ by more than random noise. */
     double *variance;
+    /* Under render.error, rays and times include those of the pilot, pixel_rays and pixel_ns do not. */
+    int replicates;     /* of the paths of a pixel, 1 if the variance is unknown */
     tile_event *events; /* in order of begin_s; NULL unless requested */
     size_t event_count;
     mesh_report meshes;

@@ -287,8 +287,8 @@ static pixel_block block_of(const plan *p, const span *piece, int64_t each)
     return (pixel_block){piece->x1 - piece->x0, 1};
 }
 
-/* Traces a row of a block; false when the frame was stopped. */
-static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each, const atomic_bool *stop)
+/* Traces pixels of a row with an equal number of rays; false when the frame was stopped. */
+static bool trace_pixels(tracer *t, int y, int x0, int x1, int64_t each, const atomic_bool *stop)
 {
     const int64_t all = each * (x1 - x0);
     const int at_once = rays_at_once(each);
@@ -298,6 +298,18 @@ static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each, const atom
             if (stopped(stop))
                 return false;
     }
+    return true;
+}
+
+/* Traces a row of a block; false when the frame was stopped. */
+static bool trace_row(tracer *t, int y, int x0, int x1, int64_t each, const atomic_bool *stop)
+{
+    const plan *p = t->target.frame_plan;
+    if (!p->draws.by_pixel)
+        return trace_pixels(t, y, x0, x1, each, stop);
+    for (int x = x0; x < x1; x++)
+        if (!trace_pixels(t, y, x, x + 1, path_count(&p->draws, (int64_t)y * p->render.width + x), stop))
+            return false;
     return true;
 }
 

@@ -27,6 +27,7 @@ typedef struct camera_sampling {
     int64_t rays;
     int64_t points;   /* upper limit of sample points in a pixel: the largest k x k grid with at most that many */
     int64_t together; /* number of consecutive rays through one point; the next ones use the next point, cyclically */
+    bool jittered;    /* instead, each ray has its own random point of the pixel */
     int64_t marks;    /* further bits of their sample keys besides pixel and sample (render/core/sample_key.h) */
 } camera_sampling;
 

@@ -9,33 +9,12 @@
  * This is how light through a vessel makes caustics. In a scene with light spheres, clear solids block point lights
  * too. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as bright as in
  * Phong's model. There is no ambient term: light from the sky and from other surfaces replaces it. */
-#include "render/shade/shading.h"
+#include "render/integrators/path_lights.h"
 
-#include "base/elementary.h"
-#include "optics/mueller.h"
-#include "render/core/draw.h"
 #include <string.h>
 
 /* Below this depth every path continues; from it on faint paths end by Russian roulette. */
 enum { ROULETTE_DEPTH = 3 };
-
-/* Radiance of a light's sphere towards a ray along a unit vector, for a colour of 1. For a cone light each point of the
- * sphere emits only into the cone, so that from far away it is the cone of a point. */
-static double radiance_along(const plan *p, int lamp, vec3 direction)
-{
-    const light *l = &p->lights[lamp];
-    return l->reach * l->reach / (l->radius * l->radius) * light_share(l, &p->cones[lamp], vec3_scale(direction, -1.0));
-}
-
-static vec3 light_color(const tracer *t, int lamp, int64_t sample_key)
-{
-    const plan *p = t->target.frame_plan;
-    const light *l = &p->lights[lamp];
-    if (!p->spectral)
-        return vec3_scale(l->color, l->intensity);
-    const double radiance = spectra_light(p->spectral, sample_key, lamp);
-    return vec3_make(radiance, radiance, radiance);
-}
 
 /* Distance at which the ray hits the sphere from outside, or HUGE_VAL. */
 static double distance_to_light(const light *l, vec3 origin, vec3 direction)
@@ -107,9 +86,9 @@ static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int pr
 {
     const plan *p = t->target.frame_plan;
     const int64_t sample_key = q->sample_key[at];
-    const double radiance = radiance_along(p, lamp, vec3_make(q->dx[at], q->dy[at], q->dz[at])) *
+    const double radiance = path_light_radiance(p, lamp, vec3_make(q->dx[at], q->dy[at], q->dz[at])) *
                             (p->basic ? radiance_share(p, sample_key, priority_index) : 1.0);
-    const vec3 l = vec3_scale(light_color(t, lamp, sample_key), radiance);
+    const vec3 l = vec3_scale(path_light_color(t, lamp, sample_key), radiance);
     shading_expose(t, sample_key, q->wr[at] * l.x, q->wg[at] * l.y, q->wb[at] * l.z);
 }
 
@@ -123,58 +102,6 @@ static void expose_background(tracer *t, const ray_queue *q, int first, const in
         else
             expose_light(t, q, first + i, lamp_of(hit), (int)t->batch.hits.before[i]);
     }
-}
-
-/* A unit vector at an angle from the axis, given by its cosine and sine; turn: azimuth as a share of a full turn. */
-static vec3 direction_about(vec3 axis, double cosine, double sine, double turn)
-{
-    vec3 x, y;
-    double s, c;
-    polarisation_frame(axis, &x, &y);
-    elementary_sincos_deg(360.0 * turn, &s, &c);
-    const vec3 across = vec3_add(vec3_scale(x, sine * c), vec3_scale(y, sine * s));
-    return vec3_normalize(vec3_add(vec3_scale(axis, cosine), across));
-}
-
-/* Enqueues a shadow ray from record k of the group to a random point of a light's sphere. */
-static void sample_light(tracer *t, int k, const material *m, bool opaque, int lamp, int depth)
-{
-    const plan *p = t->target.frame_plan;
-    const group *g = &t->surface.gathered;
-    const light *l = &p->lights[lamp];
-    const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
-    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]),
-               to_light = vec3_sub(l->position, point);
-    const double distance2 = vec3_dot(to_light, to_light), share2 = l->radius * l->radius / distance2;
-    if (share2 >= 1.0)
-        return;
-    /* cap = 1 - least_cos, without cancellation. */
-    const double least_cos = sqrt(1.0 - share2), cap = share2 / (1.0 + least_cos);
-    const random_words drawn = draw(p->render.seed, g->sample_key[k], depth, DRAW_LIGHT + lamp);
-    const double below = random_unit(drawn.word[0]) * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
-    const vec3 to =
-        direction_about(vec3_scale(to_light, 1.0 / sqrt(distance2)), cosine, sine, random_unit(drawn.word[1]));
-    const double n_l = vec3_dot(n, to), radiance = radiance_along(p, lamp, to),
-                 within = l->radius * l->radius - distance2 * sine * sine;
-    if (!(n_l > 0.0) || radiance == 0.0 || !mesh_lets_out(t, k, to))
-        return;
-    const double reach = sqrt(distance2) * cosine - sqrt(within > 0.0 ? within : 0.0);
-    /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)), plus Phong's highlight from the same light. */
-    const vec3 d = vec3_make(g->dx[k], g->dy[k], g->dz[k]);
-    const double r_v = 2.0 * n_l * g->points.cos_i[k] + vec3_dot(d, to);
-    const double shine = opaque && m->specular > 0.0 && r_v > 0.0
-                             ? m->specular * elementary_pow(r_v < 1.0 ? r_v : 1.0, m->shininess)
-                             : 0.0;
-    const double seen = 2.0 * cap * radiance, diffuse = m->diffuse * n_l;
-    const vec3 color = vec3_scale(light_color(t, lamp, g->sample_key[k]), seen);
-    ray_queue *q = &t->queues.shadows;
-    const int at = q->count++;
-    q->ox[at] = point.x, q->oy[at] = point.y, q->oz[at] = point.z;
-    q->dx[at] = to.x * reach, q->dy[at] = to.y * reach, q->dz[at] = to.z * reach;
-    q->wr[at] = g->wr[k] * color.x * (diffuse * g->cr[k] + shine);
-    q->wg[at] = g->wg[k] * color.y * (diffuse * g->cg[k] + shine);
-    q->wb[at] = g->wb[k] * color.z * (diffuse * g->cb[k] + shine);
-    q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k], q->inside[at] = g->inside_before[k];
 }
 
 /* The continuation of a path: direction, throughput factor by channel, and media. */
@@ -215,10 +142,10 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
         c->share = vec3_make(mirror / odds, mirror / odds, mirror / odds);
         return true;
     }
-    const random_words drawn = draw(t->target.frame_plan->render.seed, g->sample_key[k], depth, DRAW_DIRECTION);
-    const double sine2 = random_unit(drawn.word[0]);
+    const unit_pair drawn = path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_DIRECTION);
+    const double sine2 = drawn.u;
     const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
-    c->direction = direction_about(n, sqrt(1.0 - sine2), sqrt(sine2), random_unit(drawn.word[1]));
+    c->direction = path_direction_about(n, sqrt(1.0 - sine2), sqrt(sine2), drawn.v);
     c->share = vec3_scale(vec3_make(g->cr[k], g->cg[k], g->cb[k]), m->diffuse / odds);
     return mesh_lets_out(t, k, c->direction);
 }
@@ -230,10 +157,11 @@ static bool survives(const tracer *t, int k, int depth, vec3 *share)
     const group *g = &t->surface.gathered;
     if (!r->roulette || depth < ROULETTE_DEPTH)
         return true;
-    const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)r->paths;
+    const int64_t paths = path_count(&t->target.frame_plan->draws, sample_key_pixel(g->sample_key[k]));
+    const double weight = fmax(g->wr[k] * share->x, fmax(g->wg[k] * share->y, g->wb[k] * share->z)) * (double)paths;
     if (weight >= 1.0)
         return true;
-    if (random_unit(draw(r->seed, g->sample_key[k], depth, DRAW_ROULETTE).word[0]) >= weight)
+    if (path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_ROULETTE).u >= weight)
         return false;
     *share = vec3_scale(*share, 1.0 / weight);
     return true;
@@ -266,9 +194,8 @@ static void go_on(tracer *t, int k, int depth, const continuation *c)
 
 static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth)
 {
-    const random_words drawn =
-        draw(t->target.frame_plan->render.seed, t->surface.gathered.sample_key[k], depth, DRAW_BRANCH);
-    const double chance = random_unit(drawn.word[0]);
+    const double chance =
+        path_draw(&t->target.frame_plan->draws, t->surface.gathered.sample_key[k], depth, DRAW_BRANCH).u;
     continuation c = {.refracted = false};
     if (!(opaque ? draw_matte(t, m, k, depth, chance, &c) : draw_clear(t, k, chance, &c)))
         return;
@@ -280,36 +207,29 @@ static void continue_one(tracer *t, const material *m, bool opaque, int k, int d
 
 static void shade(tracer *t, int depth, int priority_index)
 {
-    const plan *p = t->target.frame_plan;
     const material *m = &t->surface.mat->surface;
-    const bool opaque = surface_is_opaque(t, priority_index), lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
-    local_light(t, priority_index, (light_terms){.highlights = true}); /* of point lights; spheres follow */
-    radiance_weigh(t);
-    for (int k = 0; lit && k < t->surface.gathered.count; k++)
-        for (int lamp = 0; lamp < p->light_count; lamp++)
-            if (p->lights[lamp].radius > 0.0)
-                sample_light(t, k, m, opaque, lamp, depth);
-    radiance_weigh_back(t);
+    const bool opaque = surface_is_opaque(t, priority_index);
+    path_sample_lights(t, priority_index, depth);
     shading_branches(t, opaque);
     for (int k = 0; k < t->surface.gathered.count; k++)
         continue_one(t, m, opaque, k, depth);
 }
 
-/* Uses fewer sample points if there are fewer paths than samples: with only the first rows of the grid the image would
- * shift. */
+/* Through the centres of cells: with fewer paths than samples there are fewer cells, because with only the first rows
+ * of the grid the image would shift. */
 static camera_sampling paths_of(const render_settings *r)
 {
     const int64_t points = r->paths < r->samples ? r->paths : r->samples;
-    return (camera_sampling){.rays = r->paths, .points = points, .together = 1, .marks = SAMPLE_KEY_SPECULAR_BOUNCE};
+    return (camera_sampling){.rays = r->paths,
+                             .points = points,
+                             .together = 1,
+                             .jittered = r->filter == PIXEL_FILTER_BOX,
+                             .marks = SAMPLE_KEY_SPECULAR_BOUNCE};
 }
 
-/* The largest possible number of shares. Each covers all sample points of the pixel. */
 static int shares(const render_settings *r)
 {
-    int count = r->paths % r->samples == 0 ? FILM_SHARES_MAX : 1;
-    while (r->paths / r->samples % count != 0)
-        count--;
-    return count;
+    return (int)path_sampling_of(r).replicates;
 }
 
 const integrator integrator_of_path = {.traced = true,

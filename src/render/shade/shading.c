@@ -37,7 +37,7 @@ static __attribute__((noinline)) void expose_by_sample_key(tracer *t, int64_t sa
 {
     const plan *p = t->target.frame_plan;
     const film *f = t->target.img;
-    const int64_t share = f->shares == 1 ? 0 : sample_key_sample(sample_key) / p->render.samples % f->shares;
+    const int64_t share = f->shares == 1 ? 0 : path_replicate(&p->draws, sample_key);
     const int64_t place = sample_key_pixel(sample_key) + share * f->width * f->height;
     if (p->spectral) {
         const double *eye = spectra_row(p->spectral, sample_key)->eye;
@@ -183,7 +183,7 @@ static void send_out(tracer *t, int priority_index, light_terms terms)
         m = &dull;
     }
     expose_own_light(t, m, terms.ambient);
-    if (m->diffuse == 0.0 && m->specular == 0.0)
+    if (terms.emission_only || (m->diffuse == 0.0 && m->specular == 0.0))
         return;
     for (int k = 0; k < p->light_count; k++) {
         if (!terms.spheres && p->lights[k].radius > 0.0)

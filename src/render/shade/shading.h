@@ -29,7 +29,8 @@ static inline bool surface_is_opaque(const tracer *t, int priority_index)
 /* The terms of a surface's emission and direct light. */
 typedef struct light_terms {
     bool ambient, highlights;
-    bool spheres; /* sphere lights are treated as points at their centres */
+    bool spheres;       /* sphere lights are treated as points at their centres */
+    bool emission_only; /* no light of the scene's lights */
 } light_terms;
 void local_light(tracer *t, int priority_index, light_terms terms);
 /* The terms of Phong's model that render.lighting selects. */

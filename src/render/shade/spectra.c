@@ -2,7 +2,7 @@
 #include "render/shade/spectra.h"
 
 #include "base/random.h"
-#include "render/core/draw.h"
+#include "render/core/path_sampling.h"
 #include "render/shade/sky.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
@@ -77,10 +77,13 @@ static region_spectrum region_at(const upsampled_scene *l, size_t priority_index
     return b;
 }
 
-/* Number of wavelengths that share one offset. */
+/* Number of wavelengths that share one offset: of a camera ray, of all of a pixel's random paths, or of one replicate
+ * of the paths under sobol. */
 static int64_t wavelengths_together(const render_settings *render)
 {
-    return integrator_traits_of(render)->by_chance ? render->paths : render->wavelengths;
+    if (!integrator_traits_of(render)->by_chance)
+        return render->wavelengths;
+    return render->sampler == SAMPLER_SOBOL ? render->paths / path_sampling_of(render).replicates : render->paths;
 }
 
 /* Number `i` of `count` wavelengths. */
@@ -89,9 +92,9 @@ static int64_t wavelength_of(int64_t i, int64_t count, int offset)
     return (int64_t)(((double)i + (offset + 0.5) / SPECTRA_OFFSETS) / (double)count * SPECTRA_COUNT);
 }
 
-static void whiten(spectra *p, const render_settings *render, int offset)
+static void whiten(spectra *p, int offset)
 {
-    const int64_t count = wavelengths_together(render);
+    const int64_t count = p->together;
     double white[3], sum[3] = {0.0, 0.0, 0.0};
     linear_srgb_to_xyz((const double[3]){1.0, 1.0, 1.0}, white);
     for (int64_t i = 0; i < count; i++) {
@@ -119,8 +122,9 @@ static bool fill_tables(const upsampled_scene *l, spectra *p)
         for (size_t k = 0; k < p->light_count; k++)
             p->lights[i * p->light_count + k] = upsampled_emission(&l->light[k], lambda_nm);
     }
+    p->together = wavelengths_together(&l->s->render);
     for (int i = 0; i < SPECTRA_OFFSETS; i++)
-        whiten(p, &l->s->render, i);
+        whiten(p, i);
     return true;
 }
 
@@ -159,7 +163,7 @@ double spectra_lambda(int64_t number)
 
 int64_t spectra_choose(const spectra *p, const render_settings *render, int64_t sample_key, const double **white)
 {
-    const int64_t count = wavelengths_together(render);
+    const int64_t count = p->together;
     const int64_t sample = sample_key_sample(sample_key),
                   all_of = sample_key_make(sample_key_pixel(sample_key), sample / count);
     const int offset = (int)(draw(render->seed, all_of, 0, DRAW_WAVELENGTH).word[0] % SPECTRA_OFFSETS);

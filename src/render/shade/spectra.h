@@ -36,6 +36,7 @@ typedef struct spectra {
     region_spectrum *regions; /* by wavelength, then priority index */
     double *lights;           /* by wavelength, then light: radiance of its colour times its intensity */
     double (*white)[3];       /* by offset: weights that make a pixel's wavelengths white under D65 */
+    int64_t together;         /* number of wavelengths that share one offset */
     size_t priority_indices, light_count;
 } spectra;
 

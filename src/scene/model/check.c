@@ -85,6 +85,14 @@ static status check_render(const scene *s, diagnostic *why)
     if (s->render.polarisation && integrator_traits_of(&s->render)->by_chance)
         return diagnose(why, STATUS_BAD_INPUT, "set render.polarisation to off, or render.integrator to whitted",
                         "the path integrator does not support polarisation");
+    const bool grid = s->render.filter == PIXEL_FILTER_CENTRE;
+    if (integrator_traits_of(&s->render)->by_chance && s->render.error > 0.0 &&
+        (s->render.spectrum == SPECTRUM_SPECTRAL || grid))
+        return diagnose(why, STATUS_BAD_INPUT,
+                        grid ? "set render.filter to box, or render.error to 0"
+                             : "set render.spectrum to rgb, or render.error to 0",
+                        "a number of paths by render.error does not support %s",
+                        grid ? "a grid of samples" : "a spectrum");
     if (integrator_traits_of(&s->render)->drawn && (s->render.polarisation || s->render.spectrum == SPECTRUM_SPECTRAL))
         return diagnose(why, STATUS_BAD_INPUT, "set render.integrator to raycast or whitted",
                         "the depth buffer renders RGB only: it does not support %s",

@@ -48,7 +48,8 @@ typedef struct param {
     size_t offset;              /* in the group's struct */
     bool performance_only;      /* affects only performance: the film does not depend on it */
     bool by_shape;              /* PARAM_SOLID: only for solids whose shape rule lists it */
-    const char *first_default;  /* the default of the first version that had the parameter, if it is another one now:
+    bool by_chance; /* affects only films of random paths: the meaning of a row with another integrator omits it */
+    const char *first_default; /* the default of the first version that had the parameter, if it is another one now:
                                    rows omit it in the identity of a cell; NULL: fallback */
 } param;
 

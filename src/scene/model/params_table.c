@@ -21,6 +21,9 @@ static const char *const pin_words[] = {"none", "compact", "scatter", NULL};
 static const char *const lighting_words[] = {"lambert", "phong", "whitted", NULL};
 static const char *const spectrum_words[] = {"rgb", "spectral", NULL};
 static const char *const accel_words[] = {"none", "sphere", "octant", "bvh", "embree", NULL};
+static const char *const sampler_words[] = {"philox", "sobol", NULL};
+static const char *const pixel_filter_words[] = {"centre", "box", NULL};
+static const char *const light_sampling_words[] = {"all", "one", NULL};
 static const char *const texturing_words[] = {"perspective", "affine", NULL};
 static const char *const shading_words[] = {"flat", "smooth", "gouraud", NULL};
 /* arrays: meshes given by a program, which files cannot contain */
@@ -48,6 +51,8 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 #define OF(type, field) ON_ALL, .offset = offsetof(type, field)
 /* Performance only: see param.performance_only. */
 #define PERFORMANCE(field) OF(render_settings, field), .performance_only = true
+/* For random paths only: see param.by_chance. */
+#define PATHS(field) OF(render_settings, field), .by_chance = true
 /* For slimes only. */
 #define SLIME(field) ON_SLIME, .offset = offsetof(mesh_entry, slime.field)
 /* For some shapes: see geometry/shapes/shape.h. */
@@ -122,6 +127,21 @@ static const param table[] = {
     REAL(PARAM_RENDER, render_settings, min_weight, "", 0, 1, "0",
          "rays with a throughput below this are not traced; 0: trace the whole tree"),
     INTEGER(PARAM_RENDER, render_settings, paths, "", 1, 1048576, "16", "paths per pixel of integrator path"),
+    ROW(PARAM_RENDER, "error", PARAM_REAL, "", 0, 1e3, false, "0",
+        "standard error of a pixel that integrator path aims at, with at most render.paths paths, which a pilot render "
+        "chooses; 0: render.paths everywhere",
+        NULL, PATHS(error)),
+    ROW(PARAM_RENDER, "sampler", PARAM_CHOICE, "", 0, 0, false, "sobol",
+        "sample points of integrator path: independent random numbers (Philox), or a scrambled Sobol sequence, whose "
+        "error falls faster",
+        sampler_words, PATHS(sampler), .first_default = "philox"),
+    ROW(PARAM_RENDER, "filter", PARAM_CHOICE, "", 0, 0, false, "box",
+        "pixel filter of integrator path: through the centres of the grid of render.samples only, or the mean over the "
+        "pixel (random points)",
+        pixel_filter_words, PATHS(filter), .first_default = "centre"),
+    ROW(PARAM_RENDER, "light_sampling", PARAM_CHOICE, "", 0, 0, false, "one",
+        "lights that integrator path samples at a matte surface: all, or one, chosen at random by its brightness there",
+        light_sampling_words, PATHS(light_sampling), .first_default = "all"),
     CHOICE(PARAM_RENDER, render_settings, roulette, off_on, "off",
            "Russian roulette: faint paths end at random, and the surviving ones are weighted up; integrator path"),
     INTEGER(PARAM_RENDER, render_settings, seed, "", 0, 2147483647, "1", "seed of the random numbers"),

@@ -16,41 +16,48 @@ typedef enum schedule_rule { SCHEDULE_COLUMNS, SCHEDULE_ROWS, SCHEDULE_TILES, SC
 typedef enum pin_rule { PIN_RULE_NONE, PIN_RULE_COMPACT, PIN_RULE_SCATTER } pin_rule;
 typedef enum lighting_rule { LIGHTING_LAMBERT, LIGHTING_PHONG, LIGHTING_WHITTED } lighting_rule;
 typedef enum spectrum_rule { SPECTRUM_RGB, SPECTRUM_SPECTRAL } spectrum_rule;
+typedef enum sampler_rule { SAMPLER_PHILOX, SAMPLER_SOBOL } sampler_rule;
+typedef enum pixel_filter { PIXEL_FILTER_CENTRE, PIXEL_FILTER_BOX } pixel_filter;
+typedef enum light_sampling_rule { LIGHT_SAMPLING_ALL, LIGHT_SAMPLING_ONE } light_sampling_rule;
 typedef enum texturing_rule { TEXTURING_PERSPECTIVE, TEXTURING_AFFINE } texturing_rule;
 
 enum { SCENE_SAMPLES_MAX = 64 };
 #define SCENE_PIXELS_MAX 268435456 /* 2^28 */
 
 typedef struct render_settings {
-    int64_t width, height; /* pixels */
-    int64_t depth;         /* recursion depth; 0 = camera rays only */
-    int64_t samples;       /* per pixel: a square number, at most SCENE_SAMPLES_MAX */
-    int64_t integrator;    /* integrator_rule */
-    int64_t layer;         /* layer_rule: the layer that the film shows, for integrators that write layers */
-    int64_t lighting;      /* lighting_rule */
-    int64_t weights;       /* weights_rule */
-    int64_t transmission;  /* transmission_rule */
-    int64_t beyond;        /* depth_limit_rule */
-    int64_t radiance;      /* radiance_rule */
-    int64_t shadows;       /* shadow_rule */
-    double min_weight;     /* rays with a lower throughput in every channel are not traced; 0: all are */
-    int64_t paths;         /* per pixel, for the path integrator */
-    int64_t roulette;      /* 1: Russian roulette in the path integrator */
-    int64_t seed;          /* of all random numbers */
-    int64_t polarisation;  /* 1: rays carry Stokes vectors */
-    int64_t spectrum;      /* spectrum_rule */
-    int64_t wavelengths;   /* per camera ray, for the spectral film */
-    double lambda_nm;      /* wavelength of the refractive indices of an RGB film */
-    double unit_m;         /* length of one scene unit in metres */
-    int64_t threads;       /* 1..1024; 0: see scene_threads */
-    int64_t pool;          /* 1: persistent threads; 0: new threads for every frame */
-    int64_t schedule;      /* schedule_rule */
-    int64_t tile;          /* tile size, pixels */
-    int64_t pieces;        /* least number of tiles per worker, for which tiles are halved; 0: no least number */
-    int64_t pin;           /* pin_rule */
-    int64_t accel;         /* hierarchy_kind */
-    int64_t build_threads; /* threads that build hierarchies; 0: one per processing unit */
-    int64_t keep;          /* 1: a mesh keeps its hierarchy; 0: every frame builds it again */
+    int64_t width, height;  /* pixels */
+    int64_t depth;          /* recursion depth; 0 = camera rays only */
+    int64_t samples;        /* per pixel: a square number, at most SCENE_SAMPLES_MAX */
+    int64_t integrator;     /* integrator_rule */
+    int64_t layer;          /* layer_rule: the layer that the film shows, for integrators that write layers */
+    int64_t lighting;       /* lighting_rule */
+    int64_t weights;        /* weights_rule */
+    int64_t transmission;   /* transmission_rule */
+    int64_t beyond;         /* depth_limit_rule */
+    int64_t radiance;       /* radiance_rule */
+    int64_t shadows;        /* shadow_rule */
+    double min_weight;      /* rays with a lower throughput in every channel are not traced; 0: all are */
+    int64_t paths;          /* per pixel, for the path integrator */
+    double error;           /* standard error of a pixel that the path integrator aims at; 0: render.paths everywhere */
+    int64_t sampler;        /* sampler_rule: of the path integrator */
+    int64_t filter;         /* pixel_filter: of the path integrator */
+    int64_t light_sampling; /* light_sampling_rule: of the path integrator */
+    int64_t roulette;       /* 1: Russian roulette in the path integrator */
+    int64_t seed;           /* of all random numbers */
+    int64_t polarisation;   /* 1: rays carry Stokes vectors */
+    int64_t spectrum;       /* spectrum_rule */
+    int64_t wavelengths;    /* per camera ray, for the spectral film */
+    double lambda_nm;       /* wavelength of the refractive indices of an RGB film */
+    double unit_m;          /* length of one scene unit in metres */
+    int64_t threads;        /* 1..1024; 0: see scene_threads */
+    int64_t pool;           /* 1: persistent threads; 0: new threads for every frame */
+    int64_t schedule;       /* schedule_rule */
+    int64_t tile;           /* tile size, pixels */
+    int64_t pieces;         /* least number of tiles per worker, for which tiles are halved; 0: no least number */
+    int64_t pin;            /* pin_rule */
+    int64_t accel;          /* hierarchy_kind */
+    int64_t build_threads;  /* threads that build hierarchies; 0: one per processing unit */
+    int64_t keep;           /* 1: a mesh keeps its hierarchy; 0: every frame builds it again */
     /* a refitted hierarchy of a moving mesh is rebuilt when its expected cost exceeds this factor */
     double rebuild;
     int64_t texturing; /* texturing_rule, for the rasteriser */

@@ -18,6 +18,12 @@ static bool seed(const inert_case *c)
     return c->s->render.spectrum != SPECTRUM_SPECTRAL && path_only(c);
 }
 
+static bool samples(const inert_case *c)
+{
+    return is_path(c->s) && c->s->render.filter == PIXEL_FILTER_BOX &&
+           inert_say(c, "path-box", "set render.filter=centre", "every path has its own random point of the pixel");
+}
+
 /* Russian roulette starts after the third surface: render/integrators/path.c. */
 static bool roulette(const inert_case *c)
 {
@@ -144,6 +150,23 @@ static bool nothing_lit(const inert_case *c)
                                     "no visible surface is lit by lights"));
 }
 
+/* A pilot has 16 paths: render/core/path_counts.h. */
+static bool error(const inert_case *c)
+{
+    enum { PILOT_PATHS = 16 };
+    return path_only(c) ||
+           (c->s->render.paths <= PILOT_PATHS &&
+            inert_say(c, "few-paths", "set render.paths=256",
+                      "render.paths, the largest number of paths, is not above the pilot's %d", PILOT_PATHS));
+}
+
+static bool light_sampling(const inert_case *c)
+{
+    if (path_only(c) || nothing_lit(c))
+        return true;
+    return shining_lights(c->s) < 2 && inert_say(c, "one-light", "add a second light", "the scene has one light");
+}
+
 static bool shadows(const inert_case *c)
 {
     const scene *s = c->s;
@@ -238,6 +261,11 @@ bool inert_render(const inert_case *c)
         {"shadows", shadows},
         {"min_weight", min_weight},
         {"paths", path_only},
+        {"samples", samples},
+        {"error", error},
+        {"sampler", path_only},
+        {"filter", path_only},
+        {"light_sampling", light_sampling},
         {"roulette", roulette},
         {"seed", seed},
         {"radiance", inert_radiance},

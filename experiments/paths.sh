@@ -1,0 +1,119 @@
+#!/bin/bash
+# paths.sh - error against time of random paths: the defaults (new: scrambled Sobol points, box filter, one light per
+# surface) and those of earlier versions (old: Philox, pixel centres, all lights), on five scenes.
+#   experiments/paths.sh [CUVETTE]
+# 1. For each number of paths: the root mean square error of a film value, its time, and the ratio of the reported noise
+#    to the error. The error is the standard deviation over SEEDS films, which needs no reference: the mean of a film is
+#    exact. Required: the ratio is 0.9..1.1, except where few bright paths make up the error (glass with old).
+# 2. The slopes of error against paths, and the time of new over that of old at the error that old has with the most
+#    paths, on the line through the logarithms of new's errors and times. Required on matte: at most 0.25.
+# 3. 64 lights over one light: time at the error that one light has with the most paths. Required: about 4.
+# SEEDS=N: 6 unless given. COUNTS: "16 64 256" unless given. Times are those of the
+# processor with one thread, medians over the seeds.
+set -euo pipefail
+export LC_ALL=C
+cuvette=${1:-${CUVETTE:-build/cuvette}}
+seeds=${SEEDS:-6}
+counts=${COUNTS:-16 64 256}
+[ -x "$cuvette" ] || {
+    echo "paths.sh: no program $cuvette; run make" >&2
+    exit 2
+}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+view='camera: {position: [0, 2, -5], target: [0, 0.7, 0], fov_deg: 40}
+background: {color: [0.2, 0.25, 0.3]}'
+things='solids:
+  floor: {shape: plane, color: [0.9, 0.6, 0.3], diffuse: 0.7}
+  ball: {shape: sphere, position: [-0.8, 0.8, 0], radius: 0.7, diffuse: 0.8}
+  stone: {shape: box, position: [0.8, 0.7, 0], size: [1, 1.4, 1], rotation: [0, 30, 0], diffuse: 0.8}'
+lamp='lights: {lamp: {position: [3, 5, -2], intensity: 1, reach: 5, radius: 1}}'
+printf '%s\n' "$view" "$things" "$lamp" >"$work/matte.yaml"
+sed 's/stone:.*/glass: {shape: sphere, position: [0.8, 0.8, 0], radius: 0.7, transparency: 1, ior: 1.5}/' \
+    "$work/matte.yaml" >"$work/glass.yaml"
+cat >"$work/room.yaml" <<'END'
+camera: {position: [0.1, 0.2, -2], target: [0.7, 0, 1], fov_deg: 90}
+background: {color: [0, 0, 0]}
+solids:
+  wall: {shape: sphere, radius: 9, diffuse: 0.6}
+  hollow: {shape: sphere, radius: 3, transparency: 1, ior: 1, priority: 1}
+  lamp: {shape: sphere, radius: 0.7, position: [0.5, 1.5, 1.5], emission: 3, priority: 2}
+  stone: {shape: box, position: [-0.5, -1, 0.5], size: [0.8, 0.8, 0.8], diffuse: 0.7, priority: 3}
+END
+awk -v count=64 'BEGIN { srand(5); print "lights:"
+    for (k = 0; k < count; k++)
+        printf "  l%d: {position: [%.3f, %.3f, %.3f], intensity: %.4f, reach: 5, radius: 0.1}\n", k,
+            10 * rand() - 5, 4.5 + 2 * rand(), 8 * rand() - 5, (0.5 + rand()) / count }' >"$work/lights"
+{ printf '%s\n' "$view" "$things" && cat "$work/lights"; } >"$work/lights64.yaml"
+{ printf '%s\n' "$view" "$things" && sed 2q "$work/lights" | sed 's/intensity: [0-9.]*/intensity: 1/'; } \
+    >"$work/lights1.yaml"
+cp experiments/scenes/models.yaml experiments/scenes/*.jpg experiments/scenes/*.png "$work"
+
+old=(render.sampler=philox render.filter=centre render.light_sampling=all)
+new=(render.sampler=sobol render.filter=box render.light_sampling=one)
+
+field() { # field NAME JSON - the first number of that name
+    sed -n 's/^ *"'"$1"'": \([0-9.e+-]*\),*$/\1/p' "$2" | head -1
+}
+
+# Error, median time in seconds, reported noise over error.
+measure() { # measure SCENE PATHS ASSIGNMENT...
+    local scene=$1 paths=$2 options=() one seed
+    shift 2
+    for one in "$@"; do options+=(--set "$one"); done
+    : >"$work/times"
+    : >"$work/noise"
+    for seed in $(seq 1 "$seeds"); do
+        "$cuvette" render "$work/$scene.yaml" -o "$work/film$seed.pfm" --json --set render.width=64 \
+            --set render.height=48 --set render.depth=4 --set render.integrator=path --set render.threads=1 \
+            --set "render.paths=$paths" --set "render.seed=$seed" "${options[@]}" >"$work/json" 2>"$work/log" ||
+            {
+                cat "$work/log" >&2
+                exit 1
+            }
+        field cpu_s "$work/json" >>"$work/times"
+        field rms "$work/json" >>"$work/noise"
+        tail -n +4 "$work/film$seed.pfm" | od -An -v -t f4 -w4 >"$work/values$seed"
+    done
+    paste "$work"/values* | awk -v noise="$(awk '{ s += $1 * $1 } END { print s / NR }' "$work/noise")" \
+        -v time="$(sort -g "$work/times" | sed -n "$(((seeds + 1) / 2))p")" '
+        { sum = squares = 0
+          for (i = 1; i <= NF; i++) { sum += $i; squares += $i * $i }
+          variance += (squares - sum * sum / NF) / (NF - 1) }
+        END { error = sqrt(variance / NR); printf "%.5g %.4g %.3f\n", error, time, sqrt(noise) / error }'
+}
+
+curve() { # curve SCENE LABEL ASSIGNMENT... - a line per number of paths
+    local scene=$1 label=$2 paths
+    shift 2
+    for paths in $counts; do echo "$scene $label $paths $(measure "$scene" "$paths" "$@")"; done
+}
+
+echo 'scene settings paths error time_s noise/error'
+for scene in matte glass room models lights64; do
+    curve "$scene" old "${old[@]}"
+    curve "$scene" new "${new[@]}"
+done | tee "$work/table"
+curve lights1 new "${new[@]}" | tee -a "$work/table"
+
+awk '
+    # Of a value against another, on the line between the first and the last point.
+    function rise(of, by, key) { return log(of[key, last[key]] / of[key, 1]) / log(by[key, last[key]] / by[key, 1]) }
+    function time_at(key, e) {
+        return time[key, last[key]] * exp(log(e / error[key, last[key]]) * rise(time, error, key))
+    }
+    { key = $1 " " $2; n = ++last[key]; paths[key, n] = $3; error[key, n] = $4; time[key, n] = $5 }
+    !seen[$1]++ { order[++scenes] = $1 }
+    END {
+        print "\nscene slope_old slope_new time_new/time_old"
+        for (i = 1; i <= scenes; i++) {
+            o = order[i] " old"; w = order[i] " new"
+            if (last[o])
+                printf "%s %.2f %.2f %.3f\n", order[i], rise(error, paths, o), rise(error, paths, w), \
+                       time_at(w, error[o, last[o]]) / time[o, last[o]]
+        }
+        w = "lights1 new"
+        printf "\n64 lights over one, at one error: %.2f times the time\n", \
+               time_at("lights64 new", error[w, last[w]]) / time[w, last[w]]
+    }' "$work/table"

@@ -1,0 +1,65 @@
+/* Points of a two-dimensional low-discrepancy sequence with nested uniform (Owen) scrambling by hashing: Burley,
+ * "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020. The points are those of Sobol's first two dimensions (Joe
+ * and Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30, 2008): van
+ * der Corput's sequence and Pascal's triangle mod 2, a (0, 2)-sequence in base 2: of each aligned block of 2^m indices,
+ * one point is in every elementary interval of area 2^-m. Each key has its own scrambling of both coordinates and its
+ * own order of the points, which keeps aligned blocks; points of different keys can be combined into points of more
+ * dimensions. Integer arithmetic only: the same bits everywhere. Pure; cannot fail. */
+#pragma once
+
+#include <stdint.h>
+
+/* Coordinates in units of 2^-32. */
+typedef struct sobol_point {
+    uint32_t x, y;
+} sobol_point;
+
+/* The order of the 32 bits reversed. */
+static inline uint32_t sobol_reverse(uint32_t x)
+{
+    x = (x & 0x55555555) << 1 | (x >> 1 & 0x55555555);
+    x = (x & 0x33333333) << 2 | (x >> 2 & 0x33333333);
+    x = (x & 0x0f0f0f0f) << 4 | (x >> 4 & 0x0f0f0f0f);
+    return __builtin_bswap32(x);
+}
+
+/* Bit j of the result is the sum mod 2 of C(i, j) x_i. C(i, j) is odd where j has no bit that i lacks (Lucas), so that
+ * the matrix is a Kronecker power of (1 1; 0 1), and each step applies one factor. */
+static inline uint32_t sobol_pascal(uint32_t x)
+{
+    x ^= x >> 1 & 0x55555555;
+    x ^= x >> 2 & 0x33333333;
+    x ^= x >> 4 & 0x0f0f0f0f;
+    x ^= x >> 8 & 0x00ff00ff;
+    return x ^ x >> 16;
+}
+
+/* Nested uniform scrambling of a number whose bits are in reverse order: each bit is flipped by a hash of the bits
+ * below it. Laine and Karras, "Stratified sampling for stochastic transparency", CGF 30(4), 2011, with the constants of
+ * Vegdahl, "Building a better LK hash", 2021. */
+static inline uint32_t sobol_scramble_reversed(uint32_t x, uint32_t seed)
+{
+    x ^= x * 0x3d20adeaU;
+    x += seed;
+    x *= seed >> 16 | 1;
+    x ^= x * 0x05526c56U;
+    return x ^ x * 0x53a22864U;
+}
+
+/* A bijection whose every output bit depends on every input bit: the finalizer of SplitMix64 (Steele, Lea and Flood,
+ * "Fast splittable pseudorandom number generators", OOPSLA 2014, variant 13 of Stafford). */
+static inline uint64_t sobol_mix(uint64_t x)
+{
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9U;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebU;
+    return x ^ x >> 31;
+}
+
+/* Point number `index` of the sequence of that key; keys need not look random. */
+static inline sobol_point sobol_at(uint32_t index, uint64_t key)
+{
+    const uint64_t first = sobol_mix(key + 0x9e3779b97f4a7c15U), second = sobol_mix(first + 0x9e3779b97f4a7c15U);
+    const uint32_t i = sobol_reverse(sobol_scramble_reversed(sobol_reverse(index), (uint32_t)first));
+    return (sobol_point){sobol_reverse(sobol_scramble_reversed(i, (uint32_t)(first >> 32))),
+                         sobol_reverse(sobol_scramble_reversed(sobol_pascal(i), (uint32_t)second))};
+}

@@ -1,0 +1,128 @@
+/* The choice of one light for each gathered ray. */
+#include "render/shade/light_choice.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Lights are summed in blocks, whose order does not depend on the width of the processor's vectors. */
+enum { BLOCK = 8, BLOCKS_MAX = (SCENE_LIGHTS_MAX + BLOCK - 1) / BLOCK, LAMPS_MAX = BLOCK * BLOCKS_MAX };
+
+/* The lights' parameters as arrays, padded with lights of strength 0. */
+typedef struct lamp_table {
+    int blocks;
+    bool cones;
+    double x[LAMPS_MAX], y[LAMPS_MAX], z[LAMPS_MAX];
+    float radius[LAMPS_MAX], strength[LAMPS_MAX]; /* intensity; with falloff, times the square of the reach */
+    float even[LAMPS_MAX], falling[LAMPS_MAX];    /* 1 and 0 for a light without falloff, otherwise 0 and 1 */
+} lamp_table;
+
+static void fill_table(const plan *p, lamp_table *lamps)
+{
+    memset(lamps, 0, sizeof *lamps);
+    lamps->blocks = (p->light_count + BLOCK - 1) / BLOCK;
+    for (int k = 0; k < p->light_count; k++) {
+        const light *l = &p->lights[k];
+        const bool falls = l->reach > 0.0;
+        const double strength = l->intensity * (l->color.x + l->color.y + l->color.z);
+        lamps->x[k] = l->position.x, lamps->y[k] = l->position.y, lamps->z[k] = l->position.z;
+        lamps->radius[k] = (float)l->radius;
+        lamps->strength[k] = (float)(falls ? strength * l->reach * l->reach : strength);
+        lamps->even[k] = falls ? 0.0f : 1.0f, lamps->falling[k] = 1.0f - lamps->even[k];
+        lamps->cones |= l->kind != LIGHT_POINT && l->radius == 0.0;
+    }
+}
+
+/* For each light k_d cos + k_s over the squared distance. Of a sphere that the horizon cuts, with n.v between -r and r
+ * for the vector v to its centre, (n.v + r) / 2 takes the place of n.v, which continues it at r and ends at 0. Single
+ * precision: weights need not be exact. */
+static void estimate(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float *weight)
+{
+    const float nx = (float)n.x, ny = (float)n.y, nz = (float)n.z;
+    const int count = lamps->blocks * BLOCK;
+    for (int k = 0; k < count; k++) {
+        const float x = (float)(lamps->x[k] - point.x), y = (float)(lamps->y[k] - point.y),
+                    z = (float)(lamps->z[k] - point.z), r = lamps->radius[k];
+        const float above = nx * x + ny * y + nz * z, cut = 0.5f * (above + r), height = above < r ? cut : above,
+                    distance2 = x * x + y * y + z * z, inverse = 1.0f / sqrtf(distance2);
+        const float falloff = lamps->falling[k] * inverse * inverse + lamps->even[k];
+        const float seen = lamps->strength[k] * falloff * (k_d * (height * inverse) + k_s);
+        weight[k] = height > 0.0f ? seen : 0.0f;
+    }
+}
+
+/* The share of a cone light that is a point is exact. */
+static void apply_cones(const plan *p, vec3 point, float *weight)
+{
+    for (int k = 0; k < p->light_count; k++) {
+        const light *l = &p->lights[k];
+        if (l->kind != LIGHT_POINT && l->radius == 0.0 && weight[k] > 0.0f)
+            weight[k] *= (float)light_share(l, &p->cones[k], vec3_normalize(vec3_sub(point, l->position)));
+    }
+}
+
+/* Sums of the blocks, and of all. */
+static float add_up(const float *weight, int blocks, float *sum)
+{
+    float total = 0.0f;
+    for (int b = 0; b < blocks; b++) {
+        const float *w = weight + (ptrdiff_t)b * BLOCK;
+        sum[b] = ((w[0] + w[1]) + (w[2] + w[3])) + ((w[4] + w[5]) + (w[6] + w[7]));
+        total += sum[b];
+    }
+    return total;
+}
+
+static double within_unit(double u)
+{
+    const double least = 0x1p-33, most = 1.0 - 0x1p-33;
+    return u < least ? least : u > most ? most : u;
+}
+
+/* The light in whose part of the total the number u falls, and where in the part. What rounding leaves over goes to the
+ * last light with a weight. */
+static int pick(const float *weight, const float *sum, int blocks, float total, double u, double *rest)
+{
+    double target = u * (double)total;
+    int b = 0, last = -1;
+    while (b < blocks - 1 && (target >= (double)sum[b] || !(sum[b] > 0.0f)))
+        target -= (double)sum[b++];
+    while (!(sum[b] > 0.0f)) /* there is one, as the total is above 0 */
+        b--;
+    for (int k = b * BLOCK; k < (b + 1) * BLOCK; k++) {
+        if (!(weight[k] > 0.0f))
+            continue;
+        if (last >= 0)
+            target -= (double)weight[last];
+        last = k;
+        if (target < (double)weight[k])
+            break;
+    }
+    *rest = within_unit(target / (double)weight[last]);
+    return last;
+}
+
+void light_choice_make(const tracer *t, const material *m, int depth, light_choice *out)
+{
+    const plan *p = t->target.frame_plan;
+    const group *g = &t->surface.gathered;
+    /* A highlight can be bright where the diffuse share is faint, so that it has a part that does not depend on the
+     * angle. */
+    const float k_d = (float)m->diffuse, k_s = 0.25f * (float)m->specular;
+    lamp_table lamps;
+    fill_table(p, &lamps);
+    for (int i = 0; i < g->count; i++) {
+        float weight[LAMPS_MAX], sum[BLOCKS_MAX];
+        const vec3 point = vec3_make(g->points.px[i], g->points.py[i], g->points.pz[i]);
+        estimate(&lamps, point, vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]), k_d, k_s, weight);
+        if (lamps.cones)
+            apply_cones(p, point, weight);
+        const float total = add_up(weight, lamps.blocks, sum);
+        out->lamp[i] = -1;
+        if (!(total > 0.0f && total < HUGE_VALF))
+            continue;
+        const unit_pair drawn = path_draw(&p->draws, g->sample_key[i], depth, DRAW_LIGHT);
+        out->lamp[i] = pick(weight, sum, lamps.blocks, total, drawn.u, &out->at[i].u);
+        out->at[i].v = drawn.v;
+        out->weight[i] = (double)total / (double)weight[out->lamp[i]];
+    }
+}
