@@ -1,0 +1,115 @@
+/* A packet: up to 128 coherent rays that traverse the hierarchy `bvh` together; private to
+ * src/geometry/hierarchy_packet*_kernel.c.
+ *
+ * The rays stay where the caller stored them. A packet holds single-precision copies, 16 rays at a time, which only
+ * reject: boxes (hierarchy_boxes.h) and triangles (hierarchy_packet_leaf_kernel.c). What they do not reject is tested in
+ * doubles, from the caller's rays. */
+#pragma once
+
+#include "geometry/hierarchy_boxes.h"
+
+enum { LANES = 16, GROUPS = TOGETHER / LANES };
+
+/* A set of rays: a bit per slot of the packet, 16 per group. */
+typedef struct ray_set {
+    uint16_t bits[GROUPS];
+} ray_set;
+
+/* The rays of a batch in single precision, by their number in the batch. */
+typedef struct batch_floats {
+    int count;
+    _Alignas(64) float origin[3][TOGETHER], direction[3][TOGETHER]; /* the direction's largest component is 1..2 */
+    _Alignas(64) float t_min[TOGETHER], t_max[TOGETHER];            /* rounded outwards, in the direction's units */
+    _Alignas(64) double t_limit[TOGETHER]; /* t_max, then the best hit's t, in the direction's units */
+    /* Rays of one packet have the same signs and the same largest component of the direction: three bits, and the
+     * axis' number times eight; -1 for a ray that cannot hit anything. */
+    _Alignas(64) int32_t kind[TOGETHER];
+} batch_floats;
+
+typedef struct packet {
+    _Alignas(64) float below[3][TOGETHER], above[3][TOGETHER]; /* bounds of the origin */
+    _Alignas(64) float near_inverse[3][TOGETHER], far_inverse[3][TOGETHER];
+    _Alignas(64) float t_min[TOGETHER], t_best[TOGETHER]; /* t_best is -1 for a finished ray and an unused slot */
+    /* Along the axes x, y, z of ray_query: the shears, and the ray's position at z = 0. */
+    _Alignas(64) float shear_x[TOGETHER], shear_y[TOGETHER], base_x[TOGETHER], base_y[TOGETHER];
+    const float *near_origin[3], *far_origin[3]; /* below or above */
+    int near[3], far[3], axis[3];
+    int count, groups;
+    box_ray all;      /* bounds of all rays */
+    float reach;      /* the largest coordinate of an origin */
+    float t_farthest; /* the largest t_best */
+    bool changed;     /* some t_best has decreased since t_farthest was computed */
+    ray_set alive;    /* rays that are not finished */
+    ray_set prepared; /* rays whose query is started */
+
+    const mesh_ray *rays; /* the caller's rays and results, by the ray's number */
+    mesh_hit *hits;       /* QUERY_NEAREST */
+    bool *blocked;        /* QUERY_ANY */
+    double *t_limit;      /* of batch_floats */
+    uint8_t number[TOGETHER];
+    ray_query query[TOGETHER]; /* for rays that continue alone */
+} packet;
+
+/* Eight rays of the caller, as vectors. */
+typedef struct ray_lanes {
+    double8 origin[3], direction[3], t_min, t_max;
+} ray_lanes;
+
+/* Reads eight rays. A ray's first eight doubles are one cache line, and eight of them are transposed. */
+ALWAYS_INLINE void ray_lanes_read(ray_lanes *out, const mesh_ray *const *rays)
+{
+    _Static_assert(offsetof(mesh_ray, t_max) == 7 * sizeof(double), "a ray begins with eight doubles");
+#ifdef __AVX512F__
+    double8 r[8], s[8], t[8];
+    for (int i = 0; i < 8; i++)
+        memcpy(&r[i], rays[i], sizeof r[i]);
+    for (int i = 0; i < 8; i += 2) {
+        s[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        s[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+    for (int i = 0; i < 8; i += 4)
+        for (int k = 0; k < 2; k++) {
+            t[i + k] = __builtin_shufflevector(s[i + k], s[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+            t[i + k + 2] = __builtin_shufflevector(s[i + k], s[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+        }
+    double8 column[8];
+    for (int i = 0; i < 4; i++) {
+        column[i] = __builtin_shufflevector(t[i], t[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+        column[i + 4] = __builtin_shufflevector(t[i], t[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    }
+#else
+    double rows[8][8], turned[8][8];
+    for (int i = 0; i < 8; i++)
+        memcpy(rows[i], rays[i], sizeof rows[i]);
+    for (int k = 0; k < 8; k++)
+        for (int i = 0; i < 8; i++)
+            turned[k][i] = rows[i][k];
+    double8 column[8];
+    memcpy(column, turned, sizeof column);
+#endif
+    for (int k = 0; k < 3; k++) {
+        out->origin[k] = column[k];
+        out->direction[k] = column[3 + k];
+    }
+    out->t_min = column[6];
+    out->t_max = column[7];
+}
+
+/* The exponents of normal doubles, and the powers of two by which query_start scales. */
+ALWAYS_INLINE int8x64 double8_exponent(double8 v)
+{
+    return ((int8x64)v >> 52) & 0x7ff;
+}
+ALWAYS_INLINE double8 double8_power(int8x64 exponent)
+{
+    return (double8)(exponent << 52);
+}
+
+/* Converts a batch of at most TOGETHER rays. */
+void KERNEL(batch_read)(batch_floats *b, const mesh_ray *rays, int count);
+/* Starts the packet of the rays with those numbers, which are all of one kind; rays, hits, blocked and t_limit are
+ * set. */
+void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *numbers, int count);
+/* Tests the triangles of a leaf, a node's child, with the rays of a set. */
+void KERNEL(packet_leaf)(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, const bvh_node *node,
+                         uint32_t slot);
