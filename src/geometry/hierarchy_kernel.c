@@ -73,7 +73,7 @@ static void nearest_batch(const hierarchy *h, const mesh_ray *rays, int count, m
             nearest(h, &rays[i], &hits[i]);
     for (int first = 0; h->kind == HIERARCHY_BVH && first < count; first += TOGETHER)
         KERNEL(walk_bvh_together)
-        (h, rays + first, count - first < TOGETHER ? count - first : TOGETHER, QUERY_NEAREST, hits + first, NULL);
+    (h, rays + first, count - first < TOGETHER ? count - first : TOGETHER, QUERY_NEAREST, hits + first, NULL);
 }
 
 static void any_batch(const hierarchy *h, const mesh_ray *rays, int count, bool *hit)
@@ -83,7 +83,7 @@ static void any_batch(const hierarchy *h, const mesh_ray *rays, int count, bool 
             hit[i] = any(h, &rays[i]);
     for (int first = 0; h->kind == HIERARCHY_BVH && first < count; first += TOGETHER)
         KERNEL(walk_bvh_together)
-        (h, rays + first, count - first < TOGETHER ? count - first : TOGETHER, QUERY_ANY, NULL, hit + first);
+    (h, rays + first, count - first < TOGETHER ? count - first : TOGETHER, QUERY_ANY, NULL, hit + first);
 }
 
 const hierarchy_kernels KERNEL(hierarchy_kernels) = {nearest, any, all, boxes, nearest_batch, any_batch};

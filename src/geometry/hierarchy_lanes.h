@@ -12,7 +12,6 @@
 typedef float float4 __attribute__((vector_size(16)));
 typedef float float8 __attribute__((vector_size(32)));
 typedef int32_t int8x32 __attribute__((vector_size(32)));
-typedef float float16 __attribute__((vector_size(64)));
 typedef int32_t int16x32 __attribute__((vector_size(64)));
 typedef double double4 __attribute__((vector_size(32)));
 typedef double double8 __attribute__((vector_size(64)));
@@ -100,24 +99,3 @@ ALWAYS_INLINE unsigned bits_of16(const int32_t *mask)
 }
 #endif
 #define LANES_LESS_FIRST(set) ((set) & ((set)-1))
-
-ALWAYS_INLINE double8 double8_all(double v)
-{
-    return (double8){v, v, v, v, v, v, v, v};
-}
-ALWAYS_INLINE double8 double8_blend(int8x64 mask, double8 a, double8 b)
-{
-    return (double8)((mask & (int8x64)a) | (~mask & (int8x64)b));
-}
-ALWAYS_INLINE double8 double8_greater(double8 a, double8 b)
-{
-    return double8_blend(a > b, a, b);
-}
-ALWAYS_INLINE double8 double8_lesser(double8 a, double8 b)
-{
-    return double8_blend(a < b, a, b);
-}
-ALWAYS_INLINE double8 double8_magnitude(double8 a)
-{
-    return (double8)((int8x64)a & INT64_MAX);
-}

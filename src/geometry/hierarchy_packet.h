@@ -30,8 +30,10 @@ typedef struct packet {
     _Alignas(64) float below[3][TOGETHER], above[3][TOGETHER]; /* bounds of the origin */
     _Alignas(64) float near_inverse[3][TOGETHER], far_inverse[3][TOGETHER];
     _Alignas(64) float t_min[TOGETHER], t_best[TOGETHER]; /* t_best is -1 for a finished ray and an unused slot */
-    /* Along the axes x, y, z of ray_query: the shears, and the ray's position at z = 0. */
-    _Alignas(64) float shear_x[TOGETHER], shear_y[TOGETHER], base_x[TOGETHER], base_y[TOGETHER];
+    /* Along the axes x, y, z of ray_query: the shears, the ray's position at z = 0, and its origin's z. */
+    _Alignas(64) float shear_x[TOGETHER], shear_y[TOGETHER], shear_z[TOGETHER];
+    _Alignas(64) float base_x[TOGETHER], base_y[TOGETHER], origin_z[TOGETHER];
+    _Alignas(64) uint32_t skip[TOGETHER];
     const float *near_origin[3], *far_origin[3]; /* below or above */
     int near[3], far[3], axis[3];
     int count, groups;
@@ -50,15 +52,13 @@ typedef struct packet {
     ray_query query[TOGETHER]; /* for rays that continue alone */
 } packet;
 
-/* Eight rays of the caller, as vectors. */
-typedef struct ray_lanes {
-    double8 origin[3], direction[3], t_min, t_max;
-} ray_lanes;
+/* The first eight doubles of a ray. */
+enum { EIGHT = 8, ORIGIN = 0, DIRECTION = 3, T_MIN = 6, T_MAX = 7 };
 
-/* Reads eight rays. A ray's first eight doubles are one cache line, and eight of them are transposed. */
-ALWAYS_INLINE void ray_lanes_read(ray_lanes *out, const mesh_ray *const *rays)
+/* Transposes the first eight doubles of eight rays: number k goes to to[k * stride], ray after ray. */
+ALWAYS_INLINE void ray_lanes_read(double *restrict to, size_t stride, const mesh_ray *const *rays)
 {
-    _Static_assert(offsetof(mesh_ray, t_max) == 7 * sizeof(double), "a ray begins with eight doubles");
+    _Static_assert(offsetof(mesh_ray, t_max) == T_MAX * sizeof(double), "a ray begins with eight doubles");
 #ifdef __AVX512F__
     double8 r[8], s[8], t[8];
     for (int i = 0; i < 8; i++)
@@ -72,37 +72,63 @@ ALWAYS_INLINE void ray_lanes_read(ray_lanes *out, const mesh_ray *const *rays)
             t[i + k] = __builtin_shufflevector(s[i + k], s[i + k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
             t[i + k + 2] = __builtin_shufflevector(s[i + k], s[i + k + 2], 2, 3, 10, 11, 6, 7, 14, 15);
         }
-    double8 column[8];
-    for (int i = 0; i < 4; i++) {
-        column[i] = __builtin_shufflevector(t[i], t[i + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-        column[i + 4] = __builtin_shufflevector(t[i], t[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+    for (size_t i = 0; i < 4; i++) {
+        const double8 low = __builtin_shufflevector(t[i], t[i + 4], 0, 1, 2, 3, 8, 9, 10, 11),
+                      high = __builtin_shufflevector(t[i], t[i + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+        memcpy(to + i * stride, &low, sizeof low);
+        memcpy(to + (i + 4) * stride, &high, sizeof high);
     }
 #else
-    double rows[8][8], turned[8][8];
-    for (int i = 0; i < 8; i++)
-        memcpy(rows[i], rays[i], sizeof rows[i]);
-    for (int k = 0; k < 8; k++)
-        for (int i = 0; i < 8; i++)
-            turned[k][i] = rows[i][k];
-    double8 column[8];
-    memcpy(column, turned, sizeof column);
-#endif
-    for (int k = 0; k < 3; k++) {
-        out->origin[k] = column[k];
-        out->direction[k] = column[3 + k];
+    for (size_t i = 0; i < EIGHT; i++) {
+        double row[EIGHT];
+        memcpy(row, rays[i], sizeof row);
+        for (size_t k = 0; k < EIGHT; k++)
+            to[k * stride + i] = row[k];
     }
-    out->t_min = column[6];
-    out->t_max = column[7];
+#endif
 }
 
-/* The exponents of normal doubles, and the powers of two by which query_start scales. */
-ALWAYS_INLINE int8x64 double8_exponent(double8 v)
+ALWAYS_INLINE float8 floats_at(const float *p)
 {
-    return ((int8x64)v >> 52) & 0x7ff;
+    float8 v;
+    memcpy(&v, p, sizeof v);
+    return v;
 }
-ALWAYS_INLINE double8 double8_power(int8x64 exponent)
+
+ALWAYS_INLINE float8 float8_blend(int8x32 mask, float8 a, float8 b)
 {
-    return (double8)(exponent << 52);
+    return (float8)((mask & (int8x32)a) | (~mask & (int8x32)b));
+}
+
+/* The least and the largest of n values, n a multiple of 16. In vectors, as gcc unrolls such loops into scalars. */
+ALWAYS_INLINE float least_of_row(const float *v, int n)
+{
+    float8 low = floats_at(v), high = floats_at(v + 8);
+    for (int i = LANES; i < n; i += LANES) {
+        const float8 a = floats_at(v + i), b = floats_at(v + i + 8);
+        low = float8_blend(a < low, a, low);
+        high = float8_blend(b < high, b, high);
+    }
+    low = float8_blend(high < low, high, low);
+    float least = low[0];
+    for (int k = 1; k < 8; k++)
+        least = low[k] < least ? low[k] : least;
+    return least;
+}
+
+ALWAYS_INLINE float most_of_row(const float *v, int n)
+{
+    float8 low = floats_at(v), high = floats_at(v + 8);
+    for (int i = LANES; i < n; i += LANES) {
+        const float8 a = floats_at(v + i), b = floats_at(v + i + 8);
+        low = float8_blend(a > low, a, low);
+        high = float8_blend(b > high, b, high);
+    }
+    low = float8_blend(high > low, high, low);
+    float most = low[0];
+    for (int k = 1; k < 8; k++)
+        most = low[k] > most ? low[k] : most;
+    return most;
 }
 
 /* Converts a batch of at most TOGETHER rays. */

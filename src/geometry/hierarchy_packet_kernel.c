@@ -15,13 +15,6 @@ typedef struct waiting {
     ray_set rays;
 } waiting;
 
-ALWAYS_INLINE float8 floats_at(const float *p)
-{
-    float8 v;
-    memcpy(&v, p, sizeof v);
-    return v;
-}
-
 /* The rays among sixteen, from slot i on, that enter a box before their best hits. */
 ALWAYS_INLINE unsigned enter_box(const packet *p, int i, const float *near_plane, const float *far_plane)
 {

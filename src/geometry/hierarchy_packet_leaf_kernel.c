@@ -3,14 +3,21 @@
  * test of hierarchy_query.h, operation by operation. So the hits are bit-identical. */
 #include "geometry/hierarchy_packet.h"
 
-/* The largest error of an edge function in single precision, for rays that enter the box of the triangle's leaf.
- *
- * With u = 2^-24, C and R the largest coordinates of the box and of the rays' origins: origin, direction, shear (at
+/* The largest errors in single precision, for rays that enter the box of the triangle's leaf. */
+typedef struct leaf_errors {
+    float edge;           /* of an edge function */
+    float t, t_by_weight; /* of a distance: t + t_by_weight / |sum of the edge functions| */
+} leaf_errors;
+
+/* With u = 2^-24, C and R the largest coordinates of the box and of the rays' origins: origin, direction, shear (at
  * most 1 in magnitude) and base come with errors of u R, u, 4.1 u and 9.2 u R, and a sheared coordinate
  * (c_x - s c_z) - base with at most e = 12 u (C + R). As the ray passes through the box, a sheared coordinate is at most
- * M, twice the box's largest edge, and what the box test's margins add. Then x_2 y_1 - y_2 x_1 has an error of at most
- * 4 e M + 2 e^2 + 4.1 u M^2. */
-static float edge_error(const packet *p, const bvh_node *node, uint32_t slot)
+ * M, twice the box's largest edge E, and what the box test's margins add. Then an edge function x_2 y_1 - y_2 x_1 has an
+ * error of at most d = 4 e M + 2 e^2 + 4.1 u M^2.
+ *
+ * A distance, for weights of one sign, is s_z (z_0 + (v (z_1 - z_0) + w (z_2 - z_0)) / (u + v + w)): the quotient is at
+ * most E, and its error 5.1 d E / |u + v + w| and a few u E; the other terms add less than 16 u (C + R). */
+static leaf_errors errors_of(const packet *p, const bvh_node *node, uint32_t slot)
 {
     float reach = 0.0f, edge = 0.0f;
     for (int k = 0; k < 3; k++) {
@@ -20,149 +27,177 @@ static float edge_error(const packet *p, const bvh_node *node, uint32_t slot)
         reach = high > reach ? high : reach;
     }
     const float u = 0x1p-24f, far = reach + p->reach, e = 12.5f * u * far, m = 2.01f * edge + 0x1p-17f * far;
-    return (4.0f * e * m + 2.0f * e * e + 4.5f * u * m * m) * 1.01f + FLOAT_TINY;
+    const float d = (4.0f * e * m + 2.0f * e * e + 4.5f * u * m * m) * 1.01f + FLOAT_TINY;
+    return (leaf_errors){d, 20.0f * u * (edge + far) + FLOAT_TINY, 7.0f * d * edge + FLOAT_TINY};
 }
+
+/* The edge functions of sixteen rays: two of them, and their sum. */
+typedef struct weights {
+    _Alignas(64) float v[LANES], w[LANES], det[LANES];
+} weights;
 
 /* The rays among sixteen, from slot i on, that single precision does not prove to pass outside of the triangle.
  * corner[axis][corner], along the axes x, y, z of the packet. */
-ALWAYS_INLINE unsigned maybe_inside(const packet *p, int i, const float (*corner)[3], float error)
+ALWAYS_INLINE unsigned maybe_inside(const packet *p, int i, const float (*corner)[3], float error,
+                                    weights *restrict out)
 {
     const float *restrict sx = &p->shear_x[i], *restrict sy = &p->shear_y[i], *restrict bx = &p->base_x[i],
                           *restrict by = &p->base_y[i];
-    const float ax = corner[0][0], bxx = corner[0][1], cx = corner[0][2], ay = corner[1][0], byy = corner[1][1],
-                cy = corner[1][2], az = corner[2][0], bz = corner[2][1], cz = corner[2][2];
+    const float cx0 = corner[0][0], cx1 = corner[0][1], cx2 = corner[0][2], cy0 = corner[1][0], cy1 = corner[1][1],
+                cy2 = corner[1][2], cz0 = corner[2][0], cz1 = corner[2][1], cz2 = corner[2][2];
     _Alignas(64) int32_t inside[LANES];
     /* VECTORISE */
     for (int k = 0; k < LANES; k++) {
-        const float x0 = (ax - sx[k] * az) - bx[k], y0 = (ay - sy[k] * az) - by[k];
-        const float x1 = (bxx - sx[k] * bz) - bx[k], y1 = (byy - sy[k] * bz) - by[k];
-        const float x2 = (cx - sx[k] * cz) - bx[k], y2 = (cy - sy[k] * cz) - by[k];
+        const float x0 = (cx0 - sx[k] * cz0) - bx[k], y0 = (cy0 - sy[k] * cz0) - by[k];
+        const float x1 = (cx1 - sx[k] * cz1) - bx[k], y1 = (cy1 - sy[k] * cz1) - by[k];
+        const float x2 = (cx2 - sx[k] * cz2) - bx[k], y2 = (cy2 - sy[k] * cz2) - by[k];
         const float u = x2 * y1 - y2 * x1, v = x0 * y2 - y0 * x2, w = x1 * y0 - y1 * x0;
         const float uv = u < v ? u : v, vu = u > v ? u : v;
         const float least = uv < w ? uv : w, most = vu > w ? vu : w;
         /* not both: one below zero, one above */
         const float below = -least, lesser_of_both = below < most ? below : most;
         inside[k] = lesser_of_both > error ? 0 : -1;
+        out->v[k] = v;
+        out->w[k] = w;
+        out->det[k] = u + v + w;
     }
     return bits_of16(inside);
 }
 
-ALWAYS_INLINE double8 least_of_three(const double8 *v)
+/* The rays among sixteen for which single precision does not prove that the triangle is out of the ray's range. A sum
+ * of weights of zero makes the error infinite or NaN, and the ray is kept. */
+ALWAYS_INLINE unsigned maybe_in_range(const packet *p, int i, const float *z, const leaf_errors *errors,
+                                      const weights *restrict f)
 {
-    return double8_lesser(double8_lesser(v[0], v[1]), v[2]);
-}
-ALWAYS_INLINE double8 most_of_three(const double8 *v)
-{
-    return double8_greater(double8_greater(v[0], v[1]), v[2]);
-}
-
-/* query_clamp for eight rays. */
-ALWAYS_INLINE int8x64 clamp_eight(const ray_lanes *r, const double (*corner)[3], double8 t_start, double8 *t)
-{
-    const double8 zero = double8_all(0.0), one = double8_all(1.0);
-    double8 near = double8_all(-(double)INFINITY), far = double8_all((double)INFINITY);
-    int8x64 hit = {-1, -1, -1, -1, -1, -1, -1, -1};
-    for (int k = 0; k < 3; k++) {
-        const double8 o = r->origin[k], inverse = one / r->direction[k];
-        const double8 low = double8_all(least_of(corner[k])) - o, high = double8_all(most_of(corner[k])) - o;
-        const int8x64 parallel = double8_magnitude(r->direction[k]) < zero + PARALLEL;
-        const int8x64 aside = (low > zero + PARALLEL_MARGIN) | (high < zero - PARALLEL_MARGIN);
-        const double8 a = low * inverse, b = high * inverse, in = double8_lesser(a, b), out = double8_greater(a, b);
-        const double8 first = double8_greater(near, in - double8_magnitude(in) * BOX_MARGIN);
-        const double8 last = double8_lesser(far, out + double8_magnitude(out) * BOX_MARGIN);
-        near = double8_blend(parallel, near, first);
-        far = double8_blend(parallel, far, last);
-        hit &= ~(parallel & aside);
+    const float *restrict oz = &p->origin_z[i], *restrict sz = &p->shear_z[i], *restrict t_min = &p->t_min[i],
+                          *restrict t_best = &p->t_best[i];
+    const float z0 = z[0], z1 = z[1] - z[0], z2 = z[2] - z[0], least = errors->t, by_weight = errors->t_by_weight;
+    _Alignas(64) int32_t in[LANES];
+    /* VECTORISE */
+    for (int k = 0; k < LANES; k++) {
+        const float inverse = 1.0f / f->det[k], error = least + by_weight * __builtin_fabsf(inverse);
+        const float t = (z0 - oz[k] + (f->v[k] * z1 + f->w[k] * z2) * inverse) * sz[k];
+        const float beyond = (t - error) - t_best[k], before = t_min[k] - (t + error);
+        const float out = beyond > before ? beyond : before;
+        in[k] = out > 0.0f ? 0 : -1;
     }
-    *t = double8_greater(*t, near);
-    return hit & (near <= far) & (far >= t_start);
+    return bits_of16(in);
 }
 
-/* A triangle's hits by eight rays, as in mesh_hit. */
+/* A triangle's hits by eight rays, as in mesh_hit; what depends on the ray's other limits is left to the caller. */
 typedef struct eight_hits {
-    double t_scaled[8], t[8], u[8], v[8];
-    int64_t facing[8];
+    _Alignas(64) double t_scaled[EIGHT], t_least[EIGHT], t[EIGHT], u[EIGHT], v[EIGHT];
+    _Alignas(64) int64_t facing[EIGHT], accepted[EIGHT];
 } eight_hits;
 
-/* What a ray's record holds besides coordinates. */
-typedef struct eight_limits {
-    double t_limit[8];
-    int64_t skip[8], wanted[8], best[8];
-} eight_limits;
-
-/* query_blocks and query_consider for eight rays and one triangle: the rays whose best hit it is so far. axis: x, y, z
- * of the packet; corner[axis of the mesh][corner]. */
-static unsigned test_eight(const mesh_ray *const *rays, const eight_limits *limits, const int *axis,
-                           const double (*corner)[3], uint32_t triangle, eight_hits *out)
+ALWAYS_INLINE double least_of_three(double a, double b, double c)
 {
-    ray_lanes r;
-    ray_lanes_read(&r, rays);
-    const double8 zero = double8_all(0.0), one = double8_all(1.0);
-    const int8x64 exponent = double8_exponent(r.direction[axis[2]]);
-    const double8 scale = double8_power(2046 - exponent), unscale = double8_power(exponent);
-    for (int k = 0; k < 3; k++)
-        r.direction[k] *= scale;
-    const double8 sz = one / r.direction[axis[2]], sx = r.direction[axis[0]] * sz, sy = r.direction[axis[1]] * sz;
-    const double8 start = double8_greater(r.t_min, zero) * unscale;
-    double8 limit, x[3], y[3], z[3];
-    int8x64 skip, wanted, best;
-    memcpy(&limit, limits->t_limit, sizeof limit);
-    memcpy(&skip, limits->skip, sizeof skip);
-    memcpy(&wanted, limits->wanted, sizeof wanted);
-    memcpy(&best, limits->best, sizeof best);
-    for (int j = 0; j < 3; j++) {
-        z[j] = double8_all(corner[axis[2]][j]) - r.origin[axis[2]];
-        x[j] = (double8_all(corner[axis[0]][j]) - r.origin[axis[0]]) - sx * z[j];
-        y[j] = (double8_all(corner[axis[1]][j]) - r.origin[axis[1]]) - sy * z[j];
+    return lesser(lesser(a, b), c);
+}
+ALWAYS_INLINE double most_of_three(double a, double b, double c)
+{
+    return greater(greater(a, b), c);
+}
+
+/* One axis of query_clamp: the ray's range within the slab from low to high. Returns 0 if a parallel ray misses it. */
+ALWAYS_INLINE int64_t clamp_axis(double origin, double direction, double low, double high, double *near, double *far)
+{
+    const double inverse = 1.0 / direction, l = low - origin, h = high - origin;
+    const int64_t parallel = mask_less(magnitude(direction), PARALLEL);
+    const int64_t aside = mask_less(PARALLEL_MARGIN, l) | mask_less(h, -PARALLEL_MARGIN);
+    const double a = l * inverse, b = h * inverse, in = lesser(a, b), out = greater(a, b);
+    *near = blend(parallel, *near, greater(*near, in - magnitude(in) * BOX_MARGIN));
+    *far = blend(parallel, *far, lesser(*far, out + magnitude(out) * BOX_MARGIN));
+    return ~(parallel & aside);
+}
+
+/* query_blocks and query_consider for eight rays and one triangle, operation by operation. axis: x, y, z of the packet;
+ * corner[axis of the mesh][corner]. */
+static void test_eight(const double (*restrict column)[EIGHT], const int *axis, const double (*corner)[3],
+                       eight_hits *restrict out)
+{
+    const double *restrict ox = column[ORIGIN + axis[0]], *restrict oy = column[ORIGIN + axis[1]],
+                           *restrict oz = column[ORIGIN + axis[2]], *restrict dx = column[DIRECTION + axis[0]],
+                           *restrict dy = column[DIRECTION + axis[1]], *restrict dz = column[DIRECTION + axis[2]],
+                           *restrict t_min = column[T_MIN];
+    const double *cx = corner[axis[0]], *cy = corner[axis[1]], *cz = corner[axis[2]];
+    const double ax = cx[0], bx = cx[1], ex = cx[2], ay = cy[0], by = cy[1], ey = cy[2], az = cz[0], bz = cz[1],
+                 ez = cz[2];
+    /* The clamp goes through the axes of the mesh in order, as query_clamp: the order decides the sign of a zero. */
+    const double *restrict o0 = column[ORIGIN], *restrict o1 = column[ORIGIN + 1], *restrict o2 = column[ORIGIN + 2],
+                           *restrict d0 = column[DIRECTION], *restrict d1 = column[DIRECTION + 1],
+                           *restrict d2 = column[DIRECTION + 2];
+    const double low0 = least_of(corner[0]), high0 = most_of(corner[0]), low1 = least_of(corner[1]),
+                 high1 = most_of(corner[1]), low2 = least_of(corner[2]), high2 = most_of(corner[2]);
+    /* VECTORISE */
+    for (int k = 0; k < EIGHT; k++) {
+        const int64_t exponent = lanes_bits(dz[k]) >> 52 & 0x7ff;
+        const double scale = lanes_double((2046 - exponent) << 52), unscale = lanes_double(exponent << 52);
+        const double sz = 1.0 / (dz[k] * scale), sx = dx[k] * scale * sz, sy = dy[k] * scale * sz;
+        const double start = greater(t_min[k], 0.0) * unscale;
+        const double z0 = az - oz[k], x0 = (ax - ox[k]) - sx * z0, y0 = (ay - oy[k]) - sy * z0;
+        const double z1 = bz - oz[k], x1 = (bx - ox[k]) - sx * z1, y1 = (by - oy[k]) - sy * z1;
+        const double z2 = ez - oz[k], x2 = (ex - ox[k]) - sx * z2, y2 = (ey - oy[k]) - sy * z2;
+        const double u = x2 * y1 - y2 * x1, v = x0 * y2 - y0 * x2, w = x1 * y0 - y1 * x0, det = u + v + w;
+        const int64_t inside = ~(mask_less(least_of_three(u, v, w), 0.0) & mask_less(0.0, most_of_three(u, v, w)));
+        const double t0 = sz * z0, t1 = sz * z1, t2 = sz * z2, plane = (u * t0 + v * t1 + w * t2) / det;
+        const int64_t behind = mask_less(most_of_three(t0, t1, t2) * (1.0 + 2.0 * BOX_MARGIN), start);
+        const int64_t front = mask_less(0.0, det), back = mask_less(det, 0.0);
+        const int64_t facing = (front & FACING_FRONT) | (~front & FACING_BACK);
+        const int64_t across =
+            mask_less_equal(least_of_three(x0, x1, x2), 0.0) & mask_less_equal(0.0, most_of_three(x0, x1, x2)) &
+            mask_less_equal(least_of_three(y0, y1, y2), 0.0) & mask_less_equal(0.0, most_of_three(y0, y1, y2));
+        double near = -(double)INFINITY, far = (double)INFINITY;
+        int64_t box = clamp_axis(o0[k], d0[k] * scale, low0, high0, &near, &far);
+        box &= clamp_axis(o1[k], d1[k] * scale, low1, high1, &near, &far);
+        box &= clamp_axis(o2[k], d2[k] * scale, low2, high2, &near, &far);
+        box &= mask_less_equal(near, far) & mask_less_equal(start, far);
+        const double t = greater(plane, near);
+        out->accepted[k] = inside & ~behind & (front | back) & across & box & mask_less_equal(start, t);
+        out->t_least[k] = least_of_three(t0, t1, t2) * (1.0 - 2.0 * BOX_MARGIN);
+        out->t_scaled[k] = t;
+        out->t[k] = t * scale;
+        out->u[k] = v / det;
+        out->v[k] = w / det;
+        out->facing[k] = facing;
     }
-    const double8 u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];
-    int8x64 mask = ~(((u < zero) | (v < zero) | (w < zero)) & ((u > zero) | (v > zero) | (w > zero)));
-    for (int j = 0; j < 3; j++)
-        z[j] = sz * z[j];
-    const double8 det = u + v + w;
-    double8 t = (u * z[0] + v * z[1] + w * z[2]) / det;
-    mask &= t <= limit;
-    if (!bits_of8(mask))
-        return 0;
-    mask &= ~((most_of_three(z) * (1.0 + 2.0 * BOX_MARGIN) < start) |
-              (least_of_three(z) * (1.0 - 2.0 * BOX_MARGIN) > limit));
-    mask &= skip != (int64_t)triangle;
-    const int8x64 front = det > zero, facing = (front & FACING_FRONT) | (~front & FACING_BACK);
-    mask &= (front | (det < zero)) & ((facing & wanted) != 0);
-    mask &= (least_of_three(x) <= zero) & (most_of_three(x) >= zero) & (least_of_three(y) <= zero) &
-            (most_of_three(y) >= zero);
-    mask &= clamp_eight(&r, corner, start, &t);
-    mask &= (t >= start) & (t <= limit);
-    mask &= (t < limit) | (best > (int64_t)triangle);
-    const double8 distance = t * scale, second = v / det, third = w / det;
-    memcpy(out->t_scaled, &t, sizeof t);
-    memcpy(out->t, &distance, sizeof distance);
-    memcpy(out->u, &second, sizeof second);
-    memcpy(out->v, &third, sizeof third);
-    memcpy(out->facing, &facing, sizeof facing);
+}
+
+ALWAYS_INLINE unsigned accepted_bits(const eight_hits *found)
+{
+    int8x64 mask;
+    memcpy(&mask, found->accepted, sizeof mask);
     return bits_of8(mask);
+}
+
+/* Does the ray of that number accept the hit, as in query_blocks and query_consider? */
+ALWAYS_INLINE bool accepts(const packet *p, int number, enum query_mode mode, const eight_hits *found, int k,
+                           uint32_t triangle)
+{
+    const mesh_ray *ray = &p->rays[number];
+    const double limit = p->t_limit[number], t = found->t_scaled[k];
+    if (!(t <= limit) || found->t_least[k] > limit || !(found->facing[k] & ray->facing) || ray->skip == triangle)
+        return false;
+    return mode == QUERY_ANY || t < limit || triangle < p->hits[number].triangle;
 }
 
 /* Tests the rays in those slots, in doubles. */
 static void test_slots(packet *p, const uint8_t *slots, int count, enum query_mode mode, const double (*corner)[3],
                        uint32_t triangle)
 {
-    for (int first = 0; first < count; first += 8) {
-        const int n = count - first < 8 ? count - first : 8;
-        const mesh_ray *rays[8];
-        eight_limits limits;
+    for (int first = 0; first < count; first += EIGHT) {
+        const int n = count - first < EIGHT ? count - first : EIGHT;
+        const mesh_ray *rays[EIGHT];
+        _Alignas(64) double column[EIGHT][EIGHT];
         eight_hits found;
-        for (int k = 0; k < 8; k++) {
-            const int at = p->number[slots[first + (k < n ? k : 0)]];
-            rays[k] = &p->rays[at];
-            limits.t_limit[k] = p->t_limit[at];
-            limits.skip[k] = p->rays[at].skip;
-            limits.wanted[k] = p->rays[at].facing;
-            limits.best[k] = mode == QUERY_ANY ? TRIANGLE_NONE : p->hits[at].triangle;
-        }
-        for (unsigned set = test_eight(rays, &limits, p->axis, corner, triangle, &found) & ((1u << n) - 1); set;
-             set = LANES_LESS_FIRST(set)) {
+        for (int k = 0; k < EIGHT; k++)
+            rays[k] = &p->rays[p->number[slots[first + (k < n ? k : 0)]]];
+        ray_lanes_read(column[0], EIGHT, rays);
+        test_eight((const double(*)[EIGHT])column, p->axis, corner, &found);
+        for (unsigned set = accepted_bits(&found) & ((1u << n) - 1); set; set = LANES_LESS_FIRST(set)) {
             const int k = __builtin_ctz(set), slot = slots[first + k], at = p->number[slot];
+            if (!accepts(p, at, mode, &found, k, triangle))
+                continue;
             p->changed = true;
             if (mode == QUERY_ANY) {
                 p->blocked[at] = true;
@@ -177,48 +212,39 @@ static void test_slots(packet *p, const uint8_t *slots, int count, enum query_mo
     }
 }
 
-static void test_triangle(packet *p, const ray_set *set, enum query_mode mode, const double (*corner)[3], float error,
-                          uint32_t triangle)
+static void test_triangle(packet *p, const ray_set *set, enum query_mode mode, const double (*corner)[3],
+                          const leaf_errors *errors, uint32_t triangle)
 {
     float turned[3][3];
     for (int k = 0; k < 3; k++)
         for (int j = 0; j < 3; j++)
             turned[k][j] = (float)corner[p->axis[k]][j];
-    uint8_t slots[TOGETHER];
-    int count = 0;
+    uint64_t words[TOGETHER / 64] = {0};
     for (int g = 0; g < p->groups; g++) {
         unsigned bits = set->bits[g] & p->alive.bits[g];
-        if (!bits)
-            continue;
-        for (bits &= maybe_inside(p, g * LANES, (const float(*)[3])turned, error); bits; bits = LANES_LESS_FIRST(bits))
-            slots[count++] = (uint8_t)(g * LANES + __builtin_ctz(bits));
+        weights f;
+        if (bits)
+            bits &= maybe_inside(p, g * LANES, (const float(*)[3])turned, errors->edge, &f);
+        if (bits)
+            words[g / 4] |= (uint64_t)(bits & maybe_in_range(p, g * LANES, turned[2], errors, &f)) << g % 4 * LANES;
     }
+    uint8_t slots[TOGETHER];
+    int count = 0;
+    for (int i = 0; i < TOGETHER / 64; i++)
+        for (uint64_t word = words[i]; word; word = LANES_LESS_FIRST(word)) {
+            const int slot = i * 64 + __builtin_ctzll(word);
+            slots[count] = (uint8_t)slot;
+            count += p->skip[slot] != triangle;
+        }
     if (count > 0)
         test_slots(p, slots, count, mode, corner, triangle);
-}
-
-/* Updates t_farthest, which only decreases: the largest distance at which a hit of any ray could still be nearer than
- * its best one. The maximum of floats is independent of the order. */
-static void update_farthest(packet *p)
-{
-    _Alignas(64) float most[LANES];
-    memcpy(most, p->t_best, sizeof most);
-    for (int g = 1; g < p->groups; g++)
-        /* VECTORISE */
-        for (int k = 0; k < LANES; k++)
-            most[k] = p->t_best[g * LANES + k] > most[k] ? p->t_best[g * LANES + k] : most[k];
-    for (int half = LANES / 2; half > 0; half /= 2)
-        for (int k = 0; k < half; k++)
-            most[k] = most[k + half] > most[k] ? most[k + half] : most[k];
-    p->t_farthest = most[0];
-    p->changed = false;
 }
 
 void KERNEL(packet_leaf)(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, const bvh_node *node,
                          uint32_t slot)
 {
     const uint32_t leaf = node->child[slot];
-    const float error = edge_error(p, node, slot);
+    const leaf_errors errors = errors_of(p, node, slot);
     for (uint32_t b = child_first_block(leaf); b < child_first_block(leaf) + child_blocks(leaf); b++) {
         const block_single *single = &((const block_single *)h->blocks)[b];
         const block_double *exact = &((const block_double *)h->blocks)[b];
@@ -228,9 +254,10 @@ void KERNEL(packet_leaf)(const hierarchy *h, packet *p, const ray_set *set, enum
             for (int k = 0; k < 3; k++)
                 for (int j = 0; j < 3; j++)
                     corner[k][j] = h->single ? (double)single->corner[j][k][lane] : exact->corner[j][k][lane];
-            test_triangle(p, set, mode, (const double(*)[3])corner, error, numbers[lane]);
+            test_triangle(p, set, mode, (const double(*)[3])corner, &errors, numbers[lane]);
         }
     }
     if (p->changed)
-        update_farthest(p);
+        p->t_farthest = most_of_row(p->t_best, p->groups * LANES);
+    p->changed = false;
 }

@@ -2,61 +2,72 @@
  * single precision, 16 at a time. */
 #include "geometry/hierarchy_packet.h"
 
-ALWAYS_INLINE void store_floats(float *to, double8 v)
-{
-    const float8 f = __builtin_convertvector(v, float8);
-    memcpy(to, &f, sizeof f);
-}
+/* The columns of a batch: of each ray, the first eight doubles. */
+typedef struct batch_columns {
+    _Alignas(64) double column[EIGHT][TOGETHER];
+} batch_columns;
 
-ALWAYS_INLINE float8 float8_magnitude(float8 v)
+static void read_columns(batch_columns *c, const mesh_ray *rays, int count, int n)
 {
-    return (float8)((int8x32)v & INT32_MAX);
-}
-
-/* query_start for eight rays, from number i on. */
-static void read_eight(batch_floats *b, int i, const mesh_ray *const *rays)
-{
-    ray_lanes r;
-    ray_lanes_read(&r, rays);
-    const double8 zero = double8_all(0.0);
-    const double8 mx = double8_magnitude(r.direction[0]), my = double8_magnitude(r.direction[1]),
-                  mz = double8_magnitude(r.direction[2]);
-    const int8x64 x_largest = (mx > my) & (mx > mz), y_largest = ~(mx > my) & (my > mz);
-    const double8 largest = double8_blend(x_largest, mx, double8_blend(y_largest, my, mz));
-    const int8x64 exponent = double8_exponent(largest);
-    const double8 scale = double8_power(2046 - exponent), unscale = double8_power(exponent);
-    const double8 sum = r.origin[0] + r.origin[1] + r.origin[2] + r.direction[0] + r.direction[1] + r.direction[2];
-    const double8 reach =
-        double8_greater(double8_greater(double8_magnitude(r.origin[0]), double8_magnitude(r.origin[1])),
-                        double8_magnitude(r.origin[2]));
-    const double8 t_min = double8_greater(r.t_min, zero) * unscale, t_max = r.t_max * unscale;
-    const int8x64 valid = (exponent >= 1) & (exponent <= 2045) & (sum - sum == zero) & ~(reach > zero + ORIGIN_FAR) &
-                          (r.t_min <= r.t_max) & (t_min < zero + (double)INFINITY);
-    for (int k = 0; k < 3; k++) {
-        store_floats(&b->origin[k][i], r.origin[k]);
-        store_floats(&b->direction[k][i], r.direction[k] * scale);
+    for (int i = 0; i < n; i += EIGHT) {
+        const mesh_ray *eight[EIGHT];
+        for (int k = 0; k < EIGHT; k++)
+            eight[k] = &rays[i + k < count ? i + k : count - 1];
+        ray_lanes_read(&c->column[0][i], TOGETHER, eight);
     }
-    const float8 least = __builtin_convertvector(t_min, float8), most = __builtin_convertvector(t_max, float8);
-    const float8 below = least - (float8_magnitude(least) * (float)FLOAT_STEP + FLOAT_TINY),
-                 above = most + (float8_magnitude(most) * (float)FLOAT_STEP + FLOAT_TINY);
-    memcpy(&b->t_min[i], &below, sizeof below);
-    memcpy(&b->t_max[i], &above, sizeof above);
-    memcpy(&b->t_limit[i], &t_max, sizeof t_max);
-    const int8x64 down = ((r.direction[0] < zero) & 1) | ((r.direction[1] < zero) & 2) | ((r.direction[2] < zero) & 4);
-    const int8x64 axis = (y_largest & 8) | (~(x_largest | y_largest) & 16);
-    const int8x32 kind = __builtin_convertvector(((down | axis) & valid) | ~valid, int8x32);
-    memcpy(&b->kind[i], &kind, sizeof kind);
+}
+
+/* query_start for n rays. */
+static void classify(batch_floats *b, const batch_columns *c, double *restrict scales, int n)
+{
+    const double *restrict ox = c->column[ORIGIN], *restrict oy = c->column[ORIGIN + 1],
+                           *restrict oz = c->column[ORIGIN + 2], *restrict dx = c->column[DIRECTION],
+                           *restrict dy = c->column[DIRECTION + 1], *restrict dz = c->column[DIRECTION + 2],
+                           *restrict t0 = c->column[T_MIN], *restrict t1 = c->column[T_MAX];
+    double *restrict t_limit = b->t_limit;
+    float *restrict below = b->t_min, *restrict above = b->t_max;
+    int32_t *restrict kinds = b->kind;
+    /* VECTORISE */
+    for (int k = 0; k < n; k++) {
+        const double mx = magnitude(dx[k]), my = magnitude(dy[k]), mz = magnitude(dz[k]);
+        const int64_t x_over_y = mask_less(my, mx), x_largest = x_over_y & mask_less(mz, mx),
+                      y_largest = ~x_over_y & mask_less(mz, my);
+        const double largest = greater(mx, greater(my, mz));
+        const int64_t bits = lanes_bits(largest) & ((int64_t)0x7ff << 52);
+        const double scale = lanes_double(((int64_t)2046 << 52) - bits), unscale = lanes_double(bits);
+        const double sum = ox[k] + oy[k] + oz[k] + dx[k] + dy[k] + dz[k];
+        const double reach = greater(greater(magnitude(ox[k]), magnitude(oy[k])), magnitude(oz[k]));
+        const double t_min = greater(t0[k], 0.0) * unscale, t_max = t1[k] * unscale;
+        const int64_t valid = mask_less_equal(0x1p-1022, largest) & mask_less(largest, 0x1p1023) &
+                              mask_less(magnitude(sum), (double)INFINITY) & mask_less_equal(reach, ORIGIN_FAR) &
+                              mask_less_equal(t0[k], t1[k]) & mask_less(t_min, (double)INFINITY);
+        const int64_t down = (mask_less(dx[k], 0.0) & 1) | (mask_less(dy[k], 0.0) & 2) | (mask_less(dz[k], 0.0) & 4);
+        const int64_t axis = (y_largest & 8) | (~(x_largest | y_largest) & 16);
+        kinds[k] = (int32_t)(((down | axis) & valid) | ~valid);
+        t_limit[k] = t_max;
+        scales[k] = scale;
+        below[k] = float_below(t_min);
+        above[k] = float_above(t_max);
+    }
 }
 
 /* Numbers beyond count repeat the last ray. */
 void KERNEL(batch_read)(batch_floats *b, const mesh_ray *rays, int count)
 {
+    const int n = (count + LANES - 1) / LANES * LANES;
+    batch_columns c;
+    _Alignas(64) double scales[TOGETHER];
     b->count = count;
-    for (int i = 0; i < (count + LANES - 1) / LANES * LANES; i += 8) {
-        const mesh_ray *eight[8];
-        for (int k = 0; k < 8; k++)
-            eight[k] = &rays[i + k < count ? i + k : count - 1];
-        read_eight(b, i, eight);
+    read_columns(&c, rays, count, n);
+    classify(b, &c, scales, n);
+    for (int axis = 0; axis < 3; axis++) {
+        const double *restrict o = c.column[ORIGIN + axis], *restrict d = c.column[DIRECTION + axis];
+        float *restrict origin = b->origin[axis], *restrict direction = b->direction[axis];
+        /* VECTORISE */
+        for (int k = 0; k < n; k++) {
+            origin[k] = (float)o[k];
+            direction[k] = (float)(d[k] * scales[k]);
+        }
     }
 }
 
@@ -93,30 +104,11 @@ static void prepare_shears(packet *p, const float *restrict ox, const float *res
         const float inverse = 1.0f / dz[i], sx = dx[i] * inverse, sy = dy[i] * inverse;
         p->shear_x[i] = sx;
         p->shear_y[i] = sy;
+        p->shear_z[i] = inverse;
+        p->origin_z[i] = oz[i];
         p->base_x[i] = ox[i] - sx * oz[i];
         p->base_y[i] = oy[i] - sy * oz[i];
     }
-}
-
-/* The least and the largest of n values, n a multiple of 16. */
-static void bounds_of(const float *restrict v, int n, float *restrict least, float *restrict most)
-{
-    _Alignas(64) float low[LANES], high[LANES];
-    memcpy(low, v, sizeof low);
-    memcpy(high, v, sizeof high);
-    for (int i = LANES; i < n; i += LANES)
-        /* VECTORISE */
-        for (int k = 0; k < LANES; k++) {
-            low[k] = v[i + k] < low[k] ? v[i + k] : low[k];
-            high[k] = v[i + k] > high[k] ? v[i + k] : high[k];
-        }
-    for (int half = LANES / 2; half > 0; half /= 2)
-        for (int k = 0; k < half; k++) {
-            low[k] = low[k + half] < low[k] ? low[k + half] : low[k];
-            high[k] = high[k + half] > high[k] ? high[k + half] : high[k];
-        }
-    *least = low[0];
-    *most = high[0];
 }
 
 /* The bounds of all rays, by which a node is culled for the whole packet. */
@@ -124,25 +116,21 @@ static void find_bounds(packet *p)
 {
     const int n = p->groups * LANES;
     box_ray *all = &p->all;
-    float least, most;
     p->reach = 0.0f;
     for (int k = 0; k < 3; k++) {
         const bool down = p->near[k] >= WIDTH * 3;
-        bounds_of(p->below[k], n, &least, &most);
-        *(down ? &all->near_origin[k] : &all->far_origin[k]) = least;
+        const float least = least_of_row(p->below[k], n), most = most_of_row(p->above[k], n);
+        all->near_origin[k] = down ? least : most;
+        all->far_origin[k] = down ? most : least;
         p->reach = least < -p->reach ? -least : p->reach;
-        bounds_of(p->above[k], n, &least, &most);
-        *(down ? &all->far_origin[k] : &all->near_origin[k]) = most;
         p->reach = most > p->reach ? most : p->reach;
-        bounds_of(p->near_inverse[k], n, &least, &most);
-        all->near_inverse[k] = down ? most : least;
-        bounds_of(p->far_inverse[k], n, &least, &most);
-        all->far_inverse[k] = down ? least : most;
+        all->near_inverse[k] = down ? most_of_row(p->near_inverse[k], n) : least_of_row(p->near_inverse[k], n);
+        all->far_inverse[k] = down ? least_of_row(p->far_inverse[k], n) : most_of_row(p->far_inverse[k], n);
         all->near[k] = p->near[k];
         all->far[k] = p->far[k];
     }
-    bounds_of(p->t_min, n, &all->t_min, &most);
-    bounds_of(p->t_best, n, &least, &p->t_farthest);
+    all->t_min = least_of_row(p->t_min, n);
+    p->t_farthest = most_of_row(p->t_best, n);
 }
 
 /* The numbers of the axes as in query_start. */
@@ -195,6 +183,8 @@ void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *numbe
     memcpy(p->t_best, from[7], (size_t)count * sizeof *p->t_best);
     for (int i = count; i < n; i++)
         p->t_best[i] = -1.0f;
+    for (int i = 0; i < count; i++)
+        p->skip[i] = p->rays[numbers[i]].skip;
     choose_axes(p, b->kind[numbers[0]]);
     for (int k = 0; k < 3; k++)
         prepare_axis(p, k, from[k], from[3 + k]);
