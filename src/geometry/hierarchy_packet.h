@@ -18,6 +18,7 @@ typedef struct ray_set {
 /* The rays of a batch in single precision, by their number in the batch. */
 typedef struct batch_floats {
     int count;
+    bool coherent;                                                  /* all rays are of one kind */
     _Alignas(64) float origin[3][TOGETHER], direction[3][TOGETHER]; /* the direction's largest component is 1..2 */
     _Alignas(64) float t_min[TOGETHER], t_max[TOGETHER];            /* rounded outwards, in the direction's units */
     _Alignas(64) double t_limit[TOGETHER]; /* t_max, then the best hit's t, in the direction's units */
@@ -33,7 +34,6 @@ typedef struct packet {
     /* Along the axes x, y, z of ray_query: the shears, the ray's position at z = 0, and its origin's z. */
     _Alignas(64) float shear_x[TOGETHER], shear_y[TOGETHER], shear_z[TOGETHER];
     _Alignas(64) float base_x[TOGETHER], base_y[TOGETHER], origin_z[TOGETHER];
-    _Alignas(64) uint32_t skip[TOGETHER];
     const float *near_origin[3], *far_origin[3]; /* below or above */
     int near[3], far[3], axis[3];
     int count, groups;

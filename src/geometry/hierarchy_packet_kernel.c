@@ -191,10 +191,14 @@ void KERNEL(walk_bvh_together)(const hierarchy *h, const mesh_ray *rays, int cou
     if (count == 0 || h->block_count == 0)
         return;
     KERNEL(batch_read)(&b, rays, count);
-    for (int first = 0; first < count; first++) {
+    uint8_t numbers[TOGETHER];
+    for (int i = 0; b.coherent && i < count; i++)
+        numbers[i] = (uint8_t)i;
+    if (b.coherent && b.kind[0] >= 0)
+        walk_kind(h, &p, &b, numbers, count, mode);
+    for (int first = 0; !b.coherent && first < count; first++) {
         if (taken[first] || b.kind[first] < 0)
             continue;
-        uint8_t numbers[TOGETHER];
         int n = 0;
         for (int i = first; i < count; i++) {
             if (b.kind[i] != b.kind[first])

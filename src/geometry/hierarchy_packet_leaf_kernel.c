@@ -234,7 +234,7 @@ static void test_triangle(packet *p, const ray_set *set, enum query_mode mode, c
         for (uint64_t word = words[i]; word; word = LANES_LESS_FIRST(word)) {
             const int slot = i * 64 + __builtin_ctzll(word);
             slots[count] = (uint8_t)slot;
-            count += p->skip[slot] != triangle;
+            count += p->rays[p->number[slot]].skip != triangle;
         }
     if (count > 0)
         test_slots(p, slots, count, mode, corner, triangle);

@@ -60,6 +60,11 @@ void KERNEL(batch_read)(batch_floats *b, const mesh_ray *rays, int count)
     b->count = count;
     read_columns(&c, rays, count, n);
     classify(b, &c, scales, n);
+    int32_t differs = 0;
+    /* VECTORISE */
+    for (int k = 0; k < n; k++)
+        differs |= b->kind[k] ^ b->kind[0];
+    b->coherent = differs == 0;
     for (int axis = 0; axis < 3; axis++) {
         const double *restrict o = c.column[ORIGIN + axis], *restrict d = c.column[DIRECTION + axis];
         float *restrict origin = b->origin[axis], *restrict direction = b->direction[axis];
@@ -183,8 +188,6 @@ void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *numbe
     memcpy(p->t_best, from[7], (size_t)count * sizeof *p->t_best);
     for (int i = count; i < n; i++)
         p->t_best[i] = -1.0f;
-    for (int i = 0; i < count; i++)
-        p->skip[i] = p->rays[numbers[i]].skip;
     choose_axes(p, b->kind[numbers[0]]);
     for (int k = 0; k < 3; k++)
         prepare_axis(p, k, from[k], from[3 + k]);
