@@ -67,7 +67,7 @@ static void tile_of_batches(const hierarchy_kernels *kernel, const hierarchy *h,
     bool occluded[TILE];
     int lit = 0;
     for (int i = 0; i < TILE; i++)
-        rays[i] = camera_ray(x0 + i / 16 % 4 * 4 + i % 4, y0 + i / 64 * 4 + i / 4 % 4);
+        rays[i] = camera_ray(x0 + i % TILE_COLUMNS, y0 + i / TILE_COLUMNS);
     kernel->nearest_batch(h, rays, TILE, hits);
     for (int i = 0; i < TILE; i++)
         if (hits[i].triangle != TRIANGLE_NONE) {

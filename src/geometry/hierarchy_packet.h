@@ -3,11 +3,12 @@
  *
  * The rays stay where the caller stored them. A packet holds single-precision copies, 16 rays at a time, which only
  * reject: boxes (hierarchy_boxes.h) and triangles (hierarchy_packet_leaf_kernel.c). What they do not reject is tested in
- * doubles, from the caller's rays. */
+ * doubles, from the caller's rays (hierarchy_packet_exact_kernel.c). */
 #pragma once
 
 #include "geometry/hierarchy_boxes.h"
 
+#define ALIGNED __attribute__((aligned(64)))
 enum { LANES = 16, GROUPS = TOGETHER / LANES };
 
 /* A set of rays: a bit per slot of the packet, 16 per group. */
@@ -15,25 +16,27 @@ typedef struct ray_set {
     uint16_t bits[GROUPS];
 } ray_set;
 
-/* The rays of a batch in single precision, by their number in the batch. */
+/* The rays of a batch in single precision, by their position: in a full batch, whose rays come in rows of 16, squares of
+ * 4 x 4 rays follow each other; otherwise the caller's order. */
 typedef struct batch_floats {
     int count;
-    bool coherent;                                                  /* all rays are of one kind */
-    _Alignas(64) float origin[3][TOGETHER], direction[3][TOGETHER]; /* the direction's largest component is 1..2 */
-    _Alignas(64) float t_min[TOGETHER], t_max[TOGETHER];            /* rounded outwards, in the direction's units */
-    _Alignas(64) double t_limit[TOGETHER]; /* t_max, then the best hit's t, in the direction's units */
+    uint8_t number[TOGETHER];                                  /* the caller's number of a ray */
+    bool coherent;                                             /* all rays are of one kind */
+    ALIGNED float origin[3][TOGETHER], direction[3][TOGETHER]; /* the direction's largest component is 1..2 */
+    ALIGNED float t_min[TOGETHER], t_max[TOGETHER];            /* rounded outwards, in the direction's units */
+    ALIGNED double t_limit[TOGETHER]; /* t_max, then the best hit's t, in the direction's units */
     /* Rays of one packet have the same signs and the same largest component of the direction: three bits, and the
      * axis' number times eight; -1 for a ray that cannot hit anything. */
-    _Alignas(64) int32_t kind[TOGETHER];
+    ALIGNED int32_t kind[TOGETHER];
 } batch_floats;
 
 typedef struct packet {
-    _Alignas(64) float below[3][TOGETHER], above[3][TOGETHER]; /* bounds of the origin */
-    _Alignas(64) float near_inverse[3][TOGETHER], far_inverse[3][TOGETHER];
-    _Alignas(64) float t_min[TOGETHER], t_best[TOGETHER]; /* t_best is -1 for a finished ray and an unused slot */
+    ALIGNED float below[3][TOGETHER], above[3][TOGETHER]; /* bounds of the origin */
+    ALIGNED float near_inverse[3][TOGETHER], far_inverse[3][TOGETHER];
+    ALIGNED float t_min[TOGETHER], t_best[TOGETHER]; /* t_best is -1 for a finished ray and an unused slot */
     /* Along the axes x, y, z of ray_query: the shears, the ray's position at z = 0, and its origin's z. */
-    _Alignas(64) float shear_x[TOGETHER], shear_y[TOGETHER], shear_z[TOGETHER];
-    _Alignas(64) float base_x[TOGETHER], base_y[TOGETHER], origin_z[TOGETHER];
+    ALIGNED float shear_x[TOGETHER], shear_y[TOGETHER], shear_z[TOGETHER];
+    ALIGNED float base_x[TOGETHER], base_y[TOGETHER], origin_z[TOGETHER];
     const float *near_origin[3], *far_origin[3]; /* below or above */
     int near[3], far[3], axis[3];
     int count, groups;
@@ -44,10 +47,10 @@ typedef struct packet {
     ray_set alive;    /* rays that are not finished */
     ray_set prepared; /* rays whose query is started */
 
-    const mesh_ray *rays; /* the caller's rays and results, by the ray's number */
+    const mesh_ray *rays; /* the caller's rays and results, by the ray's number in the batch */
     mesh_hit *hits;       /* QUERY_NEAREST */
     bool *blocked;        /* QUERY_ANY */
-    double *t_limit;      /* of batch_floats */
+    double t_limit[TOGETHER];
     uint8_t number[TOGETHER];
     ray_query query[TOGETHER]; /* for rays that continue alone */
 } packet;
@@ -56,9 +59,8 @@ typedef struct packet {
 enum { EIGHT = 8, ORIGIN = 0, DIRECTION = 3, T_MIN = 6, T_MAX = 7 };
 
 /* Transposes the first eight doubles of eight rays: number k goes to to[k * stride], ray after ray. */
-ALWAYS_INLINE void ray_lanes_read(double *restrict to, size_t stride, const mesh_ray *const *rays)
+ALWAYS_INLINE void ray_lanes_read(double *__restrict to, size_t stride, const mesh_ray *const *rays)
 {
-    _Static_assert(offsetof(mesh_ray, t_max) == T_MAX * sizeof(double), "a ray begins with eight doubles");
 #ifdef __AVX512F__
     double8 r[8], s[8], t[8];
     for (int i = 0; i < 8; i++)
@@ -133,9 +135,12 @@ ALWAYS_INLINE float most_of_row(const float *v, int n)
 
 /* Converts a batch of at most TOGETHER rays. */
 void KERNEL(batch_read)(batch_floats *b, const mesh_ray *rays, int count);
-/* Starts the packet of the rays with those numbers, which are all of one kind; rays, hits, blocked and t_limit are
+/* Starts the packet of the rays at those positions, in order, which are all of one kind; rays, hits and blocked are
  * set. */
-void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *numbers, int count);
+void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *positions, int count);
+/* Tests a triangle with the rays in those slots, in doubles. corner[axis of the mesh][corner]. */
+void KERNEL(packet_test)(packet *p, const uint8_t *slots, int count, enum query_mode mode, const double (*corner)[3],
+                         uint32_t triangle);
 /* Tests the triangles of a leaf, a node's child, with the rays of a set. */
 void KERNEL(packet_leaf)(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, const bvh_node *node,
                          uint32_t slot);

@@ -69,7 +69,7 @@ static ray_query *query_of_slot(packet *p, int slot, enum query_mode mode)
         query_start(q, &p->rays[at]);
         p->prepared.bits[slot / LANES] |= bit;
     }
-    q->t_best = p->t_limit[at];
+    q->t_best = p->t_limit[slot];
     q->best = mode == QUERY_ANY ? TRIANGLE_NONE : p->hits[at].triangle;
     return q;
 }
@@ -84,9 +84,9 @@ static void take_hit(packet *p, int slot, const ray_query *q, enum query_mode mo
         p->blocked[at] = true;
         p->t_best[slot] = -1.0f;
         p->alive.bits[slot / LANES] &= (uint16_t) ~(1u << slot % LANES);
-    } else if (q->best != p->hits[at].triangle || q->t_best != p->t_limit[at]) {
+    } else if (q->best != p->hits[at].triangle || q->t_best != p->t_limit[slot]) {
         query_finish(q, &p->hits[at]);
-        p->t_limit[at] = q->t_best;
+        p->t_limit[slot] = q->t_best;
         p->t_best[slot] = float_above(q->t_best);
     }
 }
@@ -156,18 +156,18 @@ static void packet_walk(const hierarchy *h, packet *p, enum query_mode mode)
 }
 
 /* Traverses with the rays of one kind. */
-static void walk_kind(const hierarchy *h, packet *p, const batch_floats *b, const uint8_t *numbers, int count,
+static void walk_kind(const hierarchy *h, packet *p, const batch_floats *b, const uint8_t *positions, int count,
                       enum query_mode mode)
 {
     enum { FEW = 12 /* fewer coherent rays than this are traversed one by one */ };
     if (count >= FEW) {
-        KERNEL(packet_start)(p, b, numbers, count);
+        KERNEL(packet_start)(p, b, positions, count);
         packet_walk(h, p, mode);
         return;
     }
     for (int i = 0; i < count; i++) {
         ray_query q;
-        const int at = numbers[i];
+        const int at = b->number[positions[i]];
         query_start(&q, &p->rays[at]);
         KERNEL(walk_bvh)(h, &q, mode);
         if (mode == QUERY_ANY)
@@ -183,7 +183,7 @@ void KERNEL(walk_bvh_together)(const hierarchy *h, const mesh_ray *rays, int cou
     batch_floats b;
     packet p;
     bool taken[TOGETHER] = {false};
-    p.rays = rays, p.hits = hits, p.blocked = blocked, p.t_limit = b.t_limit;
+    p.rays = rays, p.hits = hits, p.blocked = blocked;
     for (int i = 0; mode == QUERY_NEAREST && i < count; i++)
         hits[i] = (mesh_hit){.triangle = TRIANGLE_NONE};
     for (int i = 0; mode == QUERY_ANY && i < count; i++)
@@ -191,11 +191,11 @@ void KERNEL(walk_bvh_together)(const hierarchy *h, const mesh_ray *rays, int cou
     if (count == 0 || h->block_count == 0)
         return;
     KERNEL(batch_read)(&b, rays, count);
-    uint8_t numbers[TOGETHER];
+    uint8_t positions[TOGETHER];
     for (int i = 0; b.coherent && i < count; i++)
-        numbers[i] = (uint8_t)i;
+        positions[i] = (uint8_t)i;
     if (b.coherent && b.kind[0] >= 0)
-        walk_kind(h, &p, &b, numbers, count, mode);
+        walk_kind(h, &p, &b, positions, count, mode);
     for (int first = 0; !b.coherent && first < count; first++) {
         if (taken[first] || b.kind[first] < 0)
             continue;
@@ -204,8 +204,8 @@ void KERNEL(walk_bvh_together)(const hierarchy *h, const mesh_ray *rays, int cou
             if (b.kind[i] != b.kind[first])
                 continue;
             taken[i] = true;
-            numbers[n++] = (uint8_t)i;
+            positions[n++] = (uint8_t)i;
         }
-        walk_kind(h, &p, &b, numbers, n, mode);
+        walk_kind(h, &p, &b, positions, n, mode);
     }
 }

@@ -2,17 +2,21 @@
  * single precision, 16 at a time. */
 #include "geometry/hierarchy_packet.h"
 
+#include <stddef.h>
+
+_Static_assert(offsetof(mesh_ray, t_max) == T_MAX * sizeof(double), "a ray begins with eight doubles");
+
 /* The columns of a batch: of each ray, the first eight doubles. */
 typedef struct batch_columns {
     _Alignas(64) double column[EIGHT][TOGETHER];
 } batch_columns;
 
-static void read_columns(batch_columns *c, const mesh_ray *rays, int count, int n)
+static void read_columns(batch_columns *c, const mesh_ray *rays, const uint8_t *number, int count, int n)
 {
     for (int i = 0; i < n; i += EIGHT) {
         const mesh_ray *eight[EIGHT];
         for (int k = 0; k < EIGHT; k++)
-            eight[k] = &rays[i + k < count ? i + k : count - 1];
+            eight[k] = &rays[number[i + k < count ? i + k : count - 1]];
         ray_lanes_read(&c->column[0][i], TOGETHER, eight);
     }
 }
@@ -51,14 +55,16 @@ static void classify(batch_floats *b, const batch_columns *c, double *restrict s
     }
 }
 
-/* Numbers beyond count repeat the last ray. */
+/* Positions beyond count repeat the last ray. */
 void KERNEL(batch_read)(batch_floats *b, const mesh_ray *rays, int count)
 {
     const int n = (count + LANES - 1) / LANES * LANES;
     batch_columns c;
     _Alignas(64) double scales[TOGETHER];
     b->count = count;
-    read_columns(&c, rays, count, n);
+    for (int i = 0; i < TOGETHER; i++)
+        b->number[i] = (uint8_t)(count < TOGETHER ? i : i / 64 * 64 + i / 4 % 4 * 16 + i / 16 % 4 * 4 + i % 4);
+    read_columns(&c, rays, b->number, count, n);
     classify(b, &c, scales, n);
     int32_t differs = 0;
     /* VECTORISE */
@@ -155,23 +161,26 @@ static void choose_axes(packet *p, int32_t kind)
     }
 }
 
-/* Copies the values of the rays with those numbers. */
-static const float *pick(float *restrict to, const float *restrict from, const uint8_t *numbers, int count, int n)
+/* Copies the values of the rays at those positions. */
+static const float *pick(float *restrict to, const float *restrict from, const uint8_t *positions, int count, int n)
 {
     for (int i = 0; i < n; i++)
-        to[i] = from[numbers[i < count ? i : count - 1]];
+        to[i] = from[positions[i < count ? i : count - 1]];
     return to;
 }
 
 /* Slots beyond count repeat the last ray and are in no set. */
-void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *numbers, int count)
+void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *positions, int count)
 {
     p->count = count;
     p->groups = (count + LANES - 1) / LANES;
     p->changed = false;
     memset(&p->alive, 0, sizeof p->alive);
     memset(&p->prepared, 0, sizeof p->prepared);
-    memcpy(p->number, numbers, (size_t)count);
+    for (int i = 0; i < count; i++) {
+        p->number[i] = b->number[positions[i]];
+        p->t_limit[i] = b->t_limit[positions[i]];
+    }
     for (int g = 0; g < p->groups; g++)
         p->alive.bits[g] = (uint16_t)(count - g * LANES >= LANES ? 0xffff : (1 << (count - g * LANES)) - 1);
     const int n = p->groups * LANES;
@@ -180,7 +189,7 @@ void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *numbe
     const float *from[8] = {b->origin[0],    b->origin[1],    b->origin[2], b->direction[0],
                             b->direction[1], b->direction[2], b->t_min,     b->t_max};
     for (int k = 0; !all && k < 8; k++)
-        from[k] = pick(picked[k], from[k], numbers, count, n);
+        from[k] = pick(picked[k], from[k], positions, count, n);
     const float *t_min = from[6];
     /* VECTORISE */
     for (int i = 0; i < n; i++)
@@ -188,7 +197,7 @@ void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *numbe
     memcpy(p->t_best, from[7], (size_t)count * sizeof *p->t_best);
     for (int i = count; i < n; i++)
         p->t_best[i] = -1.0f;
-    choose_axes(p, b->kind[numbers[0]]);
+    choose_axes(p, b->kind[positions[0]]);
     for (int k = 0; k < 3; k++)
         prepare_axis(p, k, from[k], from[3 + k]);
     const int x = p->axis[0], y = p->axis[1], z = p->axis[2];
