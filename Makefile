@@ -78,7 +78,7 @@ embree_libs = $(if $(embree),-lembree3)
 
 # One source, three instruction sets: *_kernel.c is compiled once for each level.
 isa_flags_sse2   := -msse2 -Wno-psabi
-isa_flags_avx2   := -mavx2
+isa_flags_avx2   := -mavx2 -Wno-psabi
 isa_flags_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
 isas := sse2 avx2 avx512
 

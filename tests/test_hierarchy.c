@@ -128,6 +128,20 @@ static int coherent_rays(const mesh *m, uint64_t *seed, mesh_ray *r)
     return count;
 }
 
+/* One such bundle, or several in a batch, so that the rays of a packet are any part of a batch. */
+static int coherent_bundles(const mesh *m, uint64_t *seed, mesh_ray *r)
+{
+    mesh_ray other[BATCH];
+    const int count = coherent_rays(m, seed, r);
+    for (int more = random_below(seed, 3); more > 0; more--) {
+        const int first = random_below(seed, count), step = 1 + random_below(seed, 2),
+                  others = coherent_rays(m, seed, other);
+        for (int i = 0; i < others && first + i * step < count; i++)
+            r[first + i * step] = other[i];
+    }
+    return count;
+}
+
 static void batches_of_coherent_rays_have_the_hits_of_single_rays(void **state)
 {
     (void)state;
@@ -142,7 +156,7 @@ static void batches_of_coherent_rays_have_the_hits_of_single_rays(void **state)
             mesh_ray r[BATCH];
             mesh_hit expected, hits[BATCH];
             bool shadowed[BATCH];
-            const int count = coherent_rays(m, &seed, r);
+            const int count = coherent_bundles(m, &seed, r);
             const hierarchy_kernels *kernel = kernels[(unsigned)k % (unsigned)(isa_best() + 1)];
             kernel->nearest_batch(h, r, count, hits);
             kernel->any_batch(h, r, count, shadowed);

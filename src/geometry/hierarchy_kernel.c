@@ -66,52 +66,24 @@ static void boxes(const hierarchy *h, const mesh_ray *ray, box_visit *visit, voi
     }
 }
 
-/* Starts up to TOGETHER rays; `ready` lists those that can hit something. */
-static int start_all(const hierarchy *h, const mesh_ray *rays, int count, ray_query *queries, ray_query **ready)
-{
-    int n = 0;
-    for (int i = 0; i < count; i++)
-        if (query_start(&queries[i], &rays[i]) && h->block_count)
-            ready[n++] = &queries[i];
-    return n;
-}
-
-static void go_together(const hierarchy *h, const mesh_ray *rays, int count, enum query_mode mode, ray_query *queries)
-{
-    ray_query *ready[TOGETHER];
-    const int n = start_all(h, rays, count, queries, ready);
-    if (h->kind == HIERARCHY_BVH) {
-        KERNEL(walk_bvh_together)(h, ready, n, mode);
-        return;
-    }
-    for (int i = 0; i < n; i++)
-        walk(h, ready[i], mode);
-}
-
 static void nearest_batch(const hierarchy *h, const mesh_ray *rays, int count, mesh_hit *hits)
 {
-    for (int i = 0; h->kind == HIERARCHY_EMBREE && i < count; i++)
-        hierarchy_embree_nearest(h, &rays[i], &hits[i]);
-    for (int first = 0; h->kind != HIERARCHY_EMBREE && first < count; first += TOGETHER) {
-        const int n = count - first < TOGETHER ? count - first : TOGETHER;
-        ray_query queries[TOGETHER];
-        go_together(h, rays + first, n, QUERY_NEAREST, queries);
-        for (int i = 0; i < n; i++)
-            query_finish(&queries[i], &hits[first + i]);
-    }
+    if (h->kind != HIERARCHY_BVH)
+        for (int i = 0; i < count; i++)
+            nearest(h, &rays[i], &hits[i]);
+    for (int first = 0; h->kind == HIERARCHY_BVH && first < count; first += TOGETHER)
+        KERNEL(walk_bvh_together)
+    (h, rays + first, count - first < TOGETHER ? count - first : TOGETHER, QUERY_NEAREST, hits + first, NULL);
 }
 
 static void any_batch(const hierarchy *h, const mesh_ray *rays, int count, bool *hit)
 {
-    for (int i = 0; h->kind == HIERARCHY_EMBREE && i < count; i++)
-        hit[i] = hierarchy_embree_any(h, &rays[i]);
-    for (int first = 0; h->kind != HIERARCHY_EMBREE && first < count; first += TOGETHER) {
-        const int n = count - first < TOGETHER ? count - first : TOGETHER;
-        ray_query queries[TOGETHER];
-        go_together(h, rays + first, n, QUERY_ANY, queries);
-        for (int i = 0; i < n; i++)
-            hit[first + i] = queries[i].best != TRIANGLE_NONE;
-    }
+    if (h->kind != HIERARCHY_BVH)
+        for (int i = 0; i < count; i++)
+            hit[i] = any(h, &rays[i]);
+    for (int first = 0; h->kind == HIERARCHY_BVH && first < count; first += TOGETHER)
+        KERNEL(walk_bvh_together)
+    (h, rays + first, count - first < TOGETHER ? count - first : TOGETHER, QUERY_ANY, NULL, hit + first);
 }
 
 const hierarchy_kernels KERNEL(hierarchy_kernels) = {nearest, any, all, boxes, nearest_batch, any_batch};

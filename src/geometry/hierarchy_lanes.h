@@ -12,10 +12,14 @@
 typedef float float4 __attribute__((vector_size(16)));
 typedef float float8 __attribute__((vector_size(32)));
 typedef int32_t int8x32 __attribute__((vector_size(32)));
+typedef int32_t int16x32 __attribute__((vector_size(64)));
 typedef double double4 __attribute__((vector_size(32)));
+typedef double double8 __attribute__((vector_size(64)));
+typedef int64_t int8x64 __attribute__((vector_size(64)));
 typedef int64_t int4x64 __attribute__((vector_size(32)));
 typedef int8_t int8x8 __attribute__((vector_size(8)));
 typedef int8_t int4x8 __attribute__((vector_size(4)));
+typedef int8_t int16x8 __attribute__((vector_size(16)));
 
 ALWAYS_INLINE float8 float8_all(float v)
 {
@@ -47,6 +51,24 @@ ALWAYS_INLINE unsigned lane_first(uint64_t set)
 {
     return (unsigned)__builtin_ctzll(set) >> 3;
 }
+/* The same as one bit per lane, from lane 0 in bit 0. */
+ALWAYS_INLINE unsigned bits_of8(int8x64 mask)
+{
+    int8x8 bytes = __builtin_convertvector(mask, int8x8);
+    uint64_t set;
+    memcpy(&set, &bytes, sizeof set);
+    return (unsigned)((set & 0x0101010101010101u) * 0x0102040810204080u >> 56);
+}
+ALWAYS_INLINE unsigned bits_of16(const int32_t *mask)
+{
+    int16x32 m;
+    memcpy(&m, mask, sizeof m);
+    int16x8 bytes = __builtin_convertvector(m, int16x8);
+    uint64_t set[2];
+    memcpy(set, &bytes, sizeof set);
+    const uint64_t ones = 0x0101010101010101u, pack = 0x0102040810204080u;
+    return (unsigned)((set[0] & ones) * pack >> 56 | (set[1] & ones) * pack >> 56 << 8);
+}
 #else
 ALWAYS_INLINE uint64_t lanes_of8(int8x32 mask)
 {
@@ -62,6 +84,18 @@ ALWAYS_INLINE unsigned lanes_of4(int4x64 mask)
 ALWAYS_INLINE unsigned lane_first(uint64_t set)
 {
     return (unsigned)__builtin_ctzll(set);
+}
+ALWAYS_INLINE unsigned bits_of8(int8x64 mask)
+{
+    mask &= (int8x64){1, 2, 4, 8, 16, 32, 64, 128};
+    return (unsigned)((mask[0] | mask[1]) | (mask[2] | mask[3]) | (mask[4] | mask[5]) | (mask[6] | mask[7]));
+}
+ALWAYS_INLINE unsigned bits_of16(const int32_t *mask)
+{
+    int8x32 low, high;
+    memcpy(&low, mask, sizeof low);
+    memcpy(&high, mask + 8, sizeof high);
+    return (unsigned)(lanes_of8(low) | lanes_of8(high) << 8);
 }
 #endif
 #define LANES_LESS_FIRST(set) ((set) & ((set)-1))

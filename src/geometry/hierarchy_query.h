@@ -251,6 +251,8 @@ ALWAYS_INLINE bool query_blocks(ray_query *q, const hierarchy *h, enum query_mod
 void KERNEL(walk_bvh)(const hierarchy *h, ray_query *q, enum query_mode mode);
 void KERNEL(walk_spheres)(const hierarchy *h, ray_query *q, enum query_mode mode);
 
-/* Traverses the hierarchy `bvh` with several started rays at once, as far as they are coherent. Nearest or any. */
+/* nearest_batch (hits) or any_batch (blocked) of at most TOGETHER rays through the hierarchy `bvh`: rays traverse it
+ * together as far as they are coherent. */
 enum { TOGETHER = 128 }; /* a batch: BATCH in rays.h */
-void KERNEL(walk_bvh_together)(const hierarchy *h, ray_query *const *rays, int count, enum query_mode mode);
+void KERNEL(walk_bvh_together)(const hierarchy *h, const mesh_ray *rays, int count, enum query_mode mode,
+                               mesh_hit *hits, bool *blocked);
