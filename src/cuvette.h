@@ -177,8 +177,8 @@ CUVETTE_API cuvette_status cuvette_scene_each_parameter(const cuvette_scene *sce
  *
  * Lights, materials, solids, meshes and textures have names: at most 63 letters, digits, _ and -, of which the first is
  * a letter or _; names are unique within a scene. A scene holds at most 64 lights, 256 materials, 64 meshes, 64
- * textures, 64 planes and solids of meshes together, and 2 million other solids. Where solids overlap, the medium is that of the solid with the highest
- * `priority`, or of the one added first if priorities are equal. */
+ * textures, 64 planes and solids of meshes together, and 2 million other solids. Where solids overlap, the medium is
+ * that of the solid with the highest `priority`, or of the one added first if priorities are equal. */
 
 typedef enum cuvette_object {
     CUVETTE_LIGHT,
@@ -358,10 +358,10 @@ typedef struct cuvette_counters {
     uint64_t by_depth[65]; /* camera (0), reflected and refracted rays by recursion depth */
 } cuvette_counters;
 
-/* Counts of one solid. */
+/* Counts of one solid; only the first 64 solids of a scene are counted. */
 typedef struct cuvette_solid_counters {
     size_t size;         /* sizeof(cuvette_solid_counters) */
-    uint64_t tests;      /* rays tested against it */
+    uint64_t tests;      /* rays tested against it; 0 for a solid that a hierarchy finds */
     uint64_t hits;       /* hits on its interfaces, without shadow rays */
     uint64_t first_hits; /* camera rays whose first interface is on it */
 } cuvette_solid_counters;

@@ -230,7 +230,7 @@ static void count_tests(const plan *p, ray_counters *c)
 static status collect(frame *f, bool in_range, render_result *result, diagnostic *why)
 {
     const int count = (int)f->s->render.threads;
-    bool out_of_memory = false, misplaced = false;
+    bool out_of_memory = scene_geometry_failed(f->frame_plan->geometry), misplaced = false;
     for (int i = 0; i < count; i++) {
         worker_account *d = &f->accounts[i];
         d->report.waiting_s = result->wall_s - d->report.busy_s;
