@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LARGE (UINT64_C(1) << 63)
-enum { FIELD_BITS = 21, FIELD = (1 << FIELD_BITS) - 1, BUCKETS = 4096, CHUNKS = 32, FIRST_CHUNK = 64 };
+enum { FIELD = SET_PRIMITIVES_MAX, BUCKETS = 4096, CHUNKS = 32, FIRST_CHUNK = 64 };
 
 typedef struct large_set {
     struct large_set *next; /* in its bucket */
@@ -76,7 +75,7 @@ static const large_set *large_of(const set_table *t, uint64_t set)
 
 void set_table_members(const set_table *t, uint64_t set, set_members *out)
 {
-    if (set & LARGE) {
+    if (set & SET_LARGE) {
         const large_set *s = large_of(t, set);
         out->count = s->count;
         out->primitive = s->primitive;
@@ -84,17 +83,12 @@ void set_table_members(const set_table *t, uint64_t set, set_members *out)
     }
     out->count = 0;
     out->primitive = out->room;
-    for (; set; set >>= FIELD_BITS)
+    for (; set; set >>= SET_FIELD_BITS)
         out->room[out->count++] = (uint32_t)(set & FIELD) - 1;
 }
 
-bool set_table_has(const set_table *t, uint64_t set, int primitive)
+bool set_table_has_large(const set_table *t, uint64_t set, int primitive)
 {
-    if (!(set & LARGE)) {
-        const uint64_t wanted = (uint64_t)primitive + 1;
-        return (set & FIELD) == wanted || (set >> FIELD_BITS & FIELD) == wanted ||
-               (set >> 2 * FIELD_BITS & FIELD) == wanted;
-    }
     const large_set *s = large_of(t, set);
     int low = 0, high = s->count;
     while (low < high) {
@@ -160,7 +154,7 @@ uint64_t set_table_of(set_table *t, const uint32_t *primitive, int count)
     if (count <= SET_WRITTEN_OUT) {
         uint64_t set = 0;
         for (int k = 0; k < count; k++)
-            set |= ((uint64_t)primitive[k] + 1) << k * FIELD_BITS;
+            set |= ((uint64_t)primitive[k] + 1) << k * SET_FIELD_BITS;
         return set;
     }
     const uint64_t hash = hash_of(primitive, count);
@@ -171,16 +165,14 @@ uint64_t set_table_of(set_table *t, const uint32_t *primitive, int count)
         s = add(t, hash, primitive, count);
         pthread_mutex_unlock(&t->lock);
     }
-    return s ? LARGE | s->number : 0;
+    return s ? SET_LARGE | s->number : 0;
 }
 
-uint64_t set_table_put(set_table *t, uint64_t set, int primitive, bool in)
+uint64_t set_table_change(set_table *t, uint64_t set, int primitive, bool in)
 {
-    if (set_table_has(t, set, primitive) == in)
-        return set;
     set_members old;
     set_table_members(t, set, &old);
-    uint32_t few[SET_WRITTEN_OUT + 1], *changed = few;
+    uint32_t few[SET_WRITTEN_OUT + 1] = {0}, *changed = few;
     if (old.count > SET_WRITTEN_OUT && !(changed = malloc(((size_t)old.count + 1) * sizeof *changed))) {
         atomic_store(&t->failed, true);
         return 0;
@@ -205,7 +197,7 @@ uint64_t set_table_put(set_table *t, uint64_t set, int primitive, bool in)
 
 bool set_table_knows(const set_table *t, uint64_t set)
 {
-    if (set & LARGE)
-        return (set & ~LARGE) < atomic_load(&t->count);
+    if (set & SET_LARGE)
+        return (set & ~SET_LARGE) < atomic_load(&t->count);
     return true;
 }

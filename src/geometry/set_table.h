@@ -10,7 +10,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { SET_WRITTEN_OUT = 3, SET_PRIMITIVES_MAX = (1 << 21) - 1 };
+enum { SET_WRITTEN_OUT = 3, SET_FIELD_BITS = 21, SET_PRIMITIVES_MAX = (1 << SET_FIELD_BITS) - 1 };
+#define SET_LARGE (UINT64_C(1) << 63)
 
 typedef struct set_table set_table;
 
@@ -30,8 +31,22 @@ void set_table_members(const set_table *t, uint64_t set, set_members *out);
 /* The set of these primitives: ascending, each once, each at most SET_PRIMITIVES_MAX - 1. */
 uint64_t set_table_of(set_table *t, const uint32_t *primitive, int count);
 
-bool set_table_has(const set_table *t, uint64_t set, int primitive);
+bool set_table_has_large(const set_table *t, uint64_t set, int p);
+static inline bool set_table_has(const set_table *t, uint64_t set, int p)
+{
+    const uint64_t wanted = (uint64_t)p + 1, field = SET_PRIMITIVES_MAX;
+    if (set & SET_LARGE)
+        return set_table_has_large(t, set, p);
+    return (set & field) == wanted || (set >> SET_FIELD_BITS & field) == wanted || set >> 2 * SET_FIELD_BITS == wanted;
+}
+
 /* The set with or without one primitive. */
-uint64_t set_table_put(set_table *t, uint64_t set, int primitive, bool in);
+uint64_t set_table_change(set_table *t, uint64_t set, int p, bool in);
+static inline uint64_t set_table_put(set_table *t, uint64_t set, int p, bool in)
+{
+    if (set == 0)
+        return in ? (uint64_t)p + 1 : 0;
+    return set_table_has(t, set, p) == in ? set : set_table_change(t, set, p, in);
+}
 /* Is it a set of this table? For sets that came from outside. */
 bool set_table_knows(const set_table *t, uint64_t set);

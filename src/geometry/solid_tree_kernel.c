@@ -168,6 +168,8 @@ static double visit_solid(void *context, int item, double t_max)
 static void consider_containing(tree_search *w)
 {
     set_members m;
+    if (w->s->tree.within[w->column] == 0)
+        return;
     set_table_members(w->a->tree->sets, w->s->tree.within[w->column], &m);
     for (int k = 0; k < m.count; k++) {
         const int p = (int)m.primitive[k], r = w->a->primitives[p].priority_index;

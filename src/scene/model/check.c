@@ -268,7 +268,7 @@ status check_limits(const scene *s, diagnostic *why)
         return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64 of them together, and any number of other solids",
                         "more than 64 planes and solids of meshes");
     if (s->light_count > SCENE_LIGHTS_MAX)
-        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64", "more than 64 lights");
+        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 1024", "more than 1024 lights");
     if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64 of each", "more than 64 %s",
                         s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");

@@ -4,7 +4,7 @@
 #include "base/vec3.h"
 #include <stdint.h>
 
-enum { SCENE_LIGHTS_MAX = 64 };
+enum { SCENE_LIGHTS_MAX = 1024 };
 
 typedef enum light_kind { LIGHT_POINT, LIGHT_CONE, LIGHT_SOFT_CONE } light_kind;
 
