@@ -606,17 +606,18 @@ static void the_number_of_objects_is_limited(void **state)
 {
     const room *r = *state;
     char name[64];
-    for (int i = 1; i <= 62; i++) {
+    for (int i = 1; i <= 1022; i++) {
         json_t *reply = ask(r, 200, "POST", "/api/objects", "{\"kind\": \"light\"}");
         snprintf(name, sizeof name, "lamp%d", i + 1);
         assert_string_equal(json_string_value(json_object_get(reply, "name")), name);
         json_decref(reply);
     }
     expect(r, 400, "POST", "/api/objects", "{\"kind\": \"light\"}");
-    for (int i = 1; i <= 62; i++)
-        expect(r, 200, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\"}");
-    expect(r, 400, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"sphere\"}");
-    expect(r, 400, "POST", "/api/objects/ball/copy", "{}");
+    for (int i = 1; i <= 63; i++)
+        expect(r, 200, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"plane\"}");
+    expect(r, 400, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"plane\"}");
+    expect(r, 400, "POST", "/api/objects/ground/copy", "{}");
+    expect(r, 200, "POST", "/api/objects/ball/copy", "{}");
 }
 
 typedef struct visitor {

@@ -59,6 +59,8 @@ typedef struct plan {
 status plan_build(const scene *s, plan **out, diagnostic *why);
 void plan_destroy(plan *p);
 
+/* Has the region one material whose values do not depend on the place, as those of a texture or a checker do? */
+bool plan_is_plain(const plan *p, int priority_index);
 /* Fills p->alike from the shading materials; false when out of memory. For plan.c. */
 bool plan_find_alike(plan *p);
 

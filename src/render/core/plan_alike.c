@@ -24,7 +24,7 @@ static int compare_looks(const void *one, const void *other)
     return order ? order : a->priority_index - b->priority_index;
 }
 
-static bool can_be_alike(const plan *p, int priority_index)
+bool plan_is_plain(const plan *p, int priority_index)
 {
     const region_materials *m = &p->shading_materials[priority_index];
     return m->count == 1 && !m->mat->img && !(m->mat->surface.checker > 0.0) && !p->spectral;
@@ -42,7 +42,7 @@ bool plan_find_alike(plan *p)
     int count = 0;
     for (int r = 1; r <= regions; r++) {
         p->alike[r] = r;
-        if (can_be_alike(p, r))
+        if (plan_is_plain(p, r))
             all[count++] = (looks){p->shading_materials[r].mat, r, p->geometry->regions[r].opaque};
     }
     qsort(all, (size_t)count, sizeof *all, compare_looks);

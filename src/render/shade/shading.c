@@ -426,10 +426,12 @@ static void shade_alike(tracer *t, int depth, int first, const hit_group *groups
     }
 }
 
-/* Can these hits be shaded with others? Not on a mesh's surface, and not by an integrator that distinguishes solids. */
+/* Can these hits be shaded with others? Not on a mesh's surface, not where a material's values are found in the frame of
+ * the primitive, and not by an integrator that distinguishes solids. */
 static bool can_be_together(const tracer *t, const hit_group *g)
 {
-    return !t->rule->by_solid && t->target.frame_plan->geometry->primitives[g->hit_primitive].rule;
+    const plan *p = t->target.frame_plan;
+    return !t->rule->by_solid && p->geometry->primitives[g->hit_primitive].rule && plan_is_plain(p, g->priority_index);
 }
 
 void shading_groups(tracer *t, int depth, int first, const hit_group *groups, int count)

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIZE_LIMIT = 64 << 20, DEPTH_LIMIT = 16, NODE_LIMIT = 1 << 23 };
+enum { SIZE_LIMIT = 64 << 20, DEPTH_LIMIT = 16, NODE_LIMIT = 1 << 21 };
 
 struct document {
     char *name;
@@ -32,7 +32,7 @@ static void node_destroy(node *n)
 static status node_create(event_reader *r, node_kind kind, yaml_mark_t mark, node **out)
 {
     if (++r->node_count > NODE_LIMIT)
-        return events_error(r, mark, "make the file smaller", "the file has more than 8388608 values");
+        return events_error(r, mark, "make the file smaller", "the file has more than 2097152 values");
     node *n = calloc(1, sizeof *n);
     if (!n)
         return out_of_memory(r->why);
