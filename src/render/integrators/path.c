@@ -20,10 +20,13 @@ enum { ROULETTE_DEPTH = 3 };
 static double distance_to_light(const light *l, vec3 origin, vec3 direction)
 {
     const vec3 to_light = vec3_sub(l->position, origin);
-    const double along = vec3_dot(to_light, direction);
+    const double along = vec3_dot(to_light, direction), distance2 = vec3_dot(to_light, to_light);
+    /* Most rays miss; the margin covers the rounding of this difference. */
+    if (!(along > 0.0) || distance2 - along * along > l->radius * l->radius + 1e-12 * distance2)
+        return (double)HUGE_VAL;
     const vec3 across = vec3_sub(to_light, vec3_scale(direction, along));
     const double discriminant = l->radius * l->radius - vec3_dot(across, across);
-    if (!(discriminant > 0.0) || vec3_dot(to_light, to_light) <= l->radius * l->radius || along <= 0.0)
+    if (!(discriminant > 0.0) || distance2 <= l->radius * l->radius)
         return (double)HUGE_VAL;
     return along - sqrt(discriminant);
 }
