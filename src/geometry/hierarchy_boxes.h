@@ -88,5 +88,14 @@ ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *__restri
     }
 }
 
+/* Fetches what a child refers to, for which the traversal would wait in a large mesh. */
+ALWAYS_INLINE void fetch_child(const hierarchy *h, uint32_t child, size_t block_bytes)
+{
+    const char *at = child & CHILD_LEAF ? (const char *)h->blocks + child_first_block(child) * block_bytes
+                                        : (const char *)&h->nodes[child];
+    for (int line = 0; line < 4; line++)
+        __builtin_prefetch(at + line * 64);
+}
+
 /* Traverses from a child that a group of rays has already reached. */
 void KERNEL(walk_bvh_from)(const hierarchy *h, ray_query *q, const box_ray *b, enum query_mode mode, uint32_t at);

@@ -16,8 +16,8 @@ typedef struct ray_set {
     uint16_t bits[GROUPS];
 } ray_set;
 
-/* The rays of a batch in single precision, by their position: in a full batch, whose rays come in rows of 16, squares of
- * 4 x 4 rays follow each other; otherwise the caller's order. */
+/* The rays of a batch in single precision, by their position: in a full batch, whose rays come in rows of 16, squares
+ * of 4 x 4 rays follow each other; otherwise the caller's order. */
 typedef struct batch_floats {
     int count;
     uint8_t number[TOGETHER];                                  /* the caller's number of a ray */

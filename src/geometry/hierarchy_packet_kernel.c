@@ -111,9 +111,10 @@ static void traverse_alone(const hierarchy *h, packet *p, const ray_set *set, en
 }
 
 /* Pushes a node's children that any ray may hit, the nearest on top. */
-static int push_children(const packet *p, const bvh_node *nodes, uint32_t at, const ray_set *set, waiting *stack,
-                         int top)
+static int push_children(const hierarchy *h, const packet *p, uint32_t at, const ray_set *set, waiting *stack, int top)
 {
+    const bvh_node *nodes = h->nodes;
+    const size_t block_bytes = h->single ? sizeof(block_single) : sizeof(block_double);
     _Alignas(32) float near[WIDTH], far[WIDTH];
     slabs(&nodes[at], &p->all, near, far);
     const float8 n = floats_at(near), f = floats_at(far);
@@ -121,6 +122,7 @@ static int push_children(const packet *p, const bvh_node *nodes, uint32_t at, co
     for (uint64_t hit = lanes_of8((n <= f) & (n <= float8_all(p->t_farthest)) & (f >= float8_all(p->all.t_min))); hit;
          hit = LANES_LESS_FIRST(hit)) {
         const unsigned slot = lane_first(hit);
+        fetch_child(h, nodes[at].child[slot], block_bytes);
         int position = top++;
         for (; position > bottom && stack[position - 1].near < near[slot]; position--)
             stack[position] = stack[position - 1];
@@ -135,7 +137,7 @@ static void packet_walk(const hierarchy *h, packet *p, enum query_mode mode)
     int top = 0;
     if (h->nodes[0].child_count == 0)
         return;
-    top = push_children(p, h->nodes, 0, &p->alive, stack, top);
+    top = push_children(h, p, 0, &p->alive, stack, top);
     while (top > 0) {
         const waiting next = stack[--top];
         ray_set rays;
@@ -151,7 +153,7 @@ static void packet_walk(const hierarchy *h, packet *p, enum query_mode mode)
         else if (child & CHILD_LEAF)
             KERNEL(packet_leaf)(h, p, &rays, mode, node, next.slot);
         else
-            top = push_children(p, h->nodes, child, &rays, stack, top);
+            top = push_children(h, p, child, &rays, stack, top);
     }
 }
 
