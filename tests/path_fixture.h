@@ -12,8 +12,8 @@
 typedef struct estimate {
     double value, standard_error;
     double t_95, t_9999; /* half the width of the intervals of 95% and 99.99%, in standard errors */
-    /* Relative: a random choice of probability p is made for p n or p n + 1 of n Sobol points, often for the same number
-     * in all replicates, which then do not show the error. */
+    /* Relative: a random choice of probability p is made for p n or p n + 1 of n Sobol points, often for the same
+     * number in all replicates, which then do not show the error. */
     double step;
 } estimate;
 

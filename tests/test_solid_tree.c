@@ -11,7 +11,7 @@
 #include "mesh_room.h"
 #include "optics/interface.h"
 
-/* The same solids, built both ways. Primitives have other numbers in the tree's geometry: planes first. */
+/* The same solids in two geometries. Primitives have other numbers in the tree's geometry: planes first. */
 typedef struct both_ways {
     scene_geometry *direct, *tree;
 } both_ways;

@@ -2,8 +2,8 @@
  * src/geometry/hierarchy_packet*_kernel.c.
  *
  * The rays stay where the caller stored them. A packet holds single-precision copies, 16 rays at a time, which only
- * reject: boxes (hierarchy_boxes.h) and triangles (hierarchy_packet_leaf_kernel.c). What they do not reject is tested in
- * doubles, from the caller's rays (hierarchy_packet_exact_kernel.c). */
+ * reject: boxes (hierarchy_boxes.h) and triangles (hierarchy_packet_leaf_kernel.c). What they do not reject is
+ * tested in doubles, from the caller's rays (hierarchy_packet_exact_kernel.c). */
 #pragma once
 
 #include "geometry/hierarchy_boxes.h"

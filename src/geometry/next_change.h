@@ -1,5 +1,6 @@
-/* Formulas for one region, from the intervals of its primitives ahead of a ray, that the pass over the direct primitives
- * and the solid tree share: the next change of medium by it, and its overlap with a shadow ray. No branches; pure. */
+/* Formulas for one region, from the intervals of its primitives ahead of a ray, that the pass over the direct
+ * primitives and the solid tree share: the next change of medium by it, and its overlap with a shadow ray. No
+ * branches; pure. */
 #pragma once
 
 #include "base/kernel.h"

@@ -9,15 +9,15 @@
  * primitives are direct: every batch of rays is tested against each of them.
  *
  * The medium at a point is that of the containing region with the highest priority index (0: the surrounding medium). A
- * ray carries the set of primitives that contain it: with one bit each if all are direct, otherwise as geometry/set_table.h
- * describes. A closed mesh is a primitive too, though not convex;
- * an open mesh is an open surface and contains no points. An interface is a point of the ray where the medium changes:
- * a boundary that a region of higher priority hides, or that leads into an equal medium, is not an interface (Schmidt
- * and Budge, "Simple Nested Dielectrics in Ray Traced Images", JGT 7(2), 2002).
+ * ray carries the set of primitives that contain it: with one bit each if all are direct, otherwise as
+ * geometry/set_table.h describes. A closed mesh is a primitive too, though not convex; an open mesh is an open surface
+ * and contains no points. An interface is a point of the ray where the medium changes: a boundary that a region of
+ * higher priority hides, or that leads into an equal medium, is not an interface (Schmidt and Budge, "Simple Nested
+ * Dielectrics in Ray Traced Images", JGT 7(2), 2002).
  *
- * Ownership: scene_geometry_build creates, scene_geometry_destroy frees; kernels borrow. The geometry is independent of
- * wavelength: of a medium it stores a number (equal numbers, equal refractive indices: no interface between them),
- * whether it is opaque, and whether it absorbs. */
+ * Ownership: scene_geometry_build creates, scene_geometry_destroy frees; kernels borrow. The geometry is independent
+ * of wavelength: of a medium it stores a number (equal numbers, equal refractive indices: no interface between
+ * them), whether it is opaque, and whether it absorbs. */
 #pragma once
 
 #include "base/status.h"
@@ -106,7 +106,7 @@ typedef struct region_source {
 
 /* Which solids a hierarchy finds. The hits, and so the film, are the same with each. */
 typedef enum tree_use {
-    TREE_IF_MANY,     /* all bounded ones without triangles, if there are so many that it is faster */
+    TREE_IF_MANY,     /* all bounded ones without triangles, from the number on at which it is faster */
     TREE_IF_TOO_MANY, /* only if there are more primitives than bits */
     TREE_ALWAYS
 } tree_use;

@@ -28,8 +28,8 @@ typedef struct primitive_functions {
     int intervals; /* the most intervals of a line in it: 1 if it is convex, otherwise up to CHORDS_MAX */
     /* First pass (intervals_kernel.c): fills s->in[bit] and s->out[bit] for every ray, in that number of rows. */
     void (*rows)(const primitive *p, int bit, const ray_batch *rays, ray_scratch *s);
-    /* The same for ray i of the batch alone: `intervals` of them. inside: is its start in the primitive? s has the terms
-     * that the rays of the batch share (KERNEL(shared_terms)). */
+    /* The same for ray i of the batch alone: `intervals` of them. inside: is its start in the primitive? s has the
+     * terms that the rays of the batch share (KERNEL(shared_terms)). */
     void (*one)(const primitive *p, const ray_batch *rays, int i, bool inside, const ray_scratch *s, interval *found);
     /* Third pass: geometry_kernels.surface. */
     void (*points)(const primitive *p, const ray_batch *rays, const double *t, int bit, surface_batch *points);

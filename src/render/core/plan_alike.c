@@ -1,5 +1,5 @@
-/* Regions whose hits may be shaded together: they have one material of equal parameters, without a texture or a checker,
- * which lie in each solid's own frame. */
+/* Regions whose hits may be shaded together: they have one material of equal parameters, without a texture or a
+ * checker, which lie in each solid's own frame. */
 #include "render/core/plan.h"
 
 #include <stdlib.h>

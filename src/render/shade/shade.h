@@ -34,9 +34,9 @@ typedef struct branch_group {
     int64_t total; /* number of total internal reflections in the group */
 } branch_group;
 
-/* Fills g from rays list[0..count-1] of a batch; ascending: the list is; first is the batch's start in the queue; ior: by
- * priority index. Not a kernel: scalar copies are faster than the gather instructions of the processors it was measured
- * on. */
+/* Fills g from rays list[0..count-1] of a batch; ascending: the list is; first is the batch's start in the queue;
+ * ior: by priority index. Not a kernel: scalar copies are faster than the gather instructions of the processors it
+ * was measured on. */
 void group_gather(const ray_queue *q, int first, const hit_batch *hits, const double *ior, const int *list, int count,
                   bool ascending, group *g);
 

@@ -426,8 +426,8 @@ static void shade_alike(tracer *t, int depth, int first, const hit_group *groups
     }
 }
 
-/* Can these hits be shaded with others? Not on a mesh's surface, not where a material's values are found in the frame of
- * the primitive, and not by an integrator that distinguishes solids. */
+/* Can these hits be shaded with others? Not on a mesh's surface, not where a material's values are found in the
+ * frame of the primitive, and not by an integrator that distinguishes solids. */
 static bool can_be_together(const tracer *t, const hit_group *g)
 {
     const plan *p = t->target.frame_plan;

@@ -49,8 +49,8 @@ void cut_branches(tracer *t);
 int enqueue_children(tracer *t, int depth, const double *dx, const double *dy, const double *dz, const double *weight,
                      const uint64_t *inside);
 
-/* Gathers the rays of groups that look alike, of the batch at `first` in the queue of a depth, computes their colours and
- * passes them to the integrator, split by shading material. */
+/* Gathers the rays of groups that look alike, of the batch at `first` in the queue of a depth, computes their
+ * colours and passes them to the integrator, split by shading material. */
 void shading_groups(tracer *t, int depth, int first, const hit_group *groups, int count);
 
 /* texture_shading.c: multiplies the gathered group's colours by the material's texture. */

@@ -9,8 +9,8 @@
 enum { COVER_SOLIDS_MAX = 1000 };
 
 /* A visible solid of s that contains all of `hidden`, a solid of s, and has precedence there; NULL if none is known.
- * Not detected: cover in a scene of more than COVER_SOLIDS_MAX solids, by several solids together, solids inside meshes, some cylinders at an angle inside curved
- * solids. Meshes must be loaded. */
+ * Not detected: cover in a scene of more than COVER_SOLIDS_MAX solids, by several solids together, solids inside
+ * meshes, some cylinders at an angle inside curved solids. Meshes must be loaded. */
 const solid *scene_cover(const scene *s, const solid *hidden);
 
 /* Whether the first solid has precedence where both are. Both are solids of one scene. */
