@@ -10,7 +10,7 @@
 
 #include "random_scene.h"
 
-enum { SOLIDS = 1000, LINE = 400, SCENES = 60 };
+enum { SOLIDS = 1000, LINE = 520, SCENES = 60 };
 
 /* A scene as lines, one a solid. */
 typedef struct crowd {
@@ -39,7 +39,11 @@ static void write_solid(crowd *c, uint64_t *seed, int i, double size, vec3 posit
     if (look == 0)
         add(&t, "diffuse: 0.7, reflectivity: 0.2, color: [0.9, 0.5, 0.2], ");
     else
-        add(&t, "transparency: 1, reflectivity: 0, ior: %s, ", look == 1 ? "1.33" : look == 2 ? "1.5" : "2");
+        add(&t, "transparency: 1, reflectivity: 0, ior: %s, absorb_per_m: [%d, 0, 1], ",
+            look == 1   ? "1.33"
+            : look == 2 ? "1.5"
+                        : "2",
+            random_below(seed, 3));
     add_shape(&t, &s);
     add(&t, "}\n");
     assert_true(t.length < LINE);
@@ -89,6 +93,9 @@ static void the_film_does_not_depend_on_how_solids_are_found(void **state)
         fill(&c, &seed, random_count(&seed));
         direct += c.count > 24 && c.count < 32;
         scene *s = scene_of_crowd(&c, NULL, "");
+        static const char *const ways[] = {"render.radiance=basic", "render.shadows=opaque", "render.samples=4",
+                                           "render.integrator=path render.paths=4", "render.polarisation=on"};
+        set_all(s, ways[k % (int)COUNT(ways)]);
         const uint64_t hash = hash_with(s, "render.accel=bvh render.threads=1", isa_best());
         assert_true(hash_with(s, "render.accel=none", isa_best()) == hash);
         assert_true(hash_with(s, "render.accel=bvh render.threads=3 render.tile=5", isa_best()) == hash);

@@ -166,6 +166,73 @@ static void hits_among_meshes_are_those_of_direct_primitives(void **state)
     assert_true(interfaces > 4000);
 }
 
+enum { CONE = 96 };
+
+/* A bundle of rays from one point, narrow enough to be traced in a view of the few solids ahead (solid_view.h). */
+typedef struct bundle {
+    double o[3][CONE], d[3][CONE];
+    int64_t start[CONE];
+    uint64_t direct[CONE], tree[CONE];
+} bundle;
+
+static void aim_bundle(const both_ways *b, uint64_t *seed, bundle *u)
+{
+    const vec3 from = random_point(seed, 2.0), axis = random_direction(seed);
+    const double wide = pow(10.0, random_real(seed, -3.0, -0.3)), length = random_real(seed, 0.5, 4.0);
+    const uint64_t direct = scene_geometry_inside(b->direct, from), tree = scene_geometry_inside(b->tree, from);
+    for (int i = 0; i < CONE; i++) {
+        const vec3 d = vec3_scale(vec3_normalize(vec3_add(axis, vec3_scale(random_direction(seed), wide))), length);
+        u->o[0][i] = from.x, u->o[1][i] = from.y, u->o[2][i] = from.z;
+        u->d[0][i] = d.x, u->d[1][i] = d.y, u->d[2][i] = d.z;
+        u->start[i] = FACE_NONE, u->direct[i] = direct, u->tree[i] = tree;
+    }
+}
+
+static ray_batch batch_of(const bundle *u, const uint64_t *inside)
+{
+    return (ray_batch){CONE, u->o[0], u->o[1], u->o[2], u->d[0], u->d[1], u->d[2], u->start, inside};
+}
+
+static void bundles_meet_what_they_meet_among_direct_primitives(void **state)
+{
+    (void)state;
+    static ray_scratch scratch;
+    static hit_batch one, other;
+    static double light[ROW], same[ROW];
+    static bundle u;
+    const geometry_kernels *kernels = kernels_of(isa_best());
+    uint64_t seed = 305;
+    int hits = 0;
+    for (int trial = 0; trial < 2000; trial++) {
+        room m;
+        (trial % 2 ? room_fill_on_a_grid : room_fill)(&m, &seed);
+        const both_ways b = build_both(&m, NULL);
+        aim_bundle(&b, &seed, &u);
+        const ray_batch direct = batch_of(&u, u.direct), tree = batch_of(&u, u.tree);
+        kernels->shadow(b.direct, &direct, trial / 2 % 2, &scratch, light);
+        kernels->shadow(b.tree, &tree, trial / 2 % 2, &scratch, same);
+        assert_memory_equal(light, same, sizeof(double[CONE]));
+        kernels->nearest(b.direct, &direct, &scratch, &one);
+        kernels->nearest(b.tree, &tree, &scratch, &other);
+        for (int i = 0; i < CONE; i++) {
+            assert_int_equal(one.before[i], other.before[i]);
+            assert_int_equal(one.hit_primitive[i] < 0, other.hit_primitive[i] < 0);
+            if (one.hit_primitive[i] < 0)
+                continue;
+            hits++;
+            assert_int_equal(in_tree(&b, (int)one.hit_primitive[i]), other.hit_primitive[i]);
+            assert_memory_equal(&one.t[i], &other.t[i], sizeof one.t[i]);
+            assert_int_equal(one.after[i], other.after[i]);
+            assert_int_equal(one.surface[i], other.surface[i]);
+            assert_same_set(&b, one.inside_before[i], other.inside_before[i]);
+            assert_same_set(&b, one.inside_after[i], other.inside_after[i]);
+        }
+        destroy_both(&b);
+        scene_geometry_destroy(m.solids);
+    }
+    assert_true(hits > 50000);
+}
+
 enum { SHELLS = 200 };
 
 /* Concentric balls, the smaller the denser and of higher priority: the shells of a lens with a gradient. */
@@ -252,6 +319,7 @@ int main(void)
         cmocka_unit_test(hits_at_coincident_faces_are_those_of_direct_primitives),
         cmocka_unit_test(hits_among_meshes_are_those_of_direct_primitives),
         cmocka_unit_test(shadows_are_those_of_direct_primitives),
+        cmocka_unit_test(bundles_meet_what_they_meet_among_direct_primitives),
         cmocka_unit_test(a_ray_through_200_shells_obeys_the_law_of_bouguer),
         cmocka_unit_test(a_hundred_equal_balls_in_one_place_are_one),
     };

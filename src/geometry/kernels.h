@@ -86,6 +86,17 @@ void KERNEL(tree_each_near)(const scene_geometry *a, const ray_batch *rays, int 
  * ray. */
 void KERNEL(tree_shadows)(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s);
 
+/* --- solid_view_kernel.c: for a geometry with a solid tree --- */
+
+/* Makes a view of the solids that a ray of the batch may meet before t_max; false if they are too many, or the rays are
+ * not coherent. */
+bool KERNEL(view_make)(const scene_geometry *a, const ray_batch *rays, double t_max, solid_view *v);
+/* The bits, in the view, of the primitives that contain the rays' starts. */
+void KERNEL(view_sets)(const solid_view *v, const ray_batch *rays, uint64_t *inside);
+/* The set, in the whole scene, of the view's primitives of those bits; and the hits in its numbers. */
+uint64_t KERNEL(view_outer_set)(const solid_view *v, uint64_t bits);
+void KERNEL(view_hits)(const solid_view *v, int count, hit_batch *hits);
+
 /* --- mesh_changes_kernel.c --- */
 
 /* Finds the next crossings of meshes where they come before those in c, for the first n columns; then sets the meshes'

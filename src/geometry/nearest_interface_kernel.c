@@ -297,14 +297,20 @@ static void skip_crossing(const scene_geometry *a, int k, int m, ray_scratch *s,
     }
 }
 
+/* The priority index in the whole scene. */
+static int outer_region(const scene_geometry *a, int64_t r)
+{
+    return a->outer ? a->outer->outer_region[r] : (int)r;
+}
+
 /* Records the medium segment of column k up to its crossing, or up to `end`. */
-static void record_segment(int k, double end, ray_scratch *s, const hit_batch *c)
+static void record_segment(const scene_geometry *a, int k, double end, ray_scratch *s, const hit_batch *c)
 {
     medium_segments *w = s->segments;
     const double length = (lesser(c->t[k], end) - w->passed[k]) * w->unit[k];
     if (w->count == SEGMENTS_MAX)
         w->full(w->context);
-    w->segment[w->count++] = (medium_segment){s->ray[k], (int)c->before[k], length};
+    w->segment[w->count++] = (medium_segment){s->ray[k], outer_region(a, c->before[k]), length};
 }
 
 static void begin(const scene_geometry *a, const ray_batch *rays, ray_scratch *s)
@@ -324,12 +330,12 @@ static void begin(const scene_geometry *a, const ray_batch *rays, ray_scratch *s
 }
 
 /* Records the media up to each ray's first crossing. */
-static void record_first_segments(int n, ray_scratch *s, const hit_batch *hits)
+static void record_first_segments(const scene_geometry *a, int n, ray_scratch *s, const hit_batch *hits)
 {
     for (int i = 0; i < n; i++) {
         s->segments->passed[i] = 0.0;
         s->segments->unit[i] = 1.0;
-        record_segment(i, HUGE_VAL, s, hits);
+        record_segment(a, i, HUGE_VAL, s, hits);
     }
 }
 
@@ -363,7 +369,7 @@ static void join_sets(const scene_geometry *a, int k, const ray_scratch *s, hit_
     hits->inside_after[i] = solid_tree_join(a->tree, (split_set){hits->inside_after[i] & ~open, s->tree.after[k]});
 }
 
-static void nearest(const scene_geometry *a, const ray_batch *given, ray_scratch *s, hit_batch *hits)
+static void nearest_among(const scene_geometry *a, const ray_batch *given, ray_scratch *s, hit_batch *hits)
 {
     uint64_t direct[ROW];
     const ray_batch view = with_direct_sets(a, given, s, direct), *rays = &view;
@@ -374,7 +380,7 @@ static void nearest(const scene_geometry *a, const ray_batch *given, ray_scratch
         s->slack[i] = a->extent;
     next_changes(a, rays, rays->count, s, hits, mesh_hits);
     if (s->segments)
-        record_first_segments(rays->count, s, hits);
+        record_first_segments(a, rays->count, s, hits);
     int left = 0;
     for (int i = 0; i < rays->count; i++)
         if (s->attention[i] && !is_interface(a, rays, i, s, hits, mesh_hits))
@@ -387,7 +393,7 @@ static void nearest(const scene_geometry *a, const ray_batch *given, ray_scratch
         left = 0;
         for (int k = 0; k < n; k++) {
             if (s->segments)
-                record_segment(k, HUGE_VAL, s, &s->again);
+                record_segment(a, k, HUGE_VAL, s, &s->again);
             if (s->attention[k] && !is_interface(a, rays, k, s, &s->again, again)) {
                 skip_crossing(a, k, left++, s, &s->again, again);
                 continue;
@@ -401,6 +407,20 @@ static void nearest(const scene_geometry *a, const ray_batch *given, ray_scratch
     }
     for (int i = 0; a->meshes && !a->tree && i < rays->count; i++)
         hits->inside_after[i] &= ~a->meshes->open_surfaces; /* a set never contains open surfaces */
+}
+
+static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
+{
+    if (!a->tree || !KERNEL(view_make)(a, rays, HUGE_VAL, &s->view)) {
+        nearest_among(a, rays, s, hits);
+        return;
+    }
+    uint64_t inside[ROW];
+    ray_batch view = *rays;
+    view.inside = inside;
+    KERNEL(view_sets)(&s->view, rays, inside);
+    nearest_among(&s->view.inner, &view, s, hits);
+    KERNEL(view_hits)(&s->view, rays->count, hits);
 }
 
 /* Does the range 0..1 of the ray overlap the region in the interval of that row, whatever hides it? If the ends of an
@@ -504,6 +524,15 @@ static double interface_transmittance(const scene_geometry *a, int solid_shadows
                                             : owner->shadow_transmittance;
 }
 
+/* The set, in the whole scene, of the primitives that contain the ray just before column k's crossing. */
+static uint64_t set_before(const scene_geometry *a, int k, const ray_scratch *s, const hit_batch *c)
+{
+    if (a->outer)
+        return KERNEL(view_outer_set)(a->outer, c->inside_before[k]);
+    return a->tree ? solid_tree_join(a->tree, (split_set){c->inside_before[k], s->tree.before[k]})
+                   : c->inside_before[k];
+}
+
 /* Records the interface that the shadow ray in column k crosses. */
 static void record_crossing(const scene_geometry *a, int k, ray_scratch *s, const hit_batch *c,
                             const instance_hit *mesh_hits)
@@ -512,13 +541,12 @@ static void record_crossing(const scene_geometry *a, int k, ray_scratch *s, cons
     if (x->count == CROSSINGS_MAX)
         x->full(x->context);
     const int p = (int)c->hit_primitive[k];
-    const split_set before = {c->inside_before[k], s->tree.before[k]};
     x->crossings[x->count++] = (ray_crossing){.ray = s->ray[k],
-                                              .primitive = p,
-                                              .before = (int)c->before[k],
-                                              .after = (int)c->after[k],
+                                              .primitive = a->outer ? a->outer->outer_primitive[p] : p,
+                                              .before = outer_region(a, c->before[k]),
+                                              .after = outer_region(a, c->after[k]),
                                               .t = c->t[k],
-                                              .inside = a->tree ? solid_tree_join(a->tree, before) : before.direct,
+                                              .inside = set_before(a, k, s, c),
                                               .mesh = is_mesh(a, p) ? mesh_hits[k] : (instance_hit){.face = FACE_NONE}};
 }
 
@@ -552,8 +580,8 @@ static int compact_undecided(const scene_geometry *a, const ray_batch *rays, ray
     return n;
 }
 
-static void shadow(const scene_geometry *a, const ray_batch *given, int solid_shadows, ray_scratch *s,
-                   double *transmitted)
+static void shadow_among(const scene_geometry *a, const ray_batch *given, int solid_shadows, ray_scratch *s,
+                         double *transmitted)
 {
     uint64_t direct[ROW];
     const ray_batch view = with_direct_sets(a, given, s, direct), *rays = &view;
@@ -577,7 +605,7 @@ static void shadow(const scene_geometry *a, const ray_batch *given, int solid_sh
         left = 0;
         for (int k = 0; k < n; k++) {
             if (s->segments)
-                record_segment(k, 1.0, s, c);
+                record_segment(a, k, 1.0, s, c);
             if (a->regions[c->before[k]].opaque) /* the ray starts in an opaque solid */
                 transmitted[s->ray[k]] = 0.0;
             if (c->hit_primitive[k] < 0 || c->t[k] >= 1.0)
@@ -591,6 +619,20 @@ static void shadow(const scene_geometry *a, const ray_batch *given, int solid_sh
                 skip_crossing(a, k, left++, s, c, again);
         }
     }
+}
+
+static void shadow(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s,
+                   double *transmitted)
+{
+    if (!a->tree || !KERNEL(view_make)(a, rays, 1.0, &s->view)) {
+        shadow_among(a, rays, solid_shadows, s, transmitted);
+        return;
+    }
+    uint64_t inside[ROW];
+    ray_batch view = *rays;
+    view.inside = inside;
+    KERNEL(view_sets)(&s->view, rays, inside);
+    shadow_among(&s->view.inner, &view, solid_shadows, s, transmitted);
 }
 
 static void surface(const scene_geometry *a, int hit_primitive, const ray_batch *rays, const double *t,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "geometry/scene_geometry.h"
+#include "geometry/solid_view.h"
 #include <float.h>
 #include <stdint.h>
 
@@ -123,6 +124,7 @@ typedef struct ray_scratch {
     mesh_scratch *meshes;      /* the caller's; may be NULL without meshes */
     ray_crossings *crossings;  /* the caller's; NULL: interfaces of shadow rays are not recorded */
     tree_columns tree;
+    solid_view view;
 } ray_scratch;
 
 /* Points on the surface of one primitive. normal is a unit vector against the ray; cos_i = -d.n, in (0, 1] for a unit

@@ -66,22 +66,23 @@ typedef struct region {
 
 typedef struct scene_geometry {
     int primitive_count;
-    primitive *primitives;       /* the direct ones first */
-    int direct_count;            /* at most PRIMITIVES_MAX */
-    int *direct_regions;         /* the priority indices of their regions, ascending ... */
-    int direct_region_count;     /* ... and how many */
-    struct solid_tree *tree;     /* the others; NULL if all are direct */
-    int region_count;            /* priority indices 1 .. region_count */
-    int highest_clear;           /* the highest priority index of a region that is not opaque; 0 for none */
-    region *regions;             /* [0] is the surrounding medium */
-    solid_shape *shapes;         /* by priority index, the shapes of the regions; [0] is unused */
-    double extent;               /* the largest of the primitives' */
-    uint64_t further;            /* rows for further intervals of the primitive before them */
-    uint64_t opaque_regions;     /* bit r - 1: the region of priority index r is opaque; without a tree */
-    bool distinct;               /* no two regions have equal media, and none has the surrounding medium */
-    bool attenuates;             /* a region or the surrounding medium does */
-    struct instance_set *meshes; /* all meshes; NULL without meshes */
-    vec3 *normals;               /* of all primitives with sides */
+    primitive *primitives;          /* the direct ones first */
+    int direct_count;               /* at most PRIMITIVES_MAX */
+    int *direct_regions;            /* the priority indices of their regions, ascending ... */
+    int direct_region_count;        /* ... and how many */
+    const struct solid_view *outer; /* of a solid view: itself, with its numbers in the whole scene; else NULL */
+    struct solid_tree *tree;        /* the others; NULL if all are direct */
+    int region_count;               /* priority indices 1 .. region_count */
+    int highest_clear;              /* the highest priority index of a region that is not opaque; 0 for none */
+    region *regions;                /* [0] is the surrounding medium */
+    solid_shape *shapes;            /* by priority index, the shapes of the regions; [0] is unused */
+    double extent;                  /* the largest of the primitives' */
+    uint64_t further;               /* rows for further intervals of the primitive before them */
+    uint64_t opaque_regions;        /* bit r - 1: the region of priority index r is opaque; without a tree */
+    bool distinct;                  /* no two regions have equal media, and none has the surrounding medium */
+    bool attenuates;                /* a region or the surrounding medium does */
+    struct instance_set *meshes;    /* all meshes; NULL without meshes */
+    vec3 *normals;                  /* of all primitives with sides */
     int normal_count;
 } scene_geometry;
 
