@@ -1,32 +1,45 @@
 #!/bin/bash
-# growth.sh - time and memory against the number of solids and of lights, which no study can sweep, as a table for
-# plots/growth.gp.
+# growth.sh - time and memory against the number of solids and of lights, which no study can sweep, and memory of fresh
+# processes against triangles, pixels and depth (in a study, a process has the memory of earlier cells as well), as a
+# table for plots/growth*.gp.
 #   experiments/growth.sh [CUVETTE] >results/tables/growth.tsv
-# Environment: REPS=5 (rounds), SIZE=400x300, SOLIDS="1 3 10 ... 100000", LIGHTS="1 4 ... 1000" (among 64 solids).
-# Scenes: random_scene.awk with seed 1, depth 4, one thread; paths: 4 a pixel. A round renders every scene once. Times
-# are CPU times of tracing, without reading the scene and building its hierarchy; memory is the largest of the process.
+# Environment: REPS=5 (rounds), SIZE=400x300, SOLIDS="1 3 10 ... 100000", LIGHTS="1 4 ... 1000" (among 64 solids),
+# TRIANGLES="1000 ... 10000000", SIZES="100x75 ... 6400x4800", DEPTHS="0 ... 14". 20 minutes.
+# Scenes: random_scene.awk with seed 1, soup.yaml, rod.yaml; one thread; depth 4, triangles 0; paths: 4 a pixel. A round
+# renders every scene once. Times are CPU times of tracing, without reading the scene and building its hierarchy.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 source "$here/rounds.sh"
 ours=${1:-${CUVETTE:-build/cuvette}} reps=${REPS:-5} size=${SIZE:-400x300}
 solids=${SOLIDS:-1 3 10 30 64 100 300 1000 3000 10000 30000 100000} lights=${LIGHTS:-1 4 16 64 256 1000}
+triangles=${TRIANGLES:-1000 10000 100000 1000000 10000000} depths=${DEPTHS:-0 2 4 6 8 10 12 14}
+sizes=${SIZES:-100x75 200x150 400x300 800x600 1600x1200 3200x2400 6400x4800}
 need "$ours" 'make builds it'
 
-series=()
-add() { # add SERIES N INTEGRATOR SOLIDS LIGHTS
-    awk -v seed=1 -v solids="$4" -v lights="$5" -f "$here/random_scene.awk" >"$work/$1-$2.yaml"
-    series+=("$1 $2 $3")
+runs=()
+add() { runs+=("$*"); } # add SERIES N SCENE SIZE [SET...]
+spheres() {             # spheres SOLIDS LIGHTS: prints the path of the scene
+    awk -v seed=1 -v solids="$1" -v lights="$2" -f "$here/random_scene.awk" >"$work/scene-$1-$2.yaml"
+    echo "$work/scene-$1-$2.yaml"
 }
-for n in $solids; do add solids "$n" whitted "$n" 1; done
-for n in $lights; do add lights "$n" whitted 64 "$n"; done
-for n in $lights; do add lights-path "$n" path 64 "$n"; done
+for n in $solids; do add solids "$n" "$(spheres "$n" 1)" "$size"; done
+for n in $lights; do add lights "$n" "$(spheres 64 "$n")" "$size"; done
+for n in $lights; do add lights-path "$n" "$work/scene-64-$n.yaml" "$size" render.integrator=path render.paths=4; done
+for kind in sparse sphere; do
+    for n in $triangles; do
+        add $kind "$n" "$here/scenes/soup.yaml" "$size" soup.generate=$kind soup.count="$n"
+    done
+done
+for s in $sizes; do add pixels $((${s%x*} * ${s#*x})) "$here/scenes/rod.yaml" "$s"; done
+for n in $depths; do add depth "$n" "$here/scenes/rod.yaml" "$size" render.depth="$n"; done
 
 for ((round = 0; round < reps; round++)); do
-    for one in "${series[@]}"; do
-        read -r who n integrator <<<"$one"
-        json=$("$ours" render "$work/$who-$n.yaml" --json --set render.threads=1 --set "render.integrator=$integrator" \
-            --set render.paths=4 --set "render.width=${size%x*}" --set "render.height=${size#*x}")
-        echo "$who $n" "$(field cpu_s <<<"$json")" "$(field total <<<"$json")" "$(field camera <<<"$json")" \
+    for run in "${runs[@]}"; do
+        read -r series n scene frame sets <<<"$run"
+        # shellcheck disable=SC2086 # a list of words without blanks
+        json=$("$ours" render "$scene" --json $(printf -- ' --set %s' render.threads=1 "render.width=${frame%x*}" \
+            "render.height=${frame#*x}" $sets))
+        echo "$series $n" "$(field cpu_s <<<"$json")" "$(field total <<<"$json")" "$(field camera <<<"$json")" \
             "$(field peak_rss_bytes <<<"$json")"
     done
 done | awk "$order"'

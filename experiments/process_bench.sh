@@ -1,5 +1,5 @@
 #!/bin/bash
-# process_bench.sh - wall time of whole processes, from the scene file to the image, and the speed of the build by clang.
+# process_bench.sh - wall time of whole processes, from the scene file to the image; the speed of the build by clang.
 #   experiments/process_bench.sh [CUVETTE [CUVETTE_BY_CLANG]]
 # Environment: REPS=7 (rounds), SIZE=800x600, TRIANGLES=1000000 (of the OBJ file, generated before: the set dense),
 # CLANG (the second program).

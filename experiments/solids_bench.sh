@@ -1,6 +1,6 @@
 #!/bin/bash
-# solids_bench.sh - rays a second among many solids: 64, 1000 and 100 000 spheres, and the rod in its vessel; each on its
-# named scene and on ten random ones.
+# solids_bench.sh - rays a second among many solids: 64, 1000 and 100 000 spheres, and the rod in its vessel; each on
+# its named scene and on ten random ones.
 #   experiments/solids_bench.sh [CUVETTE]
 # Environment: REPS=5 (rounds), SIZE=800x600, SEED=101 (of the first random scene), SCENES=10, COUNTS="64 1000 100000".
 # A round renders every scene once, on one thread. A random rod has another camera, liquid and rod than rod.yaml.
