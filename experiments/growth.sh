@@ -4,7 +4,7 @@
 # table for plots/growth*.gp.
 #   experiments/growth.sh [CUVETTE] >results/tables/growth.tsv
 # Environment: REPS=5 (rounds), SIZE=400x300, SOLIDS="1 3 10 ... 100000", LIGHTS="1 4 ... 1000" (among 64 solids),
-# TRIANGLES="1000 ... 10000000", SIZES="100x75 ... 6400x4800", DEPTHS="0 ... 14". 20 minutes.
+# TRIANGLES="1000 ... 10000000", SIZES="100x75 ... 6400x4800", DEPTHS="0 ... 14". 8 minutes.
 # Scenes: random_scene.awk with seed 1, soup.yaml, rod.yaml; one thread; depth 4, triangles 0; paths: 4 a pixel. A round
 # renders every scene once. Times are CPU times of tracing, without reading the scene and building its hierarchy.
 set -euo pipefail
