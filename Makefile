@@ -347,9 +347,9 @@ experiments: $(build)/cuvette ## run the studies (resumes), make tables and figu
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study
 	@$(MAKE) --no-print-directory build=$(build) tables figures
 experiments-full: $(build)/cuvette-import
-experiments-full: $(build)/cuvette ## run the long studies of experiments/full as well: half an hour more
+experiments-full: $(build)/cuvette ## run the long studies of experiments/full as well: an hour more
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study experiments/full/*.study
-	@$(MAKE) --no-print-directory build=$(build) tables figures
+	@$(MAKE) --no-print-directory build=$(build) $(RESULTS)/tables/growth.tsv tables figures
 
 # A study's summary, if its rows are newer: of the environment with most rows.
 study_files := $(wildcard experiments/*.study experiments/full/*.study)
@@ -369,6 +369,11 @@ $(foreach kind,metrics curves motion,$(eval $(call strung_rule,$(kind))))
 $(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv $$(call study_file,$$*) $$(wildcard $(RESULTS)/$$*/compare.csv) | $(build)/cuvette
 	@mkdir -p $(@D)
 	$(build)/cuvette study summary --environment main --results $(RESULTS) $(call study_file,$*) >$@
+
+# What no study can sweep: measured once; remove the table to measure again.
+$(RESULTS)/tables/growth.tsv: | $(build)/cuvette
+	@mkdir -p $(@D)
+	experiments/growth.sh $(build)/cuvette >$@.new && mv $@.new $@
 
 figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg ## draw the figures whose rows or scripts are newer
 	@mkdir -p $(RESULTS)
@@ -390,11 +395,24 @@ claims: $(build)/cuvette ## judge each claim of the paper by the rows: reproduce
 paper: $(build)/cuvette ## rebuild the report from existing rows, without measuring
 	$(MAKE) -C paper CUVETTE='$(abspath $(build)/cuvette)'
 
+# The build by clang, if it is installed and another compiler made this one.
+bench_clang = $(if $(clang),,$(shell command -v clang >/dev/null && echo $(build)/by-clang/cuvette))
 bench: all peers $(build)/tests/bench_mesh $(build)/tests/bench_rows ## benchmark frames and rays as ratios to other programs; REPS=7 rounds
 	@$(MAKE) --no-print-directory config=nocounters build=$(build)/nocounters $(build)/nocounters/cuvette
+	@$(if $(bench_clang),$(MAKE) --no-print-directory CC=clang build=$(build)/by-clang $(build)/by-clang/cuvette)
 	CUVETTE='$(abspath $(build)/cuvette)' NOCOUNTERS='$(abspath $(build)/nocounters/cuvette)' experiments/bench.sh
 	@echo
+	experiments/solids_bench.sh $(build)/cuvette
+	@echo
+	experiments/lights_bench.sh $(build)/cuvette
+	@echo
+	experiments/slime_bench.sh $(build)/cuvette
+	@echo
+	experiments/process_bench.sh $(build)/cuvette $(bench_clang)
+	@echo
 	experiments/mesh_bench.sh $(build)/tests/bench_mesh
+	@echo
+	experiments/paths.sh $(build)/cuvette
 	@echo
 	$(build)/tests/bench_rows
 

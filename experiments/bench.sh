@@ -7,31 +7,20 @@
 # followed. CPU seconds cover only the tracing; POV-Ray reports its own. POV-Ray traces the whole tree only in the first
 # three rounds, because it takes a quarter of a minute each time.
 set -euo pipefail
-export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
+source "$here/rounds.sh"
 ours=${1:-${CUVETTE:-build/cuvette}} bare=${2:-${NOCOUNTERS:-}} reps=${REPS:-7}
 report=$(dirname "$ours")/peers/report
-[ -x "$ours" ] ||
-    {
-        echo "usage: bench.sh [CUVETTE [CUVETTE_WITHOUT_COUNTERS]] (no program $ours; make builds it)" >&2
-        exit 2
-    }
-[ -x "$report" ] || {
-    echo "bench.sh: no program $report; make peers builds it next to CUVETTE" >&2
-    exit 2
-}
+need "$ours" 'make builds it'
+need "$report" 'make peers builds it next to CUVETTE'
 scene=$here/scenes/rod.yaml size=${SIZE:-800x600} with_pov=
 if command -v povray >/dev/null; then
     with_pov=1
 else
     echo "bench.sh: POV-Ray is not installed and is left out; make setup-peers installs it" >&2
 fi
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
 
-# field NAME < JSON: the first number with that name
-field() { sed -n "s/^ *\"$1\": *\([-0-9.eE+]*\),*$/\1/p" | head -n 1; }
-note() { printf '%s\t%s\n' "$2" "$3" >>"$work/$1"; } # note CONTESTANT seconds rays
+# A contestant's values: seconds, rays.
 # frame CONTESTANT PROGRAM CLOCK [set...]: the median of five frames in one worker pool
 frame() {
     local who=$1 program=$2 clock=$3 json
@@ -74,17 +63,6 @@ for ((round = 0; round < reps; round++)); do
     ((round >= 3)) || pov "POV-Ray, depth 8, whole tree" 8 0
 done
 
-median() { awk -F'\t' -v c="$2" "$(<"$here/order.awk")"'{ list = list " " $c } END { print median(list) }' "$work/$1"; }
-# The median, over the rounds, of the ratio of two contestants.
-ratio() {
-    [ -s "$work/$1" ] && [ -s "$work/$2" ] || return 0
-    paste "$work/$1" "$work/$2" | awk -F'\t' -v what="$3" "$(<"$here/order.awk")"'
-        $1 != "" && $3 != "" { list = list " " $1 / $3 }
-        END {
-            n = sorted(list, v)
-            printf "%-66s %8.3f   (%d rounds, %.3f to %.3f)\n", what, median(list), n, v[1], v[n]
-        }'
-}
 printf '%-40s %10s %12s %10s\n' "rod.yaml, $size" seconds rays "M rays/s"
 rm -f "$work/other process"
 for f in "$work"/*\ *; do

@@ -24,3 +24,8 @@ function spread_of_ratios(above, below, form,   n, a, b, i, list) {
     for (i = 1; i <= n; i++) list = list " " a[i] / b[i]
     return spread(list, form)
 }
+# A line of a table: what, the median, and in how many rounds and what range.
+function summary(what, list,   n, v) {
+    n = sorted(list, v)
+    printf "%-66s %8.3f   (%d rounds, %.3f to %.3f)\n", what, median(list), n, v[1], v[n]
+}

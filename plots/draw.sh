@@ -63,7 +63,8 @@ has_worker_rows() {
 look_for_inputs() {
     local pattern found needs
     missing=
-    inputs=("plots/$1.gp" plots/{style,rows,image_panels,laws,media}.gp plots/*.{awk,sh} experiments/published/*.csv)
+    inputs=("plots/$1.gp" plots/{style,rows,{image,growth}_panels,laws,media}.gp plots/*.{awk,sh}
+        experiments/published/*.csv)
     read -r -a needs <<<"$(sed -n 's/^# needs: *//p' "plots/$1.gp")"
     for pattern in "${needs[@]}"; do
         mapfile -t found < <(compgen -G "$results/$pattern")

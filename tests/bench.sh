@@ -53,6 +53,54 @@ else
     echo "ok $count # SKIP POV-Ray is not installed (make setup-peers)"
 fi
 
+# --- solids, lights, slimes, processes, growth
+text=$(
+    source experiments/rounds.sh
+    for pair in '2 1' '9 3' '4 4'; do note a "${pair% *}" 5 && note b "${pair#* }" 10; done
+    ratio a b 'of three'
+    ratio a b 'of expressions' '$1 * $2'
+    row a '$1 / $2' 'alone'
+    { ratio a b '' && echo 'x 4.5 (1 rounds)'; } | random_scenes low
+)
+equal 'medians and ranges of rounds and of random scenes' "$(tr -s ' ' <<<"$text")" \
+    'of three 2.000 (3 rounds, 1.000 to 3.000)
+of expressions 1.000 (3 rounds, 0.500 to 1.500)
+alone 0.800 (3 rounds, 0.400 to 1.800)
+ random scenes, median 3.250 (2 scenes, worst 2.000)'
+spheres() { awk -v seed="$1" -v solids="$2" -v lights="${3:-1}" -f experiments/random_scene.awk; }
+area() { spheres "$@" | awk '/radius/ { sub(/.*radius: /, ""); s += $1 * $1 } END { printf "%.3f", s }'; }
+equal 'spheres of the named scene: the same cross-section for any number' "$(area 1 1) $(area 1 1000)" '0.810 0.810'
+equal 'and of a random one' "$(area 7 10)" "$(area 7 1000)"
+equal 'lights share one intensity' "$(spheres 1 3 64 |
+    awk '/ l[0-9]+:/ { n++; sub(/.*intensity: /, ""); s += $1 } END { printf "%d %.3f", n, s }')" '64 1.000'
+small() { # small WHAT COMMAND...: one round in a small size
+    local what=$1
+    shift
+    text=$(env REPS=1 SIZE=32x24 SCENES=2 COUNTS='64 100' DURATION=0.04 LEVEL=1 TRIANGLES=320 "$@" 2>&1)
+    verdict $? "the benchmark of $what runs" "$text"
+}
+small solids experiments/solids_bench.sh "$cuvette"
+for want in 'rod, depth 8: M rays/s' '100 spheres: time a ray / that of 64'; do has_ratio "$text" "$want"; done
+equal 'a median and a worst of the random scenes for each line' "$(grep -c '(2 scenes, worst ' <<<"$text")" 4
+small lights experiments/lights_bench.sh "$cuvette"
+for want in whitted path; do has_ratio "$text" "$want: frame with 64 lights / with one"; done
+small slimes experiments/slime_bench.sh "$cuvette"
+for want in 'slime film 32x24, whole program' 'slime step, level 1: times real time'; do has_ratio "$text" "$want"; done
+small processes experiments/process_bench.sh "$cuvette" "$cuvette"
+for want in 'rod.yaml to a PNG of 8 bits' 'rod.yaml to a PNG of 16 bits' 'OBJ of 320 triangles' \
+    'rod, depth 8: speed of the build by clang'; do has_ratio "$text" "$want"; done
+small growth env SOLIDS='1 100' LIGHTS='1 2' SIZES='8x6 16x12' DEPTHS='0 1' experiments/growth.sh "$cuvette"
+rows=$(awk -F'\t' 'NR > 1 && NF == 14 && $3 == 1 && $4 >= $5 && $6 > 0 && $12 > 1e6' <<<"$text" | cut -f 1,2)
+wanted='solids 1;solids 100;lights 1;lights 2;lights-path 1;lights-path 2;sparse 320;sphere 320;pixels 48;pixels 192;'
+equal 'growth: a row for every size, each with its rays, times and memory' "$(tr '\t\n' ' ;' <<<"$rows")" \
+    "${wanted}depth 0;depth 1;"
+equal 'growth: a camera ray a pixel' "$(awk -F'\t' '$1 == "pixels" { print $5 - $2 }' <<<"$text" | tr '\n' ' ')" '0 0 '
+for script in solids lights slime process; do
+    text=$(experiments/${script}_bench.sh "$work/nowhere" 2>&1)
+    [[ $? == 2 && $(wc -l <<<"$text") == 1 && $text == *"${script}_bench.sh: no program "*"make builds it" ]]
+    verdict $? "${script}_bench.sh without a program: exit status 2 and one line" "$text"
+done
+
 # --- the report's algorithm: its counts of rays
 rows=$("$report" -s 160x120 -d 0,1,2,3 -t 1,7 2>&1)
 verdict $? "the report's algorithm runs" "$rows"

@@ -1,0 +1,48 @@
+#!/bin/bash
+# rounds.sh - sourced by the benchmarks: a folder for their work, the values of contestants that take turns, and lines
+# of medians and ratios over the rounds.
+export LC_ALL=C
+name=${0##*/}
+order=$(<"$(dirname "${BASH_SOURCE[0]}")/order.awk")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+need() { # need PROGRAM HOW-TO-GET-IT
+    [ -x "$1" ] || {
+        echo "$name: no program $1; $2" >&2
+        exit 2
+    }
+}
+# field NAME < JSON: the first number with that name
+field() { sed -n "s/^ *\"$1\": *\([-0-9.eE+]*\),*$/\1/p" | head -n 1; }
+note() { # note CONTESTANT VALUE...: a line of values, one a round
+    local IFS=$'\t'
+    printf '%s\n' "${*:2}" >>"$work/$1"
+}
+seconds() { # seconds COMMAND...: wall time of a whole process
+    local from=$EPOCHREALTIME
+    "$@" >"$work/out" 2>"$work/err" || {
+        echo "$name: $1 failed: $(tail -n 1 "$work/err")" >&2
+        exit 1
+    }
+    awk -v from="$from" -v to="$EPOCHREALTIME" 'BEGIN { printf "%.6f\n", to - from }'
+}
+# median CONTESTANT COLUMN
+median() { awk -F'\t' -v c="$2" "$order"'{ list = list " " $c } END { print median(list) }' "$work/$1"; }
+# row CONTESTANT EXPRESSION WHAT: median and range, over the rounds, of an awk expression of a line's values
+row() {
+    [ -s "$work/$1" ] || return 0
+    awk -F'\t' -v what="$3" "$order"'{ list = list " " ('"$2"') } END { summary(what, list) }' "$work/$1"
+}
+# ratio A B WHAT [EXPRESSION]: the same of the ratio of two contestants, of their first values or of an expression
+ratio() {
+    [ -s "$work/$1" ] && [ -s "$work/$2" ] || return 0
+    paste <(awk -F'\t' "{ print ${4:-\$1} }" "$work/$1") <(awk -F'\t' "{ print ${4:-\$1} }" "$work/$2") |
+        awk -F'\t' -v what="$3" "$order"'$1 != "" && $2 != "" { list = list " " $1 / $2 } END { summary(what, list) }'
+}
+# random_scenes WORST < LINES: median and worst of a line of row or ratio a random scene; WORST is low or high
+random_scenes() {
+    awk -v worst="$1" "$order"'{ sub(/ *\(.*/, ""); list = list " " $NF }
+        END { n = sorted(list, v); if (n) printf "%66s %8.3f   (%d scenes, worst %.3f)\n", "random scenes, median",
+            median(list), n, v[worst == "low" ? 1 : n] }'
+}
