@@ -93,9 +93,9 @@ static void the_film_does_not_depend_on_how_solids_are_found(void **state)
         fill(&c, &seed, random_count(&seed));
         direct += c.count > 24 && c.count < 32;
         scene *s = scene_of_crowd(&c, NULL, "");
-        static const char *const ways[] = {"render.radiance=basic", "render.shadows=opaque", "render.samples=4",
-                                           "render.integrator=path render.paths=4", "render.polarisation=on"};
-        set_all(s, ways[k % (int)COUNT(ways)]);
+        static const char *const settings[] = {"render.radiance=basic", "render.shadows=opaque", "render.samples=4",
+                                               "render.integrator=path render.paths=4", "render.polarisation=on"};
+        set_all(s, settings[k % (int)COUNT(settings)]);
         const uint64_t hash = hash_with(s, "render.accel=bvh render.threads=1", isa_best());
         assert_true(hash_with(s, "render.accel=none", isa_best()) == hash);
         assert_true(hash_with(s, "render.accel=bvh render.threads=3 render.tile=5", isa_best()) == hash);

@@ -6,11 +6,11 @@
 
 /* --- the bounds of a batch --- */
 
-/* Intervals that contain the rays' origins and the inverses of their directions, by axis. On an axis along which the
- * rays go both ways nothing can be excluded. */
+/* Intervals that contain the rays' origins and the inverses of their directions, by axis. An axis along which the
+ * directions have both signs excludes nothing. */
 typedef struct batch_bounds {
     float origin_low[3], origin_high[3], inverse_low[3], inverse_high[3];
-    bool both_ways[3];
+    bool both_signs[3];
     float t_max;
 } batch_bounds;
 
@@ -24,7 +24,7 @@ static void bounds_of_axis(const double *origin, const double *direction, int co
     }
     b->origin_low[axis] = (float)low - margin;
     b->origin_high[axis] = (float)high + margin;
-    b->both_ways[axis] = !(least > 0.0 || most < 0.0);
+    b->both_signs[axis] = !(least > 0.0 || most < 0.0);
     b->inverse_low[axis] = boxes_less(boxes_inverse(most));
     b->inverse_high[axis] = boxes_more(boxes_inverse(least));
 }
@@ -39,7 +39,7 @@ static bool is_coherent(const ray_batch *rays, const solid_boxes *boxes, double 
     bounds_of_axis(rays->oy, rays->dy, rays->count, margin, 1, b);
     bounds_of_axis(rays->oz, rays->dz, rays->count, margin, 2, b);
     b->t_max = boxes_more((float)t_max);
-    return b->both_ways[0] + b->both_ways[1] + b->both_ways[2] <= 1;
+    return b->both_signs[0] + b->both_signs[1] + b->both_signs[2] <= 1;
 }
 
 /* Which children of a node some ray of the batch may enter, as bits: by interval arithmetic. */
@@ -49,7 +49,7 @@ static unsigned entered_by_some(const boxes_node *n, const batch_bounds *b)
     for (int i = 0; i < BOXES_WIDE; i++)
         near[i] = 0.0f, far[i] = b->t_max;
     for (int axis = 0; axis < 3; axis++) {
-        if (b->both_ways[axis])
+        if (b->both_signs[axis])
             continue;
         const bool down = b->inverse_high[axis] < 0.0f;
         const float *in = down ? n->high[axis] : n->low[axis], *out = down ? n->low[axis] : n->high[axis];
