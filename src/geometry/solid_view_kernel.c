@@ -56,7 +56,6 @@ static unsigned entered_by_some(const boxes_node *n, const batch_bounds *b)
         const float from_in = down ? b->origin_low[axis] : b->origin_high[axis],
                     from_out = down ? b->origin_high[axis] : b->origin_low[axis];
         const float low = b->inverse_low[axis], high = b->inverse_high[axis];
-        /* VECTORISE */
         for (int i = 0; i < BOXES_WIDE; i++) {
             const float enter = in[i] - from_in, leave = out[i] - from_out;
             near[i] = boxes_max(near[i], boxes_less(boxes_min(enter * low, enter * high)));
