@@ -6,7 +6,9 @@
 #include <cmocka.h>
 
 #include "base/file.h"
+#include "base/grow.h"
 #include "base/hash.h"
+#include "base/large_pages.h"
 #include "base/number.h"
 #include "base/status.h"
 #include "base/text.h"
@@ -18,6 +20,7 @@
 #include <locale.h>
 #include <math.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -727,6 +730,55 @@ static void folders_are_created_with_their_parents(void **state)
     free(under);
 }
 
+/* ---- large pages ---- */
+
+/* Whether one mapping, advised to use large pages ("hg" of proc(5), smaps), holds the whole block. */
+static bool is_advised(const void *memory, size_t bytes)
+{
+    FILE *maps = fopen("/proc/self/smaps", "r");
+    const uintptr_t first = (uintptr_t)memory, end = first + bytes;
+    bool holds = false, advised = false;
+    char line[512];
+    assert_non_null(maps);
+    while (fgets(line, sizeof line, maps)) {
+        unsigned long from, to;
+        if (sscanf(line, "%lx-%lx ", &from, &to) == 2)
+            holds = from <= first && end <= to;
+        else if (holds && strncmp(line, "VmFlags:", 8) == 0)
+            advised = strstr(line, " hg");
+    }
+    fclose(maps);
+    return advised;
+}
+
+static void large_blocks_are_advised_and_can_still_grow(void **state)
+{
+    (void)state;
+    enum { WORDS = 1 << 22 };
+    uint32_t *words = NULL;
+    size_t room = 0;
+    assert_null(large_pages(NULL, WORDS));
+    for (size_t i = 0; i < WORDS; i++) {
+        assert_true(GROW(words, room, i + 1));
+        words[i] = (uint32_t)i;
+    }
+    if (access("/sys/kernel/mm/transparent_hugepage", F_OK) == 0)
+        assert_true(is_advised(words, room * sizeof *words));
+    for (size_t i = 0; i < WORDS; i++)
+        assert_int_equal(words[i], i);
+    free(words);
+}
+
+static void small_blocks_are_not_advised(void **state)
+{
+    (void)state;
+    const size_t bytes = 1 << 20;
+    void *memory = malloc(bytes);
+    assert_ptr_equal(large_pages(memory, bytes), memory);
+    assert_false(is_advised(memory, bytes));
+    free(memory);
+}
+
 #define file_test(f) cmocka_unit_test_setup_teardown(f, make_folder, remove_folder)
 
 int main(void)
@@ -749,6 +801,8 @@ int main(void)
         cmocka_unit_test(a_text_writer_returns_the_whole_text),
         cmocka_unit_test(hashes_equal_independent_values),
         cmocka_unit_test(hashes_depend_on_order_and_top_bits),
+        cmocka_unit_test(small_blocks_are_not_advised),
+        cmocka_unit_test(large_blocks_are_advised_and_can_still_grow),
         file_test(written_files_read_back),
         file_test(large_files_read_back),
         file_test(files_of_proc_are_read_to_their_end),

@@ -1,5 +1,6 @@
 /* Growable arrays. */
 #include "base/grow.h"
+#include "base/large_pages.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -9,7 +10,7 @@ static bool resize(void *array, size_t count, size_t size)
 {
     void *now;
     memcpy(&now, array, sizeof now);
-    now = count <= SIZE_MAX / size ? realloc(now, count * size) : NULL;
+    now = count <= SIZE_MAX / size ? large_pages(realloc(now, count * size), count * size) : NULL;
     if (now)
         memcpy(array, &now, sizeof now);
     return now;

@@ -1,4 +1,5 @@
 /* The blocks of four triangles of a hierarchy, in single or double precision. */
+#include "base/large_pages.h"
 #include "geometry/hierarchy_private.h"
 
 #include <stdlib.h>
@@ -11,7 +12,7 @@ static size_t block_bytes(const hierarchy *h)
 bool hierarchy_make_blocks(hierarchy *h, size_t count)
 {
     size_t bytes = (count * block_bytes(h) + 63) / 64 * 64;
-    h->blocks = aligned_alloc(64, bytes ? bytes : 64);
+    h->blocks = large_pages(aligned_alloc(64, bytes ? bytes : 64), bytes);
     h->block_count = h->blocks ? count : 0;
     return h->blocks;
 }

@@ -1,4 +1,5 @@
 /* The driver of the bvh builder: computes the references, builds the tree and collapses it. */
+#include "base/large_pages.h"
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>
@@ -101,7 +102,8 @@ status hierarchy_build_bvh(hierarchy *h, int threads, diagnostic *why)
 {
     const mesh *m = h->of;
     h->single = m->single;
-    bvh_ref *refs = aligned_alloc(64, (m->triangle_count + 2) / 2 * 2 * sizeof *refs);
+    const size_t bytes = (m->triangle_count + 2) / 2 * 2 * sizeof(bvh_ref);
+    bvh_ref *refs = large_pages(aligned_alloc(64, bytes), bytes);
     thread_team *t = thread_team_start(useful(threads, m->triangle_count));
     status code = refs && t ? build(h, t, refs, why) : out_of_memory(why);
     thread_team_stop(t);

@@ -1,16 +1,17 @@
 /* The binary tree of the bvh builder: the top is split by all threads together, the subtrees by one thread each. */
+#include "base/large_pages.h"
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>
 
 /* Ranges of at most this many triangles are not split: they fill one block. */
-enum { UNSPLIT = BLOCK, BRANCHES_AT_ONCE = 256 };
+enum { UNSPLIT = BLOCK, BRANCHES_AT_FIRST = 256, BRANCHES_AT_ONCE = 65536 };
 
-/* Branches, allocated in chunks. */
+/* Branches, allocated in chunks, each twice as large as the one before, up to some large pages. */
 struct bvh_store {
     bvh_store *before;
-    size_t used;
-    bvh_branch branches[BRANCHES_AT_ONCE];
+    size_t used, room;
+    bvh_branch branches[];
 };
 
 /* A range that a single thread splits completely. */
@@ -30,12 +31,14 @@ typedef struct tree_build {
 
 static bvh_branch *new_branch(bvh_store **own, const bvh_range *range)
 {
-    if (!*own || (*own)->used == BRANCHES_AT_ONCE) {
-        bvh_store *fresh = malloc(sizeof *fresh);
+    if (!*own || (*own)->used == (*own)->room) {
+        const size_t twice = *own ? 2 * (*own)->room : BRANCHES_AT_FIRST;
+        const size_t room = twice < BRANCHES_AT_ONCE ? twice : BRANCHES_AT_ONCE;
+        const size_t bytes = sizeof(bvh_store) + room * sizeof(bvh_branch);
+        bvh_store *fresh = large_pages(malloc(bytes), bytes);
         if (!fresh)
             return NULL;
-        fresh->before = *own;
-        fresh->used = 0;
+        *fresh = (bvh_store){.before = *own, .room = room};
         *own = fresh;
     }
     bvh_branch *b = &(*own)->branches[(*own)->used++];

@@ -1,6 +1,7 @@
 /* The test whether a mesh is closed. Half-edges (a triangle's, from one corner to the next) are sorted by the lower and
  * the higher of their two positions: first by counting, into a list for each lower position, then within each list,
  * which is short. Linear time in practice. */
+#include "base/large_pages.h"
 #include "geometry/mesh_parts.h"
 
 #include <stdlib.h>
@@ -55,8 +56,10 @@ static void sort(half_edge *edges, size_t count)
 static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
 {
     TRY(mesh_weld(m, &lists->same, why));
-    uint32_t *start = lists->start = calloc(m->vertex_count + 2, sizeof *start);
-    half_edge *edges = lists->edges = malloc((3 * m->triangle_count + 1) * sizeof *edges);
+    const size_t starts = (m->vertex_count + 2) * sizeof(uint32_t),
+                 all = (3 * m->triangle_count + 1) * sizeof(half_edge);
+    uint32_t *start = lists->start = large_pages(calloc(1, starts), starts);
+    half_edge *edges = lists->edges = large_pages(malloc(all), all);
     if (!start || !edges)
         return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
     /* two passes over the half-edges: count them two entries ahead, then place each at the end of the list before */

@@ -1,4 +1,5 @@
 /* The search for vertices at equal positions: a hash table of vertex numbers with open addressing. */
+#include "base/large_pages.h"
 #include "geometry/mesh_parts.h"
 
 #include <stdlib.h>
@@ -28,10 +29,15 @@ static bool same_place(vec3 a, vec3 b)
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
+static uint32_t *numbers(size_t count)
+{
+    return large_pages(malloc(count * sizeof(uint32_t)), count * sizeof(uint32_t));
+}
+
 /* Every vertex is its own. */
 static status weld_distinct(const mesh *m, uint32_t **same, diagnostic *why)
 {
-    uint32_t *own = *same = malloc((m->vertex_count + 1) * sizeof *own);
+    uint32_t *own = *same = numbers(m->vertex_count + 1);
     for (size_t v = 0; own && v < m->vertex_count; v++)
         own[v] = (uint32_t)v;
     return own ? STATUS_OK : diagnose(why, STATUS_FAILURE, "use fewer triangles", NO_MEMORY);
@@ -45,7 +51,7 @@ status mesh_weld(const mesh *m, uint32_t **same, diagnostic *why)
     size_t size = 16;
     while (size < 2 * m->vertex_count)
         size *= 2;
-    uint32_t *table = malloc(size * sizeof *table), *found = malloc((m->vertex_count + 1) * sizeof *found);
+    uint32_t *table = numbers(size), *found = numbers(m->vertex_count + 1);
     if (!table || !found) {
         free(table);
         free(found);

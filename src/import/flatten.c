@@ -174,7 +174,7 @@ static status take_vertices(walk *w, const struct aiMesh *mesh, const placed *at
         if (index[i] == UNUSED)
             continue;
         gather(w, mesh, at, i, numbers);
-        switch (join_vertex(&w->join, w->flat, w->req->vertices, numbers, join_hash(numbers), &index[i])) {
+        switch (join_vertex(&w->join, w->flat, w->req->vertices, numbers, join_hash(w->flat, numbers), &index[i])) {
         case JOINED: break;
         case JOIN_NO_MEMORY: return no_memory_for(w->req, w->why);
         case JOIN_TOO_MANY:

@@ -86,7 +86,7 @@ typedef struct joiner {
     size_t room;
 } joiner;
 enum joined { JOINED, JOIN_NO_MEMORY, JOIN_TOO_MANY };
-uint64_t join_hash(const double numbers[8]);
+uint64_t join_hash(const flat_mesh *flat, const double numbers[8]);
 /* Starts to load what join_vertex will read: tables of large meshes exceed the caches. */
 void join_prefetch(const joiner *j, uint64_t hash);
 enum joined join_vertex(joiner *j, flat_mesh *flat, uint64_t limit, const double numbers[8], uint64_t hash,

@@ -1,4 +1,5 @@
 /* The hash table of vertices, keyed by their bits: open addressing with linear probing, at most half full. */
+#include "base/large_pages.h"
 #include "import/import.h"
 
 #include <stdlib.h>
@@ -14,10 +15,11 @@ static void vertex_numbers(const flat_mesh *flat, uint32_t index, double numbers
     memcpy(numbers, (double[NUMBERS]){p.x, p.y, p.z, n.x, n.y, n.z, u, v}, NUMBERS * sizeof *numbers);
 }
 
-uint64_t join_hash(const double numbers[NUMBERS])
+uint64_t join_hash(const flat_mesh *flat, const double numbers[NUMBERS])
 {
+    const int used = flat->with_normals || flat->with_uvs ? NUMBERS : 3;
     uint64_t hash = 0x9e3779b97f4a7c15u;
-    for (int i = 0; i < NUMBERS; i++) {
+    for (int i = 0; i < used; i++) {
         uint64_t bits;
         memcpy(&bits, &numbers[i], sizeof bits);
         hash = (hash ^ bits) * 0xff51afd7ed558ccdu; /* MurmurHash3's finaliser, Appleby */
@@ -49,26 +51,31 @@ static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[
 static bool resize_table(joiner *j, const flat_mesh *flat, size_t size)
 {
     joiner larger = {.size = size, .room = j->room};
-    larger.table = calloc(larger.size, sizeof *larger.table);
+    larger.table = large_pages(calloc(larger.size, sizeof *larger.table), larger.size * sizeof *larger.table);
     if (!larger.table)
         return false;
     for (size_t i = 0; i < flat->vertex_count; i++) {
         double numbers[NUMBERS];
         vertex_numbers(flat, (uint32_t)i, numbers);
-        larger.table[find(&larger, flat, numbers, join_hash(numbers))] = (uint32_t)i + 1;
+        larger.table[find(&larger, flat, numbers, join_hash(flat, numbers))] = (uint32_t)i + 1;
     }
     free(j->table);
     *j = larger;
     return true;
 }
 
+static void *resized(void *array, size_t room, size_t size)
+{
+    return large_pages(realloc(array, room * size), room * size);
+}
+
 static bool resize_arrays(joiner *j, flat_mesh *flat, size_t room)
 {
-    vec3 *positions = realloc(flat->positions, room * sizeof *positions);
+    vec3 *positions = resized(flat->positions, room, sizeof *positions);
     flat->positions = positions ? positions : flat->positions;
-    vec3 *normals = flat->with_normals ? realloc(flat->normals, room * sizeof *normals) : NULL;
+    vec3 *normals = flat->with_normals ? resized(flat->normals, room, sizeof *normals) : NULL;
     flat->normals = normals ? normals : flat->normals;
-    void *uvs = flat->with_uvs ? realloc(flat->uvs, room * sizeof *flat->uvs) : NULL;
+    void *uvs = flat->with_uvs ? resized(flat->uvs, room, sizeof *flat->uvs) : NULL;
     flat->uvs = uvs ? uvs : flat->uvs;
     if (!positions || (flat->with_normals && !normals) || (flat->with_uvs && !uvs))
         return false;

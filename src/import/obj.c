@@ -1,6 +1,7 @@
 /* Puts the triangles of a plain OBJ file into the order in which assimp returns them, and joins their vertices. To find
  * the order, the materials and what the statements on groups mean, assimp reads a text with the same statements and one
  * triangle for each run of faces, whose vertex has the run's number as its x. */
+#include "base/large_pages.h"
 #include "import/obj.h"
 
 #include <stdlib.h>
@@ -95,7 +96,7 @@ static bool take_corners(assembly *a, const obj_corner *corners, size_t count, u
         if (!ready[i])
             continue;
         numbers_of(a, corners[i], numbers[i]);
-        hashes[i] = join_hash(numbers[i]);
+        hashes[i] = join_hash(a->flat, numbers[i]);
         join_prefetch(&a->join, hashes[i]);
     }
     for (size_t i = 0; i < count; i++) {
@@ -103,7 +104,7 @@ static bool take_corners(assembly *a, const obj_corner *corners, size_t count, u
         if (!is_last(last, corners[i])) {
             if (!ready[i]) { /* it was the last one before this block */
                 numbers_of(a, corners[i], numbers[i]);
-                hashes[i] = join_hash(numbers[i]);
+                hashes[i] = join_hash(a->flat, numbers[i]);
             }
             if (join_vertex(&a->join, a->flat, a->req->vertices, numbers[i], hashes[i], &indices[i]) != JOINED)
                 return false;
@@ -138,9 +139,11 @@ static bool assemble(const request *req, const obj_file *f, const flat_mesh *ord
     }
     flat->material_count = order->material_count;
     memcpy(flat->materials, order->materials, sizeof flat->materials);
-    flat->triangles = malloc(f->triangle_count * sizeof *flat->triangles);
+    const size_t triangles = f->triangle_count * sizeof *flat->triangles,
+                 vertices = all->place_count * sizeof(last_vertex);
+    flat->triangles = large_pages(malloc(triangles), triangles);
     flat->slots = malloc(f->triangle_count);
-    assembly a = {req, flat, all->places, all->uvs, all->normals, calloc(all->place_count, sizeof *a.last), {0}};
+    assembly a = {req, flat, all->places, all->uvs, all->normals, large_pages(calloc(1, vertices), vertices), {0}};
     bool good = flat->triangles && flat->slots && a.last && join_reserve(&a.join, flat, all->place_count);
     for (size_t t = 0; t < order->triangle_count && good; t++)
         good = take_run(&a, &runs[(size_t)order->positions[order->triangles[t][0]].x], order->slots[t]);

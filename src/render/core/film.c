@@ -2,10 +2,10 @@
 #include "render/core/film.h"
 
 #include "base/hash.h"
+#include "base/large_pages.h"
 #include "optics/observer.h"
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 /* Two cache lines, which processors fetch together: if the widths of the image and the tiles are multiples of 16, tiles
  * share no line, and workers do not contend for lines. A film of several large pages begins with one. */
@@ -27,7 +27,7 @@ static bool allocate_sums(film *f, size_t bytes)
         return false;
     f->sum = (int64_t *)(((uintptr_t)f->memory + alignment - 1) / alignment * alignment);
     if (large)
-        madvise(f->sum, bytes, MADV_HUGEPAGE); /* advice: a failure has no effect */
+        large_pages(f->sum, bytes);
     for (size_t i = 0; i < bytes; i += PAGE)
         ((volatile int64_t *)f->sum)[i / sizeof *f->sum] = 0;
     return true;

@@ -1,0 +1,18 @@
+/* Advice to use large pages. */
+#include "base/large_pages.h"
+
+#include <stdint.h>
+#include <sys/mman.h>
+
+enum { PAGE = 4096, LARGE_PAGE = 1 << 21 };
+
+void *large_pages(void *memory, size_t bytes)
+{
+    if (memory && bytes >= 2 * (size_t)LARGE_PAGE) {
+        /* whole pages, from the one with malloc's header: a mapping of two kinds could not be moved by realloc */
+        const uintptr_t first = (uintptr_t)memory / PAGE * PAGE,
+                        end = ((uintptr_t)memory + bytes + PAGE - 1) / PAGE * PAGE;
+        madvise((char *)memory - ((uintptr_t)memory - first), end - first, MADV_HUGEPAGE);
+    }
+    return memory;
+}
