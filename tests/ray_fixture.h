@@ -55,7 +55,7 @@ static inline one_hit nearest_interface(const scene_geometry *a, one_ray r)
         return h;
     r.inside = h.inside_before;
     if (!a->primitives[h.hit_primitive].rule)
-        instance_set_surface(a->meshes, &batch, meshes.hit, false, &points, NULL);
+        kernels->mesh_surface(a->meshes, &batch, meshes.hit, false, &points, NULL);
     else
         kernels->surface(a, h.hit_primitive, &batch, hits.t, &points);
     h.point = vec3_make(points.px[0], points.py[0], points.pz[0]);

@@ -1,5 +1,6 @@
 /* Rays that pass a mesh's box by are not traced through its hierarchy; rays close to the box find what a query of the
  * hierarchy finds. */
+#include "geometry/box_passes.h"
 #include "geometry/hierarchy_private.h"
 #include "geometry/instance_set.h"
 #include "geometry/mesh_generators.h"
@@ -69,6 +70,7 @@ static void compare(const placed_mesh *p, uint64_t *seed, int *hits, int *misses
     if (expected.triangle != TRIANGLE_NONE) {
         assert_int_equal(mesh_face_triangle(got.face), expected.triangle);
         assert_true(got.t == expected.t);
+        assert_false(box_passes(p->set->world.low, p->set->world.high, ray.origin, ray.direction));
     }
     (*hits) += blocked;
     (*misses) += !blocked;
@@ -91,10 +93,42 @@ static void rays_close_to_the_box_of_a_mesh_find_what_its_hierarchy_has(void **s
     }
 }
 
+/* In front of an outer vertex, and away from it. */
+static void the_box_of_a_set_has_the_vertices_of_all_copies(void **state)
+{
+    (void)state;
+    mesh *m;
+    hierarchy *tree;
+    instance_set *set;
+    assert_int_equal(generate_icosphere(1, &m, NULL), STATUS_OK);
+    assert_int_equal(hierarchy_build(m, HIERARCHY_BVH, 1, &tree, NULL), STATUS_OK);
+    const solid_shape shape = {.mesh = m,
+                               .position = {1e4, -3.0, 0.1},
+                               .rotation_deg = {10.0, 20.0, 30.0},
+                               .scale = {1.0, 2.0, 0.5},
+                               .copies = {2.0, 3.0, 1.0},
+                               .spacing = {5.0, 7.0, 0.0}};
+    const instance_source source = {.shape = &shape, .tree = tree, .primitive = 0, .priority_index = 1};
+    assert_int_equal(instance_set_build(&source, 1, source.priority_index, &set, NULL), STATUS_OK);
+    const vec3 low = set->world.low, high = set->world.high, outside = vec3_make(high.x + 1.0, low.y, low.z);
+    for (uint32_t copy = 0; copy < 6; copy++)
+        for (uint32_t vertex = 0; vertex < m->vertex_count; vertex++) {
+            const vec3 at = instance_set_vertex_point(set->parts, copy, vertex);
+            assert_true(at.x >= low.x && at.y >= low.y && at.z >= low.z);
+            assert_true(at.x <= high.x && at.y <= high.y && at.z <= high.z);
+            assert_int_equal(box_passes(low, high, outside, vec3_sub(at, outside)), 0);
+            assert_int_equal(box_passes(low, high, outside, vec3_sub(outside, at)), -1);
+        }
+    instance_set_destroy(set);
+    hierarchy_destroy(tree);
+    mesh_release(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rays_close_to_the_box_of_a_mesh_find_what_its_hierarchy_has),
+        cmocka_unit_test(the_box_of_a_set_has_the_vertices_of_all_copies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

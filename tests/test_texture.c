@@ -15,6 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/isa.h"
 #include "random_stream.h"
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
@@ -582,6 +583,34 @@ static void mipmaps_take_a_third_more_memory(void **state)
     image_destroy(img);
 }
 
+static void every_instruction_set_tints_with_the_same_samples(void **state)
+{
+    (void)state;
+    enum { POINTS = 150 };
+    texture_tinter *const tint[ISA_COUNT] = {texture_tint_sse2, texture_tint_avx2, texture_tint_avx512};
+    uint64_t s = 9;
+    double u[POINTS], v[POINTS], footprint[POINTS];
+    for (int k = 0; k < POINTS; k++) {
+        u[k] = k % 50 == 7 ? (double)NAN : random_real(&s, -3.0, 3.0);
+        v[k] = k % 50 == 8 ? -(double)INFINITY : random_real(&s, -3.0, 3.0);
+        footprint[k] = k % 50 == 9 ? (double)NAN : pow(2.0, random_real(&s, -5.0, 2.0));
+    }
+    for (size_t i = 0; i < COUNT(wraps) * COUNT(filters); i++) {
+        texture *t = owned(noise(11, 6), wraps[i / COUNT(filters)], filters[i % COUNT(filters)]);
+        for (isa level = ISA_SSE2; level <= isa_best(); level++) {
+            double r[POINTS], g[POINTS], b[POINTS];
+            for (int k = 0; k < POINTS; k++)
+                r[k] = 1.0, g[k] = 0.25, b[k] = 4.0;
+            tint[level](t, POINTS, u, v, footprint, r, g, b);
+            for (int k = 0; k < POINTS; k++) {
+                const vec3 c = texture_sample(t, u[k], v[k], footprint[k]);
+                assert_same(vec3_make(r[k], 4.0 * g[k], 0.25 * b[k]), c, 0.0);
+            }
+        }
+        texture_release(t);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -601,6 +630,7 @@ int main(void)
         cmocka_unit_test(contrast_never_increases_with_the_footprint),
         cmocka_unit_test(samples_stay_within_the_range_of_the_texels),
         cmocka_unit_test(a_uniform_image_gives_a_uniform_texture),
+        cmocka_unit_test(every_instruction_set_tints_with_the_same_samples),
         cmocka_unit_test(extreme_coordinates_and_footprints_are_valid),
         cmocka_unit_test(images_with_nan_or_without_pixels_are_refused),
         cmocka_unit_test(owners_share_a_texture_and_the_last_one_releases_it),

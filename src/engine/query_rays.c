@@ -138,7 +138,7 @@ static void report_hits(const cuvette_query *q, bench *b, int hit_primitive, int
     if (!a->primitives[hit_primitive].rule) {
         for (int k = 0; k < count; k++)
             b->mesh_hits[k] = b->meshes.hit[b->list[k]];
-        instance_set_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);
+        q->kernels->mesh_surface(a->meshes, &rays, b->mesh_hits, false, &b->points, &b->on_mesh);
     } else {
         q->kernels->surface(a, hit_primitive, &rays, b->t, &b->points);
     }

@@ -43,7 +43,7 @@ static crossing mesh_crossing_of(const scene_geometry *a, const ray_batch *rays,
     const uint64_t inside = 0;
     const ray_batch one = ray_batch_one(rays, i, &inside);
     surface_batch point;
-    instance_set_surface(a->meshes, &one, hit, false, &point, NULL);
+    KERNEL(mesh_surface)(a->meshes, &one, hit, false, &point, NULL);
     const instanced_mesh *part = &a->meshes->parts[a->meshes->by_primitive[mesh_face_primitive(hit->face)]];
     const vec3 o = instance_set_origin(part, mesh_face_copy(hit->face));
     const double start = magnitude(rays->ox[i] - o.x) + magnitude(rays->oy[i] - o.y) + magnitude(rays->oz[i] - o.z);

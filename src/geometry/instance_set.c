@@ -24,9 +24,7 @@ double instance_set_extent(const instance_set *f, int64_t face)
 
 vec3 instance_set_vertex_point(const instanced_mesh *p, uint32_t copy, uint32_t vertex)
 {
-    const vec3 v = p->triangles->vertices[vertex];
-    const vec3 scaled = vec3_make(v.x * p->scale.x, v.y * p->scale.y, v.z * p->scale.z);
-    return vec3_add(instance_set_origin(p, copy), p->turned ? mat3_apply(p->rotation, scaled) : scaled);
+    return vec3_add(instance_set_origin(p, copy), instance_set_vertex_offset(p, vertex));
 }
 
 /* Normals transform by the inverse transpose: R S^-1. */
@@ -94,16 +92,22 @@ static bounds3 bounds_in_world(const instanced_mesh *p)
     return world;
 }
 
+/* World bounds of a copy, from those about its frame's origin. */
+static bounds3 bounds_at(bounds3 box, vec3 o)
+{
+    const double slack = (fabs(o.x) + fabs(o.y) + fabs(o.z)) * 0x1p-48;
+    const vec3 wider = vec3_make(slack, slack, slack);
+    return (bounds3){vec3_sub(vec3_add(box.low, o), wider), vec3_add(vec3_add(box.high, o), wider)};
+}
+
 /* Writes one proxy triangle per copy. A mesh without triangles has no bounds; its proxies stay zero, and the hierarchy
  * leaves them out. */
 static void span_copies(instance_set *f, const instanced_mesh *p)
 {
     const bounds3 box = bounds_in_world(p);
     for (size_t copy = 0; copy < instances_of(p) && p->triangles->triangle_count > 0; copy++) {
-        const vec3 o = instance_set_origin(p, (uint32_t)copy);
-        const double slack = (fabs(o.x) + fabs(o.y) + fabs(o.z)) * 0x1p-48;
-        const vec3 wider = vec3_make(slack, slack, slack);
-        const vec3 low = vec3_sub(vec3_add(box.low, o), wider), high = vec3_add(vec3_add(box.high, o), wider);
+        const bounds3 here = bounds_at(box, instance_set_origin(p, (uint32_t)copy));
+        const vec3 low = here.low, high = here.high;
         const size_t at = p->first_instance + copy;
         vec3 *corner = &f->proxies->vertices[3 * at];
         corner[0] = low;
@@ -167,6 +171,8 @@ status instance_set_build(const instance_source *sources, int count, int region_
                         "the meshes have %zu copies in all, more than 4194304", f->instance_count);
     if (code == STATUS_OK && f->instance_count > 1)
         code = make_top(f, why);
+    if (code == STATUS_OK)
+        f->world = f->instance_count > 1 ? f->proxies->bounds : bounds_at(bounds_in_world(parts), parts->origin);
     if (code != STATUS_OK) {
         instance_set_destroy(f);
         return code;

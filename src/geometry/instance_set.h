@@ -6,6 +6,7 @@
 #pragma once
 
 #include "geometry/hierarchy.h"
+#include "geometry/primitives/mapping.h"
 #include "geometry/rays.h"
 
 /* One mesh solid: all its copies are one primitive. */
@@ -29,6 +30,7 @@ typedef struct instance_set {
     size_t instance_count;
     mesh *proxies;                  /* one triangle spanning the bounds of each instance; NULL for a single instance */
     hierarchy *top;                 /* over the proxies */
+    bounds3 world;                  /* of all instances, widened beyond the rounding error */
     uint64_t primitives;            /* sets of primitives: all meshes ... */
     uint64_t closed, open_surfaces; /* ... and separately the closed meshes and the open surfaces */
     int lowest;                     /* the lowest priority index of a mesh */
@@ -93,21 +95,16 @@ double instance_set_extent(const instance_set *f, int64_t face);
 /* The set of meshes that contain a point, by the side of the nearest surface in a fixed direction. */
 uint64_t instance_set_inside(const instance_set *f, vec3 point);
 
-/* Surface attributes of points on meshes, for shading. */
-typedef struct mesh_points {
-    double gx[ROW], gy[ROW], gz[ROW]; /* geometric normal, a unit vector against the ray */
-    double tu[ROW], tv[ROW];          /* texture coordinates; 0 where a mesh has none */
-    double uv_per_length[ROW];        /* texture coordinate distance per scene unit */
-    int64_t slot[ROW];
-    double weight[3][ROW];   /* barycentric weights of the triangle's corners */
-    uint32_t corner[3][ROW]; /* its vertices */
-} mesh_points;
+/* Texture coordinates at a hit, and their larger gradient per scene unit; 0 for a mesh without them. */
+surface_mapping instance_set_mapping(const instance_set *f, const instance_hit *hit);
 
-/* The points that rays hit: position, error bound, face, and a normal. With `smooth`, and if the mesh has normals, that
- * is the interpolated normal, bent so that neither the reflection nor the surface is seen from behind (see
- * instance_set_surface.c). */
-void instance_set_surface(const instance_set *f, const ray_batch *rays, const instance_hit *hits, bool smooth,
-                          surface_batch *points, mesh_points *more);
+/* A vertex relative to its copy's origin, along the world's axes. */
+static inline vec3 instance_set_vertex_offset(const instanced_mesh *p, uint32_t vertex)
+{
+    const vec3 v = p->triangles->vertices[vertex];
+    const vec3 scaled = p->scaled ? vec3_make(v.x * p->scale.x, v.y * p->scale.y, v.z * p->scale.z) : v;
+    return p->turned ? mat3_apply(p->rotation, scaled) : scaled;
+}
 
 /* A vertex's normal in the world (a unit vector; zero if the mesh has no normals), and its position. */
 vec3 instance_set_vertex_normal(const instanced_mesh *p, uint32_t vertex);

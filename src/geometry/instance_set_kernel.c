@@ -2,6 +2,7 @@
  * so that distances along the ray are the same in all frames. */
 #include "base/kernel.h"
 #include "base/lanes.h"
+#include "geometry/box_passes.h"
 #include "geometry/instance_set.h"
 
 #define TREES KERNEL(hierarchy_kernels)
@@ -84,23 +85,6 @@ static traversal traversal_of(const instance_set *f, const instance_ray *ray)
     return (traversal){.f = f, .ray = ray, .t_max = ray->t_max, .beyond = beyond_start(f, ray)};
 }
 
-/* Does the ray pass the box of a mesh by? By the separating axes of a line and a box, the products of the ray's
- * direction with the box's edges (Gottschalk, Lin, Manocha, "OBBTree", SIGGRAPH 1996), and the box's own axes, along
- * which it leaves. The box is widened far beyond the rounding error of a hit, so that the test only saves time. */
-static bool passes_by(const bounds3 *box, const mesh_ray *ray)
-{
-    const vec3 d = ray->direction, o = ray->origin;
-    const vec3 m = vec3_make(o.x - 0.5 * (box->low.x + box->high.x), o.y - 0.5 * (box->low.y + box->high.y),
-                             o.z - 0.5 * (box->low.z + box->high.z));
-    const double wider = 0x1p-30 * (sum_of_magnitudes(o) + sum_of_magnitudes(box->low) + sum_of_magnitudes(box->high));
-    const double x = 0.5 * (box->high.x - box->low.x) + wider, y = 0.5 * (box->high.y - box->low.y) + wider,
-                 z = 0.5 * (box->high.z - box->low.z) + wider;
-    const double dx = fabs(d.x), dy = fabs(d.y), dz = fabs(d.z);
-    return (fabs(m.y * d.z - m.z * d.y) > y * dz + z * dy) | (fabs(m.z * d.x - m.x * d.z) > z * dx + x * dz) |
-           (fabs(m.x * d.y - m.y * d.x) > x * dy + y * dx) | ((fabs(m.x) > x) & (m.x * d.x > 0.0)) |
-           ((fabs(m.y) > y) & (m.y * d.y > 0.0)) | ((fabs(m.z) > z) & (m.z * d.z > 0.0));
-}
-
 /* The ray in a copy's frame; false if that mesh cannot affect the ray. */
 static bool ray_in(const traversal *q, const instanced_mesh *p, uint32_t copy, mesh_ray *local)
 {
@@ -126,7 +110,8 @@ static bool ray_in(const traversal *q, const instanced_mesh *p, uint32_t copy, m
         local->t_min += q->beyond;
     if (q->all)
         local->facing = FACING_ANY;
-    return !passes_by(&p->triangles->bounds, local);
+    const bounds3 *box = &p->triangles->bounds;
+    return !box_passes(box->low, box->high, local->origin, local->direction);
 }
 
 /* At equal distances the lower face number wins, so that the result is independent of the order. */

@@ -97,6 +97,12 @@ void KERNEL(view_sets)(const solid_view *v, const ray_batch *rays, uint64_t *ins
 uint64_t KERNEL(view_outer_set)(const solid_view *v, uint64_t bits);
 void KERNEL(view_hits)(const solid_view *v, int count, hit_batch *hits);
 
+/* --- mesh_surface_kernel.c --- */
+
+/* See geometry_kernels. */
+void KERNEL(mesh_surface)(const struct instance_set *f, const ray_batch *rays, const instance_hit *hits, bool smooth,
+                          surface_batch *points, mesh_points *more);
+
 /* --- mesh_changes_kernel.c --- */
 
 /* Finds the next crossings of meshes where they come before those in c, for the first n columns; then sets the meshes'

@@ -3,6 +3,7 @@
  * medium a ray can cross only meshes of lower priority, which are hidden; their bits are updated at the next change. */
 #include "geometry/kernels.h"
 
+#include "geometry/box_passes.h"
 #include "geometry/instance_set.h"
 #include <math.h>
 
@@ -30,21 +31,54 @@ static double close_to(const ray_scratch *s, int k, double t)
     return BOUNDARY_CLOSE * (t + s->slack[k]);
 }
 
+/* The rays that pass the box around all meshes by. */
+static void pass_by(const instance_set *f, const ray_batch *rays, int64_t *restrict passes)
+{
+    const bounds3 box = f->world;
+    /* VECTORISE */
+    for (int i = 0; i < rays->count; i++)
+        passes[i] = box_passes(box.low, box.high, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
+                               vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]));
+}
+
+/* The columns that may meet a mesh. Only a whole batch is tested: rays that are traced again are close to one. */
+static int columns_to_ask(const instance_set *f, const ray_batch *rays, int n, int *column)
+{
+    int64_t passes[ROW];
+    int count = 0;
+    if (n == rays->count)
+        pass_by(f, rays, passes);
+    for (int k = 0; k < n; k++) {
+        column[count] = k;
+        count += n < rays->count || !passes[k];
+    }
+    return count;
+}
+
 void KERNEL(mesh_changes)(const scene_geometry *a, const ray_batch *rays, int n, ray_scratch *s, hit_batch *c,
                           instance_hit *hits)
 {
     const instance_set *f = a->meshes;
     instance_ray queries[BATCH];
-    for (int k = 0; k < n; k++) {
-        queries[k] = ray_of_column(rays, k, s);
-        queries[k].t_max = c->t[k] + close_to(s, k, c->t[k]);
-        queries[k].before = c->before[k];
-        queries[k].wanted = f->primitives;
+    instance_hit answers[BATCH];
+    int column[BATCH];
+    const int asked = columns_to_ask(f, rays, n, column);
+    for (int q = 0; q < asked; q++) {
+        const int k = column[q];
+        queries[q] = ray_of_column(rays, k, s);
+        queries[q].t_max = c->t[k] + close_to(s, k, c->t[k]);
+        queries[q].before = c->before[k];
+        queries[q].wanted = f->primitives;
     }
-    if (n <= 0)
-        return;
-    INSTANCE_SET.nearest(f, queries, n, hits);
     for (int k = 0; k < n; k++) {
+        s->meshes->near[k] = 0;
+        hits[k] = (instance_hit){.t = HUGE_VAL, .face = FACE_NONE};
+    }
+    if (asked > 0)
+        INSTANCE_SET.nearest(f, queries, asked, answers);
+    for (int q = 0; q < asked; q++) {
+        const int k = column[q];
+        hits[k] = answers[q];
         const bool found = hits[k].face != FACE_NONE;
         const bool near = found && c->hit_primitive[k] >= 0 && fabs(c->t[k] - hits[k].t) <= close_to(s, k, hits[k].t);
         s->meshes->near[k] = near ? (uint64_t)1 << mesh_face_primitive(hits[k].face) : 0;
@@ -170,6 +204,8 @@ void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64
     instance_ray queries[BATCH];
     bool found[BATCH];
     int ray[BATCH], count = 0;
+    int64_t passes[ROW];
+    pass_by(a->meshes, rays, passes);
     for (int i = 0; i < rays->count; i++) {
         if (settled[i])
             continue;
@@ -177,6 +213,8 @@ void KERNEL(mesh_shadows)(const scene_geometry *a, const ray_batch *rays, uint64
             marked[i] = -1;
             continue;
         }
+        if (passes[i])
+            continue;
         queries[count] = (instance_ray){.origin = vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
                                         .direction = vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]),
                                         .t_min = 0.0,

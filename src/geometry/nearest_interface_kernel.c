@@ -651,4 +651,4 @@ static void surface(const scene_geometry *a, int hit_primitive, const ray_batch 
     p->rule->KERNEL_ISA->points(p, &view, t, 0, points);
 }
 
-const geometry_kernels KERNEL(geometry_kernels) = {nearest, shadow, surface};
+const geometry_kernels KERNEL(geometry_kernels) = {nearest, shadow, surface, KERNEL(mesh_surface)};

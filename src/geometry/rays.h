@@ -137,6 +137,14 @@ typedef struct surface_batch {
     int64_t face[ROW];
 } surface_batch;
 
+/* Surface attributes of points on meshes, for shading. */
+typedef struct mesh_points {
+    double gx[ROW], gy[ROW], gz[ROW]; /* geometric normal, a unit vector against the ray */
+    int64_t slot[ROW];
+    double weight[3][ROW];   /* barycentric weights of the triangle's corners */
+    uint32_t corner[3][ROW]; /* its vertices */
+} mesh_points;
+
 /* The kernels, one set per instruction set. All sets return bit-identical results. */
 typedef struct geometry_kernels {
     /* The nearest interface of every ray. */
@@ -148,6 +156,11 @@ typedef struct geometry_kernels {
      * before the point, which determines whether a ray enters or leaves the primitive. */
     void (*surface)(const scene_geometry *a, int hit_primitive, const ray_batch *rays, const double *t,
                     surface_batch *points);
+    /* The points where rays hit meshes, and more about them unless `more` is NULL. With `smooth`, and if the mesh has
+     * normals, the normal is interpolated, and bent so that neither the reflection nor the surface is seen from
+     * behind. */
+    void (*mesh_surface)(const struct instance_set *f, const ray_batch *rays, const instance_hit *hits, bool smooth,
+                         surface_batch *points, mesh_points *more);
 } geometry_kernels;
 
 extern const geometry_kernels geometry_kernels_sse2, geometry_kernels_avx2, geometry_kernels_avx512;

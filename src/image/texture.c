@@ -105,6 +105,13 @@ status texture_read_below(const char *path, const char *root, texture_space spac
     return code;
 }
 
+vec3 texture_sample(const texture *t, double u, double v, double footprint)
+{
+    vec3 c = {1.0, 1.0, 1.0};
+    texture_tint_sse2(t, 1, &u, &v, &footprint, &c.x, &c.y, &c.z);
+    return c;
+}
+
 void texture_retain(const texture *t)
 {
     __atomic_add_fetch(&((texture *)t)->owners, 1, __ATOMIC_RELAXED);

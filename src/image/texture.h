@@ -46,5 +46,11 @@ void texture_release(const texture *t); /* NULL is allowed */
  * negative or NaN footprint. */
 vec3 texture_sample(const texture *t, double u, double v, double footprint);
 
+/* Multiplies colours by the texture at each of count points: texture_sample, once for each instruction set, with
+ * bit-identical results. */
+typedef void texture_tinter(const texture *t, int count, const double *u, const double *v, const double *footprint,
+                            double *r, double *g, double *b);
+texture_tinter texture_tint_sse2, texture_tint_avx2, texture_tint_avx512;
+
 /* Adds size and texels of the image itself to a hash (base/hash.h). */
 uint64_t texture_hash(const texture *t, uint64_t hash);

@@ -304,7 +304,7 @@ static void straighten_uv(tracer *t, const rasterised_part *p, const screen_tria
     double u = 0.0, v = 0.0;
     for (int j = 0; m->uvs && j < 3; j++)
         u += weight[j] * m->uvs[tri.corner[j]].u, v += weight[j] * m->uvs[tri.corner[j]].v;
-    t->meshes->points.tu[k] = u, t->meshes->points.tv[k] = v;
+    t->meshes->mapping[k].u = u, t->meshes->mapping[k].v = v;
 }
 
 /* An infinite plane has no affine interpolation: its corners are at infinity. */

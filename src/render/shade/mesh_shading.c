@@ -35,9 +35,9 @@ void mesh_surface(tracer *t, int priority_index, const int *list)
     for (int k = 0; k < g->count; k++)
         w->hits[k] = w->scratch.hit[list[k]];
     const ray_batch rays = {g->count, g->ox, g->oy, g->oz, g->dx, g->dy, g->dz, g->start, g->inside_before};
-    instance_set_surface(p->geometry->meshes, &rays, w->hits, shading == SHADING_SMOOTH, &g->points, &w->points);
-    for (int k = g->count; k < g->padded; k++)
-        copy_point(&g->points, &w->points, k, g->count - 1);
+    t->geometry->mesh_surface(p->geometry->meshes, &rays, w->hits, shading == SHADING_SMOOTH, &g->points, &w->points);
+    for (int k = 0; t->surface.mat->img && k < g->count; k++)
+        w->mapping[k] = instance_set_mapping(p->geometry->meshes, &w->hits[k]);
 }
 
 static vec3 geometric(const mesh_work *w, int k)

@@ -117,9 +117,9 @@ static void cross_surface(tracer *t, int hit_primitive, straight_rays *s)
     const primitive *surface = &p->geometry->primitives[hit_primitive];
     const ray_batch rays = {s->count, s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, s->start, s->inside};
     if (!surface->rule)
-        instance_set_surface(p->geometry->meshes, &rays, s->mesh,
-                             p->shading_materials[surface->priority_index].shading == SHADING_SMOOTH, &w->points,
-                             &w->on_mesh);
+        t->geometry->mesh_surface(p->geometry->meshes, &rays, s->mesh,
+                                  p->shading_materials[surface->priority_index].shading == SHADING_SMOOTH, &w->points,
+                                  &w->on_mesh);
     else
         t->geometry->surface(p->geometry, hit_primitive, &rays, s->t, &w->points);
     for (int k = 0; k < s->count; k++) {

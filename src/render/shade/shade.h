@@ -3,6 +3,7 @@
 #pragma once
 
 #include "geometry/rays.h"
+#include "image/texture.h"
 #include "render/core/plan.h"
 #include "render/core/queue.h"
 
@@ -70,6 +71,7 @@ typedef struct shade_kernels {
                    double *dz);
     /* Transmittances of optical depths, in place: 1 for 0. */
     void (*absorb)(double *depth, int count);
+    texture_tinter *tint; /* a texture's colours */
 } shade_kernels;
 
 extern const shade_kernels shade_kernels_sse2, shade_kernels_avx2, shade_kernels_avx512;

@@ -311,6 +311,14 @@ static void absorb(double *restrict depth, int count)
         depth[i] = blend(mask_less(0.0, depth[i]), absorption_left(depth[i]), 1.0);
 }
 
-const shade_kernels KERNEL(shade_kernels) = {
-    color, direct, spot, fresnel_branches, constant_branches, straight_branches, cut, append, camera_directions,
-    absorb};
+const shade_kernels KERNEL(shade_kernels) = {color,
+                                             direct,
+                                             spot,
+                                             fresnel_branches,
+                                             constant_branches,
+                                             straight_branches,
+                                             cut,
+                                             append,
+                                             camera_directions,
+                                             absorb,
+                                             KERNEL(texture_tint)};

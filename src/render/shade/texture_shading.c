@@ -15,16 +15,17 @@ void texture_colors(tracer *t, const primitive *surface)
     const plan *p = t->target.frame_plan;
     group *g = &t->surface.gathered;
     const double size = t->surface.mat->surface.texture_size;
+    double u[ROW], v[ROW], footprint[ROW];
     for (int k = 0; k < g->count; k++) {
         const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
         const surface_mapping m =
-            t->surface.on_mesh ? (surface_mapping){t->meshes->points.tu[k], t->meshes->points.tv[k],
-                                                   t->meshes->points.uv_per_length[k]}
+            t->surface.on_mesh ? t->meshes->mapping[k]
                                : primitive_mapping(surface, g->points.face[k],
                                                    t->surface.texture_at ? t->surface.texture_at[k] : point, size);
         /* An isotropic filter: at grazing incidence the footprint is limited to 20 pixel widths, or all would blur. */
         const double cosine = g->points.cos_i[k] > 0.05 ? g->points.cos_i[k] : 0.05;
-        const vec3 c = texture_sample(t->surface.mat->img, m.u, m.v, pixel_width(p, point) / cosine * m.per_length);
-        g->cr[k] *= c.x, g->cg[k] *= c.y, g->cb[k] *= c.z;
+        u[k] = m.u, v[k] = m.v;
+        footprint[k] = pixel_width(p, point) / cosine * m.per_length;
     }
+    t->shade->tint(t->surface.mat->img, g->count, u, v, footprint, g->cr, g->cg, g->cb);
 }
