@@ -1,7 +1,10 @@
 #!/bin/bash
 # paths.sh - error against time of random paths: the defaults (new: scrambled Sobol points, box filter, one light per
-# surface) and those of earlier versions (old: Philox, pixel centres, all lights), on five scenes.
+# surface), those of earlier versions (old: Philox, pixel centres, all lights), and Blender's Cycles, on five scenes.
 #   experiments/paths.sh [CUVETTE]
+# TABLE=FILE: also writes the measured lines there, for plots/paths.gp. Cycles is left out where blender is missing
+# (make setup-peers). Its scenes are alike except that its sphere light is a disc (peers/cycles.py): the means of the
+# films, the last column, differ by 2% on matte and glass and by less than 1% on the others.
 # 1. For each number of paths: the root mean square error of a film value, its time, and the ratio of the reported noise
 #    to the error. The error is the standard deviation over SEEDS films, which needs no reference: the mean of a film is
 #    exact. Required: the ratio is 0.9..1.1, except where few bright paths make up the error (glass with old).
@@ -9,7 +12,7 @@
 #    paths, on the line through the logarithms of new's errors and times. The box filter is a mean over the pixel, whose
 #    edges add to its error; `box` on matte has the earlier sampler with that filter.
 # 3. 64 lights over one light: time at the error that one light has with the most paths. Required: at most 4.
-# SEEDS=N: 6 unless given. COUNTS: "16 64 256" unless given. Times are those of the
+# SEEDS=N: 6 unless given. COUNTS: "16 64 256" unless given. SCENES: all five unless given. Times are those of the
 # processor with one thread, medians over the seeds.
 set -euo pipefail
 export LC_ALL=C
@@ -49,7 +52,9 @@ awk -v count=64 'BEGIN { srand(5); print "lights:"
 { printf '%s\n' "$view" "$things" && cat "$work/lights"; } >"$work/lights64.yaml"
 { printf '%s\n' "$view" "$things" && sed 2q "$work/lights" | sed 's/intensity: [0-9.]*/intensity: 1/'; } \
     >"$work/lights1.yaml"
-cp experiments/scenes/models.yaml experiments/scenes/*.jpg experiments/scenes/*.png "$work"
+# Without textures and highlights, which Cycles does differently.
+sed -e 's/texture: tiles, //' -e 's/specular: [0-9.]*/specular: 0/' -e '/^textures:/,/^$/d' \
+    experiments/scenes/models.yaml >"$work/models.yaml"
 
 old=(render.sampler=philox render.filter=centre render.light_sampling=all)
 box=(render.sampler=philox render.filter=box render.light_sampling=all)
@@ -69,21 +74,30 @@ measure() { # measure SCENE PATHS ASSIGNMENT...
     for seed in $(seq 1 "$seeds"); do
         "$cuvette" render "$work/$scene.yaml" -o "$work/film$seed.pfm" --json --set render.width=64 \
             --set render.height=48 --set render.depth=4 --set render.integrator=path --set render.threads=1 \
-            --set "render.paths=$paths" --set "render.seed=$seed" "${options[@]}" >"$work/json" 2>"$work/log" ||
+            --set render.beyond=black --set render.shadows=opaque --set "render.paths=$paths" \
+            --set "render.seed=$seed" "${options[@]}" >"$work/json" 2>"$work/log" ||
             {
                 cat "$work/log" >&2
                 exit 1
             }
         field cpu_s "$work/json" >>"$work/times"
         field rms "$work/json" >>"$work/noise"
-        tail -n +4 "$work/film$seed.pfm" | od -An -v -t f4 -w4 >"$work/values$seed"
     done
+    statistics "$work"/film
+}
+
+statistics() { # statistics FILMS: of FILMS1.pfm and so on, with their times and noise
+    local seed
+    for seed in $(seq 1 "$seeds"); do tail -n +4 "$1$seed.pfm" | od -An -v -t f4 -w4 >"$work/values$seed"; done
     paste "$work"/values* | awk -v noise="$(awk '{ s += $1 * $1 } END { print s / NR }' "$work/noise")" \
         -v time="$(sort -g "$work/times" | sed -n "$(((seeds + 1) / 2))p")" '
         { sum = squares = 0
           for (i = 1; i <= NF; i++) { sum += $i; squares += $i * $i }
+          total += sum / NF
           variance += (squares - sum * sum / NF) / (NF - 1) }
-        END { error = sqrt(variance / NR); printf "%.5g %.4g %.3f\n", error, time, sqrt(noise) / error }'
+        END { error = sqrt(variance / NR)
+              share = noise > 0 ? sprintf("%.3f", sqrt(noise) / error) : "NA"
+              printf "%.5g %.4g %s %.5f\n", error, time, share, total / NR }'
 }
 
 curve() { # curve SCENE LABEL ASSIGNMENT... - a line per number of paths
@@ -92,10 +106,36 @@ curve() { # curve SCENE LABEL ASSIGNMENT... - a line per number of paths
     for paths in $counts; do echo "$scene $label $paths $(measure "$scene" "$paths" "$@")"; done
 }
 
-echo 'scene settings paths error time_s noise/error'
-for scene in matte glass room models lights64; do
+# Cycles samples emitting solids like lights: it reaches the lamp of the room from the last surface as well.
+cycles() { # cycles SCENE - a line per number of samples
+    local depth=4 paths mesh one profile
+    profile=$(sed -n 's/.*profile: \[\(.*\)\].*/\1/p' "$work/models.yaml" | tr -d ' ')
+    [ "$1" != room ] || depth=3
+    "$cuvette" params "$work/$1.yaml" --json >"$work/scene.json"
+    [ "$1" != models ] || for one in floor:box:--size=16,0.1,16 ball:icosphere:--level=6 \
+        torus:torus:--major=0.75:--minor=0.28:--around=160:--tube=80 \
+        lathe:lathe:--around=96:--profile="$profile"; do
+        IFS=: read -ra mesh <<<"$one"
+        "$cuvette" mesh --generate "${mesh[1]}" "${mesh[@]:2}" -f obj -o "$work/${mesh[0]}.obj"
+    done
+    blender -b --factory-startup --python-exit-code 1 --python experiments/peers/cycles.py -- "$work/scene.json" \
+        "$work/cycles" samples="${counts// /,}" seeds="$(seq -s, 1 "$seeds")" depth="$depth" width=64 height=48 \
+        meshes="$work" >"$work/log" 2>&1 || {
+        tail "$work/log" >&2
+        exit 1
+    }
+    echo 0 >"$work/noise"
+    for paths in $counts; do
+        sed -n "s/^cycles $paths [0-9]* //p" "$work/log" >"$work/times"
+        echo "$1 cycles $paths $(statistics "$work/cycles-$paths-")"
+    done
+}
+
+echo 'scene settings paths error time_s noise/error mean'
+for scene in ${SCENES:-matte glass room models lights64}; do
     curve "$scene" old "${old[@]}"
     curve "$scene" new "${new[@]}"
+    if command -v blender >/dev/null; then cycles "$scene"; fi
 done | tee "$work/table"
 curve matte box "${box[@]}" | tee -a "$work/table"
 curve lights1 new "${new[@]}" | tee -a "$work/table"
@@ -109,12 +149,17 @@ awk '
     { key = $1 " " $2; n = ++last[key]; paths[key, n] = $3; error[key, n] = $4; time[key, n] = $5 }
     !seen[$1]++ { order[++scenes] = $1 }
     END {
-        print "\nscene slope_old slope_new time_new/time_old"
+        print "\nscene slope_old slope_new time_new/time_old; slope_cycles time_cycles/time_new"
         for (i = 1; i <= scenes; i++) {
             o = order[i] " old"; w = order[i] " new"
             if (last[o])
-                printf "%s %.2f %.2f %.3f\n", order[i], rise(error, paths, o), rise(error, paths, w), \
+                printf "%s %.2f %.2f %.3f", order[i], rise(error, paths, o), rise(error, paths, w), \
                        time_at(w, error[o, last[o]]) / time[o, last[o]]
+            c = order[i] " cycles"
+            if (last[c])
+                printf "; %.2f %.2f", rise(error, paths, c), time[c, last[c]] / time_at(w, error[c, last[c]])
+            if (last[o])
+                print ""
         }
         o = "matte box"; w = "matte new"
         printf "\nmatte, both with the box filter: slope %.2f %.2f, time %.3f\n", rise(error, paths, o), \
@@ -123,3 +168,6 @@ awk '
         printf "\n64 lights over one, at one error: %.2f times the time\n", \
                time_at("lights64 new", error[w, last[w]]) / time[w, last[w]]
     }' "$work/table"
+if [ -n "${TABLE:-}" ]; then
+    { echo 'scene settings paths error time_s noise/error mean' && cat "$work/table"; } | tr ' ' '\t' >"$TABLE"
+fi

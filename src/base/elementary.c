@@ -9,36 +9,11 @@ double elementary_pow(double x, double y)
     return y == 0.0 ? 1.0 : x < 0.0 || x != x || y != y ? (double)NAN : elementary_pow_inline(x, y);
 }
 
-/* Taylor series on |x| <= pi/4; the omitted terms are below 1e-17. */
-static double sine_series(double x)
-{
-    double s = x * x, p = -1.0 / 1307674368000.0;
-    p = p * s + 1.0 / 6227020800.0;
-    p = p * s - 1.0 / 39916800.0;
-    p = p * s + 1.0 / 362880.0;
-    p = p * s - 1.0 / 5040.0;
-    p = p * s + 1.0 / 120.0;
-    p = p * s - 1.0 / 6.0;
-    return x + x * (s * p);
-}
-
-static double cosine_series(double x)
-{
-    double s = x * x, p = 1.0 / 20922789888000.0;
-    p = p * s - 1.0 / 87178291200.0;
-    p = p * s + 1.0 / 479001600.0;
-    p = p * s - 1.0 / 3628800.0;
-    p = p * s + 1.0 / 40320.0;
-    p = p * s - 1.0 / 720.0;
-    p = p * s + 1.0 / 24.0;
-    return 1.0 - 0.5 * s + s * s * p;
-}
-
 void elementary_sincos_deg(double degrees, double *sine, double *cosine)
 {
     double quarter = floor(degrees / 90.0 + 0.5);
     double x = (degrees - 90.0 * quarter) * 0.017453292519943295769; /* the difference is exact */
-    double s = sine_series(x), c = cosine_series(x);
+    double s = elementary_sine_series(x), c = elementary_cosine_series(x);
     int turn = (int)(quarter - 4.0 * floor(quarter / 4.0));
     *sine = turn == 0 ? s : turn == 1 ? c : turn == 2 ? -s : -c;
     *cosine = turn == 0 ? c : turn == 1 ? -s : turn == 2 ? -c : s;

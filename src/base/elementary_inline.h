@@ -1,4 +1,4 @@
-/* elementary_pow as branch-free straight-line code, for kernels that vectorise. See base/elementary.h. x = 2^e m with m
+/* Elementary functions as branch-free straight-line code, for kernels that vectorise: see base/elementary.h. Powers: x = 2^e m with m
  * in [1/sqrt 2, sqrt 2); log2 m = 2 atanh((m-1)/(m+1)) / ln 2, by its Taylor series to the 21st power (the 23rd is
  * below 1e-18); 2^t by its nearest integer power and the Taylor series of e^(r ln 2) to the 13th power (the 14th is
  * below 1e-17). */
@@ -62,4 +62,42 @@ static inline double elementary_pow_inline(double x, double y)
     int64_t zero = mask_less(x, smallest_normal);
     double log2_x = blend(zero, -1e300, elementary_log2_inline(blend(zero, 1.0, x)));
     return elementary_exp2_inline(y * log2_x);
+}
+
+/* Taylor series on |x| <= pi/4; the omitted terms are below 1e-17. */
+static inline double elementary_sine_series(double x)
+{
+    double s = x * x, p = -1.0 / 1307674368000.0;
+    p = p * s + 1.0 / 6227020800.0;
+    p = p * s - 1.0 / 39916800.0;
+    p = p * s + 1.0 / 362880.0;
+    p = p * s - 1.0 / 5040.0;
+    p = p * s + 1.0 / 120.0;
+    p = p * s - 1.0 / 6.0;
+    return x + x * (s * p);
+}
+
+static inline double elementary_cosine_series(double x)
+{
+    double s = x * x, p = 1.0 / 20922789888000.0;
+    p = p * s - 1.0 / 87178291200.0;
+    p = p * s + 1.0 / 479001600.0;
+    p = p * s - 1.0 / 3628800.0;
+    p = p * s + 1.0 / 40320.0;
+    p = p * s - 1.0 / 720.0;
+    p = p * s + 1.0 / 24.0;
+    return 1.0 - 0.5 * s + s * s * p;
+}
+
+/* elementary_sincos_deg(360 turn) for 0 <= turn <= 1, except at the odd eighths of a turn, where the nearest quarter is
+ * the even one. */
+static inline void elementary_sincos_turn_inline(double turn, double *sine, double *cosine)
+{
+    const double degrees = 360.0 * turn, shifted = degrees / 90.0 + 6755399441055744.0, /* 1.5 2^52 */
+        quarter = shifted - 6755399441055744.0, x = (degrees - 90.0 * quarter) * 0.017453292519943295769;
+    const double s = elementary_sine_series(x), c = elementary_cosine_series(x);
+    const int64_t odd = -(lanes_bits(shifted) & 1), negative = -(lanes_bits(shifted) >> 1 & 1);
+    const double first = blend(odd, c, s), second = blend(odd, -s, c);
+    *sine = blend(negative, -first, first);
+    *cosine = blend(negative, -second, second);
 }

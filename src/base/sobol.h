@@ -7,6 +7,7 @@
  * dimensions. Integer arithmetic only: the same bits everywhere. Pure; cannot fail. */
 #pragma once
 
+#include "base/kernel.h"
 #include <stdint.h>
 
 /* Coordinates in units of 2^-32. */
@@ -55,11 +56,26 @@ static inline uint64_t sobol_mix(uint64_t x)
     return x ^ x >> 31;
 }
 
-/* Point number `index` of the sequence of that key; keys need not look random. */
-static inline sobol_point sobol_at(uint32_t index, uint64_t key)
+/* What a key determines: the order of its points, and the scrambling of each coordinate. Keys need not look random. */
+typedef struct sobol_seeds {
+    uint32_t order, x, y;
+} sobol_seeds;
+
+static inline sobol_seeds sobol_seeds_of(uint64_t key)
 {
     const uint64_t first = sobol_mix(key + 0x9e3779b97f4a7c15U), second = sobol_mix(first + 0x9e3779b97f4a7c15U);
-    const uint32_t i = sobol_reverse(sobol_scramble_reversed(sobol_reverse(index), (uint32_t)first));
-    return (sobol_point){sobol_reverse(sobol_scramble_reversed(i, (uint32_t)(first >> 32))),
-                         sobol_reverse(sobol_scramble_reversed(sobol_pascal(i), (uint32_t)second))};
+    return (sobol_seeds){(uint32_t)first, (uint32_t)(first >> 32), (uint32_t)second};
+}
+
+/* Point number `index` of the sequence with these seeds. */
+ALWAYS_INLINE sobol_point sobol_scrambled(uint32_t index, sobol_seeds s)
+{
+    const uint32_t i = sobol_reverse(sobol_scramble_reversed(sobol_reverse(index), s.order));
+    return (sobol_point){sobol_reverse(sobol_scramble_reversed(i, s.x)),
+                         sobol_reverse(sobol_scramble_reversed(sobol_pascal(i), s.y))};
+}
+
+static inline sobol_point sobol_at(uint32_t index, uint64_t key)
+{
+    return sobol_scrambled(index, sobol_seeds_of(key));
 }

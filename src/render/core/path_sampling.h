@@ -48,6 +48,12 @@ typedef struct unit_pair {
     double u, v; /* uniform in (0, 1) */
 } unit_pair;
 
+/* The key of a replicate's points for one random choice. */
+static inline uint64_t path_draw_key(const path_sampling *p, int64_t pixel, uint64_t replicate, int depth, int purpose)
+{
+    return ((uint64_t)pixel << 32 | replicate << 24 | (uint64_t)depth << 16 | (uint64_t)purpose) ^ p->seed_hash;
+}
+
 /* For one random choice of a path: purpose is one of draw.h. */
 static inline unit_pair path_draw(const path_sampling *p, int64_t sample_key, int depth, int purpose)
 {
@@ -55,9 +61,8 @@ static inline unit_pair path_draw(const path_sampling *p, int64_t sample_key, in
         const uint32_t sample = (uint32_t)sample_key_sample(sample_key),
                        each = path_replicate_count(p, sample_key_pixel(sample_key)), replicate = sample / each,
                        index = sample - replicate * each;
-        const uint64_t where = (uint64_t)sample_key_pixel(sample_key) << 32 | (uint64_t)replicate << 24 |
-                               (uint64_t)depth << 16 | (uint64_t)purpose;
-        const sobol_point s = sobol_at(index, where ^ p->seed_hash);
+        const sobol_point s =
+            sobol_at(index, path_draw_key(p, sample_key_pixel(sample_key), replicate, depth, purpose));
         return (unit_pair){random_unit(s.x), random_unit(s.y)};
     }
     const random_words drawn = draw(p->seed, sample_key, depth, purpose);

@@ -2,6 +2,7 @@
 #include "render/core/tracer.h"
 
 #include "measure/clock.h"
+#include "render/shade/path_kernels.h"
 #include "render/shade/shading.h"
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +19,7 @@ tracer *tracer_create(isa level)
     t->shade = level == ISA_AVX512 ? &shade_kernels_avx512
                : level == ISA_AVX2 ? &shade_kernels_avx2
                                    : &shade_kernels_sse2;
+    t->path = level == ISA_AVX512 ? &path_kernels_avx512 : level == ISA_AVX2 ? &path_kernels_avx2 : &path_kernels_sse2;
     return t;
 }
 

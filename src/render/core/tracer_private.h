@@ -53,6 +53,7 @@ typedef struct tracer_surface {
 struct tracer {
     const geometry_kernels *geometry;
     const shade_kernels *shade;
+    const struct path_kernels *path;
     tracer_target target;
     const integrator *rule; /* of the frame; NULL before the first one */
     void *own;              /* the integrator's data of this worker */

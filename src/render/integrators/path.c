@@ -10,6 +10,7 @@
  * too. A light's radiance is intensity (reach / radius)^2, so that a matte surface at its reach is as bright as in
  * Phong's model. There is no ambient term: light from the sky and from other surfaces replaces it. */
 #include "render/integrators/path_lights.h"
+#include "render/shade/path_kernels.h"
 
 #include <string.h>
 
@@ -128,14 +129,33 @@ static bool draw_clear(const tracer *t, int k, double chance, continuation *c)
     return true;
 }
 
-static bool draw_matte(const tracer *t, const material *m, int k, int depth, double chance, continuation *c)
+/* Random numbers and directions for the continuations of a group. */
+typedef struct path_choices {
+    double branch[ROW]; /* in (0, 1); set only where there is a choice */
+    double x[ROW], y[ROW], z[ROW];
+} path_choices;
+
+static void choose(tracer *t, const material *m, bool opaque, int depth, path_choices *c)
+{
+    const path_sampling *draws = &t->target.frame_plan->draws;
+    const group *g = &t->surface.gathered;
+    double u[ROW], v[ROW];
+    if (!opaque || m->reflectivity > 0.0)
+        t->path->draw(draws, g->count, g->sample_key, depth, DRAW_BRANCH, c->branch, v);
+    if (!opaque || !(m->diffuse > 0.0))
+        return;
+    t->path->draw(draws, g->count, g->sample_key, depth, DRAW_DIRECTION, u, v);
+    t->path->cosine(g, u, v, c->x, c->y, c->z);
+}
+
+static bool draw_matte(const tracer *t, const material *m, int k, const path_choices *chosen, continuation *c)
 {
     const group *g = &t->surface.gathered;
     const double brightest = fmax(g->cr[k], fmax(g->cg[k], g->cb[k])), matte = m->diffuse * brightest,
                  mirror = m->reflectivity;
     if (!(matte + mirror > 0.0))
         return false;
-    const bool mirrored = chance * (matte + mirror) < mirror;
+    const bool mirrored = mirror > 0.0 && chosen->branch[k] * (matte + mirror) < mirror;
     const double odds = (mirrored ? mirror : matte) / (matte + mirror);
     c->inside = g->inside_before[k];
     c->refracted = false;
@@ -145,10 +165,7 @@ static bool draw_matte(const tracer *t, const material *m, int k, int depth, dou
         c->share = vec3_make(mirror / odds, mirror / odds, mirror / odds);
         return true;
     }
-    const unit_pair drawn = path_draw(&t->target.frame_plan->draws, g->sample_key[k], depth, DRAW_DIRECTION);
-    const double sine2 = drawn.u;
-    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]);
-    c->direction = path_direction_about(n, sqrt(1.0 - sine2), sqrt(sine2), drawn.v);
+    c->direction = vec3_make(chosen->x[k], chosen->y[k], chosen->z[k]);
     c->share = vec3_scale(vec3_make(g->cr[k], g->cg[k], g->cb[k]), m->diffuse / odds);
     return mesh_lets_out(t, k, c->direction);
 }
@@ -195,12 +212,10 @@ static void go_on(tracer *t, int k, int depth, const continuation *c)
     COUNT(c->refracted ? t->account.counters.refract++ : t->account.counters.reflect++);
 }
 
-static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth)
+static void continue_one(tracer *t, const material *m, bool opaque, int k, int depth, const path_choices *chosen)
 {
-    const double chance =
-        path_draw(&t->target.frame_plan->draws, t->surface.gathered.sample_key[k], depth, DRAW_BRANCH).u;
     continuation c = {.refracted = false};
-    if (!(opaque ? draw_matte(t, m, k, depth, chance, &c) : draw_clear(t, k, chance, &c)))
+    if (!(opaque ? draw_matte(t, m, k, chosen, &c) : draw_clear(t, k, chosen->branch[k], &c)))
         return;
     if (depth == t->queues.depth_limit)
         cut(t, k, &c);
@@ -212,10 +227,12 @@ static void shade(tracer *t, int depth, int priority_index)
 {
     const material *m = &t->surface.mat->surface;
     const bool opaque = surface_is_opaque(t, priority_index);
+    path_choices chosen;
     path_sample_lights(t, priority_index, depth);
     shading_branches(t, opaque);
+    choose(t, m, opaque, depth, &chosen);
     for (int k = 0; k < t->surface.gathered.count; k++)
-        continue_one(t, m, opaque, k, depth);
+        continue_one(t, m, opaque, k, depth, &chosen);
 }
 
 /* Through the centres of cells: with fewer paths than samples there are fewer cells, because with only the first rows

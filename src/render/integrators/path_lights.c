@@ -2,8 +2,8 @@
 #include "render/integrators/path_lights.h"
 
 #include "base/elementary.h"
-#include "optics/mueller.h"
 #include "render/shade/light_choice.h"
+#include "render/shade/path_kernels.h"
 
 double path_light_radiance(const plan *p, int lamp, vec3 direction)
 {
@@ -19,16 +19,6 @@ vec3 path_light_color(const tracer *t, int lamp, int64_t sample_key)
         return vec3_scale(l->color, l->intensity);
     const double radiance = spectra_light(p->spectral, sample_key, lamp);
     return vec3_make(radiance, radiance, radiance);
-}
-
-vec3 path_direction_about(vec3 axis, double cosine, double sine, double turn)
-{
-    vec3 x, y;
-    double s, c;
-    polarisation_frame(axis, &x, &y);
-    elementary_sincos_deg(360.0 * turn, &s, &c);
-    const vec3 across = vec3_add(vec3_scale(x, sine * c), vec3_scale(y, sine * s));
-    return vec3_normalize(vec3_add(vec3_scale(axis, cosine), across));
 }
 
 /* Phong's highlight k_s (R.V)^n of the light along the unit vector `to`, whose cosine is n_l. */
@@ -53,32 +43,52 @@ static void enqueue_light(tracer *t, int k, vec3 to_light, vec3 color, double di
     q->start[at] = g->points.face[k], q->sample_key[at] = g->sample_key[k], q->inside[at] = g->inside_before[k];
 }
 
-/* Enqueues a shadow ray from record k of the group to a random point of a light's sphere, weighted. */
-static void sample_sphere(tracer *t, int k, const material *m, bool opaque, int lamp, unit_pair drawn, double weight)
+/* Lights of the group's records, and points of those that are spheres. */
+typedef struct lamp_samples {
+    int lamp[ROW];      /* -1: none */
+    double weight[ROW]; /* of its light */
+    sphere_samples spheres;
+} lamp_samples;
+
+/* Enqueues a shadow ray from record k to its point of a light's sphere. */
+static void enqueue_sphere(tracer *t, int k, const material *m, bool opaque, const lamp_samples *l)
 {
-    const plan *p = t->target.frame_plan;
+    const sphere_samples *s = &l->spheres;
     const group *g = &t->surface.gathered;
-    const light *l = &p->lights[lamp];
-    const vec3 point = vec3_make(g->points.px[k], g->points.py[k], g->points.pz[k]);
-    const vec3 n = vec3_make(g->points.nx[k], g->points.ny[k], g->points.nz[k]),
-               to_light = vec3_sub(l->position, point);
-    const double distance2 = vec3_dot(to_light, to_light), share2 = l->radius * l->radius / distance2;
-    if (share2 >= 1.0)
+    const int lamp = l->lamp[k];
+    const vec3 to = vec3_make(s->dx[k], s->dy[k], s->dz[k]);
+    const double n_l = s->n_l[k];
+    if (!(n_l > 0.0))
         return;
-    /* cap = 1 - least_cos, without cancellation. */
-    const double least_cos = sqrt(1.0 - share2), cap = share2 / (1.0 + least_cos);
-    const double below = drawn.u * cap, cosine = 1.0 - below, sine = sqrt(below * (2.0 - below));
-    const vec3 to = path_direction_about(vec3_scale(to_light, 1.0 / sqrt(distance2)), cosine, sine, drawn.v);
-    const double n_l = vec3_dot(n, to), radiance = path_light_radiance(p, lamp, to),
-                 within = l->radius * l->radius - distance2 * sine * sine;
-    if (!(n_l > 0.0) || radiance == 0.0 || !mesh_lets_out(t, k, to))
+    const double radiance = path_light_radiance(t->target.frame_plan, lamp, to);
+    if (radiance == 0.0 || !mesh_lets_out(t, k, to))
         return;
-    const double reach = sqrt(distance2) * cosine - sqrt(within > 0.0 ? within : 0.0);
     /* (k_d C / pi) L (N.L) over the density 1 / (2 pi (1 - least_cos)), plus Phong's highlight from the same light. */
     const double shine = opaque ? highlight(g, k, m, to, n_l) : 0.0;
-    const double seen = 2.0 * cap * radiance * weight, diffuse = m->diffuse * n_l;
+    const double seen = 2.0 * s->cap[k] * radiance * l->weight[k], diffuse = m->diffuse * n_l;
     const vec3 color = vec3_scale(path_light_color(t, lamp, g->sample_key[k]), seen);
-    enqueue_light(t, k, vec3_scale(to, reach), color, diffuse, shine);
+    enqueue_light(t, k, vec3_scale(to, s->reach[k]), color, diffuse, shine);
+}
+
+static bool is_sphere(const plan *p, int lamp)
+{
+    return lamp >= 0 && p->lights[lamp].radius > 0.0;
+}
+
+/* From every record whose light is a sphere; u and v of the samples are set. */
+static void sample_spheres(tracer *t, const material *m, bool opaque, lamp_samples *l)
+{
+    const plan *p = t->target.frame_plan;
+    const int count = t->surface.gathered.count;
+    for (int k = 0; k < count; k++) {
+        const light *one = &p->lights[l->lamp[k] < 0 ? 0 : l->lamp[k]];
+        l->spheres.x[k] = one->position.x, l->spheres.y[k] = one->position.y, l->spheres.z[k] = one->position.z;
+        l->spheres.radius[k] = one->radius;
+    }
+    t->path->spheres(&t->surface.gathered, &l->spheres);
+    for (int k = 0; k < count; k++)
+        if (is_sphere(p, l->lamp[k]))
+            enqueue_sphere(t, k, m, opaque, l);
 }
 
 /* The same to a light that is a point; without shadows its light is added at once. */
@@ -110,32 +120,35 @@ static void sample_all(tracer *t, const material *m, bool opaque, int priority_i
 {
     const plan *p = t->target.frame_plan;
     const bool lit = m->diffuse > 0.0 || (opaque && m->specular > 0.0);
-    const int64_t *sample_key = t->surface.gathered.sample_key;
+    const group *g = &t->surface.gathered;
+    lamp_samples all;
     local_light(t, priority_index, (light_terms){.highlights = true});
     radiance_weigh(t);
-    for (int k = 0; lit && k < t->surface.gathered.count; k++)
-        for (int lamp = 0; lamp < p->light_count; lamp++)
-            if (p->lights[lamp].radius > 0.0)
-                sample_sphere(t, k, m, opaque, lamp, path_draw(&p->draws, sample_key[k], depth, DRAW_LIGHT + lamp),
-                              1.0);
+    for (int lamp = 0; lit && lamp < p->light_count; lamp++) {
+        if (!is_sphere(p, lamp))
+            continue;
+        for (int k = 0; k < g->count; k++)
+            all.lamp[k] = lamp, all.weight[k] = 1.0;
+        t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_LIGHT + lamp, all.spheres.u, all.spheres.v);
+        sample_spheres(t, m, opaque, &all);
+    }
     radiance_weigh_back(t);
 }
 
 static void sample_one(tracer *t, const material *m, bool opaque, int priority_index, int depth)
 {
     const plan *p = t->target.frame_plan;
-    const bool lit_by_spheres = m->diffuse > 0.0 || opaque;
-    light_choice c;
+    lamp_samples one;
     local_light(t, priority_index, (light_terms){.emission_only = true});
     if (m->diffuse == 0.0 && m->specular == 0.0)
         return;
-    light_choice_make(t, m, depth, &c);
+    light_choice_make(t, m, depth, one.lamp, one.weight, one.spheres.u, one.spheres.v);
     radiance_weigh(t);
     for (int k = 0; k < t->surface.gathered.count; k++)
-        if (c.lamp[k] >= 0 && p->lights[c.lamp[k]].radius == 0.0)
-            sample_point(t, k, m, c.lamp[k], c.weight[k]);
-        else if (c.lamp[k] >= 0 && lit_by_spheres)
-            sample_sphere(t, k, m, opaque, c.lamp[k], c.at[k], c.weight[k]);
+        if (one.lamp[k] >= 0 && !is_sphere(p, one.lamp[k]))
+            sample_point(t, k, m, one.lamp[k], one.weight[k]);
+    if (m->diffuse > 0.0 || opaque)
+        sample_spheres(t, m, opaque, &one);
     radiance_weigh_back(t);
 }
 

@@ -11,8 +11,5 @@ double path_light_radiance(const plan *p, int lamp, vec3 direction);
 /* The light's colour times its intensity; in a spectral film at the sample key's wavelength. */
 vec3 path_light_color(const tracer *t, int lamp, int64_t sample_key);
 
-/* A unit vector at an angle from the axis, given by its cosine and sine; turn: azimuth as a share of a full turn. */
-vec3 path_direction_about(vec3 axis, double cosine, double sine, double turn);
-
 /* Adds the emission of the gathered group's surface, and enqueues shadow rays to lights. */
 void path_sample_lights(tracer *t, int priority_index, int depth);

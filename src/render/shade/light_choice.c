@@ -1,5 +1,6 @@
 /* The choice of one light for each gathered ray. */
 #include "render/shade/light_choice.h"
+#include "render/shade/path_kernels.h"
 
 #include <math.h>
 #include <string.h>
@@ -101,7 +102,7 @@ static int pick(const float *weight, const float *sum, int blocks, float total, 
     return last;
 }
 
-void light_choice_make(const tracer *t, const material *m, int depth, light_choice *out)
+void light_choice_make(const tracer *t, const material *m, int depth, int *lamp, double *weight, double *u, double *v)
 {
     const plan *p = t->target.frame_plan;
     const group *g = &t->surface.gathered;
@@ -110,19 +111,18 @@ void light_choice_make(const tracer *t, const material *m, int depth, light_choi
     const float k_d = (float)m->diffuse, k_s = 0.25f * (float)m->specular;
     lamp_table lamps;
     fill_table(p, &lamps);
+    t->path->draw(&p->draws, g->count, g->sample_key, depth, DRAW_LIGHT, u, v);
     for (int i = 0; i < g->count; i++) {
-        float weight[LAMPS_MAX], sum[BLOCKS_MAX];
+        float each[LAMPS_MAX], sum[BLOCKS_MAX];
         const vec3 point = vec3_make(g->points.px[i], g->points.py[i], g->points.pz[i]);
-        estimate(&lamps, point, vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]), k_d, k_s, weight);
+        estimate(&lamps, point, vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]), k_d, k_s, each);
         if (lamps.cones)
-            apply_cones(p, point, weight);
-        const float total = add_up(weight, lamps.blocks, sum);
-        out->lamp[i] = -1;
+            apply_cones(p, point, each);
+        const float total = add_up(each, lamps.blocks, sum);
+        lamp[i] = -1;
         if (!(total > 0.0f && total < HUGE_VALF))
             continue;
-        const unit_pair drawn = path_draw(&p->draws, g->sample_key[i], depth, DRAW_LIGHT);
-        out->lamp[i] = pick(weight, sum, lamps.blocks, total, drawn.u, &out->at[i].u);
-        out->at[i].v = drawn.v;
-        out->weight[i] = (double)total / (double)weight[out->lamp[i]];
+        lamp[i] = pick(each, sum, lamps.blocks, total, u[i], &u[i]);
+        weight[i] = (double)total / (double)each[lamp[i]];
     }
 }

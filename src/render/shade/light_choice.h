@@ -7,17 +7,12 @@
 
 #include "render/core/tracer_private.h"
 
-typedef struct light_choice {
-    int lamp[ROW];      /* -1: no light reaches the point */
-    double weight[ROW]; /* 1 / p_k */
-    unit_pair at[ROW];  /* what the choice left of the random numbers: uniform, for a point of the light */
-} light_choice;
-
 /* Whether the frame chooses a light for each ray. */
 static inline bool light_choice_applies(const plan *p)
 {
     return p->render.light_sampling == LIGHT_SAMPLING_ONE && p->light_count > 1;
 }
 
-/* For the gathered group, whose surface has material m. */
-void light_choice_make(const tracer *t, const material *m, int depth, light_choice *out);
+/* For the gathered group, whose surface has material m: the light of each ray, -1 if none reaches the point; the weight
+ * 1 / p_k; and what the choice left of the random numbers u and v: uniform, for a point of the light. */
+void light_choice_make(const tracer *t, const material *m, int depth, int *lamp, double *weight, double *u, double *v);

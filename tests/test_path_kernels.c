@@ -1,0 +1,187 @@
+/* Tests of the kernels of random paths: the same random numbers as path_draw and the same angles as
+ * elementary_sincos_deg, with each instruction set; directions on their cones, and points on their spheres. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "base/elementary.h"
+#include "base/elementary_inline.h"
+#include "base/isa.h"
+#include "base/random.h"
+#include "render/shade/path_kernels.h"
+
+static const path_kernels *const kernels[ISA_COUNT] = {&path_kernels_sse2, &path_kernels_avx2, &path_kernels_avx512};
+
+static double unit(uint32_t a, uint32_t b)
+{
+    return random_unit(random_at(7, a, b, 0, 0).word[0]);
+}
+
+/* Pixels and samples over their whole ranges, the greatest included. */
+static void fill_keys(uint32_t round, int64_t paths, int64_t *sample_key)
+{
+    for (uint32_t i = 0; i < ROW; i++) {
+        const random_words r = random_at(1, round, i, 0, 0);
+        const int64_t sample = i == 0 ? paths - 1 : (int64_t)(r.word[0] % (uint64_t)paths),
+                      pixel = i == 1 ? 0xfffffff : r.word[1] >> 4;
+        sample_key[i] = sample_key_make(pixel, sample) | (i % 2 ? SAMPLE_KEY_SPECULAR_BOUNCE : 0);
+    }
+}
+
+static void expect_draws(const path_sampling *p, const int64_t *sample_key, int depth, int purpose)
+{
+    for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
+        double u[ROW], v[ROW];
+        kernels[level]->draw(p, ROW, sample_key, depth, purpose, u, v);
+        for (int i = 0; i < ROW; i++) {
+            const unit_pair expected = path_draw(p, sample_key[i], depth, purpose);
+            if (u[i] != expected.u || v[i] != expected.v)
+                fail_msg("%s, sampler %d, %d paths, ray %d: %.17g %.17g instead of %.17g %.17g", isa_name((isa)level),
+                         (int)p->sampler, (int)p->paths, i, u[i], v[i], expected.u, expected.v);
+        }
+    }
+}
+
+static void draws_are_those_of_single_rays(void **state)
+{
+    (void)state;
+    static const int64_t paths[] = {1, 2, 3, 7, 16, 63, 100, 1000, 4095, 65536, 1048575, 1048576};
+    static const int64_t samplers[] = {SAMPLER_SOBOL, SAMPLER_PHILOX};
+    for (uint32_t round = 0; round < sizeof paths / sizeof *paths; round++)
+        for (int k = 0; k < 2; k++) {
+            const render_settings r = {.paths = paths[round], .samples = 1, .seed = round, .sampler = samplers[k]};
+            const path_sampling p = path_sampling_of(&r);
+            int64_t sample_key[ROW];
+            fill_keys(round, paths[round], sample_key);
+            expect_draws(&p, sample_key, (int)round, DRAW_DIRECTION);
+            expect_draws(&p, sample_key, 200, DRAW_PIXEL);
+        }
+}
+
+/* With adaptive numbers of paths each pixel has its own. */
+static void draws_follow_the_numbers_of_the_pixels(void **state)
+{
+    (void)state;
+    const render_settings r = {.paths = 1024, .samples = 1, .sampler = SAMPLER_SOBOL};
+    path_sampling p = path_sampling_of(&r);
+    uint32_t by_pixel[ROW];
+    int64_t sample_key[ROW];
+    for (uint32_t i = 0; i < ROW; i++) {
+        by_pixel[i] = (uint32_t)p.replicates * (i + 1);
+        sample_key[i] = sample_key_make(i, random_at(3, i, 0, 0, 0).word[0] % by_pixel[i]);
+    }
+    p.by_pixel = by_pixel;
+    expect_draws(&p, sample_key, 1, DRAW_LIGHT);
+}
+
+static void turns_are_those_of_the_scalar_function(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 100000; i++) {
+        const double turn = i == 0   ? random_unit(0)
+                            : i == 1 ? random_unit(UINT32_MAX)
+                            : i < 34 ? random_unit((i / 4) << 29 | (i % 2 ? 0 : 0x1fffffff))
+                                     : unit(i, 1);
+        double s, c, expected_s, expected_c;
+        elementary_sincos_turn_inline(turn, &s, &c);
+        elementary_sincos_deg(360.0 * turn, &expected_s, &expected_c);
+        if (s != expected_s || c != expected_c)
+            fail_msg("turn %.17g: %.17g %.17g instead of %.17g %.17g", turn, s, c, expected_s, expected_c);
+    }
+}
+
+static vec3 random_direction(uint32_t i)
+{
+    const double z = 2.0 * unit(i, 2) - 1.0, across = sqrt(1.0 - z * z);
+    double s, c;
+    elementary_sincos_deg(360.0 * unit(i, 3), &s, &c);
+    return vec3_make(across * c, across * s, z);
+}
+
+static void fill_group(group *g, uint32_t round)
+{
+    memset(g, 0, sizeof *g);
+    g->count = ROW - (int)round;
+    for (uint32_t i = 0; i < ROW; i++) {
+        const vec3 n = random_direction(round * ROW + i);
+        g->points.nx[i] = n.x, g->points.ny[i] = n.y, g->points.nz[i] = n.z;
+        g->points.px[i] = unit(i, 4), g->points.py[i] = unit(i, 5), g->points.pz[i] = unit(i, 6);
+    }
+}
+
+static vec3 normal(const group *g, int i)
+{
+    return vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]);
+}
+
+/* The cosine law: cos^2 to the normal is 1 - u; the azimuth is v of a turn about it from some direction, so that v and
+ * v + 1/2 are opposite. */
+static void directions_have_their_angles(void **state)
+{
+    (void)state;
+    static group g;
+    double u[ROW], v[2][ROW], x[2][ROW], y[2][ROW], z[2][ROW];
+    for (uint32_t round = 0; round < 20; round++) {
+        fill_group(&g, round);
+        for (uint32_t i = 0; i < ROW; i++)
+            u[i] = unit(i, 10 + round), v[0][i] = 0.5 * unit(i, 50 + round), v[1][i] = v[0][i] + 0.5;
+        for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
+            for (int k = 0; k < 2; k++)
+                kernels[level]->cosine(&g, u, v[k], x[k], y[k], z[k]);
+            for (int i = 0; i < g.count; i++) {
+                const vec3 a = vec3_make(x[0][i], y[0][i], z[0][i]), b = vec3_make(x[1][i], y[1][i], z[1][i]);
+                assert_true(fabs(vec3_length(a) - 1.0) < 1e-15);
+                assert_true(fabs(vec3_dot(a, normal(&g, i)) - sqrt(1.0 - u[i])) < 1e-14);
+                assert_true(fabs(vec3_dot(a, b) - (1.0 - 2.0 * u[i])) < 1e-14);
+            }
+        }
+    }
+}
+
+/* The point at `reach` is on the sphere, on its near side; u = 1 is the rim of the cone. */
+static void samples_are_on_their_spheres(void **state)
+{
+    (void)state;
+    static group g;
+    static sphere_samples s;
+    fill_group(&g, 0);
+    for (uint32_t i = 0; i < ROW; i++) {
+        s.x[i] = 4.0 * unit(i, 7), s.y[i] = 3.0 + unit(i, 8), s.z[i] = -unit(i, 9);
+        s.radius[i] = i % 8 == 0 ? 9.0 : unit(i, 20), s.u[i] = unit(i, 21), s.v[i] = unit(i, 22);
+    }
+    for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
+        kernels[level]->spheres(&g, &s);
+        for (int i = 0; i < g.count; i++) {
+            const vec3 d = vec3_make(s.dx[i], s.dy[i], s.dz[i]),
+                       v = vec3_sub(vec3_make(s.x[i], s.y[i], s.z[i]),
+                                    vec3_make(g.points.px[i], g.points.py[i], g.points.pz[i]));
+            if (s.radius[i] == 9.0) { /* encloses the point */
+                assert_true(s.n_l[i] == 0.0);
+                continue;
+            }
+            const vec3 from_centre = vec3_sub(vec3_scale(d, s.reach[i]), v);
+            const double cap = 1.0 - sqrt(1.0 - s.radius[i] * s.radius[i] / vec3_dot(v, v));
+            assert_true(fabs(vec3_length(from_centre) - s.radius[i]) < 1e-7);
+            assert_true(vec3_dot(from_centre, d) <= 1e-7);
+            assert_true(fabs(s.cap[i] - cap) < 1e-14);
+            assert_true(fabs(vec3_dot(d, v) / vec3_length(v) - (1.0 - s.u[i] * cap)) < 1e-14);
+            assert_true(s.n_l[i] == vec3_dot(normal(&g, i), d));
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(draws_are_those_of_single_rays),
+        cmocka_unit_test(draws_follow_the_numbers_of_the_pixels),
+        cmocka_unit_test(turns_are_those_of_the_scalar_function),
+        cmocka_unit_test(directions_have_their_angles),
+        cmocka_unit_test(samples_are_on_their_spheres),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
