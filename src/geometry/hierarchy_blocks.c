@@ -1,7 +1,17 @@
-/* The blocks of four triangles of a hierarchy, in single or double precision. */
+/* The memory of a hierarchy, and its blocks of four triangles, in single or double precision. */
 #include "geometry/hierarchy_private.h"
 
 #include <stdlib.h>
+#include <sys/mman.h>
+
+void *hierarchy_allocate(size_t bytes)
+{
+    const size_t page = bytes < HUGE_PAGE ? 64 : HUGE_PAGE, whole = (bytes + page - 1) / page * page;
+    void *memory = aligned_alloc(page, whole ? whole : page);
+    if (memory && page == HUGE_PAGE)
+        madvise(memory, whole, MADV_HUGEPAGE); /* advice: a failure has no effect */
+    return memory;
+}
 
 static size_t block_bytes(const hierarchy *h)
 {
@@ -10,8 +20,7 @@ static size_t block_bytes(const hierarchy *h)
 
 bool hierarchy_make_blocks(hierarchy *h, size_t count)
 {
-    size_t bytes = (count * block_bytes(h) + 63) / 64 * 64;
-    h->blocks = aligned_alloc(64, bytes ? bytes : 64);
+    h->blocks = hierarchy_allocate(count * block_bytes(h));
     h->block_count = h->blocks ? count : 0;
     return h->blocks;
 }
