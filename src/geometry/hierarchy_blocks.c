@@ -1,8 +1,16 @@
-/* The blocks of four triangles of a hierarchy, in single or double precision. */
+/* The memory of a hierarchy, and its blocks of four triangles, in single or double precision. */
 #include "base/large_pages.h"
 #include "geometry/hierarchy_private.h"
 
 #include <stdlib.h>
+
+enum { CACHE_LINE = 64 };
+
+void *hierarchy_allocate(size_t bytes)
+{
+    const size_t whole = (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    return large_pages(aligned_alloc(CACHE_LINE, whole ? whole : CACHE_LINE), whole);
+}
 
 static size_t block_bytes(const hierarchy *h)
 {
@@ -11,8 +19,7 @@ static size_t block_bytes(const hierarchy *h)
 
 bool hierarchy_make_blocks(hierarchy *h, size_t count)
 {
-    size_t bytes = (count * block_bytes(h) + 63) / 64 * 64;
-    h->blocks = large_pages(aligned_alloc(64, bytes ? bytes : 64), bytes);
+    h->blocks = hierarchy_allocate(count * block_bytes(h));
     h->block_count = h->blocks ? count : 0;
     return h->blocks;
 }

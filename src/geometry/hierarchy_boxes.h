@@ -1,22 +1,13 @@
 /* The conservative ray-box test of the hierarchies: single precision, eight boxes at a time. It never misses a box that
- * contains a hit triangle: box planes are floats rounded outwards, the ray's origin is rounded to both sides by more
- * than necessary, and distances to near planes are decreased, to far planes increased, by more than the rounding error
- * of the three operations (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is culled only if it begins beyond
- * the best hit, not at it, so that of two triangles at one distance the lower number wins in any order of traversal. */
+ * contains a hit triangle: box planes are floats rounded outwards, and distances to near planes are decreased, to far
+ * planes increased, by more than the rounding errors (Ize, "Robust BVH ray traversal", JCGT 2(2), 2013). A box is
+ * culled only if it begins beyond the best hit, not at it, so that of two triangles at one distance the lower number
+ * wins in any order of traversal. */
 #pragma once
 
 #include "geometry/hierarchy_query.h"
 
-/* The ray prepared for the box test. A node stores its low planes before its high planes; near and far are the offsets
- * of the planes that this ray enters and leaves by. */
-typedef struct box_ray {
-    float near_origin[3], far_origin[3], near_inverse[3], far_inverse[3];
-    int near[3], far[3];
-    float t_min;
-} box_ray;
-
 enum { STACK = BVH_DEPTH_MAX * (WIDTH - 1) + WIDTH }; /* children that wait during the traversal */
-#define BOX_SLACK 0x1p-21f                            /* more than three roundings of 2^-24 each */
 #define FLOAT_STEP 0x1p-22f                           /* relative; more than two steps between floats */
 #define FLOAT_TINY 1e-37f /* absolute, for values near 0: several times the smallest normal float */
 
@@ -31,31 +22,64 @@ ALWAYS_INLINE float float_below(double v)
     return f - (__builtin_fabsf(f) * FLOAT_STEP + FLOAT_TINY);
 }
 
-ALWAYS_INLINE void box_ray_start(box_ray *b, const ray_query *q)
+/* The ray prepared for the box test: the distance to a plane p across an axis is p inverse + near_offset, or
+ * far_offset. A node stores its low planes before its high planes; near and far are the offsets in bytes of the planes
+ * that this ray enters and leaves by. */
+typedef struct box_ray {
+    float inverse[3], near_offset[3], far_offset[3];
+    size_t near[3], far[3];
+    float t_min;
+} box_ray;
+
+/* With u = 2^-24, a plane within the reach B and an origin o: inverse is 1 / d with an error of at most 2 u, so that
+ * p inverse errs by 3 u, o inverse by 4 u, and the two sums by 2 u of (B + |o|) / |d|: together less than half of
+ * BOX_SLACK.
+ *
+ * For |d| below 1 / STEEPEST the inverse is limited. Within a slab the far distance is then at least STEEPEST BOX_SLACK
+ * (B + |o|), which is more than any hit's t, and the near distance is not above 0; outside of it, both are nearer to
+ * the ray's origin than the true ones, and a ray that moves away from the slab has no hit in it. So a ray that counts
+ * as parallel needs no test of its own. */
+#define BOX_SLACK 0x1p-20f
+#define STEEPEST 0x1p30f
+#define REACH_LEAST 1e-30f /* keeps the margin a normal number */
+
+ALWAYS_INLINE float box_margin(float reach, float origin)
+{
+    return (reach + __builtin_fabsf(origin) + REACH_LEAST) * BOX_SLACK;
+}
+
+/* The low planes of an axis, and the high planes, in bytes from the node's start. */
+ALWAYS_INLINE size_t low_planes(int axis)
+{
+    return (size_t)axis * WIDTH * sizeof(float);
+}
+ALWAYS_INLINE size_t high_planes(int axis)
+{
+    return low_planes(axis + 3);
+}
+
+ALWAYS_INLINE void box_ray_start(box_ray *b, const hierarchy *h, const ray_query *q)
 {
     for (int k = 0; k < 3; k++) {
-        const bool parallel = magnitude(q->direction[k]) < PARALLEL, down = q->direction[k] < 0.0;
-        const double margin = parallel ? 2.0 * PARALLEL_MARGIN : 0.0;
-        const float above = float_above(q->origin[k] + margin), below = float_below(q->origin[k] - margin);
-        /* For a parallel component, a finite number near FLT_MAX: an infinite one would make NaN of a distance of 0. */
-        const float inverse = parallel ? (down ? -1e38f : 1e38f) : (float)q->inverse[k];
-        b->near_origin[k] = down ? below : above;
-        b->far_origin[k] = down ? above : below;
-        b->near_inverse[k] = inverse * (1.0f - BOX_SLACK);
-        b->far_inverse[k] = inverse * (1.0f + BOX_SLACK);
-        b->near[k] = WIDTH * (k + (down ? 3 : 0));
-        b->far[k] = WIDTH * (k + (down ? 0 : 3));
+        const bool down = q->direction[k] < 0.0;
+        const float origin = (float)q->origin[k], limit = down ? -STEEPEST : STEEPEST;
+        const float inverse = magnitude(q->inverse[k]) < (double)STEEPEST ? (float)q->inverse[k] : limit;
+        const float margin = box_margin(h->reach[k], origin) * __builtin_fabsf(inverse);
+        b->inverse[k] = inverse;
+        b->near_offset[k] = -origin * inverse - margin;
+        b->far_offset[k] = -origin * inverse + margin;
+        b->near[k] = down ? high_planes(k) : low_planes(k);
+        b->far[k] = down ? low_planes(k) : high_planes(k);
     }
     const float t_min = float_below(q->t_min);
     b->t_min = t_min > 0.0f ? t_min : 0.0f;
 }
 
-/* A child on the stack: its distance in the upper half, its number in the lower. Non-negative floats sort by their
- * bits. */
+/* A child on the stack: its distance, which is not negative, in the upper half, its number in the lower. Non-negative
+ * floats sort by their bits. */
 ALWAYS_INLINE uint64_t pending(float near, uint32_t child)
 {
     uint32_t bits;
-    near = near > 0.0f ? near : 0.0f;
     memcpy(&bits, &near, sizeof bits);
     return (uint64_t)bits << 32 | child;
 }
@@ -68,24 +92,10 @@ ALWAYS_INLINE float pending_near(uint64_t p)
     return near;
 }
 
-/* The entry and exit distances of a node's boxes. */
-ALWAYS_INLINE void slabs(const bvh_node *node, const box_ray *b, float *__restrict near, float *__restrict far)
+/* The planes of a node's boxes at an offset. */
+ALWAYS_INLINE const float *planes_at(const bvh_node *node, size_t offset)
 {
-    const float *p = (const float *)(const void *)node;
-    const float *__restrict nx = p + b->near[0], *__restrict ny = p + b->near[1], *__restrict nz = p + b->near[2];
-    const float *__restrict fx = p + b->far[0], *__restrict fy = p + b->far[1], *__restrict fz = p + b->far[2];
-    /* VECTORISE */
-    for (int i = 0; i < WIDTH; i++) {
-        const float x = (nx[i] - b->near_origin[0]) * b->near_inverse[0],
-                    y = (ny[i] - b->near_origin[1]) * b->near_inverse[1],
-                    z = (nz[i] - b->near_origin[2]) * b->near_inverse[2];
-        const float u = (fx[i] - b->far_origin[0]) * b->far_inverse[0],
-                    v = (fy[i] - b->far_origin[1]) * b->far_inverse[1],
-                    w = (fz[i] - b->far_origin[2]) * b->far_inverse[2];
-        const float xy = x > y ? x : y, uv = u < v ? u : v;
-        near[i] = xy > z ? xy : z;
-        far[i] = uv < w ? uv : w;
-    }
+    return (const float *)(const void *)((const char *)node + offset);
 }
 
 /* Fetches what a child refers to, for which the traversal would wait in a large mesh. */

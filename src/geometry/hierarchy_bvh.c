@@ -88,6 +88,8 @@ static status build(hierarchy *h, thread_team *t, bvh_ref *refs, diagnostic *why
     status code = bvh_build_tree(&tree, t, refs, &all, why);
     THEN(code, bvh_collapse(h, tree.root, refs, t, why));
     bvh_free(&tree);
+    if (code == STATUS_OK)
+        bvh_find_reach(h);
     return code;
 }
 

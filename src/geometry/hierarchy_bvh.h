@@ -207,6 +207,9 @@ enum { TASK_TRIANGLES = 8192 };
 status bvh_build_tree(bvh_tree *tree, thread_team *t, bvh_ref *refs, const bvh_range *all, diagnostic *why);
 void bvh_free(bvh_tree *tree);
 
+/* Sets h->reach from the root's boxes. */
+void bvh_find_reach(hierarchy *h);
+
 /* The kernels of hierarchy_refit: recompute blocks and boxes. */
 void hierarchy_refit_nodes_sse2(hierarchy *h);
 void hierarchy_refit_nodes_avx2(hierarchy *h);

@@ -1,6 +1,5 @@
 /* The collapse of the binary tree into nodes of eight children and leaves of blocks, at the least expected cost. */
 #include "base/grow.h"
-#include "base/large_pages.h"
 #include "geometry/hierarchy_bvh.h"
 
 #include <stdlib.h>
@@ -202,7 +201,7 @@ static status make_room(hierarchy *h, size_t nodes, size_t blocks, diagnostic *w
     if (blocks > child_first_block(UINT32_MAX) || nodes >= CHILD_LEAF)
         return diagnose(why, STATUS_FAILURE, "use a mesh with fewer triangles",
                         "the hierarchy would have too many leaves");
-    h->nodes = large_pages(aligned_alloc(64, nodes * sizeof *h->nodes), nodes * sizeof *h->nodes);
+    h->nodes = hierarchy_allocate(nodes * sizeof *h->nodes);
     h->node_count = nodes;
     if (!h->nodes || !hierarchy_make_blocks(h, blocks))
         return out_of_memory(why);

@@ -9,7 +9,18 @@ bool hierarchy_refit(hierarchy *h)
     if (h->kind != HIERARCHY_BVH || h->referred != h->of->triangle_count || (h->single && !h->of->single))
         return false;
     refit[isa_best()](h); /* all kernels give identical bits */
+    bvh_find_reach(h);
     return true;
+}
+
+void bvh_find_reach(hierarchy *h)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        float low, high;
+        bvh_around(&h->nodes[0], axis, &low, &high);
+        const float reach = -low > high ? -low : high;
+        h->reach[axis] = reach > 0.0f ? reach : 0.0f; /* without triangles it is -inf */
+    }
 }
 
 static double half_area(const bvh_node *n, int slot)

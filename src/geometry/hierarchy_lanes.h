@@ -30,6 +30,21 @@ ALWAYS_INLINE double4 double4_all(double v)
     return (double4){v, v, v, v};
 }
 
+ALWAYS_INLINE float8 floats_at(const float *p)
+{
+    float8 v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+/* a b + c, in one instruction where there is one: the last bits differ between instruction sets, so this is only for
+ * tests with a margin. */
+#if defined(__FMA__) || defined(__AVX512F__)
+#define MULTIPLY_ADD(a, b, c) __builtin_fmaf(a, b, c)
+#else
+#define MULTIPLY_ADD(a, b, c) ((a) * (b) + (c))
+#endif
+
 /* The set of lanes whose mask is -1, one bit per lane; lane_first is the lowest lane of a non-empty set. AVX-512
  * narrows a vector in one instruction, which makes the byte form faster there. */
 #ifdef __AVX512VL__

@@ -30,17 +30,23 @@ typedef struct batch_floats {
     ALIGNED int32_t kind[TOGETHER];
 } batch_floats;
 
+/* Bounds of all rays of a packet, by which a node is culled for the whole packet: the distance to a plane p across an
+ * axis is at least (p - near_origin) near_inverse, and at most (p - far_origin) far_inverse. */
+typedef struct packet_bounds {
+    float near_origin[3], far_origin[3], near_inverse[3], far_inverse[3], t_min;
+} packet_bounds;
+
 typedef struct packet {
-    ALIGNED float below[3][TOGETHER], above[3][TOGETHER]; /* bounds of the origin */
-    ALIGNED float near_inverse[3][TOGETHER], far_inverse[3][TOGETHER];
+    /* as in box_ray */
+    ALIGNED float inverse[3][TOGETHER], near_offset[3][TOGETHER], far_offset[3][TOGETHER];
     ALIGNED float t_min[TOGETHER], t_best[TOGETHER]; /* t_best is -1 for a finished ray and an unused slot */
     /* Along the axes x, y, z of ray_query: the shears, the ray's position at z = 0, and its origin's z. */
     ALIGNED float shear_x[TOGETHER], shear_y[TOGETHER], shear_z[TOGETHER];
     ALIGNED float base_x[TOGETHER], base_y[TOGETHER], origin_z[TOGETHER];
-    const float *near_origin[3], *far_origin[3]; /* below or above */
-    int near[3], far[3], axis[3];
+    size_t near[3], far[3];
+    int axis[3];
     int count, groups;
-    box_ray all;      /* bounds of all rays */
+    packet_bounds all;
     float reach;      /* the largest coordinate of an origin */
     float t_farthest; /* the largest t_best */
     bool changed;     /* some t_best has decreased since t_farthest was computed */
@@ -90,13 +96,6 @@ ALWAYS_INLINE void ray_lanes_read(double *__restrict to, size_t stride, const me
 #endif
 }
 
-ALWAYS_INLINE float8 floats_at(const float *p)
-{
-    float8 v;
-    memcpy(&v, p, sizeof v);
-    return v;
-}
-
 ALWAYS_INLINE float8 float8_blend(int8x32 mask, float8 a, float8 b)
 {
     return (float8)((mask & (int8x32)a) | (~mask & (int8x32)b));
@@ -137,7 +136,7 @@ ALWAYS_INLINE float most_of_row(const float *v, int n)
 void KERNEL(batch_read)(batch_floats *b, const mesh_ray *rays, int count);
 /* Starts the packet of the rays at those positions, in order, which are all of one kind; rays, hits and blocked are
  * set. */
-void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *positions, int count);
+void KERNEL(packet_start)(packet *p, const hierarchy *h, const batch_floats *b, const uint8_t *positions, int count);
 /* Tests a triangle with the rays in those slots, in doubles. corner[axis of the mesh][corner]. */
 void KERNEL(packet_test)(packet *p, const uint8_t *slots, int count, enum query_mode mode, const double (*corner)[3],
                          uint32_t triangle);

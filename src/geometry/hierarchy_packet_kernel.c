@@ -18,22 +18,21 @@ typedef struct waiting {
 /* The rays among sixteen, from slot i on, that enter a box before their best hits. */
 ALWAYS_INLINE unsigned enter_box(const packet *p, int i, const float *near_plane, const float *far_plane)
 {
-    const float *restrict nox = &p->near_origin[0][i], *restrict noy = &p->near_origin[1][i],
-                          *restrict noz = &p->near_origin[2][i];
-    const float *restrict nix = &p->near_inverse[0][i], *restrict niy = &p->near_inverse[1][i],
-                          *restrict niz = &p->near_inverse[2][i];
-    const float *restrict fox = &p->far_origin[0][i], *restrict foy = &p->far_origin[1][i],
-                          *restrict foz = &p->far_origin[2][i];
-    const float *restrict fix = &p->far_inverse[0][i], *restrict fiy = &p->far_inverse[1][i],
-                          *restrict fiz = &p->far_inverse[2][i];
+    const float *restrict ix = &p->inverse[0][i], *restrict iy = &p->inverse[1][i], *restrict iz = &p->inverse[2][i];
+    const float *restrict nox = &p->near_offset[0][i], *restrict noy = &p->near_offset[1][i],
+                          *restrict noz = &p->near_offset[2][i];
+    const float *restrict fox = &p->far_offset[0][i], *restrict foy = &p->far_offset[1][i],
+                          *restrict foz = &p->far_offset[2][i];
     const float *restrict t_min = &p->t_min[i], *restrict t_best = &p->t_best[i];
     const float nx = near_plane[0], ny = near_plane[1], nz = near_plane[2], fx = far_plane[0], fy = far_plane[1],
                 fz = far_plane[2];
     _Alignas(64) int32_t in[LANES];
     /* VECTORISE */
     for (int k = 0; k < LANES; k++) {
-        const float x = (nx - nox[k]) * nix[k], y = (ny - noy[k]) * niy[k], z = (nz - noz[k]) * niz[k];
-        const float u = (fx - fox[k]) * fix[k], v = (fy - foy[k]) * fiy[k], w = (fz - foz[k]) * fiz[k];
+        const float x = MULTIPLY_ADD(nx, ix[k], nox[k]), y = MULTIPLY_ADD(ny, iy[k], noy[k]),
+                    z = MULTIPLY_ADD(nz, iz[k], noz[k]);
+        const float u = MULTIPLY_ADD(fx, ix[k], fox[k]), v = MULTIPLY_ADD(fy, iy[k], foy[k]),
+                    w = MULTIPLY_ADD(fz, iz[k], foz[k]);
         const float xy = x > y ? x : y, zt = z > t_min[k] ? z : t_min[k], near = xy > zt ? xy : zt;
         const float uv = u < v ? u : v, wt = w < t_best[k] ? w : t_best[k], far = uv < wt ? uv : wt;
         in[k] = near <= far ? -1 : 0;
@@ -44,10 +43,9 @@ ALWAYS_INLINE unsigned enter_box(const packet *p, int i, const float *near_plane
 /* The rays of a set that enter one box of a node before their best hits. Returns their number. */
 static int rays_in_box(const packet *p, const bvh_node *node, uint32_t slot, const ray_set *of, ray_set *in)
 {
-    const float *plane = (const float *)(const void *)node + slot;
     float near_plane[3], far_plane[3];
     for (int k = 0; k < 3; k++)
-        near_plane[k] = plane[p->near[k]], far_plane[k] = plane[p->far[k]];
+        near_plane[k] = planes_at(node, p->near[k])[slot], far_plane[k] = planes_at(node, p->far[k])[slot];
     int count = 0;
     for (int g = 0; g < p->groups; g++) {
         unsigned bits = of->bits[g];
@@ -97,10 +95,10 @@ static void traverse_alone(const hierarchy *h, packet *p, const ray_set *set, en
     for (int g = 0; g < p->groups; g++) {
         for (unsigned bits = set->bits[g] & p->alive.bits[g]; bits; bits = LANES_LESS_FIRST(bits)) {
             const int i = g * LANES + __builtin_ctz(bits);
-            box_ray b = p->all;
+            box_ray b;
             for (int k = 0; k < 3; k++) {
-                b.near_origin[k] = p->near_origin[k][i], b.far_origin[k] = p->far_origin[k][i];
-                b.near_inverse[k] = p->near_inverse[k][i], b.far_inverse[k] = p->far_inverse[k][i];
+                b.inverse[k] = p->inverse[k][i], b.near_offset[k] = p->near_offset[k][i];
+                b.far_offset[k] = p->far_offset[k][i], b.near[k] = p->near[k], b.far[k] = p->far[k];
             }
             b.t_min = p->t_min[i];
             ray_query *q = query_of_slot(p, i, mode);
@@ -110,17 +108,39 @@ static void traverse_alone(const hierarchy *h, packet *p, const ray_set *set, en
     }
 }
 
+/* Bounds of the distances at which the rays of a packet enter and leave a node's boxes. */
+ALWAYS_INLINE void bounds_of_distances(const packet *p, const bvh_node *node, float *restrict near, float *restrict far)
+{
+    const float *restrict nx = planes_at(node, p->near[0]), *restrict ny = planes_at(node, p->near[1]),
+                          *restrict nz = planes_at(node, p->near[2]);
+    const float *restrict fx = planes_at(node, p->far[0]), *restrict fy = planes_at(node, p->far[1]),
+                          *restrict fz = planes_at(node, p->far[2]);
+    const packet_bounds *all = &p->all;
+    /* VECTORISE */
+    for (int i = 0; i < WIDTH; i++) {
+        const float x = (nx[i] - all->near_origin[0]) * all->near_inverse[0],
+                    y = (ny[i] - all->near_origin[1]) * all->near_inverse[1],
+                    z = (nz[i] - all->near_origin[2]) * all->near_inverse[2];
+        const float u = (fx[i] - all->far_origin[0]) * all->far_inverse[0],
+                    v = (fy[i] - all->far_origin[1]) * all->far_inverse[1],
+                    w = (fz[i] - all->far_origin[2]) * all->far_inverse[2];
+        const float xy = x > y ? x : y, zt = z > all->t_min ? z : all->t_min;
+        const float uv = u < v ? u : v, wt = w < p->t_farthest ? w : p->t_farthest;
+        near[i] = xy > zt ? xy : zt;
+        far[i] = uv < wt ? uv : wt;
+    }
+}
+
 /* Pushes a node's children that any ray may hit, the nearest on top. */
 static int push_children(const hierarchy *h, const packet *p, uint32_t at, const ray_set *set, waiting *stack, int top)
 {
     const bvh_node *nodes = h->nodes;
     const size_t block_bytes = h->single ? sizeof(block_single) : sizeof(block_double);
+    const bvh_node *node = &nodes[at];
     _Alignas(32) float near[WIDTH], far[WIDTH];
-    slabs(&nodes[at], &p->all, near, far);
-    const float8 n = floats_at(near), f = floats_at(far);
+    bounds_of_distances(p, node, near, far);
     const int bottom = top;
-    for (uint64_t hit = lanes_of8((n <= f) & (n <= float8_all(p->t_farthest)) & (f >= float8_all(p->all.t_min))); hit;
-         hit = LANES_LESS_FIRST(hit)) {
+    for (uint64_t hit = lanes_of8(floats_at(near) <= floats_at(far)); hit; hit = LANES_LESS_FIRST(hit)) {
         const unsigned slot = lane_first(hit);
         fetch_child(h, nodes[at].child[slot], block_bytes);
         int position = top++;
@@ -163,7 +183,7 @@ static void walk_kind(const hierarchy *h, packet *p, const batch_floats *b, cons
 {
     enum { FEW = 12 /* fewer coherent rays than this are traversed one by one */ };
     if (count >= FEW) {
-        KERNEL(packet_start)(p, b, positions, count);
+        KERNEL(packet_start)(p, h, b, positions, count);
         packet_walk(h, p, mode);
         return;
     }

@@ -84,13 +84,21 @@ ALWAYS_INLINE unsigned maybe_in_range(const packet *p, int i, const float *z, co
     return bits_of16(in);
 }
 
-static void test_triangle(packet *p, const ray_set *set, enum query_mode mode, const double (*corner)[3],
-                          const leaf_errors *errors, uint32_t triangle)
+/* A triangle's corner along an axis of the mesh; lane: of the block. */
+ALWAYS_INLINE double corner_of(const void *block, bool single, int corner, int axis, int lane)
+{
+    return single ? (double)((const block_single *)block)->corner[corner][axis][lane]
+                  : ((const block_double *)block)->corner[corner][axis][lane];
+}
+
+/* Tests the triangle in a lane of a block. */
+ALWAYS_INLINE void test_triangle(packet *p, const ray_set *set, enum query_mode mode, const void *block, bool single,
+                                 int lane, const leaf_errors *errors, uint32_t triangle)
 {
     float turned[3][3];
     for (int k = 0; k < 3; k++)
         for (int j = 0; j < 3; j++)
-            turned[k][j] = (float)corner[p->axis[k]][j];
+            turned[k][j] = (float)corner_of(block, single, j, p->axis[k], lane);
     uint64_t words[TOGETHER / 64] = {0};
     for (int g = 0; g < p->groups; g++) {
         unsigned bits = set->bits[g] & p->alive.bits[g];
@@ -108,27 +116,36 @@ static void test_triangle(packet *p, const ray_set *set, enum query_mode mode, c
             slots[count] = (uint8_t)slot;
             count += p->rays[p->number[slot]].skip != triangle;
         }
-    if (count > 0)
-        KERNEL(packet_test)(p, slots, count, mode, corner, triangle);
+    if (count == 0)
+        return;
+    double corner[3][3];
+    for (int k = 0; k < 3; k++)
+        for (int j = 0; j < 3; j++)
+            corner[k][j] = corner_of(block, single, j, k, lane);
+    KERNEL(packet_test)(p, slots, count, mode, (const double(*)[3])corner, triangle);
+}
+
+ALWAYS_INLINE void test_leaf(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, uint32_t leaf,
+                             const leaf_errors *errors, bool single)
+{
+    for (uint32_t b = child_first_block(leaf); b < child_first_block(leaf) + child_blocks(leaf); b++) {
+        const block_single *floats = (const block_single *)h->blocks + b;
+        const block_double *doubles = (const block_double *)h->blocks + b;
+        const void *block = single ? (const void *)floats : (const void *)doubles;
+        const uint32_t *numbers = single ? floats->triangle : doubles->triangle;
+        for (int lane = 0; lane < BLOCK && !(lane > 0 && numbers[lane] == numbers[lane - 1]); lane++)
+            test_triangle(p, set, mode, block, single, lane, errors, numbers[lane]);
+    }
 }
 
 void KERNEL(packet_leaf)(const hierarchy *h, packet *p, const ray_set *set, enum query_mode mode, const bvh_node *node,
                          uint32_t slot)
 {
-    const uint32_t leaf = node->child[slot];
     const leaf_errors errors = errors_of(p, node, slot);
-    for (uint32_t b = child_first_block(leaf); b < child_first_block(leaf) + child_blocks(leaf); b++) {
-        const block_single *single = &((const block_single *)h->blocks)[b];
-        const block_double *exact = &((const block_double *)h->blocks)[b];
-        const uint32_t *numbers = h->single ? single->triangle : exact->triangle;
-        for (int lane = 0; lane < BLOCK && !(lane > 0 && numbers[lane] == numbers[lane - 1]); lane++) {
-            double corner[3][3];
-            for (int k = 0; k < 3; k++)
-                for (int j = 0; j < 3; j++)
-                    corner[k][j] = h->single ? (double)single->corner[j][k][lane] : exact->corner[j][k][lane];
-            test_triangle(p, set, mode, (const double(*)[3])corner, &errors, numbers[lane]);
-        }
-    }
+    if (h->single)
+        test_leaf(h, p, set, mode, node->child[slot], &errors, true);
+    else
+        test_leaf(h, p, set, mode, node->child[slot], &errors, false);
     if (p->changed)
         p->t_farthest = most_of_row(p->t_best, p->groups * LANES);
     p->changed = false;

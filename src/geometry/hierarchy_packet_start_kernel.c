@@ -82,26 +82,20 @@ void KERNEL(batch_read)(batch_floats *b, const mesh_ray *rays, int count)
     }
 }
 
-/* The prepared arrays of one axis. A parallel component gets a finite inverse near FLT_MAX: an infinite one would make
- * NaN of a distance of 0. Here the threshold is a little above PARALLEL, which only widens boxes. The inverse of the
- * rounded direction has a relative error of two roundings, which BOX_SLACK covers with the other three. */
-static void prepare_axis(packet *p, int k, const float *restrict origin, const float *restrict direction)
+/* box_ray_start along one axis. */
+static void prepare_axis(packet *p, int k, float reach, const float *restrict origin, const float *restrict direction)
 {
-    float *restrict below = p->below[k], *restrict above = p->above[k], *restrict near = p->near_inverse[k],
-                    *restrict far = p->far_inverse[k];
+    float *restrict inverses = p->inverse[k], *restrict near = p->near_offset[k], *restrict far = p->far_offset[k];
     const int n = p->groups * LANES;
-    const float huge = p->near[k] >= WIDTH * 3 ? -1e38f : 1e38f;
+    const float limit = p->near[k] == high_planes(k) ? -STEEPEST : STEEPEST;
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
-        const float o = origin[i], d = direction[i], size = __builtin_fabsf(d);
-        const bool parallel = size < (float)(1.001 * PARALLEL);
-        const float margin = __builtin_fabsf(o) * (float)FLOAT_STEP + FLOAT_TINY;
-        const float wide = margin + (parallel ? (float)(2.0 * PARALLEL_MARGIN) : 0.0f);
-        const float inverse = parallel ? huge : 1.0f / d;
-        below[i] = o - wide;
-        above[i] = o + wide;
-        near[i] = inverse * (float)(1.0 - BOX_SLACK);
-        far[i] = inverse * (float)(1.0 + BOX_SLACK);
+        const float o = origin[i], d = direction[i];
+        const float inverse = __builtin_fabsf(d) > 1.0f / STEEPEST ? 1.0f / d : limit;
+        const float margin = box_margin(reach, o) * __builtin_fabsf(inverse), at = -o * inverse;
+        inverses[i] = inverse;
+        near[i] = at - margin;
+        far[i] = at + margin;
     }
 }
 
@@ -122,23 +116,21 @@ static void prepare_shears(packet *p, const float *restrict ox, const float *res
     }
 }
 
-/* The bounds of all rays, by which a node is culled for the whole packet. */
-static void find_bounds(packet *p)
+/* The margin at the origins bounds the same errors as in box_ray. */
+static void find_bounds(packet *p, const float *reach, const float *const *origins)
 {
     const int n = p->groups * LANES;
-    box_ray *all = &p->all;
+    packet_bounds *all = &p->all;
     p->reach = 0.0f;
     for (int k = 0; k < 3; k++) {
-        const bool down = p->near[k] >= WIDTH * 3;
-        const float least = least_of_row(p->below[k], n), most = most_of_row(p->above[k], n);
-        all->near_origin[k] = down ? least : most;
-        all->far_origin[k] = down ? most : least;
-        p->reach = least < -p->reach ? -least : p->reach;
-        p->reach = most > p->reach ? most : p->reach;
-        all->near_inverse[k] = down ? most_of_row(p->near_inverse[k], n) : least_of_row(p->near_inverse[k], n);
-        all->far_inverse[k] = down ? least_of_row(p->far_inverse[k], n) : most_of_row(p->far_inverse[k], n);
-        all->near[k] = p->near[k];
-        all->far[k] = p->far[k];
+        const bool down = p->near[k] == high_planes(k);
+        const float least = least_of_row(origins[k], n), most = most_of_row(origins[k], n),
+                    farthest = -least > most ? -least : most, margin = box_margin(reach[k], farthest);
+        all->near_origin[k] = down ? least - margin : most + margin;
+        all->far_origin[k] = down ? most + margin : least - margin;
+        all->near_inverse[k] = down ? most_of_row(p->inverse[k], n) : least_of_row(p->inverse[k], n);
+        all->far_inverse[k] = down ? least_of_row(p->inverse[k], n) : most_of_row(p->inverse[k], n);
+        p->reach = farthest > p->reach ? farthest : p->reach;
     }
     all->t_min = least_of_row(p->t_min, n);
     p->t_farthest = most_of_row(p->t_best, n);
@@ -154,10 +146,8 @@ static void choose_axes(packet *p, int32_t kind)
     p->axis[2] = z;
     for (int k = 0; k < 3; k++) {
         const bool down = kind >> k & 1;
-        p->near[k] = WIDTH * (k + (down ? 3 : 0));
-        p->far[k] = WIDTH * (k + (down ? 0 : 3));
-        p->near_origin[k] = down ? p->below[k] : p->above[k];
-        p->far_origin[k] = down ? p->above[k] : p->below[k];
+        p->near[k] = down ? high_planes(k) : low_planes(k);
+        p->far[k] = down ? low_planes(k) : high_planes(k);
     }
 }
 
@@ -170,7 +160,7 @@ static const float *pick(float *restrict to, const float *restrict from, const u
 }
 
 /* Slots beyond count repeat the last ray and are in no set. */
-void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *positions, int count)
+void KERNEL(packet_start)(packet *p, const hierarchy *h, const batch_floats *b, const uint8_t *positions, int count)
 {
     p->count = count;
     p->groups = (count + LANES - 1) / LANES;
@@ -199,8 +189,8 @@ void KERNEL(packet_start)(packet *p, const batch_floats *b, const uint8_t *posit
         p->t_best[i] = -1.0f;
     choose_axes(p, b->kind[positions[0]]);
     for (int k = 0; k < 3; k++)
-        prepare_axis(p, k, from[k], from[3 + k]);
+        prepare_axis(p, k, h->reach[k], from[k], from[3 + k]);
     const int x = p->axis[0], y = p->axis[1], z = p->axis[2];
     prepare_shears(p, from[x], from[y], from[z], from[3 + x], from[3 + y], from[3 + z]);
-    find_bounds(p);
+    find_bounds(p, h->reach, from);
 }

@@ -61,6 +61,7 @@ struct hierarchy {
     size_t node_count;
     size_t referred;   /* bvh: triangles in its blocks; fewer than the mesh's if some had no area at the build */
     double built_cost; /* hierarchy_cost at the build; 0 for other kinds */
+    float reach[3];    /* bvh: the largest magnitude of a box's planes, by axis */
     void *foreign;     /* Embree's scene */
     hierarchy_report report;
 };
@@ -80,5 +81,8 @@ void hierarchy_embree_all(const hierarchy *h, const mesh_ray *ray, mesh_visit *v
 /* Writes triangles order[0 .. count-1] into blocks from block number `first` on, fills the last block by repetition,
  * and returns the number of blocks. */
 size_t hierarchy_fill_blocks(hierarchy *h, const uint32_t *order, size_t count, size_t first);
-/* Allocates aligned memory for that many blocks and nodes; false: out of memory. */
+/* Memory that starts at a cache line, in large pages (base/large_pages.h): a ray through a large mesh jumps between
+ * pages, and looking up their addresses would cost as much as the data. Freed with free; NULL: out of memory. */
+void *hierarchy_allocate(size_t bytes);
+/* Allocates memory for that many blocks; false: out of memory. */
 bool hierarchy_make_blocks(hierarchy *h, size_t count);
