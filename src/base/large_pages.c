@@ -2,6 +2,7 @@
 #include "base/large_pages.h"
 
 #include <stdint.h>
+#include <stdlib.h>
 #include <sys/mman.h>
 
 enum { PAGE = 4096, LARGE_PAGE = 1 << 21 };
@@ -15,4 +16,9 @@ void *large_pages(void *memory, size_t bytes)
         madvise((char *)memory - ((uintptr_t)memory - first), end - first, MADV_HUGEPAGE);
     }
     return memory;
+}
+
+void *large_calloc(size_t count, size_t size)
+{
+    return large_pages(calloc(count, size), count * size); /* calloc rejects a product that overflows */
 }

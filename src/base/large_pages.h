@@ -6,3 +6,5 @@
 
 /* Returns `memory`, a block of `bytes` from malloc or the like, or NULL. Best before its first use. */
 void *large_pages(void *memory, size_t bytes);
+/* calloc with this advice. */
+void *large_calloc(size_t count, size_t size);

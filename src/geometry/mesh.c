@@ -45,7 +45,7 @@ static struct mesh_share *share_create(void)
 
 static void *zeroed(size_t count, size_t size)
 {
-    return large_pages(calloc(count, size), count * size);
+    return large_calloc(count, size);
 }
 
 status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,

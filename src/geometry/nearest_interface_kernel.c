@@ -409,18 +409,51 @@ static void nearest_among(const scene_geometry *a, const ray_batch *given, ray_s
         hits->inside_after[i] &= ~a->meshes->open_surfaces; /* a set never contains open surfaces */
 }
 
-static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
+/* Rays from .. from + count - 1 of the batch. */
+static ray_batch part_of(const ray_batch *rays, int from, int count)
 {
-    if (!a->tree || !KERNEL(view_make)(a, rays, HUGE_VAL, &s->view)) {
-        nearest_among(a, rays, s, hits);
-        return;
-    }
+    return (ray_batch){count,           rays->ox + from, rays->oy + from,    rays->oz + from,    rays->dx + from,
+                       rays->dy + from, rays->dz + from, rays->start + from, rays->inside + from};
+}
+
+/* In the view of the few solids that the rays may meet; false if there is none. */
+static bool nearest_in_view(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
+{
     uint64_t inside[ROW];
+    if (!KERNEL(view_make)(a, rays, HUGE_VAL, &s->view))
+        return false;
     ray_batch view = *rays;
     view.inside = inside;
     KERNEL(view_sets)(&s->view, rays, inside);
     nearest_among(&s->view.inner, &view, s, hits);
     KERNEL(view_hits)(&s->view, rays->count, hits);
+    return true;
+}
+
+/* Parts of the batch, each in a view of its own where it has one: fewer rays meet fewer solids. */
+static void nearest_by_parts(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
+{
+    enum { PART = 16 };
+    hit_batch found;
+    for (int from = 0; from < rays->count; from += PART) {
+        const int count = rays->count - from < PART ? rays->count - from : PART;
+        const ray_batch part = part_of(rays, from, count);
+        if (!nearest_in_view(a, &part, s, &found))
+            nearest_among(a, &part, s, &found);
+        for (int k = 0; k < count; k++)
+            copy_hit(&found, k, hits, from + k);
+    }
+}
+
+static void nearest(const scene_geometry *a, const ray_batch *rays, ray_scratch *s, hit_batch *hits)
+{
+    if (a->tree && nearest_in_view(a, rays, s, hits))
+        return;
+    /* the segments and the mesh hits are those of a whole batch */
+    if (a->tree && !a->meshes && !s->segments)
+        nearest_by_parts(a, rays, s, hits);
+    else
+        nearest_among(a, rays, s, hits);
 }
 
 /* Does the range 0..1 of the ray overlap the region in the interval of that row, whatever hides it? If the ends of an

@@ -1,6 +1,7 @@
 /* Builds the scene geometry, and answers queries for points. */
 #include "geometry/scene_geometry.h"
 #include "base/elementary.h"
+#include "base/large_pages.h"
 #include "geometry/instance_set.h"
 #include "geometry/primitives/primitive.h"
 #include "geometry/shapes/shape.h"
@@ -181,10 +182,10 @@ status scene_geometry_build(const region_source *sources, int count, int64_t out
     scene_geometry *a = calloc(1, sizeof *a);
     ordered_source *order = calloc((size_t)count + 1, sizeof *order);
     if (a) {
-        a->primitives = calloc((size_t)n.all + 1, sizeof *a->primitives);
-        a->regions = calloc((size_t)count + 1, sizeof *a->regions);
+        a->primitives = large_calloc((size_t)n.all + 1, sizeof *a->primitives);
+        a->regions = large_calloc((size_t)count + 1, sizeof *a->regions);
         a->shapes = calloc((size_t)count + 1, sizeof *a->shapes);
-        a->normals = calloc((size_t)n.normals + 1, sizeof *a->normals);
+        a->normals = large_calloc((size_t)n.normals + 1, sizeof *a->normals);
         a->direct_regions = calloc((size_t)count + 1, sizeof *a->direct_regions);
     }
     if (!a || !order || !a->primitives || !a->regions || !a->shapes || !a->normals || !a->direct_regions) {

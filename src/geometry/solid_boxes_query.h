@@ -52,6 +52,10 @@ ALWAYS_INLINE float boxes_max(float a, float b)
  * the search. */
 typedef double boxes_visit(void *context, int item, double t_max);
 
+/* Begins to load the data of an item that will probably be visited soon: in large hierarchies the time goes into waiting
+ * for memory. */
+typedef void boxes_fetch(void *context, int item);
+
 /* Which children of a node the ray may enter before its t_max, as bits; near: where. */
 ALWAYS_INLINE unsigned boxes_entered(const boxes_node *n, const boxes_ray *r, float near[BOXES_WIDE])
 {
@@ -87,18 +91,15 @@ typedef struct boxes_waiting {
     int32_t child;
 } boxes_waiting;
 
-/* Begins to load a node that will be needed soon: in large hierarchies the time goes into waiting for memory. */
-ALWAYS_INLINE void boxes_fetch(const solid_boxes *b, int32_t child)
+ALWAYS_INLINE void boxes_fetch_node(const solid_boxes *b, int32_t child)
 {
-    if (child < 0)
-        return;
     for (size_t line = 0; line < sizeof(boxes_node); line += 64)
         __builtin_prefetch((const char *)&b->nodes[child] + line);
 }
 
 /* Puts a node's entered children on the stack, the nearest last; returns the new size. */
 ALWAYS_INLINE int boxes_push(const solid_boxes *b, boxes_waiting *stack, int size, const boxes_node *n,
-                             unsigned entered, const float *near)
+                             unsigned entered, const float *near, boxes_fetch *fetch, void *context)
 {
     const int first = size;
     for (; entered; entered &= entered - 1) {
@@ -107,14 +108,17 @@ ALWAYS_INLINE int boxes_push(const solid_boxes *b, boxes_waiting *stack, int siz
         for (; at > first && stack[at - 1].near < near[child]; at--)
             stack[at] = stack[at - 1];
         stack[at] = (boxes_waiting){near[child], n->child[child]};
-        boxes_fetch(b, n->child[child]);
+        if (n->child[child] >= 0)
+            boxes_fetch_node(b, n->child[child]);
+        else
+            fetch(context, ~n->child[child]);
     }
     return size;
 }
 
 /* Visits the items whose boxes a ray may enter in t_min .. t_max, roughly the nearest first. */
 ALWAYS_INLINE void boxes_walk(const solid_boxes *b, vec3 origin, vec3 direction, double t_min, double t_max,
-                              boxes_visit *visit, void *context)
+                              boxes_visit *visit, boxes_fetch *fetch, void *context)
 {
     boxes_waiting stack[BOXES_DEPTH_MAX * (BOXES_WIDE - 1) + 1];
     float near[BOXES_WIDE];
@@ -123,14 +127,14 @@ ALWAYS_INLINE void boxes_walk(const solid_boxes *b, vec3 origin, vec3 direction,
                    .margin = boxes_margin(b->reach, origin.x, origin.y, origin.z),
                    .t_min = boxes_less((float)t_min),
                    .t_max = boxes_more((float)t_max)};
-    int size = boxes_push(b, stack, 0, b->nodes, boxes_entered(b->nodes, &r, near), near);
+    int size = boxes_push(b, stack, 0, b->nodes, boxes_entered(b->nodes, &r, near), near, fetch, context);
     while (size > 0) {
         const boxes_waiting next = stack[--size];
         if (next.near > r.t_max)
             continue;
         if (next.child >= 0) {
             const boxes_node *n = &b->nodes[next.child];
-            size = boxes_push(b, stack, size, n, boxes_entered(n, &r, near), near);
+            size = boxes_push(b, stack, size, n, boxes_entered(n, &r, near), near, fetch, context);
             continue;
         }
         const double bound = visit(context, ~next.child, t_max);

@@ -10,8 +10,8 @@
 static bounds3 bounds_of(const solid_tree *t, int i)
 {
     const scene_geometry *a = t->of;
-    const bounds3 box = shape_world_box(&a->shapes[t->region[i]]);
-    const double slack = 0x1p-40 * a->primitives[a->regions[t->region[i]].outside].extent;
+    const bounds3 box = shape_world_box(&a->shapes[t->solids[i].region]);
+    const double slack = 0x1p-40 * a->primitives[t->solids[i].outside].extent;
     const vec3 wider = vec3_make(slack, slack, slack);
     return (bounds3){vec3_sub(box.low, wider), vec3_add(box.high, wider)};
 }
@@ -35,11 +35,11 @@ status solid_tree_build(const scene_geometry *a, solid_tree **out, diagnostic *w
         return out_of_memory(why);
     t->of = a;
     t->sets = set_table_create();
-    t->region = calloc((size_t)a->region_count + 1, sizeof *t->region);
-    status code = t->sets && t->region ? STATUS_OK : out_of_memory(why);
+    t->solids = calloc((size_t)a->region_count + 1, sizeof *t->solids);
+    status code = t->sets && t->solids ? STATUS_OK : out_of_memory(why);
     for (int r = 1; code == STATUS_OK && r <= a->region_count; r++)
         if (a->regions[r].outside >= a->direct_count)
-            t->region[t->count++] = r;
+            t->solids[t->count++] = (tree_solid){r, a->regions[r].outside};
     THEN(code, build_boxes(t, why));
     if (code != STATUS_OK) {
         solid_tree_destroy(t);
@@ -55,7 +55,7 @@ void solid_tree_destroy(solid_tree *t)
         return;
     solid_boxes_destroy(&t->boxes);
     set_table_destroy(t->sets);
-    free(t->region);
+    free(t->solids);
     free(t);
 }
 

@@ -153,7 +153,7 @@ static bool contains_start(const tree_search *w, const region *b)
 static double visit_solid(void *context, int item, double t_max)
 {
     tree_search *w = context;
-    const int r = w->a->tree->region[item];
+    const int r = w->a->tree->solids[item].region;
     if (contains_start(w, &w->a->regions[r])) /* considered already */
         return t_max;
     if (r < w->priority_index) { /* hidden: it matters only where the medium changes */
@@ -180,12 +180,19 @@ static void consider_containing(tree_search *w)
     }
 }
 
-ALWAYS_INLINE void walk(const tree_search *w, double t_min, double t_max, boxes_visit *visit, void *context)
+static void fetch_solid(void *context, int item)
+{
+    const tree_search *w = context;
+    solid_tree_fetch(w->a->tree, item);
+}
+
+ALWAYS_INLINE void walk(const tree_search *w, double t_min, double t_max, boxes_visit *visit, boxes_fetch *fetch,
+                        void *context)
 {
     const int i = w->s->ray[w->column];
     const ray_batch *r = w->rays;
     boxes_walk(&w->a->tree->boxes, vec3_make(r->ox[i], r->oy[i], r->oz[i]), vec3_make(r->dx[i], r->dy[i], r->dz[i]),
-               t_min, t_max, visit, context);
+               t_min, t_max, visit, fetch, context);
 }
 
 /* The tree's primitives on both sides of a crossing, and which of them have a boundary near it. */
@@ -236,10 +243,16 @@ static void report(const tree_visit *v, int p)
     v->found(v->context, p, found);
 }
 
+static void fetch_near(void *context, int item)
+{
+    const tree_visit *v = context;
+    solid_tree_fetch(v->w->a->tree, item);
+}
+
 static double visit_near(void *context, int item, double t_max)
 {
     const tree_visit *v = context;
-    const region *b = &v->w->a->regions[v->w->a->tree->region[item]];
+    const region *b = &v->w->a->regions[v->w->a->tree->solids[item].region];
     if (!contains_start(v->w, b)) {
         report(v, b->outside);
         if (b->hollow >= 0)
@@ -264,7 +277,7 @@ static void each_between(const tree_search *w, double low, double high, tree_fou
         if (other >= 0 && !set_table_has(w->a->tree->sets, within, other))
             report(&v, other);
     }
-    walk(w, greater(low, 0.0), high, visit_near, (void *)(uintptr_t)&v);
+    walk(w, greater(low, 0.0), high, visit_near, fetch_near, (void *)(uintptr_t)&v);
 }
 
 static void sides_of(const tree_search *w, tree_sides *x)
@@ -300,7 +313,7 @@ static void search(const scene_geometry *a, const ray_batch *rays, int k, ray_sc
     tree_search w;
     begin_search(&w, a, rays, k, s, c);
     consider_containing(&w);
-    walk(&w, greater(s->tree.from[k], 0.0), w.t + window(&w, w.t), visit_solid, &w);
+    walk(&w, greater(s->tree.from[k], 0.0), w.t + window(&w, w.t), visit_solid, fetch_solid, &w);
     s->tree.before[k] = s->tree.after[k] = s->tree.within[k];
     s->tree.simple[k] = true;
     if (w.hit_primitive != c->hit_primitive[k] && a->meshes) {
@@ -353,7 +366,7 @@ static double visit_shadow(void *context, int item, double t_max)
 {
     shadow_search *w = context;
     const scene_geometry *a = w->a;
-    const int r = a->tree->region[item];
+    const int r = a->tree->solids[item].region;
     const region *b = &a->regions[r];
     if (!region_casts_shadow(b, w->solid_shadows))
         return t_max;
@@ -372,6 +385,12 @@ static double visit_shadow(void *context, int item, double t_max)
     return w->s->blocked[w->ray] ? -1.0 : t_max;
 }
 
+static void fetch_shadow(void *context, int item)
+{
+    const shadow_search *w = context;
+    solid_tree_fetch(w->a->tree, item);
+}
+
 void KERNEL(tree_shadows)(const scene_geometry *a, const ray_batch *rays, int solid_shadows, ray_scratch *s)
 {
     for (int i = 0; i < rays->count; i++) {
@@ -379,6 +398,6 @@ void KERNEL(tree_shadows)(const scene_geometry *a, const ray_batch *rays, int so
             continue;
         shadow_search w = {a, rays, s, i, solid_shadows};
         boxes_walk(&a->tree->boxes, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
-                   vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]), 0.0, 1.0, visit_shadow, &w);
+                   vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]), 0.0, 1.0, visit_shadow, fetch_shadow, &w);
     }
 }

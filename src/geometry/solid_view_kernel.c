@@ -112,10 +112,14 @@ static bool list_entered(const scene_geometry *a, const batch_bounds *b, view_li
         const boxes_node *n = &boxes->nodes[stack[--size]];
         for (unsigned set = entered_by_some(n, b); set; set &= set - 1) {
             const int32_t child = n->child[__builtin_ctz(set)];
-            if (child >= 0)
+            if (child >= 0) {
                 stack[size++] = child;
-            else if (!list_region(a, a->tree->region[~child], l))
-                return false;
+                boxes_fetch_node(boxes, child);
+            } else {
+                solid_tree_fetch(a->tree, ~child);
+                if (!list_region(a, a->tree->solids[~child].region, l))
+                    return false;
+            }
         }
     }
     return true;

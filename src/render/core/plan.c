@@ -1,5 +1,6 @@
 /* Building a render plan: media, hierarchies, materials and light cones from the scene. */
 #include "render/core/plan.h"
+#include "base/large_pages.h"
 #include "geometry/shapes/shape.h"
 
 #include "render/shade/sky.h"
@@ -172,11 +173,11 @@ static const material *material_of(const scene *s, plan *p, int solid_index)
 static status fill_priority_indices(const scene *s, const index_law *laws, plan *p, diagnostic *why)
 {
     const size_t priority_indices = (size_t)p->geometry->region_count + 1;
-    p->materials = calloc(priority_indices, sizeof *p->materials);
-    p->ior = calloc(priority_indices, sizeof *p->ior);
-    p->laws = calloc(priority_indices, sizeof *p->laws);
-    p->absorption = calloc(priority_indices, sizeof *p->absorption);
-    p->shading_materials = calloc(priority_indices, sizeof *p->shading_materials);
+    p->materials = large_calloc(priority_indices, sizeof *p->materials);
+    p->ior = large_calloc(priority_indices, sizeof *p->ior);
+    p->laws = large_calloc(priority_indices, sizeof *p->laws);
+    p->absorption = large_calloc(priority_indices, sizeof *p->absorption);
+    p->shading_materials = large_calloc(priority_indices, sizeof *p->shading_materials);
     p->mirrors = calloc(s->solid_count + 1, sizeof *p->mirrors);
     if (!p->mirrors || !p->materials || !p->ior || !p->laws || !p->absorption || !p->shading_materials)
         return out_of_memory(why);

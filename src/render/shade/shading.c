@@ -431,7 +431,9 @@ static void shade_alike(tracer *t, int depth, int first, const hit_group *groups
 static bool can_be_together(const tracer *t, const hit_group *g)
 {
     const plan *p = t->target.frame_plan;
-    return !t->rule->by_solid && p->geometry->primitives[g->hit_primitive].rule && plan_is_plain(p, g->priority_index);
+    /* of the regions that look alike the materials of one, which the caches hold */
+    const int looks = p->alike[g->priority_index];
+    return !t->rule->by_solid && p->geometry->primitives[g->hit_primitive].rule && plan_is_plain(p, looks);
 }
 
 void shading_groups(tracer *t, int depth, int first, const hit_group *groups, int count)
