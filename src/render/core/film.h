@@ -15,6 +15,17 @@
 
 #define FILM_ONE 17592186044416.0 /* 2^44 */
 
+/* Is it in the range of a contribution? False for NaN. */
+static inline bool film_accepts(double radiance)
+{
+    const double limit = 262144.0; /* half of a channel's range */
+    return (int)(radiance >= 0.0) & (int)(radiance < limit);
+}
+static inline int64_t film_units(double radiance)
+{
+    return (int64_t)(radiance * FILM_ONE + 0.5);
+}
+
 typedef enum film_space { FILM_RGB, FILM_XYZ } film_space;
 enum { FILM_SHARES_MAX = 8 };
 

@@ -195,12 +195,7 @@ static void trace_shadows(tracer *t)
     if (p->geometry->attenuates)
         absorption_dim(t, q, first, rays.count);
     radiance_end_shadows(t);
-    for (int i = 0; i < rays.count; i++) {
-        const double share = t->batch.transmitted[i];
-        const int at = first + i;
-        if (share > 0.0)
-            shading_expose(t, q->sample_key[at], share * q->wr[at], share * q->wg[at], share * q->wb[at]);
-    }
+    shading_expose_shares(t, q, first, rays.count, t->batch.transmitted);
 }
 
 void tracer_run_batch(tracer *t, int depth)

@@ -35,6 +35,12 @@ typedef struct branch_group {
     int64_t total; /* number of total internal reflections in the group */
 } branch_group;
 
+/* Contributions to the film, in its units. */
+typedef struct film_light {
+    int64_t r[ROW], g[ROW], b[ROW];
+    int64_t out_of_range; /* negative if some are out of the film's range, which are left out; otherwise 0 */
+} film_light;
+
 /* Fills g from rays list[0..count-1] of a batch; ascending: the list is; first is the batch's start in the queue;
  * ior: by priority index. Not a kernel: scalar copies are faster than the gather instructions of the processors it
  * was measured on. */
@@ -62,6 +68,12 @@ typedef struct shade_kernels {
     /* Adds branches that the depth limit cuts off to *sum: their number, and their throughput in units of
      * 1/COUNTERS_CUT_ONE. */
     void (*cut)(const group *g, const branch_group *b, cut_sum *sum);
+    /* The light of a group in film units: a surface's own, of that radiance in its colour; and that of the branches that
+     * the depth limit cuts off, the same for all directions. */
+    void (*own_light)(const group *g, vec3 radiance, film_light *out);
+    void (*cut_light)(const group *g, const branch_group *b, vec3 radiance, film_light *out);
+    /* The shares of the rays' radiance in film units. */
+    void (*arrived)(int count, const double *share, const double *r, const double *g, const double *b, film_light *out);
     /* Appends all of g to q as rays along (dx, dy, dz) with throughput times weight; the caller then removes rays of
      * weight 0. */
     void (*append)(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,

@@ -12,6 +12,15 @@
 /* Largest integer exponent that is computed by repeated squaring, with a relative error below 4.6e-13. */
 enum { SHININESS_SQUARED_MAX = 4096 };
 
+/* Multiplies by factor, which may be the same array. */
+static void multiply(int count, double *product, const double *factor)
+{
+    /* VECTORISE */
+    INDEPENDENT_LANES
+    for (int i = 0; i < count; i++)
+        product[i] *= factor[i];
+}
+
 /* Computes base[i]^exponent in place. Integer exponents by repeated squaring (relative error below exponent half-ulps);
  * bases whose power is below 2^-200, far below the film's unit, are set to zero, which avoids slow subnormal
  * numbers. */
@@ -31,13 +40,13 @@ static void raise_to(double exponent, int count, double *restrict base)
         square[i] = blend(mask_less(base[i], least), 0.0, base[i]);
         base[i] = 1.0;
     }
-    for (unsigned bits = whole; bits; bits >>= 1) {
-        const int64_t take = -(int64_t)(bits & 1);
-        /* VECTORISE */
-        for (int i = 0; i < count; i++) {
-            base[i] *= blend(take, square[i], 1.0);
-            square[i] *= square[i];
-        }
+    for (unsigned bits = whole;;) {
+        if (bits & 1)
+            multiply(count, base, square);
+        bits >>= 1;
+        if (!bits)
+            return;
+        multiply(count, square, square);
     }
 }
 
@@ -261,6 +270,49 @@ static void cut(const group *g, const branch_group *b, cut_sum *sum)
     *sum = (cut_sum){branches, {red, green, blue}};
 }
 
+/* Stores light i; returns -1 if it is out of range, where C does not define the conversion. AVX2 cannot convert to 64-bit
+ * integers: these loops carry no mark. */
+ALWAYS_INLINE int64_t store_light(double r, double g, double b, int64_t counts, int i, film_light *out)
+{
+    const int64_t fits = mask_of((int)film_accepts(r) & (int)film_accepts(g) & (int)film_accepts(b)),
+                  keep = fits & counts;
+    out->r[i] = film_units(blend(keep, r, 0.0));
+    out->g[i] = film_units(blend(keep, g, 0.0));
+    out->b[i] = film_units(blend(keep, b, 0.0));
+    return ~fits & counts;
+}
+
+static void own_light(const group *g, vec3 radiance, film_light *restrict out)
+{
+    const int count = g->padded, last = g->count - 1;
+    int64_t bad = 0;
+    for (int i = 0; i < count; i++)
+        bad += mask_of(i <= last) & store_light(g->wr[i] * radiance.x * g->cr[i], g->wg[i] * radiance.y * g->cg[i],
+                                                g->wb[i] * radiance.z * g->cb[i], -1, i, out);
+    out->out_of_range = bad;
+}
+
+static void cut_light(const group *g, const branch_group *b, vec3 radiance, film_light *restrict out)
+{
+    const int count = g->padded, last = g->count - 1;
+    int64_t bad = 0;
+    for (int i = 0; i < count; i++) {
+        const double both = b->reflect[i] + b->refract[i];
+        bad += mask_of(i <= last) & store_light(g->wr[i] * both * radiance.x, g->wg[i] * both * radiance.y,
+                                                g->wb[i] * both * radiance.z, mask_less(0.0, both), i, out);
+    }
+    out->out_of_range = bad;
+}
+
+static void arrived(int count, const double *share, const double *r, const double *g, const double *b,
+                    film_light *restrict out)
+{
+    int64_t bad = 0;
+    for (int i = 0; i < count; i++)
+        bad += store_light(share[i] * r[i], share[i] * g[i], share[i] * b[i], mask_less(0.0, share[i]), i, out);
+    out->out_of_range = bad;
+}
+
 static void append(const group *g, const double *dx, const double *dy, const double *dz, const double *weight,
                    const uint64_t *inside, ray_queue *q)
 {
@@ -318,6 +370,9 @@ const shade_kernels KERNEL(shade_kernels) = {color,
                                              constant_branches,
                                              straight_branches,
                                              cut,
+                                             own_light,
+                                             cut_light,
+                                             arrived,
                                              append,
                                              camera_directions,
                                              absorb,

@@ -5,30 +5,22 @@
 #include "render/shade/sky.h"
 #include <string.h>
 
-/* True if the radiance is in the film's range; false for NaN. */
-static inline bool is_exposable(double radiance)
+/* Negative if a sum left the film's range. */
+static inline int64_t add_units(int64_t *sum, int64_t r, int64_t g, int64_t b)
 {
-    const double limit = 262144.0; /* half of a channel's range */
-    return (int)(radiance >= 0.0) & (int)(radiance < limit);
-}
-
-static inline int64_t in_film_units(double radiance)
-{
-    return (int64_t)(radiance * FILM_ONE + 0.5);
+    const int64_t red = (int64_t)((uint64_t)sum[0] + (uint64_t)r), green = (int64_t)((uint64_t)sum[1] + (uint64_t)g),
+                  blue = (int64_t)((uint64_t)sum[2] + (uint64_t)b);
+    sum[0] = red, sum[1] = green, sum[2] = blue;
+    return red | green | blue;
 }
 
 static inline void expose_at(tracer *t, int64_t place, double r, double g, double b)
 {
-    if (!((int)is_exposable(r) & (int)is_exposable(g) & (int)is_exposable(b))) {
+    if (!((int)film_accepts(r) & (int)film_accepts(g) & (int)film_accepts(b))) {
         t->account.overflow = -1;
         return;
     }
-    int64_t *sum = &t->target.img->sum[place * 3];
-    const int64_t red = (int64_t)((uint64_t)sum[0] + (uint64_t)in_film_units(r));
-    const int64_t green = (int64_t)((uint64_t)sum[1] + (uint64_t)in_film_units(g));
-    const int64_t blue = (int64_t)((uint64_t)sum[2] + (uint64_t)in_film_units(b));
-    sum[0] = red, sum[1] = green, sum[2] = blue;
-    t->account.overflow |= red | green | blue;
+    t->account.overflow |= add_units(&t->target.img->sum[place * 3], film_units(r), film_units(g), film_units(b));
 }
 
 /* Exposes the share and pixel of a sample key; in a spectral film with the observer's weights at its wavelength. Never
@@ -59,6 +51,15 @@ void shading_expose(tracer *t, int64_t sample_key, double r, double g, double b)
     expose(t, sample_key, r, g, b);
 }
 
+/* Adds the light of many rays, whose sample keys are pixels. */
+static void expose_all(tracer *t, const film_light *sent, int count, const int64_t *pixel)
+{
+    int64_t *sums = t->target.img->sum, overflow = sent->out_of_range;
+    for (int i = 0; i < count; i++)
+        overflow |= add_units(&sums[pixel[i] * 3], sent->r[i], sent->g[i], sent->b[i]);
+    t->account.overflow |= overflow;
+}
+
 static __attribute__((noinline)) void expose_sky_by_sample_key(tracer *t, int64_t sample_key, vec3 direction, double wr,
                                                                double wg, double wb)
 {
@@ -82,6 +83,21 @@ static inline void expose_sky(tracer *t, int64_t sample_key, vec3 direction, dou
     }
     const vec3 l = sky->kind == BACKGROUND_UNIFORM ? sky->color : sky_radiance(sky, direction);
     expose_at(t, sample_key, wr * l.x, wg * l.y, wb * l.z);
+}
+
+void shading_expose_shares(tracer *t, const ray_queue *q, int first, int count, const double *share)
+{
+    if (!t->by_sample_key) {
+        film_light sent;
+        t->shade->arrived(count, share, q->wr + first, q->wg + first, q->wb + first, &sent);
+        expose_all(t, &sent, count, q->sample_key + first);
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        const int at = first + i;
+        if (share[i] > 0.0)
+            expose(t, q->sample_key[at], share[i] * q->wr[at], share[i] * q->wg[at], share[i] * q->wb[at]);
+    }
 }
 
 void shading_expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
@@ -128,6 +144,12 @@ static void expose_own_light(tracer *t, const material *m, bool ambient)
         return;
     }
     const vec3 a = vec3_add(vec3_scale(p->sky->ambient, k_a), vec3_make(k_e, k_e, k_e));
+    if (!t->by_sample_key) {
+        film_light sent;
+        t->shade->own_light(g, a, &sent);
+        expose_all(t, &sent, g->count, g->sample_key);
+        return;
+    }
     for (int i = 0; i < g->count; i++)
         expose(t, g->sample_key[i], g->wr[i] * a.x * g->cr[i], g->wg[i] * a.y * g->cg[i], g->wb[i] * a.z * g->cb[i]);
 }
@@ -223,6 +245,12 @@ void cut_branches(tracer *t)
         return;
     const bool uniform =
         p->sky->kind == BACKGROUND_UNIFORM || p->render.beyond == DEPTH_LIMIT_MEAN; /* then directions do not matter */
+    if (uniform && !t->by_sample_key) {
+        film_light sent;
+        t->shade->cut_light(g, b, p->render.beyond == DEPTH_LIMIT_MEAN ? p->sky_mean : p->sky->color, &sent);
+        expose_all(t, &sent, g->count, g->sample_key);
+        return;
+    }
     for (int i = 0; i < g->count; i++) {
         const double first = uniform ? b->reflect[i] + b->refract[i] : b->reflect[i],
                      second = uniform ? 0.0 : b->refract[i];

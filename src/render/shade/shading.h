@@ -8,6 +8,9 @@
  * wavelength. */
 void shading_expose(tracer *t, int64_t sample_key, double r, double g, double b);
 
+/* The same for rays first .. first + count - 1 of a queue, with the shares of their radiance that arrive. */
+void shading_expose_shares(tracer *t, const ray_queue *q, int first, int count, const double *share);
+
 /* Adds the weighted sky radiance of a direction, or that of a branch that the depth limit cuts off (render.beyond). */
 void shading_expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb);
 void shading_expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb);
