@@ -30,6 +30,8 @@
  * elsewhere for it (Content-Security-Policy and related headers); libmicrohttpd's own replies to malformed HTTP lack
  * these headers.
  *
+ * Texts of 1400 bytes or more are compressed for clients that accept gzip.
+ *
  * Threads: one per connection, so a handler may block without blocking others; handlers of one server run
  * concurrently. Memory: connections * (body_max + 64 KiB) and the replies of the handlers; an event is stored once
  * for all clients. Ownership: http_start creates, http_stop releases; routes and files of the settings are borrowed

@@ -86,6 +86,11 @@ void http_reply_set(http_reply *r, int code, const char *type,
 /* Queues the reply with the headers common to all replies. */
 enum MHD_Result http_reply_send(http_reply *r);
 
+/* --- http_gzip.c --- */
+/* The bytes compressed by gzip, in allocated memory; NULL where the client does not accept it, the type is not text, or
+ * it does not pay. */
+void *http_gzip(const http_reply *r, const char *type, const void *bytes, size_t size, size_t *packed_size);
+
 /* --- http_watch.c: closes connections that exceed timeout_s --- */
 status http_watch_start(http_server *s, diagnostic *why);
 void http_watch_stop(http_server *s);
