@@ -23,6 +23,8 @@ typedef struct http_bucket {
 typedef struct http_slot {
     int socket;        /* -1: the slot is free */
     double deadline_s; /* 0: none */
+    bool known;        /* a request with the token came over it */
+    double started_s;
 } http_slot;
 
 typedef struct http_event_client http_event_client;
@@ -95,6 +97,8 @@ void *http_gzip(const http_reply *r, const char *type, const void *bytes, size_t
 status http_watch_start(http_server *s, diagnostic *why);
 void http_watch_stop(http_server *s);
 void http_watch_notify(void *server, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what);
+/* The connection belongs to somebody with the token: strangers do not displace it. */
+void http_watch_known(http_server *s, struct MHD_Connection *c);
 /* Sets the time limit of the connection's current action; 0: none. */
 void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s);
 
