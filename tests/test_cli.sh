@@ -540,7 +540,7 @@ mkdir -p browser
 cat >browser/xdg-open <<'EOF'
 #!/bin/bash
 read -r _ _ _ _ _ session _ </proc/$$/stat
-echo "$session $1" >browser/seen.part && mv browser/seen.part browser/seen
+echo "$session $1" >browser/seen.part && cp "$1" browser/page && mv browser/seen.part browser/seen
 EOF
 chmod +x browser/xdg-open
 PATH=$PWD/browser:$PATH "$program" lab here.yaml >lab.out 2>lab.err &
@@ -550,11 +550,18 @@ for ((i = 0; i < 600; i++)); do
     sleep 0.1
 done
 read -r _ _ _ _ _ session _ </proc/$lab/stat
-check "lab opens its address in a browser" is "$(cut -d' ' -f2 browser/seen)" "$(<lab.out)"
+page=$(cut -d' ' -f2 browser/seen)
+check "lab opens a page that leads to its address" grep -qF "url=$(<lab.out)\"" browser/page
+check "only its owner can read that page" is "$(stat -c %a "$page")" 600
+arguments=$(cat /proc/[0-9]*/cmdline 2>/dev/null | tr '\0' '\n')
+token=$(sed 's/.*token=//' lab.out)
+check "no program has the token as an argument" is "${#token} $([[ $arguments == *"$token"* ]] || echo hidden)" \
+    "32 hidden"
 check "the browser has its own session, so that Ctrl-C does not end it" holds \
     "$(cut -d' ' -f1 browser/seen) != $session"
 kill -INT $lab
 wait $lab
+check "the page is removed at the end" is "$(ls "$page" 2>/dev/null)" ""
 run_lab --folder . --results . --port 0
 check "lab needs no scene" matches "$address" '^http'
 kill -TERM $lab

@@ -153,6 +153,25 @@ static void a_token_in_the_address_sets_a_cookie(void **state)
     free(target);
 }
 
+/* Chromium withholds a SameSite=Strict cookie after a redirect of a request that another page began. */
+static void an_address_opened_by_a_file_is_answered_by_a_page(void **state)
+{
+    const http_server *s = *state;
+    char *target = text_format("/?token=%s", http_token(s)),
+         *heads = text_format("Host: 127.0.0.1:%d\r\nSec-Fetch-Site: cross-site\r\n", http_port(s)),
+         *cookie =
+             text_format("Set-Cookie: cuvette_%d=%s; Path=/; HttpOnly; SameSite=Strict", http_port(s), http_token(s));
+    char *reply = client_ask_as(http_port(s), "GET", target, heads, NULL);
+    assert_int_equal(reply_code(reply), 200);
+    assert_true(reply_has(reply, cookie));
+    assert_non_null(strstr(reply_body(reply), "content=\"0; url=/\""));
+    assert_null(strstr(reply_body(reply), http_token(s)));
+    free(reply);
+    free(cookie);
+    free(heads);
+    free(target);
+}
+
 static void foreign_hosts_and_origins_are_refused(void **state)
 {
     const http_server *s = *state;
@@ -461,6 +480,51 @@ static void slow_clients_are_disconnected(void **state)
     http_stop(s);
 }
 
+static void strangers_do_not_lock_the_owner_out(void **state)
+{
+    (void)state;
+    enum { STRANGERS = 128 };
+    int fd[STRANGERS];
+    http_server *s = start((http_settings){.connections = 128, .timeout_s = 10000});
+    const char line[] = "GET /hello HTTP/1.1\r\n";
+    for (int i = 0; i < STRANGERS; i++) {
+        fd[i] = client_connect(http_port(s));
+        client_send(fd[i], line, i % 2 ? strlen(line) : 0);
+    }
+    for (int i = 0; i < 10; i++)
+        expect(s, 200, "GET", "/hello", "", NULL);
+    for (int i = 0; i < STRANGERS; i++)
+        close(fd[i]);
+    http_stop(s);
+}
+
+/* The connection of somebody with the token stays, whoever else comes. */
+static void strangers_do_not_displace_the_owner(void **state)
+{
+    (void)state;
+    enum { STRANGERS = 64 };
+    int fd[STRANGERS];
+    http_server *s = start((http_settings){.connections = 16, .timeout_s = 10000});
+    char *request = text_format("GET /hello HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nAuthorization: Bearer %s\r\n\r\n",
+                                http_port(s), http_token(s)),
+         reply[2048];
+    const int mine = client_connect(http_port(s));
+    for (int round = 0; round < 2; round++) {
+        assert_true(client_send(mine, request, strlen(request)));
+        const ssize_t got = recv(mine, reply, sizeof reply - 1, 0);
+        assert_true(got > 0);
+        reply[got] = 0;
+        assert_int_equal(reply_code(reply), 200);
+        for (int i = 0; i < STRANGERS && round == 0; i++)
+            fd[i] = client_connect(http_port(s));
+    }
+    for (int i = 0; i < STRANGERS; i++)
+        close(fd[i]);
+    close(mine);
+    free(request);
+    http_stop(s);
+}
+
 static void a_port_in_use_is_refused(void **state)
 {
     const http_server *s = *state;
@@ -489,6 +553,7 @@ int main(void)
     const struct CMUnitTest cases[] = {
         cmocka_unit_test(only_the_token_grants_access),
         cmocka_unit_test(a_token_in_the_address_sets_a_cookie),
+        cmocka_unit_test(an_address_opened_by_a_file_is_answered_by_a_page),
         cmocka_unit_test(foreign_hosts_and_origins_are_refused),
         cmocka_unit_test(paths_that_leave_the_root_are_refused),
         cmocka_unit_test(routes_receive_decoded_values),
@@ -500,6 +565,8 @@ int main(void)
         cmocka_unit_test(a_connection_serves_a_thousand_requests),
         cmocka_unit_test(the_request_rate_is_limited),
         cmocka_unit_test(slow_clients_are_disconnected),
+        cmocka_unit_test(strangers_do_not_lock_the_owner_out),
+        cmocka_unit_test(strangers_do_not_displace_the_owner),
         cmocka_unit_test(a_port_in_use_is_refused),
     };
     return cmocka_run_group_tests_name("http", cases, set_up, tear_down);

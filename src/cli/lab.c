@@ -1,4 +1,5 @@
 /* `cuvette lab`: starts the laboratory's HTTP server and opens its page in the browser. */
+#include "cli/browser.h"
 #include "cli/cli.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
@@ -6,12 +7,9 @@
 #include "base/text.h"
 #include "measure/topology.h"
 #include "web/lab.h"
-#include <fcntl.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 typedef struct lab_request {
@@ -68,26 +66,6 @@ static char *choose_folder(const lab_request *request)
     return strdup(".");
 }
 
-/* Starts the browser in its own process without output, and in its own session, so that the Ctrl-C that ends the
- * laboratory does not reach it. */
-static void open_browser(const char *address)
-{
-    const pid_t child = fork();
-    if (child == 0) {
-        setsid();
-        if (fork() == 0) {
-            const int nowhere = open("/dev/null", O_RDWR);
-            if (dup2(nowhere, STDIN_FILENO) < 0 || dup2(nowhere, STDOUT_FILENO) < 0 || dup2(nowhere, STDERR_FILENO) < 0)
-                _exit(127);
-            signal(SIGPIPE, SIG_DFL);
-            execlp("xdg-open", "xdg-open", address, (char *)NULL);
-        }
-        _exit(127);
-    }
-    if (child > 0)
-        waitpid(child, NULL, 0);
-}
-
 static void wait_for_stop(void)
 {
     while (!terminal_stop_requested(NULL))
@@ -98,6 +76,7 @@ static status run_lab(const lab_request *request, const char *folder, const char
 {
     lab *l = NULL;
     topology *machine = NULL;
+    char *file = NULL;
     lab_settings settings = {.folder = folder,
                              .scene = request->scene,
                              .results = results,
@@ -113,9 +92,10 @@ static status run_lab(const lab_request *request, const char *folder, const char
     printf("%s\n", lab_address(l));
     code = terminal_flush(why);
     if (code == STATUS_OK && !request->no_browser)
-        open_browser(lab_address(l));
+        code = browser_open(lab_address(l), &file, why);
     if (code == STATUS_OK)
         wait_for_stop();
+    browser_forget(file);
     lab_stop(l);
     return code;
 }

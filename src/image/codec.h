@@ -65,9 +65,9 @@ void codec_words_encode(const codec_words *table, const float *linear, size_t co
 /* Decoding table of the encoded values 0..maximum to linear values; free it. NULL without memory. */
 float *codec_decode_table(unsigned maximum);
 
-/* fast: less compression effort, a larger file. */
+/* fast: PNG with less compression effort, a larger file; JPEG of quality 80, 4:2:0, a smaller one. */
 status codec_png_write(const image_rows *rows, FILE *stream, int bits, bool fast, diagnostic *why);
-status codec_jpeg_write(const image_rows *rows, FILE *stream, diagnostic *why);
+status codec_jpeg_write(const image_rows *rows, FILE *stream, bool fast, diagnostic *why);
 status codec_pfm_write(const image_rows *rows, FILE *stream, diagnostic *why);
 
 status codec_png_read(const unsigned char *bytes, size_t size, image **out, int *bits, diagnostic *why);

@@ -105,7 +105,7 @@ static status write_as(const image_rows *rows, image_format format, FILE *stream
 {
     switch (format) {
     case IMAGE_PNG: return codec_png_write(rows, stream, bits, fast, why);
-    case IMAGE_JPEG: return codec_jpeg_write(rows, stream, why);
+    case IMAGE_JPEG: return codec_jpeg_write(rows, stream, fast, why);
     case IMAGE_PFM: return codec_pfm_write(rows, stream, why);
     case IMAGE_BMP:
     case IMAGE_UNKNOWN: break;

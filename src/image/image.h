@@ -53,8 +53,8 @@ image_rows image_rows_of(const image *img);
 status image_write(const image *img, const char *path, int bits, diagnostic *why);
 status image_write_rows(const image_rows *rows, const char *path, int bits, diagnostic *why);
 
-/* The same to fresh memory, owned by the caller. bits: 8 or 16. fast: PNG with less compression effort, for interactive
- * use. */
+/* The same to fresh memory, owned by the caller. bits: 8 or 16. fast: for interactive use: PNG with less compression
+ * effort, JPEG of quality 80, 4:2:0. */
 status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
                     diagnostic *why);
 

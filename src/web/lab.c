@@ -5,6 +5,7 @@
 #include "scene/model/place/new_scene.h"
 #include "report/json.h"
 #include "web/api/api.h"
+#include "web/api/scene_since.h"
 #include "web/page.h"
 #include "web/session/reference_image.h"
 #include "web/session/studies.h"
@@ -171,8 +172,8 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     THEN(code, check_results(l, why));
     THEN(code, open_document(l, why));
     THEN(code, render_worker_create(l->scene_document, settings->level, &listener, &l->render_worker, why));
-    if (code == STATUS_OK &&
-        (!(l->reference_image = reference_image_create()) || !(l->heavy = semaphore_create(HEAVY_AT_ONCE))))
+    if (code == STATUS_OK && (!(l->sent = sent_scenes_create()) || !(l->reference_image = reference_image_create()) ||
+                              !(l->heavy = semaphore_create(HEAVY_AT_ONCE))))
         code = out_of_memory(why);
     THEN(code, studies_create(l, &l->studies, why));
     THEN(code, serve(l, why));
@@ -201,6 +202,7 @@ void lab_stop(lab *l)
     http_stop(l->server);
     studies_destroy(l->studies);
     semaphore_destroy(l->heavy);
+    sent_scenes_destroy(l->sent);
     reference_image_destroy(l->reference_image);
     render_worker_destroy(l->render_worker);
     scene_document_destroy(l->scene_document);

@@ -1,6 +1,8 @@
-// tests/web/bench.mjs --program CUVETTE --modules FOLDER [--changes N]: the latency of the page in milliseconds: from
-// the start of the program to the first drawn image, and from a change of an index to its first and its final drawn
-// image, as median and worst of N. Not a test: times depend on the machine.
+// tests/web/bench.mjs --program CUVETTE --modules FOLDER [--changes N] [--drag SECONDS]: the latency of the page in
+// milliseconds: from the start of the program to the first drawn image, and from a change of an index to its first and
+// its final drawn image, as median and worst of N; and images a second while the camera is dragged at 60 Hz (or a slime
+// plays): the median over the seconds, the longest gap, drawn over fetched images, and their pixels. Not a test: times
+// depend on the machine.
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
@@ -8,7 +10,12 @@ import { Lab } from './lab.mjs';
 import { Screen } from './screen.mjs';
 
 const { values: options } = parseArgs({
-  options: { program: { type: 'string' }, modules: { type: 'string' }, changes: { type: 'string', default: '40' } },
+  options: {
+    program: { type: 'string' },
+    modules: { type: 'string' },
+    changes: { type: 'string', default: '40' },
+    drag: { type: 'string', default: '5' },
+  },
 });
 const { chromium } = createRequire(resolve(options.modules, 'package.json'))('playwright-core');
 
@@ -50,6 +57,49 @@ async function measure(screen, what, settings) {
   console.log(`${what}: first image ${summary(first)} ms, final image ${summary(final)} ms`);
 }
 
+/** Drags the camera for the given time, a move each 1/60 s, unless the scene moves by itself. */
+async function drag(screen, scene, moves) {
+  const { page } = screen;
+  let fetched = 0;
+  const count = (request) => (fetched += new URL(request.url()).pathname.startsWith('/api/picture.') ? 1 : 0);
+  page.on('request', count);
+  await page.evaluate(() => {
+    window.times = [];
+    window.pixels = [];
+    let last = 0;
+    window.lab.on('picture', ({ serial, width, height }) => {
+      if (serial !== last) {
+        window.times.push(performance.now());
+        window.pixels.push(width * height);
+      }
+      last = serial;
+    });
+  });
+  const { x, y } = await screen.place(400, 300);
+  await page.mouse.move(x, y);
+  if (!moves) await page.mouse.down();
+  const began = performance.now();
+  const seconds = Number(options.drag);
+  for (let i = 0; performance.now() - began < 1000 * seconds; i++) {
+    if (!moves) await page.mouse.move(x + 100 * Math.sin(i / 30), y + 30 * Math.sin(i / 47));
+    const next = began + ((i + 1) * 1000) / 60 - performance.now();
+    if (next > 0) await new Promise((resolve) => setTimeout(resolve, next));
+  }
+  const { times, pixels } = await page.evaluate(() => ({ times: window.times, pixels: window.pixels }));
+  if (!moves) await page.mouse.up();
+  page.off('request', count);
+  const each = Array.from({ length: seconds }, (_, s) => {
+    const from = times[0] + 1000 * s;
+    return times.filter((t) => t >= from && t < from + 1000).length;
+  });
+  const gaps = times.slice(1).map((t, i) => t - times[i]);
+  console.log(
+    `${scene}: ${median(each)} images/s (${Math.min(...each)} to ${Math.max(...each)}), longest gap ` +
+      `${Math.max(...gaps).toFixed(0)} ms, drawn/fetched ${(times.length / fetched).toFixed(2)}, ` +
+      `pixels ${median(pixels)} (median)`,
+  );
+}
+
 const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
   args: process.getuid() === 0 ? ['--no-sandbox'] : [],
@@ -74,6 +124,14 @@ try {
   await measure(screen, 'rod, 800x600, depth 8, 16 samples', { 'render.depth': 8, 'render.samples': 16 });
   await screen.close();
   await lab.end();
+  for (const scene of ['rod', 'models', 'rainbow', 'slime']) {
+    const room = await Lab.start(options.program, `scenes/${scene}.yaml`);
+    const view = await Screen.open(browser, room);
+    if (scene === 'slime') await room.post('/api/slime', { do: 'play' });
+    await drag(view, scene === 'slime' ? 'slime, playing' : scene, scene === 'slime');
+    await view.close();
+    await room.end();
+  }
 } finally {
   await browser.close();
 }

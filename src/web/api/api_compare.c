@@ -72,7 +72,7 @@ status api_reference_image(call *c)
     status code = semaphore_acquire(c->l->heavy, &c->why);
     if (code == STATUS_OK) {
         code = bits == 16 ? image_encode(a->linear, IMAGE_PNG, 16, true, &own, &size, &c->why)
-                          : shared_image_png(a, &shared, &size, &c->why);
+                          : shared_image_encode(a, IMAGE_PNG, &shared, &size, &c->why);
         semaphore_release(c->l->heavy);
     }
     if (code == STATUS_OK)

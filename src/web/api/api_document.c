@@ -1,5 +1,6 @@
 /* API: the state, the scene, its parameters, undo and the camera. See web/README.md. */
 #include "web/api/api.h"
+#include "web/api/scene_since.h"
 #include "base/number.h"
 #include "base/text_writer.h"
 #include "report/json.h"
@@ -18,15 +19,28 @@ status api_state(call *c)
     return api_reply_json(c, lab_state(c->l));
 }
 
+/* The generation in ?since; -1 for none. */
+static bool take_since(call *c, long long *since)
+{
+    const char *text = http_query_value(c->request, "since");
+    char *end = NULL;
+    *since = text ? strtoll(text, &end, 10) : -1;
+    return !text || (end > text && *end == '\0' && *since >= 0);
+}
+
 status api_scene(call *c)
 {
     uint64_t generation;
+    long long since;
+    if (!take_since(c, &since))
+        return api_refuse(c, 400, "since is not a generation", "use ?since=N with the generation of an earlier reply");
     scene *current = scene_document_take(c->l->scene_document, &generation),
           *opened = scene_document_take_opened(c->l->scene_document);
-    api_reply_json(c, current && opened ? scene_json(current, opened, generation) : NULL);
+    json_t *all = current && opened ? scene_json(current, opened, generation) : NULL;
+    char *text = all ? sent_scenes_reply(c->l->sent, all, since) : NULL;
     scene_destroy(current);
     scene_destroy(opened);
-    return STATUS_OK;
+    return text ? api_send(c, "application/json", text, strlen(text)) : out_of_memory(&c->why);
 }
 
 /* --- set and reset --- */

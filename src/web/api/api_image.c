@@ -24,14 +24,21 @@ static void name_download(http_reply *r, const char *name)
     http_reply_header(r, "Content-Disposition", text);
 }
 
+/* How a reply has the image. quick: as pages display it, encoded once for all of them. */
+typedef struct encoding {
+    image_format format;
+    const char *type;
+    int bits;
+    bool quick;
+} encoding;
+
 /* Encodes into memory owned by the reply. */
-static status encode_own(const shared_image *p, image_format format, int bits, unsigned char **bytes, size_t *size,
-                         diagnostic *why)
+static status encode_own(const shared_image *p, const encoding *e, unsigned char **bytes, size_t *size, diagnostic *why)
 {
-    if (format != IMAGE_PNG || bits != 8)
-        return image_encode(p->linear, format, bits, false, bytes, size, why);
+    if (!e->quick)
+        return image_encode(p->linear, e->format, e->bits, false, bytes, size, why);
     const unsigned char *shared;
-    status code = shared_image_png(p, &shared, size, why);
+    status code = shared_image_encode(p, e->format, &shared, size, why);
     *bytes = code == STATUS_OK ? malloc(*size) : NULL;
     if (*bytes)
         memcpy(*bytes, shared, *size);
@@ -41,36 +48,36 @@ static status encode_own(const shared_image *p, image_format format, int bits, u
 }
 
 /* Encodes an image; small images, as during motion, do not wait for the semaphore. */
-static status encode(lab *l, const shared_image *p, image_format format, int bits, unsigned char **bytes, size_t *size,
+static status encode(lab *l, const shared_image *p, const encoding *e, unsigned char **bytes, size_t *size,
                      diagnostic *why)
 {
     const double small = 1e6; /* pixels */
     if ((double)p->width * p->height <= small)
-        return encode_own(p, format, bits, bytes, size, why);
+        return encode_own(p, e, bytes, size, why);
     TRY(semaphore_acquire(l->heavy, why));
-    status code = encode_own(p, format, bits, bytes, size, why);
+    status code = encode_own(p, e, bytes, size, why);
     semaphore_release(l->heavy);
     return code;
 }
 
-static status reply_image(call *c, image_format format, const char *type)
+static status reply_image(call *c, encoding e)
 {
     const char *download = http_query_value(c->request, "download");
     const shared_image *p = NULL;
     unsigned char *bytes = NULL;
     size_t size;
-    int bits;
-    if (!api_take_bits(c, &bits))
+    if (!api_take_bits(c, &e.bits))
         return api_refuse(c, 400, "unsupported bit depth", "use ?bits=8 or ?bits=16");
+    e.quick = e.format == IMAGE_PNG ? e.bits == 8 : api_query_flag(c, "quick");
     if (api_query_flag(c, "wait") && api_wait_for_final(c, &p) != STATUS_OK) {
         c->refused = 409;
         return STATUS_INTERRUPTED;
     }
     if (!p && !(p = render_worker_take(c->l->render_worker)))
         return api_refuse(c, 404, "no image is rendered yet", "add ?wait=1");
-    const status code = encode(c->l, p, format, bits, &bytes, &size, &c->why);
+    const status code = encode(c->l, p, &e, &bytes, &size, &c->why);
     if (code == STATUS_OK) {
-        api_send(c, type, bytes, size);
+        api_send(c, e.type, bytes, size);
         add_number(c->reply, "X-Cuvette-Serial", p->serial);
         add_number(c->reply, "X-Cuvette-Generation", p->generation);
         add_number(c->reply, "X-Cuvette-Pass", (uint64_t)p->pass);
@@ -84,10 +91,10 @@ static status reply_image(call *c, image_format format, const char *type)
 
 status api_image_png(call *c)
 {
-    return reply_image(c, IMAGE_PNG, "image/png");
+    return reply_image(c, (encoding){.format = IMAGE_PNG, .type = "image/png"});
 }
 
 status api_image_jpeg(call *c)
 {
-    return reply_image(c, IMAGE_JPEG, "image/jpeg");
+    return reply_image(c, (encoding){.format = IMAGE_JPEG, .type = "image/jpeg"});
 }

@@ -20,15 +20,19 @@
  *   401  the token, as "Authorization: Bearer TOKEN" or in the cookie cuvette_PORT; or, for GET, as ?token=TOKEN,
  *   which
  *        replies 303 with that cookie (HttpOnly, SameSite=Strict) and the same address without the token
+ *        (to a page of another site or a file that opened it: a page that opens "/")
  *   429  requests_per_s, with a burst of one second; requests without the token have a limit of their own
  *   404  no route or file has the path;  405  the route has another method (Allow lists them); HEAD uses GET's route
  *   415  Content-Type: application/json for every method but GET and HEAD; another site's page cannot send it
  *   unasked
  *   413  body_max
  * A request must arrive within timeout_s, and a reply must be read within the same time; slower connections are
- * closed. Each reply forbids the browser to cache it, to frame it, to guess its type or to load anything from
+ * closed. Connections that have sent no request with the token may be a quarter of all; another one displaces the oldest
+ * of them. Each reply forbids the browser to cache it, to frame it, to guess its type or to load anything from
  * elsewhere for it (Content-Security-Policy and related headers); libmicrohttpd's own replies to malformed HTTP lack
  * these headers.
+ *
+ * Texts of 1400 bytes or more are compressed for clients that accept gzip.
  *
  * Threads: one per connection, so a handler may block without blocking others; handlers of one server run
  * concurrently. Memory: connections * (body_max + 64 KiB) and the replies of the handlers; an event is stored once

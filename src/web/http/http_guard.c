@@ -151,16 +151,32 @@ static int refuse(http_request *q, int code, const char *what, const char *remed
     return code;
 }
 
-/* Redirects the first request: stores the token in a cookie that no script can read and removes it from the address. */
+/* A page that opened the address, such as the local file that cuvette lab hands to the browser, counts as another site:
+ * after a redirect the browser would withhold the cookie. A page of our own opens the address without the token. */
+static bool comes_from_another_page(const http_request *q)
+{
+    const char *site = MHD_lookup_connection_value(q->connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
+    return site && strcmp(site, "cross-site") == 0;
+}
+
+static const char own_page[] = "<!DOCTYPE html><meta charset=\"utf-8\"><title>Cuvette</title>"
+                               "<meta http-equiv=\"refresh\" content=\"0; url=/\">";
+
+/* Answers the first request: stores the token in a cookie that no script can read and removes it from the address. */
 static int set_token_cookie(http_request *q)
 {
     char *clean = clean_target(q->target), cookie[128];
+    const int code = comes_from_another_page(q) ? 200 : 303;
     snprintf(cookie, sizeof cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict", q->server->cookie, q->server->token);
-    http_reply_static(&q->reply, 303, "text/plain; charset=utf-8", "", 0);
+    if (code == 200) {
+        http_reply_static(&q->reply, code, "text/html; charset=utf-8", own_page, sizeof own_page - 1);
+    } else {
+        http_reply_static(&q->reply, code, "text/plain; charset=utf-8", "", 0);
+        http_reply_header(&q->reply, "Location", clean ? clean : "/");
+    }
     http_reply_header(&q->reply, "Set-Cookie", cookie);
-    http_reply_header(&q->reply, "Location", clean ? clean : "/");
     free(clean);
-    return 303;
+    return code;
 }
 
 static bool has_token(const http_request *q)
@@ -211,5 +227,6 @@ int http_guard(http_request *q, const char *version)
         return refuse(q, 401, "the token is missing or wrong",
                       "open the address that the program printed, with its token");
     }
+    http_watch_known(q->server, q->connection);
     return in_address ? set_token_cookie(q) : 0;
 }

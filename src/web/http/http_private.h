@@ -23,6 +23,8 @@ typedef struct http_bucket {
 typedef struct http_slot {
     int socket;        /* -1: the slot is free */
     double deadline_s; /* 0: none */
+    bool known;        /* a request with the token came over it */
+    double started_s;
 } http_slot;
 
 typedef struct http_event_client http_event_client;
@@ -86,10 +88,17 @@ void http_reply_set(http_reply *r, int code, const char *type,
 /* Queues the reply with the headers common to all replies. */
 enum MHD_Result http_reply_send(http_reply *r);
 
+/* --- http_gzip.c --- */
+/* The bytes compressed by gzip, in allocated memory; NULL where the client does not accept it, the type is not text, or
+ * it does not pay. */
+void *http_gzip(const http_reply *r, const char *type, const void *bytes, size_t size, size_t *packed_size);
+
 /* --- http_watch.c: closes connections that exceed timeout_s --- */
 status http_watch_start(http_server *s, diagnostic *why);
 void http_watch_stop(http_server *s);
 void http_watch_notify(void *server, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what);
+/* The connection belongs to somebody with the token: strangers do not displace it. */
+void http_watch_known(http_server *s, struct MHD_Connection *c);
 /* Sets the time limit of the connection's current action; 0: none. */
 void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s);
 

@@ -30,8 +30,26 @@ void http_reply_set(http_reply *r, int code, const char *type, struct MHD_Respon
     }
 }
 
+/* Sends the compressed bytes instead; false where they are not compressed. */
+static bool reply_gzip(http_reply *r, int code, const char *type, const void *bytes, size_t size)
+{
+    size_t packed_size;
+    void *packed = http_gzip(r, type, bytes, size, &packed_size);
+    if (!packed)
+        return false;
+    struct MHD_Response *response = MHD_create_response_from_buffer(packed_size, packed, MHD_RESPMEM_MUST_FREE);
+    if (!response)
+        free(packed);
+    http_reply_set(r, code, type, response);
+    http_reply_header(r, "Content-Encoding", "gzip");
+    http_reply_header(r, "Vary", "Accept-Encoding");
+    return true;
+}
+
 void http_reply_static(http_reply *r, int code, const char *type, const void *bytes, size_t size)
 {
+    if (reply_gzip(r, code, type, bytes, size))
+        return;
     http_reply_set(r, code, type, MHD_create_response_from_buffer(size, (void *)(size_t)bytes, MHD_RESPMEM_PERSISTENT));
 }
 
@@ -39,6 +57,10 @@ void http_reply_bytes(http_reply *r, int code, const char *type, void *bytes, si
 {
     if (!bytes) {
         http_reply_static(r, 500, "application/json", no_memory, sizeof no_memory - 1);
+        return;
+    }
+    if (reply_gzip(r, code, type, bytes, size)) {
+        free(bytes);
         return;
     }
     struct MHD_Response *response = MHD_create_response_from_buffer(size, bytes, MHD_RESPMEM_MUST_FREE);

@@ -1,10 +1,12 @@
 /* The watchdog of slow connections. libmicrohttpd closes connections that are idle, but not those that send a byte
  * now and then. So each connection has a slot with the deadline of its request or reply, and a thread checks all
- * slots once a second. */
+ * slots once a second. Connections without a request with the token have a limit of their own, so that strangers cannot
+ * take all: a new one displaces the oldest of them. */
 #include "web/http/http_private.h"
 
 #include "base/float_environment.h"
 #include "measure/clock.h"
+#include <math.h>
 #include <stdlib.h>
 #include <sys/socket.h>
 
@@ -52,6 +54,34 @@ void http_watch_stop(http_server *s)
     free(s->slots);
 }
 
+/* The share of all connections that strangers may have. */
+enum { STRANGERS_PART = 4 };
+
+/* Closes the oldest stranger if there are as many as may be. The caller holds the lock. */
+static void displace_stranger(http_server *s)
+{
+    http_slot *oldest = NULL;
+    int strangers = 0;
+    for (int i = 0; i < s->settings.connections; i++) {
+        http_slot *p = &s->slots[i];
+        if (p->socket < 0 || p->known)
+            continue;
+        strangers++;
+        if (!oldest || p->started_s < oldest->started_s)
+            oldest = p;
+    }
+    if (oldest && strangers * STRANGERS_PART > s->settings.connections) {
+        shutdown(oldest->socket, SHUT_RDWR); /* its own thread notices and closes it */
+        oldest->started_s = INFINITY;        /* do not choose it again meanwhile */
+    }
+}
+
+static http_slot *slot_of(struct MHD_Connection *c)
+{
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    return info ? info->socket_context : NULL;
+}
+
 void http_watch_notify(void *context, struct MHD_Connection *c, void **place, enum MHD_ConnectionNotificationCode what)
 {
     http_server *s = context;
@@ -60,9 +90,11 @@ void http_watch_notify(void *context, struct MHD_Connection *c, void **place, en
         const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
         for (int i = 0; i < s->settings.connections && info && !*place; i++)
             if (s->slots[i].socket < 0) {
-                s->slots[i] =
-                    (http_slot){.socket = info->connect_fd, .deadline_s = clock_wall_s() + s->settings.timeout_s};
+                const double now_s = clock_wall_s();
+                s->slots[i] = (http_slot){
+                    .socket = info->connect_fd, .deadline_s = now_s + s->settings.timeout_s, .started_s = now_s};
                 *place = &s->slots[i];
+                displace_stranger(s);
             }
     } else if (*place) {
         ((http_slot *)*place)->socket = -1;
@@ -73,10 +105,18 @@ void http_watch_notify(void *context, struct MHD_Connection *c, void **place, en
 
 void http_watch_deadline(http_server *s, struct MHD_Connection *c, double in_s)
 {
-    const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
-    http_slot *place = info ? info->socket_context : NULL;
+    http_slot *place = slot_of(c);
     pthread_mutex_lock(&s->watch_lock);
     if (place)
         place->deadline_s = in_s > 0 ? clock_wall_s() + in_s : 0;
+    pthread_mutex_unlock(&s->watch_lock);
+}
+
+void http_watch_known(http_server *s, struct MHD_Connection *c)
+{
+    http_slot *place = slot_of(c);
+    pthread_mutex_lock(&s->watch_lock);
+    if (place)
+        place->known = true;
     pthread_mutex_unlock(&s->watch_lock);
 }

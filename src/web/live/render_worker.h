@@ -56,8 +56,10 @@ status render_worker_take_final(render_worker *p, double limit_s, const shared_i
 void shared_image_retain(const shared_image *p);
 void shared_image_release(const shared_image *p); /* NULL is allowed */
 
-/* The image as an 8-bit PNG, encoded once for all callers; the bytes belong to the image. */
-status shared_image_png(const shared_image *p, const unsigned char **bytes, size_t *size, diagnostic *why);
+/* The image as an 8-bit PNG or as a JPEG (image_encode's fast ones), encoded once for all callers; the bytes belong to
+ * the image. */
+status shared_image_encode(const shared_image *p, image_format format, const unsigned char **bytes, size_t *size,
+                           diagnostic *why);
 
 /* The image's JSON as described in web/README.md; NULL when out of memory. */
 json_t *shared_image_json(const shared_image *p);

@@ -5,8 +5,8 @@
 #include "report/report.h"
 #include "scene/model/scene.h"
 
-/* How often a render checks for an interruption; the target time of a live frame, for about 30 frames a second. */
-static const double poll_s = 0.002, live_frame_s = 0.03;
+/* How often a render checks for an interruption; the target time of a live frame, for about 20 frames a second. */
+static const double poll_s = 0.002, live_frame_s = 0.045;
 
 static void publish(render_worker *p, shared_image *shown)
 {

@@ -8,25 +8,27 @@
 /* The share of a live frame that the motion may take. */
 static const double move_s = 0.02;
 
-/* After this number of interruptions by newer changes, one first pass may finish, so that a viewer of somebody else's
- * drag sees an image; but only for let_through_s, so that a slow pass does not delay newer changes. */
-enum { INTERRUPTED_MAX = 12 };
-static const double let_through_s = 0.5;
+/* Changes that come faster than images must not starve the viewer: a first pass that is out of date goes on for
+ * first_s, its planned time twice over. Where that is too short, because the speed was estimated wrong or a model is
+ * being loaded, one that follows INTERRUPTED_MAX interrupted ones goes on for let_through_s. */
+enum { INTERRUPTED_MAX = 3 };
+static const double first_s = 2.0 * RENDER_WORKER_FIRST_S, let_through_s = 0.5;
 
 bool render_worker_is_stale(render_worker *p)
 {
     return scene_document_generation(p->scene_document) != p->taken_generation;
 }
 
-/* Whether to interrupt the current load or pass. A first pass that was interrupted too often continues for a while. */
+/* Whether to interrupt the current load or pass. */
 bool render_worker_must_end(void *of)
 {
     render_worker *p = of;
     pthread_mutex_lock(&p->lock);
     const bool stopping = p->stop || p->waiting;
     pthread_mutex_unlock(&p->lock);
-    const bool let_through = p->interrupted >= INTERRUPTED_MAX && clock_wall_s() - p->started_s < let_through_s;
-    return stopping || (render_worker_is_stale(p) && !let_through) || (live_is_due(p->live_slime) && p->pass > 0);
+    const double granted_s = p->pass > 0 ? 0.0 : p->interrupted >= INTERRUPTED_MAX ? let_through_s : first_s;
+    return stopping || (render_worker_is_stale(p) && clock_wall_s() - p->started_s >= granted_s) ||
+           (live_is_due(p->live_slime) && p->pass > 0);
 }
 
 /* Simulating a slime up to its time_s may take long: it is interrupted by a newer document or a command to the live
@@ -64,6 +66,7 @@ void render_worker_renew_snapshot(render_worker *p)
     uint64_t generation;
     scene *next = scene_document_take(p->scene_document, &generation);
     p->taken_generation = generation; /* set before loading, which a newer generation interrupts */
+    p->pass = 0;
     const bool had_slime = has_slime(p);
     pthread_rwlock_wrlock(&p->snapshot_lock);
     set_ready(p, false);
@@ -92,7 +95,6 @@ void render_worker_renew_snapshot(render_worker *p)
         p->interrupted += render_worker_is_stale(p);
         p->taken_generation = 0;
     }
-    p->pass = 0;
     p->plan =
         code == STATUS_OK ? passes_plan(&p->snapshot->render, p->rate, RENDER_WORKER_FIRST_S) : (pass_plan){.count = 0};
 }

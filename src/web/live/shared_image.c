@@ -10,8 +10,10 @@ typedef struct counted_image {
     shared_image shown; /* first, so that a shared_image pointer can be cast to its owner */
     atomic_int owners;
     pthread_mutex_t lock;
-    unsigned char *png;
-    size_t png_size;
+    struct encoded {
+        unsigned char *bytes;
+        size_t size;
+    } png, jpeg;
 } counted_image;
 
 static counted_image *counted(const shared_image *p)
@@ -46,19 +48,22 @@ void shared_image_release(const shared_image *p)
         return;
     shared_image_drop(p);
     pthread_mutex_destroy(&counted(p)->lock);
-    free(counted(p)->png);
+    free(counted(p)->png.bytes);
+    free(counted(p)->jpeg.bytes);
     free(counted(p));
 }
 
-status shared_image_png(const shared_image *p, const unsigned char **bytes, size_t *size, diagnostic *why)
+status shared_image_encode(const shared_image *p, image_format format, const unsigned char **bytes, size_t *size,
+                           diagnostic *why)
 {
     counted_image *w = counted(p);
+    struct encoded *made = format == IMAGE_PNG ? &w->png : &w->jpeg;
     status code = STATUS_OK;
     pthread_mutex_lock(&w->lock);
-    if (!w->png)
-        code = image_encode(p->linear, IMAGE_PNG, 8, true, &w->png, &w->png_size, why);
-    *bytes = w->png;
-    *size = w->png_size;
+    if (!made->bytes)
+        code = image_encode(p->linear, format, 8, true, &made->bytes, &made->size, why);
+    *bytes = made->bytes;
+    *size = made->size;
     pthread_mutex_unlock(&w->lock);
     return code;
 }

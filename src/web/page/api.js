@@ -3,7 +3,8 @@
  * exports: ApiError, createApi(listeners)
  *   api.get(path), api.post(path, body), api.del(path)   JSON in and out; throw ApiError; get also takes a time
  *   limit in ms
- *   api.blob(path)                                       an image or file: {blob, headers}; throws ApiError
+ *   api.blob(path)             an image or file: {blob, headers, seconds}, the time from its first byte to its last;
+ *                              throws ApiError
  *   listeners: generation(number) for each reply with a generation, reached() for each reply, lost() when the server
  *   does
  *   not answer, refused() for 401
@@ -89,7 +90,9 @@ export function createApi(listeners) {
     async blob(path) {
       const response = await ask('GET', path);
       if (!response.ok) throw new ApiError(response.status, await parsed(response));
-      return { blob: await response.blob(), headers: response.headers };
+      const began = performance.now();
+      const blob = await response.blob();
+      return { blob, headers: response.headers, seconds: (performance.now() - began) / 1000 };
     },
   };
 }

@@ -3,7 +3,8 @@
  * exports: createLab() -> lab
  *   lab.get, lab.post, lab.del, lab.blob   see api.js; for requests that do not change the scene or need no order
  *   lab.state, lab.scene, lab.picture, lab.slime, lab.study    the latest values; null before the first
- *   lab.newestGeneration                the newest known generation: older images are not shown
+ *   lab.newestGeneration                the newest known generation; older images are shown until one of it exists
+ *   lab.dragging()                      whether changes follow each other
  *   lab.newestPass                      the newest known pass, displayed or not
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
  *   lab.on(name, f) -> end()            names: state, scene, picture (a pass is displayed), pass (a pass is
@@ -27,11 +28,16 @@
  *   lab.say(text, remedy), lab.fail(error), lab.notes      set by main.js */
 
 import { createApi } from './api.js';
+import { createQueue } from './change_queue.js';
+import { openEvents } from './event_stream.js';
+import { applyScene } from './scene_changes.js';
 
 const RETRY_MS = 1000;
 const STRANGER_RETRY_MS = 5000;
 const PULSE_MS = 10000;
 const SCENE_MS = 150; /* minimum time between two fetches of the scene */
+const TOGETHER_MS = 250; /* changes that follow each other within this time are a drag */
+const REST_MS = 150; /* a drag without a change for this time rests */
 const EVENTS = ['state', 'picture', 'slime', 'study'];
 
 function createEmitter() {
@@ -54,40 +60,6 @@ function createEmitter() {
   };
 }
 
-/* Sends one request at a time, in order; only the newest request of a gesture and path waits. */
-function createQueue(post) {
-  const waiting = [];
-  let busy = false;
-
-  async function work() {
-    if (busy) return;
-    busy = true;
-    while (waiting.length) {
-      const entry = waiting.shift();
-      try {
-        entry.resolve(await post(entry.path, entry.body()));
-      } catch (error) {
-        entry.reject(error);
-      }
-    }
-    busy = false;
-  }
-
-  return (path, payload, { gesture, merge } = {}) => {
-    const last = waiting[waiting.length - 1];
-    if (last && gesture && last.gesture === gesture && last.path === path) {
-      last.payload = merge ? merge(last.payload, payload) : payload;
-      return last.promise;
-    }
-    const entry = { path, payload, gesture };
-    entry.body = () => (gesture ? { ...entry.payload, gesture } : entry.payload);
-    entry.promise = new Promise((resolve, reject) => Object.assign(entry, { resolve, reject }));
-    waiting.push(entry);
-    work();
-    return entry.promise;
-  };
-}
-
 export function createLab() {
   const { on, emit } = createEmitter();
   let rows = new Map();
@@ -97,6 +69,8 @@ export function createLab() {
   let fetching = null;
   let again = false;
   let stale = false;
+  let changedAt = -Infinity;
+  let together = false;
 
   const api = createApi({
     generation: (value) => want(value),
@@ -117,6 +91,7 @@ export function createLab() {
     ...api,
     on,
     emit,
+    dragging: () => together && performance.now() - changedAt < REST_MS,
     param: (path) => rows.get(path),
     object: (name) => objects.get(name),
     say: (text) => console.info(text),
@@ -125,7 +100,7 @@ export function createLab() {
     refresh,
   };
   setInterval(pulse, PULSE_MS);
-  lab.change = createQueue(api.post);
+  lab.change = createQueue(api.post, imageOf);
   lab.set = (values, gesture) =>
     lab
       .change(
@@ -144,7 +119,11 @@ export function createLab() {
   return lab;
 
   function want(generation) {
-    if (generation > lab.newestGeneration) lab.newestGeneration = generation;
+    if (generation <= lab.newestGeneration) return;
+    const now = performance.now();
+    together = now - changedAt < TOGETHER_MS;
+    changedAt = now;
+    lab.newestGeneration = generation;
   }
 
   function connection(value) {
@@ -154,7 +133,7 @@ export function createLab() {
   }
 
   function lose(how) {
-    if (stream) stream.close();
+    stream?.close();
     stream = null;
     connection(how);
     clearTimeout(retry);
@@ -163,20 +142,20 @@ export function createLab() {
 
   function connect() {
     clearTimeout(retry);
-    if (stream) stream.close();
-    const mine = new EventSource('/api/events');
+    stream?.close();
+    const mine = {};
     stream = mine;
-    mine.onopen = () => recover(mine);
-    mine.onerror = () => {
-      if (stream !== mine) return;
-      if (lab.connected === 'refused') lose('refused');
-      else ask();
-    };
-    for (const name of EVENTS) {
-      mine.addEventListener(name, (event) => {
-        if (stream === mine) receive(name, JSON.parse(event.data));
-      });
-    }
+    mine.close = openEvents(EVENTS, {
+      open: () => recover(mine),
+      error() {
+        if (stream !== mine) return;
+        if (lab.connected === 'refused') lose('refused');
+        else ask();
+      },
+      event(name, value) {
+        if (stream === mine) receive(name, value);
+      },
+    });
   }
 
   /* A broken connection may stay open at this end. */
@@ -233,6 +212,19 @@ export function createLab() {
     return api.get('/api/state').then((state) => receive('state', state));
   }
 
+  /* Kept when an image of the generation or a newer one exists. */
+  function imageOf(generation) {
+    return new Promise((resolve) => {
+      const done = () => {
+        if ((lab.newestPass?.generation ?? 0) < generation) return;
+        end();
+        resolve();
+      };
+      const end = on('pass', done);
+      done();
+    });
+  }
+
   /* Calls during a fetch are merged into one more fetch. */
   async function fetchScene() {
     if (fetching) {
@@ -242,9 +234,11 @@ export function createLab() {
     fetching = true;
     do {
       again = false;
-      stale = false;
       try {
-        const scene = await api.get('/api/scene');
+        const known = stale ? null : lab.scene;
+        stale = false;
+        const reply = await api.get(known ? `/api/scene?since=${known.generation}` : '/api/scene');
+        const scene = applyScene(known, reply);
         rows = new Map(scene.params.map((row) => [row.path, row]));
         objects = new Map(scene.objects.map((object) => [object.name, object]));
         lab.scene = scene;

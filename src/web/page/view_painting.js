@@ -1,18 +1,25 @@
-/* Fetches the newest pass and draws it. An image older than lab.newestGeneration or than the displayed one is never
- * drawn; serials order the images, also while a slime moves within one generation.
+/* Fetches the newest pass and draws it: every image that is newer than the displayed one, also while the scene changes
+ * faster than images come. Serials order the images, also while a slime moves within one generation. A final image that
+ * was drawn from a JPEG is replaced by the exact one when the scene rests; only then lab.picture.final is true.
  * exports: createPainting(canvas, view, place, lab) -> {paint, pixel, show} */
+
+import { createImageSource } from './image_source.js';
+
+const REST_MS = 160; /* between an image of a drag and the exact one */
 
 const newer = (a, b) => Boolean(a) && (!b || a.serial > b.serial);
 
 export function createPainting(canvas, view, place, lab) {
   const context = canvas.getContext('2d', { alpha: true });
   const probe = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
+  const source = createImageSource(lab);
   const passes = new Map();
   let bitmap = null;
   let instead = null;
   let shown = null;
   let fetching = false;
   let frame = 0;
+  let rest = 0;
 
   lab.on('restarted', () => {
     shown = null;
@@ -31,7 +38,12 @@ export function createPainting(canvas, view, place, lab) {
   };
 
   function due() {
-    return newer(lab.newestPass, shown) && lab.newestPass.generation >= lab.newestGeneration;
+    return newer(lab.newestPass, shown) || (lacksExact() && !lab.dragging());
+  }
+
+  /* Whether the displayed image is the final one, but not exact. */
+  function lacksExact() {
+    return Boolean(shown?.final && !shown.exact) && shown.serial === lab.newestPass?.serial;
   }
 
   function onPass(pass) {
@@ -39,28 +51,19 @@ export function createPainting(canvas, view, place, lab) {
     passes.set(pass.serial, { ...before, ...pass });
     if (passes.size > 12) passes.delete(passes.keys().next().value);
     if (shown?.serial !== pass.serial) load();
-    else if (!before && shown.generation >= lab.newestGeneration) publish();
-    else if (lab.picture?.serial === pass.serial) Object.assign(lab.picture, pass);
+    else if (!before) publish();
+    else if (lab.picture?.serial === pass.serial) Object.assign(lab.picture, facts());
   }
 
   async function load() {
     if (fetching) return;
     fetching = true;
     let last = null;
-    while (due() && newer(lab.newestPass, last)) {
+    while (due() && (newer(lab.newestPass, last) || (last && !last.exact && lacksExact()))) {
       try {
-        const { blob, headers } = await lab.blob('/api/picture.png');
-        const head = {
-          serial: Number(headers.get('X-Cuvette-Serial')),
-          generation: Number(headers.get('X-Cuvette-Generation')),
-          pass: Number(headers.get('X-Cuvette-Pass')),
-          final: headers.get('X-Cuvette-Final') === '1',
-        };
-        if (head.generation >= lab.newestGeneration && newer(head, shown)) {
-          const next = await createImageBitmap(blob, { colorSpaceConversion: 'none' });
-          if (head.generation >= lab.newestGeneration) draw(next, head);
-          else next.close();
-        }
+        const { blob, head } = await source.fetch(source.quick(shown));
+        if (newer(head, shown) || (head.serial === shown?.serial && head.exact && !shown.exact))
+          draw(await createImageBitmap(blob, { colorSpaceConversion: 'none' }), head);
         last = head;
       } catch (error) {
         last = lab.newestPass;
@@ -68,6 +71,8 @@ export function createPainting(canvas, view, place, lab) {
       }
     }
     fetching = false;
+    clearTimeout(rest);
+    if (lacksExact()) rest = setTimeout(load, REST_MS);
   }
 
   function draw(next, head) {
@@ -75,6 +80,12 @@ export function createPainting(canvas, view, place, lab) {
     bitmap = next;
     shown = head;
     publish();
+  }
+
+  function facts() {
+    const about = passes.get(shown.serial) || {};
+    const final = shown.final && shown.exact;
+    return { ...about, ...shown, final, film_hash: final ? about.film_hash : null };
   }
 
   function publish() {
@@ -85,8 +96,7 @@ export function createPainting(canvas, view, place, lab) {
     view.width = width;
     view.height = height;
     lab.picture = {
-      ...about,
-      ...shown,
+      ...facts(),
       width: bitmap.width,
       height: bitmap.height,
       full_width: width,
@@ -111,13 +121,13 @@ export function createPainting(canvas, view, place, lab) {
     const height = Math.max(1, Math.round(place.height * ratio));
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     else context.clearRect(0, 0, width, height);
-    const source = instead || bitmap;
-    if (!source || !view.width) return;
-    const coarse = source.width < view.width;
+    const drawn = instead || bitmap;
+    if (!drawn || !view.width) return;
+    const coarse = drawn.width < view.width;
     context.imageSmoothingEnabled = coarse || place.scale * ratio < 2;
     context.imageSmoothingQuality = 'high';
     context.drawImage(
-      source,
+      drawn,
       place.left * ratio,
       place.top * ratio,
       view.width * place.scale * ratio,
@@ -126,14 +136,14 @@ export function createPainting(canvas, view, place, lab) {
   }
 
   function pixel(x, y) {
-    const source = instead || bitmap;
+    const drawn = instead || bitmap;
     const column = Math.floor(x);
     const row = Math.floor(y);
-    if (!source || column < 0 || row < 0 || column >= view.width || row >= view.height) return null;
+    if (!drawn || column < 0 || row < 0 || column >= view.width || row >= view.height) return null;
     probe.clearRect(0, 0, 1, 1);
-    const sx = Math.min(source.width - 1, Math.floor(((column + 0.5) * source.width) / view.width));
-    const sy = Math.min(source.height - 1, Math.floor(((row + 0.5) * source.height) / view.height));
-    probe.drawImage(source, sx, sy, 1, 1, 0, 0, 1, 1);
+    const sx = Math.min(drawn.width - 1, Math.floor(((column + 0.5) * drawn.width) / view.width));
+    const sy = Math.min(drawn.height - 1, Math.floor(((row + 0.5) * drawn.height) / view.height));
+    probe.drawImage(drawn, sx, sy, 1, 1, 0, 0, 1, 1);
     return [...probe.getImageData(0, 0, 1, 1).data.slice(0, 3)];
   }
 }
