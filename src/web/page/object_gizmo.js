@@ -15,6 +15,8 @@ const SCALE_STEP = 0.1;
 const PAUSE_MS = 800;
 const signs = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
 
+const unit = (axis, length) => AXES.map((_, at) => (at === axis ? length : 0));
+
 export function createGizmo(lab, choice, mark, movable) {
   const { view } = lab;
   const layer = view.layer('gizmo');
@@ -180,8 +182,6 @@ export function createGizmo(lab, choice, mark, movable) {
     else if (drag.mode === 'turn') turnTo(now - drag.from, rounded);
     else scaleTo(now / drag.from, rounded);
   }
-
-  const unit = (axis, length) => AXES.map((_, at) => (at === axis ? length : 0));
 
   /* The coordinate is rounded, not the way. */
   function moveTo(way, rounded) {
