@@ -74,7 +74,8 @@ static void an_image_point_maps_to_its_ray(void **state)
 static void zooms_and_orbits_leave_the_pivot(void **state)
 {
     (void)state;
-    const char *const aims[] = {"camera.position=0,2.75,-6 camera.target=0,1.5,0", "camera.yaw_deg=10 camera.pitch_deg=-12"};
+    const char *const aims[] = {"camera.position=0,2.75,-6 camera.target=0,1.5,0",
+                                "camera.yaw_deg=10 camera.pitch_deg=-12"};
     for (size_t k = 0; k < COUNT(aims); k++) {
         scene *s = rod_scene(aims[k]);
         const bool aimed = s->camera.aimed;
@@ -103,9 +104,12 @@ static double distance_of(const scene *s)
 static void the_camera_stays_above_the_ground_and_in_reach(void **state)
 {
     (void)state;
-    static const camera_move moves[] = {{.orbit_deg = {0.0, -300.0}}, {.orbit_deg = {170.0, -40.0}},
-                                        {.step = {0.0, -5.0, 0.0}},   {.zoom = 1e6},
-                                        {.zoom = 1e-6},               {.look = "left"},
+    static const camera_move moves[] = {{.orbit_deg = {0.0, -300.0}},
+                                        {.orbit_deg = {170.0, -40.0}},
+                                        {.step = {0.0, -5.0, 0.0}},
+                                        {.zoom = 1e6},
+                                        {.zoom = 1e-6},
+                                        {.look = "left"},
                                         {.frame = "rod"}};
     for (size_t k = 0; k < COUNT(moves); k++) {
         scene *s = rod_scene("camera.position=0,2.75,-6 camera.target=0,-0.5,0");
@@ -135,7 +139,8 @@ static void sides_and_frames(void **state)
     static const struct {
         const char *side;
         vec3 forward;
-    } sides[] = {{"front", {0, 0, 1}}, {"back", {0, 0, -1}}, {"left", {1, 0, 0}}, {"right", {-1, 0, 0}}, {"top", {0, -1, 0}}};
+    } sides[] = {
+        {"front", {0, 0, 1}}, {"back", {0, 0, -1}}, {"left", {1, 0, 0}}, {"right", {-1, 0, 0}}, {"top", {0, -1, 0}}};
     scene *s = rod_scene("camera.position=1,2.75,-6 camera.target=0,1.5,0");
     const double before = distance_of(s);
     for (size_t k = 0; k < COUNT(sides); k++) {

@@ -319,7 +319,7 @@ static void a_view_is_kept_on_demand(void **state)
     assert_true(view_x(d) == kept);
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
     assert_true(view_x(d) == own && is_saved(d)); /* undoing a change of the scene's camera shows it */
-    apply(d, "camera.fov_deg=30"); /* a parameter of the camera is one of the scene */
+    apply(d, "camera.fov_deg=30");                /* a parameter of the camera is one of the scene */
     assert_false(is_saved(d));
     scene_document_reset(d, NULL, 0, NULL, NULL);
     assert_true(is_saved(d));

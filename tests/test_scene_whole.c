@@ -256,7 +256,8 @@ static void a_vessel_contains_its_liquid_and_its_rod(void **state)
     (void)state;
     scene *s = rod_scene("rod.rotation=0,0,20 vessel.rotation=0,40,0");
     assert_true(has_inside(s, "vessel", "liquid") && has_inside(s, "vessel", "rod"));
-    assert_false(has_inside(s, "liquid", "vessel") || has_inside(s, "rod", "liquid") || has_inside(s, "vessel", "lamp"));
+    assert_false(has_inside(s, "liquid", "vessel") || has_inside(s, "rod", "liquid") ||
+                 has_inside(s, "vessel", "lamp"));
     assert_false(has_inside(s, "vessel", "vessel") || has_inside(s, "ground", "rod") || has_inside(s, "lamp", "rod"));
     set_all(s, "lamp.position=0.1,1,0.1 rod.position=1.5,2,0");
     assert_true(has_inside(s, "vessel", "lamp") && !has_inside(s, "vessel", "rod"));

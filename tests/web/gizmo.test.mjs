@@ -21,7 +21,7 @@ async function select(screen, name) {
 
 /** Drags a handle by CSS pixels. */
 async function drag(screen, label, dx, dy) {
-  const box = await screen.page.getByRole('button', { name: label }).boundingBox();
+  const box = await screen.page.getByRole('button', { name: label, exact: true }).boundingBox();
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
   await screen.page.mouse.move(x, y);
   await screen.page.mouse.down();
@@ -108,7 +108,8 @@ export const cases = {
     });
     now = await values();
     t.more(far(now[0], first[0]), 0.2, 'the vessel is dragged in the image');
-    for (const k of [1, 2]) t.near(far(now[k], first[k]), far(now[0], first[0]), 1e-9, `${paths[k]} is dragged with it`);
+    for (const k of [1, 2])
+      t.near(far(now[k], first[k]), far(now[0], first[0]), 1e-9, `${paths[k]} is dragged with it`);
     await change(screen, () => screen.button('Undo').click());
     await select(screen, 'rod');
     await change(screen, () => drag(screen, 'Move along y', 0, -40));
@@ -120,7 +121,8 @@ export const cases = {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     await select(screen, 'rod');
-    const press = (label, key) => change(screen, () => screen.page.getByRole('button', { name: label }).press(key));
+    const press = (label, key) =>
+      change(screen, () => screen.page.getByRole('button', { name: label, exact: true }).press(key));
     await press('Move along x', 'ArrowRight');
     t.near((await lab.value('rod.position'))[0], 0.3, 1e-9, 'one step along x');
     await press('Move along y', 'Shift+ArrowDown');
@@ -180,6 +182,9 @@ export const cases = {
       const { meaningsOf } = await import('/param_synonyms.js');
       return ['water', 'glass', 'zoom', 'brightness'].map((word) => meaningsOf(word).length);
     });
-    t.check(known.every((count) => count > 1), 'each of the words has synonyms');
+    t.check(
+      known.every((count) => count > 1),
+      'each of the words has synonyms',
+    );
   },
 };

@@ -127,18 +127,18 @@ function viewButtons(lab) {
   );
 }
 
-/* The button that keeps the view is there only when there is a view to keep. */
+/* They never come and go: the image would change its size in the middle of a drag. */
 function historyButtons(lab) {
   const [keep, back, forward] = viewCommands(lab).slice(8);
   const make = (each, more) =>
     button(each.label, each.act, { kind: 'quiet', small: true, title: titleOf(each), ...more });
   const nodes = [
-    make(keep, { icon: 'camera' }),
+    make(keep, { icon: 'pin', bare: true }),
     make(back, { icon: 'left', bare: true }),
     make(forward, { icon: 'right', bare: true }),
   ];
   lab.on('state', ({ view }) => {
-    nodes[0].hidden = view.kept;
+    nodes[0].disabled = view.kept;
     nodes[1].disabled = !view.back;
     nodes[2].disabled = !view.forward;
   });

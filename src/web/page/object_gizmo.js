@@ -34,6 +34,7 @@ export function createGizmo(lab, choice, mark, movable) {
   along.node.title = 'What is inside the object goes with it: the liquid and the rod of a vessel';
   modes.group.title = 'Handles of the selected object (G)';
   const options = element('div', { class: 'gizmo-options' }, modes.group, snap.node, along.node);
+  options.addEventListener('pointerdown', (event) => event.stopPropagation());
 
   choice.on(draw);
   choice.group.onchange(draw);
@@ -41,7 +42,7 @@ export function createGizmo(lab, choice, mark, movable) {
   return {
     show() {
       active = true;
-      view.options.append(options);
+      view.overlay.append(options); /* not in the toolbar, which would wrap and resize the image in a drag */
       draw();
     },
     hide() {
