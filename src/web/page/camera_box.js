@@ -119,12 +119,14 @@ export function cameraBox(root, lab) {
 const titleOf = ({ title, keys }) => `${title} (${keys.replace(/\b[a-z]$/, (x) => x.toUpperCase())})`;
 
 function viewButtons(lab) {
-  const shown = viewCommands(lab).slice(0, 8);
-  return element(
-    'div',
-    { class: 'camera-part views', role: 'group', 'aria-label': 'Views' },
-    shown.map((each) => button(each.label, each.act, { small: true, title: titleOf(each) })),
+  const shown = viewCommands(lab).slice(0, 9);
+  const nodes = new Map(
+    shown.map((each) => [each.name, button(each.label, each.act, { small: true, title: titleOf(each) })]),
   );
+  lab.on('state', ({ view }) => {
+    for (const name of ['home', 'keep']) nodes.get(name).disabled = view.kept;
+  });
+  return element('div', { class: 'camera-part views', role: 'group', 'aria-label': 'Views' }, ...nodes.values());
 }
 
 /* They never come and go: the image would change its size in the middle of a drag. */

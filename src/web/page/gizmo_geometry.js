@@ -8,17 +8,22 @@ import { unitsPerPixel } from './camera_moves.js';
 import { add, dot, minus, times, unit } from './ray_vectors.js';
 
 export const AXES = ['x', 'y', 'z'];
-const ARM_PX = 78;
+const ARM_PX = [30, 78]; /* a quarter of a small image */
 const LEAST_PX = 16; /* an arrow that points at the eye cannot be dragged */
 const LEAST_TILT = 0.15; /* of a ring seen from its edge; its plane is then no use */
 const RING = 48;
 
 const directions = AXES.map((_, axis) => AXES.map((__, at) => (at === axis ? 1 : 0)));
 
-/* A length that is ARM_PX long on the screen at that place. */
+function armPixels({ view }) {
+  const [least, most] = ARM_PX;
+  return Math.min(most, Math.max(least, (Math.min(view.width, view.height) * view.scale) / 4));
+}
+
+/* The length of a handle's arm at that place. */
 function armAt(lab, place) {
   const { camera } = lab.state;
-  return unitsPerPixel(lab, Math.max(1e-9, dot(minus(place, camera.eye), camera.forward))) * ARM_PX;
+  return unitsPerPixel(lab, Math.max(1e-9, dot(minus(place, camera.eye), camera.forward))) * armPixels(lab);
 }
 
 /* The ray of the camera through an image point. */
@@ -88,5 +93,5 @@ export function angleAbout(lab, place, axis, point) {
   }
   const seen = lab.view.project(place); /* the near side of the ring moves across its axis */
   const way = -(point.x - seen.x) * dot(normal, up) - (point.y - seen.y) * dot(normal, right);
-  return ((way * lab.view.scale) / ARM_PX) * (180 / Math.PI);
+  return ((way * lab.view.scale) / armPixels(lab)) * (180 / Math.PI);
 }

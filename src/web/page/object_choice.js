@@ -46,8 +46,11 @@ export function createChoice(lab) {
     return `/api/objects/${encodeURIComponent(choice.name)}/${what}`;
   }
 
-  function send(what, body, gesture, merge) {
-    return done(lab.change(at(what), { ...body, with: choice.group.with(gesture) }, { gesture, merge }));
+  /* A drag may begin before it is known what is inside the object. */
+  async function send(what, body, gesture, merge) {
+    const path = at(what);
+    await choice.group.ready;
+    return done(lab.change(path, { ...body, with: choice.group.with(gesture) }, { gesture, merge }));
   }
 
   function choose(name, generation = 0) {

@@ -5,7 +5,7 @@
  *   group.names                         of what is inside the selected object
  *   group.centre, group.radius          of a ball around the object, relative to its position; null if unknown
  *   group.on, group.set(on)             whether they move along; remembered
- *   group.ready                         a promise: the list is that of the selected object
+ *   group.ready                         a promise: the list is that of the selected object, perhaps not the newest
  *   group.with(gesture)                 the names to send with a change of that gesture
  *   group.onchange(f) */
 
@@ -37,8 +37,9 @@ export function createGroup(lab, choice) {
   };
   choice.on(() => {
     Object.assign(group, { names: [], centre: null });
+    asked = '';
     tell();
-    ask();
+    group.ready = ask();
   });
   lab.on('scene', () => {
     clearTimeout(timer);
@@ -56,12 +57,12 @@ export function createGroup(lab, choice) {
     return frozen.names;
   }
 
-  function ask() {
+  async function ask() {
     const { name, object } = choice;
     const key = `${name} ${lab.state?.generation}`;
     if (key === asked || !['solid', 'light'].includes(object?.kind)) return;
     asked = key;
-    group.ready = lab.get(`/api/objects/${encodeURIComponent(name)}/contents`).then(
+    await lab.get(`/api/objects/${encodeURIComponent(name)}/contents`).then(
       ({ contents, ball }) => {
         if (choice.name !== name) return;
         const place = lab.param(`${name}.position`)?.value;
