@@ -130,6 +130,13 @@ static void wrong_values_are_refused_with_a_remedy(void **state)
     assert_refused("POST", "/api/reset", "{\"paths\": [\"ball.nothing\"]}", 400, "ball");
     assert_refused("POST", "/api/camera", "{\"orbit\": [1]}", 400, "YAW");
     assert_refused("POST", "/api/camera", "{\"step\": [1, 2, \"3\"]}", 400, "step");
+    assert_refused("POST", "/api/camera", "{\"zoom\": 0}", 400, "zoom");
+    assert_refused("POST", "/api/camera", "{\"look\": \"below\"}", 400, "front, back");
+    assert_refused("POST", "/api/camera", "{\"frame\": \"bal\"}", 400, "bal");
+    assert_refused("POST", "/api/camera", "{\"frame\": \"ground\"}", 400, "no end");
+    assert_refused("POST", "/api/view", "{\"do\": \"sideways\"}", 400, "back, forward");
+    assert_refused("POST", "/api/view", "{\"do\": \"back\"}", 409, "no earlier view");
+    assert_refused("POST", "/api/view", "{\"do\": \"keep\"}", 409, "already");
     assert_refused("POST", "/api/undo", "{}", 409, "nothing to undo");
     assert_refused("GET", "/api/picture.png?bits=9", NULL, 400, "?bits=16");
     assert_refused("GET", "/api/nothing", NULL, 404, "");
@@ -201,14 +208,15 @@ static void the_camera_orbits_turns_and_steps(void **state)
     room_post(&room, "/api/camera", "{\"orbit\": [0, 300]}"); /* clamped to nearly straight down */
     now = view_now();
     assert_near(asin(-now.forward.y) * 180.0 / M_PI, 89.5);
-    room_post(&room, "/api/undo", "{}");
-    room_post(&room, "/api/undo", "{}");
+    assert_refused("POST", "/api/undo", "{}", 409, "nothing to undo"); /* a view is no change of the scene */
+    room_post(&room, "/api/view", "{\"do\": \"back\"}");
+    room_post(&room, "/api/view", "{\"do\": \"back\"}");
     room_post(&room, "/api/camera", "{\"turn\": [-90, 0]}");
     now = view_now();
     assert_same_place(now.at, first.at);
     assert_near(atan2(now.forward.x, now.forward.z) * 180.0 / M_PI, -90.0);
     assert_near(vec3_length(vec3_sub(now.at, now.target)), vec3_length(vec3_sub(first.at, first.target)));
-    room_post(&room, "/api/undo", "{}");
+    room_post(&room, "/api/view", "{\"do\": \"home\"}");
     room_post(&room, "/api/camera", "{\"step\": [0.5, 0, 2]}");
     now = view_now();
     assert_same_place(now.at,

@@ -12,7 +12,8 @@
 #include "web/lab_private.h"
 #include "scene/model/scene.h"
 
-/* Tests of a rolled camera on the page: its moves follow the image, and an image point maps to the tracer's ray. */
+/* Tests of the camera on the page: moves of a rolled camera follow the image, an image point maps to the tracer's ray,
+ * zooms and orbits leave the pivot, and no move goes through the ground. */
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
@@ -69,12 +70,103 @@ static void an_image_point_maps_to_its_ray(void **state)
     scene_destroy(s);
 }
 
+/* 50 zooms and 20 orbits: the target is the same to the last bit, and so is the pivot of a camera aimed by angles. */
+static void zooms_and_orbits_leave_the_pivot(void **state)
+{
+    (void)state;
+    const char *const aims[] = {"camera.position=0,2.75,-6 camera.target=0,1.5,0",
+                                "camera.yaw_deg=10 camera.pitch_deg=-12"};
+    for (size_t k = 0; k < COUNT(aims); k++) {
+        scene *s = rod_scene(aims[k]);
+        const bool aimed = s->camera.aimed;
+        camera_pivot pivot = {.known = false};
+        const vec3 first = camera_pivot_of(s, pivot);
+        for (int i = 0; i < 50; i++) {
+            camera_move move = {.zoom = i < 25 ? 0.9 : 1.1, .pivot = pivot};
+            if (i < 20)
+                move.orbit_deg[0] = 7.3 * i, move.orbit_deg[1] = i % 2 ? 3.1 : -2.9;
+            assert_int_equal(camera_move_apply(&move, s, NULL), STATUS_OK);
+            pivot = move.pivot;
+        }
+        const vec3 last = camera_pivot_of(s, pivot);
+        assert_true(first.x == last.x && first.y == last.y && first.z == last.z);
+        assert_true(s->camera.aimed == aimed);
+        scene_destroy(s);
+    }
+}
+
+static double distance_of(const scene *s)
+{
+    return vec3_length(vec3_sub(s->camera.target, s->camera.position));
+}
+
+/* The ground of rod.yaml is y = 0. */
+static void the_camera_stays_above_the_ground_and_in_reach(void **state)
+{
+    (void)state;
+    static const camera_move moves[] = {{.orbit_deg = {0.0, -300.0}},
+                                        {.orbit_deg = {170.0, -40.0}},
+                                        {.step = {0.0, -5.0, 0.0}},
+                                        {.zoom = 1e6},
+                                        {.zoom = 1e-6},
+                                        {.look = "left"},
+                                        {.frame = "rod"}};
+    for (size_t k = 0; k < COUNT(moves); k++) {
+        scene *s = rod_scene("camera.position=0,2.75,-6 camera.target=0,-0.5,0");
+        camera_move move = moves[k];
+        assert_int_equal(camera_move_apply(&move, s, NULL), STATUS_OK);
+        assert_true(s->camera.position.y > 0.0);
+        scene_destroy(s);
+    }
+    scene *s = rod_scene("camera.position=0,2.75,-6 camera.target=0,1.5,0");
+    camera_move out = {.zoom = 1e6}, in = {.zoom = 1e-6};
+    assert_int_equal(camera_move_apply(&out, s, NULL), STATUS_OK);
+    assert_true(distance_of(s) > 20.0 && distance_of(s) < 60.0);
+    assert_int_equal(camera_move_apply(&in, s, NULL), STATUS_OK);
+    assert_true(distance_of(s) > 1e-4 && distance_of(s) < 0.01);
+    scene_destroy(s);
+    s = rod_scene("ground.visible=off camera.position=0,2.75,-6 camera.target=0,1.5,0");
+    camera_move down = {.orbit_deg = {0.0, -60.0}};
+    assert_int_equal(camera_move_apply(&down, s, NULL), STATUS_OK);
+    assert_true(s->camera.position.y < -1.0); /* without a ground nothing stops it */
+    scene_destroy(s);
+}
+
+/* A framed solid's bounding ball touches no edge of the image: its angle is less than half the field of view. */
+static void sides_and_frames(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *side;
+        vec3 forward;
+    } sides[] = {
+        {"front", {0, 0, 1}}, {"back", {0, 0, -1}}, {"left", {1, 0, 0}}, {"right", {-1, 0, 0}}, {"top", {0, -1, 0}}};
+    scene *s = rod_scene("camera.position=1,2.75,-6 camera.target=0,1.5,0");
+    const double before = distance_of(s);
+    for (size_t k = 0; k < COUNT(sides); k++) {
+        camera_move move = {.look = sides[k].side};
+        assert_int_equal(camera_move_apply(&move, s, NULL), STATUS_OK);
+        assert_true(vec3_length(vec3_sub(camera_frame_of(s).forward, sides[k].forward)) < 1e-12);
+        assert_true(fabs(distance_of(s) - before) < 1e-12);
+    }
+    camera_move front = {.look = "front"}, frame = {.frame = "vessel"};
+    assert_int_equal(camera_move_apply(&front, s, NULL), STATUS_OK);
+    assert_int_equal(camera_move_apply(&frame, s, NULL), STATUS_OK);
+    const double radius = sqrt(1.0 + 1.5 * 1.5), half_deg = asin(radius / distance_of(s)) * 180.0 / M_PI;
+    assert_true(half_deg < 22.5 && half_deg > 19.0);
+    assert_true(vec3_length(vec3_sub(s->camera.target, vec3_make(0.0, 1.501, 0.0))) < 1e-12);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(camera_moves_follow_the_rolled_image),
         cmocka_unit_test(a_step_moves_along_the_axes_of_the_rolled_image),
         cmocka_unit_test(an_image_point_maps_to_its_ray),
+        cmocka_unit_test(zooms_and_orbits_leave_the_pivot),
+        cmocka_unit_test(the_camera_stays_above_the_ground_and_in_reach),
+        cmocka_unit_test(sides_and_frames),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

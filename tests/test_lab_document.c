@@ -251,6 +251,86 @@ static void the_document_tracks_whether_it_is_saved(void **state)
     scene_document_destroy(d);
 }
 
+static uint64_t orbit_view(scene_document *d, double yaw_deg, const char *gesture)
+{
+    camera_move move = {.orbit_deg = {yaw_deg, 0.0}};
+    uint64_t generation = 0;
+    assert_int_equal(scene_document_move_view(d, &move, gesture, &generation, NULL), STATUS_OK);
+    return generation;
+}
+
+static double eye_x(scene_document *d, scene *(*take)(scene_document *d, uint64_t *generation))
+{
+    scene *s = take(d, NULL);
+    const double x = s->camera.position.x;
+    scene_destroy(s);
+    return x;
+}
+
+static double view_x(scene_document *d)
+{
+    return eye_x(d, scene_document_take);
+}
+
+/* A view makes a new image, but changes no scene: no undo step, nothing to save. */
+static void views_have_a_history_of_their_own(void **state)
+{
+    (void)state;
+    scene_document *d = open_document(BALL_SCENE);
+    const double own = view_x(d);
+    apply(d, "ball.ior=1.6");
+    scene_document_saved(d, "ball.yaml", scene_document_generation(d));
+    const uint64_t before = scene_document_generation(d);
+    assert_int_equal(orbit_view(d, 20.0, "drag"), before + 1);
+    orbit_view(d, 20.0, "drag"); /* the same view of the history */
+    const double second = view_x(d);
+    orbit_view(d, 20.0, NULL);
+    const double third = view_x(d);
+    assert_true(is_saved(d));
+    assert_true(eye_x(d, scene_document_take_kept) == own);
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    assert_value(d, "ball.ior", "1.5");
+    assert_true(view_x(d) == third); /* the scene's undo leaves the view */
+    assert_int_equal(scene_document_undo(d, true, NULL, NULL), STATUS_OK);
+    assert_int_equal(scene_document_view(d, VIEW_BACK, NULL, NULL), STATUS_OK);
+    assert_true(view_x(d) == second);
+    assert_int_equal(scene_document_view(d, VIEW_BACK, NULL, NULL), STATUS_OK);
+    assert_true(view_x(d) == own);
+    assert_int_equal(scene_document_view(d, VIEW_BACK, NULL, NULL), STATUS_BAD_INPUT);
+    assert_int_equal(scene_document_view(d, VIEW_KEEP, NULL, NULL), STATUS_BAD_INPUT); /* the scene has it */
+    assert_int_equal(scene_document_view(d, VIEW_FORWARD, NULL, NULL), STATUS_OK);
+    assert_true(view_x(d) == second && is_saved(d));
+    scene_document_destroy(d);
+}
+
+static void a_view_is_kept_on_demand(void **state)
+{
+    (void)state;
+    scene_document *d = open_document(BALL_SCENE);
+    const double own = view_x(d);
+    orbit_view(d, 30.0, NULL);
+    const double kept = view_x(d);
+    assert_int_equal(scene_document_view(d, VIEW_KEEP, NULL, NULL), STATUS_OK);
+    assert_false(is_saved(d));
+    assert_state(d, "undo", "keep the view");
+    assert_true(eye_x(d, scene_document_take_kept) == kept);
+    orbit_view(d, 30.0, NULL);
+    assert_int_equal(scene_document_view(d, VIEW_HOME, NULL, NULL), STATUS_OK);
+    assert_true(view_x(d) == kept);
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    assert_true(view_x(d) == own && is_saved(d)); /* undoing a change of the scene's camera shows it */
+    apply(d, "camera.fov_deg=30");                /* a parameter of the camera is one of the scene */
+    assert_false(is_saved(d));
+    scene_document_reset(d, NULL, 0, NULL, NULL);
+    assert_true(is_saved(d));
+    for (int i = 0; i < 300; i++)
+        orbit_view(d, 1.0, NULL); /* the history is bounded */
+    for (int i = 0; i < 100; i++)
+        assert_int_equal(scene_document_view(d, VIEW_BACK, NULL, NULL), STATUS_OK);
+    assert_int_equal(scene_document_view(d, VIEW_BACK, NULL, NULL), STATUS_BAD_INPUT);
+    scene_document_destroy(d);
+}
+
 static void loaded_data_is_shared(void **state)
 {
     (void)state;
@@ -312,6 +392,8 @@ int main(void)
         cmocka_unit_test(the_undo_history_has_a_limit),
         cmocka_unit_test(resets_restore_the_opened_scene),
         cmocka_unit_test(the_document_tracks_whether_it_is_saved),
+        cmocka_unit_test(views_have_a_history_of_their_own),
+        cmocka_unit_test(a_view_is_kept_on_demand),
         cmocka_unit_test(loaded_data_is_shared),
         cmocka_unit_test(concurrent_changes_are_all_applied),
     };

@@ -408,6 +408,67 @@ static void lights_materials_models_and_slimes_are_added(void **state)
     assert_int_equal(generation(r), before);
 }
 
+/* All in one undo step; a rejected value adds nothing. */
+static void a_new_object_has_the_values_of_its_request(void **state)
+{
+    const room *r = *state;
+    char word[64];
+    expect(r, 200, "POST", "/api/objects",
+           "{\"kind\": \"solid\", \"shape\": \"sphere\", \"set\": {\"medium\": \"water\", \"transparency\": 1, "
+           "\"absorb_per_m\": [0.3, 0.05, 0.01]}}");
+    assert_string_equal(word_of(r, "sphere", "shape", word), "sphere");
+    assert_float_equal(value(r, "sphere.transparency", 0), 1.0, 0.0);
+    assert_float_equal(value(r, "sphere.absorb_per_m", 1), 0.05, 0.0);
+    expect(r, 200, "POST", "/api/undo", "{}");
+    assert_false(has_object(r, "sphere"));
+    static const char *const bad[] = {
+        "{\"mediu\": \"water\"}", "{\"medium\": \"wine\"}", "{\"radius\": -1}", "{\"radius\": {}}", "[1]", "7"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char *body = text_format("{\"kind\": \"solid\", \"shape\": \"sphere\", \"set\": %s}", bad[i]);
+        expect(r, 400, "POST", "/api/objects", body);
+        free(body);
+    }
+    assert_false(has_object(r, "sphere"));
+}
+
+static void assert_near(double found, double expected)
+{
+    if (!(fabs(found - expected) <= 1e-12))
+        fail_msg("%.17g, not %.17g", found, expected);
+}
+
+/* A small box in the ball moves along with it, and only with it. */
+static void contents_are_listed_and_move_along(void **state)
+{
+    const room *r = *state;
+    expect(r, 200, "POST", "/api/objects", "{\"kind\": \"solid\", \"shape\": \"box\", \"name\": \"seed\"}");
+    expect(r, 200, "POST", "/api/set", "{\"set\": {\"seed.size\": [0.1, 0.1, 0.1], \"seed.position\": [0, 0, 0]}}");
+    const double x = value(r, "ball.position", 0), y = value(r, "ball.position", 1), z = value(r, "ball.position", 2);
+    char *at = text_format("{\"set\": {\"seed.position\": [%.17g, %.17g, %.17g]}}", x + 0.2, y, z);
+    expect(r, 200, "POST", "/api/set", at);
+    free(at);
+    json_t *inside = ask(r, 200, "GET", "/api/objects/ball/contents", NULL);
+    assert_int_equal(json_array_size(json_object_get(inside, "contents")), 1);
+    assert_string_equal(json_string_value(json_array_get(json_object_get(inside, "contents"), 0)), "seed");
+    json_decref(inside);
+    expect(r, 404, "GET", "/api/objects/bal/contents", NULL);
+    expect(r, 200, "POST", "/api/objects/ball/move", "{\"by\": [1, 0, 0], \"with\": [\"seed\"]}");
+    assert_near(value(r, "seed.position", 0), x + 1.2);
+    expect(r, 200, "POST", "/api/objects/ball/turn", "{\"by\": [0, 0, 90], \"with\": [\"seed\"]}");
+    assert_near(value(r, "seed.position", 0), x + 1.0);
+    assert_near(value(r, "seed.position", 1), y + 0.2);
+    expect(r, 200, "POST", "/api/objects/ball/scale", "{\"factor\": 0.5, \"with\": [\"seed\"]}");
+    assert_near(value(r, "seed.position", 1), y + 0.1);
+    assert_near(value(r, "seed.size", 0), 0.05);
+    const json_int_t before = generation(r);
+    static const char *const bad[] = {"{\"by\": [1, 0, 0], \"with\": [\"sed\"]}", "{\"by\": [1, 0, 0], \"with\": [1]}",
+                                      "{\"by\": [1, 0, 0], \"with\": \"seed\"}",
+                                      "{\"by\": [1, 0, 0], \"with\": [\"camera\"]}"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        expect(r, 400, "POST", "/api/objects/ball/move", bad[i]);
+    assert_int_equal(generation(r), before);
+}
+
 static void objects_are_moved_turned_scaled_renamed_and_copied(void **state)
 {
     const room *r = *state;
@@ -678,6 +739,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(path_parameters_are_confined_to_the_folder, enter, leave),
         cmocka_unit_test_setup_teardown(each_added_solid_is_visible, enter, leave),
         cmocka_unit_test_setup_teardown(lights_materials_models_and_slimes_are_added, enter, leave),
+        cmocka_unit_test_setup_teardown(a_new_object_has_the_values_of_its_request, enter, leave),
+        cmocka_unit_test_setup_teardown(contents_are_listed_and_move_along, enter, leave),
         cmocka_unit_test_setup_teardown(objects_are_moved_turned_scaled_renamed_and_copied, enter, leave),
         cmocka_unit_test_setup_teardown(groups_of_objects_are_moved_scaled_and_turned, enter, leave),
         cmocka_unit_test_setup_teardown(copies_of_a_rod_are_visible_and_disjoint, enter, leave),

@@ -6,9 +6,11 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
 
 #include "render_fixture.h"
+#include "scene/model/edit/contents.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/scene.h"
 
@@ -237,6 +239,65 @@ static void an_object_named_all_has_precedence(void **state)
     scene_destroy(s);
 }
 
+static bool has_inside(const scene *s, const char *container, const char *name)
+{
+    contents inside;
+    bool found = false;
+    assert_int_equal(contents_find(s, container, &inside, NULL), STATUS_OK);
+    for (size_t i = 0; i < inside.count; i++)
+        found |= strcmp(inside.name[i], name) == 0;
+    contents_clear(&inside);
+    return found;
+}
+
+/* The liquid's centre is in the vessel's box, and the vessel's in the liquid's: the larger one is the container. */
+static void a_vessel_contains_its_liquid_and_its_rod(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("rod.rotation=0,0,20 vessel.rotation=0,40,0");
+    assert_true(has_inside(s, "vessel", "liquid") && has_inside(s, "vessel", "rod"));
+    assert_false(has_inside(s, "liquid", "vessel") || has_inside(s, "rod", "liquid") ||
+                 has_inside(s, "vessel", "lamp"));
+    assert_false(has_inside(s, "vessel", "vessel") || has_inside(s, "ground", "rod") || has_inside(s, "lamp", "rod"));
+    set_all(s, "lamp.position=0.1,1,0.1 rod.position=1.5,2,0");
+    assert_true(has_inside(s, "vessel", "lamp") && !has_inside(s, "vessel", "rod"));
+    contents none;
+    assert_int_equal(contents_find(s, "nothing", &none, NULL), STATUS_BAD_INPUT);
+    scene_destroy(s);
+}
+
+static void assert_at(const scene *s, const char *name, double x, double y, double z)
+{
+    const vec3 at = s->solids[scene_find_solid(s, name)].shape.position;
+    if (!(vec3_length(vec3_sub(at, vec3_make(x, y, z))) < 1e-12))
+        fail_msg("%s is at %g, %g, %g, not %g, %g, %g", name, at.x, at.y, at.z, x, y, z);
+}
+
+/* The rod is at (0.2, 2.101, 0), the vessel's base at (0, 0.001, 0): a right angle about y takes x to -z. */
+static void objects_together_are_one_rigid_body(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("");
+    const char *others[] = {"rod", "liquid", "rod", "vessel"}, *wrong[] = {"clear"}, *missing[] = {"rods"};
+    const object_list all = {"vessel", others, 4};
+    assert_int_equal(scene_move_together(s, &all, vec3_make(1, 0, 0), NULL), STATUS_OK);
+    assert_at(s, "vessel", 1, 0.001, 0);
+    assert_at(s, "liquid", 1, 0.051, 0);
+    assert_at(s, "rod", 1.2, 2.101, 0);
+    assert_int_equal(scene_turn_together(s, &all, vec3_make(0, 90, 0), NULL), STATUS_OK);
+    assert_at(s, "vessel", 1, 0.001, 0);
+    assert_at(s, "rod", 1, 2.101, -0.2);
+    assert_true(s->solids[scene_find_solid(s, "rod")].shape.rotation_deg.y == 90.0);
+    assert_int_equal(scene_scale_together(s, &all, 0.5, NULL), STATUS_OK);
+    assert_at(s, "rod", 1, 0.001 + 0.5 * 2.1, -0.1);
+    assert_true(s->solids[scene_find_solid(s, "liquid")].shape.radius == 0.475);
+    assert_int_equal(scene_move_together(s, &(object_list){"vessel", wrong, 1}, vec3_make(1, 0, 0), NULL),
+                     STATUS_BAD_INPUT);
+    assert_int_equal(scene_move_together(s, &(object_list){"vessel", missing, 1}, vec3_make(1, 0, 0), NULL),
+                     STATUS_BAD_INPUT);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -246,6 +307,8 @@ int main(void)
         cmocka_unit_test(one_solid_or_light_is_scaled_about_its_position),
         cmocka_unit_test(refused_transformations_do_not_change_the_scene),
         cmocka_unit_test(an_object_named_all_has_precedence),
+        cmocka_unit_test(a_vessel_contains_its_liquid_and_its_rod),
+        cmocka_unit_test(objects_together_are_one_rigid_body),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,17 @@
 #include "scene/model/camera_moves.h"
 #include "scene/model/camera.h"
+#include "scene/model/camera_limits.h"
 #include "scene/model/edit/edit.h"
+#include "scene/model/place/placement.h"
 
 #include "base/elementary.h"
 #include "scene/model/scene.h"
 #include <math.h>
+#include <string.h>
 
 static const double pitch_max_deg = 89.5;
+/* Of the distance from the pivot, kept from the ground. */
+static const double gap_share = 1e-3;
 
 static vec3 direction_of(double yaw_deg, double pitch_deg)
 {
@@ -23,22 +28,24 @@ static vec3 turned(vec3 direction, const double by_deg[2])
     return direction_of(yaw_deg + by_deg[0], pitch_deg + by_deg[1]);
 }
 
-/* The target, or a point as far away as the centre of the scene's frame. */
-static vec3 focus_of(const scene *s, vec3 forward)
+vec3 camera_pivot_of(const scene *s, camera_pivot known)
 {
     if (s->camera.aimed)
         return s->camera.target;
-    return vec3_add(s->camera.position, vec3_scale(forward, fmax(1.0, vec3_length(s->camera.position))));
+    const vec3 offset = vec3_sub(known.at, s->camera.position), forward = camera_frame_of(s).forward;
+    const double distance = vec3_length(offset), off_axis = 1e-9;
+    const bool is_ahead = distance > 0.0 && vec3_dot(offset, forward) >= distance * (1.0 - off_axis);
+    return known.known && is_ahead ? known.at : placement_of(s).looked_at;
 }
 
-static void look_along(scene *s, vec3 direction, double distance)
+/* Aims the camera without moving it; the pivot of an aimed camera is its target. */
+static void aim(scene *s, vec3 direction, vec3 target)
 {
-    if (s->camera.aimed) {
-        s->camera.target = vec3_add(s->camera.position, vec3_scale(direction, distance));
-        return;
+    s->camera.target = s->camera.aimed ? target : s->camera.target;
+    if (!s->camera.aimed) {
+        s->camera.yaw_deg = atan2(direction.x, direction.z) * 180.0 / M_PI;
+        s->camera.pitch_deg = asin(fmin(fmax(direction.y, -1.0), 1.0)) * 180.0 / M_PI;
     }
-    s->camera.yaw_deg = atan2(direction.x, direction.z) * 180.0 / M_PI;
-    s->camera.pitch_deg = asin(fmin(fmax(direction.y, -1.0), 1.0)) * 180.0 / M_PI;
 }
 
 /* Converts a turn to the image's right and up into yaw and pitch: a rolled camera's image has its own right. */
@@ -50,26 +57,164 @@ static void unrolled(double roll_deg, double right_deg, double up_deg, double ou
     out[1] = cosine * up_deg - sine * right_deg;
 }
 
-status camera_move_apply(void *of, scene *s, diagnostic *why)
+static vec3 seen_from(vec3 pivot, vec3 direction, double distance)
 {
-    const camera_move *m = of;
-    camera_frame f = camera_frame_of(s);
-    const vec3 focus = focus_of(s, f.forward);
-    const double distance = vec3_length(vec3_sub(focus, f.eye));
-    if (m->orbit_deg[0] != 0.0 || m->orbit_deg[1] != 0.0) {
-        double by[2];
-        unrolled(s->camera.roll_deg, m->orbit_deg[0], -m->orbit_deg[1], by);
-        const vec3 direction = turned(f.forward, by);
-        s->camera.position = vec3_sub(focus, vec3_scale(direction, distance));
-        look_along(s, direction, distance);
+    return vec3_sub(pivot, vec3_scale(direction, distance));
+}
+
+/* The largest share of a pitch, after all of the yaw, that is clear of the ground. */
+static vec3 clear_direction(const scene *s, vec3 forward, vec3 pivot, double distance, const double by_deg[2])
+{
+    enum { HALVINGS = 50 };
+    double clear = 0.0, share = 1.0, step = 1.0;
+    for (int i = 0; i < HALVINGS; i++) {
+        const vec3 direction = turned(forward, (double[2]){by_deg[0], share * by_deg[1]});
+        const bool good =
+            camera_is_clear(s, s->camera.position, seen_from(pivot, direction, distance), gap_share * distance);
+        if (good && share == 1.0)
+            return direction;
+        clear = good ? share : clear;
+        step *= 0.5;
+        share = good ? share + step : share - step;
     }
-    if (m->turn_deg[0] != 0.0 || m->turn_deg[1] != 0.0) {
-        double by[2];
-        unrolled(s->camera.roll_deg, m->turn_deg[0], m->turn_deg[1], by);
-        look_along(s, turned(camera_frame_of(s).forward, by), distance);
+    return turned(forward, (double[2]){by_deg[0], clear * by_deg[1]});
+}
+
+static void orbit(const camera_move *m, scene *s)
+{
+    double by[2];
+    const vec3 pivot = m->pivot.at, forward = camera_frame_of(s).forward;
+    const double distance = vec3_length(vec3_sub(pivot, s->camera.position));
+    unrolled(s->camera.roll_deg, m->orbit_deg[0], -m->orbit_deg[1], by);
+    const vec3 direction = clear_direction(s, forward, pivot, distance, by), to = seen_from(pivot, direction, distance);
+    if (!camera_is_clear(s, s->camera.position, to, gap_share * distance))
+        return; /* on a slope even the yaw may lead below it */
+    s->camera.position = to;
+    aim(s, direction, pivot);
+}
+
+static void turn(camera_move *m, scene *s)
+{
+    double by[2];
+    const vec3 forward = camera_frame_of(s).forward;
+    const double distance = vec3_length(vec3_sub(m->pivot.at, s->camera.position));
+    unrolled(s->camera.roll_deg, m->turn_deg[0], m->turn_deg[1], by);
+    const vec3 direction = turned(forward, by);
+    m->pivot.at = vec3_add(s->camera.position, vec3_scale(direction, distance));
+    aim(s, direction, m->pivot.at);
+}
+
+/* Moves along the line to the pivot, whose height above a ground is linear in the distance. */
+static void zoom(const camera_move *m, scene *s)
+{
+    const vec3 from = s->camera.position, offset = vec3_sub(from, m->pivot.at);
+    const double distance = vec3_length(offset);
+    double share = camera_distance_within(s, m->pivot.at, distance, m->zoom * distance) / distance, bad = share,
+           clear = 1.0;
+    for (int i = 0; i < 50; i++) {
+        const vec3 to = vec3_add(m->pivot.at, vec3_scale(offset, share));
+        if (camera_is_clear(s, from, to, gap_share * distance))
+            clear = share;
+        else
+            bad = share;
+        if (clear == bad)
+            break;
+        share = 0.5 * (clear + bad);
     }
-    f = camera_frame_of(s);
-    const vec3 step = vec3_add(vec3_scale(f.right, m->step[0]),
-                               vec3_add(vec3_scale(f.up, m->step[1]), vec3_scale(f.forward, m->step[2])));
-    return scene_move(s, "camera", step, why);
+    s->camera.position = vec3_add(m->pivot.at, vec3_scale(offset, clear));
+}
+
+static status step(camera_move *m, scene *s, diagnostic *why)
+{
+    const camera_frame f = camera_frame_of(s);
+    const vec3 by = vec3_add(vec3_scale(f.right, m->step[0]),
+                             vec3_add(vec3_scale(f.up, m->step[1]), vec3_scale(f.forward, m->step[2])));
+    const double gap = gap_share * vec3_length(vec3_sub(m->pivot.at, f.eye));
+    const vec3 slide = vec3_sub(camera_lifted(s, f.eye, vec3_add(f.eye, by), gap), f.eye);
+    const bool blocked = !camera_is_clear(s, f.eye, vec3_add(f.eye, by), gap);
+    m->pivot.at = vec3_add(m->pivot.at, blocked ? slide : by);
+    return scene_move(s, "camera", blocked ? slide : by, why);
+}
+
+/* --- from a side, and framed --- */
+
+/* Looks at the pivot along a direction; over a ground, from the nearest clear point. */
+static void look_at_pivot(const camera_move *m, scene *s, vec3 direction, double distance)
+{
+    const vec3 pivot = m->pivot.at, to = seen_from(pivot, direction, distance);
+    s->camera.position = camera_lifted(s, s->camera.position, to, gap_share * distance);
+    aim(s, vec3_normalize(vec3_sub(pivot, s->camera.position)), pivot);
+}
+
+static status look(const camera_move *m, scene *s, diagnostic *why)
+{
+    static const struct {
+        const char *word;
+        vec3 direction;
+    } sides[] = {
+        {"front", {0, 0, 1}}, {"back", {0, 0, -1}}, {"left", {1, 0, 0}}, {"right", {-1, 0, 0}}, {"top", {0, -1, 0}}};
+    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++)
+        if (strcmp(sides[i].word, m->look) == 0) {
+            look_at_pivot(m, s, sides[i].direction, vec3_length(vec3_sub(m->pivot.at, s->camera.position)));
+            return STATUS_OK;
+        }
+    return diagnose(why, STATUS_BAD_INPUT, "use front, back, left, right or top", "unknown side '%.60s'", m->look);
+}
+
+/* A light without a size is shown with its surroundings. */
+static status ball_of(const scene *s, const char *name, double distance, vec3 *centre, double *radius, diagnostic *why)
+{
+    const int index = scene_find_solid(s, name);
+    if (index >= 0 && placement_bounding_sphere(s, &s->solids[index], centre, radius))
+        return STATUS_OK;
+    if (index >= 0)
+        return diagnose(why, STATUS_BAD_INPUT, "frame another solid, or all", "%.80s has no end to be framed", name);
+    for (size_t i = 0; i < s->light_count; i++)
+        if (strcmp(s->lights[i].name, name) == 0) {
+            *centre = s->lights[i].position;
+            *radius = fmax(s->lights[i].radius, 0.1 * distance);
+            return STATUS_OK;
+        }
+    if (strcmp(name, "all") != 0)
+        return diagnose(why, STATUS_BAD_INPUT, "give a solid, a light or all", "no solid or light '%.80s'", name);
+    return camera_scene_ball(s, centre, radius)
+               ? STATUS_OK
+               : diagnose(why, STATUS_BAD_INPUT, "add a solid with an end", "the scene has nothing to be framed");
+}
+
+/* A ball fits into the narrower half angle a at the distance radius / sin a; tan a is half an image's edge. */
+static status frame(camera_move *m, scene *s, diagnostic *why)
+{
+    const camera_frame f = camera_frame_of(s);
+    const double margin = 1.1, tangent = fmin(f.half_width, f.half_height);
+    vec3 centre;
+    double radius;
+    TRY(ball_of(s, m->frame, vec3_length(vec3_sub(m->pivot.at, f.eye)), &centre, &radius, why));
+    m->pivot.at = centre;
+    look_at_pivot(m, s, f.forward, margin * radius * sqrt(1.0 + tangent * tangent) / tangent);
+    return STATUS_OK;
+}
+
+static bool is_any(const double *values, int count)
+{
+    bool any = false;
+    for (int i = 0; i < count; i++)
+        any |= values[i] != 0.0;
+    return any;
+}
+
+status camera_move_apply(camera_move *m, scene *s, diagnostic *why)
+{
+    m->pivot = (camera_pivot){camera_pivot_of(s, m->pivot), true};
+    if (m->frame)
+        TRY(frame(m, s, why));
+    if (m->look)
+        TRY(look(m, s, why));
+    if (is_any(m->orbit_deg, 2))
+        orbit(m, s);
+    if (is_any(m->turn_deg, 2))
+        turn(m, s);
+    if (m->zoom > 0.0)
+        zoom(m, s);
+    return is_any(m->step, 3) ? step(m, s, why) : STATUS_OK;
 }

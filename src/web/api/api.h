@@ -19,11 +19,11 @@ typedef struct call {
 
 typedef status api_handler(call *c);
 
-api_handler api_state, api_scene, api_set, api_reset, api_undo, api_redo, api_camera, api_scene_file, api_command,
-    api_image_png, api_image_jpeg, api_trace_json, api_trace_text, api_trace_drawing, api_set_reference,
+api_handler api_state, api_scene, api_set, api_reset, api_undo, api_redo, api_camera, api_view, api_scene_file,
+    api_command, api_image_png, api_image_jpeg, api_trace_json, api_trace_text, api_trace_drawing, api_set_reference,
     api_clear_reference, api_reference_image, api_compare, api_compare_map, api_add, api_remove, api_move, api_turn,
-    api_scale, api_rename, api_material, api_copy, api_files, api_open, api_save, api_media, api_slime, api_grab,
-    api_move_hand, api_release, api_studies, api_study, api_study_run, api_study_stop, api_study_rows,
+    api_scale, api_rename, api_material, api_copy, api_contents, api_files, api_open, api_save, api_media, api_slime,
+    api_grab, api_move_hand, api_release, api_studies, api_study, api_study_run, api_study_stop, api_study_rows,
     api_study_compare, api_study_draw, api_study_figure, api_figure, api_machine, api_notes;
 
 /* Fills l->routes with all routes, bound to the lab. */
@@ -65,6 +65,8 @@ bool api_take_number(call *c, const char *key, bool needed, double *value);
 bool api_take_vector(call *c, const char *key, bool needed, double value[3]);
 bool api_take_text(call *c, const char *key, bool needed, const char **value);
 bool api_take_flag(call *c, const char *key, bool *value);
+/* A parameter's value in the syntax of scene_set, in allocated memory; NULL for unsupported JSON (or out of memory). */
+char *api_value_text(const json_t *value);
 /* Reads the gesture; NULL for none. */
 bool api_take_gesture(call *c, const char **gesture);
 

@@ -1,4 +1,4 @@
-/* API: the state, the scene, its parameters, undo and the camera. See web/README.md. */
+/* API: the state, the scene, its parameters and undo. See web/README.md. */
 #include "web/api/api.h"
 #include "web/api/scene_since.h"
 #include "base/number.h"
@@ -7,7 +7,6 @@
 #include "scene/model/inert/inert.h"
 #include "scene/model/params.h"
 #include "scene/file/write.h"
-#include "scene/model/camera_moves.h"
 #include "scene/model/open.h"
 
 #include <math.h>
@@ -56,8 +55,7 @@ static bool write_item(FILE *out, const json_t *value)
     return good && fputs(word, out) >= 0;
 }
 
-/* The value in the syntax of scene_set, in allocated memory; NULL for unsupported JSON (or out of memory). */
-static char *value_text(const json_t *value)
+char *api_value_text(const json_t *value)
 {
     char *joined = NULL;
     text_writer writer;
@@ -100,7 +98,7 @@ static status set_all(void *of, scene *s, diagnostic *why)
     status code = STATUS_OK;
     json_object_foreach((json_t *)(uintptr_t)values, path, value)
     {
-        char *text = code == STATUS_OK ? value_text(value) : NULL;
+        char *text = code == STATUS_OK ? api_value_text(value) : NULL;
         if (code == STATUS_OK && !text)
             code = diagnose(why, STATUS_BAD_INPUT, "give a number, a string or a list of numbers",
                             "%.200s: not a valid value", path);
@@ -158,7 +156,8 @@ static status undo_or_redo(call *c, bool redo)
 {
     uint64_t generation = 0;
     c->refused = 409;
-    return api_changed(c, scene_document_undo(c->l->scene_document, redo, &generation, &c->why), generation);
+    const status code = scene_document_undo(c->l->scene_document, redo, &generation, &c->why);
+    return api_changed(c, code, generation);
 }
 
 status api_undo(call *c)
@@ -169,36 +168,6 @@ status api_undo(call *c)
 status api_redo(call *c)
 {
     return undo_or_redo(c, true);
-}
-
-/* --- the camera --- */
-
-static bool take_pair(call *c, const char *key, double pair[2])
-{
-    const json_t *angles = json_object_get(c->body, key);
-    for (size_t i = 0; angles && i < 2; i++) {
-        const json_t *item = json_array_get(angles, i);
-        if (json_array_size(angles) != 2 || !json_is_number(item) || !(fabs(json_number_value(item)) <= 1e6)) {
-            api_refuse(c, 400, "the camera needs two angles", "give [YAW, PITCH] in degrees, each -1e6..1e6");
-            return false;
-        }
-        pair[i] = json_number_value(item);
-    }
-    return true;
-}
-
-status api_camera(call *c)
-{
-    camera_move move = {.step = {0.0, 0.0, 0.0}};
-    const char *gesture;
-    uint64_t generation = 0;
-    if (!take_pair(c, "orbit", move.orbit_deg) || !take_pair(c, "turn", move.turn_deg) ||
-        !api_take_vector(c, "step", false, move.step) || !api_take_gesture(c, &gesture))
-        return STATUS_BAD_INPUT;
-    return api_changed(c,
-                       scene_document_apply(c->l->scene_document, "move the camera", gesture, camera_move_apply, &move,
-                                            &generation, &c->why),
-                       generation);
 }
 
 /* --- the scene as a file, and as a command --- */

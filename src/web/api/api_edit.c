@@ -1,8 +1,11 @@
 /* API: objects: add, remove, move, turn, scale, rename, change material (/api/objects). new_objects.c sets the
  * properties of new objects. */
 #include "web/api/api.h"
+#include "base/text.h"
+#include "report/json.h"
 #include "scene/model/place/new_objects.h"
 #include "scene/model/check.h"
+#include "scene/model/edit/contents.h"
 #include "scene/model/edit/edit.h"
 #include "scene/model/params_path.h"
 #include "scene/model/scene.h"
@@ -20,7 +23,10 @@ typedef struct edit {
     const folder *files;
     const scene *loaded; /* scene loaded from a model or texture file */
     shape_kind shape;
+    const json_t *values; /* of a new object's parameters; NULL: none */
+    object_list together; /* the object and those that are moved, turned or scaled with it; first is NULL: it alone */
     status (*displace)(scene *s, const char *name, vec3 by, diagnostic *why);
+    status (*displace_together)(scene *s, const object_list *of, vec3 by, diagnostic *why);
     vec3 by;
     double factor;
     object_name new_name; /* name of the new object; "" for none */
@@ -80,7 +86,25 @@ status api_remove(call *c)
 
 static status displace_it(edit *e, scene *s, diagnostic *why)
 {
-    return e->displace(s, e->name, e->by, why);
+    return e->together.first ? e->displace_together(s, &e->together, e->by, why) : e->displace(s, e->name, e->by, why);
+}
+
+/* Reads `with`; the caller frees together->others. */
+static bool take_together(call *c, object_list *together)
+{
+    enum { NAMES_MAX = 1000 };
+    const json_t *list = json_object_get(c->body, "with");
+    const size_t count = json_array_size(list);
+    bool good = !list || (json_is_array(list) && count <= NAMES_MAX);
+    if (good && count > 0 && (together->others = calloc(count, sizeof *together->others))) {
+        together->first = http_path_value(c->request, "name");
+        for (together->count = 0; together->count < count && good; together->count++)
+            good =
+                (together->others[together->count] = json_string_value(json_array_get(list, together->count))) != NULL;
+    }
+    if (!good)
+        api_refuse(c, 400, "'with' is not a list of names", "give at most 1000 names of solids and lights");
+    return good;
 }
 
 static status displace(call *c, edit e, const char *verb)
@@ -89,37 +113,43 @@ static status displace(call *c, edit e, const char *verb)
     e.act = displace_it;
     double by[3];
     const char *gesture;
-    if (!api_take_vector(c, "by", true, by) || !api_take_gesture(c, &gesture))
+    if (!api_take_vector(c, "by", true, by) || !take_together(c, &e.together) || !api_take_gesture(c, &gesture)) {
+        free(e.together.others);
         return STATUS_BAD_INPUT;
+    }
     e.by = vec3_make(by[0], by[1], by[2]);
-    return apply_to(c, e, verb, gesture);
+    const status code = apply_to(c, e, verb, gesture);
+    free(e.together.others);
+    return code;
 }
 
 status api_move(call *c)
 {
-    return displace(c, (edit){.displace = scene_move}, "move");
+    return displace(c, (edit){.displace = scene_move, .displace_together = scene_move_together}, "move");
 }
 
 status api_turn(call *c)
 {
-    return displace(c, (edit){.displace = scene_turn}, "turn");
+    return displace(c, (edit){.displace = scene_turn, .displace_together = scene_turn_together}, "turn");
 }
 
 static status scale_it(edit *e, scene *s, diagnostic *why)
 {
-    return scene_scale(s, e->name, e->factor, why);
+    return e->together.first ? scene_scale_together(s, &e->together, e->factor, why)
+                             : scene_scale(s, e->name, e->factor, why);
 }
 
 status api_scale(call *c)
 {
     const json_t *factor = json_object_get(c->body, "factor");
     const char *gesture;
+    edit e = {.or_camera = true, .factor = json_number_value(factor), .act = scale_it};
     if (!json_is_number(factor))
         return api_refuse(c, 400, "'factor' is not a number", "give a factor above 0");
-    if (!api_take_gesture(c, &gesture))
-        return STATUS_BAD_INPUT;
-    return apply_to(c, (edit){.or_camera = true, .factor = json_number_value(factor), .act = scale_it}, "scale",
-                    gesture);
+    const bool good = take_together(c, &e.together) && api_take_gesture(c, &gesture);
+    const status code = good ? apply_to(c, e, "scale", gesture) : STATUS_BAD_INPUT;
+    free(e.together.others);
+    return code;
 }
 
 static status rename_it(edit *e, scene *s, diagnostic *why)
@@ -164,7 +194,49 @@ status api_copy(call *c)
     return apply_to(c, (edit){.act = copy_it}, "copy", NULL);
 }
 
+/* What is inside a solid, and a ball around the solid itself. */
+status api_contents(call *c)
+{
+    const char *name = http_path_value(c->request, "name");
+    scene *s = scene_document_take(c->l->scene_document, NULL);
+    json_t *names = json_array(), *ball = json_null();
+    contents inside = {.count = 0};
+    vec3 centre;
+    double radius;
+    const status code = s && names ? contents_find(s, name, &inside, &c->why) : out_of_memory(&c->why);
+    c->refused = 404;
+    for (size_t i = 0; i < inside.count; i++)
+        json_array_append_new(names, json_of_text(inside.name[i]));
+    if (code == STATUS_OK && contents_ball(s, name, &centre, &radius))
+        ball = json_pack("{s:[f,f,f], s:f}", "centre", centre.x, centre.y, centre.z, "radius", radius);
+    contents_clear(&inside);
+    scene_destroy(s);
+    if (code == STATUS_OK)
+        return api_reply_json(c, json_pack("{s:o, s:o}", "contents", names, "ball", ball));
+    json_decref(names);
+    return code;
+}
+
 /* --- new objects --- */
+
+/* Sets parameters and the material of the new object, by name. */
+static status set_values(const edit *e, scene *s, diagnostic *why)
+{
+    const char *row;
+    json_t *value;
+    status code = STATUS_OK;
+    json_object_foreach((json_t *)(uintptr_t)e->values, row, value)
+    {
+        char *text = api_value_text(value), *path = text_format("%s.%s", e->new_name, row);
+        if (code == STATUS_OK && !text)
+            code = diagnose(why, STATUS_BAD_INPUT, "give a number, a string or a list of numbers",
+                            "%.200s: not a valid value", row);
+        THEN(code, path ? scene_put(s, path, text, why) : out_of_memory(why));
+        free(text);
+        free(path);
+    }
+    return code;
+}
 
 /* Adds a texture, or the loaded model. */
 static status add_file(edit *e, scene *s, diagnostic *why)
@@ -177,7 +249,7 @@ static status add_file(edit *e, scene *s, diagnostic *why)
     return code;
 }
 
-static status add_object(edit *e, scene *s, diagnostic *why)
+static status add_of_kind(edit *e, scene *s, diagnostic *why)
 {
     static const struct {
         const char *word;
@@ -196,6 +268,12 @@ static status add_object(edit *e, scene *s, diagnostic *why)
             return kinds[i].add ? kinds[i].add(s, e->requested_name, e->new_name, why) : add_file(e, s, why);
     return diagnose(why, STATUS_BAD_INPUT, "use solid, light, material, model, slime or texture",
                     "unknown kind '%.60s'", e->word);
+}
+
+static status add_object(edit *e, scene *s, diagnostic *why)
+{
+    const status code = add_of_kind(e, s, why);
+    return code == STATUS_OK && e->values ? set_values(e, s, why) : code;
 }
 
 /* Loads the model or texture into a scene of its own, without holding the lock of the scene document. */
@@ -229,6 +307,9 @@ static status take_new(call *c, edit *e, scene **loaded)
                is_solid = strcmp(e->word, "solid") == 0;
     if (!api_take_text(c, "shape", is_solid, &shape) || !api_take_text(c, "file", is_file, &e->file))
         return STATUS_BAD_INPUT;
+    e->values = json_object_get(c->body, "set");
+    if (e->values && !json_is_object(e->values))
+        return api_refuse(c, 400, "'set' is not an object", "give {PARAMETER: VALUE} of the new object");
     status code = is_solid ? scene_shape_named(shape, &e->shape, &c->why) : STATUS_OK;
     if (is_file && (code = semaphore_acquire(c->l->heavy, &c->why)) == STATUS_OK) {
         code = load_alone(c->l, e->file, is_model, loaded, &c->why);

@@ -105,7 +105,7 @@ static bool is_open(const call *c, const char *name)
 static status write_file(call *c, const char *name, const char *path)
 {
     uint64_t generation = 0;
-    scene *s = scene_document_take(c->l->scene_document, &generation);
+    scene *s = scene_document_take_kept(c->l->scene_document, &generation);
     if (s)
         lab_clear_default_threads(c->l, s);
     const status code = s ? scene_write(s, path, false, &c->why) : out_of_memory(&c->why);

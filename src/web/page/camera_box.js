@@ -1,11 +1,11 @@
-/* The camera box under the image: exact steps, and fields for position and aim.
+/* The camera box under the image: views from the sides and of objects, exact steps, and fields for position and aim;
+ * buttons in the toolbar go through the history of views.
  * exports: cameraBox(root, lab); sets lab.view.camera: {key(event)} for the keys of the image */
 
 import { button, choice, element, gesture, memory, number } from './ui.js';
-import { moveCamera } from './tool_orbit.js';
+import { moveCamera } from './camera_moves.js';
+import { createCameraKeys, viewCommands } from './camera_keys.js';
 
-const ORBIT = 5;
-const FINE_ORBIT = 1;
 const AXES = ['x', 'y', 'z'];
 const short = (x) => Number(x.toPrecision(5));
 const TURNS = {
@@ -89,6 +89,7 @@ export function cameraBox(root, lab) {
   const box = element(
     'div',
     { class: 'camera-box', hidden: true, role: 'region', 'aria-label': 'Camera' },
+    viewButtons(lab),
     element('div', { class: 'camera-part' }, length.node, steps),
     element('div', { class: 'camera-part' }, angle.node, turns),
     how.group,
@@ -103,7 +104,7 @@ export function cameraBox(root, lab) {
     title: 'Move the camera by exact steps and numbers',
     'aria-expanded': 'false',
   });
-  lab.view.bar.append(toggle);
+  lab.view.bar.append(...historyButtons(lab), toggle);
   const rows = createFields(fields, lab);
   const open = (on) => {
     box.hidden = !on;
@@ -112,7 +113,38 @@ export function cameraBox(root, lab) {
   };
   open(memory.get('camera.open', false));
   lab.on('scene', rows.update);
-  lab.view.camera = { key: createKeys(lab, settings) };
+  lab.view.camera = { key: createCameraKeys(lab, settings) };
+}
+
+const titleOf = ({ title, keys }) => `${title} (${keys.replace(/\b[a-z]$/, (x) => x.toUpperCase())})`;
+
+function viewButtons(lab) {
+  const shown = viewCommands(lab).slice(0, 9);
+  const nodes = new Map(
+    shown.map((each) => [each.name, button(each.label, each.act, { small: true, title: titleOf(each) })]),
+  );
+  lab.on('state', ({ view }) => {
+    for (const name of ['home', 'keep']) nodes.get(name).disabled = view.kept;
+  });
+  return element('div', { class: 'camera-part views', role: 'group', 'aria-label': 'Views' }, ...nodes.values());
+}
+
+/* They never come and go: the image would change its size in the middle of a drag. */
+function historyButtons(lab) {
+  const [keep, back, forward] = viewCommands(lab).slice(8);
+  const make = (each, more) =>
+    button(each.label, each.act, { kind: 'quiet', small: true, title: titleOf(each), ...more });
+  const nodes = [
+    make(keep, { icon: 'pin', bare: true }),
+    make(back, { icon: 'left', bare: true }),
+    make(forward, { icon: 'right', bare: true }),
+  ];
+  lab.on('state', ({ view }) => {
+    nodes[0].disabled = view.kept;
+    nodes[1].disabled = !view.back;
+    nodes[2].disabled = !view.forward;
+  });
+  return nodes;
 }
 
 /* Fields for the parameters of position and aim that the scene has: position, and target or yaw and pitch. */
@@ -180,28 +212,4 @@ function createFields(root, lab) {
     rows.forEach((row, index) => shown[index].set(row.value));
   }
   return { update };
-}
-
-function createKeys(lab, settings) {
-  const steps = { a: [-1, 0, 0], d: [1, 0, 0], e: [0, 1, 0], q: [0, -1, 0], w: [0, 0, 1], s: [0, 0, -1] };
-  const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-  let held = null;
-  lab.view.stage.addEventListener('keyup', () => {
-    held = null;
-  });
-
-  return (event) => {
-    const letter = event.key.toLowerCase();
-    let body = null;
-    if (arrows[event.key]) body = { orbit: arrows[event.key].map((x) => x * (event.shiftKey ? FINE_ORBIT : ORBIT)) };
-    else if (steps[letter]) body = { step: steps[letter].map((x) => x * settings.length * (event.shiftKey ? 0.1 : 1)) };
-    else if (event.key === 'PageUp' || event.key === 'PageDown') {
-      const distance = (lab.state?.camera?.distance || 1) * 0.1;
-      body = { step: [0, 0, event.key === 'PageUp' ? distance : -distance] };
-    }
-    if (!body) return false;
-    held ??= gesture('key');
-    moveCamera(lab, body, held);
-    return true;
-  };
 }

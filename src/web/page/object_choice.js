@@ -6,12 +6,15 @@
  *   choice.add(body)                    POST /api/objects; selects the new object
  *   choice.move(by, gesture), choice.turn(by, gesture), choice.scale(factor, gesture)    change the selected object;
  *       waiting changes of one gesture are merged
+ *   choice.group                        what moves along with it (object_group.js)
  *   choice.copy(), choice.remove(), choice.rename(to), choice.setMaterial(material or null)    promises of true on
  *       success */
 
 import { add } from './ray_vectors.js';
+import { createGroup } from './object_group.js';
 
-const join = (waiting, newer) => ({ by: add(waiting.by, newer.by) });
+const join = (waiting, newer) => ({ ...newer, by: add(waiting.by, newer.by) });
+const product = (waiting, newer) => ({ ...newer, factor: waiting.factor * newer.factor });
 
 export function createChoice(lab) {
   const listeners = new Set();
@@ -29,17 +32,11 @@ export function createChoice(lab) {
     remove,
     copy: () => made(lab.change(at('copy'), {})),
     setMaterial: (material) => done(lab.change(at('material'), { material })),
-    move: (by, gesture) => done(lab.change(at('move'), { by }, { gesture, merge: join })),
-    turn: (by, gesture) => done(lab.change(at('turn'), { by }, { gesture, merge: join })),
-    scale: (factor, gesture) =>
-      done(
-        lab.change(
-          at('scale'),
-          { factor },
-          { gesture, merge: (waiting, newer) => ({ factor: waiting.factor * newer.factor }) },
-        ),
-      ),
+    move: (by, gesture) => send('move', { by }, gesture, join),
+    turn: (by, gesture) => send('turn', { by }, gesture, join),
+    scale: (factor, gesture) => send('scale', { factor }, gesture, product),
   };
+  choice.group = createGroup(lab, choice);
   lab.on('scene', (scene) => {
     if (choice.name && !lab.object(choice.name) && scene.generation >= since) choose('');
   });
@@ -47,6 +44,13 @@ export function createChoice(lab) {
 
   function at(what) {
     return `/api/objects/${encodeURIComponent(choice.name)}/${what}`;
+  }
+
+  /* A drag may begin before it is known what is inside the object. */
+  async function send(what, body, gesture, merge) {
+    const path = at(what);
+    await choice.group.ready;
+    return done(lab.change(path, { ...body, with: choice.group.with(gesture) }, { gesture, merge }));
   }
 
   function choose(name, generation = 0) {

@@ -6,6 +6,7 @@ import { button, choice as choiceOf, element, empty, group, replace, text } from
 import { createRow } from './param_row.js';
 import { createPads } from './object_pads.js';
 import { hintOf } from './object_list.js';
+import { mediaChoices, presetValues } from './object_presets.js';
 
 const GROUPS = { solid: 'Shape and placement', material: 'Material', mesh: 'Mesh', light: 'Light', texture: 'Texture' };
 const OWN = '(own material)';
@@ -130,12 +131,21 @@ export function createDetails(lab, choice, files) {
             onchange: (word) => choice.setMaterial(word || null),
           })
         : null;
+    const media = ['solid', 'material'].includes(object.kind)
+      ? choiceOf({
+          label: 'Set to',
+          choices: [['', 'a medium …'], ...mediaChoices()],
+          value: '',
+          onchange: (word) => makeOf(object.name, word),
+        })
+      : null;
     const parts = [object.material, object.mesh].filter(Boolean);
     return element(
       'div',
       { class: 'object-general' },
       name.node,
       material?.node,
+      media?.node,
       parts.length
         ? element(
             'div',
@@ -146,6 +156,11 @@ export function createDetails(lab, choice, files) {
           )
         : null,
     );
+  }
+
+  function makeOf(name, word) {
+    const values = Object.entries(presetValues(word)).map(([row, value]) => [`${name}.${row}`, value]);
+    if (values.length) lab.set(Object.fromEntries(values)).catch(lab.fail);
   }
 
   function parameters(object, own) {

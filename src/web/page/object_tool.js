@@ -1,8 +1,10 @@
-/* The tool Object: a click in the image selects an object, dragging moves it parallel to the image plane at its
- * depth. An object without bounds (a plane) is selected but not dragged: on it, on the background, and with Shift
- * anywhere, dragging moves the current selection.
+/* The tool Object: a click in the image selects an object, dragging moves it parallel to the image plane at its depth,
+ * with everything inside it; handles (object_gizmo.js) move, turn and scale it. An object without bounds (a plane) is
+ * selected but not dragged: on it, on the background, and with Shift anywhere, dragging moves the current selection.
  * exports: objectTool(lab, choice, mark) */
 
+import { createWheelZoom } from './camera_moves.js';
+import { createGizmo } from './object_gizmo.js';
 import { gesture } from './ui.js';
 import { add, dot, minus, times } from './ray_vectors.js';
 
@@ -18,6 +20,7 @@ export function objectTool(lab, choice, mark) {
   const isUnbounded = (object) => lab.scene.shapes.find((each) => each.shape === object.shape)?.unbounded;
   const moves = (object) => object && (object.kind === 'light' || (object.kind === 'solid' && !isUnbounded(object)));
 
+  const gizmo = createGizmo(lab, choice, mark, (object) => moves(object));
   view.tool('object', {
     label: 'Object',
     icon: 'cube',
@@ -25,8 +28,13 @@ export function objectTool(lab, choice, mark) {
     cursor: 'pointer',
     hint:
       'Click an object to select it, drag to move it; with Shift, drag the current ' +
-      'selection; arrow keys move, Delete removes',
-    chosen: () => lab.panels?.use('edit'),
+      'selection; arrow keys move, Delete removes; handles move, turn and scale: G changes them, N snaps',
+    chosen() {
+      lab.panels?.use('edit');
+      gizmo.show();
+    },
+    dropped: gizmo.hide,
+    wheel: createWheelZoom(lab),
     down,
     move,
     up,
@@ -71,11 +79,12 @@ export function objectTool(lab, choice, mark) {
   }
 
   /* Meanwhile the pointer may have moved or been released. */
-  function take(now, hit) {
+  async function take(now, hit) {
     now.hit = hit;
     const object = hit && lab.object(hit.solid);
     if (moves(object)) {
       choice.choose(hit.solid);
+      await choice.group.ready;
       now.depth = depthOf(hit.point);
     } else if (!now.far && now.ended) {
       choice.choose(hit ? hit.solid : '');
@@ -86,11 +95,13 @@ export function objectTool(lab, choice, mark) {
     if (now.far) go(now, now.last);
   }
 
+  /* With snapping, in whole steps along each axis from where the object was. */
   function go(now, point) {
     if (!(now.depth > 0) || !choice.name) return;
-    const start = now.moved || now.from;
-    const by = offset(point.x - start.x, point.y - start.y, now.depth);
-    now.moved = point;
+    const all = offset(point.x - now.from.x, point.y - now.from.y, now.depth);
+    const to = gizmo.snaps ? gizmo.inSteps(all) : all;
+    const by = minus(to, now.sent || [0, 0, 0]);
+    now.sent = to;
     if (by.some((x) => x !== 0)) choice.move(by, now.gesture);
   }
 
@@ -114,6 +125,7 @@ export function objectTool(lab, choice, mark) {
     if (!choice.name) return false;
     if (event.key === 'Escape') choice.choose('');
     else if (event.key === 'Delete') choice.remove();
+    else if (gizmo.key(event)) return true;
     else if (steps[event.key] && moves(choice.object) && mark.at()) {
       if (!keys || event.timeStamp - keys.at > PAUSE_MS) keys = { gesture: gesture('object') };
       keys.at = event.timeStamp;

@@ -1,7 +1,7 @@
 /* The panel Objects: scene files, objects to add, the list of all objects, and the selected one. exports: panel. The
  * tool Object selects and moves objects in the image. */
 
-import { button, element, group } from './ui.js';
+import { button, choice as choiceOf, element, group } from './ui.js';
 import { createChoice } from './object_choice.js';
 import { createDetails } from './object_details.js';
 import { createFiles } from './scene_files.js';
@@ -9,6 +9,7 @@ import { createList } from './object_list.js';
 import { createWhole } from './object_whole.js';
 import { createMark } from './object_mark.js';
 import { objectTool } from './object_tool.js';
+import { presetChoices, presetValues } from './object_presets.js';
 
 let choice = null;
 let files = null;
@@ -18,6 +19,7 @@ function start(lab) {
   choice = createChoice(lab);
   files = createFiles(lab, choice);
   lab.save = files.save;
+  lab.choice = choice;
   const mark = createMark(lab, choice);
   objectTool(lab, choice, mark);
 }
@@ -33,14 +35,38 @@ function fileButtons() {
   );
 }
 
+/* What a new solid is made of; the scene's own materials come and go. */
+function presetField(lab) {
+  let made = null;
+  let shown = '';
+  const node = element('div', { class: 'preset-field' });
+  const fill = () => {
+    const choices = presetChoices(lab);
+    if (shown === JSON.stringify(choices)) return;
+    shown = JSON.stringify(choices);
+    const was = made?.value || '';
+    const value = choices.some(([word]) => word === was) ? was : '';
+    made = choiceOf({ label: 'New solids are of', choices, value });
+    node.replaceChildren(made.node);
+  };
+  lab.on('scene', fill);
+  fill();
+  return { node, values: () => presetValues(made.value) };
+}
+
 /* The shapes are known with the first scene. */
-function shapeButtons(lab) {
+function shapeButtons(lab, preset) {
   const node = element('div', { class: 'buttons', role: 'group', 'aria-label': 'Add a solid' });
   const fill = () => {
     if (node.firstChild || !lab.scene) return;
     for (const { shape, meaning } of lab.scene.shapes) {
       const label = shape[0].toUpperCase() + shape.slice(1);
-      node.append(button(label, () => choice.add({ kind: 'solid', shape }), { small: true, title: meaning }));
+      node.append(
+        button(label, () => choice.add({ kind: 'solid', shape, set: preset.values() }), {
+          small: true,
+          title: meaning,
+        }),
+      );
     }
   };
   lab.on('scene', fill);
@@ -50,10 +76,12 @@ function shapeButtons(lab) {
 
 function addButtons(lab) {
   const small = (label, act, icon) => button(label, act, { small: true, icon });
+  const preset = presetField(lab);
   return group(
     'Add',
     { id: 'edit.add' },
-    shapeButtons(lab),
+    preset.node,
+    shapeButtons(lab, preset),
     element(
       'div',
       { class: 'buttons', role: 'group', 'aria-label': 'Add other objects' },

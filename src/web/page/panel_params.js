@@ -5,6 +5,7 @@
 import { button, check, element, empty, group, icon, memory, replace } from './ui.js';
 import { createRow, valueText } from './param_row.js';
 import { hasLaw } from './param_laws.js';
+import { meaningsOf } from './param_synonyms.js';
 
 const FOUND_MAX = 80;
 const LATER_MS = 300; /* the list is not rebuilt while one of its controls is dragged */
@@ -31,6 +32,10 @@ function grouped(rows) {
   }
   return groups;
 }
+
+/* What a search looks in: for a choice also its words, such as the names of media. */
+const hayOf = (row) =>
+  `${row.path} ${row.path.replaceAll('_', ' ')} ${row.meaning} ${(row.choices || []).join(' ')}`.toLowerCase();
 
 const rank = { solid: 0, light: 1, material: 2, mesh: 3, texture: 4 };
 
@@ -279,11 +284,11 @@ export const panel = {
         results.replaceChildren();
         return;
       }
-      const found = lab.scene.params.filter((row) => {
-        const hay = `${row.path} ${row.path.replaceAll('_', ' ')} ${row.meaning}`.toLowerCase();
-        return words.every((word) => hay.includes(word));
-      });
-      const paths = found.filter((row) => words.every((word) => row.path.toLowerCase().includes(word)));
+      const hays = new Map(lab.scene.params.map((row) => [row, hayOf(row)]));
+      const has = (hay, some) => some.some((word) => hay.includes(word));
+      const meant = words.map(meaningsOf);
+      const found = lab.scene.params.filter((row) => meant.every((some) => has(hays.get(row), some)));
+      const paths = found.filter((row) => meant.every((some) => has(row.path.toLowerCase(), some)));
       const near = new Set(handParts(lab, onceClear).flatMap(([, own]) => own.map((row) => row.path)));
       const handFirst = (some) => [
         ...some.filter((row) => near.has(row.path)),

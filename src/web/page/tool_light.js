@@ -2,6 +2,7 @@
  * plane, with Shift along the line of sight.
  * exports: lightTool(lab) */
 
+import { createWheelZoom } from './camera_moves.js';
 import { digits, element, gesture, icon } from './ui.js';
 
 const EDGE = 30;
@@ -22,6 +23,7 @@ export function lightTool(lab) {
     order: 20,
     cursor: 'default',
     hint: 'Drag a light; with Shift: nearer and farther',
+    wheel: createWheelZoom(lab),
     chosen() {
       active = true;
       place();

@@ -60,7 +60,9 @@ export function createView(root, lab) {
       id: 'picture',
       tabindex: '0',
       role: 'application',
-      'aria-label': 'Image. Arrow keys orbit, W A S D Q E step, plus and minus zoom',
+      'aria-label':
+        'Image. Arrow keys orbit, Page Up and Page Down move nearer and farther, W A S D Q E step, X Y Z look from ' +
+        'the sides, plus and minus magnify; question mark lists all keys',
     },
     canvas,
     drawing,

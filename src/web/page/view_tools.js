@@ -1,8 +1,10 @@
-/* The toolbar over the image, and its pointer and key events: those of the active tool, and panning, zooming and the
- * pixel readout, which all tools share.
+/* The toolbar over the image, and its pointer and key events: those of the active tool, and scrolling and zooming the
+ * image, panning the camera, and the pixel readout, which all tools share.
  * exports: createToolbar(view, lab, readout) -> {node, bar, options, tool, use, chosen} */
 
-import { button, element, icon, unique } from './ui.js';
+import { panCamera } from './camera_moves.js';
+import { button, element, gesture, icon, unique } from './ui.js';
+import { createPinch } from './view_pinch.js';
 
 const ZOOM = 1.25;
 const PAN = 48;
@@ -100,6 +102,7 @@ export function createToolbar(view, lab, readout) {
   }
 
   function listen(stage) {
+    createPinch(stage, lab, letGo);
     stage.addEventListener('pointerdown', down);
     stage.addEventListener('pointermove', move);
     stage.addEventListener('pointerup', up);
@@ -121,14 +124,18 @@ export function createToolbar(view, lab, readout) {
     });
   }
 
+  function panTheCamera(name) {
+    return (dx, dy) => panCamera(lab, dx, dy, name);
+  }
+
   function down(event) {
     if (event.target.closest('button, input, select, a') || drag) return;
     view.stage.focus({ preventScroll: true });
     const point = view.fromEvent(event);
-    const panning = event.button === 1 || (event.button === 0 && space);
-    if (!panning && event.button !== 0) return;
-    if (!panning && tools.get(chosen)?.down?.(point, event) === false) return;
-    drag = { id: event.pointerId, start: point, panning, x: event.clientX, y: event.clientY };
+    const pans = event.button === 1 ? panTheCamera(gesture('pan')) : event.button === 0 && space ? view.pan : null;
+    if (!pans && event.button !== 0) return;
+    if (!pans && tools.get(chosen)?.down?.(point, event) === false) return;
+    drag = { id: event.pointerId, start: point, pans, x: event.clientX, y: event.clientY };
     view.stage.setPointerCapture(event.pointerId);
     event.preventDefault();
   }
@@ -139,8 +146,8 @@ export function createToolbar(view, lab, readout) {
     if (!drag) {
       tools.get(chosen)?.hover?.(point, event);
     } else if (event.pointerId === drag.id) {
-      if (drag.panning) {
-        view.pan(event.clientX - drag.x, event.clientY - drag.y);
+      if (drag.pans) {
+        drag.pans(event.clientX - drag.x, event.clientY - drag.y);
         Object.assign(drag, { x: event.clientX, y: event.clientY });
       } else {
         tools.get(chosen)?.move?.(point, event, drag.start);
@@ -149,10 +156,14 @@ export function createToolbar(view, lab, readout) {
   }
 
   function up(event) {
-    if (!drag || event.pointerId !== drag.id) return;
-    const { panning } = drag;
+    if (drag && event.pointerId === drag.id) letGo(event);
+  }
+
+  function letGo(event) {
+    if (!drag) return;
+    const { pans } = drag;
     drag = null;
-    if (!panning) tools.get(chosen)?.up?.(view.fromEvent(event), event);
+    if (!pans) tools.get(chosen)?.up?.(view.fromEvent(event), event);
   }
 
   function wheel(event) {

@@ -1,45 +1,11 @@
 /* The scene document: versions, undo and redo stacks, and sharing of loaded data. */
-#include "web/session/scene_document.h"
+#include "web/session/scene_document_private.h"
 #include "scene/model/params.h"
 #include "report/json.h"
 #include "scene/model/scene.h"
 
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A scene as it was opened, shared by all versions derived from it. Guarded by the document's lock. */
-typedef struct origin {
-    scene *s;
-    uint64_t number; /* of its version */
-    int owners;
-} origin;
-
-/* One version of the document. Undo versions hold no loaded data: a hundred undo steps must not hold a hundred
- * meshes. */
-typedef struct version {
-    scene *s;
-    char *file;      /* NULL: no file */
-    char *what;      /* the change made to it, for undo; in the redo stack: the change that led to it */
-    uint64_t number; /* of the version; undo restores it */
-    origin *from;
-} version;
-
-typedef struct version_stack {
-    version item[DOCUMENT_UNDO_MAX];
-    size_t count;
-} version_stack;
-
-struct scene_document {
-    pthread_mutex_t lock;
-    const folder *files;
-    void (*changed)(void *context);
-    void *context;
-    version now;
-    uint64_t generation, numbers, saved_number;
-    char gesture[80]; /* of the last change; "" for none */
-    version_stack undo, redo;
-};
 
 static origin *origin_create(const scene *s, uint64_t number)
 {
@@ -122,7 +88,7 @@ status scene_document_create(scene *first, const char *file, const folder *files
                           .generation = 1,
                           .numbers = 1,
                           .saved_number = file ? 1 : 0};
-    d->now = (version){.s = first, .file = copy_or_null(file), .number = 1, .from = from};
+    d->now = (version){.s = first, .file = copy_or_null(file), .number = 1, .from = from, .kept = first->camera};
     *out = d;
     return STATUS_OK;
 }
@@ -138,11 +104,8 @@ void scene_document_destroy(scene_document *d)
     free(d);
 }
 
-/* Replaces the scene by next, which the document owns from now on, and pushes the old one on the undo stack, or
- * drops it where the same gesture made it. from: the new origin of an opened scene, owned from now on; NULL: the
- * origin stays. */
-static status push_version(scene_document *d, scene *next, const char *file, origin *from, const char *what,
-                           const char *gesture, diagnostic *why)
+status scene_document_push(scene_document *d, scene *next, const char *file, origin *from, const struct camera *kept,
+                           const char *what, const char *gesture, diagnostic *why)
 {
     char *name = copy_or_null(file), *words = strdup(what);
     if (!words || (file && !name)) {
@@ -153,11 +116,16 @@ static status push_version(scene_document *d, scene *next, const char *file, ori
     const bool continues = gesture && d->gesture[0] && strcmp(gesture, d->gesture) == 0;
     snprintf(d->gesture, sizeof d->gesture, "%s", gesture ? gesture : "");
     version before = d->now;
-    d->now = (version){.s = next, .file = name, .number = ++d->numbers, .from = from ? from : before.from};
-    if (from)
+    d->now =
+        (version){.s = next, .file = name, .number = ++d->numbers, .from = from ? from : before.from, .kept = *kept};
+    if (from) {
         from->number = d->now.number;
-    else
+        view_history_clear(&d->views);
+    } else {
         before.from->owners++;
+        if (!camera_equal(&next->camera, &before.s->camera))
+            view_history_push(&d->views, &(camera_view){before.s->camera, d->pivot}, gesture);
+    }
     if (continues) {
         free(words);
         version_clear(&before);
@@ -170,8 +138,7 @@ static status push_version(scene_document *d, scene *next, const char *file, ori
     return STATUS_OK;
 }
 
-/* Ends every change: returns the generation to the caller, unlocks and calls changed. */
-static status finish(scene_document *d, status code, uint64_t *generation)
+status scene_document_finish(scene_document *d, status code, uint64_t *generation)
 {
     if (code == STATUS_OK && generation)
         *generation = d->generation;
@@ -188,10 +155,15 @@ status scene_document_apply(scene_document *d, const char *what, const char *ges
     scene *next = scene_clone(d->now.s);
     status code = next ? change(context, next, why) : out_of_memory(why);
     THEN(code, scene_document_check(next, d->files, why));
-    THEN(code, push_version(d, next, d->now.file, NULL, what, gesture, why));
+    if (code == STATUS_OK) {
+        /* A change of the camera's parameters is one of the scene, which then has the whole view as its camera. */
+        const bool moved = !camera_equal(&next->camera, &d->now.s->camera);
+        code =
+            scene_document_push(d, next, d->now.file, NULL, moved ? &next->camera : &d->now.kept, what, gesture, why);
+    }
     if (code != STATUS_OK)
         scene_destroy(next);
-    return finish(d, code, generation);
+    return scene_document_finish(d, code, generation);
 }
 
 status scene_document_open(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why)
@@ -206,14 +178,27 @@ status scene_document_open(scene_document *d, scene *s, const char *file, uint64
     char words[128];
     snprintf(words, sizeof words, "open %.100s", file ? file : "a new scene");
     pthread_mutex_lock(&d->lock);
-    code = push_version(d, s, file, from, words, NULL, why);
+    code = scene_document_push(d, s, file, from, &s->camera, words, NULL, why);
     if (code != STATUS_OK) {
         origin_release(from);
         scene_destroy(s);
     } else if (file) {
         d->saved_number = d->now.number;
     }
-    return finish(d, code, generation);
+    return scene_document_finish(d, code, generation);
+}
+
+/* A version with the same camera of its own leaves the view as it is, and one with another camera shows it. Versions of
+ * another file come with their last view. */
+static void restore_view(scene_document *d, const version *before, const camera_view *view)
+{
+    if (d->now.from != before->from) {
+        view_history_clear(&d->views);
+        return;
+    }
+    d->now.s->camera = view->camera;
+    if (!camera_equal(&d->now.kept, &before->kept))
+        scene_document_put_view(d, &(camera_view){d->now.kept, {{0, 0, 0}, false}}, NULL);
 }
 
 status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, diagnostic *why)
@@ -221,16 +206,19 @@ status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, d
     pthread_mutex_lock(&d->lock);
     version_stack *from = redo ? &d->redo : &d->undo, *to = redo ? &d->undo : &d->redo;
     if (from->count == 0)
-        return finish(d, diagnose(why, STATUS_BAD_INPUT, "", "nothing to %s", redo ? "redo" : "undo"), NULL);
+        return scene_document_finish(d, diagnose(why, STATUS_BAD_INPUT, "", "nothing to %s", redo ? "redo" : "undo"),
+                                     NULL);
     version next = from->item[--from->count], before = d->now;
     before.what = next.what; /* the change between the two versions */
     next.what = NULL;
     scene_borrow_meshes(next.s, before.s);
+    camera_view view = scene_document_view_now(d);
     stack_push(to, before);
     d->now = next;
+    restore_view(d, &before, &view);
     d->gesture[0] = 0;
     d->generation++;
-    return finish(d, STATUS_OK, generation);
+    return scene_document_finish(d, STATUS_OK, generation);
 }
 
 static status reset_path(scene *s, const scene *opened, const char *path, diagnostic *why)
@@ -256,13 +244,14 @@ status scene_document_reset(scene_document *d, const char *const *paths, size_t 
         scene_borrow_meshes(next, d->now.s);
         char words[128];
         snprintf(words, sizeof words, count == 1 ? "reset %.100s" : "reset", count == 1 ? paths[0] : "");
-        code = push_version(d, next, d->now.file, NULL, words, NULL, why);
+        const bool moved = count == 0 || !camera_equal(&next->camera, &d->now.s->camera);
+        code = scene_document_push(d, next, d->now.file, NULL, moved ? &next->camera : &d->now.kept, words, NULL, why);
         if (code == STATUS_OK && count == 0)
             d->now.number = from->number; /* it is that version again */
     }
     if (code != STATUS_OK)
         scene_destroy(next);
-    return finish(d, code, generation);
+    return scene_document_finish(d, code, generation);
 }
 
 scene *scene_document_take(scene_document *d, uint64_t *generation)
@@ -340,6 +329,7 @@ bool scene_document_json(scene_document *d, json_t *state)
         json_pack("{s:I, s:o, s:o, s:b, s:o, s:o}", "generation", (json_int_t)d->generation, "file",
                   d->now.file ? json_of_text(d->now.file) : json_null(), "title", json_of_text(d->now.s->title),
                   "saved", d->now.number == d->saved_number, "undo", top_json(&d->undo), "redo", top_json(&d->redo));
+    json_object_set_new(json, "view", scene_document_view_json(d));
     pthread_mutex_unlock(&d->lock);
     return json_object_update_new(state, json) == 0;
 }

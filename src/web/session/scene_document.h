@@ -5,6 +5,7 @@
  * copy during a change. Errors: STATUS_BAD_INPUT with the reason; the scene is then unchanged. */
 #pragma once
 
+#include "scene/model/camera_moves.h"
 #include "web/session/folder.h"
 #include <stdint.h>
 
@@ -39,7 +40,19 @@ status scene_document_apply(scene_document *d, const char *what, const char *ges
  * from now on. Takes ownership of s, also after an error. */
 status scene_document_open(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why);
 
-/* STATUS_BAD_INPUT when there is nothing to undo (or redo). */
+/* Moves the camera: a view of the scene, not a change of it. It makes a new generation, but no undo step, and the scene
+ * stays saved; the views have a history of their own. The document keeps the move's pivot. gesture: NULL, or a string;
+ * consecutive moves with the same gesture are one view of the history. */
+status scene_document_move_view(scene_document *d, camera_move *move, const char *gesture, uint64_t *generation,
+                                diagnostic *why);
+
+/* back, forward: through the history of views. home: the scene's own camera. keep: makes the view the scene's own
+ * camera, which is a change of the scene. STATUS_BAD_INPUT when there is nothing to do. */
+typedef enum view_command { VIEW_BACK, VIEW_FORWARD, VIEW_HOME, VIEW_KEEP } view_command;
+status scene_document_view(scene_document *d, view_command order, uint64_t *generation, diagnostic *why);
+
+/* STATUS_BAD_INPUT when there is nothing to undo (or redo). The view stays, unless the two scenes have different
+ * cameras of their own. */
 status scene_document_undo(scene_document *d, bool redo, uint64_t *generation, diagnostic *why);
 
 /* Resets these paths to their values when the scene was opened, or (count 0) all paths and the objects themselves. */
@@ -48,6 +61,8 @@ status scene_document_reset(scene_document *d, const char *const *paths, size_t 
 
 /* A copy of the scene with its loaded data (triangles, textures); NULL when out of memory. generation may be NULL. */
 scene *scene_document_take(scene_document *d, uint64_t *generation);
+/* The same with the scene's own camera instead of the view: what a file of it contains. */
+scene *scene_document_take_kept(scene_document *d, uint64_t *generation);
 /* A copy of the scene as it was opened. */
 scene *scene_document_take_opened(scene_document *d);
 uint64_t scene_document_generation(scene_document *d);
@@ -58,5 +73,5 @@ void scene_document_share_loaded(scene_document *d, const scene *loaded, uint64_
 /* Records that this generation was written to that file. */
 void scene_document_saved(scene_document *d, const char *file, uint64_t generation);
 
-/* Adds generation, file, title, saved, undo and redo; false when out of memory. */
+/* Adds generation, file, title, saved, undo, redo and view; false when out of memory. */
 bool scene_document_json(scene_document *d, json_t *state);

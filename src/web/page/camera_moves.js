@@ -1,0 +1,50 @@
+/* Moves of the camera, which are views of the scene: they make no undo step and leave the scene saved.
+ * exports:
+ *   moveCamera(lab, body, gesture)      sends {orbit, turn, step, zoom, look, frame} to /api/camera; waiting moves of
+ *                                       one gesture are merged
+ *   panCamera(lab, dx, dy, gesture)     the image follows a pointer by that many CSS pixels at the pivot's depth
+ *   unitsPerPixel(lab, depth)           scene units per CSS pixel at a depth
+ *   createWheelZoom(lab)                a tool's function wheel(point, event, pixels): scales the distance
+ *   goView(lab, what)                   'back', 'forward', 'home' or 'keep' */
+
+import { gesture } from './ui.js';
+
+const WHEEL = 0.0012; /* logarithm of the distance per CSS pixel of the wheel: 12 % per notch */
+const PAUSE_MS = 400;
+
+const sum = (a, b) => (a && b ? a.map((value, index) => value + b[index]) : a || b);
+
+function join(waiting, newer) {
+  const joined = { ...waiting, ...newer };
+  for (const key of ['orbit', 'turn', 'step']) {
+    const both = sum(waiting[key], newer[key]);
+    if (both) joined[key] = both;
+  }
+  if (waiting.zoom && newer.zoom) joined.zoom = waiting.zoom * newer.zoom;
+  return joined;
+}
+
+export const moveCamera = (lab, body, name) =>
+  lab.change('/api/camera', body, { gesture: name, merge: join }).catch(lab.fail);
+
+export function unitsPerPixel(lab, depth) {
+  const { view } = lab;
+  return (2 * lab.state.camera.half_width * depth) / (view.width * view.scale);
+}
+
+export function panCamera(lab, dx, dy, name) {
+  if (!lab.state?.view || !lab.view.width || (!dx && !dy)) return;
+  const unit = unitsPerPixel(lab, lab.state.view.distance);
+  moveCamera(lab, { step: [-dx * unit, dy * unit, 0] }, name);
+}
+
+export function createWheelZoom(lab) {
+  let wheeling = null;
+  return (point, event, pixels) => {
+    if (!wheeling || event.timeStamp - wheeling.at > PAUSE_MS) wheeling = { gesture: gesture('wheel') };
+    wheeling.at = event.timeStamp;
+    moveCamera(lab, { zoom: Math.exp(pixels * WHEEL) }, wheeling.gesture);
+  };
+}
+
+export const goView = (lab, what) => lab.change('/api/view', { do: what }).catch(lab.fail);

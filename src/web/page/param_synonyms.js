@@ -1,0 +1,55 @@
+/* Everyday words for parameters, for the search of the panel Parameters: a search for the word on the left also finds
+ * the rows whose path or description contains one of those on the right. Add a word here if a search for it finds
+ * nothing, or misses what a newcomer means. The words of a choice (a medium, an integrator) are found without this
+ * table. exports: meaningsOf(word) -> [words], the word itself first; words that begin like a key count for it */
+
+const SYNONYMS = {
+  air: ['background.ior', 'background.medium', 'background.absorb'],
+  angle: ['rotation', 'yaw', 'pitch', 'roll', 'half_angle', 'fov'],
+  antialiasing: ['render.samples', 'render.filter', 'render.paths'],
+  blur: ['render.filter', 'shininess'],
+  bounces: ['render.depth'],
+  brightness: ['intensity', 'emission', 'ambient', 'background.color'],
+  caustics: ['render.integrator', 'render.shadows'],
+  colour: ['color', 'absorb', 'tint'],
+  cores: ['render.threads'],
+  dark: ['intensity', 'ambient', 'render.depth'],
+  dispersion: ['medium', 'coefficients', 'render.spectrum', 'render.wavelengths'],
+  environment: ['background'],
+  exposure: ['intensity', 'emission'],
+  fresnel: ['render.weights'],
+  glass: ['medium', 'ior', 'transparency'],
+  glow: ['emission'],
+  index: ['ior', 'medium', 'coefficients'],
+  lens: ['fov', 'ior'],
+  liquid: ['medium', 'ior', 'transparency', 'absorb'],
+  magnification: ['fov'],
+  mirror: ['reflectivity', 'ior'],
+  murky: ['absorb', 'tint'],
+  noise: ['render.paths', 'render.samples', 'render.error', 'render.sampler'],
+  oil: ['medium', 'ior', 'transparency', 'absorb'],
+  opacity: ['transparency'],
+  place: ['position'],
+  prism: ['medium', 'coefficients', 'render.spectrum', 'sides'],
+  quality: ['render.samples', 'render.depth', 'render.paths', 'render.width', 'render.height'],
+  rainbow: ['render.spectrum', 'render.wavelengths', 'medium'],
+  reflection: ['reflectivity', 'render.depth', 'render.weights', 'specular'],
+  refraction: ['ior', 'medium', 'transparency', 'render.transmission'],
+  resolution: ['render.width', 'render.height'],
+  shiny: ['specular', 'shininess', 'reflectivity'],
+  sky: ['background'],
+  smooth: ['shading', 'render.samples', 'shininess'],
+  speed: ['render.threads', 'render.accel', 'render.samples', 'render.depth'],
+  transparent: ['transparency'],
+  water: ['medium', 'ior', 'transparency', 'absorb'],
+  zoom: ['fov', 'camera.position', 'scale'],
+};
+
+const LEAST = 3; /* letters of a beginning: 'brigh' finds what 'brightness' does */
+
+export function meaningsOf(word) {
+  const keys = Object.keys(SYNONYMS).filter(
+    (key) => key === word || (word.length >= LEAST && (key.startsWith(word) || word === `${key}s`)),
+  );
+  return [word, ...keys.flatMap((key) => SYNONYMS[key])];
+}
