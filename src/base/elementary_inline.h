@@ -1,5 +1,6 @@
-/* Elementary functions as branch-free straight-line code, for kernels that vectorise: see base/elementary.h. Powers: x = 2^e m with m
- * in [1/sqrt 2, sqrt 2); log2 m = 2 atanh((m-1)/(m+1)) / ln 2, by its Taylor series to the 21st power (the 23rd is
+/* Elementary functions as branch-free straight-line code, for kernels that vectorise: see base/elementary.h.
+ * Powers: x = 2^e m with m in [1/sqrt 2, sqrt 2);
+ * log2 m = 2 atanh((m-1)/(m+1)) / ln 2, by its Taylor series to the 21st power (the 23rd is
  * below 1e-18); 2^t by its nearest integer power and the Taylor series of e^(r ln 2) to the 13th power (the 14th is
  * below 1e-17). */
 #pragma once

@@ -52,8 +52,8 @@ ALWAYS_INLINE float boxes_max(float a, float b)
  * the search. */
 typedef double boxes_visit(void *context, int item, double t_max);
 
-/* Begins to load the data of an item that will probably be visited soon: in large hierarchies the time goes into waiting
- * for memory. */
+/* Begins to load the data of an item that will probably be visited soon: in large hierarchies the time goes into
+ * waiting for memory. */
 typedef void boxes_fetch(void *context, int item);
 
 /* Which children of a node the ray may enter before its t_max, as bits; near: where. */

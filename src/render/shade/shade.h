@@ -68,8 +68,8 @@ typedef struct shade_kernels {
     /* Adds branches that the depth limit cuts off to *sum: their number, and their throughput in units of
      * 1/COUNTERS_CUT_ONE. */
     void (*cut)(const group *g, const branch_group *b, cut_sum *sum);
-    /* The light of a group in film units: a surface's own, of that radiance in its colour; and that of the branches that
-     * the depth limit cuts off, the same for all directions. */
+    /* The light of a group in film units: a surface's own, of that radiance in its colour; and that of the branches
+     * that the depth limit cuts off, the same for all directions. */
     void (*own_light)(const group *g, vec3 radiance, film_light *out);
     void (*cut_light)(const group *g, const branch_group *b, vec3 radiance, film_light *out);
     /* The shares of the rays' radiance in film units. */

@@ -270,8 +270,8 @@ static void cut(const group *g, const branch_group *b, cut_sum *sum)
     *sum = (cut_sum){branches, {red, green, blue}};
 }
 
-/* Stores light i; returns -1 if it is out of range, where C does not define the conversion. AVX2 cannot convert to 64-bit
- * integers: these loops carry no mark. */
+/* Stores light i; returns -1 if it is out of range, where C does not define the conversion. AVX2 cannot convert to
+ * 64-bit integers: these loops carry no mark. */
 ALWAYS_INLINE int64_t store_light(double r, double g, double b, int64_t counts, int i, film_light *out)
 {
     const int64_t fits = mask_of((int)film_accepts(r) & (int)film_accepts(g) & (int)film_accepts(b)),

@@ -27,8 +27,8 @@
  *   unasked
  *   413  body_max
  * A request must arrive within timeout_s, and a reply must be read within the same time; slower connections are
- * closed. Connections that have sent no request with the token may be a quarter of all; another one displaces the oldest
- * of them. Each reply forbids the browser to cache it, to frame it, to guess its type or to load anything from
+ * closed. Connections that have sent no request with the token may be a quarter of all; another one displaces the
+ * oldest of them. Each reply forbids the browser to cache it, to frame it, to guess its type or to load anything from
  * elsewhere for it (Content-Security-Policy and related headers); libmicrohttpd's own replies to malformed HTTP lack
  * these headers.
  *
