@@ -205,7 +205,7 @@ static void every_parameter_round_trips_with_other_values(void **state)
 {
     (void)state;
     static const char *const owners[] = {"render", "camera",  "background", "body",      "model", "toy",  "wood",
-                                         "lamp",   "paint",   "plane1",     "cylinder1", "cup1",  "box1", "sphere1",
+                                         "ray",    "lamp",   "paint",   "plane1",     "cylinder1", "cup1",  "box1", "sphere1",
                                          "mesh1",  "painted", "cone1",      "torus1",    "prism1"};
     scene *s = scene_from(one_of_each);
     bool seen[512] = {false};

@@ -90,11 +90,11 @@ function endOf(ray, reach) {
 
 export const columns = [
   ['kind', 'Ray', 'origin of the ray'],
-  ['depth', 'Depth', 'number of reflections and refractions since the camera'],
-  ['surface', 'Hits', 'solid and surface'],
-  ['media', 'Media', 'on both sides of the surface, with refractive indices'],
   ['angles', 'Angles', 'angles of incidence and refraction, from the normal'],
   ['reflectance', 'R (s, p)', 'reflectance: unpolarised, and of each polarisation'],
+  ['surface', 'Hits', 'solid and surface'],
+  ['media', 'Media', 'on both sides of the surface, with refractive indices'],
+  ['depth', 'Depth', 'number of reflections and refractions since the camera'],
   ['path', 'Path', 'length of the ray up to the hit'],
   [
     'transmittance',
