@@ -102,8 +102,8 @@ static status draw_ray(void *context, const beam_ray *ray, const ray_tree *tree,
         if (node->end != RAY_END_HIT && node->end != RAY_END_SKY)
             continue;
         const double reach = 10.0 * vec3_length(vec3_sub(c->view.eye, node->origin));
-        const vec3 to = node->end == RAY_END_HIT ? node->hit.point
-                                                 : vec3_add(node->origin, vec3_scale(node->direction, reach));
+        const vec3 to =
+            node->end == RAY_END_HIT ? node->hit.point : vec3_add(node->origin, vec3_scale(node->direction, reach));
         draw_segment(c, node->origin, to, 0.25 + 0.75 * sqrt(fmin(1.0, beam_share(node) / start)), rgb);
     }
     return STATUS_OK;

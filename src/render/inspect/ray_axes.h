@@ -18,6 +18,6 @@ status ray_axes_set(ray_axes *a, vec3 from, vec3 axis, const vec3 *normal, diagn
  * degrees between them; one ray is on the axis. Returns its offset from the axis, in the unit of size. */
 double ray_axes_in_plane(const ray_axes *a, bool spreads, double size, int i, int n, vec3 *origin, vec3 *direction);
 
-/* Ray i of n over a disc of the diameter `size`, or within a cone of the full angle `size`, evenly distributed (by solid
- * angle) along a spiral: H. Vogel, Mathematical Biosciences 44 (1979). One ray is on the axis. */
+/* Ray i of n over a disc of the diameter `size`, or within a cone of the full angle `size`, evenly distributed (by
+ * solid angle) along a spiral: H. Vogel, Mathematical Biosciences 44 (1979). One ray is on the axis. */
 void ray_axes_round(const ray_axes *a, bool spreads, double size, int i, int n, vec3 *origin, vec3 *direction);

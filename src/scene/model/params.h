@@ -2,10 +2,10 @@
  * axes, CSV headers and the manual are generated from it.
  *
  * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture, a
- * light, a beam, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`, `vessel.ior`,
- * `glass.ior`. One element of a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a material's
- * field applies to all solids with that material; setting it by a solid's name applies to that solid alone; the last
- * setting wins. Ownership: the table is constant. */
+ * light, a beam, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`,
+ * `vessel.ior`, `glass.ior`. One element of a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a
+ * material's field applies to all solids with that material; setting it by a solid's name applies to that solid alone;
+ * the last setting wins. Ownership: the table is constant. */
 #pragma once
 
 #include "scene/model/open.h"

@@ -1,5 +1,5 @@
-/* A scene: render settings, camera, background, lights, beams, materials, solids. Every user-settable field is a row of the
- * parameter table (scene/model/params.h), which is used by files, --set, studies and manuals. Code that only passes
+/* A scene: render settings, camera, background, lights, beams, materials, solids. Every user-settable field is a row of
+ * the parameter table (scene/model/params.h), which is used by files, --set, studies and manuals. Code that only passes
  * scenes on includes scene/model/open.h. Ownership: see there; the renderer borrows a scene. */
 #pragma once
 

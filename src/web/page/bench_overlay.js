@@ -69,7 +69,9 @@ export function createBenchOverlay(lab, bench) {
     const place = lab.view.project(point);
     if (!place) return [];
     const size = 13 / lab.view.scale;
-    return [svg('text', { class: 'bench-text', x: place.x + 0.7 * size, y: place.y - 0.6 * size, 'font-size': size }, text)];
+    return [
+      svg('text', { class: 'bench-text', x: place.x + 0.7 * size, y: place.y - 0.6 * size, 'font-size': size }, text),
+    ];
   }
 
   /* The normal to both sides of the surface, and the angles. */

@@ -7,7 +7,14 @@ import { createRow } from './param_row.js';
 import { createPads } from './object_pads.js';
 import { hintOf } from './object_list.js';
 
-const GROUPS = { solid: 'Shape and placement', material: 'Material', mesh: 'Mesh', light: 'Light', beam: 'Beam', texture: 'Texture' };
+const GROUPS = {
+  solid: 'Shape and placement',
+  material: 'Material',
+  mesh: 'Mesh',
+  light: 'Light',
+  beam: 'Beam',
+  texture: 'Texture',
+};
 const OWN = '(own material)';
 
 /* Identifies a control, also after it is recreated. */

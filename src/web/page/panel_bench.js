@@ -165,14 +165,13 @@ function createBeams(lab) {
 function hitRows(segments) {
   return segments.map((segment) => {
     const words = describe(segment.one);
-    const { hit } = segment.one.node;
     const name = `${segment.one.level === 1 ? 'start' : words.kind}: ${words.surface || words.end}`;
     return [
       button(name, () => choose(segment), { small: true, kind: 'quiet', pressed: segment === bench.chosen }),
       words.angles,
       words.reflectance,
-      hit && !hit.opaque ? `${digits(100 * hit.T, 3)} %` : '',
-      digits(segment.power, 4),
+      words.transmitted,
+      digits(segment.power, 3),
     ];
   });
 }
@@ -192,7 +191,7 @@ function createNumbers() {
         chosen ? facts(hitFacts(chosen)) : empty('Choose the tool Bench and click a beam, or a row below.'),
         table({
           caption: `Hits of ${first.beam}, ray ${first.ray.number + 1}, ${digits(first.ray.lambda_nm, 5)} nm`,
-          columns: ['Ray', 'Angles', 'R (s, p)', 'T', { label: 'Power', numeric: true }],
+          columns: ['Ray', 'Angles', 'R', 'T', { label: 'Power', numeric: true }],
           rows: hitRows(same.slice(0, 200)),
         }),
       );

@@ -243,7 +243,9 @@ function createAnswer(lab) {
 
 function stays() {
   if (question.old) return notice('The scene and the camera have changed since these rays were traced.');
-  return question.moved ? notice('The camera has moved: these are the rays of the view in which they were asked.') : null;
+  return question.moved
+    ? notice('The camera has moved: these are the rays of the view in which they were asked.')
+    : null;
 }
 
 function create(root, lab) {

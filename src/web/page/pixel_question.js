@@ -92,7 +92,8 @@ export function createQuestion(lab) {
     traced = dependence();
     try {
       const answer = await lab.get(`/api/trace?x=${pixel.x}&y=${pixel.y}`);
-      if (question.pixel) Object.assign(question, { tree: { ...buildTree(answer), pixel }, error: null, moved: false, old: false });
+      if (question.pixel)
+        Object.assign(question, { tree: { ...buildTree(answer), pixel }, error: null, moved: false, old: false });
     } catch (error) {
       if (question.pixel) Object.assign(question, { tree: null, error });
     }
