@@ -46,7 +46,7 @@ static void invalid_beams_are_refused_with_place_and_remedy(void **state)
     refused("kind: fan, direction: [0, 0, 2], normal: [0, 0, 1]",
             "ray: the normal of its plane is parallel to the beam",
             "set 'normal' to a vector across the beam, or to 0,0,0");
-    refused("width: -1", "ray.width: -1 is out of range", "give a number 0..1e6");
+    refused("width: -1", "ray.width: -1 is out of range", "give a number 0..1000000");
 }
 
 static void a_written_beam_is_read_back(void **state)
