@@ -82,7 +82,7 @@ static void draw_segment(beam_canvas *c, vec3 from, vec3 to, double strength, co
         return;
     const vec3 cut = vec3_add(from, vec3_scale(vec3_sub(to, from), (near - depth_from) / (depth_to - depth_from)));
     const vec3 a = seen(c, depth_from < near ? cut : from), b = seen(c, depth_to < near ? cut : to);
-    const double far = 1e7; /* px; only beside the image */
+    const double far = 1e7; /* px; such a line does not cross the image */
     if (fabs(a.x) < far && fabs(a.y) < far && fabs(b.x) < far && fabs(b.y) < far)
         draw_line(c, a, b, strength, rgb);
 }
