@@ -443,6 +443,23 @@ check "kinds and ends in the text" matches "$(<out)" '^camera .*hit.*refract .*R
 run trace "$scene" --ray=0,1.6,-0.5,0,0.6,1 --depth 2 --set rod.visible=off
 check "trace of a ray under water: total internal reflection" matches "$(head -1 out)" \
     '^camera  depth 0  in liquid n 1\.33 .* none, TIR '
+# beams: the film stays the same, the image does not
+run scene "$scene" --add beam:laser,position=-2.5,1.6,-0.4,target=0,1.4,-0.4 -o beams.yaml
+check "a beam is added to a scene" is "$code" 0
+run trace beams.yaml --beams
+check "trace --beams names beam and ray" matches "$(head -1 out)" 'laser: pencil, ray 1 of 1, 587\.562 nm, power 1'
+run trace beams.yaml --beams --json
+check "trace --beams --json" silent_success
+run trace "$scene" --beams
+check "trace --beams without beams" matches "$(<err)" "has no beams; add one: cuvette scene SCENE --add beam:laser"
+run render beams.yaml --beams --json
+check "render --beams without an image" matches "$(<err)" "no image is written; add -o FILE.png or -o FILE.jpg"
+run render beams.yaml "${small[@]}" --json -o plain.png
+plain_hash=$(./json_get out film_hash)
+run render beams.yaml "${small[@]}" --json -o drawn.png --beams
+check "beams leave the film's hash" is "$(./json_get out film_hash)" "$plain_hash"
+check "beams are drawn into the image" eval '! cmp -s plain.png drawn.png'
+
 run trace "$scene" --pixel 40,30 --json "${small[@]}" --set render.samples=4
 check "four samples are four roots" is "$(json roots@length 'roots[0].throughput[]')" "$(lines 4 0.25 0.25 0.25)"
 run trace "$scene" --pixel 40,30 --json "${small[@]}" --set render.polarisation=on
@@ -894,7 +911,7 @@ refused "an unknown shape" "--add solid:x=bax: 'bax' is not a shape; did you mea
 refused "a solid without a shape" \
     "--add solid:x: x has no shape; write solid:NAME=SHAPE, such as solid:rod=box" built.yaml --add solid:x
 refused "an unknown kind" \
-    "--add ball:x: unknown kind of object 'ball'; give one of: solid, light, material, mesh, texture" \
+    "--add ball:x: unknown kind of object 'ball'; give one of: solid, light, beam, material, mesh, texture" \
     built.yaml --add ball:x
 refused "a scene that is invalid as a whole" \
     "built.yaml: vessel: inner_radius 2 is not smaller than radius 1; make inner_radius smaller than radius, or the \

@@ -3,6 +3,7 @@
 #include "report/json.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
+#include "render/inspect/beam_drawing.h"
 #include "report/report.h"
 #include "cli/inert_notes.h"
 #include "cli/scene_input.h"
@@ -18,7 +19,7 @@
 typedef struct render_request {
     scene_input input;
     outputs files;
-    bool json;
+    bool json, beams;
     int64_t repeat; /* 0: not given */
 } render_request;
 
@@ -40,6 +41,8 @@ static const command_option options[] = {
     OPTION_SET("'render.depth=8' or 'lamp.position.x=2'"),
     {"json", 0, NULL, "print one JSON object: hash, times, counts, parameters",
      OPTION_FILLS(option_flag, render_request, json)},
+    {"beams", 0, NULL, "draw the scene's beams into the image of -o; the film and its hash stay the same",
+     OPTION_FILLS(option_flag, render_request, beams)},
     {"bits", 0, "N", "bits per channel of a PNG: 8 (the default) or 16", .take = take_bits},
     {"rays", 0, "FILE", "write the ray count of each pixel: .png with a colour scale, or .pfm",
      OPTION_FILLS(option_text, render_request, files.rays)},
@@ -60,6 +63,9 @@ static status check_request(void *context, diagnostic *why)
 {
     const render_request *request = context;
     const outputs *files = &request->files;
+    if (request->beams && (!files->img || image_format_of(files->img) == IMAGE_PFM))
+        return options_wrong("--beams", NULL, why, "add -o FILE.png or -o FILE.jpg",
+                             files->img ? "a PFM file holds the film, which has no beams" : "no image is written");
     if (files->img || files->rays || files->time || files->noise || files->timeline || files->layers || request->json)
         return STATUS_OK;
     return options_wrong("render", NULL, why, "add -o FILE for the image or --json for the counts",
@@ -122,9 +128,29 @@ static void print_summary(const job_account *f, const outputs *files)
     }
 }
 
-static status write_results(const render_request *request, const job_account *f, diagnostic *why)
+/* Writes the image again, with the beams over it. */
+static status draw_beams(const render_request *request, const job_account *f, job *with, diagnostic *why)
+{
+    scene *hiding = NULL;
+    image *img = NULL;
+    job_account distances = {.result = NULL};
+    const render_options frame_options = {.layers = true};
+    status result = beams_hiding_scene(f->of, &hiding, why);
+    THEN(result, job_render(with, hiding, &frame_options, &distances, why));
+    THEN(result, film_image(f->result->img, &img, why));
+    THEN(result, beams_draw(f->of, job_isa(with), distances.result->layers->values[LAYER_DEPTH], img, why));
+    THEN(result, image_write(img, request->files.img, request->files.bits == 16 ? 16 : 8, why));
+    image_destroy(img);
+    job_account_release(&distances);
+    scene_destroy(hiding);
+    return result;
+}
+
+static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
 {
     TRY(outputs_write(&request->files, f->result, why));
+    if (request->beams && f->count > 0)
+        TRY(draw_beams(request, f, with, why));
     if (request->json)
         return json_print(report_create(f, request->repeat > 0), why);
     print_summary(f, &request->files);
@@ -165,7 +191,7 @@ static status render_and_write(const render_request *request, const scene *s, jo
         job_repeat(with, s, request->repeat > 0 ? (size_t)request->repeat : 1, &frame_options, &measured, why);
     progress_erase(&line);
     if ((result == STATUS_OK || result == STATUS_INTERRUPTED) && measured.result) {
-        status written = write_results(request, &measured, why);
+        status written = write_results(request, &measured, with, why);
         result = written == STATUS_OK ? result : written;
     }
     if (result == STATUS_OK && !request->json)

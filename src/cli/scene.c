@@ -104,7 +104,8 @@ static status make_scene(const scene_request *request, scene **out, diagnostic *
 
 static status print_list(const scene *s)
 {
-    static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT, PARAM_SOLID};
+    static const param_group groups[] = {PARAM_MESH,  PARAM_TEXTURE, PARAM_MATERIAL,
+                                         PARAM_LIGHT, PARAM_BEAM,    PARAM_SOLID};
     for (size_t g = 0; g < sizeof groups / sizeof *groups; g++)
         for (size_t i = 0; i < param_place_group_size(s, groups[g]); i++) {
             printf("%s %s", param_group_name(groups[g]), param_place_group_name(s, groups[g], i));

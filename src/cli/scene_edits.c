@@ -110,7 +110,7 @@ static status add_solid(scene *s, const char *name, const char *shape, diagnosti
 
 static status add_object(scene *s, const char *kind, const char *name, const char *shape, diagnostic *why)
 {
-    static const char *const kinds[] = {"solid", "light", "material", "mesh", "texture"};
+    static const char *const kinds[] = {"solid", "light", "beam", "material", "mesh", "texture"};
     const bool is_solid = strcmp(kind, "solid") == 0;
     if (is_solid && !shape)
         return diagnose(why, STATUS_BAD_INPUT, "write solid:NAME=SHAPE, such as solid:rod=box", "%.80s has no shape",
@@ -119,7 +119,8 @@ static status add_object(scene *s, const char *kind, const char *name, const cha
         return add_solid(s, name, shape, why);
     if (shape)
         return diagnose(why, STATUS_BAD_INPUT, "remove '=SHAPE'", "a %.20s has no shape", kind);
-    static const param_group groups[] = {PARAM_SOLID, PARAM_LIGHT, PARAM_MATERIAL, PARAM_MESH, PARAM_TEXTURE};
+    static const param_group groups[] = {PARAM_SOLID,    PARAM_LIGHT, PARAM_BEAM,
+                                         PARAM_MATERIAL, PARAM_MESH,  PARAM_TEXTURE};
     int which = 0;
     TRY(options_choice(NULL, "kind of object", kind, kinds, sizeof kinds / sizeof *kinds, &which, why));
     return scene_add(s, groups[which], name, NULL, why);
@@ -153,7 +154,7 @@ static status apply_add(scene *s, const scene_edit *edit, const char *none, cons
 
 const scene_edit scene_edits[] = {
     {"--add", 0, false, "KIND:NAME[=SHAPE][,PARAM=VALUE]...",
-     "add a solid, light, material, mesh or texture, such as solid:rod=box,size=0.25,3,0.25", apply_add},
+     "add a solid, light, beam, material, mesh or texture, such as solid:rod=box,size=0.25,3,0.25", apply_add},
     {"--set", 's', true, "PATH=VALUE",
      "set a parameter, or the material or shape of a solid (NAME.material, NAME.shape)", apply_set},
     {"--move", 0, true, "NAME=DX,DY,DZ",

@@ -3,7 +3,9 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"
+#include "report/beam_rows.h"
 #include "report/trace_writers.h"
+#include "scene/model/scene.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,7 +15,7 @@ typedef enum trace_format { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_NONE } 
 typedef struct trace_request {
     scene_input input;
     trace_format format;
-    bool by_pixel, by_ray;
+    bool by_pixel, by_ray, beams;
     double pixel[2], ray[6];
 } trace_request;
 
@@ -53,6 +55,8 @@ static status take_ray(const command_option *o, void *context, const char *value
 static const command_option options[] = {
     {"pixel", 0, "X,Y", "trace the camera rays of a pixel; 0,0 is at the top left", .take = take_pixel},
     {"ray", 0, "OX,OY,OZ,DX,DY,DZ", "trace the ray from a point in a direction of any length", .take = take_ray},
+    {"beams", 0, NULL, "trace the rays of the scene's beams, each with its own depth and wavelengths",
+     OPTION_FILLS(option_flag, trace_request, beams)},
     OPTION_DEPTH,
     OPTION_LAMBDA,
     OPTION_SET("'liquid.ior=1.4'"),
@@ -67,9 +71,10 @@ static status check_request(void *context, diagnostic *why)
 {
     static const char *const endings[] = {".txt", ".json", ".svg"};
     trace_request *request = context;
-    if (request->by_pixel == request->by_ray)
-        return options_wrong("trace", NULL, why, "give --pixel X,Y or --ray OX,OY,OZ,DX,DY,DZ",
-                             request->by_ray ? "--pixel and --ray exclude each other" : "no ray is given");
+    const int given = request->by_pixel + request->by_ray + request->beams;
+    if (given != 1)
+        return options_wrong("trace", NULL, why, "give --pixel X,Y, --ray OX,OY,OZ,DX,DY,DZ or --beams",
+                             given ? "--pixel, --ray and --beams exclude each other" : "no ray is given");
     size_t which = FORMAT_TEXT;
     status result = STATUS_OK;
     if (request->format == FORMAT_NONE && request->input.output && strcmp(request->input.output, "-") != 0)
@@ -77,6 +82,9 @@ static status check_request(void *context, diagnostic *why)
                                 "use .txt, .json or .svg, or give --text, --json or --svg", &which, why);
     if (request->format == FORMAT_NONE)
         request->format = (trace_format)which;
+    if (result == STATUS_OK && request->beams && request->format == FORMAT_SVG)
+        return options_wrong("trace", NULL, why, "use --text or --json, or cuvette render --beams for an image",
+                             "beams have no drawing of one plane");
     return result;
 }
 
@@ -108,9 +116,31 @@ static status write_as(const void *content, FILE *out, diagnostic *why)
     return trace_write_text(&f->tree, out, why);
 }
 
+typedef struct formatted_beams {
+    beamed beams;
+    trace_format format;
+} formatted_beams;
+
+static status write_beams_as(const void *content, FILE *out, diagnostic *why)
+{
+    const formatted_beams *f = content;
+    return f->format == FORMAT_JSON ? beams_write_json(&f->beams, out, why) : beams_write_text(&f->beams, out, why);
+}
+
+static status run_beams(const trace_request *request, const scene *s, isa level, diagnostic *why)
+{
+    if (s->beam_count == 0)
+        return options_wrong("--beams", NULL, why, "add one: cuvette scene SCENE --add beam:laser", "%s has no beams",
+                             request->input.path);
+    const formatted_beams f = {{s, level, request->input.path, 0}, request->format};
+    return outputs_write_text(request->input.output, write_beams_as, &f, why);
+}
+
 static status run(void *context, scene *s, isa level, diagnostic *why)
 {
     const trace_request *request = context;
+    if (request->beams)
+        return run_beams(request, s, level, why);
     probe *p = NULL;
     ray_tree tree = {0};
     status result = scene_input_probe(&request->input, s, level, &p, why);
@@ -129,7 +159,7 @@ static const scene_command trace_command = {
     .name = "trace",
     .form =
         {.options = options,
-         .synopsis = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ)",
+         .synopsis = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ | --beams)",
          SCENE_WORD("trace"),
          .about =
              "Trace one ray and print its ray tree: media, angles, reflectances, and the contribution of each ray to "

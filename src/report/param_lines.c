@@ -8,11 +8,9 @@
 #include <string.h>
 
 /* Placeholders of groups whose objects have names; the other groups use their own name as prefix. */
-static const char *const prefixes[PARAM_GROUP_COUNT] = {[PARAM_MESH] = "MESH",
-                                                        [PARAM_TEXTURE] = "TEXTURE",
-                                                        [PARAM_LIGHT] = "LIGHT",
-                                                        [PARAM_MATERIAL] = "MATERIAL",
-                                                        [PARAM_SOLID] = "SOLID"};
+static const char *const prefixes[PARAM_GROUP_COUNT] = {
+    [PARAM_MESH] = "MESH", [PARAM_TEXTURE] = "TEXTURE",   [PARAM_LIGHT] = "LIGHT",
+    [PARAM_BEAM] = "BEAM", [PARAM_MATERIAL] = "MATERIAL", [PARAM_SOLID] = "SOLID"};
 
 char *param_lines_path(const param *row, char *text, size_t size)
 {

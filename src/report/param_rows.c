@@ -169,6 +169,7 @@ static const char *const group_titles[PARAM_GROUP_COUNT] = {
     [PARAM_MESH] = "Meshes, by name",
     [PARAM_TEXTURE] = "Textures, by name",
     [PARAM_LIGHT] = "Lights, by name",
+    [PARAM_BEAM] = "Beams, by name",
     [PARAM_MATERIAL] = "Materials, by name; or by a solid's name, for that solid only",
     [PARAM_SOLID] = "Solids, by name",
 };

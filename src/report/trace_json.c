@@ -98,7 +98,7 @@ static bool write_extras(const traced *t, FILE *out, const ray_node *node)
 }
 
 /* Recurses over the levels of the tree, at most 65. */
-static bool write_ray(const traced *t, FILE *out, int at)
+bool trace_write_json_ray(const traced *t, FILE *out, int at)
 {
     const ray_node *node = &t->tree->node[at];
     fprintf(out, "\n{\"kind\":\"%s\",\"depth\":%d", trace_kind_words[node->kind], node->depth);
@@ -115,7 +115,7 @@ static bool write_ray(const traced *t, FILE *out, int at)
         fputs("null", out);
     fputs(",\"children\":[", out);
     for (int i = node->first_child; i != RAY_NONE; i = t->tree->node[i].next) {
-        good = write_ray(t, out, i) && good;
+        good = trace_write_json_ray(t, out, i) && good;
         fputs(t->tree->node[i].next == RAY_NONE ? "" : ",", out);
     }
     fprintf(out, "],\"end\":\"%s\"", trace_end_words[node->end]);
@@ -132,12 +132,12 @@ status trace_write_json(const traced *t, FILE *out, diagnostic *why)
     fprintf(out, ",\"depth\":%d", tree->depth_limit);
     write_list(out, "radiance", tree->radiance, 3);
     fputs(",\"root\":", out);
-    good = write_ray(t, out, 0) && good;
+    good = trace_write_json_ray(t, out, 0) && good;
     if (tree->node[0].next != RAY_NONE) {
         fputs(",\"roots\":[", out);
         for (int i = 0; i != RAY_NONE; i = tree->node[i].next) {
             fputs(i ? "," : "", out);
-            good = write_ray(t, out, i) && good;
+            good = trace_write_json_ray(t, out, i) && good;
         }
         fputc(']', out);
     }

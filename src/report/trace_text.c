@@ -62,14 +62,19 @@ static void write_line(const traced *t, FILE *out, const ray_node *node, int ind
 }
 
 /* The nodes are in depth-first order, so that each node is followed by its children. */
+void trace_write_text_rays(const traced *t, FILE *out)
+{
+    for (size_t i = 0; i < t->tree->count; i++) {
+        const ray_node *node = &t->tree->node[i];
+        write_line(t, out, node, node->kind == RAY_SHADOW ? node->depth + 1 : node->depth);
+    }
+}
+
 status trace_write_text(const traced *t, FILE *out, diagnostic *why)
 {
     (void)why;
     const ray_tree *tree = t->tree;
-    for (size_t i = 0; i < tree->count; i++) {
-        const ray_node *node = &tree->node[i];
-        write_line(t, out, node, node->kind == RAY_SHADOW ? node->depth + 1 : node->depth);
-    }
+    trace_write_text_rays(t, out);
     fprintf(out, "radiance %.9g %.9g %.9g  rays %zu, depth limit %d, %.6g nm\n", tree->radiance[0], tree->radiance[1],
             tree->radiance[2], tree->count, tree->depth_limit, tree->lambda_nm);
     return STATUS_OK;

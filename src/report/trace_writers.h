@@ -15,6 +15,11 @@ typedef struct traced {
 extern const char *const trace_kind_words[]; /* by ray_kind */
 extern const char *const trace_end_words[];  /* by ray_end */
 
+/* The rays only, without the line of the radiance; and one ray with its children as a JSON object, false if memory runs
+ * out. */
+void trace_write_text_rays(const traced *t, FILE *out);
+bool trace_write_json_ray(const traced *t, FILE *out, int at);
+
 status trace_write_text(const traced *t, FILE *out, diagnostic *why);
 /* cuvette-trace(1) documents the fixed schema in JSON OUTPUT. */
 status trace_write_json(const traced *t, FILE *out, diagnostic *why);

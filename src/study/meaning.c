@@ -57,7 +57,8 @@ static status add_solid(meaning *m, const scene *of, const solid *owner)
 
 status meaning_of_scene(meaning *m, const scene *of, bool without_performance)
 {
-    static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE, PARAM_LIGHT, PARAM_MATERIAL, PARAM_SOLID};
+    static const param_group groups[] = {PARAM_MESH, PARAM_TEXTURE, PARAM_LIGHT, PARAM_MATERIAL,
+                                         PARAM_SOLID}; /* no beams */
     visit_state state = {m, without_performance, integrator_traits_of(&of->render)->by_chance};
     TRY(scene_each_param(of, add_param, &state));
     TRY(add(m, strdup("the camera's direction"), strdup(of->camera.aimed ? "its target" : "its angles")));

@@ -29,7 +29,9 @@ function wanted({ depth, medium, n, throughput, brought, hit }) {
     medium: hit.from.medium,
     Media: hit.opaque ? [hit.from.n] : [hit.from.n, hit.to.n],
     Angles: hit.opaque || hit.tir ? [degrees(hit.cos_i)] : [degrees(hit.cos_i), degrees(hit.cos_t)],
-    'R (s, p)': hit.opaque || hit.tir ? null : [hit.R, hit.R_s, hit.R_p].map((share) => 100 * share),
+    R: hit.opaque || hit.tir ? null : [100 * hit.R],
+    T: hit.opaque || hit.tir ? [] : [100 * hit.T],
+    'R_s, R_p': hit.opaque || hit.tir ? [] : [hit.R_s, hit.R_p].map((share) => 100 * share),
     Path: [hit.path_length],
   };
 }

@@ -1,6 +1,6 @@
-// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER: screenshots of every view of the laboratory,
-// light and dark, for the README. Not a test; run it from the project's root, whose scenes, studies and reference run
-// it shows.
+// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER [--only VIEW]: screenshots of every view of
+// the laboratory, light and dark, for the README. Not a test; run it from the project's root,
+// whose scenes, studies and reference run it shows.
 import { mkdir } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { join } from 'node:path';
@@ -9,7 +9,12 @@ import { Lab } from './lab.mjs';
 import { Screen } from './screen.mjs';
 
 const { values: options } = parseArgs({
-  options: { program: { type: 'string' }, modules: { type: 'string' }, out: { type: 'string' } },
+  options: {
+    program: { type: 'string' },
+    modules: { type: 'string' },
+    out: { type: 'string' },
+    only: { type: 'string' },
+  },
 });
 const { chromium } = createRequire(join(options.modules, 'package.json'))('playwright-core');
 const size = { width: 1366, height: 768 };
@@ -46,6 +51,38 @@ const views = {
       await screen.showPanel('Pixel');
       await screen.chooseTool('Inspect');
       await screen.clickPixel(330, 420);
+      await screen.quiet();
+    },
+  },
+  bench: {
+    scene: 'experiments/scenes/rod.yaml',
+    async show(screen) {
+      await screen.showPanel('Bench');
+      const { lab } = screen;
+      await lab.post('/api/objects', { kind: 'beam', name: 'sheet' });
+      await lab.post('/api/objects', { kind: 'beam', name: 'laser' });
+      const { generation } = await lab.post('/api/set', {
+        set: {
+          'sheet.kind': 'sheet',
+          'sheet.rays': 7,
+          'sheet.width': 0.9,
+          'sheet.normal': [0, 1, 0],
+          'sheet.position': [-2.6, 0.8, 0],
+          'sheet.target': [0, 0.8, 0],
+          'sheet.lambda_nm': 633,
+          'sheet.branches': 'off',
+          'laser.position': [-0.5, 0.6, -2.4],
+          'laser.target': [-0.3, 1.7, -0.3],
+          'laser.lambda_nm': 532,
+        },
+      });
+      await lab.post('/api/camera', { orbit: [-25, 14] });
+      await screen.settled(generation);
+      await screen.page.getByRole('button', { name: 'laser', exact: true }).click();
+      await screen.page
+        .getByRole('button', { name: /^refracted: liquid/ })
+        .first()
+        .click();
       await screen.quiet();
     },
   },
@@ -108,7 +145,7 @@ const browser = await chromium.launch({
   args: process.getuid() === 0 ? ['--no-sandbox'] : [],
 });
 try {
-  for (const [name, view] of Object.entries(views))
+  for (const [name, view] of Object.entries(views).filter(([each]) => !options.only || each === options.only))
     for (const dark of [false, true]) {
       const lab = await serve(view.scene);
       const screen = await Screen.open(browser, lab, { ...size, dark });

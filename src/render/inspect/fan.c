@@ -3,6 +3,7 @@
 
 #include "base/elementary.h"
 #include "base/grow.h"
+#include "render/inspect/ray_axes.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,42 +17,18 @@ void fan_release(fan *f)
 
 static status set_axes(const fan_rule *rule, fan *f, diagnostic *why)
 {
-    const vec3 axis = vec3_sub(rule->to, rule->from);
-    if (!(vec3_length(axis) > 0.0 && isfinite(vec3_length(axis))))
-        return diagnose(why, STATUS_BAD_INPUT, "give two points", "from and to are the same point");
-    f->from = rule->from;
-    f->axis = vec3_normalize(axis);
-    vec3 n = rule->normal;
-    if (!rule->has_normal) {
-        const vec3 level = vec3_cross(f->axis, vec3_make(0, 1, 0));
-        n = rule->from.y == rule->to.y ? vec3_make(0, 1, 0) : vec3_length(level) > 1e-9 ? level : vec3_make(0, 0, 1);
-    }
-    const double length = vec3_length(n);
-    vec3 across_axis = vec3_sub(n, vec3_scale(f->axis, vec3_dot(n, f->axis)));
-    if (!(length > 0.0 && isfinite(length)) || vec3_length(across_axis) < 1e-9 * length)
-        return diagnose(why, STATUS_BAD_INPUT, "give a normal that is not along the axis",
-                        "the normal is zero or parallel to the axis");
-    f->normal = vec3_normalize(across_axis);
-    /* Choose the sign: upwards, or for a horizontal plane, to the left of the axis seen from above. */
-    f->across = vec3_cross(f->axis, f->normal);
-    if (fabs(f->across.y) > 1e-9 ? f->across.y < 0.0 : f->axis.x * f->across.z - f->axis.z * f->across.x < 0.0)
-        f->across = vec3_scale(f->across, -1.0);
-    return STATUS_OK;
+    ray_axes a = {.from = rule->from};
+    const status result =
+        ray_axes_set(&a, rule->from, vec3_sub(rule->to, rule->from), rule->has_normal ? &rule->normal : NULL, why);
+    f->from = a.from, f->axis = a.axis, f->across = a.across, f->normal = a.normal;
+    return result;
 }
 
 static void start_of(const fan *f, const fan_rule *rule, int i, fan_ray *ray, vec3 *origin, vec3 *direction)
 {
-    const double share = rule->rays > 1 ? (double)i / (rule->rays - 1) - 0.5 : 0.0;
-    *origin = f->from, *direction = f->axis;
-    if (!rule->spreads) {
-        ray->offset = rule->width * share;
-        *origin = vec3_add(f->from, vec3_scale(f->across, ray->offset));
-        return;
-    }
-    double sine, cosine;
-    ray->offset = rule->spread_deg * share;
-    elementary_sincos_deg(ray->offset, &sine, &cosine);
-    *direction = vec3_add(vec3_scale(f->axis, cosine), vec3_scale(f->across, sine));
+    const ray_axes a = {f->from, f->axis, f->across, f->normal};
+    const double size = rule->spreads ? rule->spread_deg : rule->width;
+    ray->offset = ray_axes_in_plane(&a, rule->spreads, size, i, rule->rays, origin, direction);
 }
 
 static status append_nodes(fan *f, const ray_tree *path, fan_ray *ray, diagnostic *why)

@@ -8,6 +8,7 @@
  *   textures: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   materials: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   lights: {NAME: {PARAMETER: VALUE, ...}, ...}
+ *   beams: {NAME: {PARAMETER: VALUE, ...}, ...}
  *   solids: {NAME: {shape: SHAPE, material: NAME, PARAMETER: VALUE, ...}, ...}
  *
  * Giving a picture sets the kind of the background to picture. Switches are on or off, also written
@@ -79,7 +80,7 @@ static status read_sections(const scene_reader *r)
         {"camera", read_camera, PARAM_CAMERA},       {"background", read_settings, PARAM_BACKGROUND},
         {"meshes", read_objects, PARAM_MESH},        {"textures", read_objects, PARAM_TEXTURE},
         {"materials", read_objects, PARAM_MATERIAL}, {"lights", read_objects, PARAM_LIGHT},
-        {"solids", read_objects, PARAM_SOLID},
+        {"beams", read_objects, PARAM_BEAM},         {"solids", read_objects, PARAM_SOLID},
     };
     enum { COUNT = sizeof sections / sizeof sections[0] };
     const node *root = document_root(r->file);

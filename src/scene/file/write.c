@@ -151,8 +151,8 @@ static status check_sources(const scene *s, diagnostic *why)
 static status put_scene(scene_writer *w)
 {
     /* Objects come before the objects that refer to them. */
-    static const param_group order[] = {PARAM_RENDER,  PARAM_CAMERA,   PARAM_BACKGROUND, PARAM_MESH,
-                                        PARAM_TEXTURE, PARAM_MATERIAL, PARAM_LIGHT,      PARAM_SOLID};
+    static const param_group order[] = {PARAM_RENDER,   PARAM_CAMERA, PARAM_BACKGROUND, PARAM_MESH, PARAM_TEXTURE,
+                                        PARAM_MATERIAL, PARAM_LIGHT,  PARAM_BEAM,       PARAM_SOLID};
     _Static_assert(sizeof order / sizeof *order == PARAM_GROUP_COUNT, "every group has its section");
     if (w->s->title[0]) {
         TRY(write_check_text("title", w->s->title, w->why));

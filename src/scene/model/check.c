@@ -20,8 +20,8 @@ static bool is_reserved(const char *name)
     for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++)
         if (strcmp(name, sections[i]) == 0)
             return true;
-    for (int g = 0; g < PARAM_GROUP_COUNT; g++)
-        if (strcmp(name, param_group_name((param_group)g)) == 0)
+    for (int g = 0; g < PARAM_GROUP_COUNT; g++) /* objects of older scenes may be called "beam" */
+        if (g != PARAM_BEAM && strcmp(name, param_group_name((param_group)g)) == 0)
             return true;
     return false;
 }
@@ -60,9 +60,10 @@ static size_t count_name(const scene *s, const char *name)
 
 static status name_taken(const char *name, diagnostic *why)
 {
-    return diagnose(why, STATUS_BAD_INPUT,
-                    "meshes, textures, lights, materials and solids need different names, because paths use them",
-                    "the name '%s' is already in use", name);
+    return diagnose(
+        why, STATUS_BAD_INPUT,
+        "meshes, textures, lights, beams, materials and solids need different names, because paths use them",
+        "the name '%s' is already in use", name);
 }
 
 status check_name_is_free(const scene *s, const char *name, diagnostic *why)
@@ -120,6 +121,20 @@ static status check_light(const scene *s, const light *lamp, diagnostic *why)
     if (lamp->kind != LIGHT_POINT && !(vec3_dot(axis, axis) > 0.0))
         return diagnose(why, STATUS_BAD_INPUT, "move its position or its target",
                         "%.80s: the light is at its own target", lamp->name);
+    return STATUS_OK;
+}
+
+static status check_beam(const beam *b, diagnostic *why)
+{
+    const vec3 axis = beam_axis(b);
+    if (!(vec3_dot(axis, axis) > 0.0))
+        return diagnose(why, STATUS_BAD_INPUT, "move its position or its target, or set its direction",
+                        "%.80s: the beam is at its own target", b->name);
+    const bool is_plane = b->kind == BEAM_FAN || b->kind == BEAM_SHEET;
+    const double length = vec3_length(b->normal);
+    if (is_plane && length > 0.0 && vec3_length(vec3_cross(vec3_normalize(axis), b->normal)) < 1e-9 * length)
+        return diagnose(why, STATUS_BAD_INPUT, "set 'normal' to a vector across the beam, or to 0,0,0",
+                        "%.80s: the normal of its plane is parallel to the beam", b->name);
     return STATUS_OK;
 }
 
@@ -269,6 +284,8 @@ status check_limits(const scene *s, diagnostic *why)
                         "more than 64 planes and solids of meshes");
     if (s->light_count > SCENE_LIGHTS_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene can have 1024", "more than 1024 lights");
+    if (s->beam_count > SCENE_BEAMS_MAX)
+        return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64", "more than 64 beams");
     if (s->mesh_count > SCENE_MESHES_MAX || s->texture_count > SCENE_TEXTURES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "a scene can have 64 of each", "more than 64 %s",
                         s->mesh_count > SCENE_MESHES_MAX ? "meshes" : "textures");
@@ -295,6 +312,7 @@ status check_object(const scene *s, param_group group, size_t index, diagnostic 
     case PARAM_MESH: return check_mesh(&s->meshes[index], why);
     case PARAM_TEXTURE: return check_texture(&s->textures[index], why);
     case PARAM_LIGHT: return check_light(s, &s->lights[index], why);
+    case PARAM_BEAM: return check_beam(&s->beams[index], why);
     case PARAM_SOLID: return check_solid(s, &s->solids[index], why);
     case PARAM_MATERIAL: /* if a solid uses it */
     case PARAM_GROUP_COUNT: break;

@@ -23,13 +23,15 @@ static const object_list lists[PARAM_GROUP_COUNT] = {
     [PARAM_MESH] = {offsetof(scene, meshes), offsetof(scene, mesh_count), sizeof(mesh_entry), 0},
     [PARAM_TEXTURE] = {offsetof(scene, textures), offsetof(scene, texture_count), sizeof(texture_entry), 0},
     [PARAM_LIGHT] = {offsetof(scene, lights), offsetof(scene, light_count), sizeof(light), 0},
+    [PARAM_BEAM] = {offsetof(scene, beams), offsetof(scene, beam_count), sizeof(beam), 0},
     [PARAM_MATERIAL] = {offsetof(scene, materials), offsetof(scene, material_count), sizeof(named_material),
                         offsetof(named_material, value)},
     [PARAM_SOLID] = {offsetof(scene, solids), offsetof(scene, solid_count), sizeof(solid), 0},
 };
 
 _Static_assert(offsetof(mesh_entry, name) == 0 && offsetof(texture_entry, name) == 0 &&
-                   offsetof(named_material, name) == 0 && offsetof(light, name) == 0 && offsetof(solid, name) == 0,
+                   offsetof(named_material, name) == 0 && offsetof(light, name) == 0 && offsetof(beam, name) == 0 &&
+                   offsetof(solid, name) == 0,
                "the name first");
 
 static size_t *count_of(const scene *s, param_group group)

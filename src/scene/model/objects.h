@@ -1,6 +1,6 @@
-/* The objects of a scene by group: meshes, textures, lights, materials and solids are in arrays whose elements start
- * with their names; render, camera and background are single structs without a name. For the files of this folder,
- * which create, copy, find and remove objects. Ownership: the scene's. */
+/* The objects of a scene by group: meshes, textures, lights, beams, materials and solids are in arrays whose elements
+ * start with their names; render, camera and background are single structs without a name. For the files of this
+ * folder, which create, copy, find and remove objects. Ownership: the scene's. */
 #pragma once
 
 #include "scene/model/params.h"

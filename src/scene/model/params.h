@@ -2,10 +2,10 @@
  * axes, CSV headers and the manual are generated from it.
  *
  * A parameter's path is group.name: `render.depth`, `camera.position`, `background.color`; for a mesh, a texture, a
- * light, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`, `vessel.ior`,
- * `glass.ior`. One element of a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a material's
- * field applies to all solids with that material; setting it by a solid's name applies to that solid alone; the last
- * setting wins. Ownership: the table is constant. */
+ * light, a beam, a solid or a material the group is its name in the scene: `soup.count`, `lamp.intensity`,
+ * `vessel.ior`, `glass.ior`. One element of a vector is `lamp.position.x` (.x .y .z, for colours .r .g .b). Setting a
+ * material's field applies to all solids with that material; setting it by a solid's name applies to that solid alone;
+ * the last setting wins. Ownership: the table is constant. */
 #pragma once
 
 #include "scene/model/open.h"
@@ -17,6 +17,7 @@ typedef enum param_group {
     PARAM_MESH,
     PARAM_TEXTURE,
     PARAM_LIGHT,
+    PARAM_BEAM,
     PARAM_MATERIAL,
     PARAM_SOLID,
     PARAM_GROUP_COUNT
@@ -55,7 +56,7 @@ typedef struct param {
 
 size_t param_count(void);
 const param *param_at(size_t index);
-/* "render", "camera", "background", "mesh", "texture", "light", "material", "solid" */
+/* "render", "camera", "background", "mesh", "texture", "light", "beam", "material", "solid" */
 const char *param_group_name(param_group group);
 /* The row of a group with that name, or NULL. PARAM_SOLID also finds material rows, which apply to a solid's surface.
  * */

@@ -107,7 +107,7 @@ static status unknown_group(const scene *s, const path_words *path, diagnostic *
         return out_of_memory(why);
     const char *nearest = suggest_word(path->group, words, count);
     char remedy[300] = "a path is render.NAME, camera.NAME, background.NAME, or the name of a mesh, texture, light, "
-                       "material or solid, a dot "
+                       "beam, material or solid, a dot "
                        "and a parameter";
     const param *setting = nearest || path->name ? NULL : nearest_setting(s, path->group);
     if (nearest)

@@ -3,6 +3,7 @@
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
 #include "scene/model/mesh_entry.h"
+#include "scene/model/beam.h"
 #include "scene/model/light.h"
 #include "scene/model/solids.h"
 
@@ -34,6 +35,7 @@ static const char *const filter_words[] = {"nearest", "bilinear", "trilinear", N
 static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
 static const char *const space_words[] = {"srgb", "linear", NULL};
 static const char *const light_words[] = {"point", "cone", "soft_cone", NULL};
+static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
 static const char *const background_words[] = {"uniform", "gradient", "picture", NULL};
 
 enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
@@ -55,6 +57,16 @@ enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 #define PATHS(field) OF(render_settings, field), .by_chance = true
 /* For slimes only. */
 #define SLIME(field) ON_SLIME, .offset = offsetof(mesh_entry, slime.field)
+/* The film does not depend on beams. */
+#define BEAM(field) OF(beam, field), .performance_only = true
+#define BEAM_REAL(field, unit, low, high, fallback, meaning) \
+    ROW(PARAM_BEAM, #field, PARAM_REAL, unit, low, high, false, fallback, meaning, NULL, BEAM(field))
+#define BEAM_INTEGER(field, low, high, fallback, meaning) \
+    ROW(PARAM_BEAM, #field, PARAM_INT, "", low, high, false, fallback, meaning, NULL, BEAM(field))
+#define BEAM_CHOICE(field, words, fallback, meaning) \
+    ROW(PARAM_BEAM, #field, PARAM_CHOICE, "", 0, 0, false, fallback, meaning, words, BEAM(field))
+#define BEAM_VECTOR(field, unit, fallback, meaning) \
+    ROW(PARAM_BEAM, #field, PARAM_VECTOR, unit, -FAR, FAR, false, fallback, meaning, NULL, BEAM(field))
 /* For some shapes: see geometry/shapes/shape.h. */
 #define SHAPE(field) OF(solid, field), .by_shape = true
 
@@ -292,6 +304,31 @@ static const param table[] = {
     REAL(PARAM_LIGHT, light, reach, "scene units", 0, FAR, "0",
          "distance at which the intensity applies, with inverse-square falloff; 0: no falloff"),
 
+    BEAM_CHOICE(
+        kind, beam_words, "pencil",
+        "rays from one point in a cone (pencil) or in a plane (fan), or parallel rays in a plane (sheet) or over "
+        "a disc (bundle); a beam is shown, and does not light the scene"),
+    BEAM_VECTOR(position, "scene units", "-3,1,0", "start of the axis"),
+    BEAM_VECTOR(target, "scene units", "0,1,0", "point on the axis"),
+    BEAM_VECTOR(direction, "", "0,0,0", "direction of the axis, of any length; 0,0,0: towards the target"),
+    BEAM_VECTOR(normal, "", "0,0,0",
+                "fan and sheet: normal of the plane of the rays; 0,0,0: up for a horizontal beam, else horizontal"),
+    BEAM_INTEGER(rays, 1, BEAM_RAYS_MAX, "1", "number of rays of each wavelength; 1: only the axis"),
+    BEAM_REAL(angle_deg, "deg", 0, 179, "10", "pencil and fan: full angle between the outermost rays"),
+    BEAM_REAL(width, "scene units", 0, FAR, "0.5", "sheet and bundle: distance between the outermost rays"),
+    BEAM_CHOICE(white, off_on, "off", "on: white light, as several wavelengths; off: the one of lambda_nm"),
+    BEAM_REAL(lambda_nm, "nm", 200, 2000, "587.5618", "wavelength in vacuum; the default is the d line"),
+    BEAM_INTEGER(wavelengths, 1, 64, "7", "wavelengths of white light, evenly from 400 to 700 nm, of equal power"),
+    BEAM_REAL(power, "", 0, 1e9, "1", "power of all rays together at their starts, in any unit"),
+    BEAM_CHOICE(branches, off_on, "on",
+                "on: at each surface the reflected and the refracted ray; off: only the refracted one, or the "
+                "reflected one where there is no other"),
+    BEAM_INTEGER(depth, 0, 64, "8", "number of surfaces at which a ray is followed"),
+    BEAM_REAL(min_share, "", 0, 1, "0.01", "rays with a smaller share of the power are not followed"),
+    ROW(PARAM_BEAM, "color", PARAM_COLOR, "", 0, 1, false, "0,0,0",
+        "linear colour of the drawn lines; black: the colour of the wavelength", NULL, BEAM(color)),
+    BEAM_CHOICE(visible, off_on, "on", "off: the beam is left out"),
+
     /* Solids have these rows as well, by their own names (liquid.ior): see param_find. */
     COLOR(PARAM_MATERIAL, material, color, 1, "1,1,1",
           "linear colour of ambient, diffuse and emitted light; in a transparent solid: transmittance over "
@@ -382,8 +419,8 @@ const param *param_at(size_t index)
 
 const char *param_group_name(param_group group)
 {
-    static const char *const names[] = {"render",  "camera", "background", "mesh",
-                                        "texture", "light",  "material",   "solid"};
+    static const char *const names[] = {"render", "camera", "background", "mesh", "texture",
+                                        "light",  "beam",   "material",   "solid"};
     return (size_t)group < PARAM_GROUP_COUNT ? names[group] : "";
 }
 

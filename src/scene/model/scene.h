@@ -1,8 +1,9 @@
-/* A scene: render settings, camera, background, lights, materials, solids. Every user-settable field is a row of the
- * parameter table (scene/model/params.h), which is used by files, --set, studies and manuals. Code that only passes
+/* A scene: render settings, camera, background, lights, beams, materials, solids. Every user-settable field is a row of
+ * the parameter table (scene/model/params.h), which is used by files, --set, studies and manuals. Code that only passes
  * scenes on includes scene/model/open.h. Ownership: see there; the renderer borrows a scene. */
 #pragma once
 
+#include "scene/model/beam.h"
 #include "scene/model/light.h"
 #include "scene/model/mesh_entry.h"
 #include "scene/model/name_tally.h"
@@ -25,9 +26,11 @@ struct scene {
     size_t material_count;
     light *lights;
     size_t light_count;
+    beam *beams;
+    size_t beam_count;
     solid *solids;
     size_t solid_count;
-    name_tally names;   /* of meshes, textures, materials, lights and solids */
+    name_tally names;   /* of meshes, textures, materials, lights, beams and solids */
     load_limits limits; /* none by default; set by scene_limit */
 };
 

@@ -255,8 +255,8 @@ static status add_of_kind(edit *e, scene *s, diagnostic *why)
         const char *word;
         status (*add)(scene *s, const char *requested_name, object_name new_name,
                       diagnostic *why); /* NULL: from a file */
-    } kinds[] = {
-        {"light", new_light}, {"material", new_material}, {"slime", new_slime}, {"texture", NULL}, {"model", NULL}};
+    } kinds[] = {{"light", new_light}, {"beam", new_beam}, {"material", new_material},
+                 {"slime", new_slime}, {"texture", NULL},  {"model", NULL}};
     if (e->requested_name && check_name_is_free(s, e->requested_name, why) != STATUS_OK) {
         e->refused = 409;
         return STATUS_BAD_INPUT;
@@ -266,7 +266,7 @@ static status add_of_kind(edit *e, scene *s, diagnostic *why)
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (strcmp(e->word, kinds[i].word) == 0)
             return kinds[i].add ? kinds[i].add(s, e->requested_name, e->new_name, why) : add_file(e, s, why);
-    return diagnose(why, STATUS_BAD_INPUT, "use solid, light, material, model, slime or texture",
+    return diagnose(why, STATUS_BAD_INPUT, "use solid, light, beam, material, model, slime or texture",
                     "unknown kind '%.60s'", e->word);
 }
 

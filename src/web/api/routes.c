@@ -25,6 +25,8 @@ static const struct api_route {
     {"GET", "/api/trace", api_trace_json, NO_BODY},
     {"GET", "/api/trace.txt", api_trace_text, NO_BODY},
     {"GET", "/api/trace.svg", api_trace_drawing, NO_BODY},
+    {"GET", "/api/beams", api_beams, NO_BODY},
+    {"GET", "/api/beams/screen", api_beam_screen, NO_BODY},
     {"POST", "/api/pin", api_set_reference, NO_BODY},
     {"DELETE", "/api/pin", api_clear_reference, NO_BODY},
     {"GET", "/api/pin.png", api_reference_image, NO_BODY},

@@ -8,7 +8,14 @@ import { createPads } from './object_pads.js';
 import { hintOf } from './object_list.js';
 import { mediaChoices, presetValues } from './object_presets.js';
 
-const GROUPS = { solid: 'Shape and placement', material: 'Material', mesh: 'Mesh', light: 'Light', texture: 'Texture' };
+const GROUPS = {
+  solid: 'Shape and placement',
+  material: 'Material',
+  mesh: 'Mesh',
+  light: 'Light',
+  beam: 'Beam',
+  texture: 'Texture',
+};
 const OWN = '(own material)';
 
 /* Identifies a control, also after it is recreated. */

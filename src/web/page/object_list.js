@@ -5,6 +5,7 @@ import { element, empty, replace } from './ui.js';
 const KINDS = [
   ['solid', 'Solids'],
   ['light', 'Lights'],
+  ['beam', 'Beams'],
   ['material', 'Materials'],
   ['mesh', 'Meshes'],
   ['texture', 'Textures'],

@@ -86,6 +86,7 @@ function addButtons(lab) {
       'div',
       { class: 'buttons', role: 'group', 'aria-label': 'Add other objects' },
       small('Light', () => choice.add({ kind: 'light' }), 'light'),
+      small('Beam', () => choice.add({ kind: 'beam' }), 'beam'),
       small('Material', () => choice.add({ kind: 'material' })),
       small('Slime', () => choice.add({ kind: 'slime' }), 'hand'),
       small('Model …', () => files.addFile('model', 'Add a model'), 'cube'),

@@ -65,7 +65,8 @@ function start(lab) {
 /* While another tool is active: names the pixel, with a button that clears the rays. */
 function note(lab) {
   const { pixel } = question;
-  lab.view.note('pixel', pixel && lab.view.chosen !== 'ask' ? `Rays of pixel ${pixel.x}, ${pixel.y}` : null, () => {
+  const which = pixel && `Rays of pixel ${pixel.x}, ${pixel.y}${question.moved ? ' of an earlier view' : ''}`;
+  lab.view.note('pixel', pixel && (lab.view.chosen !== 'ask' || question.moved) ? which : null, () => {
     question.clear();
     lab.view.stage.focus();
   });
@@ -85,6 +86,11 @@ function chooser(lab) {
   const go = () => question.ask(x.input.valueAsNumber || 0, y.input.valueAsNumber || 0);
   const x = number({ label: 'Pixel x', min: 0, step: 1, onchange: go });
   const y = number({ label: 'y', min: 0, step: 1, onchange: go });
+  const again = button('Trace again', () => question.again(), {
+    icon: 'reset',
+    small: true,
+    title: 'Trace the rays of this pixel for the current camera and scene',
+  });
   const clear = button('Clear', () => question.clear(), { kind: 'quiet', small: true, title: 'Clear (Escape)' });
   const tool = button(
     'Select in the image',
@@ -95,13 +101,14 @@ function chooser(lab) {
     { icon: 'pixel', small: true },
   );
   return {
-    node: element('div', { class: 'pixel-chooser' }, x.node, y.node, tool, clear),
+    node: element('div', { class: 'pixel-chooser' }, x.node, y.node, tool, again, clear),
     show() {
       x.input.max = Math.max(0, lab.view.width - 1);
       y.input.max = Math.max(0, lab.view.height - 1);
       x.set(question.pixel ? question.pixel.x : NaN);
       y.set(question.pixel ? question.pixel.y : NaN);
       clear.disabled = !question.pixel;
+      again.hidden = !question.moved && !question.old;
     },
   };
 }
@@ -234,6 +241,13 @@ function createAnswer(lab) {
   };
 }
 
+function stays() {
+  if (question.old) return notice('The scene and the camera have changed since these rays were traced.');
+  return question.moved
+    ? notice('The camera has moved: these are the rays of the view in which they were asked.')
+    : null;
+}
+
 function create(root, lab) {
   const choose = chooser(lab);
   const answer = createAnswer(lab);
@@ -252,7 +266,7 @@ function create(root, lab) {
       replace(
         message,
         question.pixel
-          ? null
+          ? stays()
           : empty('Choose the tool Inspect above the image and click a pixel, or enter its coordinates here.'),
       );
   };

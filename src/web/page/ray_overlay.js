@@ -6,6 +6,7 @@
  *                                      draw: after a move of the camera; count: rays that are drawn; left: rays
  *                                      omitted
  *                                      for their low weight or their number
+ *   clipNear, clipBox, distance        of lines: in front of the camera, within the image, from a point
  *   drawn(tree) -> rays                the rays that drawings show */
 
 import { svg } from './ui.js';
@@ -121,7 +122,7 @@ export function createRayOverlay(lab) {
 }
 
 /* The part in front of the camera; null for none. */
-function clipNear(a, b, camera, near) {
+export function clipNear(a, b, camera, near) {
   const size = length(camera.forward);
   const depth = (p) => dot(minus(p, camera.eye), camera.forward) / size;
   const [da, db] = [depth(a), depth(b)];
@@ -131,7 +132,7 @@ function clipNear(a, b, camera, near) {
 }
 
 /* Liang and Barsky: the part inside the image; null for none. */
-function clipBox(a, b, width, height) {
+export function clipBox(a, b, width, height) {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   let [first, last] = [0, 1];
   for (const [p, q] of [
@@ -148,7 +149,7 @@ function clipBox(a, b, width, height) {
   return first <= last ? [at(first), at(last)] : null;
 }
 
-function distance(p, a, b) {
+export function distance(p, a, b) {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   const size = dx * dx + dy * dy;
   const t = size ? Math.min(1, Math.max(0, ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / size)) : 0;

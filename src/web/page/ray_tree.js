@@ -90,11 +90,13 @@ function endOf(ray, reach) {
 
 export const columns = [
   ['kind', 'Ray', 'origin of the ray'],
-  ['depth', 'Depth', 'number of reflections and refractions since the camera'],
+  ['angles', 'Angles', 'angles of incidence and refraction, from the normal'],
+  ['reflectance', 'R', 'reflectance of unpolarised light'],
+  ['transmitted', 'T', 'transmittance of the surface'],
+  ['polarised', 'R_s, R_p', 'reflectance of each polarisation'],
   ['surface', 'Hits', 'solid and surface'],
   ['media', 'Media', 'on both sides of the surface, with refractive indices'],
-  ['angles', 'Angles', 'angles of incidence and refraction, from the normal'],
-  ['reflectance', 'R (s, p)', 'reflectance: unpolarised, and of each polarisation'],
+  ['depth', 'Depth', 'number of reflections and refractions since the camera'],
   ['path', 'Path', 'length of the ray up to the hit'],
   [
     'transmittance',
@@ -126,7 +128,7 @@ function angles(hit) {
 function reflectance(hit) {
   if (hit.tir) return 'total reflection';
   if (hit.opaque) return hit.R > 0 ? `${share(hit.R)}, opaque` : 'opaque';
-  return `${share(hit.R)} (${share(hit.R_s)}, ${share(hit.R_p)})`;
+  return share(hit.R);
 }
 
 function ofHit(hit) {
@@ -135,6 +137,8 @@ function ofHit(hit) {
     media: hit.opaque ? `in ${medium(hit.from)}` : `${medium(hit.from)} → ${medium(hit.to)}`,
     angles: angles(hit),
     reflectance: reflectance(hit),
+    transmitted: hit.opaque || hit.tir ? '' : share(hit.T),
+    polarised: hit.opaque || hit.tir ? '' : `${share(hit.R_s)}, ${share(hit.R_p)}`,
     path: `${digits(hit.path_length)} m`,
     transmittance: channels(hit.transmittance),
   };
@@ -149,6 +153,8 @@ export function describe(ray) {
     media: `in ${medium(node)}`,
     angles: '',
     reflectance: '',
+    transmitted: '',
+    polarised: '',
     path: '',
     transmittance: '',
     weight: channels(node.throughput),

@@ -73,6 +73,7 @@ status scene_remove(scene *s, const char *name, diagnostic *why)
     case PARAM_TEXTURE: return remove_texture(s, at.index, why);
     case PARAM_MATERIAL: return remove_material(s, at.index, why);
     case PARAM_LIGHT:
+    case PARAM_BEAM:
     case PARAM_SOLID: object_remove(s, at.object_group, at.index); return STATUS_OK;
     case PARAM_RENDER: return param_set_defaults(PARAM_RENDER, &s->render, why);
     case PARAM_CAMERA: s->camera.aimed = 1; return param_set_defaults(PARAM_CAMERA, &s->camera, why);
@@ -107,7 +108,7 @@ status scene_rename(scene *s, const char *name, const char *new_name, diagnostic
     TRY(param_place_find_object(s, name, &at, why));
     char *copy = NULL;
     if (!group_has_names(at.object_group))
-        return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a material or a solid",
+        return diagnose(why, STATUS_BAD_INPUT, "name a mesh, a texture, a light, a beam, a material or a solid",
                         "the %s has no name", name);
     if (strcmp(name, new_name) == 0)
         return STATUS_OK;

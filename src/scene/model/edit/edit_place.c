@@ -53,6 +53,18 @@ static status move_light(scene *s, size_t index, vec3 delta, diagnostic *why)
     return code;
 }
 
+/* A beam keeps its direction. */
+static status move_beam(scene *s, size_t index, vec3 delta, diagnostic *why)
+{
+    beam *b = &s->beams[index];
+    const beam before = *b;
+    status code = edit_set_vector(s, b->name, "position", vec3_add(before.position, delta), why);
+    THEN(code, edit_set_vector(s, b->name, "target", vec3_add(before.target, delta), why));
+    if (code != STATUS_OK)
+        *b = before;
+    return code;
+}
+
 status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
 {
     param_place at;
@@ -64,9 +76,11 @@ status scene_move(scene *s, const char *name, vec3 delta, diagnostic *why)
         return move_camera(s, delta, why);
     if (at.object_group == PARAM_LIGHT)
         return move_light(s, at.index, delta, why);
+    if (at.object_group == PARAM_BEAM)
+        return move_beam(s, at.index, delta, why);
     if (at.object_group == PARAM_SOLID)
         return edit_set_vector(s, name, "position", vec3_add(s->solids[at.index].shape.position, delta), why);
-    return has_no(name, at.object_group, "place", "move a solid, a light or the camera", why);
+    return has_no(name, at.object_group, "place", "move a solid, a light, a beam or the camera", why);
 }
 
 /* -180 < degrees <= 180 */
@@ -164,6 +178,18 @@ static status turn_light(scene *s, const light *l, vec3 degrees, diagnostic *why
     return edit_set_vector(s, l->name, "target", vec3_add(l->position, direction), why);
 }
 
+/* A beam's axis and plane rotate about its position. */
+static status turn_beam(scene *s, const beam *b, vec3 degrees, diagnostic *why)
+{
+    const mat3 turn = rotation_from_deg(degrees);
+    const vec3 target = vec3_add(b->position, mat3_apply(turn, vec3_sub(b->target, b->position)));
+    const vec3 direction = mat3_apply(turn, b->direction), normal = mat3_apply(turn, b->normal);
+    status code = edit_set_vector(s, b->name, "target", target, why);
+    THEN(code, edit_set_vector(s, b->name, "direction", direction, why));
+    THEN(code, edit_set_vector(s, b->name, "normal", normal, why));
+    return code;
+}
+
 status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
 {
     param_place at;
@@ -180,9 +206,11 @@ status scene_turn(scene *s, const char *name, vec3 degrees, diagnostic *why)
         return turn_camera(s, degrees, why);
     if (at.object_group == PARAM_LIGHT && s->lights[at.index].kind != LIGHT_POINT)
         return turn_light(s, &s->lights[at.index], degrees, why);
+    if (at.object_group == PARAM_BEAM)
+        return turn_beam(s, &s->beams[at.index], degrees, why);
     if (at.object_group == PARAM_SOLID)
         return edit_set_vector(s, name, "rotation", turned_by(s->solids[at.index].shape.rotation_deg, degrees), why);
-    return has_no(name, at.object_group, "direction", "rotate a solid, a spotlight or the camera", why);
+    return has_no(name, at.object_group, "direction", "rotate a solid, a spotlight, a beam or the camera", why);
 }
 
 status scene_look_at(scene *s, vec3 target, diagnostic *why)

@@ -65,6 +65,7 @@ static bool ask_group(const inert_case *c)
     case PARAM_MATERIAL: return inert_material(c);
     case PARAM_SOLID: return inert_solid(c);
     case PARAM_CAMERA:
+    case PARAM_BEAM:
     case PARAM_GROUP_COUNT: break;
     }
     return false;

@@ -23,6 +23,7 @@ static bool is_of_light(const inert_case *c)
     case PARAM_MATERIAL: return is_among(c, of_surface);
     case PARAM_SOLID: return c->at.row->group == PARAM_MATERIAL && is_among(c, of_surface);
     case PARAM_CAMERA:
+    case PARAM_BEAM:
     case PARAM_MESH:
     case PARAM_TEXTURE:
     case PARAM_GROUP_COUNT: break;

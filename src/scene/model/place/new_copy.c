@@ -94,9 +94,9 @@ static status copy_solid(scene *s, size_t of, const char *name, diagnostic *why)
     return scene_move(s, name, step, why);
 }
 
-static status copy_light(scene *s, size_t of, const char *name, diagnostic *why)
+static status copy_beside(scene *s, param_group group, size_t of, const char *name, diagnostic *why)
 {
-    TRY(copy_object(s, PARAM_LIGHT, of, name, why));
+    TRY(copy_object(s, group, of, name, why));
     const placement where = placement_of(s);
     return scene_move(s, name, rounded(vec3_scale(where.right, where.size), where.size), why);
 }
@@ -114,7 +114,8 @@ status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
         return code;
     switch (at.object_group) {
     case PARAM_SOLID: return copy_solid(s, at.index, name, why);
-    case PARAM_LIGHT: return copy_light(s, at.index, name, why);
+    case PARAM_LIGHT:
+    case PARAM_BEAM: return copy_beside(s, at.object_group, at.index, name, why);
     case PARAM_MATERIAL:
     case PARAM_MESH:
     case PARAM_TEXTURE: return copy_object(s, at.object_group, at.index, name, why);
@@ -123,6 +124,6 @@ status new_copy(scene *s, const char *of, object_name name, diagnostic *why)
     case PARAM_BACKGROUND:
     case PARAM_GROUP_COUNT: break;
     }
-    return diagnose(why, STATUS_BAD_INPUT, "copy a solid, a light, a material, a mesh or a texture",
+    return diagnose(why, STATUS_BAD_INPUT, "copy a solid, a light, a beam, a material, a mesh or a texture",
                     "there is only one %.60s", of);
 }

@@ -177,6 +177,11 @@ status new_solid(scene *s, shape_kind shape, const char *wanted, object_name nam
     return code;
 }
 
+static vec3 rounded(vec3 v, double size)
+{
+    return vec3_make(placement_round(v.x, size), placement_round(v.y, size), placement_round(v.z, size));
+}
+
 status new_light(scene *s, const char *wanted, object_name name, diagnostic *why)
 {
     const placement where = placement_of(s);
@@ -194,6 +199,20 @@ status new_light(scene *s, const char *wanted, object_name name, diagnostic *why
                vec3_make(placement_round(where.looked_at.x, where.size), placement_round(where.looked_at.y, where.size),
                          placement_round(where.looked_at.z, where.size)));
     put(s, &code, why, name, "intensity", "0.5");
+    return code;
+}
+
+/* A laser from the left, across the view, through the point that the camera looks at. */
+status new_beam(scene *s, const char *wanted, object_name name, diagnostic *why)
+{
+    const placement where = placement_of(s);
+    status code = name_for(s, wanted, "laser", name, why);
+    THEN(code, scene_add(s, PARAM_BEAM, name, NULL, why));
+    const vec3 aim = where.looked_at;
+    const vec3 at = vec3_add(
+        aim, vec3_add(vec3_scale(where.right, -0.4 * where.distance), vec3_make(0.0, 0.1 * where.distance, 0.0)));
+    put_vector(s, &code, why, name, "position", rounded(at, where.size));
+    put_vector(s, &code, why, name, "target", rounded(aim, where.size));
     return code;
 }
 

@@ -15,6 +15,7 @@ status new_name(const scene *s, const char *base, object_name name, diagnostic *
 
 /* A mesh is a torus. A plane is a floor, or a wall if there is a floor. */
 status new_solid(scene *s, shape_kind shape, const char *wanted, object_name name, diagnostic *why);
+status new_beam(scene *s, const char *wanted, object_name name, diagnostic *why);
 status new_light(scene *s, const char *wanted, object_name name, diagnostic *why);
 status new_material(scene *s, const char *wanted, object_name name, diagnostic *why);
 /* A soft ball of clear green jelly. */

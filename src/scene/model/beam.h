@@ -1,0 +1,58 @@
+/* Beams of the optical bench: rays that are shown, and do not affect the film. Plain values; a beam owns its name. */
+#pragma once
+
+#include "base/vec3.h"
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { SCENE_BEAMS_MAX = 64, BEAM_RAYS_MAX = 10000 };
+
+/* From one point: within a cone, or in a plane. Parallel: in a plane, or over a disc. */
+typedef enum beam_kind { BEAM_PENCIL, BEAM_FAN, BEAM_SHEET, BEAM_BUNDLE } beam_kind;
+
+typedef struct beam {
+    char *name;
+    int64_t kind; /* beam_kind */
+    vec3 position, target;
+    vec3 direction; /* used instead of the target unless it is zero */
+    vec3 normal;    /* of the plane of a fan or sheet; zero: as in `cuvette fan` */
+    int64_t rays;
+    double angle_deg, width; /* full angle of a pencil or fan; width of a sheet, diameter of a bundle, scene units */
+    int64_t white;           /* 1: `wavelengths` wavelengths from BEAM_LOW_NM to BEAM_HIGH_NM instead of lambda_nm */
+    double lambda_nm;
+    int64_t wavelengths;
+    double power;     /* of all rays together, at their starts */
+    int64_t branches; /* 1: reflected and refracted rays; 0: the refracted path, as in `cuvette fan` */
+    int64_t depth;
+    double min_share;
+    vec3 color; /* of the drawn lines; black: the colour of the wavelength */
+    int64_t visible;
+} beam;
+
+/* White light: evenly spaced, of equal power. */
+enum { BEAM_LOW_NM = 400, BEAM_HIGH_NM = 700 };
+
+static inline int beam_wavelengths(const beam *b)
+{
+    return b->white ? (int)b->wavelengths : 1;
+}
+
+static inline double beam_lambda(const beam *b, int number)
+{
+    if (!b->white)
+        return b->lambda_nm;
+    if (b->wavelengths == 1)
+        return 0.5 * (BEAM_LOW_NM + BEAM_HIGH_NM);
+    return BEAM_LOW_NM + (double)(BEAM_HIGH_NM - BEAM_LOW_NM) * number / (double)(b->wavelengths - 1);
+}
+
+/* The direction of its axis, of any length. */
+static inline vec3 beam_axis(const beam *b)
+{
+    return vec3_dot(b->direction, b->direction) > 0.0 ? b->direction : vec3_sub(b->target, b->position);
+}
+
+static inline bool beam_is_parallel(const beam *b)
+{
+    return b->kind == BEAM_SHEET || b->kind == BEAM_BUNDLE;
+}

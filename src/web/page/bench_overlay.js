@@ -1,0 +1,129 @@
+/* Draws the bench over the image: beams, the chosen segment with its normal, measured points, the screen.
+ *
+ * exports: createBenchOverlay(lab, bench) -> {draw(), nearest(point) -> {segment, at} or null}
+ *   bench: {rays, chosen, points, screen} of panel_bench.js; at: the point in the scene, a hit or start if one is near
+ */
+
+import { digits, svg } from './ui.js';
+import { clipBox, clipNear, distance } from './ray_overlay.js';
+import { isCut } from './ray_tree.js';
+import { add, length, minus, times } from './ray_vectors.js';
+import { degrees } from './bench_measure.js';
+
+const LINES_MAX = 3000;
+const NEAR_PX = 9;
+const POINT_PX = 11; /* a hit or a start within this distance is taken instead of a point between them */
+
+const at = ([x1, y1], [x2, y2]) => ({ x1, y1, x2, y2 });
+
+export function createBenchOverlay(lab, bench) {
+  const layer = lab.view.layer('bench');
+  let pieces = [];
+  return { draw, nearest };
+
+  function draw() {
+    const shown = bench.rays.segments.filter(({ one }) => !isCut(one)).slice(0, LINES_MAX);
+    pieces = shown.map(piece).filter(Boolean);
+    const { chosen, points } = bench;
+    layer.replaceChildren(
+      ...pieces.map((each) => line(each, 'bench-halo')),
+      ...pieces.map((each) => line(each, each.segment === chosen ? 'bench-ray chosen' : 'bench-ray')),
+      ...(bench.screen ? outline(bench.screen) : []),
+      ...(chosen ? atHit(chosen) : []),
+      ...measured(points),
+    );
+  }
+
+  function flat(from, to) {
+    const camera = lab.state?.camera;
+    const seen = camera && clipNear(from, to, camera, 1e-4 * (camera.distance || 1));
+    const ends = seen && seen.map((point) => lab.view.project(point));
+    if (!ends || !ends[0] || !ends[1]) return null;
+    return clipBox([ends[0].x, ends[0].y], [ends[1].x, ends[1].y], lab.view.width, lab.view.height);
+  }
+
+  function piece(segment) {
+    const ends = flat(segment.from, segment.to);
+    return ends && { segment, a: ends[0], b: ends[1] };
+  }
+
+  function line({ segment, a, b }, name) {
+    const share = Math.sqrt(Math.min(1, segment.one.weight));
+    const halo = name === 'bench-halo';
+    const attributes = { class: name, ...at(a, b), 'stroke-width': (halo ? 3.5 : 1.4) + 1.2 * share };
+    if (!halo) Object.assign(attributes, { stroke: segment.css, 'stroke-opacity': (0.3 + 0.7 * share).toFixed(3) });
+    return svg('line', attributes);
+  }
+
+  function stroke(from, to, name) {
+    const ends = flat(from, to);
+    return ends ? [svg('line', { class: name, ...at(ends[0], ends[1]) })] : [];
+  }
+
+  function dot(point, name) {
+    const place = lab.view.project(point);
+    return place ? [svg('circle', { class: name, cx: place.x, cy: place.y, r: 4 / lab.view.scale })] : [];
+  }
+
+  function label(point, text) {
+    const place = lab.view.project(point);
+    if (!place) return [];
+    const size = 13 / lab.view.scale;
+    return [
+      svg('text', { class: 'bench-text', x: place.x + 0.7 * size, y: place.y - 0.6 * size, 'font-size': size }, text),
+    ];
+  }
+
+  /* The normal to both sides of the surface, and the angles. */
+  function atHit({ one, from, to }) {
+    const { hit } = one.node;
+    if (!hit) return [];
+    const arm = times(hit.normal, Math.max(0.25 * length(minus(to, from)), 0.06 * (lab.state.camera?.distance || 1)));
+    const second = hit.opaque ? 'opaque' : hit.tir ? 'total reflection' : degrees(hit.cos_t, 5);
+    return [
+      ...stroke(minus(hit.point, arm), add(hit.point, arm), 'bench-normal'),
+      ...dot(hit.point, 'bench-hit'),
+      ...label(hit.point, `${degrees(hit.cos_i, 5)} → ${second}`),
+    ];
+  }
+
+  function measured(points) {
+    return points.flatMap((point, i) => [
+      ...(i ? stroke(points[i - 1], point, 'bench-measure') : []),
+      ...dot(point, 'bench-point'),
+      ...label(point, i ? digits(length(minus(point, points[i - 1])), 5) : '0'),
+    ]);
+  }
+
+  function outline({ corners }) {
+    return corners.flatMap((corner, i) => stroke(corner, corners[(i + 1) % corners.length], 'bench-screen'));
+  }
+
+  function nearest(point) {
+    let best = null;
+    let least = NEAR_PX / lab.view.scale;
+    for (const { segment, a, b } of pieces) {
+      const away = distance([point.x, point.y], a, b);
+      if (away < least) [best, least] = [segment, away];
+    }
+    return best && { segment: best, at: snapped(best, point) };
+  }
+
+  /* An end of the segment, or the point on it whose image is nearest. */
+  function snapped({ from, to }, point) {
+    const away = (place) => {
+      const seen = lab.view.project(place);
+      return seen ? Math.hypot(seen.x - point.x, seen.y - point.y) : Infinity;
+    };
+    const end = [from, to].find((each) => away(each) * lab.view.scale < POINT_PX);
+    if (end) return end;
+    const along = (t) => add(from, times(minus(to, from), t));
+    let [low, high] = [0, 1];
+    for (let i = 0; i < 60; i++) {
+      const [a, b] = [low + (high - low) / 3, high - (high - low) / 3];
+      if (away(along(a)) <= away(along(b))) high = b;
+      else low = a;
+    }
+    return along((low + high) / 2);
+  }
+}

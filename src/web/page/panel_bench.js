@@ -1,0 +1,243 @@
+/* The panel Bench: beams and lasers, their paths over the image, the numbers at each hit, ruler, protractor, screen.
+ * exports: panel. The tool Bench chooses a segment by a click; with Measure on, it sets points. */
+
+import { button, check, digits, element, empty, facts, group, notice, replace, table } from './ui.js';
+import { createBenchOverlay } from './bench_overlay.js';
+import { createBenchRays } from './bench_rays.js';
+import { createBenchScreen } from './bench_screen.js';
+import { hitFacts, measure } from './bench_measure.js';
+import { createRow } from './param_row.js';
+import { describe, isCut } from './ray_tree.js';
+
+const bench = { rays: null, chosen: null, points: [], screen: null, measuring: false, beam: '' };
+const listeners = new Set();
+let overlay = null;
+
+function changed() {
+  overlay.draw();
+  for (const listener of listeners) listener();
+}
+
+function choose(segment) {
+  bench.chosen = segment;
+  if (segment) bench.beam = segment.beam;
+  changed();
+}
+
+function start(lab) {
+  bench.rays = createBenchRays(lab);
+  overlay = createBenchOverlay(lab, bench);
+  bench.rays.on(() => {
+    bench.chosen = sameSegment(bench.chosen);
+    changed();
+  });
+  lab.on('view', () => overlay.draw());
+  lab.on('state', () => overlay.draw());
+  lab.view.tool('bench', {
+    label: 'Bench',
+    icon: 'beam',
+    order: 45,
+    cursor: 'crosshair',
+    hint: 'Choose a segment of a beam by a click; with Measure on, set points',
+    chosen: () => lab.panels?.use('bench'),
+    down: (point) => {
+      pick(lab, point);
+      return false;
+    },
+    key: (event) => {
+      if (event.key !== 'Escape') return false;
+      bench.points = [];
+      choose(null);
+      return true;
+    },
+  });
+}
+
+/* After a change of the scene: the segment at the same place in the trees. */
+function sameSegment(before) {
+  return (
+    before &&
+    (bench.rays.segments.find(
+      ({ beam, ray, one }) =>
+        beam === before.beam &&
+        ray.number === before.ray.number &&
+        ray.lambda_nm === before.ray.lambda_nm &&
+        one.index === before.one.index,
+    ) ||
+      null)
+  );
+}
+
+/* A point on a beam, or on the surface that the image shows there. */
+async function pick(lab, point) {
+  const found = overlay.nearest(point);
+  if (!bench.measuring) {
+    choose(found?.segment || null);
+    return;
+  }
+  let at = found?.at;
+  if (!at && point.inside) {
+    try {
+      at = (await lab.get(`/api/trace?x=${Math.floor(point.x)}&y=${Math.floor(point.y)}`)).root.hit?.point;
+    } catch (error) {
+      lab.fail(error);
+    }
+  }
+  if (!at) return;
+  bench.points = bench.points.length === 3 ? [at] : [...bench.points, at];
+  changed();
+}
+
+/* --- the panel --- */
+
+async function attempt(lab, promise) {
+  try {
+    return await promise;
+  } catch (error) {
+    lab.fail(error);
+    return null;
+  }
+}
+
+function createBeams(lab) {
+  const list = element('div', { class: 'buttons', role: 'group', 'aria-label': 'Beams' });
+  const rows = element('div', { class: 'panel-params object-rows' });
+  let made = [];
+  let shown = '';
+  const take = (name) => {
+    bench.beam = name;
+    changed();
+  };
+  const addBeam = async (set) => {
+    const reply = await attempt(lab, lab.change('/api/objects', { kind: 'beam' }));
+    if (!reply?.name) return;
+    bench.beam = reply.name;
+    const values = Object.fromEntries(Object.entries(set).map(([key, value]) => [`${reply.name}.${key}`, value]));
+    if (Object.keys(values).length) await attempt(lab, lab.set(values));
+  };
+  const remove = () => attempt(lab, lab.del(`/api/objects/${encodeURIComponent(bench.beam)}`));
+  const node = element(
+    'div',
+    {},
+    element(
+      'div',
+      { class: 'buttons', role: 'group', 'aria-label': 'Add a beam' },
+      button('Laser', () => addBeam({}), { icon: 'plus', small: true }),
+      button('Fan', () => addBeam({ kind: 'fan', rays: 9 }), { icon: 'plus', small: true }),
+      button('Sheet', () => addBeam({ kind: 'sheet', rays: 9 }), { icon: 'plus', small: true }),
+      button('White sheet', () => addBeam({ kind: 'sheet', rays: 3, white: 'on' }), { icon: 'plus', small: true }),
+      button('Bundle', () => addBeam({ kind: 'bundle', rays: 60 }), { icon: 'plus', small: true }),
+    ),
+    list,
+    rows,
+  );
+  return { node, show };
+
+  function show() {
+    const beams = (lab.scene?.objects || []).filter((object) => object.kind === 'beam').map((object) => object.name);
+    if (!beams.includes(bench.beam)) bench.beam = beams[0] || '';
+    replace(
+      list,
+      beams.map((name) => button(name, () => take(name), { small: true, pressed: name === bench.beam })),
+      bench.beam ? button(`Remove ${bench.beam}`, remove, { icon: 'trash', small: true, kind: 'danger' }) : null,
+    );
+    const own = (lab.scene?.params || []).filter((row) => bench.beam && row.path === `${bench.beam}.${row.name}`);
+    const now = own.map((row) => row.path).join();
+    if (now === shown) {
+      for (const row of made) if (lab.param(row.path)) row.update(lab.param(row.path), lab.scene.generation);
+      return;
+    }
+    shown = now;
+    made = own.map((row) => createRow(row, lab));
+    replace(
+      rows,
+      made.length
+        ? group(
+            'Parameters of the beam',
+            { id: 'bench.beam', open: false },
+            made.map((row) => row.node),
+          )
+        : empty('The scene has no beams. Add one: it is shown here and saved with the scene, and does not light it.'),
+    );
+  }
+}
+
+function hitRows(segments) {
+  return segments.map((segment) => {
+    const words = describe(segment.one);
+    const name = `${segment.one.level === 1 ? 'start' : words.kind}: ${words.surface || words.end}`;
+    return [
+      button(name, () => choose(segment), { small: true, kind: 'quiet', pressed: segment === bench.chosen }),
+      words.angles,
+      words.reflectance,
+      words.transmitted,
+      digits(segment.power, 3),
+    ];
+  });
+}
+
+function createNumbers() {
+  const node = element('div', { class: 'bench-numbers' });
+  return {
+    node,
+    show() {
+      const { chosen, rays } = bench;
+      if (!rays.segments.length && !rays.error) return replace(node);
+      if (rays.error) return replace(node, notice(rays.error.message, { kind: 'error', remedy: rays.error.remedy }));
+      const first = chosen || rays.segments.find(({ beam }) => beam === bench.beam) || rays.segments[0];
+      const same = rays.segments.filter(({ tree, one }) => tree === first.tree && !isCut(one));
+      return replace(
+        node,
+        chosen ? facts(hitFacts(chosen)) : empty('Choose the tool Bench and click a beam, or a row below.'),
+        table({
+          caption: `Hits of ${first.beam}, ray ${first.ray.number + 1}, ${digits(first.ray.lambda_nm, 5)} nm`,
+          columns: ['Ray', 'Angles', 'R', 'T', { label: 'Power', numeric: true }],
+          rows: hitRows(same.slice(0, 200)),
+        }),
+      );
+    },
+  };
+}
+
+function createRuler(lab) {
+  const result = element('div', { 'aria-live': 'polite' });
+  const on = check('Measure: clicks in the image set points', false, (checked) => {
+    bench.measuring = checked;
+    if (checked) lab.view.use('bench');
+  });
+  const clear = button('Clear points', () => {
+    bench.points = [];
+    changed();
+  });
+  return {
+    node: element('div', { class: 'bench-ruler' }, on.node, clear, result),
+    show() {
+      clear.disabled = !bench.points.length;
+      replace(
+        result,
+        bench.points.length
+          ? facts(measure(bench.points))
+          : element('p', { class: 'hint', text: 'Two points give a distance, three the angle at the second.' }),
+      );
+    },
+  };
+}
+
+function create(root, lab) {
+  const parts = [createBeams(lab), createNumbers(), createRuler(lab)];
+  const screen = createBenchScreen(lab, bench, changed);
+  root.append(
+    parts[0].node,
+    group('Segments and hits', { id: 'bench.hits' }, parts[1].node),
+    group('Ruler and protractor', { id: 'bench.ruler' }, parts[2].node),
+    group('Screen', { id: 'bench.screen', open: false }, screen.node),
+  );
+  const show = () => {
+    for (const part of parts) part.show();
+  };
+  listeners.add(show);
+  lab.on('scene', show);
+  show();
+}
+
+export const panel = { id: 'bench', title: 'Bench', css: 'panel_bench.css', start, create };

@@ -1,0 +1,313 @@
+/* Tests of beams: scene files, rays equal to those of `cuvette trace` and `cuvette fan`, closed forms, screens. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "render/inspect/beam_screen.h"
+#include "render/inspect/fan.h"
+#include "render_fixture.h"
+#include "scene/file/write.h"
+#include "scene/model/edit/edit.h"
+
+#define BALL "ball: {shape: sphere, transparency: 1, ior: 1.5, radius: 1}"
+#define DEGREES (180.0 / 3.14159265358979323846)
+
+static scene *with_beam(const char *keys, const char *solids)
+{
+    char text[1024];
+    snprintf(text, sizeof text, "lights: {lamp: {position: [0, 9, 0]}}\nbeams: {ray: {%s}}\nsolids: {%s}\n", keys,
+             solids);
+    return scene_from(text);
+}
+
+static void refused(const char *keys, const char *what, const char *remedy)
+{
+    char text[512];
+    scene *s = NULL;
+    diagnostic why = {.line = 0};
+    snprintf(text, sizeof text, "beams:\n  ray: {%s}\n", keys);
+    assert_int_equal(scene_read_text("test.yaml", text, strlen(text), &s, &why), STATUS_BAD_INPUT);
+    assert_string_equal(why.what, what);
+    assert_string_equal(why.remedy, remedy);
+    assert_int_equal(why.line, 2);
+}
+
+static void invalid_beams_are_refused_with_place_and_remedy(void **state)
+{
+    (void)state;
+    refused("rays: 0", "ray.rays: 0 is out of range", "give an integer 1..10000");
+    refused("kind: laser", "ray.kind: 'laser' is not one of the choices", "give one of: pencil, fan, sheet, bundle");
+    refused("target: [-3, 1, 0]", "ray: the beam is at its own target",
+            "move its position or its target, or set its direction");
+    refused("kind: fan, direction: [0, 0, 2], normal: [0, 0, 1]",
+            "ray: the normal of its plane is parallel to the beam",
+            "set 'normal' to a vector across the beam, or to 0,0,0");
+    refused("width: -1", "ray.width: -1 is out of range", "give a number 0..1000000");
+}
+
+static void a_written_beam_is_read_back(void **state)
+{
+    (void)state;
+    scene *s = with_beam("kind: sheet, rays: 5, white: on, wavelengths: 3, width: 0.25, color: [1, 0.5, 0]", BALL),
+          *back;
+    char *text = NULL;
+    diagnostic why = {.line = 0};
+    worked(scene_write_text(s, "", false, &text, &why), &why);
+    worked(scene_read_text("test.yaml", text, strlen(text), &back, &why), &why);
+    assert_int_equal(back->beam_count, 1);
+    const beam *a = &s->beams[0], *b = &back->beams[0];
+    assert_string_equal(b->name, "ray");
+    assert_memory_equal(&a->kind, &b->kind, sizeof *a - offsetof(beam, kind));
+    worked(scene_move(back, "ray", vec3_make(1, 2, 3), &why), &why);
+    assert_true(b->position.x == -2 && b->position.y == 3 && b->target.z == 3);
+    worked(scene_remove(back, "ray", &why), &why);
+    assert_int_equal(back->beam_count, 0);
+    free(text);
+    scene_destroy(s);
+    scene_destroy(back);
+}
+
+/* The film of the same scene with and without beams. */
+static void beams_do_not_change_the_film(void **state)
+{
+    (void)state;
+    scene *bare = rod_scene("render.width=40 render.height=30"), *s = rod_scene("render.width=40 render.height=30");
+    diagnostic why = {.line = 0};
+    worked(scene_add(s, PARAM_BEAM, "laser", NULL, &why), &why);
+    render_result *a = render(bare), *b = render(s);
+    assert_true(film_hash(a->img) == film_hash(b->img));
+    render_result_destroy(a);
+    render_result_destroy(b);
+    scene_destroy(bare);
+    scene_destroy(s);
+}
+
+/* --- rays --- */
+
+typedef struct gathered {
+    int count;
+    double power;
+    double lambda_nm[64];
+    ray_tree last;
+} gathered;
+
+static status gather(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
+{
+    gathered *g = context;
+    (void)p;
+    (void)why;
+    g->lambda_nm[g->count % 64] = ray->lambda_nm;
+    g->count++;
+    g->power += ray->power;
+    g->last = *tree;
+    g->last.node = realloc(NULL, tree->count * sizeof *tree->node);
+    memcpy(g->last.node, tree->node, tree->count * sizeof *tree->node);
+    return STATUS_OK;
+}
+
+typedef struct fan_compared {
+    const fan *f;
+    int at;
+} fan_compared;
+
+static status compare_with_fan(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p,
+                               diagnostic *why)
+{
+    fan_compared *c = context;
+    const fan_ray *other = &c->f->ray[c->at++];
+    (void)p;
+    (void)why;
+    assert_int_equal(ray->rays, c->f->count);
+    assert_int_equal(tree->count, other->count);
+    assert_memory_equal(tree->node, &c->f->node[other->first], tree->count * sizeof *tree->node);
+    return STATUS_OK;
+}
+
+static void rays_equal_those_of_a_fan(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *beam;
+        fan_rule rule;
+    } pairs[] = {
+        {"kind: sheet, rays: 9, width: 1.4, position: [-5, 0, 0], target: [0, 0, 0]",
+         {.from = {-5, 0, 0}, .to = {0, 0, 0}, .rays = 9, .width = 1.4}},
+        {"kind: fan, rays: 7, angle_deg: 20, position: [-4, 1, 0.5], target: [0, 0.1, 0]",
+         {.from = {-4, 1, 0.5}, .to = {0, 0.1, 0}, .rays = 7, .spreads = true, .spread_deg = 20}},
+        {"kind: sheet, rays: 4, width: 0.6, position: [-4, 1, 0.5], direction: [4, -0.9, -0.5], normal: [0, 1, 1]",
+         {.from = {-4, 1, 0.5}, .to = {0, 0.1, 0}, .rays = 4, .width = 0.6, .has_normal = true, .normal = {0, 1, 1}}},
+    };
+    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+        char text[300];
+        snprintf(text, sizeof text, "%s, branches: off, depth: 6, min_share: 0", pairs[i].beam);
+        scene *s = with_beam(text, BALL);
+        diagnostic why = {.line = 0};
+        probe *p = NULL;
+        fan f = {0};
+        s->render.depth = 6;
+        worked(probe_create(s, isa_best(), &p, &why), &why);
+        worked(fan_follow(p, &pairs[i].rule, &f, &why), &why);
+        fan_compared c = {&f, 0};
+        worked(beams_each_ray(s, isa_best(), 0, compare_with_fan, &c, &why), &why);
+        assert_int_equal(c.at, f.count);
+        fan_release(&f);
+        probe_destroy(p);
+        scene_destroy(s);
+    }
+}
+
+/* The laser's tree is that of `cuvette trace --ray` without shadow rays. */
+static void a_laser_equals_a_traced_ray(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.depth=8 render.min_weight=0.01 render.lambda_nm=500");
+    diagnostic why = {.line = 0};
+    probe *p = NULL;
+    ray_tree tree = {0};
+    gathered g = {.count = 0};
+    worked(scene_add(s, PARAM_BEAM, "laser", NULL, &why), &why);
+    set(s, "laser.position=-3,1.5,0.4");
+    set(s, "laser.direction=1,-0.1,0");
+    set(s, "laser.lambda_nm=500");
+    worked(beams_each_ray(s, isa_best(), 0, gather, &g, &why), &why);
+    worked(probe_create(s, isa_best(), &p, &why), &why);
+    probe_one_wavelength(p);
+    worked(probe_ray(p, g.last.node[0].origin, g.last.node[0].direction, &tree, &why), &why);
+    assert_true(vec3_length(vec3_sub(tree.node[0].direction, vec3_normalize(vec3_make(1, -0.1, 0)))) < 1e-15);
+    size_t k = 0;
+    for (size_t i = 0; i < tree.count; i++) {
+        if (tree.node[i].kind == RAY_SHADOW)
+            continue;
+        assert_true(k < g.last.count);
+        const ray_node *a = &tree.node[i], *b = &g.last.node[k++];
+        assert_memory_equal(&a->origin, &b->origin, 2 * sizeof a->origin);
+        assert_memory_equal(a->throughput, b->throughput, sizeof a->throughput);
+        assert_int_equal(a->end, b->end);
+        if (a->end == RAY_END_HIT)
+            assert_true(a->hit.t == b->hit.t && a->hit.R_s == b->hit.R_s && a->hit.R_p == b->hit.R_p &&
+                        a->hit.T == b->hit.T && a->hit.cos_i == b->hit.cos_i && a->hit.cos_t == b->hit.cos_t &&
+                        a->hit.n_from == b->hit.n_from && a->hit.n_to == b->hit.n_to && a->hit.tir == b->hit.tir);
+    }
+    assert_true(k == g.last.count && k > 8);
+    free(g.last.node);
+    ray_tree_release(&tree);
+    probe_destroy(p);
+    scene_destroy(s);
+}
+
+/* Fresnel and Snell at a plane surface of glass (Hecht 4.6), and total reflection beyond arcsin(1 / n). */
+static void a_beam_obeys_snell_and_fresnel(void **state)
+{
+    (void)state;
+    const char *block = "block: {shape: box, size: [9, 9, 9], position: [0, -4.5, 0], transparency: 1, ior: 1.5}";
+    scene *s = with_beam("position: [-1, 1, 0], target: [0, 0, 0], depth: 1, min_share: 0", block);
+    diagnostic why = {.line = 0};
+    gathered g = {.count = 0};
+    worked(beams_each_ray(s, isa_best(), 0, gather, &g, &why), &why);
+    const double t = asin(sin(45.0 / DEGREES) / 1.5), ci = cos(45.0 / DEGREES), ct = cos(t);
+    const double r_s = (ci - 1.5 * ct) / (ci + 1.5 * ct), r_p = (1.5 * ci - ct) / (1.5 * ci + ct);
+    const double R = 0.5 * (r_s * r_s + r_p * r_p);
+    assert_true(fabs(beam_share(&g.last.node[1]) - R) < 1e-14 && fabs(beam_share(&g.last.node[2]) - (1 - R)) < 1e-14);
+    assert_true(fabs(g.last.node[2].direction.x - sin(t)) < 1e-14);
+    free(g.last.node);
+    g = (gathered){.count = 0};
+    set(s, "ray.position=-1,-1,0");
+    worked(beams_each_ray(s, isa_best(), 0, gather, &g, &why), &why);
+    assert_true(g.last.node[0].hit.tir && beam_share(&g.last.node[1]) == 1.0);
+    free(g.last.node);
+    scene_destroy(s);
+}
+
+static status sum_up(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
+{
+    gathered *g = context;
+    (void)p;
+    (void)why;
+    (void)tree;
+    g->lambda_nm[g->count % 64] = ray->lambda_nm;
+    g->count++;
+    g->power += ray->power;
+    return STATUS_OK;
+}
+
+static void white_light_has_several_wavelengths_and_the_same_power(void **state)
+{
+    (void)state;
+    scene *s = with_beam("kind: bundle, rays: 10, white: on, wavelengths: 4, power: 3", BALL);
+    diagnostic why = {.line = 0};
+    gathered g = {.count = 0};
+    worked(beams_each_ray(s, isa_best(), 0, sum_up, &g, &why), &why);
+    assert_int_equal(g.count, 40);
+    assert_true(g.lambda_nm[0] == 400 && g.lambda_nm[10] == 500 && g.lambda_nm[39] == 700);
+    assert_true(fabs(g.power - 3.0) < 1e-12);
+    set(s, "ray.visible=off");
+    g = (gathered){.count = 0};
+    worked(beams_each_ray(s, isa_best(), 0, sum_up, &g, &why), &why);
+    assert_int_equal(g.count, 0);
+    scene_destroy(s);
+}
+
+/* --- the screen --- */
+
+/* A parallel bundle lights a disc evenly: bins within it receive power by area, those outside nothing. */
+static void a_screen_bins_the_power_of_a_bundle(void **state)
+{
+    (void)state;
+    scene *s = with_beam("kind: bundle, width: 2, power: 5, position: [-3, 0, 0], target: [0, 0, 0]", "");
+    beam_screen screen = {.normal = {1, 0, 0}, .width = 4, .height = 4, .columns = 8, .rows = 8, .rays_of_beam = 20000};
+    diagnostic why = {.line = 0};
+    worked(beam_screen_expose(s, isa_best(), &screen, &why), &why);
+    assert_int_equal(screen.ray_count, 20000);
+    assert_int_equal(screen.hit_count, 20000);
+    assert_true(fabs(screen.received - 5.0) < 1e-9 && fabs(screen.power - 5.0) < 1e-9);
+    for (int row = 0; row < 8; row++)
+        for (int column = 0; column < 8; column++) {
+            const double inner = hypot(fmax(fabs(column - 3.5) + 0.5, 0), fabs(row - 3.5) + 0.5) * 0.5;
+            const double outer = hypot(fabs(column - 3.5) - 0.5, fabs(row - 3.5) - 0.5) * 0.5;
+            const double bin = screen.bin[row * 8 + column];
+            if (inner < 1.0) /* wholly lit: its share of the disc's area pi */
+                assert_true(fabs(bin - 5.0 * 0.25 / 3.14159265358979) < 0.01);
+            if (outer > 1.0)
+                assert_true(bin == 0.0);
+        }
+    beam_screen_release(&screen);
+    screen.normal = vec3_make(0, 0, 0);
+    assert_int_equal(beam_screen_expose(s, isa_best(), &screen, &why), STATUS_BAD_INPUT);
+    beam_screen_release(&screen);
+    scene_destroy(s);
+}
+
+/* Within an absorbing slab, Beer and Lambert: the power at depth d is (1 - R) e^(-a d). */
+static void a_screen_in_a_medium_receives_what_is_not_absorbed(void **state)
+{
+    (void)state;
+    scene *s = with_beam("position: [-3, 0, 0], target: [0, 0, 0], depth: 1, min_share: 0, branches: off",
+                         "slab: {shape: box, size: [2, 4, 4], position: [1, 0, 0], transparency: 1, ior: 1.5, "
+                         "absorb_per_m: [0.7, 0.7, 0.7]}");
+    beam_screen screen = {.centre = {0.5, 0, 0}, .normal = {1, 0, 0}, .width = 1, .height = 1, .columns = 1, .rows = 1};
+    diagnostic why = {.line = 0};
+    worked(beam_screen_expose(s, isa_best(), &screen, &why), &why);
+    assert_true(fabs(screen.received - 0.96 * exp(-0.35)) < 1e-12);
+    beam_screen_release(&screen);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(invalid_beams_are_refused_with_place_and_remedy),
+        cmocka_unit_test(a_written_beam_is_read_back),
+        cmocka_unit_test(beams_do_not_change_the_film),
+        cmocka_unit_test(rays_equal_those_of_a_fan),
+        cmocka_unit_test(a_laser_equals_a_traced_ray),
+        cmocka_unit_test(a_beam_obeys_snell_and_fresnel),
+        cmocka_unit_test(white_light_has_several_wavelengths_and_the_same_power),
+        cmocka_unit_test(a_screen_bins_the_power_of_a_bundle),
+        cmocka_unit_test(a_screen_in_a_medium_receives_what_is_not_absorbed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

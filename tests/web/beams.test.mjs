@@ -1,0 +1,122 @@
+// The optical bench: beams over the image, their numbers, orbiting without tracing, ruler, screen.
+
+const traces = (screen) => {
+  const list = [];
+  screen.page.on('request', (request) => {
+    if (/\/api\/(trace|beams)/.test(request.url())) list.push(request.url());
+  });
+  return list;
+};
+
+const text = (bytes) => Buffer.from(bytes).toString();
+
+const lines = (screen) => screen.page.locator('.layer-bench .bench-ray');
+const facts = (screen, index = 0) =>
+  screen.page.getByRole('tabpanel', { name: 'Bench' }).locator('dl').nth(index).innerText();
+
+async function withLaser(t, size) {
+  const lab = await t.lab('scenes/rod.yaml');
+  const screen = await t.open(lab, size);
+  await screen.showPanel('Bench');
+  await screen.button('Laser').click();
+  await screen.until(() => window.lab.scene.objects.some((object) => object.name === 'laser'));
+  const { generation } = await lab.post('/api/set', {
+    set: { 'laser.position': [-2.5, 1.6, -0.4], 'laser.target': [0, 1.4, -0.4], 'laser.lambda_nm': 532 },
+  });
+  await screen.settled(generation);
+  await lines(screen).nth(3).waitFor({ state: 'attached' });
+  return { lab, screen };
+}
+
+export const cases = {
+  'a laser has the numbers of the API at each hit, also at 1366 px': async (t) => {
+    const { lab, screen } = await withLaser(t, { width: 1366, height: 768 });
+    const { root } = JSON.parse(text((await lab.ask('GET', '/api/beams')).bytes)).beams[0].rays[0];
+    const { hit } = root;
+    await screen.page.getByRole('button', { name: /^start: vessel/ }).click();
+    const shown = await facts(screen);
+    const degrees = (cosine) => String((Math.acos(cosine) * 180) / Math.PI).slice(0, 7);
+    for (const text of [
+      degrees(hit.cos_i),
+      degrees(hit.cos_t),
+      String(hit.R_s).slice(0, 8),
+      String(hit.R_p).slice(0, 8),
+    ])
+      t.check(shown.includes(text), `the panel lacks ${text}: ${shown}`);
+    for (const name of ['Angles', 'R', 'T', 'Power']) {
+      const head = screen.page
+        .getByRole('tabpanel', { name: 'Bench' })
+        .getByRole('columnheader', { name, exact: true });
+      const { x, width } = await head.boundingBox();
+      t.check(x + width <= 1350, `${name} is off the screen: ${x + width}`);
+    }
+    await t.picture(screen, 'bench-light');
+    await t.axe(screen, 'bench');
+  },
+
+  'orbiting draws the beams anew and traces nothing': async (t) => {
+    const { lab, screen } = await withLaser(t);
+    const before = await lines(screen).first().getAttribute('x1');
+    const asked = traces(screen);
+    const { generation } = await lab.post('/api/camera', { orbit: [35, 5] });
+    await screen.settled(generation);
+    await screen.quiet();
+    const after = await lines(screen).first().getAttribute('x1');
+    t.check(before !== after, 'the beam stays where it was in the image');
+    t.equal(asked.length, 0, 'requests for rays while orbiting');
+  },
+
+  'the rays of a pixel stay in the scene until they are asked again': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab, { width: 1366, height: 900, dark: true });
+    await screen.chooseTool('Inspect');
+    await screen.clickPixel(400, 300);
+    await screen.page.getByRole('treegrid', { name: 'Rays of the pixel' }).getByRole('row').nth(2).waitFor();
+    await screen.quiet();
+    const asked = traces(screen);
+    const { generation } = await lab.post('/api/camera', { orbit: [60, 0] });
+    await screen.settled(generation);
+    await screen.button('Trace again').waitFor();
+    t.equal(asked.length, 0, 'traces while orbiting');
+    await t.picture(screen, 'pixel-from-the-side');
+    for (const name of ['Angles', 'R', 'T']) {
+      const { x, width } = await screen.page.getByRole('columnheader', { name, exact: true }).boundingBox();
+      t.check(x + width <= 1350, `${name} is off the screen: ${x + width}`);
+    }
+    await screen.button('Trace again').click();
+    await screen.button('Trace again').waitFor({ state: 'hidden' });
+    t.equal(asked.length, 1, 'traces after asking again');
+  },
+
+  'ruler and screen': async (t) => {
+    const { lab, screen } = await withLaser(t, { width: 1440, height: 900 });
+    await screen.page.getByText('Measure: clicks in the image set points').click();
+    const ends = await screen.page.evaluate(() => {
+      const at = (p) => window.lab.view.project(p);
+      return [at([-2.5, 1.6, -0.4]), at(window.lab.param('laser.target').value)];
+    });
+    await screen.clickPixel(Math.round(ends[0].x), Math.round(ends[0].y));
+    await screen.page.getByText('Point 1').waitFor();
+    const { root } = JSON.parse(text((await lab.ask('GET', '/api/beams')).bytes)).beams[0].rays[0];
+    const hit = await screen.page.evaluate((p) => window.lab.view.project(p), root.hit.point);
+    await screen.clickPixel(Math.round(hit.x), Math.round(hit.y));
+    await screen.page.getByText('Distance 1–2').waitFor();
+    const shown = await screen.page.getByRole('tabpanel', { name: 'Bench' }).innerText();
+    t.check(
+      shown.includes(root.hit.t.toPrecision(6).replace(/0+$/, '')),
+      `the distance is not ${root.hit.t}: ${shown}`,
+    );
+
+    const reply = await lab.ask('GET', '/api/beams/screen?centre=-2,1.56,-0.4&normal=1,0,0&size=1,1&bins=4,4&rays=1');
+    const answer = JSON.parse(text(reply.bytes));
+    t.equal([answer.rays, answer.hits, answer.received], [1, 1, 1], 'rays, crossings and power on a screen');
+    await screen.page.getByText('Screen', { exact: true }).click();
+    for (const [name, value] of Object.entries({ 'Centre x': -2, 'Centre y': 1.56, 'Centre z': -0.4, Rays: 1 })) {
+      await screen.page.getByRole('spinbutton', { name, exact: true }).fill(String(value));
+      await screen.page.getByRole('spinbutton', { name, exact: true }).press('Enter');
+    }
+    await screen.button('Expose').click();
+    await screen.page.getByText('N = 1 traced, 1 crossings').waitFor();
+    await t.picture(screen, 'bench-screen');
+  },
+};
