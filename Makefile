@@ -349,7 +349,7 @@ experiments: $(build)/cuvette ## run the studies (resumes), make tables and figu
 experiments-full: $(build)/cuvette-import
 experiments-full: $(build)/cuvette ## run the long studies of experiments/full as well: an hour more
 	$(build)/cuvette study run --results $(RESULTS) experiments/*.study experiments/full/*.study
-	@$(MAKE) --no-print-directory build=$(build) $(RESULTS)/tables/growth.tsv tables figures
+	@$(MAKE) --no-print-directory build=$(build) $(RESULTS)/tables/growth.tsv $(RESULTS)/tables/paths.tsv tables figures
 
 # A study's summary, if its rows are newer: of the environment with most rows.
 study_files := $(wildcard experiments/*.study experiments/full/*.study)
@@ -374,6 +374,9 @@ $(RESULTS)/tables/%.tsv: $(RESULTS)/%/rows.csv $$(call study_file,$$*) $$(wildca
 $(RESULTS)/tables/growth.tsv: | $(build)/cuvette
 	@mkdir -p $(@D)
 	experiments/growth.sh $(build)/cuvette >$@.new && mv $@.new $@
+$(RESULTS)/tables/paths.tsv: | $(build)/cuvette
+	@mkdir -p $(@D)
+	TABLE=$@.new experiments/paths.sh $(build)/cuvette && mv $@.new $@
 
 figures: tables $(RESULTS)/figures/fan.svg $(RESULTS)/figures/trace.svg ## draw the figures whose rows or scripts are newer
 	@mkdir -p $(RESULTS)
