@@ -2,6 +2,7 @@
  * meshes. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -171,6 +172,60 @@ static void batches_of_coherent_rays_have_the_hits_of_single_rays(void **state)
         mesh_release(m);
     }
     assert_true(hit_count > 1000);
+}
+
+/* Rays from a far eye, as in the frame of a mesh that is small and distant, or scaled to a thin sheet: there the eye is
+ * far away along one axis, and its rays are nearly parallel to that axis. */
+static int far_rays(const mesh *m, uint64_t *seed, mesh_ray *r)
+{
+    const int count = 1 + random_below(seed, BATCH);
+    const double reach = 1e-300 + vec3_length(vec3_sub(m->bounds.high, m->bounds.low));
+    const double distance = reach * pow(10.0, random_real(seed, 0.0, 14.0));
+    const vec3 middle = vec3_scale(vec3_add(m->bounds.low, m->bounds.high), 0.5);
+    const double side = random_below(seed, 2) ? 1.0 : -1.0;
+    const vec3 axes[] = {{side, 0.0, 0.0}, {0.0, side, 0.0}, {0.0, 0.0, side}};
+    const vec3 away = random_below(seed, 4) ? axes[random_below(seed, 3)] : random_direction(seed),
+               eye = vec3_add(middle, vec3_add(vec3_scale(away, distance), vec3_scale(random_direction(seed), reach)));
+    for (int i = 0; i < count; i++) {
+        r[i] = random_ray(m, seed); /* for its side and skipped triangle */
+        r[i].t_min = 0.0;
+        r[i].t_max = (double)INFINITY;
+        r[i].origin = eye;
+        r[i].direction = vec3_sub(random_target(m, seed), eye);
+    }
+    return count;
+}
+
+static void rays_from_afar_have_the_hits_of_all_triangles(void **state)
+{
+    (void)state;
+    uint64_t seed = 11;
+    long hit_count = 0;
+    for (int scene = 0; scene < effort(400); scene++) {
+        mesh *m = random_mesh(&seed, 1 + random_below(&seed, 100));
+        hierarchy *all = NULL, *h = NULL;
+        assert_non_null(m);
+        assert_int_equal(hierarchy_build(m, HIERARCHY_NONE, 1, &all, NULL), STATUS_OK);
+        assert_int_equal(hierarchy_build(m, HIERARCHY_BVH, 1, &h, NULL), STATUS_OK);
+        for (int k = 0; k < 20; k++) {
+            mesh_ray r[BATCH];
+            mesh_hit expected, hit, hits[BATCH];
+            const int count = far_rays(m, &seed, r);
+            const hierarchy_kernels *kernel = kernels[(unsigned)k % (unsigned)(isa_best() + 1)];
+            kernel->nearest_batch(h, r, count, hits);
+            for (int i = 0; i < count; i++) {
+                kernel->nearest(all, &r[i], &expected);
+                kernel->nearest(h, &r[i], &hit);
+                same_hit(&hit, &expected);
+                same_hit(&hits[i], &expected);
+                hit_count += expected.triangle != TRIANGLE_NONE;
+            }
+        }
+        hierarchy_destroy(all);
+        hierarchy_destroy(h);
+        mesh_release(m);
+    }
+    assert_true(hit_count > effort(100000));
 }
 
 static void instruction_sets_give_the_same_hits(void **state)
@@ -489,6 +544,7 @@ int main(void)
         cmocka_unit_test(a_mesh_without_triangles_is_never_hit),
         cmocka_unit_test(a_mesh_caches_its_hierarchies),
         cmocka_unit_test(batches_of_coherent_rays_have_the_hits_of_single_rays),
+        cmocka_unit_test(rays_from_afar_have_the_hits_of_all_triangles),
         cmocka_unit_test(instruction_sets_give_the_same_hits),
         cmocka_unit_test(every_hierarchy_gives_the_same_hits),
         cmocka_unit_test(closed_meshes_are_watertight),

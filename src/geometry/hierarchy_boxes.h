@@ -35,12 +35,13 @@ typedef struct box_ray {
  * p inverse errs by 3 u, o inverse by 4 u, and the two sums by 2 u of (B + |o|) / |d|: together less than half of
  * BOX_SLACK.
  *
- * For |d| below 1 / STEEPEST the inverse is limited. Within a slab the far distance is then at least STEEPEST BOX_SLACK
- * (B + |o|), which is more than any hit's t, and the near distance is not above 0; outside of it, both are nearer to
- * the ray's origin than the true ones, and a ray that moves away from the slab has no hit in it. So a ray that counts
- * as parallel needs no test of its own. */
+ * For |d| below 1 / STEEPEST the inverse is limited, which brings planes nearer: that is conservative for the near
+ * distance. The far distance is BEYOND every t: in the frame of a mesh that is scaled to a thin sheet, a hit's t can be
+ * 1e12 times the reach along the sheet. It is finite, so that the planes of unused children, which are infinite, do not
+ * give NaN. */
 #define BOX_SLACK 0x1p-20f
 #define STEEPEST 0x1p30f
+#define BEYOND 0x1p126f
 #define REACH_LEAST 1e-30f /* keeps the margin a normal number */
 
 ALWAYS_INLINE float box_margin(float reach, float origin)
@@ -63,11 +64,12 @@ ALWAYS_INLINE void box_ray_start(box_ray *b, const hierarchy *h, const ray_query
     for (int k = 0; k < 3; k++) {
         const bool down = q->direction[k] < 0.0;
         const float origin = (float)q->origin[k], limit = down ? -STEEPEST : STEEPEST;
-        const float inverse = magnitude(q->inverse[k]) < (double)STEEPEST ? (float)q->inverse[k] : limit;
+        const bool steep = !(magnitude(q->inverse[k]) < (double)STEEPEST);
+        const float inverse = steep ? limit : (float)q->inverse[k];
         const float margin = box_margin(h->reach[k], origin) * __builtin_fabsf(inverse);
         b->inverse[k] = inverse;
         b->near_offset[k] = -origin * inverse - margin;
-        b->far_offset[k] = -origin * inverse + margin;
+        b->far_offset[k] = steep ? BEYOND : -origin * inverse + margin;
         b->near[k] = down ? high_planes(k) : low_planes(k);
         b->far[k] = down ? low_planes(k) : high_planes(k);
     }

@@ -11,8 +11,9 @@ typedef struct leaf_errors {
 
 /* With u = 2^-24, C and R the largest coordinates of the box and of the rays' origins: origin, direction, shear (at
  * most 1 in magnitude) and base come with errors of u R, u, 4.1 u and 9.2 u R, and a sheared coordinate
- * (c_x - s c_z) - base with at most e = 12 u (C + R). As the ray passes through the box, a sheared coordinate is at
- * most M, twice the box's largest edge E, and what the box test's margins add. Then an edge function
+ * (c_x - s c_z) - base with at most e = 12 u (C + R). Of a ray that hits a triangle, and so passes through
+ * its box, a sheared coordinate is at most M, twice the box's largest edge E; the margin of M covers the rounding of
+ * such a ray. Rays that only the box test's margins let in hit nothing, and may be rejected. Then an edge function
  * x_2 y_1 - y_2 x_1 has an error of at most d = 4 e M + 2 e^2 + 4.1 u M^2.
  *
  * A distance, for weights of one sign, is s_z (z_0 + (v (z_1 - z_0) + w (z_2 - z_0)) / (u + v + w)): the quotient is at

@@ -91,11 +91,12 @@ static void prepare_axis(packet *p, int k, float reach, const float *restrict or
     /* VECTORISE */
     for (int i = 0; i < n; i++) {
         const float o = origin[i], d = direction[i];
-        const float inverse = __builtin_fabsf(d) > 1.0f / STEEPEST ? 1.0f / d : limit;
+        const bool steep = !(__builtin_fabsf(d) > 1.0f / STEEPEST);
+        const float inverse = steep ? limit : 1.0f / d;
         const float margin = box_margin(reach, o) * __builtin_fabsf(inverse), at = -o * inverse;
         inverses[i] = inverse;
         near[i] = at - margin;
-        far[i] = at + margin;
+        far[i] = steep ? BEYOND : at + margin;
     }
 }
 
@@ -116,7 +117,8 @@ static void prepare_shears(packet *p, const float *restrict ox, const float *res
     }
 }
 
-/* The margin at the origins bounds the same errors as in box_ray. */
+/* The margin at the origins bounds the same errors as in box_ray. A limited inverse is infinite for the far planes, as
+ * there; a plane at the margin itself then gives NaN, which bounds_of_distances leaves out. */
 static void find_bounds(packet *p, const float *reach, const float *const *origins)
 {
     const int n = p->groups * LANES;
@@ -129,7 +131,8 @@ static void find_bounds(packet *p, const float *reach, const float *const *origi
         all->near_origin[k] = down ? least - margin : most + margin;
         all->far_origin[k] = down ? most + margin : least - margin;
         all->near_inverse[k] = down ? most_of_row(p->inverse[k], n) : least_of_row(p->inverse[k], n);
-        all->far_inverse[k] = down ? least_of_row(p->inverse[k], n) : most_of_row(p->inverse[k], n);
+        const float far_inverse = down ? least_of_row(p->inverse[k], n) : most_of_row(p->inverse[k], n);
+        all->far_inverse[k] = __builtin_fabsf(far_inverse) < STEEPEST ? far_inverse : down ? -INFINITY : INFINITY;
         p->reach = farthest > p->reach ? farthest : p->reach;
     }
     all->t_min = least_of_row(p->t_min, n);

@@ -43,11 +43,6 @@ static struct mesh_share *share_create(void)
     return share;
 }
 
-static void *zeroed(size_t count, size_t size)
-{
-    return large_calloc(count, size);
-}
-
 status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals, bool with_uvs, bool with_slots,
                    mesh **out, diagnostic *why)
 {
@@ -65,11 +60,11 @@ status mesh_create(size_t vertex_count, size_t triangle_count, bool with_normals
     m->triangle_count = triangle_count;
     m->slot_count = 1;
     m->share = share_create();
-    m->vertices = zeroed(vertices, sizeof *m->vertices);
-    m->triangles = zeroed(triangles, sizeof *m->triangles);
-    m->normals = with_normals ? zeroed(vertices, sizeof *m->normals) : NULL;
-    m->uvs = with_uvs ? zeroed(vertices, sizeof *m->uvs) : NULL;
-    m->slots = with_slots ? zeroed(triangles, sizeof *m->slots) : NULL;
+    m->vertices = large_calloc(vertices, sizeof *m->vertices);
+    m->triangles = large_calloc(triangles, sizeof *m->triangles);
+    m->normals = with_normals ? large_calloc(vertices, sizeof *m->normals) : NULL;
+    m->uvs = with_uvs ? large_calloc(vertices, sizeof *m->uvs) : NULL;
+    m->slots = with_slots ? large_calloc(triangles, sizeof *m->slots) : NULL;
     if (!m->share || !m->vertices || !m->triangles || (with_normals && !m->normals) || (with_uvs && !m->uvs) ||
         (with_slots && !m->slots)) {
         mesh_free(m);

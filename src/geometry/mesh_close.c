@@ -56,9 +56,8 @@ static void sort(half_edge *edges, size_t count)
 static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
 {
     TRY(mesh_weld(m, &lists->same, why));
-    const size_t starts = (m->vertex_count + 2) * sizeof(uint32_t),
-                 all = (3 * m->triangle_count + 1) * sizeof(half_edge);
-    uint32_t *start = lists->start = large_pages(calloc(1, starts), starts);
+    const size_t all = (3 * m->triangle_count + 1) * sizeof(half_edge);
+    uint32_t *start = lists->start = large_calloc(m->vertex_count + 2, sizeof *start);
     half_edge *edges = lists->edges = large_pages(malloc(all), all);
     if (!start || !edges)
         return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");

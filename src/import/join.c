@@ -51,7 +51,7 @@ static size_t find(const joiner *j, const flat_mesh *flat, const double numbers[
 static bool resize_table(joiner *j, const flat_mesh *flat, size_t size)
 {
     joiner larger = {.size = size, .room = j->room};
-    larger.table = large_pages(calloc(larger.size, sizeof *larger.table), larger.size * sizeof *larger.table);
+    larger.table = large_calloc(larger.size, sizeof *larger.table);
     if (!larger.table)
         return false;
     for (size_t i = 0; i < flat->vertex_count; i++) {

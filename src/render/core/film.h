@@ -2,7 +2,7 @@
  * (5.7e-14); a channel holds up to 524288, and one contribution is from 0 to 262144. A value out of range, or not a
  * number, raises the overflow flag, which makes the render an error. Linear light; row 0 is the top. The channels are
  * linear sRGB, or CIE XYZ in a spectral film, whose sums are never negative. A film of random paths consists of equal
- * shares of the paths, one film after another: their differences give the standard error. expose_at
+ * shares of the paths, one film after another: their differences give the standard error. add_units
  * (render/shade/shading.c) writes the film. Ownership: film_create allocates, film_destroy releases. Different threads
  * may write different pixels. */
 #pragma once

@@ -155,7 +155,8 @@ static bool draw_matte(const tracer *t, const material *m, int k, const path_cho
                  mirror = m->reflectivity;
     if (!(matte + mirror > 0.0))
         return false;
-    const bool mirrored = mirror > 0.0 && chosen->branch[k] * (matte + mirror) < mirror;
+    /* of a subnormal share the product is rounded to the share itself */
+    const bool mirrored = mirror > 0.0 && (!(matte > 0.0) || chosen->branch[k] * (matte + mirror) < mirror);
     const double odds = (mirrored ? mirror : matte) / (matte + mirror);
     c->inside = g->inside_before[k];
     c->refracted = false;
