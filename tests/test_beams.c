@@ -296,6 +296,37 @@ static void a_screen_in_a_medium_receives_what_is_not_absorbed(void **state)
     scene_destroy(s);
 }
 
+static status count_ray(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
+{
+    (void)ray, (void)tree, (void)p, (void)why;
+    ++*(int *)context;
+    return STATUS_OK;
+}
+
+static void the_work_of_all_beams_is_limited(void **state)
+{
+    (void)state;
+    scene *s = with_beam("kind: sheet, rays: 10000, white: on, wavelengths: 64", BALL);
+    diagnostic why = {.line = 0};
+    int rays = 0;
+    assert_int_equal(beams_each_ray(s, isa_best(), 100000, count_ray, &rays, &why), STATUS_BAD_INPUT);
+    assert_int_equal(rays, 0);
+    assert_string_equal(why.what, "the beams have 6400000 rays, more than 1000000");
+    scene_destroy(s);
+}
+
+/* Its normal is a parameter of a fan and a sheet alone. */
+static void the_normal_of_a_pencil_is_ignored(void **state)
+{
+    (void)state;
+    scene *s = with_beam("direction: [1, 0, 0], normal: [1, 0, 0]", BALL);
+    diagnostic why = {.line = 0};
+    int rays = 0;
+    worked(beams_each_ray(s, isa_best(), 0, count_ray, &rays, &why), &why);
+    assert_int_equal(rays, 1);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -308,6 +339,8 @@ int main(void)
         cmocka_unit_test(white_light_has_several_wavelengths_and_the_same_power),
         cmocka_unit_test(a_screen_bins_the_power_of_a_bundle),
         cmocka_unit_test(a_screen_in_a_medium_receives_what_is_not_absorbed),
+        cmocka_unit_test(the_work_of_all_beams_is_limited),
+        cmocka_unit_test(the_normal_of_a_pencil_is_ignored),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

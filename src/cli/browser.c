@@ -34,13 +34,21 @@ static void start(const char *file)
         waitpid(child, NULL, 0);
 }
 
-/* mkstemps creates the file with mode 0600. */
+/* In the first folder that can be written: under sudo, $XDG_RUNTIME_DIR may be somebody else's. mkstemps creates the
+ * file with mode 0600. */
 static int create(char **file)
 {
-    const char *runtime = getenv("XDG_RUNTIME_DIR"), *temporary = getenv("TMPDIR");
-    const char *folder = runtime && *runtime ? runtime : temporary && *temporary ? temporary : "/tmp";
-    *file = text_format("%s/cuvette-lab-XXXXXX%s", folder, ending);
-    return *file ? mkstemps(*file, (int)strlen(ending)) : -1;
+    const char *const folders[] = {getenv("XDG_RUNTIME_DIR"), getenv("TMPDIR"), "/tmp"};
+    int fd = -1;
+    *file = NULL;
+    for (size_t i = 0; i < sizeof folders / sizeof *folders && fd < 0; i++) {
+        if (!folders[i] || !*folders[i])
+            continue;
+        free(*file);
+        *file = text_format("%s/cuvette-lab-XXXXXX%s", folders[i], ending);
+        fd = *file ? mkstemps(*file, (int)strlen(ending)) : -1;
+    }
+    return fd;
 }
 
 static bool write_page(int fd, const char *address)

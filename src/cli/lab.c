@@ -72,6 +72,15 @@ static void wait_for_stop(void)
         usleep(50000);
 }
 
+/* The printed address remains where the browser cannot be started. */
+static void open_browser(const char *address, char **file)
+{
+    diagnostic reason = {.line = 0};
+    char text[DIAGNOSTIC_TEXT_MAX];
+    if (browser_open(address, file, &reason) != STATUS_OK)
+        terminal_note(diagnostic_text(&reason, text, sizeof text));
+}
+
 static status run_lab(const lab_request *request, const char *folder, const char *results, diagnostic *why)
 {
     lab *l = NULL;
@@ -92,7 +101,7 @@ static status run_lab(const lab_request *request, const char *folder, const char
     printf("%s\n", lab_address(l));
     code = terminal_flush(why);
     if (code == STATUS_OK && !request->no_browser)
-        code = browser_open(lab_address(l), &file, why);
+        open_browser(lab_address(l), &file);
     if (code == STATUS_OK)
         wait_for_stop();
     browser_forget(file);

@@ -142,7 +142,8 @@ static bool assemble(const request *req, const obj_file *f, const flat_mesh *ord
     const size_t triangles = f->triangle_count * sizeof *flat->triangles;
     flat->triangles = large_pages(malloc(triangles), triangles);
     flat->slots = malloc(f->triangle_count);
-    assembly a = {req, flat, all->places, all->uvs, all->normals, large_calloc(all->place_count, sizeof(last_vertex)), {0}};
+    assembly a = {req, flat, all->places, all->uvs, all->normals, large_calloc(all->place_count, sizeof(last_vertex)),
+                  {0}};
     bool good = flat->triangles && flat->slots && a.last && join_reserve(&a.join, flat, all->place_count);
     for (size_t t = 0; t < order->triangle_count && good; t++)
         good = take_run(&a, &runs[(size_t)order->positions[order->triangles[t][0]].x], order->slots[t]);

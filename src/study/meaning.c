@@ -29,6 +29,8 @@ typedef struct visit_state {
 static status add_param(void *context, const char *path, const param *row, const char *value)
 {
     visit_state *state = context;
+    if (row->group == PARAM_BEAM) /* no film depends on it */
+        return STATUS_OK;
     if ((state->without_performance && row->performance_only) || (row->by_chance && !state->by_chance))
         return STATUS_OK;
     char *usual = param_first_default_text(row);

@@ -40,6 +40,7 @@ typedef struct beam_work {
     beam_visit *visit;
     void *context;
     ray_tree tree;
+    size_t segments; /* of all rays so far */
     diagnostic *why;
 } beam_work;
 
@@ -51,6 +52,10 @@ static status visit_ray(beam_work *w, const beam *b, const ray_axes *a, const be
         TRY(probe_ray(p, origin, direction, &w->tree, w->why));
     else
         TRY(probe_path(p, origin, direction, -1, &w->tree, w->why));
+    w->segments += w->tree.count;
+    if (w->segments > BEAMS_SEGMENTS_MAX)
+        return diagnose(w->why, STATUS_BAD_INPUT, "use fewer rays, a smaller depth or a larger min_share",
+                        "the beams have more than %d segments", BEAMS_SEGMENTS_MAX);
     return w->visit(w->context, ray, &w->tree, p, w->why);
 }
 
@@ -68,7 +73,8 @@ static status visit_beam(beam_work *w, const scene *s, isa level, int index, int
 {
     const beam *b = &s->beams[index];
     const int waves = beam_wavelengths(b), count = rays > 0 ? rays : (int)b->rays;
-    const bool has_normal = vec3_dot(b->normal, b->normal) > 0.0;
+    const bool is_flat = b->kind == BEAM_FAN || b->kind == BEAM_SHEET;
+    const bool has_normal = is_flat && vec3_dot(b->normal, b->normal) > 0.0;
     ray_axes a;
     status code = ray_axes_set(&a, b->position, beam_axis(b), has_normal ? &b->normal : NULL, w->why);
     for (int i = 0; i < waves && code == STATUS_OK; i++) {
@@ -78,8 +84,22 @@ static status visit_beam(beam_work *w, const scene *s, isa level, int index, int
     return code;
 }
 
+/* The number of rays is checked before the first is traced. */
+static status check_rays(const scene *s, int rays, diagnostic *why)
+{
+    int64_t all = 0;
+    for (size_t i = 0; i < s->beam_count; i++)
+        if (s->beams[i].visible)
+            all += (int64_t)beam_wavelengths(&s->beams[i]) * (rays > 0 ? rays : s->beams[i].rays);
+    if (all <= BEAMS_RAYS_MAX)
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "use fewer rays, wavelengths or beams",
+                    "the beams have %lld rays, more than %d", (long long)all, BEAMS_RAYS_MAX);
+}
+
 status beams_each_ray(const scene *s, isa level, int rays, beam_visit *visit, void *context, diagnostic *why)
 {
+    TRY(check_rays(s, rays, why));
     beam_work w = {.visit = visit, .context = context, .why = why};
     status code = STATUS_OK;
     for (size_t i = 0; i < s->beam_count && code == STATUS_OK; i++)

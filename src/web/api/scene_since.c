@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The scenes that are remembered: ten pages, each up to date within a change or two. Scenes of more parameters than
- * that are not, because of their memory. */
-enum { SCENES = 16, PARAMS_MAX = 20000 };
+/* The scenes that are remembered: a page is up to date within a change or two. Scenes of more parameters than that are
+ * not, because of their memory: a row takes some 2 kB, so that all take at most 40 MB. */
+enum { SCENES = 8, PARAMS_MAX = 2500 };
 
 struct sent_scenes {
     pthread_mutex_t lock;

@@ -3,7 +3,8 @@
  * exists, so that a drag at 60 events a second does not cost more requests than there are images.
  *
  * exports: createQueue(post, imageOf) -> change(path, payload, {gesture, merge}) -> promise of the reply
- *   imageOf(generation): a promise that is kept when an image of that generation or a newer one exists */
+ *   imageOf(generation, signal): a promise that is kept when an image of that generation or a newer one exists, or when
+ *   the signal is aborted */
 
 const PACE_MS = 100; /* the longest pause: images may be slower, or not come at all */
 
@@ -31,9 +32,15 @@ export function createQueue(post, imageOf) {
       const entry = waiting.shift();
       const generation = await send(entry);
       if (entry.gesture && generation && !(waiting.length && waiting[0].gesture !== entry.gesture))
-        await Promise.race([imageOf(generation), pause(PACE_MS), hurry(entry.gesture)]);
+        await pace(generation, entry.gesture);
     }
     busy = false;
+  }
+
+  async function pace(generation, gesture) {
+    const enough = new AbortController();
+    await Promise.race([imageOf(generation, enough.signal), pause(PACE_MS), hurry(gesture)]);
+    enough.abort();
   }
 
   /* Kept when something else than the next change of the gesture waits. */

@@ -66,6 +66,7 @@ export function createGizmo(lab, choice, mark, movable) {
   }
 
   function setMode(next) {
+    finish();
     mode = next;
     modes.set(next);
     memory.set('gizmo.mode', next);
@@ -138,7 +139,7 @@ export function createGizmo(lab, choice, mark, movable) {
     node.addEventListener('pointerdown', (event) => begin(name, event));
     node.addEventListener('pointermove', (event) => drag?.name === name && follow(event));
     node.addEventListener('keydown', (event) => press(name, event));
-    for (const end of ['pointerup', 'pointercancel']) node.addEventListener(end, finish);
+    for (const end of ['pointerup', 'pointercancel', 'lostpointercapture']) node.addEventListener(end, finish);
     view.overlay.append(node);
     return node;
   }

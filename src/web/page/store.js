@@ -212,16 +212,21 @@ export function createLab() {
     return api.get('/api/state').then((state) => receive('state', state));
   }
 
-  /* Kept when an image of the generation or a newer one exists. */
-  function imageOf(generation) {
+  /* Kept when an image of the generation or a newer one exists, or when the signal is aborted. */
+  function imageOf(generation, signal) {
     return new Promise((resolve) => {
-      const done = () => {
-        if ((lab.newestPass?.generation ?? 0) < generation) return;
-        end();
+      const ends = ['pass', 'state', 'restarted'].map((name) =>
+        on(name, () => {
+          if (name === 'restarted' || exists()) finish();
+        }),
+      );
+      const exists = () => (lab.newestPass?.generation ?? 0) >= generation;
+      const finish = () => {
+        for (const end of ends) end();
         resolve();
       };
-      const end = on('pass', done);
-      done();
+      signal.addEventListener('abort', finish, { once: true });
+      if (exists()) finish();
     });
   }
 
@@ -234,9 +239,10 @@ export function createLab() {
     fetching = true;
     do {
       again = false;
+      const whole = stale;
+      stale = false;
       try {
-        const known = stale ? null : lab.scene;
-        stale = false;
+        const known = whole ? null : lab.scene;
         const reply = await api.get(known ? `/api/scene?since=${known.generation}` : '/api/scene');
         const scene = applyScene(known, reply);
         rows = new Map(scene.params.map((row) => [row.path, row]));
@@ -247,6 +253,7 @@ export function createLab() {
       } catch (error) {
         if (error.status) lab.fail(error);
         again = false;
+        stale ||= whole;
       }
     } while (again && lab.state && lab.scene && lab.scene.generation < lab.state.generation);
     fetching = null;

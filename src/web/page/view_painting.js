@@ -53,26 +53,34 @@ export function createPainting(canvas, view, place, lab) {
     if (shown?.serial !== pass.serial) load();
     else if (!before) publish();
     else if (lab.picture?.serial === pass.serial) Object.assign(lab.picture, facts());
+    complete();
+  }
+
+  /* Fetches the exact image when the scene rests. */
+  function complete() {
+    if (fetching || !lacksExact()) return;
+    clearTimeout(rest);
+    rest = setTimeout(load, lab.dragging() ? REST_MS : 0);
   }
 
   async function load() {
     if (fetching) return;
     fetching = true;
     let last = null;
-    while (due() && (newer(lab.newestPass, last) || (last && !last.exact && lacksExact()))) {
+    let failed = false;
+    while (!failed && due() && (newer(lab.newestPass, last) || (last && !last.exact && lacksExact()))) {
       try {
         const { blob, head } = await source.fetch(source.quick(shown));
         if (newer(head, shown) || (head.serial === shown?.serial && head.exact && !shown.exact))
           draw(await createImageBitmap(blob, { colorSpaceConversion: 'none' }), head);
         last = head;
       } catch (error) {
-        last = lab.newestPass;
+        failed = true; /* the next pass, or a new connection, tries again */
         if (error.status !== 404 && error.status !== 0 && error.status !== 401) lab.fail(error);
       }
     }
     fetching = false;
-    clearTimeout(rest);
-    if (lacksExact()) rest = setTimeout(load, REST_MS);
+    if (!failed) complete();
   }
 
   function draw(next, head) {
