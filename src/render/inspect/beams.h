@@ -19,8 +19,8 @@ typedef status beam_visit(void *context, const beam_ray *ray, const ray_tree *tr
 /* Limits of all beams together, a few seconds of work: a laboratory's image waits meanwhile. */
 enum { BEAMS_RAYS_MAX = 1000000, BEAMS_SEGMENTS_MAX = 5000000 };
 
-/* Visits all rays of the visible beams by beam, wavelength and number. STATUS_BAD_INPUT beyond the limits. rays: a number of rays for each beam instead of
- * its own; 0: its own. The scene's files must be loaded. */
+/* Visits all rays of the visible beams by beam, wavelength and number. STATUS_BAD_INPUT beyond the limits. rays: a
+ * number of rays for each beam instead of its own; 0: its own. The scene's files must be loaded. */
 status beams_each_ray(const scene *s, isa level, int rays, beam_visit *visit, void *context, diagnostic *why);
 
 /* Share of the ray's power at the start of a node: the mean of the channels of its throughput. */
