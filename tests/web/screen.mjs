@@ -69,13 +69,15 @@ export class Screen {
   async settled(generation = 0) {
     const least = Math.max(generation, (await this.lab.get('/api/state')).generation);
     await this.page.waitForFunction((g) => {
-      const { picture, newestGeneration, scene } = window.lab;
-      return picture?.final && picture.generation >= Math.max(g, newestGeneration) && scene?.generation >= g;
+      const { picture, newestGeneration, scene, change } = window.lab;
+      const newest = picture?.final && picture.generation >= Math.max(g, newestGeneration);
+      return change.idle() && newest && scene?.generation >= g;
     }, least);
   }
 
   /** Waits until no request is pending except the event stream, and the latest image is drawn. */
   async quiet() {
+    await this.until(() => window.lab.change.idle()); // changes wait for images
     do {
       // a reply may trigger requests that waited for it
       if (this.pending.size) await new Promise((resolve) => this.idle.push(resolve));

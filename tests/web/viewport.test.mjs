@@ -8,7 +8,9 @@ async function change(screen, act) {
   await act();
   await screen.until((g) => window.lab.newestGeneration > g, generation);
   await screen.quiet();
-  return screen.lab.get('/api/state');
+  const state = await screen.lab.get('/api/state');
+  await screen.until((g) => window.lab.state.generation >= g, state.generation); // the next gesture starts from it
+  return state;
 }
 
 /** The middle of the image in the window. */
@@ -125,7 +127,9 @@ export const cases = {
     t.near(state.camera.distance, first.distance, 1e-6, 'and back');
     const before = await screen.page.evaluate((p) => window.lab.view.project(p), PIVOT);
     const shifted = (dx) => spread(60).map(([px, py]) => [px + dx, py]);
+    await screen.settled();
     state = await change(screen, () => touch(screen, [0, 15, 30, 50].map(shifted)));
+    await screen.settled();
     await screen.until((g) => window.lab.state.generation >= g, state.generation);
     const after = await screen.page.evaluate((p) => window.lab.view.project(p), PIVOT);
     const scale = await screen.page.evaluate(() => window.lab.view.scale);

@@ -3,6 +3,7 @@
  * exists, so that a drag at 60 events a second does not cost more requests than there are images.
  *
  * exports: createQueue(post, imageOf) -> change(path, payload, {gesture, merge}) -> promise of the reply
+ *   change.idle(): whether nothing is being sent or waits
  *   imageOf(generation, signal): a promise that is kept when an image of that generation or a newer one exists, or when
  *   the signal is aborted */
 
@@ -51,7 +52,7 @@ export function createQueue(post, imageOf) {
     });
   }
 
-  return (path, payload, { gesture, merge } = {}) => {
+  const change = (path, payload, { gesture, merge } = {}) => {
     const last = waiting[waiting.length - 1];
     if (last && gesture && last.gesture === gesture && last.path === path) {
       last.payload = merge ? merge(last.payload, payload) : payload;
@@ -65,4 +66,6 @@ export function createQueue(post, imageOf) {
     work();
     return entry.promise;
   };
+  change.idle = () => !busy;
+  return change;
 }
