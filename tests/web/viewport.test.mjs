@@ -127,9 +127,7 @@ export const cases = {
     t.near(state.camera.distance, first.distance, 1e-6, 'and back');
     const before = await screen.page.evaluate((p) => window.lab.view.project(p), PIVOT);
     const shifted = (dx) => spread(60).map(([px, py]) => [px + dx, py]);
-    await screen.settled();
     state = await change(screen, () => touch(screen, [0, 15, 30, 50].map(shifted)));
-    await screen.settled();
     await screen.until((g) => window.lab.state.generation >= g, state.generation);
     const after = await screen.page.evaluate((p) => window.lab.view.project(p), PIVOT);
     const scale = await screen.page.evaluate(() => window.lab.view.scale);

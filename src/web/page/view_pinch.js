@@ -9,7 +9,10 @@ const LEAST_PX = 20; /* fingers that touch each other have no useful ratio of di
 
 export function createPinch(stage, lab, letGo) {
   const touches = new Map();
-  let last = null; /* {x, y, spread, gesture} while two fingers are down, and until both are lifted */
+  /* While two fingers are down, and until both are lifted: where they began, and what is sent already. One finger moves
+   * after the other, so the pan is that of the whole gesture at its present distance: a distance in between, or one
+   * that the server has not reached yet, would shift the image. */
+  let pinch = null; /* {x, y, spread, distance; sent: {spread, right, up}; gesture} */
 
   const listen = (name, act) =>
     stage.addEventListener(
@@ -29,10 +32,16 @@ export function createPinch(stage, lab, letGo) {
     if (touches.size < 2) return false;
     if (touches.size === 2) {
       letGo(event);
-      last = { ...span(), gesture: gesture('pinch') };
+      begin();
       stage.setPointerCapture(event.pointerId);
     }
     return true;
+  }
+
+  function begin() {
+    const first = span();
+    const sent = { spread: first.spread, right: 0, up: 0 };
+    pinch = { ...first, distance: lab.state?.view?.distance, sent, gesture: gesture('pinch') };
   }
 
   function span() {
@@ -46,23 +55,26 @@ export function createPinch(stage, lab, letGo) {
 
   function move(event) {
     const touch = touches.get(event.pointerId);
-    if (!touch || !last) return false;
+    if (!touch || !pinch) return false;
     Object.assign(touch, { x: event.clientX, y: event.clientY });
-    if (touches.size === 2 && lab.state?.view && lab.view.width) {
-      const now = span();
-      const unit = unitsPerPixel(lab, lab.state.view.distance);
-      const step = [-(now.x - last.x) * unit, (now.y - last.y) * unit, 0];
-      moveCamera(lab, { zoom: last.spread / now.spread, step }, last.gesture);
-      Object.assign(last, now);
-    }
+    if (touches.size === 2 && pinch.distance && lab.view.width) send(span());
     return true;
+  }
+
+  function send(now) {
+    const { sent } = pinch;
+    const unit = unitsPerPixel(lab, (pinch.distance * pinch.spread) / now.spread);
+    const right = -(now.x - pinch.x) * unit;
+    const up = (now.y - pinch.y) * unit;
+    moveCamera(lab, { zoom: sent.spread / now.spread, step: [right - sent.right, up - sent.up, 0] }, pinch.gesture);
+    pinch.sent = { spread: now.spread, right, up };
   }
 
   /* The finger that remains does not go on with the tool. */
   function lift(event) {
-    const mine = Boolean(last);
+    const mine = Boolean(pinch);
     touches.delete(event.pointerId);
-    if (touches.size === 0) last = null;
+    if (touches.size === 0) pinch = null;
     return mine;
   }
 }
