@@ -18,29 +18,16 @@ static void letters(void *context, const http_request *q, http_reply *r)
     http_reply_bytes(r, 200, as, text, strlen(text));
 }
 
-static const char page[] =
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';"
-    "const page = 'constant text, of which the page consists, is compressed for each client that accepts it';";
+static char page[1500]; /* filled by set_up */
 static const http_route routes[] = {
     {"GET", "/json", letters, (void *)"application/json"},
     {"GET", "/image", letters, (void *)"image/jpeg"},
 };
-static const http_file files[] = {{"page.js", "text/javascript", (const unsigned char *)page, sizeof page - 1}};
+static const http_file files[] = {{"page.js", "text/javascript", (const unsigned char *)page, sizeof page}};
 
 static int set_up(void **state)
 {
+    memset(page, '/', sizeof page);
     const http_settings s = {.routes = routes, .route_count = 2, .files = files, .file_count = 1};
     return http_start(&s, (http_server **)state, NULL) == STATUS_OK ? 0 : -1;
 }
