@@ -58,8 +58,6 @@ soname := libcuvette.so.$(firstword $(subst ., ,$(version)))
 pkg_cflags = $(eval pkg_cflags := $$(shell pkg-config --cflags $(PACKAGES)))$(pkg_cflags)
 pkg_libs = $(eval pkg_libs := $$(shell pkg-config --libs $(PACKAGES)))$(pkg_libs)
 import_libs = $(eval import_libs := $$(shell pkg-config --libs assimp jansson) -lm)$(import_libs)
-# Only for src/web.
-web_libs = $(eval web_libs := $$(shell pkg-config --libs libmicrohttpd))$(web_libs)
 # Valgrind of Debian 12 cannot read the DWARF 5 that clang writes.
 CFLAGS ?= -g$(if $(clang),dwarf-4)
 # One set of objects for the program and both libraries: on the supported machines, position-independent code with hidden symbols
@@ -69,9 +67,10 @@ linkage := -fPIC -fvisibility=hidden
 code_flags = -std=gnu17 -D_GNU_SOURCE $(linkage) $(arithmetic) $(optimize) $(CFLAGS) -Isrc -pthread
 all_cflags = $(code_flags) -DCUVETTE_VERSION='"$(version)"' \
   -DCUVETTE_COMPILER_FLAGS='"$(config): $(optimize) $(arithmetic)"' $(warnings) $(errors)
-all_libs = $(pkg_libs) $(embree_libs) -lm -pthread
+all_libs = $(pkg_libs) -lm -pthread
 
-# Embree 3 is a reference for benchmarks, used if installed, in one file. Detected at its first use, as above.
+# Embree 3 is a reference for benchmarks, used if installed, in one file that loads the library when it is needed. Detected at
+# its first use, as above.
 embree = $(eval embree := $$(shell $$(CC) -E -include embree3/rtcore.h -x c /dev/null >/dev/null 2>&1 && echo yes))$(embree)
 embree_cflags = $(if $(embree),-DCUVETTE_EMBREE=1)
 embree_libs = $(if $(embree),-lembree3)
@@ -108,7 +107,7 @@ all: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) ## build build/
 
 $(build)/cuvette: $(program_objects) $(build)/libweb.a $(build)/libcuvette.a
 	$(call say,link $@)
-	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(web_libs) $(all_libs)
+	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
 
 # Reports shared by commands and the laboratory's page, the page's server and the page itself: only for the program, not for the library.
 $(build)/libweb.a: $(web_objects)
@@ -166,11 +165,11 @@ $(build)/obj/base/build_id.o: private all_cflags += -DCUVETTE_BUILD_ID='"$(shell
 $(build)/obj/%.o: src/%.c $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) $(room_cflags) -MMD -MP -c -o $@ $<
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) $(own_cflags) -MMD -MP -c -o $@ $<
 $(build)/obj/study/plot_style.o: plots/style.gp
-$(build)/obj/geometry/hierarchy_embree.o: pkg_cflags += $(embree_cflags)
+$(build)/obj/geometry/hierarchy_embree.o: private own_cflags = $(embree_cflags)
 web_cflags = $(eval web_cflags := $$(shell pkg-config --cflags libmicrohttpd))$(web_cflags)
-$(build)/obj/web/%.o: private room_cflags = $(web_cflags)
+$(build)/obj/web/%.o: private own_cflags = $(web_cflags)
 
 define kernel_rule
 $(build)/obj/%_kernel.$(1).o: src/%_kernel.c $(build)/flags
@@ -183,10 +182,9 @@ $(foreach i,$(isas),$(eval $(call kernel_rule,$(i))))
 $(build)/tests/test_%: tests/test_%.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(all_cflags) -Werror $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(test_web) $(build)/libcuvette.a $(LDFLAGS) $(test_web_libs) $(all_libs) -lcmocka
+	$(quiet)$(CC) $(all_cflags) -Werror $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(test_web) $(build)/libcuvette.a $(LDFLAGS) $(all_libs) -lcmocka
 $(web_tests): $(build)/libweb.a
 $(web_tests): private test_web = $(build)/libweb.a
-$(web_tests): private test_web_libs = $(web_libs)
 
 $(build)/tests/fuzz_%: tests/fuzz_%.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
@@ -219,7 +217,7 @@ $(build)/peers/report: $(report_sources) $(build)/flags
 $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
+	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(embree_libs) $(all_libs)
 
 -include $(build)/peers/embree.d
 -include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)

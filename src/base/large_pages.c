@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <sys/mman.h>
 
-enum { PAGE = 4096, LARGE_PAGE = 1 << 21 };
+enum { PAGE = 4096 };
 
 void *large_pages(void *memory, size_t bytes)
 {
-    if (memory && bytes >= 2 * (size_t)LARGE_PAGE) {
+    if (memory && bytes >= LARGE_PAGES_MIN) {
         /* whole pages, from the one with malloc's header: a mapping of two kinds could not be moved by realloc */
         const uintptr_t first = (uintptr_t)memory / PAGE * PAGE,
                         end = ((uintptr_t)memory + bytes + PAGE - 1) / PAGE * PAGE;

@@ -6,6 +6,8 @@
 
 #include <stddef.h>
 
+enum { LARGE_PAGE = 1 << 21, LARGE_PAGES_MIN = 2 * LARGE_PAGE }; /* bytes */
+
 /* Returns `memory`, a block of `bytes` from malloc or the like, or NULL. Best before its first use. */
 void *large_pages(void *memory, size_t bytes);
 /* calloc with this advice. */

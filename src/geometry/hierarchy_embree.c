@@ -5,9 +5,45 @@
 
 #ifdef CUVETTE_EMBREE
 
+#include <dlfcn.h>
 #include <embree3/rtcore.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+/* Embree's functions, loaded when the first of its hierarchies is built: with the libraries that it needs in turn they
+ * cost 5 ms at the start of a process. */
+#define EACH_FUNCTION(X)                                                 \
+    X(attachGeometry, rtcAttachGeometry)                                 \
+    X(commitGeometry, rtcCommitGeometry)                                 \
+    X(commitScene, rtcCommitScene)                                       \
+    X(getDeviceError, rtcGetDeviceError)                                 \
+    X(intersect1, rtcIntersect1)                                         \
+    X(newDevice, rtcNewDevice)                                           \
+    X(newGeometry, rtcNewGeometry)                                       \
+    X(newScene, rtcNewScene)                                             \
+    X(occluded1, rtcOccluded1)                                           \
+    X(releaseDevice, rtcReleaseDevice)                                   \
+    X(releaseGeometry, rtcReleaseGeometry)                               \
+    X(releaseScene, rtcReleaseScene)                                     \
+    X(setDeviceMemoryMonitorFunction, rtcSetDeviceMemoryMonitorFunction) \
+    X(setNewGeometryBuffer, rtcSetNewGeometryBuffer)                     \
+    X(setSceneFlags, rtcSetSceneFlags)
+
+static struct {
+#define DECLARE(name, symbol) __typeof__(symbol) *name;
+    EACH_FUNCTION(DECLARE)
+} embree;
+
+static bool loaded;
+
+static void load(void)
+{
+    void *library = dlopen("libembree3.so.3", RTLD_NOW | RTLD_LOCAL);
+    loaded = library != NULL;
+#define FIND(name, symbol) loaded = loaded && (*(void **)&embree.name = dlsym(library, #symbol));
+    EACH_FUNCTION(FIND)
+}
 
 typedef struct foreign {
     RTCDevice device;
@@ -72,7 +108,7 @@ void hierarchy_embree_nearest(const hierarchy *h, const mesh_ray *ray, mesh_hit 
     struct RTCRayHit r;
     query q = start(h, ray, &r.ray);
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(f->scene, &q.context, &r);
+    embree.intersect1(f->scene, &q.context, &r);
     *hit = (mesh_hit){.triangle = TRIANGLE_NONE};
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return;
@@ -85,7 +121,7 @@ bool hierarchy_embree_any(const hierarchy *h, const mesh_ray *ray)
     const foreign *f = h->foreign;
     struct RTCRay r;
     query q = start(h, ray, &r);
-    rtcOccluded1(f->scene, &q.context, &r);
+    embree.occluded1(f->scene, &q.context, &r);
     return r.tfar < 0.0f; /* Embree marks a hit by a negative tfar */
 }
 
@@ -98,16 +134,16 @@ void hierarchy_embree_all(const hierarchy *h, const mesh_ray *ray, mesh_visit *v
     q.visit = visit;
     q.visited = context;
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(f->scene, &q.context, &r);
+    embree.intersect1(f->scene, &q.context, &r);
 }
 
 /* Copies the mesh into Embree's own buffers. */
 static bool fill(const mesh *m, RTCGeometry g)
 {
-    float *v =
-        rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), m->vertex_count);
-    uint32_t *corner = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof m->triangles[0],
-                                               m->triangle_count);
+    float *v = embree.setNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                           m->vertex_count);
+    uint32_t *corner = embree.setNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                   sizeof m->triangles[0], m->triangle_count);
     if (!v || !corner)
         return false;
     for (size_t i = 0; i < m->vertex_count; i++) {
@@ -130,38 +166,43 @@ static bool count_bytes(void *bytes, ssize_t more, bool after)
 
 static bool commit(const hierarchy *h, foreign *f)
 {
-    f->scene = rtcNewScene(f->device);
-    RTCGeometry g = rtcNewGeometry(f->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    f->scene = embree.newScene(f->device);
+    RTCGeometry g = embree.newGeometry(f->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     bool filled = f->scene && g && (h->of->triangle_count == 0 || fill(h->of, g));
     if (filled && h->of->triangle_count > 0) {
-        rtcCommitGeometry(g);
-        rtcAttachGeometry(f->scene, g);
+        embree.commitGeometry(g);
+        embree.attachGeometry(f->scene, g);
     }
     if (g)
-        rtcReleaseGeometry(g);
+        embree.releaseGeometry(g);
     if (filled) {
-        rtcSetSceneFlags(f->scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-        rtcCommitScene(f->scene);
+        embree.setSceneFlags(f->scene, RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+        embree.commitScene(f->scene);
     }
-    return filled && rtcGetDeviceError(f->device) == RTC_ERROR_NONE;
+    return filled && embree.getDeviceError(f->device) == RTC_ERROR_NONE;
 }
 
 status hierarchy_build_embree(hierarchy *h, int threads, diagnostic *why)
 {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
     char config[32];
+    pthread_once(&once, load);
+    if (!loaded)
+        return diagnose(why, STATUS_BAD_INPUT, "install libembree3-3 or choose another hierarchy",
+                        "Embree's library cannot be loaded");
     snprintf(config, sizeof config, "threads=%d", threads);
     foreign *f = calloc(1, sizeof *f);
     h->foreign = f;
     if (!f)
         return out_of_memory(why);
-    f->device = rtcNewDevice(config);
+    f->device = embree.newDevice(config);
     if (!f->device)
         return diagnose(why, STATUS_FAILURE, "choose another hierarchy", "Embree cannot create a device (error %d)",
-                        (int)rtcGetDeviceError(NULL));
+                        (int)embree.getDeviceError(NULL));
     size_t bytes = 0;
-    rtcSetDeviceMemoryMonitorFunction(f->device, count_bytes, &bytes);
+    embree.setDeviceMemoryMonitorFunction(f->device, count_bytes, &bytes);
     bool built = commit(h, f);
-    rtcSetDeviceMemoryMonitorFunction(f->device, NULL, NULL);
+    embree.setDeviceMemoryMonitorFunction(f->device, NULL, NULL);
     if (!built)
         return diagnose(why, STATUS_FAILURE, "choose another hierarchy", "Embree cannot build its hierarchy");
     h->report.bytes = sizeof *h + bytes;
@@ -172,9 +213,9 @@ void hierarchy_embree_destroy(hierarchy *h)
 {
     foreign *f = h->foreign;
     if (f && f->scene)
-        rtcReleaseScene(f->scene);
+        embree.releaseScene(f->scene);
     if (f && f->device)
-        rtcReleaseDevice(f->device);
+        embree.releaseDevice(f->device);
     free(f);
     h->foreign = NULL;
 }

@@ -13,9 +13,9 @@
 #define RAYS_MAX 400000.0    /* budget of all images, in rays: some ten milliseconds */
 #define MESH_RAY 10.0        /* cost of a ray in a scene with triangles, in rays */
 #define CHANGED_PIXELS 0.05  /* fraction of the pixels ... */
-#define CHANGED_VALUE 0.05   /* ... that change by more than this fraction of the brighter value */
+#define CHANGED_VALUE 0.05f  /* ... that change by more than this fraction of the brighter value */
 #define SETTLED_PIXELS 0.002 /* if fewer pixels change, deeper images count as equal */
-#define DARK (1.0 / 255.0)   /* darker values are displayed as black */
+#define DARK (1.0f / 255.0f) /* darker values are displayed as black */
 enum { DEEPER_MAX = 24, SAFE_DEPTH = 8, THREADS_MAX = 8, STRIPES_PER_THREAD = 4 };
 
 typedef struct depth_probe {
@@ -24,7 +24,7 @@ typedef struct depth_probe {
     tracer *rays[THREADS_MAX]; /* one per member of the team */
     int stripes;
     atomic_int next_stripe;
-    film *image[DEEPER_MAX + 1]; /* by depth, starting at the scene's */
+    float *shown[DEEPER_MAX + 1]; /* images as displayed, by depth, starting at the scene's: [pixel][channel], 0..1 */
     double *pixel_rays;
     double spent;
 } depth_probe;
@@ -45,12 +45,29 @@ static void trace_stripes(void *context, size_t index, int member)
     tracer_finish(p->rays[index], &go_on);
 }
 
-static status trace_image(depth_probe *p, int deeper, diagnostic *why)
+static size_t pixels_of(const depth_probe *p)
 {
-    const render_settings *r = &p->made->render;
-    const size_t pixels = (size_t)(r->width * r->height), members = (size_t)thread_team_size(p->team);
-    TRY(film_create((int)r->width, (int)r->height, 1, FILM_RGB, &p->image[deeper], why));
-    const tracer_target target = {.frame_plan = p->made, .img = p->image[deeper], .pixel_rays = p->pixel_rays};
+    return (size_t)(p->made->render.width * p->made->render.height);
+}
+
+/* The image as displayed: values above white are white. */
+static bool show(const depth_probe *p, const film *f, float **shown)
+{
+    const size_t values = 3 * pixels_of(p);
+    float *rgb = *shown ? *shown : malloc(values * sizeof *rgb);
+    *shown = rgb;
+    if (!rgb)
+        return false;
+    film_read(f, 0, 0, f->width, f->height, rgb, 3 * (size_t)f->width);
+    for (size_t i = 0; i < values; i++)
+        rgb[i] = rgb[i] < 1.0f ? rgb[i] : 1.0f;
+    return true;
+}
+
+static status trace_film(depth_probe *p, film *f, diagnostic *why)
+{
+    const size_t pixels = pixels_of(p), members = (size_t)thread_team_size(p->team);
+    const tracer_target target = {.frame_plan = p->made, .img = f, .pixel_rays = p->pixel_rays};
     for (size_t i = 0; i < pixels; i++)
         p->pixel_rays[i] = 0.0;
     for (size_t i = 0; i < members; i++)
@@ -63,31 +80,39 @@ static status trace_image(depth_probe *p, int deeper, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Values above white are displayed as white. */
-static double shown(const film *f, int x, int y, int channel)
+static status trace_image(depth_probe *p, int deeper, diagnostic *why)
 {
-    return fmin(1.0, film_value(f, x, y, channel));
+    const render_settings *r = &p->made->render;
+    film *f;
+    TRY(film_create((int)r->width, (int)r->height, 1, FILM_RGB, &f, why));
+    status code = trace_film(p, f, why);
+    if (code == STATUS_OK && !show(p, f, &p->shown[deeper]))
+        code = out_of_memory(why);
+    film_destroy(f);
+    return code;
 }
 
-static bool pixel_changes(const film *a, const film *b, int x, int y)
+/* Whether a pixel's values, as displayed, differ. Comparisons alone: fmax and fmin are calls. */
+static bool pixel_changes(const float *a, const float *b)
 {
-    double brightest = DARK, change = 0.0;
+    float brightest = DARK, change = 0.0f;
     for (int c = 0; c < 3; c++) {
-        const double one = shown(a, x, y, c), two = shown(b, x, y, c);
-        brightest = fmax(brightest, fmax(one, two));
-        change = fmax(change, fabs(one - two));
+        const float one = a[c], two = b[c], apart = one < two ? two - one : one - two;
+        brightest = one > brightest ? one : brightest;
+        brightest = two > brightest ? two : brightest;
+        change = apart > change ? apart : change;
     }
     return change > CHANGED_VALUE * brightest;
 }
 
 /* The fraction of pixels that change. */
-static double changed_share(const film *a, const film *b)
+static double changed_share(const depth_probe *p, int one, int two)
 {
+    const size_t pixels = pixels_of(p);
     size_t changed = 0;
-    for (int y = 0; y < a->height; y++)
-        for (int x = 0; x < a->width; x++)
-            changed += pixel_changes(a, b, x, y);
-    return (double)changed / ((double)a->width * a->height);
+    for (size_t i = 0; i < pixels; i++)
+        changed += pixel_changes(p->shown[one] + 3 * i, p->shown[two] + 3 * i);
+    return (double)changed / (double)pixels;
 }
 
 /* The number of rays may double with each level of a ray tree: images below the scene's depth limit predict whether the
@@ -98,8 +123,6 @@ static status climb(depth_probe *p, int depth, double most, bool *affordable, di
     for (int d = SAFE_DEPTH; d < depth && code == STATUS_OK && p->spent <= most; d += 2) {
         p->made->render.depth = d;
         code = trace_image(p, 0, why);
-        film_destroy(p->image[0]);
-        p->image[0] = NULL;
     }
     p->made->render.depth = depth;
     *affordable = p->spent <= most;
@@ -121,7 +144,7 @@ static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, d
         p->made->render.depth = depth + d;
         TRY(trace_image(p, d, why));
         *last = d;
-        still = changed_share(p->image[d - 1], p->image[d]) <= SETTLED_PIXELS ? still + 1 : 0;
+        still = changed_share(p, d - 1, d) <= SETTLED_PIXELS ? still + 1 : 0;
         if (still == 2) {
             *settled = true;
             return STATUS_OK;
@@ -132,21 +155,21 @@ static status look_deeper(depth_probe *p, int depth, int *last, bool *settled, d
 
 /* The uncertainty of the fraction: four standard errors for a random sample of pixels; 0 if the image is the scene's
  * own. */
-static double doubt(const lint_room *room, const film *small)
+static double doubt(const lint_room *room)
 {
-    const render_settings *r = &room->of->render;
-    const double pixels = (double)small->width * small->height;
+    const render_settings *r = &room->of->render, *small = &room->made->render;
+    const double pixels = (double)small->width * (double)small->height;
     const bool own = r->width == small->width && r->height == small->height && r->samples == 1;
     return own ? 0.0 : 4.0 * sqrt(CHANGED_PIXELS * (1.0 - CHANGED_PIXELS) / pixels);
 }
 
 static void note_depth(const lint_room *room, const depth_probe *p, int depth, int last, bool settled)
 {
-    const double share = changed_share(p->image[0], p->image[last]);
-    if (share <= CHANGED_PIXELS + doubt(room, p->image[0]))
+    const double share = changed_share(p, 0, last);
+    if (share <= CHANGED_PIXELS + doubt(room))
         return;
     int enough = 1;
-    while (enough < last && changed_share(p->image[enough], p->image[last]) > CHANGED_PIXELS)
+    while (enough < last && changed_share(p, enough, last) > CHANGED_PIXELS)
         enough++;
     char remedy[NOTE_TEXT_MAX];
     snprintf(remedy, sizeof remedy, "set render.depth=%d%s", depth + enough,
@@ -184,7 +207,7 @@ static bool overflowed(const depth_probe *p)
 static void end(depth_probe *p)
 {
     for (int d = 0; d <= DEEPER_MAX; d++)
-        film_destroy(p->image[d]);
+        free(p->shown[d]);
     for (int i = 0; i < THREADS_MAX; i++)
         tracer_destroy(p->rays[i]);
     thread_team_stop(p->team);

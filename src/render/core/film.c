@@ -8,8 +8,9 @@
 #include <string.h>
 
 /* Two cache lines, which processors fetch together: if the widths of the image and the tiles are multiples of 16, tiles
- * share no line, and workers do not contend for lines. A film of several large pages begins with one. */
-enum { ALIGNMENT = 128, PAGE = 4096, LARGE_PAGE = 1 << 21 };
+ * share no line, and workers do not contend for lines. A film of several large pages consists of whole ones: a last part
+ * in small pages would take longer than all others together. */
+enum { ALIGNMENT = 128, PAGE = 4096 };
 
 static size_t values_of(const film *f)
 {
@@ -20,14 +21,13 @@ static size_t values_of(const film *f)
  * pages, if the system has them, are created in a third of the time. calloc does not write what is zero already. */
 static bool allocate_sums(film *f, size_t bytes)
 {
-    const bool large = bytes >= 2 * (size_t)LARGE_PAGE;
-    const size_t alignment = large ? LARGE_PAGE : ALIGNMENT;
-    f->memory = calloc(1, bytes + alignment); /* aligned_alloc would leave gaps that are too small for the next film */
+    const size_t alignment = bytes >= LARGE_PAGES_MIN ? LARGE_PAGE : ALIGNMENT,
+                 whole = (bytes + alignment - 1) / alignment * alignment;
+    f->memory = calloc(1, whole + alignment); /* aligned_alloc would leave gaps that are too small for the next film */
     if (!f->memory)
         return false;
     f->sum = (int64_t *)(((uintptr_t)f->memory + alignment - 1) / alignment * alignment);
-    if (large)
-        large_pages(f->sum, bytes);
+    large_pages(f->sum, whole);
     for (size_t i = 0; i < bytes; i += PAGE)
         ((volatile int64_t *)f->sum)[i / sizeof *f->sum] = 0;
     return true;

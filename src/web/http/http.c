@@ -81,7 +81,7 @@ static status listen_and_serve(http_server *s, diagnostic *why)
     pthread_sigmask(SIG_SETMASK, &all, &before);
     status code = http_watch_start(s, why);
     if (code == STATUS_OK) {
-        s->daemon = MHD_start_daemon(
+        s->daemon = mhd.start_daemon(
             MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL, 0, NULL, NULL,
             http_on_request, s, MHD_OPTION_LISTEN_SOCKET, fd, MHD_OPTION_CONNECTION_LIMIT,
             (unsigned)s->settings.connections, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)s->settings.timeout_s,
@@ -109,6 +109,7 @@ status http_start(const http_settings *settings, http_server **out, diagnostic *
     pthread_mutex_init(&s->event_lock, NULL);
     pthread_cond_init(&s->watch_wake, NULL);
     status code = check(&s->settings, why);
+    THEN(code, http_library_load(why));
     THEN(code, make_token(s, why));
     THEN(code, listen_and_serve(s, why));
     if (code != STATUS_OK) {
@@ -125,7 +126,7 @@ void http_stop(http_server *s)
         return;
     http_events_end(s);
     if (s->daemon)
-        MHD_stop_daemon(s->daemon);
+        mhd.stop_daemon(s->daemon);
     http_watch_stop(s);
     pthread_cond_destroy(&s->watch_wake);
     pthread_mutex_destroy(&s->event_lock);

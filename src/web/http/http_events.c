@@ -146,7 +146,7 @@ void http_events(void *context, const http_request *q, http_reply *r)
     http_event_client *c = calloc(1, sizeof *c);
     if (!c)
         return;
-    const union MHD_ConnectionInfo *info = MHD_get_connection_info(q->connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+    const union MHD_ConnectionInfo *info = mhd.get_connection_info(q->connection, MHD_CONNECTION_INFO_CONNECTION_FD);
     *c = (http_event_client){.server = s,
                              .connection = q->connection,
                              .socket = info ? info->connect_fd : -1,
@@ -156,7 +156,7 @@ void http_events(void *context, const http_request *q, http_reply *r)
     if (c->wake < 0 || !add_client(s, c))
         http_reply_error(r, 503, "too many event streams are open", "close another page of this laboratory");
     else
-        response = MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, read_stream, c, client_free);
+        response = mhd.create_response_from_callback(MHD_SIZE_UNKNOWN, 16384, read_stream, c, client_free);
     if (response)
         http_reply_set(r, 200, "text/event-stream", response);
     else

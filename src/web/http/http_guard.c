@@ -155,7 +155,7 @@ static int refuse(http_request *q, int code, const char *what, const char *remed
  * after a redirect the browser would withhold the cookie. A page of our own opens the address without the token. */
 static bool comes_from_another_page(const http_request *q)
 {
-    const char *site = MHD_lookup_connection_value(q->connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
+    const char *site = mhd.lookup_connection_value(q->connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
     return site && strcmp(site, "cross-site") == 0;
 }
 
@@ -181,10 +181,10 @@ static int set_token_cookie(http_request *q)
 
 static bool has_token(const http_request *q)
 {
-    const char *bearer = MHD_lookup_connection_value(q->connection, MHD_HEADER_KIND, "Authorization");
+    const char *bearer = mhd.lookup_connection_value(q->connection, MHD_HEADER_KIND, "Authorization");
     if (bearer && strncasecmp(bearer, "Bearer ", 7) == 0 && same_token(q->server->token, bearer + 7))
         return true;
-    return same_token(q->server->token, MHD_lookup_connection_value(q->connection, MHD_COOKIE_KIND, q->server->cookie));
+    return same_token(q->server->token, mhd.lookup_connection_value(q->connection, MHD_COOKIE_KIND, q->server->cookie));
 }
 
 /* Checks all but the token, against requests that another site's page could cause. */
@@ -192,7 +192,7 @@ static int guard_site(http_request *q, const char *version)
 {
     heads h = {0};
     bool no_memory;
-    MHD_get_connection_values(q->connection, MHD_HEADER_KIND, look, &h);
+    mhd.get_connection_values(q->connection, MHD_HEADER_KIND, look, &h);
     if (strcmp(version, "HTTP/1.1") != 0 && strcmp(version, "HTTP/1.0") != 0)
         return refuse(q, 400, "this is not HTTP/1.1", "send HTTP/1.1");
     q->path = safe_path(q->target, &no_memory);
@@ -215,7 +215,7 @@ int http_guard(http_request *q, const char *version)
     if (code)
         return code;
     const char *query_token = strcmp(q->method, "GET") == 0
-                                  ? MHD_lookup_connection_value(q->connection, MHD_GET_ARGUMENT_KIND, "token")
+                                  ? mhd.lookup_connection_value(q->connection, MHD_GET_ARGUMENT_KIND, "token")
                                   : NULL;
     const bool in_address = same_token(q->server->token, query_token), known = in_address || has_token(q);
     if (!within_rate(q->server, known)) {

@@ -13,7 +13,7 @@ enum { SIZE_MIN = 1400, LEVEL = 4, GZIP_WINDOW = 15 + 16 };
 /* Whether the client's list of codings has gzip, with a weight other than 0. */
 static bool accepts_gzip(struct MHD_Connection *c)
 {
-    const char *list = MHD_lookup_connection_value(c, MHD_HEADER_KIND, "Accept-Encoding");
+    const char *list = mhd.lookup_connection_value(c, MHD_HEADER_KIND, "Accept-Encoding");
     const char *found = list ? strcasestr(list, "gzip") : NULL;
     if (!found)
         return false;

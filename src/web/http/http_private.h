@@ -2,7 +2,8 @@
 #pragma once
 
 #include "web/http/http.h"
-#include <microhttpd.h>
+#include "web/http/http_library.h"
+
 #include <pthread.h>
 #include <stdbool.h>
 

@@ -21,11 +21,11 @@ static const char no_memory[] = "{\"error\":\"no memory for the reply\",\"remedy
 void http_reply_set(http_reply *r, int code, const char *type, struct MHD_Response *response)
 {
     if (r->response)
-        MHD_destroy_response(r->response);
+        mhd.destroy_response(r->response);
     r->response = response;
     r->code = code;
-    if (response && MHD_add_response_header(response, "Content-Type", type) != MHD_YES) {
-        MHD_destroy_response(response);
+    if (response && mhd.add_response_header(response, "Content-Type", type) != MHD_YES) {
+        mhd.destroy_response(response);
         r->response = NULL;
     }
 }
@@ -37,7 +37,7 @@ static bool reply_gzip(http_reply *r, int code, const char *type, const void *by
     void *packed = http_gzip(r, type, bytes, size, &packed_size);
     if (!packed)
         return false;
-    struct MHD_Response *response = MHD_create_response_from_buffer(packed_size, packed, MHD_RESPMEM_MUST_FREE);
+    struct MHD_Response *response = mhd.create_response_from_buffer(packed_size, packed, MHD_RESPMEM_MUST_FREE);
     if (!response)
         free(packed);
     http_reply_set(r, code, type, response);
@@ -50,7 +50,7 @@ void http_reply_static(http_reply *r, int code, const char *type, const void *by
 {
     if (reply_gzip(r, code, type, bytes, size))
         return;
-    http_reply_set(r, code, type, MHD_create_response_from_buffer(size, (void *)(size_t)bytes, MHD_RESPMEM_PERSISTENT));
+    http_reply_set(r, code, type, mhd.create_response_from_buffer(size, (void *)(size_t)bytes, MHD_RESPMEM_PERSISTENT));
 }
 
 void http_reply_bytes(http_reply *r, int code, const char *type, void *bytes, size_t size)
@@ -63,7 +63,7 @@ void http_reply_bytes(http_reply *r, int code, const char *type, void *bytes, si
         free(bytes);
         return;
     }
-    struct MHD_Response *response = MHD_create_response_from_buffer(size, bytes, MHD_RESPMEM_MUST_FREE);
+    struct MHD_Response *response = mhd.create_response_from_buffer(size, bytes, MHD_RESPMEM_MUST_FREE);
     if (!response)
         free(bytes);
     http_reply_set(r, code, type, response);
@@ -116,7 +116,7 @@ void http_reply_header(http_reply *r, const char *name, const char *value)
 void http_reply_release(http_reply *r)
 {
     if (r->response)
-        MHD_destroy_response(r->response);
+        mhd.destroy_response(r->response);
     r->response = NULL;
     for (; r->header_count > 0; r->header_count--) {
         free(r->header_name[r->header_count - 1]);
@@ -132,9 +132,9 @@ enum MHD_Result http_reply_send(http_reply *r)
         return MHD_NO;
     bool complete = true;
     for (size_t i = 0; i < sizeof on_every_reply / sizeof *on_every_reply; i++)
-        complete &= MHD_add_response_header(r->response, on_every_reply[i][0], on_every_reply[i][1]) == MHD_YES;
+        complete &= mhd.add_response_header(r->response, on_every_reply[i][0], on_every_reply[i][1]) == MHD_YES;
     for (int i = 0; i < r->header_count; i++)
-        complete &= MHD_add_response_header(r->response, r->header_name[i], r->header_value[i]) == MHD_YES;
+        complete &= mhd.add_response_header(r->response, r->header_name[i], r->header_value[i]) == MHD_YES;
     /* Send nothing rather than a reply without the security headers. */
-    return complete ? MHD_queue_response(r->connection, (unsigned)r->code, r->response) : MHD_NO;
+    return complete ? mhd.queue_response(r->connection, (unsigned)r->code, r->response) : MHD_NO;
 }

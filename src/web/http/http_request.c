@@ -130,9 +130,9 @@ enum MHD_Result http_on_request(void *server, struct MHD_Connection *c, const ch
         answer(q);
         http_watch_deadline(q->server, c, s->settings.timeout_s);
         /* libmicrohttpd counts the handler's time as idle time of the client; setting the timeout restarts it. */
-        MHD_set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
+        mhd.set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, 0u);
         if (q->route == NULL || q->route->handle != http_events)
-            MHD_set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)s->settings.timeout_s);
+            mhd.set_connection_option(c, MHD_CONNECTION_OPTION_TIMEOUT, (unsigned)s->settings.timeout_s);
     }
     return http_reply_send(&q->reply);
 }
@@ -141,7 +141,7 @@ const char *http_query_value(const http_request *q, const char *name)
 {
     const char *value = NULL;
     size_t size;
-    if (MHD_lookup_connection_value_n(q->connection, MHD_GET_ARGUMENT_KIND, name, strlen(name), &value, &size) !=
+    if (mhd.lookup_connection_value_n(q->connection, MHD_GET_ARGUMENT_KIND, name, strlen(name), &value, &size) !=
         MHD_YES)
         return NULL;
     return value ? value : "";
@@ -149,7 +149,7 @@ const char *http_query_value(const http_request *q, const char *name)
 
 const char *http_header(const http_request *q, const char *name)
 {
-    return MHD_lookup_connection_value(q->connection, MHD_HEADER_KIND, name);
+    return mhd.lookup_connection_value(q->connection, MHD_HEADER_KIND, name);
 }
 
 json_t *http_body_json(const http_request *q, http_reply *r)

@@ -78,7 +78,7 @@ static void displace_stranger(http_server *s)
 
 static http_slot *slot_of(struct MHD_Connection *c)
 {
-    const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    const union MHD_ConnectionInfo *info = mhd.get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
     return info ? info->socket_context : NULL;
 }
 
@@ -87,7 +87,7 @@ void http_watch_notify(void *context, struct MHD_Connection *c, void **place, en
     http_server *s = context;
     pthread_mutex_lock(&s->watch_lock);
     if (what == MHD_CONNECTION_NOTIFY_STARTED) {
-        const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
+        const union MHD_ConnectionInfo *info = mhd.get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD);
         for (int i = 0; i < s->settings.connections && info && !*place; i++)
             if (s->slots[i].socket < 0) {
                 const double now_s = clock_wall_s();

@@ -1,0 +1,26 @@
+/* Loads libmicrohttpd. */
+#include "web/http/http_library.h"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <stdbool.h>
+
+mhd_functions mhd;
+static bool loaded;
+
+static void load(void)
+{
+    void *library = dlopen("libmicrohttpd.so.12", RTLD_NOW | RTLD_LOCAL);
+    loaded = library != NULL;
+#define FIND(name) loaded = loaded && (*(void **)&mhd.name = dlsym(library, "MHD_" #name));
+    EACH_MHD_FUNCTION(FIND)
+}
+
+status http_library_load(diagnostic *why)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, load);
+    return loaded ? STATUS_OK
+                  : diagnose(why, STATUS_FAILURE, "install libmicrohttpd12",
+                             "the laboratory needs the library libmicrohttpd, which cannot be loaded");
+}

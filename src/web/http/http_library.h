@@ -1,0 +1,32 @@
+/* libmicrohttpd's functions, loaded when a server starts: the library brings GnuTLS, and all its dependencies would cost
+ * every command 6 ms at its start. The library's own header gives their types and their meanings. */
+#pragma once
+
+#include "base/status.h"
+#include <microhttpd.h>
+
+#define EACH_MHD_FUNCTION(X)         \
+    X(add_response_header)           \
+    X(create_response_from_buffer)   \
+    X(create_response_from_callback) \
+    X(destroy_response)              \
+    X(get_connection_info)           \
+    X(get_connection_values)         \
+    X(lookup_connection_value)       \
+    X(lookup_connection_value_n)     \
+    X(queue_response)                \
+    X(set_connection_option)         \
+    X(start_daemon)                  \
+    X(stop_daemon)
+
+typedef struct mhd_functions {
+#define DECLARE_MHD_FUNCTION(name) __typeof__(MHD_##name) *name;
+    EACH_MHD_FUNCTION(DECLARE_MHD_FUNCTION)
+#undef DECLARE_MHD_FUNCTION
+} mhd_functions;
+
+/* NULL pointers until http_library_load has succeeded. */
+extern mhd_functions mhd;
+
+/* Fills mhd, once for the process; any thread may call it. A failure says which package to install. */
+status http_library_load(diagnostic *why);
