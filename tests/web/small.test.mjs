@@ -42,8 +42,8 @@ const imageShown = () => {
 async function fill(screen) {
   const { page, lab } = screen;
   await lab.post('/api/objects', { kind: 'beam', name: 'laser' });
-  await page.evaluate(() => window.lab.post('/api/pin', {}).catch(() => null));
-  await screen.settled();
+  await screen.settled((await lab.get('/api/state')).generation);
+  await lab.post('/api/pin', {});
   await screen.showPanel('Pixel');
   await page.getByRole('spinbutton', { name: 'Pixel x' }).fill('330');
   await page.getByRole('spinbutton', { name: 'y', exact: true }).fill('420');
@@ -62,9 +62,10 @@ async function eachPanel(t, screen, name, check) {
   }
 }
 
-async function layout(t, name, options) {
+async function layout(t, name, options, key) {
   const lab = await t.lab('scenes/rod.yaml');
   const screen = await t.open(lab, options);
+  if (key) await screen.page.keyboard.press(key);
   await fill(screen);
   await eachPanel(t, screen, name, async (panel) => {
     if (panel !== 'Studies') {
@@ -89,6 +90,15 @@ export const cases = {
   '800 x 600': (t) => layout(t, 'small-light', SMALL),
   '800 x 600, dark': (t) => layout(t, 'small-dark', { ...SMALL, dark: true }),
   'a tablet': (t) => layout(t, 'tablet', { width: 1180, height: 820, touch: true }),
+
+  'large text': async (t) => {
+    const screen = await layout(t, 'large', { width: 1366, height: 768 }, 't');
+    await screen.page.reload();
+    await screen.until(() => window.lab?.picture);
+    t.equal(await screen.page.evaluate(() => document.documentElement.dataset.text), 'large', 'remembered');
+  },
+  'the projector mode': (t) => layout(t, 'projector', { width: 1366, height: 768 }, 'p'),
+  'the projector mode on a phone, dark': (t) => layout(t, 'projector-phone', { ...PHONE, dark: true }, 'p'),
 
   'the bottom sheet is moved by keys and by its handle': async (t) => {
     const screen = await t.open(await t.lab('scenes/rod.yaml'), PHONE);

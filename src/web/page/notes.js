@@ -13,12 +13,16 @@ export function createNotes(lab) {
 
   const line = (note) => [note.place, note.text].filter(Boolean).join(': ');
 
-  function actOn(note) {
+  function actionOf(note) {
     const action = noteAction(note);
     if (!action) return null;
-    const act = () =>
-      lab.set({ [action.path]: action.value }).then(() => lab.say(`${action.path} is ${action.value}.`), lab.fail);
-    return element('p', {}, button(action.label, act, { small: true, kind: 'primary' }));
+    const done = () => lab.say(`${action.path} is ${action.value}.`);
+    return { label: action.label, act: () => lab.set({ [action.path]: action.value }).then(done, lab.fail) };
+  }
+
+  function actOn(note) {
+    const action = actionOf(note);
+    return action && element('p', {}, button(action.label, action.act, { small: true, kind: 'primary' }));
   }
 
   const list = () =>
@@ -52,7 +56,8 @@ export function createNotes(lab) {
       return;
     }
     const [first, ...more] = notes.filter((note) => !known.has(line(note)));
-    if (first && !openDialog) lab.say(`Note: ${line(first)}`, more.length ? `${first.remedy}; and ${more.length} more` : first.remedy);
+    const rest = more.length ? `; and ${more.length} more` : '';
+    if (first && !openDialog) lab.say(`Note: ${line(first)}`, `${first.remedy}${rest}`, actionOf(first));
     if (openDialog) openDialog.node.querySelector('.dialog-body').replaceChildren(list());
     lab.emit('notes', notes);
   }
