@@ -327,7 +327,7 @@ static void a_view_is_kept_on_demand(void **state)
     assert_true(view_x(d) == shown && eye_x(d, scene_document_take_kept) == shown && !is_saved(d));
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
     assert_true(view_x(d) == own && is_saved(d));
-    apply(d, "camera.fov_deg=30");                /* a parameter of the camera is one of the scene */
+    apply(d, "camera.fov_deg=30"); /* a parameter of the camera is one of the scene */
     assert_false(is_saved(d));
     scene_document_reset(d, NULL, 0, NULL, NULL);
     assert_true(is_saved(d));

@@ -1,4 +1,4 @@
-// The dialog Display, decimal commas, the linter's buttons, drawings that follow the theme, what fits at 1366 px, and
+// The dialog Appearance, decimal commas, the linter's buttons, drawings that follow the theme, what fits at 1366 px, and
 // the difference map of the panel Compare.
 
 const size = { width: 1366, height: 768 };
@@ -14,10 +14,10 @@ export const cases = {
       });
     const height = () => page.evaluate(() => document.querySelector('.tab').getBoundingClientRect().height);
     const usual = await height();
-    await screen.button('Display', true).click();
+    await screen.button('Appearance', true).click();
     await page.getByRole('checkbox', { name: /^Projector mode/ }).check();
     await page.getByText('Dark', { exact: true }).click();
-    await t.axe(screen, 'the dialog Display');
+    await t.axe(screen, 'the dialog Appearance');
     await page.keyboard.press('Escape');
     t.equal(await set(), { theme: 'dark', text: 'large', projector: '' }, 'set by the dialog');
     t.more((await height()) / usual, 1.35, 'enlargement of a tab');
@@ -96,7 +96,10 @@ export const cases = {
     await page.getByText(/base of a vessel/).waitFor();
     await page.getByText(/The default is 4/).waitFor();
     await t.axe(screen, 'the notes');
-    await page.getByRole('dialog').getByRole('button', { name: /^Raise the depth to \d+$/ }).click();
+    await page
+      .getByRole('dialog')
+      .getByRole('button', { name: /^Raise the depth to \d+$/ })
+      .click();
     await page.getByText('No notes.').waitFor();
     t.more(await lab.value('render.depth'), 4, 'render.depth');
     t.equal((await lab.get('/api/state')).undo, 'set render.depth', 'undo');
@@ -147,7 +150,8 @@ export const cases = {
     await screen.button('Pin as A').click();
     await screen.until(() => window.lab.state.pin);
     await page.getByText('Difference', { exact: true }).click();
-    const map = () => page.evaluate(() => document.querySelector('.layer-compare > image:nth-of-type(2)').style.display);
+    const map = () =>
+      page.evaluate(() => document.querySelector('.layer-compare > image:nth-of-type(2)').style.display);
     await lab.post('/api/set', { set: { 'liquid.ior': 1.5 } });
     await screen.until(() => document.querySelector('.layer-compare > image:nth-of-type(2)').style.display === '');
     await page.evaluate(() => {
@@ -167,10 +171,11 @@ export const cases = {
 
   'motion is reduced when the system asks': async (t) => {
     const screen = await t.open(await t.lab('scenes/rod.yaml'), size);
-    const moving = await screen.page.evaluate(() =>
-      [...document.querySelectorAll('*')]
-        .flatMap((node) => [null, '::before', '::after'].map((part) => getComputedStyle(node, part)))
-        .filter((style) => style.transitionDuration !== '0s' || style.animationName !== 'none').length,
+    const moving = await screen.page.evaluate(
+      () =>
+        [...document.querySelectorAll('*')]
+          .flatMap((node) => [null, '::before', '::after'].map((part) => getComputedStyle(node, part)))
+          .filter((style) => style.transitionDuration !== '0s' || style.animationName !== 'none').length,
     );
     t.equal(moving, 0, 'elements that move');
   },

@@ -71,7 +71,10 @@ async function layout(t, name, options, key) {
     if (panel !== 'Studies') {
       await screen.page.evaluate(() => {
         const root = [...document.querySelectorAll('.panel')].find((each) => each.checkVisibility());
-        [...root.querySelectorAll('button, input')].filter((each) => each.checkVisibility()).at(-1)?.focus();
+        [...root.querySelectorAll('button, input')]
+          .filter((each) => each.checkVisibility())
+          .at(-1)
+          ?.focus();
       });
       const { share, width, covered, scrolls } = await screen.page.evaluate(imageShown);
       t.more(share, 0.99, `${panel}: visible share of the image while its last control is used`);

@@ -72,15 +72,18 @@ function openDialog(on, set) {
       set('projector', value),
     ),
   ];
-  dialog({ title: 'Display', content: element('div', { class: 'display' }, theme.node, ...boxes.map((b) => b.node)) });
+  dialog({
+    title: 'Appearance',
+    content: element('div', { class: 'display' }, theme.node, ...boxes.map((b) => b.node)),
+  });
 }
 
 export const displayButton = (lab) =>
-  button('Display', () => lab.display.open(), {
+  button('Appearance', () => lab.display.open(), {
     icon: 'screen',
     kind: 'quiet',
     bare: true,
-    title: 'Display: theme, large text, projector mode',
+    title: 'Appearance: theme, large text, projector mode',
   });
 
 export function themeButton() {

@@ -133,11 +133,7 @@ export function createRayTable({ caption, onmark }) {
 
   function row(ray, place, among) {
     const words = describe(ray);
-    const cells = columns
-      .slice(1)
-      .map(([key]) =>
-        element('td', { class: cellClass(ray, key), text: words[key] }),
-      );
+    const cells = columns.slice(1).map(([key]) => element('td', { class: cellClass(ray, key), text: words[key] }));
     const first = element(
       'th',
       { scope: 'row' },

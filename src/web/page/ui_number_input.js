@@ -10,7 +10,10 @@ const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
 /* A thousands separator is rejected: 1,234.5 and 1.234,5 would be read as different numbers in different countries. */
 function parse(text) {
-  const plain = text.trim().replace(/^\u2212/, '-').replace(',', '.');
+  const plain = text
+    .trim()
+    .replace(/^\u2212/, '-')
+    .replace(',', '.');
   return NUMBER.test(plain) ? Number(plain) : NaN;
 }
 

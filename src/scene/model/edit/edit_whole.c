@@ -201,7 +201,7 @@ static bool is_scaled(const whole_edit *e, const char *name, const param *row)
     return at.object_group == PARAM_SOLID || at.object_group == PARAM_MATERIAL ? e->parts.solids
            : at.object_group == PARAM_LIGHT                                    ? e->parts.lights
            : at.object_group == PARAM_BEAM                                     ? e->parts.beams
-                                            : at.object_group == PARAM_CAMERA && e->parts.camera;
+                                           : at.object_group == PARAM_CAMERA && e->parts.camera;
 }
 
 /* Visits the clone, since setting a material changes its solids. */
