@@ -1,5 +1,5 @@
-// The dialog Appearance, decimal commas, the linter's buttons, drawings that follow the theme, what fits at 1366 px, and
-// the difference map of the panel Compare.
+// The dialog Appearance, decimal commas, the linter's buttons, drawings that follow the theme, what fits at
+// 1366 px, and the difference map of the panel Compare.
 
 const size = { width: 1366, height: 768 };
 

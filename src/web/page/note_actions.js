@@ -16,7 +16,7 @@ export function noteAction({ remedy }) {
 export function noteReason({ place }) {
   if (place !== 'render.depth') return [];
   return [
-    'Rays end at the depth limit and have the colour of the sky there, so places that are seen through many surfaces, ' +
+    'Rays end at the depth limit and have the colour of the sky there, so places seen through many surfaces, ' +
       'such as the base of a vessel and the surface of its water from below, are pale. Part of the paleness is real: ' +
       'total reflection mirrors the sky in the base at any depth.',
     'The default is 4, because a ray can split at each surface and the work can double with each level: 4 keeps an ' +
