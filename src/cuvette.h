@@ -235,8 +235,8 @@ CUVETTE_API cuvette_status cuvette_scene_add_pixels(cuvette_scene *scene, const 
 CUVETTE_API cuvette_status cuvette_scene_remove(cuvette_scene *scene, const char *name, cuvette_diagnostic *why);
 
 /* Translates a solid, a light or "camera" (with its target; a cone light's target moves too) by `by`, three numbers in
- * scene units. For several objects: "all" is all solids and lights, "solids" and "lights" are only these, and such
- * words are joined by '+', as "all+camera", unless an object has that name. */
+ * scene units. For several objects: "all" is all solids, lights and beams, "solids" and "lights" are only these, and
+ * such words are joined by '+', as "all+camera", unless an object has that name. */
 CUVETTE_API cuvette_status cuvette_scene_move(cuvette_scene *scene, const char *name, const double *by,
                                               cuvette_diagnostic *why);
 /* Rotates a solid in place, or the direction of a cone light or "camera", about the world's x axis, then y, then z

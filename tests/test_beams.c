@@ -327,6 +327,41 @@ static void the_normal_of_a_pencil_is_ignored(void **state)
     scene_destroy(s);
 }
 
+/* A laser that meets a surface still meets it after the whole scene was moved, turned and scaled. */
+static void beams_go_with_the_whole_scene(void **state)
+{
+    (void)state;
+    scene *s = with_beam("direction: [1, 0, 0], width: 0.5, normal: [0, 1, 0]", BALL);
+    diagnostic why = {.line = 0};
+    const beam *b = &s->beams[0];
+    const vec3 from = b->position, target = b->target;
+    worked(scene_move(s, "all", vec3_make(1, 2, 3), &why), &why);
+    assert_true(b->position.x == from.x + 1 && b->position.z == from.z + 3 && b->target.y == target.y + 2);
+    worked(scene_move(s, "solids", vec3_make(5, 5, 5), &why), &why); /* these alone */
+    assert_true(b->position.x == from.x + 1);
+    worked(scene_move(s, "lights", vec3_make(-1, -2, -3), &why), &why);
+    assert_true(b->position.x == from.x && b->position.y == from.y);
+    worked(scene_turn(s, "lights", vec3_make(0, 90, 0), &why), &why); /* x becomes -z */
+    assert_true(fabs(b->position.z + from.x) < 1e-12 && fabs(b->position.x - from.z) < 1e-12);
+    assert_true(fabs(b->direction.z + 1) < 1e-12 && fabs(b->direction.x) < 1e-12 && b->normal.y == 1);
+    worked(scene_scale(s, "all", 2, &why), &why);
+    assert_true(b->width == 1.0 && b->position.y == 2 * from.y && fabs(b->direction.z + 1) < 1e-12);
+    scene_destroy(s);
+}
+
+/* A move that would leave the range of a later object moves no beam. */
+static void a_refused_move_leaves_beams(void **state)
+{
+    (void)state;
+    scene *s = with_beam("direction: [1, 0, 0]", BALL);
+    diagnostic why = {.line = 0};
+    worked(scene_set(s, "ray.target", "1e6,0,0", &why), &why);
+    const vec3 from = s->beams[0].position;
+    assert_int_equal(scene_move(s, "all", vec3_make(1e9, 0, 0), &why), STATUS_BAD_INPUT);
+    assert_memory_equal(&from, &s->beams[0].position, sizeof from);
+    scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -341,6 +376,8 @@ int main(void)
         cmocka_unit_test(a_screen_in_a_medium_receives_what_is_not_absorbed),
         cmocka_unit_test(the_work_of_all_beams_is_limited),
         cmocka_unit_test(the_normal_of_a_pencil_is_ignored),
+        cmocka_unit_test(beams_go_with_the_whole_scene),
+        cmocka_unit_test(a_refused_move_leaves_beams),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -319,7 +319,15 @@ static void a_view_is_kept_on_demand(void **state)
     assert_true(view_x(d) == kept);
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
     assert_true(view_x(d) == own && is_saved(d)); /* undoing a change of the scene's camera shows it */
-    apply(d, "camera.fov_deg=30");                /* a parameter of the camera is one of the scene */
+    orbit_view(d, 30.0, NULL);
+    const double shown = view_x(d);
+    const char same[] = "camera.roll_deg=0"; /* what the view shows already */
+    assert_int_equal(scene_document_apply_to_camera(d, same, NULL, set_one, (void *)(uintptr_t)same, NULL, NULL),
+                     STATUS_OK);
+    assert_true(view_x(d) == shown && eye_x(d, scene_document_take_kept) == shown && !is_saved(d));
+    assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
+    assert_true(view_x(d) == own && is_saved(d));
+    apply(d, "camera.fov_deg=30"); /* a parameter of the camera is one of the scene */
     assert_false(is_saved(d));
     scene_document_reset(d, NULL, 0, NULL, NULL);
     assert_true(is_saved(d));

@@ -113,7 +113,7 @@ export const cases = {
     await screen.page.keyboard.press('ArrowRight');
     await screen.until(() => window.lab.param('liquid.ior').value > 1.33);
     t.more(await lab.value('liquid.ior'), 1.33, 'an arrow key increases the index');
-    await tabTo(t, screen, '.param[data-path="liquid.ior"] input[type=number]');
+    await tabTo(t, screen, '.param[data-path="liquid.ior"] input[role=spinbutton]');
     await screen.page.keyboard.type('1.4');
     await screen.page.keyboard.press('Enter');
     await screen.until(() => window.lab.param('liquid.ior').value === 1.4);

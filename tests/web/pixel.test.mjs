@@ -102,7 +102,9 @@ export const cases = {
       await screen.clickPixel(x, y);
       await screen.until(
         ([px, py]) =>
-          [px, py].every((v, i) => Number(document.querySelectorAll('.panel-pixel input[type=number]')[i].value) === v),
+          [px, py].every(
+            (v, i) => Number(document.querySelectorAll('.panel-pixel input[role=spinbutton]')[i].value) === v,
+          ),
         [x, y],
       );
       await compareTree(t, screen, lab, x, y, `pixel ${x},${y}`);

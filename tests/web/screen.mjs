@@ -5,15 +5,17 @@ import { readPng } from './png.mjs';
 const LIMIT_MS = 30000;
 
 export class Screen {
-  /** options: width, height, dark. */
+  /** options: width, height, dark; touch: a device with a coarse pointer. */
   static async open(browser, lab, options = {}) {
     const screen = new Screen();
-    const { width = 1366, height = 768, dark = false } = options;
+    const { width = 1366, height = 768, dark = false, touch = false } = options;
     screen.lab = lab;
     screen.context = await browser.newContext({
       viewport: { width, height },
       colorScheme: dark ? 'dark' : 'light',
       reducedMotion: 'reduce',
+      hasTouch: touch,
+      isMobile: touch,
     });
     screen.context.setDefaultTimeout(LIMIT_MS);
     screen.page = await screen.context.newPage();

@@ -197,5 +197,9 @@ export const cases = {
     await lab.post('/api/save', { file: 'own.yaml' });
     await lab.post('/api/open', { file: 'own.yaml' });
     t.near(far((await lab.get('/api/state')).camera.eye, camera.eye), 0, 1e-9, 'the kept camera in the file');
+    await lab.post('/api/camera', { orbit: [-15, 0] });
+    t.check(!(await lab.get('/api/state')).view.kept, 'the view is not the camera of the scene');
+    await lab.post('/api/set', { set: { 'camera.roll_deg': 0 } }); // what the view shows already
+    t.check((await lab.get('/api/state')).view.kept, 'a set value of the camera does not keep the view');
   },
 };

@@ -28,6 +28,36 @@ async function serve(scene) {
   return lab;
 }
 
+async function showBench(screen) {
+  await screen.showPanel('Bench');
+  const { lab } = screen;
+  await lab.post('/api/objects', { kind: 'beam', name: 'sheet' });
+  await lab.post('/api/objects', { kind: 'beam', name: 'laser' });
+  const { generation } = await lab.post('/api/set', {
+    set: {
+      'sheet.kind': 'sheet',
+      'sheet.rays': 7,
+      'sheet.width': 0.9,
+      'sheet.normal': [0, 1, 0],
+      'sheet.position': [-2.6, 0.8, 0],
+      'sheet.target': [0, 0.8, 0],
+      'sheet.lambda_nm': 633,
+      'sheet.branches': 'off',
+      'laser.position': [-0.5, 0.6, -2.4],
+      'laser.target': [-0.3, 1.7, -0.3],
+      'laser.lambda_nm': 532,
+    },
+  });
+  await lab.post('/api/camera', { orbit: [-25, 14] });
+  await screen.settled(generation);
+  await screen.page.getByRole('button', { name: 'laser', exact: true }).click();
+  await screen.page
+    .getByRole('button', { name: /^refracted: liquid/ })
+    .first()
+    .click();
+  await screen.quiet();
+}
+
 const views = {
   parameters: {
     scene: 'experiments/scenes/rod.yaml',
@@ -56,35 +86,7 @@ const views = {
   },
   bench: {
     scene: 'experiments/scenes/rod.yaml',
-    async show(screen) {
-      await screen.showPanel('Bench');
-      const { lab } = screen;
-      await lab.post('/api/objects', { kind: 'beam', name: 'sheet' });
-      await lab.post('/api/objects', { kind: 'beam', name: 'laser' });
-      const { generation } = await lab.post('/api/set', {
-        set: {
-          'sheet.kind': 'sheet',
-          'sheet.rays': 7,
-          'sheet.width': 0.9,
-          'sheet.normal': [0, 1, 0],
-          'sheet.position': [-2.6, 0.8, 0],
-          'sheet.target': [0, 0.8, 0],
-          'sheet.lambda_nm': 633,
-          'sheet.branches': 'off',
-          'laser.position': [-0.5, 0.6, -2.4],
-          'laser.target': [-0.3, 1.7, -0.3],
-          'laser.lambda_nm': 532,
-        },
-      });
-      await lab.post('/api/camera', { orbit: [-25, 14] });
-      await screen.settled(generation);
-      await screen.page.getByRole('button', { name: 'laser', exact: true }).click();
-      await screen.page
-        .getByRole('button', { name: /^refracted: liquid/ })
-        .first()
-        .click();
-      await screen.quiet();
-    },
+    show: showBench,
   },
   compare: {
     scene: 'experiments/scenes/rod.yaml',
@@ -137,6 +139,28 @@ const views = {
       await screen.quiet();
     },
   },
+  phone: {
+    scene: 'experiments/scenes/rod.yaml',
+    size: { width: 390, height: 844, touch: true },
+    async show(screen) {
+      await screen.showPanel('Parameters');
+      await screen.setNumber('liquid.ior', '1,47');
+      await (await screen.paramSlider('liquid.ior')).focus();
+      await screen.button('Dismiss').click();
+    },
+  },
+  small: {
+    scene: 'experiments/scenes/rod.yaml',
+    size: { width: 800, height: 600 },
+    async show(screen) {
+      await screen.showPanel('Pixel');
+      await screen.chooseTool('Inspect');
+      await screen.clickPixel(330, 420);
+      await screen.quiet();
+      await screen.page.getByRole('treegrid', { name: 'Rays of the pixel' }).scrollIntoViewIfNeeded();
+    },
+  },
+  projector: { scene: 'experiments/scenes/rod.yaml', key: 'p', show: showBench },
 };
 
 await mkdir(options.out, { recursive: true });
@@ -148,7 +172,8 @@ try {
   for (const [name, view] of Object.entries(views).filter(([each]) => !options.only || each === options.only))
     for (const dark of [false, true]) {
       const lab = await serve(view.scene);
-      const screen = await Screen.open(browser, lab, { ...size, dark });
+      const screen = await Screen.open(browser, lab, { ...size, ...view.size, dark });
+      if (view.key) await screen.page.keyboard.press(view.key);
       await view.show(screen);
       await screen.page.screenshot({
         path: join(options.out, `${name}-${dark ? 'dark' : 'light'}.jpg`),

@@ -113,6 +113,14 @@ static status set_all(void *of, scene *s, diagnostic *why)
     return code;
 }
 
+static bool sets_camera(json_t *values)
+{
+    const char *path;
+    json_t *value;
+    json_object_foreach(values, path, value) if (strncmp(path, "camera.", 7) == 0) return true;
+    return false;
+}
+
 status api_set(call *c)
 {
     json_t *values = json_object_get(c->body, "set");
@@ -125,7 +133,8 @@ status api_set(call *c)
         return STATUS_BAD_INPUT;
     snprintf(what, sizeof what, "set %.100s", json_object_iter_key(json_object_iter(values)));
     set_request x = {values, NULL};
-    const status code = scene_document_apply(c->l->scene_document, what, gesture, set_all, &x, &generation, &c->why);
+    const status code = (sets_camera(values) ? scene_document_apply_to_camera : scene_document_apply)(
+        c->l->scene_document, what, gesture, set_all, &x, &generation, &c->why);
     if (code == STATUS_OK && x.notes)
         api_reply_json(c, json_pack("{s:I, s:O}", "generation", (json_int_t)generation, "notes", x.notes));
     else

@@ -4,6 +4,7 @@
  *   bench: {rays, chosen, points, screen} of panel_bench.js; at: the point in the scene, a hit or start if one is near
  */
 
+import { labelSize } from './display.js';
 import { digits, svg } from './ui.js';
 import { clipBox, clipNear, distance } from './ray_overlay.js';
 import { isCut } from './ray_tree.js';
@@ -68,7 +69,7 @@ export function createBenchOverlay(lab, bench) {
   function label(point, text) {
     const place = lab.view.project(point);
     if (!place) return [];
-    const size = 13 / lab.view.scale;
+    const size = labelSize() / lab.view.scale;
     return [
       svg('text', { class: 'bench-text', x: place.x + 0.7 * size, y: place.y - 0.6 * size, 'font-size': size }, text),
     ];

@@ -2,7 +2,8 @@
  * exports: createHead(root, lab); sets lab.undo(redo) and lab.name() (the scene's file name without folder and
  * extension) */
 
-import { ask, button, copy, download, element, icon, memory } from './ui.js';
+import { ask, button, copy, download, element, icon } from './ui.js';
+import { displayButton, themeButton } from './display.js';
 import { showHelp } from './keys.js';
 
 export function createHead(root, lab) {
@@ -59,6 +60,7 @@ export function createHead(root, lab) {
     element(
       'div',
       { class: 'head-group' },
+      displayButton(lab),
       themeButton(),
       button('Help', showHelp, { icon: 'help', kind: 'quiet', bare: true, title: 'Keyboard shortcuts (?)' }),
     ),
@@ -121,32 +123,4 @@ async function copyCommand(lab) {
   } catch (error) {
     lab.fail(error);
   }
-}
-
-function themeButton() {
-  const dark = () =>
-    (document.documentElement.dataset.theme ||
-      (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light')) === 'dark';
-  const face = element('span', { class: 'theme-face' });
-  const node = element(
-    'button',
-    { type: 'button', class: 'button quiet bare', onclick: () => set(dark() ? 'light' : 'dark') },
-    face,
-    element('span', { class: 'visually-hidden', text: 'Dark theme' }),
-  );
-  const show = () => {
-    face.replaceChildren(icon(dark() ? 'sun' : 'moon'));
-    node.setAttribute('aria-pressed', String(dark()));
-    node.title = dark() ? 'Light theme' : 'Dark theme';
-  };
-  const set = (theme) => {
-    if (theme) document.documentElement.dataset.theme = theme;
-    memory.set('theme', theme);
-    show();
-  };
-  const kept = memory.get('theme', null);
-  if (kept === 'light' || kept === 'dark') document.documentElement.dataset.theme = kept;
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', show);
-  show();
-  return node;
 }

@@ -56,6 +56,7 @@ const paths = {
   chart: 'M4 4v16h16M8 16l4-6 3 3 5-7',
   cube: 'M12 3l8 4.5v9L12 21l-8-4.5v-9zM4 7.5l8 4.5 8-4.5M12 12v9',
   cuvette: 'M6 3v15a3 3 0 0 0 3 3h6a3 3 0 0 0 3-3V3M6 10h12M15.5 2 11 18',
+  screen: 'M3 4h18v12H3zM12 16v4M8 20h8',
   arrow: 'M12 3l7 9h-4v9H9v-9H5z',
 };
 

@@ -6,6 +6,7 @@ const list = [
   ['Ctrl Z', 'undo; Ctrl Shift Z or Ctrl Y: redo'],
   ['Ctrl S', 'save the scene'],
   ['?', 'show this list'],
+  ['T, P', 'large text, projector mode'],
   ['Arrow keys', 'on the image: orbit by 5°, with Shift by 1°'],
   ['W S, A D, Q E', 'on the image: step forward and back, left and right, down and up; with Shift a tenth of a step'],
   ['Page Up, Page Down', 'on the image: nearer to or farther from the pivot, which stays; with Shift a little'],
@@ -49,6 +50,8 @@ export function showHelp() {
   });
 }
 
+const DISPLAY = { t: 'text', p: 'projector' };
+
 const writes = (target) =>
   target.closest?.(
     'input:not([type=range]):not([type=checkbox]):not([type=radio]):not([type=color]), textare' +
@@ -75,6 +78,7 @@ export function createKeys(lab) {
     else if (control && letter === 'z') lab.undo(event.shiftKey);
     else if (control && letter === 'y') lab.undo(true);
     else if (event.key === '?' && !control) showHelp();
+    else if (DISPLAY[letter] && !control && !event.altKey) lab.display.toggle(DISPLAY[letter]);
     else return;
     event.preventDefault();
   });

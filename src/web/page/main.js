@@ -8,6 +8,7 @@ import { createHead } from './head.js';
 import { createStatus } from './status.js';
 import { createNotes } from './notes.js';
 import { createBanner } from './banner.js';
+import { createDisplay } from './display.js';
 import { createKeys } from './keys.js';
 import { orbitTool } from './tool_orbit.js';
 import { lightTool } from './tool_light.js';
@@ -29,6 +30,7 @@ async function start() {
   lightTool(lab);
   cameraBox(at('view'), lab);
   lab.view.use('orbit');
+  createDisplay(lab);
   createHead(at('head'), lab);
   createKeys(lab);
   const loaded = await Promise.allSettled(modules.map((name) => import(`./panel_${name}.js`)));

@@ -1,9 +1,10 @@
 /* The linter's notes on the scene, fetched for each final image. A new note is shown in the status line; the button
- * there lists all.
+ * there lists all. A remedy that sets a parameter is a button that sets it.
  *
  * exports: createNotes(lab) -> {count(), show()}; emits 'notes' on the lab when the list has changed */
 
-import { dialog, element } from './ui.js';
+import { button, dialog, element } from './ui.js';
+import { noteAction, noteReason } from './note_actions.js';
 
 export function createNotes(lab) {
   let notes = [];
@@ -11,6 +12,18 @@ export function createNotes(lab) {
   let openDialog = null;
 
   const line = (note) => [note.place, note.text].filter(Boolean).join(': ');
+
+  function actionOf(note) {
+    const action = noteAction(note);
+    if (!action) return null;
+    const done = () => lab.say(`${action.path} is ${action.value}.`);
+    return { label: action.label, act: () => lab.set({ [action.path]: action.value }).then(done, lab.fail) };
+  }
+
+  function actOn(note) {
+    const action = actionOf(note);
+    return action && element('p', {}, button(action.label, action.act, { small: true, kind: 'primary' }));
+  }
 
   const list = () =>
     notes.length
@@ -24,6 +37,8 @@ export function createNotes(lab) {
               note.place ? element('code', { text: note.place }) : null,
               element('span', { text: `${note.place ? ' ' : ''}${note.text}.` }),
               note.remedy ? element('span', { class: 'notes-remedy', text: ` Remedy: ${note.remedy}.` }) : null,
+              noteReason(note).map((text) => element('p', { class: 'notes-remedy', text })),
+              actOn(note),
             ),
           ),
         )
@@ -41,7 +56,8 @@ export function createNotes(lab) {
       return;
     }
     const [first, ...more] = notes.filter((note) => !known.has(line(note)));
-    if (first) lab.say(`Note: ${line(first)}`, more.length ? `${first.remedy}; and ${more.length} more` : first.remedy);
+    const rest = more.length ? `; and ${more.length} more` : '';
+    if (first && !openDialog) lab.say(`Note: ${line(first)}`, `${first.remedy}${rest}`, actionOf(first));
     if (openDialog) openDialog.node.querySelector('.dialog-body').replaceChildren(list());
     lab.emit('notes', notes);
   }

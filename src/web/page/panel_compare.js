@@ -133,7 +133,8 @@ function createShow(lab) {
     share.node.hidden = how.value !== 'wipe';
     strength.node.hidden = legend.hidden = how.value !== 'map';
     view.set({ ...addresses, map: how.value === 'map' ? addresses.map : null, mode: how.value });
-    lab.view.note('compare', how.value === 'map' && addresses.map ? 'Difference from A' : null, () => {
+    const named = addresses.map ? 'Difference from A' : 'Difference from A: shown when the image is finished';
+    lab.view.note('compare', how.value === 'map' && addresses.a ? named : null, () => {
       how.set('b');
       draw();
       lab.view.stage.focus();
@@ -206,9 +207,10 @@ function numbers({ a, b, comparison, changed }, goto) {
   );
 }
 
-function addressesOf({ pin, answer }) {
+/* The map of an earlier image would hide the newest one while the scene changes or a slime plays. */
+function addressesOf({ pin, answer, current }) {
   if (!pin || (answer && !same(answer))) return { a: null, map: null };
-  const map = answer?.comparison ? `/api/compare.png?a=${pin.serial}&b=${answer.b.serial}` : null;
+  const map = current && answer?.comparison ? `/api/compare.png?a=${pin.serial}&b=${answer.b.serial}` : null;
   return { a: `/api/pin.png?a=${pin.serial}`, map };
 }
 

@@ -2,6 +2,7 @@
  * top view.
  * exports: panel. The tool Inspect selects the pixel: click, drag or arrow keys; Escape clears. */
 
+import { isDark } from './display.js';
 import {
   button,
   count,
@@ -83,7 +84,7 @@ function pressed(key, far) {
 /* --- the panel --- */
 
 function chooser(lab) {
-  const go = () => question.ask(x.input.valueAsNumber || 0, y.input.valueAsNumber || 0);
+  const go = () => question.ask(x.value || 0, y.value || 0);
   const x = number({ label: 'Pixel x', min: 0, step: 1, onchange: go });
   const y = number({ label: 'y', min: 0, step: 1, onchange: go });
   const again = button('Trace again', () => question.again(), {
@@ -184,7 +185,7 @@ function openDrawing({ x, y }) {
   const title = `Pixel ${x}, ${y}: rays in the plane of incidence and from above`;
   const content = element(
     'div',
-    { class: 'trace-drawing' },
+    { class: isDark() ? 'trace-drawing dark' : 'trace-drawing' },
     element('img', { src: address, alt: title }),
     button('Save drawing', () => download(address, `pixel-${x}-${y}.svg`), { icon: 'save', small: true }),
   );

@@ -7,7 +7,10 @@
 
 import { element, memory, notice, replace } from './ui.js';
 
-const NARROWEST = 340;
+const NARROWEST = 300;
+const SHORTEST = 120;
+const IMAGE_WIDTH = 360; /* what is left to the image, with the splitter */
+const IMAGE_HEIGHT = 240;
 const STEP = 24;
 
 export function createPanels(side, splitter, workspace, panels, lab) {
@@ -90,6 +93,7 @@ export function createPanels(side, splitter, workspace, panels, lab) {
     chosen = id;
     workspace.classList.toggle('wide', Boolean(entries.get(id).panel.wide));
     show(entries.get(id), true);
+    entries.get(id).tab.scrollIntoView({ block: 'nearest', inline: 'nearest' });
     memory.set('panel', id);
     lab.emit('panel', id);
   }
@@ -112,35 +116,48 @@ export function createPanels(side, splitter, workspace, panels, lab) {
   }
 }
 
+/* The splitter moves the left edge of the panels, or the upper edge where they are under the image (layout.css). */
 function createSplitter(splitter, workspace) {
   const root = document.documentElement.style;
-  let width = memory.get('width', null);
-  const largest = () => Math.max(NARROWEST, workspace.clientWidth - 360);
+  const side = workspace.querySelector('.side');
+  const sheet = matchMedia('(max-width: 900px) and (orientation: portrait), (max-width: 640px)');
+  const kept = { width: memory.get('width', null), sheet: memory.get('sheet', null) };
+  const about = () =>
+    sheet.matches
+      ? { name: 'sheet', variable: '--sheet', least: SHORTEST, room: workspace.clientHeight, rest: IMAGE_HEIGHT }
+      : { name: 'width', variable: '--side', least: NARROWEST, room: workspace.clientWidth, rest: IMAGE_WIDTH };
+  const here = () => side.getBoundingClientRect()[sheet.matches ? 'height' : 'width'];
   const apply = () => {
-    if (width) root.setProperty('--side', `${Math.round(Math.min(largest(), Math.max(NARROWEST, width)))}px`);
-    else root.removeProperty('--side');
-    const now = workspace.querySelector('.side').clientWidth;
-    splitter.setAttribute('aria-valuemin', String(NARROWEST));
-    splitter.setAttribute('aria-valuemax', String(Math.round(largest())));
-    splitter.setAttribute('aria-valuenow', String(Math.round(now)));
+    const { name, variable, least, room, rest } = about();
+    const largest = Math.max(least, room - rest);
+    if (kept[name]) root.setProperty(variable, `${Math.round(Math.min(largest, Math.max(least, kept[name])))}px`);
+    else root.removeProperty(variable);
+    splitter.setAttribute('aria-orientation', sheet.matches ? 'horizontal' : 'vertical');
+    splitter.setAttribute('aria-label', sheet.matches ? 'Height of the panels' : 'Width of the panels');
+    splitter.setAttribute('aria-valuemin', String(least));
+    splitter.setAttribute('aria-valuemax', String(Math.round(largest)));
+    splitter.setAttribute('aria-valuenow', String(Math.round(here())));
   };
   const set = (next) => {
-    width = next;
-    memory.set('width', width);
+    const { name } = about();
+    kept[name] = next;
+    memory.set(name, next);
     apply();
   };
-  const here = () => workspace.querySelector('.side').clientWidth;
   splitter.addEventListener('pointerdown', (event) => {
     splitter.setPointerCapture(event.pointerId);
     event.preventDefault();
   });
   splitter.addEventListener('pointermove', (event) => {
-    if (splitter.hasPointerCapture(event.pointerId)) set(workspace.getBoundingClientRect().right - event.clientX - 3);
+    if (!splitter.hasPointerCapture(event.pointerId)) return;
+    const box = workspace.getBoundingClientRect();
+    const half = splitter.getBoundingClientRect()[sheet.matches ? 'height' : 'width'] / 2;
+    set(sheet.matches ? box.bottom - event.clientY - half : box.right - event.clientX - half);
   });
   splitter.addEventListener('dblclick', () => set(null));
   splitter.addEventListener('keydown', (event) => {
-    if (event.key === 'ArrowLeft') set(here() + STEP);
-    else if (event.key === 'ArrowRight') set(here() - STEP);
+    const way = { [sheet.matches ? 'ArrowUp' : 'ArrowLeft']: 1, [sheet.matches ? 'ArrowDown' : 'ArrowRight']: -1 };
+    if (way[event.key]) set(here() + way[event.key] * STEP);
     else if (event.key === 'Home') set(null);
     else return;
     event.preventDefault();

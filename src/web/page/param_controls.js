@@ -6,6 +6,7 @@
 
 import { element, gesture, toByte, toLinear, unique } from './ui.js';
 import { scale } from './ui_controls.js';
+import { numberInput, numberOf } from './ui_number_input.js';
 import { workingRange } from './param_range.js';
 
 const CHANNELS = ['red', 'green', 'blue'];
@@ -21,16 +22,12 @@ function attributes(context, label) {
 }
 
 /* A number field that restores the last sent value if it is left empty. */
-function numberInput(context, label, onvalue) {
-  const input = element('input', {
-    type: 'number',
-    class: 'input numeric',
-    step: 'any',
-    ...attributes(context, label),
-  });
+function numberBox(context, label, onvalue) {
+  const input = numberInput(attributes(context, label));
   let last = null;
   input.addEventListener('change', () => {
-    if (Number.isFinite(input.valueAsNumber)) onvalue(input.valueAsNumber);
+    if (input.value !== '' && !input.reportValidity()) return;
+    if (input.value !== '') onvalue(numberOf(input));
     else input.value = written(last);
   });
   return {
@@ -48,7 +45,7 @@ function slider(row, context, label, send) {
   let last = -Infinity;
   let dragged = false;
   const range = element('input', { type: 'range', class: 'range', min: 0, step: 1, ...attributes(context, label) });
-  const box = numberInput(context, `${label || context.name}, number`, (value) => {
+  const box = numberBox(context, `${label || context.name}, number`, (value) => {
     show(value);
     send(value, gesture('number'));
   });
@@ -56,7 +53,7 @@ function slider(row, context, label, send) {
     ruler = { ...workingRange(row, value) };
     Object.assign(ruler, scale({ ...ruler, step: ruler.step || undefined }));
     range.max = ruler.steps;
-    box.input.step = row.type === 'integer' ? 1 : ruler.log ? 'any' : written(10 * ruler.step);
+    box.input.dataset.step = row.type === 'integer' ? 1 : ruler.log ? 'any' : written(10 * ruler.step);
   };
   const show = (value) => {
     if (!ruler || value > ruler.max || value < ruler.min) fit(value);
@@ -140,7 +137,7 @@ function parts(row, context, names, make) {
 
 function vector(row, context) {
   const three = parts(row, context, AXES, (label, send) => {
-    const part = numberInput(context, label, send);
+    const part = numberBox(context, label, send);
     part.input.step = written(10 * workingRange(row, row.value).step) || 'any';
     return {
       ...part,
@@ -202,7 +199,7 @@ function colour(row, context) {
   let mine = null;
   const picker = element('input', { type: 'color', ...attributes(context, `${context.name}, colour`) });
   const three = parts(row, context, CHANNELS, (label, send) => {
-    const part = numberInput(context, `${label}, linear`, send);
+    const part = numberBox(context, `${label}, linear`, send);
     return {
       ...part,
       set(x) {

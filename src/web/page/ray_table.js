@@ -10,6 +10,15 @@ import { columns, describe, lineClass } from './ray_tree.js';
 const OPEN_AT_FIRST = 30;
 const OPEN_AT_MOST = 2000;
 
+/* The key columns wrap, so that all of them are visible next to the image. */
+const cellClass = (ray, key) =>
+  [
+    ['media', 'angles', 'reflectance'].includes(key) && 'ray-key',
+    ray.node.hit?.tir && key === 'reflectance' && 'ray-total',
+  ]
+    .filter(Boolean)
+    .join(' ') || null;
+
 export function createRayTable({ caption, onmark }) {
   const head = element(
     'tr',
@@ -124,11 +133,7 @@ export function createRayTable({ caption, onmark }) {
 
   function row(ray, place, among) {
     const words = describe(ray);
-    const cells = columns
-      .slice(1)
-      .map(([key]) =>
-        element('td', { class: ray.node.hit?.tir && key === 'reflectance' ? 'ray-total' : null, text: words[key] }),
-      );
+    const cells = columns.slice(1).map(([key]) => element('td', { class: cellClass(ray, key), text: words[key] }));
     const first = element(
       'th',
       { scope: 'row' },

@@ -90,12 +90,12 @@ function endOf(ray, reach) {
 
 export const columns = [
   ['kind', 'Ray', 'origin of the ray'],
+  ['media', 'Media', 'on both sides of the surface, with refractive indices'],
   ['angles', 'Angles', 'angles of incidence and refraction, from the normal'],
   ['reflectance', 'R', 'reflectance of unpolarised light'],
   ['transmitted', 'T', 'transmittance of the surface'],
   ['polarised', 'R_s, R_p', 'reflectance of each polarisation'],
   ['surface', 'Hits', 'solid and surface'],
-  ['media', 'Media', 'on both sides of the surface, with refractive indices'],
   ['depth', 'Depth', 'number of reflections and refractions since the camera'],
   ['path', 'Path', 'length of the ray up to the hit'],
   [

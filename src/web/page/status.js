@@ -1,6 +1,6 @@
 /* The status line: properties and cost of the displayed image, the last message; and the live region for screen
  * readers.
- * exports: createStatus(root, live, lab); sets lab.say and lab.fail */
+ * exports: createStatus(root, live, lab); sets lab.say(words, remedy, {label, act} of a button) and lab.fail */
 
 import { button, copy, count, digits, element, icon, replace, seconds } from './ui.js';
 
@@ -18,7 +18,7 @@ export function createStatus(root, live, lab) {
     message.replaceChildren();
   };
 
-  function tell(words, kind, remedy) {
+  function tell(words, kind, remedy, action) {
     clearTimeout(timer);
     replace(
       message,
@@ -29,6 +29,7 @@ export function createStatus(root, live, lab) {
         element('strong', { text: words }),
         remedy ? ` – ${remedy}` : null,
       ),
+      action ? button(action.label, action.act, { small: true }) : null,
       button('Dismiss', clear, { icon: 'close', bare: true, kind: 'quiet', small: true }),
     );
     message.className = `status-message ${kind}`;
@@ -39,7 +40,7 @@ export function createStatus(root, live, lab) {
     });
     timer = setTimeout(clear, kind === 'error' ? 3 * LINGER_MS : LINGER_MS);
   }
-  lab.say = (words, remedy) => tell(words, 'info', remedy);
+  lab.say = (words, remedy, action) => tell(words, 'info', remedy, action);
   lab.fail = (error) => {
     if (error.status === 0 || error.status === 401) return;
     if (!error.status) console.error(error);

@@ -3,6 +3,7 @@
 
 import { element, gesture, unique } from './ui_base.js';
 import { digits } from './ui_numbers.js';
+import { numberInput, numberOf } from './ui_number_input.js';
 
 const shown = (value) => (Number.isFinite(value) ? String(Number(Number(value).toPrecision(7))) : '');
 
@@ -18,21 +19,14 @@ function frame(label, input, unit) {
 
 export function number({ label, value, min, max, step, unit, onchange }) {
   let last = value;
-  const input = element('input', {
-    type: 'number',
-    class: 'input numeric',
-    min,
-    max,
-    step: step ?? 'any',
-    value: shown(value),
-  });
+  const input = numberInput({ min, max, step: step ?? 'any', value: shown(value) });
   input.addEventListener('change', () => {
     if (input.value === '' || !input.checkValidity()) {
       if (input.value === '') input.value = shown(last);
       else input.reportValidity();
       return;
     }
-    last = input.valueAsNumber;
+    last = numberOf(input);
     onchange?.(last);
   });
   input.addEventListener('blur', () => {
@@ -47,7 +41,7 @@ export function number({ label, value, min, max, step, unit, onchange }) {
     input,
     set,
     get value() {
-      return input.valueAsNumber;
+      return numberOf(input);
     },
   };
 }
@@ -125,13 +119,7 @@ export function slider({ label, min, max, step = (max - min) / 200, value, log =
     step: 1,
     id: unique('range'),
   });
-  const box = element('input', {
-    type: 'number',
-    class: 'input numeric',
-    step: 'any',
-    value: shown(value),
-    'aria-label': `${label}, number`,
-  });
+  const box = numberInput({ value: shown(value), 'aria-label': `${label}, number` });
   let mine = null;
   let dragged = false;
   const show = (next) => {
@@ -154,7 +142,8 @@ export function slider({ label, min, max, step = (max - min) / 200, value, log =
   });
   box.addEventListener('change', () => {
     if (box.value === '') return;
-    const next = box.valueAsNumber;
+    if (!box.reportValidity()) return;
+    const next = numberOf(box);
     show(next);
     const once = gesture('number');
     oninput?.(next, once);
@@ -183,7 +172,7 @@ export function slider({ label, min, max, step = (max - min) / 200, value, log =
       if (document.activeElement !== box) box.value = shown(next);
     },
     get value() {
-      return box.valueAsNumber;
+      return numberOf(box);
     },
   };
 }

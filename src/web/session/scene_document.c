@@ -148,22 +148,35 @@ status scene_document_finish(scene_document *d, status code, uint64_t *generatio
     return code;
 }
 
-status scene_document_apply(scene_document *d, const char *what, const char *gesture, scene_document_change *change,
-                            void *context, uint64_t *generation, diagnostic *why)
+/* A change of the camera's parameters is one of the scene, which then has the whole view as its camera. */
+static status apply(scene_document *d, const char *what, const char *gesture, bool of_camera,
+                    scene_document_change *change, void *context, uint64_t *generation, diagnostic *why)
 {
     pthread_mutex_lock(&d->lock);
     scene *next = scene_clone(d->now.s);
     status code = next ? change(context, next, why) : out_of_memory(why);
     THEN(code, scene_document_check(next, d->files, why));
     if (code == STATUS_OK) {
-        /* A change of the camera's parameters is one of the scene, which then has the whole view as its camera. */
-        const bool moved = !camera_equal(&next->camera, &d->now.s->camera);
+        const bool moved = of_camera || !camera_equal(&next->camera, &d->now.s->camera);
         code =
             scene_document_push(d, next, d->now.file, NULL, moved ? &next->camera : &d->now.kept, what, gesture, why);
     }
     if (code != STATUS_OK)
         scene_destroy(next);
     return scene_document_finish(d, code, generation);
+}
+
+status scene_document_apply(scene_document *d, const char *what, const char *gesture, scene_document_change *change,
+                            void *context, uint64_t *generation, diagnostic *why)
+{
+    return apply(d, what, gesture, false, change, context, generation, why);
+}
+
+status scene_document_apply_to_camera(scene_document *d, const char *what, const char *gesture,
+                                      scene_document_change *change, void *context, uint64_t *generation,
+                                      diagnostic *why)
+{
+    return apply(d, what, gesture, true, change, context, generation, why);
 }
 
 status scene_document_open(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why)

@@ -36,6 +36,12 @@ typedef status scene_document_change(void *context, scene *s, diagnostic *why);
 status scene_document_apply(scene_document *d, const char *what, const char *gesture, scene_document_change *change,
                             void *context, uint64_t *generation, diagnostic *why);
 
+/* The same for a change of the camera's parameters: the view becomes the scene's own camera even if they have the
+ * values that the view shows already. */
+status scene_document_apply_to_camera(scene_document *d, const char *what, const char *gesture,
+                                      scene_document_change *change, void *context, uint64_t *generation,
+                                      diagnostic *why);
+
 /* Replaces the scene by one from a file, or a new one (file NULL): a change like others; resets return to this scene
  * from now on. Takes ownership of s, also after an error. */
 status scene_document_open(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why);

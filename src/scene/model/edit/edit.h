@@ -36,10 +36,11 @@ status scene_remove(scene *s, const char *name, diagnostic *why);
 /* Renames an object; references to it follow. */
 status scene_rename(scene *s, const char *name, const char *new_name, diagnostic *why);
 
-/* Groups of objects, by a name that no object of the scene has: `all` is all solids and lights, `solids` and `lights`
- * are these only, and words are joined by '+': `all+camera` is the whole scene with its camera. */
+/* Groups of objects, by a name that no object of the scene has: `all` is all solids, lights and beams, `solids` the
+ * solids, `lights` the lights and beams, and words are joined by '+': `all+camera` is the whole scene with its camera.
+ */
 typedef struct scene_parts {
-    bool solids, lights, camera;
+    bool solids, lights, beams, camera;
 } scene_parts;
 
 /* Whether it is such a name. An object of that name takes precedence. */

@@ -1,5 +1,5 @@
-/* Moves, rotates and scales whole scenes: all solids, all lights, or both, with or without the camera. Scaling of one
- * solid or light is here as well. */
+/* Moves, rotates and scales whole scenes: all solids, all lights and beams, or both, with or without the camera. Scaling of
+ * one solid or light is here as well. */
 #include "scene/model/edit/edit.h"
 #include "scene/model/edit/edit_vector.h"
 #include "base/elementary.h"
@@ -19,14 +19,15 @@ static bool add_word(const char *word, size_t length, scene_parts *parts)
     static const struct {
         const char *word;
         scene_parts parts;
-    } words[] = {{"all", {.solids = true, .lights = true}},
+    } words[] = {{"all", {.solids = true, .lights = true, .beams = true}},
                  {"solids", {.solids = true}},
-                 {"lights", {.lights = true}},
+                 {"lights", {.lights = true, .beams = true}},
                  {"camera", {.camera = true}}};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         if (strlen(words[i].word) == length && strncmp(words[i].word, word, length) == 0) {
             parts->solids |= words[i].parts.solids;
             parts->lights |= words[i].parts.lights;
+            parts->beams |= words[i].parts.beams;
             parts->camera |= words[i].parts.camera;
             return true;
         }
@@ -71,6 +72,11 @@ static void put_back(scene *s, const scene *before)
         s->lights[i] = before->lights[i];
         s->lights[i].name = name;
     }
+    for (size_t i = 0; i < s->beam_count; i++) {
+        char *name = s->beams[i].name;
+        s->beams[i] = before->beams[i];
+        s->beams[i].name = name;
+    }
     for (size_t i = 0; i < s->material_count; i++)
         s->materials[i].value = before->materials[i].value;
     s->camera = before->camera;
@@ -109,6 +115,8 @@ static status move_parts(whole_edit *e)
         code = scene_move(e->s, e->s->solids[i].name, e->by, e->why);
     for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++)
         code = scene_move(e->s, e->s->lights[i].name, e->by, e->why);
+    for (size_t i = 0; i < e->s->beam_count && e->parts.beams && code == STATUS_OK; i++)
+        code = scene_move(e->s, e->s->beams[i].name, e->by, e->why);
     return e->parts.camera && code == STATUS_OK ? scene_move(e->s, "camera", e->by, e->why) : code;
 }
 
@@ -129,6 +137,15 @@ static status turn_light(whole_edit *e, const light *one)
 {
     const status code = turn_point(e, one->name, "position", one->position);
     return code == STATUS_OK && one->kind != LIGHT_POINT ? turn_point(e, one->name, "target", one->target) : code;
+}
+
+static status turn_beam(whole_edit *e, const beam *one)
+{
+    const vec3 target = one->target, direction = one->direction, normal = one->normal;
+    TRY(turn_point(e, one->name, "position", one->position));
+    TRY(turn_point(e, one->name, "target", target));
+    TRY(turn_point(e, one->name, "direction", direction));
+    return turn_point(e, one->name, "normal", normal);
 }
 
 /* The whole camera frame rotates about the origin, including the image's up direction: its deviation from a level image
@@ -159,6 +176,8 @@ static status turn_parts(whole_edit *e)
         code = turn_solid(e, &e->s->solids[i]);
     for (size_t i = 0; i < e->s->light_count && e->parts.lights && code == STATUS_OK; i++)
         code = turn_light(e, &e->s->lights[i]);
+    for (size_t i = 0; i < e->s->beam_count && e->parts.beams && code == STATUS_OK; i++)
+        code = turn_beam(e, &e->s->beams[i]);
     return e->parts.camera && code == STATUS_OK ? turn_camera(e) : code;
 }
 
@@ -181,7 +200,8 @@ static bool is_scaled(const whole_edit *e, const char *name, const param *row)
     }
     return at.object_group == PARAM_SOLID || at.object_group == PARAM_MATERIAL ? e->parts.solids
            : at.object_group == PARAM_LIGHT                                    ? e->parts.lights
-                                            : at.object_group == PARAM_CAMERA && e->parts.camera;
+           : at.object_group == PARAM_BEAM                                     ? e->parts.beams
+                                           : at.object_group == PARAM_CAMERA && e->parts.camera;
 }
 
 /* Visits the clone, since setting a material changes its solids. */

@@ -1,0 +1,121 @@
+// Small windows, touch, large text and the projector mode: the image stays visible, targets are large enough, and axe
+// reports no violation in these layouts.
+
+const PANELS = ['Parameters', 'Objects', 'Pixel', 'Bench', 'Compare', 'Slime', 'Machine', 'Studies'];
+const PHONE = { width: 390, height: 844, touch: true };
+const SMALL = { width: 800, height: 600 };
+const TARGET = 44;
+
+/** The visible controls that are narrower or lower than a size; a label that belongs to a control counts with it. */
+const smallTargets = (least) => {
+  const found = [];
+  const controls = 'a[href], button, input, select, textarea, summary, [role=tab], [role=slider], [role=separator]';
+  for (const node of document.querySelectorAll(controls)) {
+    if (!node.checkVisibility({ visibilityProperty: true, opacityProperty: true }) || node.closest('.skip')) continue;
+    const label = node.closest('label');
+    const target = label && label.contains(node) ? label : node;
+    const { width, height } = target.getBoundingClientRect();
+    if (width <= 1 || height <= 1) continue;
+    if (width < least - 0.5 || height < least - 0.5)
+      found.push(`${target.outerHTML.slice(0, 70)} ${Math.round(width)} x ${Math.round(height)}`);
+  }
+  return found;
+};
+
+/** How much of the image is visible, and whether the page itself scrolls. */
+const imageShown = () => {
+  const stage = document.getElementById('picture').getBoundingClientRect();
+  const { view } = window.lab;
+  const [a, b] = [view.toScreen(0, 0), view.toScreen(view.width, view.height)];
+  const across = Math.min(b.x, stage.width, innerWidth - stage.left) - Math.max(a.x, 0);
+  const down = Math.min(b.y, stage.height, innerHeight - stage.top) - Math.max(a.y, 0);
+  const middle = document.elementFromPoint(stage.left + stage.width / 2, stage.top + stage.height / 2);
+  return {
+    share: (across * down) / ((b.x - a.x) * (b.y - a.y)),
+    width: b.x - a.x,
+    covered: !document.getElementById('picture').contains(middle),
+    scrolls: document.scrollingElement.scrollHeight > innerHeight || scrollY !== 0,
+  };
+};
+
+/** Fills the panels: a pixel's rays, a beam, a reference image. */
+async function fill(screen) {
+  const { page, lab } = screen;
+  await lab.post('/api/objects', { kind: 'beam', name: 'laser' });
+  await screen.settled((await lab.get('/api/state')).generation);
+  await lab.post('/api/pin', {});
+  await screen.showPanel('Pixel');
+  await page.getByRole('spinbutton', { name: 'Pixel x' }).fill('330');
+  await page.getByRole('spinbutton', { name: 'y', exact: true }).fill('420');
+  await page.getByRole('spinbutton', { name: 'y', exact: true }).press('Enter');
+  await page.getByRole('treegrid', { name: 'Rays of the pixel' }).getByRole('row').nth(3).waitFor();
+  await screen.showPanel('Objects');
+  await page.getByRole('tabpanel', { name: 'Objects' }).getByRole('button', { name: /^rod/ }).click();
+}
+
+async function eachPanel(t, screen, name, check) {
+  for (const panel of PANELS) {
+    await screen.showPanel(panel);
+    await screen.quiet();
+    await check(panel);
+    await t.picture(screen, `${name}-${panel}`);
+  }
+}
+
+async function layout(t, name, options, key) {
+  const lab = await t.lab('scenes/rod.yaml');
+  const screen = await t.open(lab, options);
+  if (key) await screen.page.keyboard.press(key);
+  await fill(screen);
+  await eachPanel(t, screen, name, async (panel) => {
+    if (panel !== 'Studies') {
+      await screen.page.evaluate(() => {
+        const root = [...document.querySelectorAll('.panel')].find((each) => each.checkVisibility());
+        [...root.querySelectorAll('button, input')]
+          .filter((each) => each.checkVisibility())
+          .at(-1)
+          ?.focus();
+      });
+      const { share, width, covered, scrolls } = await screen.page.evaluate(imageShown);
+      t.more(share, 0.99, `${panel}: visible share of the image while its last control is used`);
+      t.more(width, 250, `${panel}: width of the image`);
+      t.check(!covered && !scrolls, `${panel}: the image is covered, or the page scrolls`);
+    }
+    await t.axe(screen, `${name}, ${panel}`);
+    if (options.touch) t.none(await screen.page.evaluate(smallTargets, TARGET), `${panel}: targets below 44 px`);
+  });
+  return screen;
+}
+
+export const cases = {
+  'a phone, light': (t) => layout(t, 'phone-light', PHONE),
+  'a phone, dark': (t) => layout(t, 'phone-dark', { ...PHONE, dark: true }),
+  '800 x 600': (t) => layout(t, 'small-light', SMALL),
+  '800 x 600, dark': (t) => layout(t, 'small-dark', { ...SMALL, dark: true }),
+  'a tablet': (t) => layout(t, 'tablet', { width: 1180, height: 820, touch: true }),
+
+  'large text': async (t) => {
+    const screen = await layout(t, 'large', { width: 1366, height: 768 }, 't');
+    await screen.page.reload();
+    await screen.until(() => window.lab?.picture);
+    t.equal(await screen.page.evaluate(() => document.documentElement.dataset.text), 'large', 'remembered');
+  },
+  'the projector mode': (t) => layout(t, 'projector', { width: 1366, height: 768 }, 'p'),
+  'the projector mode on a phone, dark': (t) => layout(t, 'projector-phone', { ...PHONE, dark: true }, 'p'),
+
+  'the bottom sheet is moved by keys and by its handle': async (t) => {
+    const screen = await t.open(await t.lab('scenes/rod.yaml'), PHONE);
+    const { page } = screen;
+    const height = () => page.evaluate(() => document.querySelector('.side').clientHeight);
+    const before = await height();
+    await page.getByRole('separator', { name: 'Height of the panels' }).focus();
+    await page.keyboard.press('ArrowDown');
+    t.near(await height(), before - 24, 1, 'height of the sheet after a key');
+    const box = await page.getByRole('separator').boundingBox();
+    await page.mouse.move(195, box.y + 20);
+    await page.mouse.down();
+    await page.mouse.move(195, box.y - 80, { steps: 4 });
+    await page.mouse.up();
+    t.near(await height(), before - 24 + 100, 2, 'height of the sheet after a drag');
+  },
+};
