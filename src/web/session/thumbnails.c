@@ -13,7 +13,7 @@
 #include <string.h>
 
 /* Pixels are about those of the widest card; more scenes than a folder's gallery shows at once. */
-enum { KEPT = 128, PIXELS = 240 * 180, WAVELENGTHS = 12, SAMPLES = 4 };
+enum { KEPT = 128, PIXELS = 240 * 180, WAVELENGTHS = 24, SAMPLES = 4 };
 static const double limit_s = 8.0;
 
 typedef struct kept {
