@@ -1,5 +1,5 @@
-/* Lessons: guided experiments for the laboratory's gallery, as data files that a teacher writes and translates. A lesson
- * names a scene, a few of its parameters as controls, a prediction to make, and a curve of `cuvette realism`
+/* Lessons: guided experiments for the laboratory's gallery, as data files that a teacher writes and translates. A
+ * lesson names a scene, a few of its parameters as controls, a prediction to make, and a curve of `cuvette realism`
  * (realism/realism.h) with a value to read; cuvette-lesson(5) describes the format. Every word and parameter is tried
  * when a file is read; lesson_check traces it too.
  *

@@ -9,7 +9,8 @@ const critical = (Math.asin(1 / 1.333) * 180) / Math.PI;
 const panel = (screen) => screen.page.getByRole('tabpanel', { name: 'Lessons' });
 
 /** The value that the panel shows, as a number. */
-const reading = async (screen) => parseFloat(await panel(screen).locator('.lesson-value').innerText());
+const reading = async (screen) =>
+  parseFloat((await panel(screen).locator('.lesson-value').innerText()).replaceAll('\u2212', '-'));
 
 export const cases = {
   'a laboratory without a scene starts with the gallery; the critical angle is two actions away': async (t) => {

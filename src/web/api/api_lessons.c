@@ -106,7 +106,7 @@ static status take_lesson(call *c, lesson **out)
     return v.found ? STATUS_OK : api_refuse(c, 404, "there is no lesson of that name", "GET /api/lessons lists them");
 }
 
-/* The lesson's scene as a new one of the document, so that saving asks for a name. Files keep their places if the scene
+/* The lesson's scene as a new one of the document, so that saving needs a name. Files keep their places if the scene
  * is inside the folder. */
 status api_lesson_open(call *c)
 {

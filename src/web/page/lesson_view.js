@@ -1,4 +1,4 @@
-/* A lesson that was chosen: question, prediction, controls, measured curve beside theory, answer, commands.
+/* A lesson that was chosen: question, prediction, controls, measured curve next to theory, answer, commands.
  * exports: createLesson(root, lab, lesson, back) -> {shown(), end()} */
 
 import { button, check, choice, copy, digits, element, number, notice, replace, slider } from './ui.js';
