@@ -277,11 +277,11 @@ static void scenes_without_vessel_rod_or_common_axis_are_refused(void **state)
 static void curves_equal_theory(void **state)
 {
     (void)state;
-    static const int counts[REALISM_CURVE_COUNT] = {180, 180, 180, 201, 17, 100, 61};
+    static const int counts[REALISM_CURVE_PRISM] = {180, 180, 180, 201, 17, 100, 61, 180, 86};
     scene *s = rod_scene("");
     realism_points p;
     diagnostic why = {0};
-    for (int which = 0; which < REALISM_CURVE_COUNT; which++) {
+    for (int which = 0; which < REALISM_CURVE_PRISM; which++) {
         worked(realism_trace_curve(s, isa_best(), (realism_curve)which, &p, &why), &why);
         assert_int_equal(p.count, counts[which]);
         for (int i = 0; i < p.count; i++) {
@@ -289,11 +289,41 @@ static void curves_equal_theory(void **state)
             assert_true(i == 0 || p.at[i].x > p.at[i - 1].x);
         }
     }
-    /* The last curve, EDGES, by the liquid's index: at index 1 the displacement is that of the glass alone. */
+    worked(realism_trace_curve(s, isa_best(), REALISM_CURVE_EDGES, &p, &why), &why);
+    /* By the liquid's index: at index 1 the displacement is that of the glass alone. */
     assert_true(p.at[0].measured != p.at[60].measured);
+    assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_PRISM, &p, &why), STATUS_BAD_INPUT);
     set(s, "liquid.visible=off");
     assert_int_equal(realism_trace_curve(s, isa_best(), REALISM_CURVE_EDGES, &p, &why), STATUS_BAD_INPUT);
     scene_destroy(s);
+}
+
+static void curves_of_other_scenes_equal_theory(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file;
+        realism_curve which;
+        int least;
+        double lowest, highest; /* range of the theory */
+    } cases[] = {
+        {"experiments/scenes/prism.yaml", REALISM_CURVE_PRISM, 100, 60.0, 90.0},
+        {"experiments/scenes/rainbow.yaml", REALISM_CURVE_RAINBOW, 100, 0.0, 42.6},
+        {"experiments/scenes/plates.yaml", REALISM_CURVE_PLATES, 86, 0.0, 0.86},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        scene *s = NULL;
+        realism_points p;
+        diagnostic why = {0};
+        worked(scene_read(cases[k].file, &s, &why), &why);
+        worked(realism_trace_curve(s, isa_best(), cases[k].which, &p, &why), &why);
+        assert_true(p.count >= cases[k].least);
+        for (int i = 0; i < p.count; i++) {
+            assert_near(p.at[i].measured, p.at[i].theory, 1e-9);
+            assert_true(p.at[i].theory >= cases[k].lowest && p.at[i].theory <= cases[k].highest);
+        }
+        scene_destroy(s);
+    }
 }
 
 int main(void)
@@ -313,6 +343,7 @@ int main(void)
         cmocka_unit_test(water_in_glass_disperses_as_published),
         cmocka_unit_test(scenes_without_vessel_rod_or_common_axis_are_refused),
         cmocka_unit_test(curves_equal_theory),
+        cmocka_unit_test(curves_of_other_scenes_equal_theory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -129,7 +129,7 @@ _cuvette()
     local command=${COMP_WORDS[1]-} verbs='new run list status merge verify upgrade summary compare exclude plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
-        _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine help --help --usage --version
+        _cuvette_words render animate scene trace fan params media mesh study compare realism motion lesson lab machine help --help --usage --version
         return
     fi
     _cuvette_value "$previous" && return
@@ -222,12 +222,19 @@ _cuvette()
             _cuvette_files 'yaml|yml'
         fi
         ;;
+    lesson)
+        if ((COMP_CWORD == 2)); then
+            _cuvette_words list check show --help --usage --version
+        else
+            _cuvette_files 'lesson'
+        fi
+        ;;
     machine) _cuvette_words --json --help --usage --version ;;
     help)
         if [[ $previous == study ]]; then
             _cuvette_words "$verbs"
         elif ((COMP_CWORD == 2)); then
-            _cuvette_words render animate scene trace fan params media mesh study compare realism motion lab machine
+            _cuvette_words render animate scene trace fan params media mesh study compare realism motion lesson lab machine
         fi
         ;;
     esac

@@ -22,6 +22,7 @@ static const command commands[] = {
     {"compare", "compare two images", command_compare},
     {"realism", "compare the optics of a scene, as traced, with textbook formulas", command_realism},
     {"motion", "compare the motion of slimes (soft bodies) with mechanics", command_motion},
+    {"lesson", "list and check the lessons of the laboratory", command_lesson},
     {"lab", "open the laboratory in the browser", command_lab},
     {"machine", "describe this machine and what may disturb timings on it", command_machine},
     {"help", "print help for a command", command_help},

@@ -32,8 +32,8 @@ static const command_option options[] = {
     {"json", 0, NULL, "print one JSON object", OPTION_FILLS(option_flag, realism_request, json)},
     OPTION_CSV(realism_request),
     {"curve", 0, "NAME",
-     "print one curve (x, measured, theory) as CSV: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption or "
-     "edges",
+     "print one curve (x, measured, theory) as CSV: fresnel-s, fresnel-p, fresnel, deviation, depth, absorption, "
+     "edges, mirror, apparent-depth, prism, rainbow or plates",
      .take = take_curve},
     {0},
 };

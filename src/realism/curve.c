@@ -17,6 +17,12 @@ static const curve_words words[REALISM_CURVE_COUNT] = {
     [REALISM_CURVE_DEPTH] = {"depth", "recursion depth", "transmittance of a slab at 40 deg"},
     [REALISM_CURVE_ABSORPTION] = {"absorption", "length, m", "transmittance of the liquid, red"},
     [REALISM_CURVE_EDGES] = {"edges", "index of the liquid", "displacement of the rod's left edge, px"},
+    [REALISM_CURVE_MIRROR] = {"mirror", "angle of incidence, deg", "reflectance of the liquid's surface from below"},
+    [REALISM_CURVE_APPARENT_DEPTH] = {"apparent-depth", "line of sight from the vertical, deg",
+                                      "apparent depth over depth"},
+    [REALISM_CURVE_PRISM] = {"prism", "angle of incidence, deg", "deviation, deg"},
+    [REALISM_CURVE_RAINBOW] = {"rainbow", "offset over the drop's radius", "angle from the antisolar point, deg"},
+    [REALISM_CURVE_PLATES] = {"plates", "angle of incidence, deg", "transmittance of two plates"},
 };
 
 const char *realism_curve_name(realism_curve which)
@@ -34,7 +40,7 @@ const char *realism_curve_y(realism_curve which)
     return words[which].y;
 }
 
-static void add_point(realism_points *out, double x, double measured, double theory)
+void curve_add(realism_points *out, double x, double measured, double theory)
 {
     if (out->count < REALISM_POINTS_MAX)
         out->at[out->count++] = (realism_point){x, measured, theory};
@@ -53,7 +59,7 @@ static status trace_fresnel(const metrics *m, realism_curve which, realism_point
         code = interface_measure(t.p, &t.tree, start_y, 0.5 * i * DEGREE, &seen, why);
         const double measured[] = {seen.R_s, seen.R_p, seen.R};
         const int at = (int)which - (int)REALISM_CURVE_FRESNEL_S;
-        add_point(out, 0.5 * i, measured[at], theory[at](0.5 * i * DEGREE, n[SETUP_OUTSIDE], n[SETUP_VESSEL]));
+        curve_add(out, 0.5 * i, measured[at], theory[at](0.5 * i * DEGREE, n[SETUP_OUTSIDE], n[SETUP_VESSEL]));
     }
     trial_end(&t);
     return code;
@@ -69,7 +75,7 @@ static status trace_deviation(const metrics *m, realism_points *out, diagnostic 
         const double offset = reach * i / 200.0;
         double measured = NAN;
         code = lens_deviation(t.p, &t.tree, &m->at, offset, &measured, why);
-        add_point(out, offset, measured / DEGREE, theory_shells_deviation(&c, offset) / DEGREE);
+        curve_add(out, offset, measured / DEGREE, theory_shells_deviation(&c, offset) / DEGREE);
     }
     trial_end(&t);
     return code;
@@ -81,7 +87,7 @@ static status trace_depth(const metrics *m, realism_points *out, diagnostic *why
     for (int depth = 0; depth <= 16 && code == STATUS_OK; depth++) {
         double measured = NAN;
         code = slab_measure(m, depth, false, &measured, why);
-        add_point(out, depth, measured, slab_theory(m, depth, false));
+        curve_add(out, depth, measured, slab_theory(m, depth, false));
     }
     return code;
 }
@@ -97,7 +103,7 @@ static status trace_absorption(const metrics *m, realism_points *out, diagnostic
             const double length = reach * i / 100.0, length_m = length * t.s->render.unit_m;
             double kept[3] = {NAN, NAN, NAN};
             code = attenuation_point(&t, &m->at, length, kept, why);
-            add_point(out, length_m, kept[0], exp(-a * length_m));
+            curve_add(out, length_m, kept[0], exp(-a * length_m));
         }
     }
     trial_end(&t);
@@ -117,21 +123,91 @@ static status trace_edges(const metrics *m, realism_points *out, diagnostic *why
         liquid->ior = 1.0 + 0.01 * i;
         turned.at.n[SETUP_LIQUID] = turned.theory_at.n[SETUP_LIQUID] = liquid->ior;
         code = edges_displacement(&turned, measured, theory, why);
-        add_point(out, liquid->ior, measured[0], theory[0]);
+        curve_add(out, liquid->ior, measured[0], theory[0]);
     }
     scene_destroy(s);
     return code;
+}
+
+static status trace_mirror(const metrics *m, realism_points *out, diagnostic *why)
+{
+    const double *n = m->at.n;
+    double start_y = 0.0;
+    trial t;
+    scene *s = arrange_interface(m->traced, &m->at, SETUP_LIQUID, SETUP_OUTSIDE, &start_y);
+    status code = trial_start(&t, s, m->level, why);
+    for (int i = 0; i < 180 && code == STATUS_OK; i++) {
+        interface_shares seen;
+        code = interface_measure(t.p, &t.tree, start_y, 0.5 * i * DEGREE, &seen, why);
+        curve_add(out, 0.5 * i, seen.R, theory_fresnel(0.5 * i * DEGREE, n[SETUP_LIQUID], n[SETUP_OUTSIDE]));
+    }
+    trial_end(&t);
+    return code;
+}
+
+/* Tangent of the angle from the vertical. */
+static double slope_of(vec3 direction)
+{
+    return hypot(direction.x, direction.z) / fabs(direction.y);
+}
+
+/* The line of sight, extended below the surface, passes above the point: depths are as the tangents. Straight down the
+ * ratio is that of the derivatives, so the first angle is small. */
+static status trace_apparent_depth(const metrics *m, realism_points *out, diagnostic *why)
+{
+    const double *n = m->at.n;
+    double start_y = 0.0;
+    trial t;
+    scene *s = arrange_interface(m->traced, &m->at, SETUP_OUTSIDE, SETUP_LIQUID, &start_y);
+    status code = trial_start(&t, s, m->level, why);
+    for (int i = 0; i <= 85 && code == STATUS_OK; i++) {
+        const double angle = (i ? i : 0.01) * DEGREE;
+        const vec3 down = vec3_make(sin(angle), start_y > 0.0 ? -cos(angle) : cos(angle), 0.0);
+        code = probe_path(t.p, vec3_make(0.0, start_y, 0.0), down, -1, &t.tree, why);
+        const bool enters = code == STATUS_OK && t.tree.count > 1 && t.tree.node[1].kind == RAY_REFRACT;
+        const double below = enters ? slope_of(t.tree.node[1].direction) : slope_of(down);
+        curve_add(out, angle / DEGREE, below / slope_of(down),
+                  theory_apparent_depth(angle, n[SETUP_OUTSIDE], n[SETUP_LIQUID]));
+    }
+    trial_end(&t);
+    return code;
+}
+
+/* Curves of scenes other than the vessel. */
+static const struct other_curve {
+    realism_curve which;
+    bool (*is_there)(const scene *s);
+    status (*trace)(const metrics *m, realism_points *out, diagnostic *why);
+    const char *lacks, *remedy;
+} others[] = {
+    {REALISM_CURVE_PRISM, prism_is_there, prism_curve, "no solids 'prism', 'left' and 'right'",
+     "use the names and shapes of experiments/scenes/prism.yaml"},
+    {REALISM_CURVE_RAINBOW, drop_is_there, drop_curve, "no sphere whose name begins with 'drop'",
+     "use the names and shapes of experiments/scenes/rainbow.yaml"},
+    {REALISM_CURVE_PLATES, stack_is_there, stack_curve, "no solids 'plate1' and 'plate2'",
+     "use the names and shapes of experiments/scenes/plates.yaml"},
+};
+
+static status trace_other(const metrics *m, const struct other_curve *o, realism_points *out, diagnostic *why)
+{
+    if (o->is_there(m->traced))
+        return o->trace(m, out, why);
+    return diagnose_at(why, m->traced->path, STATUS_BAD_INPUT, o->remedy, "the scene has %s", o->lacks);
 }
 
 status realism_trace_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why)
 {
     metrics m = {.traced = s, .supposed = s, .level = level};
     out->count = 0;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (others[i].which == which)
+            return trace_other(&m, &others[i], out, why);
     status code = setup_read(s, &m.at, why);
     m.theory_at = m.at;
     if (code != STATUS_OK)
         return code;
-    const bool of_liquid = which == REALISM_CURVE_ABSORPTION || which == REALISM_CURVE_EDGES;
+    const bool of_liquid = which == REALISM_CURVE_ABSORPTION || which == REALISM_CURVE_EDGES ||
+                           which == REALISM_CURVE_MIRROR || which == REALISM_CURVE_APPARENT_DEPTH;
     if (of_liquid && m.at.liquid < 0)
         return diagnose(why, STATUS_BAD_INPUT, "add a cylinder named 'liquid'", "the curve '%s' requires a liquid",
                         words[which].name);
@@ -143,6 +219,11 @@ status realism_trace_curve(const scene *s, isa level, realism_curve which, reali
     case REALISM_CURVE_DEPTH: return trace_depth(&m, out, why);
     case REALISM_CURVE_ABSORPTION: return trace_absorption(&m, out, why);
     case REALISM_CURVE_EDGES: return trace_edges(&m, out, why);
+    case REALISM_CURVE_MIRROR: return trace_mirror(&m, out, why);
+    case REALISM_CURVE_APPARENT_DEPTH: return trace_apparent_depth(&m, out, why);
+    case REALISM_CURVE_PRISM:
+    case REALISM_CURVE_RAINBOW:
+    case REALISM_CURVE_PLATES:
     case REALISM_CURVE_COUNT: break;
     }
     return STATUS_OK;

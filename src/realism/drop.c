@@ -94,3 +94,17 @@ status realism_drop(const metrics *m, diagnostic *why)
     return metrics_at_lines(m, names, what, "a refractive index outside 1..2 has no primary rainbow", at_line,
                             ANGLE_TOLERANCE, unused, why);
 }
+
+status drop_curve(const metrics *m, realism_points *out, diagnostic *why)
+{
+    const double lambda_nm = m->traced->render.lambda_nm, degree = M_PI / 180.0;
+    const solid *drop = &m->traced->solids[drop_of(m->traced)];
+    const double n = relative_index(m->supposed, drop_of(m->supposed), lambda_nm);
+    trial t;
+    search look = {.t = &t, .why = why, .center = drop->shape.position, .radius = drop->shape.radius};
+    look.code = trial_start(&t, drop_alone(m->traced, lambda_nm), m->level, why);
+    for (int i = 0; i < 100 && look.code == STATUS_OK; i++)
+        curve_add(out, 0.01 * i, -minus_turned_back(&look, 0.01 * i) / degree, theory_drop_angle(0.01 * i, n) / degree);
+    trial_end(&t);
+    return look.code;
+}

@@ -52,6 +52,10 @@ status interface_measure(probe *p, ray_tree *tree, double start_y, double angle,
                          diagnostic *why);
 status slab_measure(const metrics *m, int depth, bool polarised, double *transmitted, diagnostic *why);
 double slab_theory(const metrics *m, int depth, bool polarised);
+void curve_add(realism_points *out, double x, double measured, double theory);
+status prism_curve(const metrics *m, realism_points *out, diagnostic *why);
+status drop_curve(const metrics *m, realism_points *out, diagnostic *why);
+status stack_curve(const metrics *m, realism_points *out, diagnostic *why);
 scene *attenuation_scene(const scene *s, const setup *at);
 status edges_displacement(const metrics *m, double measured[2], double theory[2], diagnostic *why);
 

@@ -110,3 +110,21 @@ status realism_prism(const metrics *m, diagnostic *why)
                                        "rad", off[0], off[1], 2.0 * ANGLE_TOLERANCE});
     return code;
 }
+
+status prism_curve(const metrics *m, realism_points *out, diagnostic *why)
+{
+    const double lambda_nm = m->traced->render.lambda_nm, degree = M_PI / 180.0;
+    const prism_faces faces = faces_of(m->supposed);
+    const double apex = M_PI - acos(vec3_dot(faces.left, faces.right)),
+                 n = relative_index(m->supposed, faces.region, lambda_nm);
+    trial t;
+    search look = {.t = &t, .at = faces_of(m->traced), .why = why};
+    look.code = trial_start(&t, arrange_at(m->traced, lambda_nm), m->level, why);
+    for (int i = 2; i < 360 && look.code == STATUS_OK; i++) {
+        const double measured = deviation(&look, 0.25 * i * degree);
+        if (!isnan(measured)) /* else total reflection at the second face */
+            curve_add(out, 0.25 * i, measured / degree, theory_prism_deviation(0.25 * i * degree, apex, n) / degree);
+    }
+    trial_end(&t);
+    return look.code;
+}

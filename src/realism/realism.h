@@ -61,6 +61,14 @@ typedef enum realism_curve {
     REALISM_CURVE_DEPTH,      /* transmittance of a slab of the vessel's medium by recursion depth */
     REALISM_CURVE_ABSORPTION, /* transmittance of the liquid (red) by length, m */
     REALISM_CURVE_EDGES,      /* displacement of the rod's left edge, px, by the liquid's index 1.00 .. 1.60 */
+    /* The curves before this one are those that a study keeps. */
+    REALISM_CURVE_KEPT,
+    REALISM_CURVE_MIRROR = REALISM_CURVE_KEPT, /* R of the liquid's surface from below by the angle of incidence, deg */
+    REALISM_CURVE_APPARENT_DEPTH,              /* of a point in the liquid, over its depth, by the line of sight, deg */
+    /* With scenes of their own. */
+    REALISM_CURVE_PRISM,   /* deviation by a prism by the angle of incidence, deg */
+    REALISM_CURVE_RAINBOW, /* angle from the antisolar point, deg, by the ray's offset over the drop's radius */
+    REALISM_CURVE_PLATES,  /* transmittance of two plates without reflections by the angle of incidence, deg */
     REALISM_CURVE_COUNT
 } realism_curve;
 

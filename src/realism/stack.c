@@ -93,12 +93,17 @@ static status look_through(const metrics *m, double *straight, double *whole, do
     return code;
 }
 
+static status opaque_plates(diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "make both plates transparent: transparency 1",
+                    "the plates of the stack are not transparent");
+}
+
 status realism_stack(const metrics *m, diagnostic *why)
 {
     stack supposed;
     if (!stack_read(m->supposed, &supposed))
-        return diagnose(why, STATUS_BAD_INPUT, "make both plates transparent: transparency 1",
-                        "the plates of the stack are not transparent");
+        return opaque_plates(why);
     double straight, whole, cut;
     TRY(look_through(m, &straight, &whole, &cut, why));
     metrics_add(m, (realism_value){"stack.straight", "transmittance of four interfaces without reflections", "",
@@ -107,4 +112,26 @@ status realism_stack(const metrics *m, diagnostic *why)
                                    "transmittance with all reflections; the tolerance is what depth 16 cuts off", "",
                                    whole, of_both(&supposed, through_two_plates), cut + WEIGHT_TOLERANCE});
     return STATUS_OK;
+}
+
+/* The plates are rotated about y; their distance in the scene must leave room for that. */
+status stack_curve(const metrics *m, realism_points *out, diagnostic *why)
+{
+    scene *turned = scene_clone(m->traced);
+    status code = turned ? STATUS_OK : out_of_memory(why);
+    const metrics at = {.traced = turned, .supposed = turned, .level = m->level};
+    for (int i = 0; i <= 85 && code == STATUS_OK; i++) {
+        static const char *const plates[] = {"plate1", "plate2"};
+        stack supposed;
+        double straight = NAN, whole, cut;
+        for (int k = 0; k < 2; k++)
+            turned->solids[scene_find_solid(turned, plates[k])].shape.rotation_deg = vec3_make(0.0, i, 0.0);
+        if (!stack_read(turned, &supposed))
+            code = opaque_plates(why);
+        THEN(code, look_through(&at, &straight, &whole, &cut, why));
+        if (code == STATUS_OK)
+            curve_add(out, i, straight, of_both(&supposed, straight_through));
+    }
+    scene_destroy(turned);
+    return code;
 }

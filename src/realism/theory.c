@@ -96,3 +96,20 @@ double theory_apparent_tangent(double height, double depth, double distance, dou
     }
     return low / sqrt(n_above * n_above - low * low);
 }
+
+double theory_apparent_depth(double angle, double n_above, double n_below)
+{
+    const double n = n_below / n_above, sine = sin(angle);
+    return cos(angle) / sqrt(n * n - sine * sine);
+}
+
+double theory_prism_deviation(double incidence, double apex, double n)
+{
+    const double at_second = apex - asin(sin(incidence) / n);
+    return incidence + theory_snell(at_second, n, 1.0) - apex;
+}
+
+double theory_drop_angle(double offset, double n)
+{
+    return 4.0 * asin(offset / n) - 2.0 * asin(offset);
+}

@@ -41,3 +41,14 @@ double theory_shells_power(const theory_shells *c);
  * distance `distance`. Tangent of the angle from the vertical at which the eye sees the point; NaN if there is no such
  * ray. */
 double theory_apparent_tangent(double height, double depth, double distance, double n_above, double n_below);
+
+/* Apparent depth over depth of a point below a flat surface, straight above the point, for a line of sight at an angle
+ * from the vertical; n_above / n_below straight down: Hecht, Optics, 5th ed., 4.4. */
+double theory_apparent_depth(double angle, double n_above, double n_below);
+
+/* Deviation by a prism in surroundings of index 1: Hecht, eq. 5.53. NaN under total reflection at the second face. */
+double theory_prism_deviation(double incidence, double apex, double n);
+
+/* Angle from the antisolar point of a ray with one internal reflection in a sphere, for its offset over the radius:
+ * Descartes, Les Meteores, 1637; Born and Wolf, Principles of Optics, 7th ed., 4.7 exercises. */
+double theory_drop_angle(double offset, double n);

@@ -55,7 +55,7 @@ static status put_metrics(const cell_lines *l, diagnostic *why)
 static status put_curves(const cell_lines *l, diagnostic *why)
 {
     status code = STATUS_OK;
-    for (int which = 0; which < REALISM_CURVE_COUNT && code == STATUS_OK; which++) {
+    for (int which = 0; which < REALISM_CURVE_KEPT && code == STATUS_OK; which++) {
         realism_points points;
         code = realism_trace_curve(l->setting, l->level, (realism_curve)which, &points, why);
         for (int i = 0; code == STATUS_OK && i < points.count; i++) {

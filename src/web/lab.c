@@ -7,6 +7,7 @@
 #include "web/api/api.h"
 #include "web/api/scene_since.h"
 #include "web/page.h"
+#include "web/session/thumbnails.h"
 #include "web/session/reference_image.h"
 #include "web/session/studies.h"
 #include "scene/model/scene.h"
@@ -172,8 +173,9 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     THEN(code, check_results(l, why));
     THEN(code, open_document(l, why));
     THEN(code, render_worker_create(l->scene_document, settings->level, &listener, &l->render_worker, why));
-    if (code == STATUS_OK && (!(l->sent = sent_scenes_create()) || !(l->reference_image = reference_image_create()) ||
-                              !(l->heavy = semaphore_create(HEAVY_AT_ONCE))))
+    if (code == STATUS_OK &&
+        (!(l->sent = sent_scenes_create()) || !(l->reference_image = reference_image_create()) ||
+         !(l->heavy = semaphore_create(HEAVY_AT_ONCE)) || !(l->thumbnails = thumbnails_create(settings->level))))
         code = out_of_memory(why);
     THEN(code, studies_create(l, &l->studies, why));
     THEN(code, serve(l, why));
@@ -195,6 +197,8 @@ void lab_stop(lab *l)
     pthread_mutex_unlock(&l->publish_lock);
     if (l->heavy)
         semaphore_close(l->heavy);
+    if (l->thumbnails)
+        thumbnails_end(l->thumbnails);
     if (l->studies)
         studies_end(l->studies);
     if (l->render_worker)
@@ -202,6 +206,7 @@ void lab_stop(lab *l)
     http_stop(l->server);
     studies_destroy(l->studies);
     semaphore_destroy(l->heavy);
+    thumbnails_destroy(l->thumbnails);
     sent_scenes_destroy(l->sent);
     reference_image_destroy(l->reference_image);
     render_worker_destroy(l->render_worker);

@@ -20,8 +20,9 @@ struct lab {
     struct render_worker *render_worker;
     struct reference_image *reference_image;
     struct studies *studies;
-    struct sent_scenes *sent; /* web/api/scene_since.h */
-    semaphore *heavy;         /* limits the handlers that need much memory and time */
+    struct sent_scenes *sent;      /* web/api/scene_since.h */
+    struct thumbnails *thumbnails; /* web/session/thumbnails.h */
+    semaphore *heavy;              /* limits the handlers that need much memory and time */
     http_server *server;
     http_route *routes;
     struct api_bound *bound; /* contexts of the routes */

@@ -58,7 +58,27 @@ async function showBench(screen) {
   await screen.quiet();
 }
 
+const chooseLesson = async (screen, name) => {
+  await screen.showPanel('Lessons');
+  await screen.page.getByRole('button', { name }).click();
+  await screen.page.getByRole('button', { name: 'Show the measurement' }).click();
+  await screen.page.locator('.lesson-value').waitFor();
+  await screen.settled();
+};
+
 const views = {
+  gallery: {
+    scene: 'experiments/scenes/rod.yaml',
+    async show(screen) {
+      await screen.showPanel('Lessons');
+      await screen.page.locator('.lesson-card').nth(7).waitFor();
+      await screen.quiet();
+    },
+  },
+  lesson: {
+    scene: 'experiments/scenes/rod.yaml',
+    show: (screen) => chooseLesson(screen, /When water becomes a mirror/),
+  },
   parameters: {
     scene: 'experiments/scenes/rod.yaml',
     async show(screen) {

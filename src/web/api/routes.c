@@ -60,6 +60,11 @@ static const struct api_route {
     {"GET", "/api/figures/{name}", api_figure, NO_BODY},
     {"GET", "/api/machine", api_machine, NO_BODY},
     {"GET", "/api/notes", api_notes, NO_BODY},
+    {"GET", "/api/lessons", api_lessons, NO_BODY},
+    {"POST", "/api/lessons/{name}/open", api_lesson_open, EMPTY},
+    {"GET", "/api/lessons/{name}/measure", api_lesson_measure, NO_BODY},
+    {"GET", "/api/lessons/{name}/thumbnail.jpg", api_lesson_thumbnail, NO_BODY},
+    {"GET", "/api/thumbnail.jpg", api_thumbnail, NO_BODY},
 };
 enum { ROUTES = sizeof routes / sizeof *routes };
 

@@ -15,7 +15,7 @@ import { lightTool } from './tool_light.js';
 import { cameraBox } from './camera_box.js';
 
 /* A panel that cannot be loaded does not affect the others. */
-const modules = ['params', 'edit', 'pixel', 'bench', 'compare', 'slime', 'studies', 'machine'];
+const modules = ['lessons', 'params', 'edit', 'pixel', 'bench', 'compare', 'slime', 'studies', 'machine'];
 
 const at = (id) => document.getElementById(id);
 

@@ -12,6 +12,7 @@ const SHORTEST = 120;
 const IMAGE_WIDTH = 360; /* what is left to the image, with the splitter */
 const IMAGE_HEIGHT = 240;
 const STEP = 24;
+const FIRST = 'params';
 
 export function createPanels(side, splitter, workspace, panels, lab) {
   const list = element('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Panels' });
@@ -31,7 +32,11 @@ export function createPanels(side, splitter, workspace, panels, lab) {
   );
   createSplitter(splitter, workspace);
   for (const entry of entries.values()) guard(entry, () => entry.panel.start?.(lab));
-  use(entries.has(memory.get('panel')) ? memory.get('panel') : panels[0]?.id);
+  use(
+    entries.has(memory.get('panel'))
+      ? memory.get('panel')
+      : (panels.find((panel) => panel.id === FIRST) || panels[0])?.id,
+  );
   return { use, chosen: () => chosen };
 
   function makeEntry(panel) {

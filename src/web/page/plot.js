@@ -1,9 +1,11 @@
 /* A line chart with intervals over one axis; series differ by colour, marker and dash.
  *
- * exports: plot({title, x, y, series, heading, mark}) -> SVG element
+ * exports: plot({title, x, y, series, heading, mark, width, legends}) -> SVG element
  *   x: {label, log, values}       values: words of a categorical axis; points are then at 0, 1, 2 ..
  *   y: {label, log}
- *   series: [{name, points: [{x, y, low, high}]}]      low and high NaN: no interval is known
+ *   series: [{name, points: [{x, y, low, high}], marked, joined}]      low and high NaN: no interval is known;
+ *     marked or joined false: without markers or without the line
+ *   width: of the drawing in its own units; legends false: none
  *   heading: title of the legend, the parameters in which the series differ
  *   mark: a value of y with a horizontal line, such as 1 for ratios */
 
@@ -133,7 +135,7 @@ function line(one, index, across, up) {
   return svg(
     'g',
     looks(index),
-    at.length > 1
+    at.length > 1 && one.joined !== false
       ? svg('path', { class: 'plot-line', d: `M${at.join('L')}`, 'stroke-dasharray': DASHES[index % DASHES.length] })
       : null,
     points
@@ -144,7 +146,7 @@ function line(one, index, across, up) {
           d: `M${across.at(point.x) - 4} ${up.at(point.low)}h8m-4 0V${up.at(point.high)}m-4 0h8`,
         }),
       ),
-    points.map((point, i) =>
+    (one.marked === false ? [] : points).map((point, i) =>
       svg(
         'path',
         { class: 'plot-marker', d: MARKERS[index % MARKERS.length], transform: `translate(${at[i]})` },
@@ -178,9 +180,9 @@ function legend(series, heading, left) {
   );
 }
 
-export function plot({ title, x, y, series, heading = '', mark }) {
-  const many = series.length > 1;
-  const width = WIDTH - FRAME.left - FRAME.right - (many ? LEGEND : 0);
+export function plot({ title, x, y, series, heading = '', mark, width: whole = WIDTH, legends = true }) {
+  const many = legends && series.length > 1;
+  const width = whole - FRAME.left - FRAME.right - (many ? LEGEND : 0);
   const area = {
     x: FRAME.left,
     y: FRAME.top,
@@ -199,7 +201,7 @@ export function plot({ title, x, y, series, heading = '', mark }) {
   const name = unique('plot');
   return svg(
     'svg',
-    { class: 'plot', viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: 'img', 'aria-labelledby': name },
+    { class: 'plot', viewBox: `0 0 ${whole} ${HEIGHT}`, role: 'img', 'aria-labelledby': name },
     svg('title', { id: name }, title),
     text(area.x, 17, 'start', title, { class: 'plot-title', 'aria-hidden': 'true' }),
     axes(area, { ...x, points: xs }, y, across, up),

@@ -3,6 +3,7 @@
  * promise of a name or null, forObject(object) -> node or null} */
 
 import { ask, button, dialog, element, empty, notice, replace, unique } from './ui.js';
+import { thumbnail } from './thumbnail.js';
 
 const MANY = 8; /* longer lists get a search field */
 
@@ -15,14 +16,14 @@ export function createFiles(lab, choice) {
   async function pick(title, kind, nothing, actions = []) {
     try {
       const files = await lab.get('/api/files');
-      return await chooser(title, files[kind], files.folder, nothing, actions);
+      return await chooser(title, files[kind], files.folder, nothing, actions, kind === 'scenes');
     } catch (error) {
       lab.fail(error);
       return null;
     }
   }
 
-  function chooser(title, names, folder, nothing, actions) {
+  function chooser(title, names, folder, nothing, actions, pictured) {
     const list = element('ul', { class: 'file-list' });
     const search = element('input', {
       type: 'search',
@@ -59,6 +60,7 @@ export function createFiles(lab, choice) {
                     'aria-current': name === lab.state?.file ? 'true' : null,
                     onclick: () => made.close(name),
                   },
+                  pictured ? thumbnail(lab, `/api/thumbnail.jpg?file=${encodeURIComponent(name)}`) : null,
                   ...named(name),
                 ),
               ),

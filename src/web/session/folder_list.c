@@ -14,16 +14,16 @@
 
 enum { DEPTH_MAX = 3, ENTRIES_MAX = 50000, DOCUMENT_MAX = 1 << 20 };
 
-typedef enum file_use { USE_SCENE, USE_MODEL, USE_IMAGE, USE_SCRIPT, USE_STUDY, USE_COUNT } file_use;
-static const char *const use_names[USE_COUNT] = {"scenes", "models", "pictures", "scripts", "studies"};
+typedef enum file_use { USE_SCENE, USE_MODEL, USE_IMAGE, USE_SCRIPT, USE_STUDY, USE_LESSON, USE_COUNT } file_use;
+static const char *const use_names[USE_COUNT] = {"scenes", "models", "pictures", "scripts", "studies", "lessons"};
 
 static const struct ending {
     const char *text;
     file_use use;
 } endings[] = {
-    {".yaml", USE_SCENE}, {".yml", USE_SCENE}, {".obj", USE_MODEL},   {".ply", USE_MODEL}, {".stl", USE_MODEL},
-    {".gltf", USE_MODEL}, {".glb", USE_MODEL}, {".png", USE_IMAGE},   {".jpg", USE_IMAGE}, {".jpeg", USE_IMAGE},
-    {".pfm", USE_IMAGE},  {".bmp", USE_IMAGE}, {".study", USE_STUDY},
+    {".yaml", USE_SCENE}, {".yml", USE_SCENE}, {".obj", USE_MODEL},   {".ply", USE_MODEL},     {".stl", USE_MODEL},
+    {".gltf", USE_MODEL}, {".glb", USE_MODEL}, {".png", USE_IMAGE},   {".jpg", USE_IMAGE},     {".jpeg", USE_IMAGE},
+    {".pfm", USE_IMAGE},  {".bmp", USE_IMAGE}, {".study", USE_STUDY}, {".lesson", USE_LESSON},
 };
 
 /* Names relative to the folder, owned. */

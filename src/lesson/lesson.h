@@ -1,0 +1,74 @@
+/* Lessons: guided experiments for the laboratory's gallery, as data files that a teacher writes and translates. A
+ * lesson names a scene, a few of its parameters as controls, a prediction to make, and a curve of `cuvette realism`
+ * (realism/realism.h) with a value to read; cuvette-lesson(5) describes the format. Every word and parameter is tried
+ * when a file is read; lesson_check traces it too.
+ *
+ * Ownership: lesson_read and lesson_list_find give, lesson_destroy and lesson_list_release release. Errors:
+ * STATUS_BAD_INPUT with file, line, column and remedy. */
+#pragma once
+
+#include "realism/realism.h"
+#include "scene/model/open.h"
+
+enum { LESSON_CONTROLS_MAX = 5, LESSON_CHOICES_MAX = 6 };
+
+typedef struct lesson_control {
+    char *parameter, *label;
+    double from, to;                   /* equal if the lesson gives no range */
+    char *choices[LESSON_CHOICES_MAX]; /* instead of a range: words or numbers */
+    int choice_count;
+} lesson_control;
+
+typedef struct lesson {
+    char *path; /* as given */
+    char *name, *title, *language, *question, *answer;
+    char *scene_path; /* relative to the working folder */
+    char **setting;   /* "PATH=VALUE" */
+    size_t setting_count;
+    lesson_control control[LESSON_CONTROLS_MAX];
+    int control_count;
+    char *ask;                         /* the prediction's question */
+    char *choices[LESSON_CHOICES_MAX]; /* of the prediction; none: a number, compared with the reading */
+    int choice_count, right;           /* right: index of the correct choice */
+    realism_curve curve;
+    double tolerance; /* largest |measured - theory| of the curve */
+    char *metric;     /* of the value to read; NULL: the curve's point at `at` */
+    double at;
+    char *reading, *unit; /* label of the value to read, and its unit; "deg" converts a metric in radians */
+    double answer_within; /* a predicted number counts as right within this distance */
+    long line, column;    /* of the key measure */
+    scene *start;         /* the scene with the lesson's parameters set, its files not loaded; its path is scene_path */
+} lesson;
+
+status lesson_read(const char *path, lesson **out, diagnostic *why);
+/* The same for a file below root (base/below.h), and a scene below it. */
+status lesson_read_below(const char *path, const char *root, lesson **out, diagnostic *why);
+void lesson_destroy(lesson *l); /* NULL is allowed */
+
+/* What is measured in a scene, which may be the lesson's with other values of its controls. */
+typedef struct lesson_result {
+    realism_points points;
+    double error; /* largest |measured - theory| of the curve */
+    double measured, theory, tolerance;
+    bool passes; /* the curve and the value */
+} lesson_result;
+status lesson_measure(const lesson *l, const scene *s, isa level, lesson_result *out, diagnostic *why);
+
+/* The same in the lesson's own scene; an error is located in the lesson. A curve beyond its tolerance is an error. */
+status lesson_check(const lesson *l, isa level, lesson_result *out, diagnostic *why);
+
+/* The command that prints the curve, and the one that prints the value; --set for the parameters that the lesson sets.
+ * Fresh memory; NULL if memory runs out. */
+char *lesson_command(const lesson *l, bool curve);
+
+/* The folder of the lessons that belong to the program: experiments/lessons next to its source or where `make install`
+ * puts it. Fresh memory; NULL if there is none. */
+char *lesson_folder(void);
+
+/* The files *.lesson of a folder in order of their names, as paths. */
+typedef struct lesson_list {
+    char **path;
+    size_t count, room;
+} lesson_list;
+status lesson_list_find(const char *folder, lesson_list *out, diagnostic *why);
+void lesson_list_release(lesson_list *l);

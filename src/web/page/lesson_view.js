@@ -1,0 +1,203 @@
+/* A lesson that was chosen: question, prediction, controls, measured curve next to theory, answer, commands.
+ * exports: createLesson(root, lab, lesson, back) -> {shown(), end()} */
+
+import { button, check, choice, copy, digits, element, number, notice, replace, slider } from './ui.js';
+import { lessonChart } from './lesson_chart.js';
+
+const REST_MS = 200; /* measured when the controls rest */
+
+const unitOf = (lesson) => (lesson.measure.unit === 'deg' ? '°' : lesson.measure.unit ? ` ${lesson.measure.unit}` : '');
+
+export function createLesson(root, lab, lesson, back) {
+  const result = element('div', { class: 'lesson-result', 'aria-live': 'polite' });
+  const verdict = element('div', { 'aria-live': 'polite' });
+  const answer = element('div', { class: 'lesson-answer' });
+  const commands = element('div');
+  const controls = lesson.controls.map((control) => createControl(lab, control));
+  let measured = null;
+  let open = false; /* the measurement is shown, after the prediction or without it */
+  let predicted = null;
+  let timer = 0;
+  let asked = 0;
+
+  const heading = element('h3', { class: 'lesson-title', tabindex: '-1', text: lesson.title });
+  replace(
+    root,
+    element(
+      'div',
+      { class: 'lesson', lang: lesson.language },
+      element('div', { class: 'buttons' }, button('All lessons', back, { icon: 'undo', small: true })),
+      heading,
+      element('p', { class: 'lesson-question', text: lesson.question }),
+      element('h4', { text: 'Your prediction' }),
+      createPrediction(),
+      verdict,
+      element('h4', { text: 'Try it' }),
+      controls.map((control) => control.node),
+      result,
+      answer,
+      commands,
+    ),
+  );
+  heading.focus();
+  const ends = [lab.on('scene', changed)];
+  changed();
+  return { shown: changed, end: () => ends.forEach((end) => end()) };
+
+  function createPrediction() {
+    const { ask, choices } = lesson.prediction;
+    const reveal = button('Show the measurement', () => show(null), { small: true });
+    if (!choices) {
+      const field = number({ onchange: null });
+      field.input.setAttribute('aria-label', ask);
+      const go = () => Number.isFinite(field.value) && show(field.value);
+      field.input.addEventListener('keydown', (event) => event.key === 'Enter' && go());
+      return element(
+        'div',
+        { class: 'lesson-prediction' },
+        element('p', { text: ask }),
+        element(
+          'div',
+          { class: 'buttons' },
+          field.node,
+          button('Compare', go, { kind: 'primary', small: true }),
+          reveal,
+        ),
+      );
+    }
+    return element(
+      'div',
+      { class: 'lesson-prediction' },
+      element('p', { text: ask }),
+      element(
+        'div',
+        { class: 'lesson-choices', role: 'group', 'aria-label': ask },
+        choices.map((word) => button(word, () => show(word))),
+      ),
+      element('div', { class: 'buttons' }, reveal),
+    );
+  }
+
+  function show(prediction) {
+    open = true;
+    predicted = prediction ?? predicted;
+    draw();
+  }
+
+  function judge() {
+    if (predicted === null || !measured) return null;
+    const { choices, right, within } = lesson.prediction;
+    const good = choices ? predicted === right : Math.abs(predicted - measured.measured) <= within;
+    const words = choices ? predicted : `${digits(predicted)}${unitOf(lesson)}`;
+    return notice(
+      good ? `You predicted: ${words}. That is right.` : `You predicted: ${words}. See what was measured.`,
+      {
+        kind: good ? 'good' : 'info',
+      },
+    );
+  }
+
+  function draw() {
+    replace(verdict, open ? judge() : null);
+    replace(answer, open ? [element('h4', { text: 'Answer' }), element('p', { text: lesson.answer })] : null);
+    if (!open || !measured) {
+      replace(result, null);
+      return;
+    }
+    if (measured.failure) {
+      replace(result, notice(measured.failure.message, { kind: 'warning', remedy: measured.failure.remedy }));
+      return;
+    }
+    const { measured: value, theory, error, tolerance, points, passes } = measured;
+    replace(
+      result,
+      element('h4', { text: 'Measured' }),
+      element(
+        'p',
+        { class: 'lesson-reading' },
+        element('span', { text: lesson.measure.reading }),
+        element('output', { class: 'lesson-value', text: `${digits(value, 6)}${unitOf(lesson)}` }),
+        element('span', {
+          class: 'hint',
+          text: theory === null ? 'no theory for these values' : `theory: ${digits(theory, 6)}${unitOf(lesson)}`,
+        }),
+      ),
+      lessonChart(lesson, measured),
+      element('p', {
+        class: passes ? 'hint' : 'hint lesson-off',
+        text: `Largest difference of ${points.length} points: ${digits(error, 2)} (tolerance ${digits(tolerance, 2)}).`,
+      }),
+    );
+  }
+
+  /* The scene changed: by these controls, undo or another page. */
+  function changed() {
+    for (const control of controls) control.update();
+    drawCommands();
+    clearTimeout(timer);
+    timer = setTimeout(measure, measured ? REST_MS : 0);
+  }
+
+  async function measure() {
+    if (!root.isConnected || root.closest('[hidden]')) return;
+    const mine = ++asked;
+    let reply;
+    try {
+      reply = await lab.get(`/api/lessons/${encodeURIComponent(lesson.name)}/measure`);
+    } catch (error) {
+      reply = { failure: error };
+    }
+    if (mine !== asked) return;
+    measured = reply;
+    draw();
+  }
+
+  function drawCommands() {
+    const sets = lesson.controls
+      .map(({ parameter }) => lab.param(parameter))
+      .filter((row) => row && String(row.value) !== String(row.initial))
+      .map((row) => ` --set ${row.path}=${row.value}`)
+      .join('');
+    replace(
+      commands,
+      element('h4', { text: 'The same numbers on the command line' }),
+      lesson.commands.map((text) =>
+        element(
+          'div',
+          { class: 'lesson-command' },
+          element('code', { text: `${text}${sets}` }),
+          button(
+            'Copy',
+            () => copy(`${text}${sets}`).then(() => lab.say('The command is on the clipboard.'), lab.fail),
+            {
+              icon: 'copy',
+              bare: true,
+              small: true,
+            },
+          ),
+        ),
+      ),
+    );
+  }
+}
+
+/* A control of one parameter, named as a person names it; the parameter's path is its link to the panel Parameters. */
+function createControl(lab, { parameter, label, from, to, choices }) {
+  const set = (value, gesture) => lab.set({ [parameter]: value }, gesture).catch(lab.fail);
+  const isSwitch = choices?.length === 2 && choices.includes('on') && choices.includes('off');
+  const made = isSwitch
+    ? check(label, false, (on) => set(on ? 'on' : 'off'))
+    : choices
+      ? choice({ label, choices: choices.map(String), value: '', onchange: (value) => set(value) })
+      : slider({ label, min: from, max: to, value: from, oninput: set, onchange: set });
+  const path = element('code', { class: 'lesson-path', text: parameter });
+  return {
+    node: element('div', { class: 'lesson-control' }, made.node, path),
+    update() {
+      const value = lab.param(parameter.replace(/\.[xyzrgb]$/, ''))?.value;
+      const part = parameter.match(/\.([xyzrgb])$/);
+      const one = Array.isArray(value) && part ? value['xyzrgb'.indexOf(part[1]) % 3] : value;
+      if (one !== undefined) made.set(isSwitch ? String(one) === 'on' || one === true : choices ? String(one) : one);
+    },
+  };
+}

@@ -1,0 +1,147 @@
+#include "web/session/thumbnails.h"
+
+#include "base/text.h"
+#include "image/image.h"
+#include "job/job.h"
+#include "measure/clock.h"
+#include "render/core/film.h"
+#include "scene/model/scene.h"
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Pixels are about those of the widest card; more scenes than a folder's gallery shows at once. */
+enum { KEPT = 128, PIXELS = 240 * 180, WAVELENGTHS = 24, SAMPLES = 4 };
+static const double limit_s = 8.0;
+
+typedef struct kept {
+    char *key;
+    unsigned char *bytes;
+    size_t size;
+} kept;
+
+struct thumbnails {
+    isa level;
+    pthread_mutex_t lock; /* of the table */
+    pthread_mutex_t one;  /* one render at a time */
+    kept table[KEPT];
+    int next; /* the place that is replaced next */
+    atomic_bool ended;
+    double late_s; /* when the current render has taken too long */
+};
+
+thumbnails *thumbnails_create(isa level)
+{
+    thumbnails *t = calloc(1, sizeof *t);
+    if (t) {
+        t->level = level;
+        pthread_mutex_init(&t->lock, NULL);
+        pthread_mutex_init(&t->one, NULL);
+    }
+    return t;
+}
+
+void thumbnails_destroy(thumbnails *t)
+{
+    if (!t)
+        return;
+    for (int i = 0; i < KEPT; i++) {
+        free(t->table[i].key);
+        free(t->table[i].bytes);
+    }
+    pthread_mutex_destroy(&t->lock);
+    pthread_mutex_destroy(&t->one);
+    free(t);
+}
+
+void thumbnails_end(thumbnails *t)
+{
+    atomic_store(&t->ended, true);
+}
+
+static bool must_end(void *context)
+{
+    const thumbnails *t = context;
+    return atomic_load(&t->ended) || clock_wall_s() > t->late_s;
+}
+
+status thumbnails_find(thumbnails *t, const char *key, unsigned char **bytes, size_t *size, diagnostic *why)
+{
+    status code = STATUS_OK;
+    *bytes = NULL;
+    pthread_mutex_lock(&t->lock);
+    for (int i = 0; i < KEPT && !*bytes && code == STATUS_OK; i++)
+        if (t->table[i].key && strcmp(t->table[i].key, key) == 0) {
+            *size = t->table[i].size;
+            *bytes = malloc(*size);
+            if (*bytes)
+                memcpy(*bytes, t->table[i].bytes, *size);
+            else
+                code = out_of_memory(why);
+        }
+    pthread_mutex_unlock(&t->lock);
+    return code;
+}
+
+/* Without memory for it, the thumbnail is not kept. */
+static void keep(thumbnails *t, const char *key, const unsigned char *bytes, size_t size)
+{
+    kept fresh = {.key = strdup(key), .bytes = malloc(size), .size = size};
+    if (!fresh.key || !fresh.bytes) {
+        free(fresh.key);
+        free(fresh.bytes);
+        return;
+    }
+    memcpy(fresh.bytes, bytes, size);
+    pthread_mutex_lock(&t->lock);
+    kept before = t->table[t->next];
+    t->table[t->next] = fresh;
+    t->next = (t->next + 1) % KEPT;
+    pthread_mutex_unlock(&t->lock);
+    free(before.key);
+    free(before.bytes);
+}
+
+/* Small, with one thread, so that the laboratory's own image hardly waits. */
+static void make_small(scene *s)
+{
+    render_settings *r = &s->render;
+    const double shrink = sqrt((double)PIXELS / ((double)r->width * (double)r->height));
+    r->width = (int64_t)fmax(1.0, (double)r->width * shrink);
+    r->height = (int64_t)fmax(1.0, (double)r->height * shrink);
+    r->threads = 1;
+    r->wavelengths = r->wavelengths < WAVELENGTHS ? r->wavelengths : WAVELENGTHS;
+    r->samples = r->samples < SAMPLES ? SAMPLES : r->samples;
+}
+
+static status render(thumbnails *t, scene *s, unsigned char **bytes, size_t *size, diagnostic *why)
+{
+    job *j = NULL;
+    job_account account = {.result = NULL};
+    image *img = NULL;
+    make_small(s);
+    t->late_s = clock_wall_s() + limit_s;
+    status code = job_create(&(job_settings){.level = &t->level, .stop = must_end, .context = t}, &j, why);
+    THEN(code, job_load(j, s, NULL, why));
+    THEN(code, job_render(j, s, NULL, &account, why));
+    THEN(code, film_image(account.result->img, &img, why));
+    THEN(code, image_encode(img, IMAGE_JPEG, 8, false, bytes, size, why));
+    image_destroy(img);
+    job_account_release(&account);
+    job_destroy(j);
+    return code == STATUS_INTERRUPTED && !atomic_load(&t->ended)
+               ? diagnose(why, STATUS_FAILURE, "open the scene", "the thumbnail takes too long")
+               : code;
+}
+
+status thumbnails_render(thumbnails *t, const char *key, scene *s, unsigned char **bytes, size_t *size, diagnostic *why)
+{
+    pthread_mutex_lock(&t->one);
+    const status code = render(t, s, bytes, size, why);
+    pthread_mutex_unlock(&t->one);
+    if (code == STATUS_OK)
+        keep(t, key, *bytes, *size);
+    return code;
+}

@@ -1,0 +1,174 @@
+/* Lessons: those that belong to the program agree with theory at both ends of every control; a wrong lesson is refused
+ * with its place and a remedy. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+#include "base/number.h"
+#include "lesson/lesson.h"
+#include "scene/model/params.h"
+
+static void measured_as_theory(const lesson *l, const scene *s)
+{
+    diagnostic why = {.what = ""};
+    lesson_result *r = malloc(sizeof *r);
+    assert_non_null(r);
+    if (lesson_measure(l, s, isa_best(), r, &why) != STATUS_OK)
+        fail_msg("%s: %s", l->path, why.what);
+    if (!r->passes)
+        fail_msg("%s: error %g of the curve; %.17g, theory %.17g", l->path, r->error, r->measured, r->theory);
+    assert_true(r->points.count >= 10);
+    free(r);
+}
+
+static void measured_with(const lesson *l, const char *path, const char *value)
+{
+    scene *s = scene_clone(l->start);
+    diagnostic why = {.what = ""};
+    if (scene_set(s, path, value, &why) != STATUS_OK)
+        fail_msg("%s: %s=%s: %s", l->path, path, value, why.what);
+    /* A hidden rod has no curve: the laboratory says so. */
+    if (strstr(path, "visible") == NULL)
+        measured_as_theory(l, s);
+    scene_destroy(s);
+}
+
+static void lessons_agree_with_theory(void **state)
+{
+    (void)state;
+    lesson_list all;
+    diagnostic why = {.what = ""};
+    assert_int_equal(lesson_list_find("experiments/lessons", &all, &why), STATUS_OK);
+    assert_true(all.count >= 8);
+    for (size_t i = 0; i < all.count; i++) {
+        lesson *l = NULL;
+        if (lesson_read(all.path[i], &l, &why) != STATUS_OK)
+            fail_msg("%s:%ld:%ld: %s", why.file, why.line, why.column, why.what);
+        measured_as_theory(l, l->start);
+        assert_true(l->control_count >= 3);
+        for (int k = 0; k < l->control_count; k++) {
+            const lesson_control *c = &l->control[k];
+            char text[NUMBER_TEXT_MAX];
+            for (int j = 0; j < c->choice_count; j++)
+                measured_with(l, c->parameter, c->choices[j]);
+            for (int end = 0; end < 2 && !c->choice_count; end++)
+                measured_with(l, c->parameter, number_format(end ? c->to : c->from, text));
+        }
+        lesson_destroy(l);
+    }
+    lesson_list_release(&all);
+}
+
+static void critical_angle_is_read_within_a_tenth_of_a_degree(void **state)
+{
+    (void)state;
+    lesson *l = NULL;
+    lesson_result *r = malloc(sizeof *r);
+    diagnostic why = {.what = ""};
+    assert_non_null(r);
+    assert_int_equal(lesson_read("experiments/lessons/30-critical-angle.lesson", &l, &why), STATUS_OK);
+    assert_int_equal(lesson_measure(l, l->start, isa_best(), r, &why), STATUS_OK);
+    assert_true(fabs(r->measured - asin(1.0 / 1.333) * 180.0 / M_PI) < 1e-9);
+    free(r);
+    lesson_destroy(l);
+}
+
+/* The text of a lesson in which one line is replaced. */
+static const char *const lines[] = {
+    "lesson: trial",
+    "title: Trial",
+    "question: Why?",
+    "scene: /SCENE",
+    "set: {liquid.ior: 1.3}",
+    "controls: [{parameter: liquid.ior, label: Index, from: 1, to: 2}]",
+    "prediction: {ask: Which angle?, within: 1}",
+    "measure: {curve: mirror, tolerance: 1e-9, reading: Angle, metric: critical.liquid}",
+    "answer: Because.",
+};
+enum { LINES = sizeof lines / sizeof *lines };
+
+static status read_with(int line, const char *instead, lesson **out, diagnostic *why)
+{
+    char path[] = "/tmp/cuvette-lesson-XXXXXX", *here = realpath("experiments/scenes/rod.yaml", NULL);
+    const int file = mkstemp(path);
+    assert_true(file >= 0 && here);
+    FILE *f = fdopen(file, "w");
+    for (int i = 0; i < LINES; i++)
+        if (i == line)
+            fprintf(f, "%s\n", instead);
+        else if (i == 3)
+            fprintf(f, "scene: %s\n", here);
+        else
+            fprintf(f, "%s\n", lines[i]);
+    fclose(f);
+    lesson_result *r = malloc(sizeof *r);
+    assert_non_null(r);
+    status code = lesson_read(path, out, why);
+    if (code == STATUS_OK && (code = lesson_check(*out, isa_best(), r, why)) != STATUS_OK) {
+        lesson_destroy(*out);
+        *out = NULL;
+    }
+    free(r);
+    unlink(path);
+    free(here);
+    return code;
+}
+
+static void wrong_lessons_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        int line;
+        const char *instead, *what;
+    } wrong[] = {
+        {0, "lesson: a b", "invalid name"},
+        {0, "lessen: trial", "unknown key 'lessen'"},
+        {1, "title: []", "'title' is not a text"},
+        {2, "", "'question' is missing"},
+        {3, "scene: nowhere.yaml", "nowhere.yaml"},
+        {4, "set: {liquid.iro: 1.3}", "no parameter 'iro'"},
+        {4, "set: {liquid.ior: water}", "liquid.ior"},
+        {5, "controls: []", "one to five controls"},
+        {5, "controls: [{parameter: liquid.ior, label: Index, from: 2, to: 1}]", "range of liquid.ior is empty"},
+        {5, "controls: [{parameter: liquid.ior, label: Index, from: 0, to: 1}]", "liquid.ior"},
+        {5, "controls: [{parameter: liquid.medium, label: Medium, choices: [water, wine]}]", "wine"},
+        {6, "prediction: {ask: Which?, choices: [a, b], right: c}", "none of the choices"},
+        {6, "prediction: {ask: Which?, within: near}", "'within' is not a number"},
+        {7, "measure: {curve: miror, tolerance: 1e-9, reading: Angle, at: 1}", "unknown curve 'miror'"},
+        {7, "measure: {curve: prism, tolerance: 1e-9, reading: Angle, at: 1}", "no solids 'prism'"},
+        {7, "measure: {curve: mirror, tolerance: 1e-30, reading: Angle, at: 30}", "largest error"},
+        {7, "measure: {curve: mirror, tolerance: 1e-9, reading: Angle}", "value to read is missing"},
+        {7, "measure: {curve: mirror, tolerance: 1e-9, reading: Angle, metric: critical.lid}",
+         "no metric 'critical.lid'"},
+    };
+    lesson *l = NULL;
+    diagnostic why = {.what = ""};
+    if (read_with(-1, "", &l, &why) != STATUS_OK)
+        fail_msg("%ld:%ld: %s", why.line, why.column, why.what);
+    lesson_destroy(l);
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        why = (diagnostic){.what = ""};
+        assert_int_equal(read_with(wrong[i].line, wrong[i].instead, &l, &why), STATUS_BAD_INPUT);
+        assert_null(l);
+        if (!strstr(why.what, wrong[i].what))
+            fail_msg("%s: %s", wrong[i].instead, why.what);
+        assert_true(why.line == (wrong[i].instead[0] ? wrong[i].line + 1 : 1) && why.column > 0);
+        assert_true(why.file[0] && why.remedy[0]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lessons_agree_with_theory),
+        cmocka_unit_test(critical_angle_is_read_within_a_tenth_of_a_degree),
+        cmocka_unit_test(wrong_lessons_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
