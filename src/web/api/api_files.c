@@ -4,6 +4,7 @@
 #include "report/json.h"
 #include "report/machine.h"
 #include "report/media_rows.h"
+#include "scene/file/shared.h"
 #include "scene/file/write.h"
 #include "scene/model/open.h"
 
@@ -68,15 +69,18 @@ static status read_scene(call *c, const char *name, scene **out)
 
 status api_open(call *c)
 {
-    const char *name = NULL;
+    const char *name = NULL, *link = NULL;
     bool fresh = false;
     scene *s = NULL;
     uint64_t generation = 0;
-    if (!api_take_flag(c, "new", &fresh) || !api_take_text(c, "file", !fresh, &name))
+    if (!api_take_flag(c, "new", &fresh) || !api_take_text(c, "link", false, &link) ||
+        !api_take_text(c, "file", !fresh && !link, &name))
         return STATUS_BAD_INPUT;
-    if (fresh && name)
-        return api_refuse(c, 400, "'file' and 'new' cannot be combined", "give either 'file' or 'new'");
-    TRY(fresh ? new_scene(&s, &c->why) : read_scene(c, name, &s));
+    if (fresh + (name != NULL) + (link != NULL) > 1)
+        return api_refuse(c, 400, "'file', 'new' and 'link' cannot be combined", "give only one of them");
+    if (link && !shared_is_link(link))
+        return api_refuse(c, 400, "the link holds no scene", "give a link with #scene=CODE");
+    TRY(fresh ? new_scene(&s, &c->why) : link ? shared_read_link(link, &s, &c->why) : read_scene(c, name, &s));
     lab_set_default_threads(c->l, s);
     const char *file = name && lab_is_scene_name(name) ? name : NULL; /* no saving into an image */
     status code = scene_document_open(c->l->scene_document, s, file, &generation, &c->why);

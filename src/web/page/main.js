@@ -12,6 +12,7 @@ import { createKeys } from './keys.js';
 import { orbitTool } from './tool_orbit.js';
 import { lightTool } from './tool_light.js';
 import { cameraBox } from './camera_box.js';
+import { openLink } from './shared_link.js';
 
 /* A panel that cannot be loaded does not affect the others. */
 const modules = ['params', 'edit', 'pixel', 'bench', 'compare', 'slime', 'studies', 'machine'];
@@ -36,6 +37,7 @@ async function start() {
   lab.panels = createPanels(at('side'), at('splitter'), at('workspace'), panels, lab);
   for (const each of loaded) if (each.status === 'rejected') lab.fail(each.reason);
   lab.start();
+  await openLink(lab);
 }
 
 start();
