@@ -246,10 +246,10 @@ status outputs_write_text(const char *path, status (*write)(const void *content,
     return file_writer_end(&writer, write(content, writer.stream, why), why);
 }
 
-status outputs_write(const outputs *o, const render_result *result, diagnostic *why)
+status outputs_write(const outputs *o, const scene *s, const render_result *result, diagnostic *why)
 {
     if (o->img)
-        TRY(record_image(result->img, o->img, o->bits == 16 ? 16 : 8, why));
+        TRY(record_image(result->img, s, o->img, o->bits == 16 ? 16 : 8, why));
     if (o->rays && result->pixel_rays)
         TRY(record_map(result->pixel_rays, result->img, "rays per pixel", o->rays, why));
     if (o->time && result->pixel_ns)

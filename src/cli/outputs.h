@@ -44,5 +44,6 @@ status outputs_check_script(const char *option, const char *path, const scene *s
 status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),
                           const void *content, diagnostic *why);
 
-/* Writes all outputs for which result has data; an interrupted render has a part of them. */
-status outputs_write(const outputs *o, const render_result *result, diagnostic *why);
+/* Writes all outputs for which result has data; an interrupted render has a part of them. s: the scene,
+ * for the metadata of a PNG. */
+status outputs_write(const outputs *o, const scene *s, const render_result *result, diagnostic *why);

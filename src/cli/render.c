@@ -3,6 +3,7 @@
 #include "report/json.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
+#include "render/core/record.h"
 #include "render/inspect/beam_drawing.h"
 #include "report/report.h"
 #include "cli/inert_notes.h"
@@ -139,7 +140,7 @@ static status draw_beams(const render_request *request, const job_account *f, jo
     THEN(result, job_render(with, hiding, &frame_options, &distances, why));
     THEN(result, film_image(f->result->img, &img, why));
     THEN(result, beams_draw(f->of, job_isa(with), distances.result->layers->values[LAYER_DEPTH], img, why));
-    THEN(result, image_write(img, request->files.img, request->files.bits == 16 ? 16 : 8, why));
+    THEN(result, record_drawing(img, f->of, request->files.img, request->files.bits == 16 ? 16 : 8, why));
     image_destroy(img);
     job_account_release(&distances);
     scene_destroy(hiding);
@@ -148,7 +149,7 @@ static status draw_beams(const render_request *request, const job_account *f, jo
 
 static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
 {
-    TRY(outputs_write(&request->files, f->result, why));
+    TRY(outputs_write(&request->files, f->of, f->result, why));
     if (request->beams && f->count > 0)
         TRY(draw_beams(request, f, with, why));
     if (request->json)

@@ -7,6 +7,7 @@
 #include "cli/scene_edits.h"
 #include "cli/scene_input.h"
 #include "scene/model/params_path.h"
+#include "scene/file/shared.h"
 #include "scene/file/write.h"
 #include "scene/model/scene.h"
 #include <stdio.h>
@@ -22,7 +23,7 @@ typedef struct scene_request {
     const char *path, *output; /* path NULL: no file; output NULL: standard output */
     edit_option *edits;
     size_t edit_count;
-    bool begins_empty, only_checks, only_lists, writes_all;
+    bool begins_empty, only_checks, only_lists, only_links, writes_all;
 } scene_request;
 
 enum { OPTIONS_MOST = 16 };
@@ -43,6 +44,8 @@ static const command_option plain_options[] = {
      OPTION_FILLS(option_flag, scene_request, only_checks)},
     {"list", 0, NULL, "only list the objects: kind and name; for a solid also shape and material",
      OPTION_FILLS(option_flag, scene_request, only_lists)},
+    {"link", 0, NULL, "only print the scene as the fragment of a link, which 'cuvette render' and 'lab' open too",
+     OPTION_FILLS(option_flag, scene_request, only_links)},
     {"all", 0, NULL, "write every parameter, not only those that differ from the defaults",
      OPTION_FILLS(option_flag, scene_request, writes_all)},
     {"output", 'o', "FILE", "write to FILE, .yaml or .yml; may be the input file (default: standard output)",
@@ -72,10 +75,13 @@ static status check_request(const scene_request *request, diagnostic *why)
                              "no scene is given");
     if (request->path && request->begins_empty)
         return options_wrong("scene", NULL, why, "use only one of them", "a scene file and --new exclude each other");
-    if (request->only_checks && request->only_lists)
-        return options_wrong("scene", NULL, why, "use only one of them", "--check and --list exclude each other");
-    if (request->output && (request->only_checks || request->only_lists))
-        return options_wrong("scene", NULL, why, "remove -o FILE", "--check and --list do not write a scene");
+    const int only = request->only_checks + request->only_lists + request->only_links;
+    if (only > 1)
+        return options_wrong("scene", NULL, why, "use only one of them",
+                             "--check, --list and --link exclude each other");
+    if (request->output && only)
+        return options_wrong("scene", NULL, why, "remove -o FILE",
+                             "--check, --list and --link do not write a scene file");
     if (!request->output || strcmp(request->output, "-") == 0)
         return STATUS_OK;
     TRY(outputs_ending("-o", request->output, endings, 2, "use a name that ends in .yaml or .yml", &unused, why));
@@ -138,12 +144,26 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
     return STATUS_OK;
 }
 
+static status print_link(const scene *s, diagnostic *why)
+{
+    char *text = NULL, *code = NULL;
+    status result = shared_scene_text(s, &text, why);
+    THEN(result, shared_scene_code(text, &code, why));
+    if (result == STATUS_OK)
+        printf("%s%s\n", SHARED_FRAGMENT, code);
+    free(text);
+    free(code);
+    return result;
+}
+
 static status run(const scene_request *request, scene *s, diagnostic *why)
 {
     if (request->only_checks)
         return check_files(request, s, why);
     if (request->only_lists)
         return print_list(s);
+    if (request->only_links)
+        return print_link(s, why);
     const char *output = request->output ? request->output : "-";
     TRY(outputs_check_script("-o", output, s, why));
     return scene_write(s, output, request->writes_all, why);

@@ -73,7 +73,7 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
     status code = bits == 8 || bits == 16
                       ? STATUS_OK
                       : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "unsupported bit depth %d", bits);
-    THEN(code, record_image(frame->account.result->img, path, bits, &inner));
+    THEN(code, record_image(frame->account.result->img, NULL, path, bits, &inner));
     return engine_report(code, &inner, why);
 }
 

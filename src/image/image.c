@@ -98,7 +98,7 @@ static void copy_row(const void *of, int y, float *rgb)
 
 image_rows image_rows_of(const image *img)
 {
-    return (image_rows){img->width, img->height, copy_row, img};
+    return (image_rows){.width = img->width, .height = img->height, .read = copy_row, .of = img};
 }
 
 static status write_as(const image_rows *rows, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
@@ -116,13 +116,19 @@ static status write_as(const image_rows *rows, image_format format, FILE *stream
 status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
                     diagnostic *why)
 {
+    const image_rows rows = image_rows_of(img);
+    return image_encode_rows(&rows, format, bits, fast, bytes, size, why);
+}
+
+status image_encode_rows(const image_rows *rows, image_format format, int bits, bool fast, unsigned char **bytes,
+                         size_t *size, diagnostic *why)
+{
     char *text = NULL;
     text_writer writer;
     *bytes = NULL;
     TRY(text_writer_open(&writer, why));
-    const image_rows rows = image_rows_of(img);
     const status code =
-        text_writer_end(&writer, write_as(&rows, format, writer.stream, bits, fast, why), &text, size, why);
+        text_writer_end(&writer, write_as(rows, format, writer.stream, bits, fast, why), &text, size, why);
     *bytes = (unsigned char *)text;
     return code;
 }
@@ -151,10 +157,15 @@ status image_write_rows(const image_rows *rows, const char *path, int bits, diag
     return code;
 }
 
+bool image_is_png(const void *bytes, size_t size)
+{
+    return size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0;
+}
+
 /* The formats' signatures: PNG specification 5.2; JPEG's SOI and the next marker; PFM's PF or Pf; BMP's BM. */
 static image_format format_of_bytes(const unsigned char *bytes, size_t size)
 {
-    if (size >= 8 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0)
+    if (image_is_png(bytes, size))
         return IMAGE_PNG;
     if (size >= 3 && memcmp(bytes, "\xff\xd8\xff", 3) == 0)
         return IMAGE_JPEG;

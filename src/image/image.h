@@ -38,12 +38,21 @@ typedef enum image_format {
 } image_format; /* IMAGE_BMP: for reading only, has no extension */
 image_format image_format_of(const char *path);
 
-/* An image that is computed row by row while it is written. read writes row y, 3 x width values as in image, to rgb;
- * several threads call it at once. */
+/* A text that a PNG file carries with its pixels (PNG specification, 11.3.3): compressed iTXt, UTF-8. keyword: 1 to 79
+ * letters and spaces. Borrowed. */
+typedef struct image_text {
+    const char *keyword, *text;
+} image_text;
+enum { IMAGE_TEXTS_MAX = 4 };
+
+/* An image that is computed row by row while it is written, with texts (of a PNG only). read writes row y, 3 x width
+ * values as in image, to rgb; several threads call it at once. */
 typedef struct image_rows {
     int width, height;
     void (*read)(const void *of, int y, float *rgb);
     const void *of;
+    const image_text *texts;
+    int text_count; /* at most IMAGE_TEXTS_MAX */
 } image_rows;
 image_rows image_rows_of(const image *img);
 
@@ -57,6 +66,15 @@ status image_write_rows(const image_rows *rows, const char *path, int bits, diag
  * effort, JPEG of quality 80, 4:2:0. */
 status image_encode(const image *img, image_format format, int bits, bool fast, unsigned char **bytes, size_t *size,
                     diagnostic *why);
+status image_encode_rows(const image_rows *rows, image_format format, int bits, bool fast, unsigned char **bytes,
+                         size_t *size, diagnostic *why);
+
+/* Whether the bytes begin as a PNG file does. */
+bool image_is_png(const void *bytes, size_t size);
+
+/* The text with that keyword that stands before the pixels of a PNG file; nothing after it is read. STATUS_BAD_INPUT
+ * for a damaged file; *text is NULL if there is none, or if it is longer than limit. Fresh memory. */
+status image_png_text(const void *bytes, size_t size, const char *keyword, size_t limit, char **text, diagnostic *why);
 
 /* Reads PNG (any depth and kind; alpha is dropped after blending over black), JPEG (grey or RGB), PFM (colour or grey,
  * either byte order, finite) or BMP (24 bits, uncompressed), recognised by the first bytes, not by the name; PNG, JPEG

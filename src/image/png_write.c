@@ -5,6 +5,7 @@
 
 #include <png.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct png_job {
     png_structp png;
@@ -13,6 +14,7 @@ typedef struct png_job {
     const image_rows *rows;
     png_bands *bands;
     int bits;
+    png_text texts[IMAGE_TEXTS_MAX];
 } png_job;
 
 static _Noreturn void on_error(png_structp png, png_const_charp message)
@@ -28,12 +30,25 @@ static void on_warning(png_structp png, png_const_charp message)
     (void)message;
 }
 
+static void set_texts(png_job *job)
+{
+    for (int i = 0; i < job->rows->text_count && i < IMAGE_TEXTS_MAX; i++) {
+        const image_text *from = &job->rows->texts[i];
+        job->texts[i] = (png_text){.compression = PNG_ITXT_COMPRESSION_zTXt,
+                                   .key = (png_charp)(uintptr_t)from->keyword,
+                                   .text = (png_charp)(uintptr_t)from->text,
+                                   .itxt_length = strlen(from->text)};
+        png_set_text(job->png, job->info, &job->texts[i], 1);
+    }
+}
+
 static void write_chunks(png_job *job, FILE *stream)
 {
     png_init_io(job->png, stream);
     png_set_IHDR(job->png, job->info, (png_uint_32)job->rows->width, (png_uint_32)job->rows->height, job->bits,
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
+    set_texts(job);
     png_write_info(job->png, job->info);
     for (size_t count; (count = png_bands_compress(job->bands)) > 0;)
         for (size_t i = 0; i < count; i++) {

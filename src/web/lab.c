@@ -13,6 +13,8 @@
 #include "scene/model/scene.h"
 
 #include <stdlib.h>
+#include <string.h>
+#include <strings.h>
 
 /* The number of handlers that may do work with much memory and time at once. */
 enum { HEAVY_AT_ONCE = 2 };
@@ -81,6 +83,13 @@ static void on_state_changed(void *of)
 
 /* --- start and stop --- */
 
+bool lab_is_scene_name(const char *name)
+{
+    const char *ending = strrchr(name, '.');
+    return ending && (strcasecmp(ending, ".yaml") == 0 || strcasecmp(ending, ".yml") == 0) && name[0] != '.' &&
+           !strstr(name, "/.");
+}
+
 static status first_scene(const lab *l, scene **out, char **file, diagnostic *why)
 {
     *file = NULL;
@@ -134,7 +143,8 @@ static status open_document(lab *l, diagnostic *why)
     status code = first_scene(l, &first, &file, why);
     if (code == STATUS_OK) {
         lab_set_default_threads(l, first);
-        code = scene_document_create(first, file, l->files, on_document, l, &l->scene_document, why);
+        const char *own = file && lab_is_scene_name(file) ? file : NULL;
+        code = scene_document_create(first, own, l->files, on_document, l, &l->scene_document, why);
     }
     free(file);
     return code;

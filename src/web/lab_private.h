@@ -40,6 +40,9 @@ void lab_publish(lab *l, const char *event, json_t *value);
 void lab_publish_state(lab *l);
 json_t *lab_state(lab *l);
 
+/* Whether a file would be listed among the scenes: other files that hold a scene are not saved into. */
+bool lab_is_scene_name(const char *name);
+
 /* Sets the default number of threads in an opened scene that sets none. */
 void lab_set_default_threads(const lab *l, scene *s);
 /* Resets render.threads where it equals that default: the default belongs to this machine, so files do not store it. */

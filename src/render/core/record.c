@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "image/heatmap.h"
+#include "scene/file/shared.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,10 +15,27 @@ static void read_row(const void *of, int y, float *rgb)
     film_read(f, 0, y, f->width, y + 1, rgb, 0);
 }
 
-status record_image(const film *f, const char *path, int bits, diagnostic *why)
+static status write_with_scene(image_rows rows, const scene *of, const char *path, int bits, diagnostic *why)
 {
-    const image_rows rows = {f->width, f->height, read_row, f};
-    return image_write_rows(&rows, path, bits, why);
+    shared_texts texts = {.count = 0};
+    if (of && image_format_of(path) == IMAGE_PNG)
+        shared_texts_make(of, &texts);
+    rows.texts = texts.item;
+    rows.text_count = texts.count;
+    const status code = image_write_rows(&rows, path, bits, why);
+    free(texts.scene);
+    return code;
+}
+
+status record_image(const film *f, const scene *of, const char *path, int bits, diagnostic *why)
+{
+    return write_with_scene((image_rows){.width = f->width, .height = f->height, .read = read_row, .of = f}, of, path,
+                            bits, why);
+}
+
+status record_drawing(const image *img, const scene *of, const char *path, int bits, diagnostic *why)
+{
+    return write_with_scene(image_rows_of(img), of, path, bits, why);
 }
 
 static status image_of_values(const double *values, const film *f, image **out, diagnostic *why)

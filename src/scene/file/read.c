@@ -15,6 +15,8 @@
  * yes or no, true or false. SHAPE is the word of a rule in geometry/shapes/. The parameters are the rows of the table
  * (scene/model/params.h); a solid also takes those of a material, for itself alone. Vectors and colours are lists:
  * [0, 1, 2]. The file's order is kept. Sections and objects may be empty. */
+#include "base/file.h"
+#include "scene/file/shared.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
 #include "scene/file/read_entries.h"
@@ -136,13 +138,26 @@ status scene_read(const char *path, scene **out, diagnostic *why)
     return scene_read_below(path, NULL, out, why);
 }
 
+/* A shared image may be larger than a scene's text, whose own limit document_parse checks. */
+enum { FILE_LIMIT = 1 << 28 };
+
+static status read_file(const char *path, const char *root, scene **out, diagnostic *why)
+{
+    char *text;
+    size_t size;
+    TRY(file_read_below(path, root, FILE_LIMIT, &text, &size, why));
+    const status code = shared_is_file(text, size) ? shared_read_file(path, text, size, out, why)
+                                                   : scene_read_text(path, text, size, out, why);
+    free(text);
+    return code;
+}
+
 status scene_read_below(const char *path, const char *root, scene **out, diagnostic *why)
 {
     *out = NULL;
-    document *file;
-    status code = document_read_below(path, root, &file, why);
-    THEN(code, build_and_release(file, out, why));
-    if (code == STATUS_OK && (code = scene_limit(*out, root, 0, why)) != STATUS_OK) {
+    TRY(shared_is_link(path) ? shared_read_link(path, out, why) : read_file(path, root, out, why));
+    const status code = scene_limit(*out, root, 0, why);
+    if (code != STATUS_OK) {
         scene_destroy(*out);
         *out = NULL;
     }

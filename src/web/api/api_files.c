@@ -4,12 +4,12 @@
 #include "report/json.h"
 #include "report/machine.h"
 #include "report/media_rows.h"
+#include "scene/file/shared.h"
 #include "scene/file/write.h"
 #include "scene/model/open.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 /* The path from the scene's folder to the chosen folder; NULL when out of memory. */
@@ -69,29 +69,25 @@ static status read_scene(call *c, const char *name, scene **out)
 
 status api_open(call *c)
 {
-    const char *name = NULL;
+    const char *name = NULL, *link = NULL;
     bool fresh = false;
     scene *s = NULL;
     uint64_t generation = 0;
-    if (!api_take_flag(c, "new", &fresh) || !api_take_text(c, "file", !fresh, &name))
+    if (!api_take_flag(c, "new", &fresh) || !api_take_text(c, "link", false, &link) ||
+        !api_take_text(c, "file", !fresh && !link, &name))
         return STATUS_BAD_INPUT;
-    if (fresh && name)
-        return api_refuse(c, 400, "'file' and 'new' cannot be combined", "give either 'file' or 'new'");
-    TRY(fresh ? new_scene(&s, &c->why) : read_scene(c, name, &s));
+    if (fresh + (name != NULL) + (link != NULL) > 1)
+        return api_refuse(c, 400, "'file', 'new' and 'link' cannot be combined", "give only one of them");
+    if (link && !shared_is_link(link))
+        return api_refuse(c, 400, "the link holds no scene", "give a link with #scene=CODE");
+    TRY(fresh ? new_scene(&s, &c->why) : link ? shared_read_link(link, &s, &c->why) : read_scene(c, name, &s));
     lab_set_default_threads(c->l, s);
-    status code = scene_document_open(c->l->scene_document, s, name, &generation, &c->why);
+    const char *file = name && lab_is_scene_name(name) ? name : NULL; /* no saving into an image */
+    status code = scene_document_open(c->l->scene_document, s, file, &generation, &c->why);
     return api_changed(c, code, generation);
 }
 
 /* --- saving --- */
-
-/* Whether the file would be listed among the scenes. */
-static bool is_scene_name(const char *name)
-{
-    const char *ending = strrchr(name, '.');
-    return ending && (strcasecmp(ending, ".yaml") == 0 || strcasecmp(ending, ".yml") == 0) && name[0] != '.' &&
-           !strstr(name, "/.");
-}
 
 /* Whether the file is the open scene document. */
 static bool is_open(const call *c, const char *name)
@@ -104,14 +100,14 @@ static bool is_open(const call *c, const char *name)
 
 static status write_file(call *c, const char *name, const char *path)
 {
-    uint64_t generation = 0;
-    scene *s = scene_document_take_kept(c->l->scene_document, &generation);
+    uint64_t generation = 0, version = 0;
+    scene *s = scene_document_take_kept(c->l->scene_document, &generation, &version);
     if (s)
         lab_clear_default_threads(c->l, s);
     const status code = s ? scene_write(s, path, false, &c->why) : out_of_memory(&c->why);
     scene_destroy(s);
     if (code == STATUS_OK)
-        scene_document_saved(c->l->scene_document, name, generation);
+        scene_document_saved(c->l->scene_document, name, version);
     return api_changed(c, code, generation);
 }
 
@@ -123,7 +119,7 @@ status api_save(call *c)
     if (!api_take_text(c, "file", true, &name) || !api_take_flag(c, "replace", &replace))
         return STATUS_BAD_INPUT;
     status code = folder_path(c->l->files, name, false, &path, &c->why);
-    if (code == STATUS_OK && !is_scene_name(name))
+    if (code == STATUS_OK && !lab_is_scene_name(name))
         code =
             diagnose(&c->why, STATUS_BAD_INPUT, "use a name that ends in .yaml and has no part that begins with a dot",
                      "'%.200s' is not a valid scene name", name);

@@ -1,5 +1,6 @@
 /* The choice of the render passes from the measured speed. */
 #include "web/live/passes.h"
+#include "scene/model/work.h"
 
 #include <math.h>
 
@@ -21,10 +22,7 @@ render_settings passes_settings(const render_settings *r, int shrink, bool singl
 double passes_work(const render_settings *r, int shrink, bool single)
 {
     const render_settings pass = passes_settings(r, shrink, single);
-    const double rays =
-        integrator_traits_of(r)->by_chance ? fmax((double)pass.paths, (double)pass.samples) : (double)pass.samples;
-    const double wavelengths = r->spectrum == SPECTRUM_SPECTRAL ? (double)r->wavelengths : 1.0;
-    return (double)pass.width * (double)pass.height * rays * wavelengths;
+    return scene_camera_rays(&pass);
 }
 
 static void put(pass_plan *plan, int shrink, bool single)

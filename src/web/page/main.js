@@ -13,6 +13,7 @@ import { createKeys } from './keys.js';
 import { orbitTool } from './tool_orbit.js';
 import { lightTool } from './tool_light.js';
 import { cameraBox } from './camera_box.js';
+import { openLink } from './shared_link.js';
 
 /* A panel that cannot be loaded does not affect the others. */
 const modules = ['lessons', 'params', 'edit', 'pixel', 'bench', 'compare', 'slime', 'studies', 'machine'];
@@ -38,6 +39,7 @@ async function start() {
   lab.panels = createPanels(at('side'), at('splitter'), at('workspace'), panels, lab);
   for (const each of loaded) if (each.status === 'rejected') lab.fail(each.reason);
   lab.start();
+  await openLink(lab);
 }
 
 start();

@@ -1,6 +1,7 @@
 /* The panel Objects: scene files, objects to add, the list of all objects, and the selected one. exports: panel. The
  * tool Object selects and moves objects in the image. */
 
+import { copyLink } from './shared_link.js';
 import { button, choice as choiceOf, element, group } from './ui.js';
 import { createChoice } from './object_choice.js';
 import { createDetails } from './object_details.js';
@@ -24,7 +25,7 @@ function start(lab) {
   objectTool(lab, choice, mark);
 }
 
-function fileButtons() {
+function fileButtons(lab) {
   return element(
     'div',
     { class: 'buttons', role: 'group', 'aria-label': 'Scene file' },
@@ -32,6 +33,7 @@ function fileButtons() {
     button('New', files.fresh, { icon: 'plus' }),
     button('Save', files.save, { icon: 'save', title: 'Save (Ctrl S)' }),
     button('Save as …', () => files.saveAs()),
+    button('Copy link', () => copyLink(lab), { title: 'Copy a link that holds the whole scene' }),
   );
 }
 
@@ -99,7 +101,7 @@ function addButtons(lab) {
 function create(root, lab) {
   start(lab);
   root.append(
-    fileButtons(),
+    fileButtons(lab),
     addButtons(lab),
     createList(lab, choice).node,
     createDetails(lab, choice, files).node,

@@ -314,11 +314,11 @@ void scene_document_share_loaded(scene_document *d, const scene *loaded, uint64_
     pthread_mutex_unlock(&d->lock);
 }
 
-void scene_document_saved(scene_document *d, const char *file, uint64_t generation)
+void scene_document_saved(scene_document *d, const char *file, uint64_t number)
 {
     char *name = strdup(file);
     pthread_mutex_lock(&d->lock);
-    if (name && generation == d->generation) {
+    if (name && number == d->now.number) {
         free(d->now.file);
         d->now.file = name;
         d->saved_number = d->now.number;

@@ -67,8 +67,9 @@ status scene_document_reset(scene_document *d, const char *const *paths, size_t 
 
 /* A copy of the scene with its loaded data (triangles, textures); NULL when out of memory. generation may be NULL. */
 scene *scene_document_take(scene_document *d, uint64_t *generation);
-/* The same with the scene's own camera instead of the view: what a file of it contains. */
-scene *scene_document_take_kept(scene_document *d, uint64_t *generation);
+/* The same with the own camera instead of the view: what a file of it contains. number: of this version, which
+ * moves of the camera leave. */
+scene *scene_document_take_kept(scene_document *d, uint64_t *generation, uint64_t *number);
 /* A copy of the scene as it was opened. */
 scene *scene_document_take_opened(scene_document *d);
 uint64_t scene_document_generation(scene_document *d);
@@ -76,8 +77,8 @@ uint64_t scene_document_generation(scene_document *d);
 /* Shares the data that was loaded for a copy of that generation with later copies. loaded is borrowed. */
 void scene_document_share_loaded(scene_document *d, const scene *loaded, uint64_t generation);
 
-/* Records that this generation was written to that file. */
-void scene_document_saved(scene_document *d, const char *file, uint64_t generation);
+/* Records that the version with that number, of scene_document_take_kept, was written to that file. */
+void scene_document_saved(scene_document *d, const char *file, uint64_t number);
 
 /* Adds generation, file, title, saved, undo, redo and view; false when out of memory. */
 bool scene_document_json(scene_document *d, json_t *state);

@@ -72,7 +72,7 @@ status scene_document_view(scene_document *d, view_command order, uint64_t *gene
     return scene_document_finish(d, order == VIEW_KEEP ? keep(d, why) : show(d, order, why), generation);
 }
 
-scene *scene_document_take_kept(scene_document *d, uint64_t *generation)
+scene *scene_document_take_kept(scene_document *d, uint64_t *generation, uint64_t *number)
 {
     pthread_mutex_lock(&d->lock);
     scene *copy = scene_clone(d->now.s);
@@ -80,6 +80,8 @@ scene *scene_document_take_kept(scene_document *d, uint64_t *generation)
         copy->camera = d->now.kept;
     if (generation)
         *generation = d->generation;
+    if (number)
+        *number = d->now.number;
     pthread_mutex_unlock(&d->lock);
     return copy;
 }

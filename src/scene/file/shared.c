@@ -1,0 +1,111 @@
+/* What may be shared, and its text, code and metadata. shared_read.c reads them. */
+#include "scene/file/shared.h"
+#include "base/base64.h"
+#include "scene/file/write.h"
+#include "scene/model/params.h"
+#include "scene/model/scene.h"
+#include "scene/model/work.h"
+#include "scene/model/slime.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+static status refuse_file(const char *what, const char *path, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "remove the object, or share the scene's files themselves",
+                    "a scene that is shared may name no files, but %.80s reads %.200s", what, path);
+}
+
+static status check_files(const scene *s, diagnostic *why)
+{
+    if (s->background.image_path[0])
+        return refuse_file("the background", s->background.image_path, why);
+    if (s->texture_count > 0)
+        return refuse_file(s->textures[0].name, s->textures[0].path, why);
+    for (size_t i = 0; i < s->mesh_count; i++) {
+        const mesh_entry *m = &s->meshes[i];
+        if (m->path[0] || m->script_path[0])
+            return refuse_file(m->name, m->path[0] ? m->path : m->script_path, why);
+        if (m->source == MESH_ARRAYS)
+            return refuse_file(m->name, "a program's memory", why);
+    }
+    return STATUS_OK;
+}
+
+static status too_much(const char *what, double value, double limit, diagnostic *why)
+{
+    return diagnose(why, STATUS_BAD_INPUT, "share a smaller scene, or its file",
+                    "a scene that is shared has at most %.4g %s, not %.4g", limit, what, value);
+}
+
+static double motion_of(const scene *s)
+{
+    double work = 0.0;
+    for (size_t i = 0; i < s->mesh_count; i++)
+        if (s->meshes[i].source == MESH_SLIME)
+            work += slime_work(&s->meshes[i]);
+    return work;
+}
+
+status shared_scene_check(const scene *s, diagnostic *why)
+{
+    TRY(check_files(s, why));
+    const struct {
+        const char *what;
+        double value, limit;
+    } bounds[] = {
+        {"pixels", (double)s->render.width * (double)s->render.height, SHARED_PIXELS_MAX},
+        {"triangles", scene_planned_triangles(s), SHARED_TRIANGLES_MAX},
+        {"rays", scene_most_rays(&s->render), SHARED_RAYS_MAX},
+        {"steps times masses of slimes", motion_of(s), SHARED_MOTION_MAX},
+    };
+    for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++)
+        if (bounds[i].value > bounds[i].limit)
+            return too_much(bounds[i].what, bounds[i].value, bounds[i].limit, why);
+    return STATUS_OK;
+}
+
+/* The acceleration structure stays: Embree's film differs. Beams stay too: they are no setting of the machine. */
+static status forget_machine(void *of, const char *path, const param *row, const char *value)
+{
+    (void)value;
+    const bool here = row->performance_only && (row->group == PARAM_RENDER || row->group == PARAM_MESH) &&
+                      strcmp(row->name, "accel") != 0;
+    return here ? scene_set(of, path, row->fallback, NULL) : STATUS_OK;
+}
+
+status shared_scene_text(const scene *s, char **text, diagnostic *why)
+{
+    *text = NULL;
+    TRY(shared_scene_check(s, why));
+    scene *bare = scene_clone(s);
+    status code = bare ? scene_each_param(s, forget_machine, bare) : out_of_memory(why);
+    THEN(code, scene_write_text(bare, NULL, false, text, why));
+    scene_destroy(bare);
+    if (code == STATUS_OK && strlen(*text) > SHARED_TEXT_MAX) {
+        code = too_much("bytes of text", (double)strlen(*text), SHARED_TEXT_MAX, why);
+        free(*text);
+        *text = NULL;
+    }
+    return code;
+}
+
+status shared_scene_code(const char *text, char **code, diagnostic *why)
+{
+    const uLong size = (uLong)strlen(text);
+    uLongf room = compressBound(size);
+    unsigned char *packed = malloc(room);
+    *code = NULL;
+    if (packed && compress2(packed, &room, (const Bytef *)text, size, Z_BEST_COMPRESSION) == Z_OK)
+        *code = base64_encode(packed, room, true);
+    free(packed);
+    return *code ? STATUS_OK : out_of_memory(why);
+}
+
+void shared_texts_make(const scene *s, shared_texts *texts)
+{
+    *texts = (shared_texts){.item = {{"Software", "Cuvette " CUVETTE_VERSION}}, .count = 1};
+    if (shared_scene_text(s, &texts->scene, NULL) == STATUS_OK)
+        texts->item[texts->count++] = (image_text){SHARED_KEYWORD, texts->scene};
+}
