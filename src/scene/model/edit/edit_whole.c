@@ -1,5 +1,5 @@
-/* Moves, rotates and scales whole scenes: all solids, all lights and beams, or both, with or without the camera. Scaling of
- * one solid or light is here as well. */
+/* Moves, rotates and scales whole scenes: all solids, all lights and beams, or both, with or without the camera.
+ * Scaling of one solid or light is here as well. */
 #include "scene/model/edit/edit.h"
 #include "scene/model/edit/edit_vector.h"
 #include "base/elementary.h"
