@@ -1,22 +1,17 @@
 /* `cuvette study new`: writes a study file for a scene and axes, after reading it as `study run` would. */
-#include "cli/study_new.h"
+#include "study/new_study.h"
 #include "base/file.h"
 #include "base/grow.h"
-#include "base/text_writer.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/study_commands.h"
 #include "cli/study_notes.h"
 #include "cli/terminal.h"
-#include "scene/file/write_parts.h"
-#include "scene/model/params.h"
 #include "scene/model/scene.h"
 #include "study/study.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-enum { NAME_LENGTH = 64 };
 
 typedef struct new_request {
     const char *scene, *name, *output;
@@ -96,129 +91,44 @@ static status check_request(const new_request *r, diagnostic *why)
     return STATUS_OK;
 }
 
-/* Applies one setting, or each value of one axis, so that an error is located at its option. */
-static status try_settings(const new_request *r, scene *s, const new_axis *axes, diagnostic *why)
+static void print_notes(const new_request *r, const study *made)
 {
-    char where[512];
-    for (size_t i = 0; i < r->set_count; i++) {
-        const status code = scene_set_assignment(s, r->sets[i], why);
-        snprintf(where, sizeof where, "--set %.400s", r->sets[i]);
-        if (code != STATUS_OK) {
-            diagnostic_locate(why, where, 0, 0);
-            return code;
-        }
+    if (is_written(r)) {
+        study_notes_print_file(made);
+        return;
     }
-    scene *on = scene_clone(s);
-    status code = on ? STATUS_OK : out_of_memory(why);
-    for (size_t a = 0; a < r->axis_count && code == STATUS_OK; a++)
-        for (size_t i = 0; i < axes[a].count - (axes[a].range ? 1 : 0) && code == STATUS_OK; i++) {
-            code = scene_set(on, axes[a].path, axes[a].values[i], why);
-            snprintf(where, sizeof where, "--axis %.400s", r->axes[a]);
-            if (code != STATUS_OK)
-                diagnostic_locate(why, where, 0, 0);
-        }
-    scene_destroy(on);
-    return code;
-}
-
-/* The name of the file without its ending; or the names of scene and parameter, "rod-depth". */
-static void choose_name(const new_request *r, const new_axis *first, char name[NAME_LENGTH + 1])
-{
-    const char *file = file_name_of(is_written(r) ? r->output : r->scene);
-    const char *ending = strrchr(file, '.'), *parameter = strrchr(first->path, '.');
-    const int length = ending ? (int)(ending - file) : (int)strlen(file);
-    if (r->name)
-        snprintf(name, NAME_LENGTH + 1, "%s", r->name);
-    else if (is_written(r))
-        snprintf(name, NAME_LENGTH + 1, "%.*s", length, file);
-    else
-        snprintf(name, NAME_LENGTH + 1, "%.*s-%s", length, file, parameter ? parameter + 1 : first->path);
-    for (char *c = name; !r->name && *c; c++)
-        if (!strchr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_", *c))
-            *c = '-';
-}
-
-/* Locates an error in a file that was not written at the option that made its line. */
-static void relocate(const new_request *r, const char *text, diagnostic *why)
-{
-    char where[512] = "study new";
-    size_t axes = 0;
-    for (long line = 1; line <= why->line && *text; line++) {
-        axes += strncmp(text, "  - {", 5) == 0;
-        if (line == why->line && strncmp(text, "study: ", 7) == 0)
-            snprintf(where, sizeof where, "--name %.400s", r->name ? r->name : "");
-        text += strcspn(text, "\n");
-        text += *text == '\n';
-    }
-    if (axes > 0 && axes <= r->axis_count)
-        snprintf(where, sizeof where, "--axis %.400s", r->axes[axes - 1]);
-    diagnostic_locate(why, where, 0, 0);
-}
-
-static status validate(const new_request *r, const char *file, const char *text, study **out, diagnostic *why)
-{
-    const status code = study_read_text(file, text, strlen(text), out, why);
-    if (code == STATUS_BAD_INPUT && why->line > 0)
-        relocate(r, text, why);
-    if (code == STATUS_OK && is_written(r))
-        study_notes_print_file(*out);
-    for (size_t i = 0; code == STATUS_OK && !is_written(r) && i < (*out)->note_count; i++) {
+    for (size_t i = 0; i < made->note_count; i++) {
         char line[NOTE_LINE_MAX];
-        terminal_note(note_line(&(*out)->notes[i].note, line, sizeof line));
+        terminal_note(note_line(&made->notes[i].note, line, sizeof line));
     }
-    return code;
 }
 
-static status write_study(const new_request *r, const new_study *made, const char *file, diagnostic *why)
+static status make_study(const new_request *r, scene *s, diagnostic *why)
 {
     char *text = NULL;
-    study *read = NULL;
-    text_writer writer;
-    TRY(text_writer_open(&writer, why));
-    new_study_write(made, writer.stream);
-    status code = text_writer_close(&writer, &text, NULL, why);
-    THEN(code, validate(r, file, text, &read, why));
+    study *made = NULL;
+    const new_study_order order = {.scene = r->scene,
+                                   .target = is_written(r) ? r->output : NULL,
+                                   .name = r->name,
+                                   .axes = r->axes,
+                                   .axis_count = r->axis_count,
+                                   .sets = r->sets,
+                                   .set_count = r->set_count,
+                                   .repetitions = r->repetitions};
+    status code = new_study_compose(&order, s, &text, &made, why);
+    if (code == STATUS_OK && is_written(r))
+        code = outputs_check_place("-o", r->output, s, why);
+    if (code == STATUS_OK)
+        print_notes(r, made);
     if (code == STATUS_OK && is_written(r))
         code = file_write(r->output, text, why);
     else if (code == STATUS_OK)
         fputs(text, stdout);
     if (code == STATUS_OK && is_written(r))
-        printf("%s: %zu cells of %ld repetitions; cuvette study run %s\n", r->output, study_cell_count(read),
-               read->repetitions_max, r->output);
-    study_destroy(read);
+        printf("%s: %zu cells of %ld repetitions; cuvette study run %s\n", r->output, study_cell_count(made),
+               made->repetitions_max, r->output);
+    study_destroy(made);
     free(text);
-    return code;
-}
-
-static status make_study(const new_request *r, scene *s, new_axis *axes, diagnostic *why)
-{
-    char where[512], name[NAME_LENGTH + 1], file[NAME_LENGTH + 16], *path = NULL;
-    for (size_t i = 0; i < r->axis_count; i++) {
-        const status code = new_axis_parse(r->axes[i], &axes[i], why);
-        snprintf(where, sizeof where, "--axis %.400s", r->axes[i]);
-        if (code != STATUS_OK) {
-            diagnostic_locate(why, where, 0, 0);
-            return code;
-        }
-    }
-    TRY(try_settings(r, s, axes, why));
-    choose_name(r, &axes[0], name);
-    snprintf(file, sizeof file, "%s.study", name);
-    const char *target = is_written(r) ? r->output : file;
-    if (is_written(r))
-        TRY(outputs_check_place("-o", target, s, why));
-    const char *slash = strrchr(r->scene, '/');
-    TRY(write_moved_path(slash ? slash + 1 : r->scene, r->scene, target, &path, why));
-    const new_study made = {.name = name,
-                            .scene_path = path,
-                            .of = s,
-                            .sets = r->sets,
-                            .set_count = r->set_count,
-                            .axes = axes,
-                            .axis_count = r->axis_count,
-                            .repetitions = r->repetitions};
-    const status code = write_study(r, &made, target, why);
-    free(path);
     return code;
 }
 
@@ -229,13 +139,7 @@ status study_new(int argc, char **argv, diagnostic *why)
     status code = command_form_read(&form, argc, argv, &request, why);
     THEN(code, check_request(&request, why));
     THEN(code, scene_read(request.scene, &s, why));
-    new_axis *axes = calloc(request.axis_count + 1, sizeof *axes);
-    if (!axes)
-        code = out_of_memory(why);
-    THEN(code, make_study(&request, s, axes, why));
-    for (size_t i = 0; axes && i < request.axis_count; i++)
-        new_axis_release(&axes[i]);
-    free(axes);
+    THEN(code, make_study(&request, s, why));
     scene_destroy(s);
     free(request.axes);
     free(request.sets);

@@ -24,3 +24,6 @@ typedef struct study_estimate {
 /* options: as for study_run; progress and progressed are not used. STATUS_INTERRUPTED after a stop
  * request; otherwise the errors of reading the rows and of loading the files of a cell. */
 status study_estimate_run(const study *s, const study_options *options, study_estimate *out, diagnostic *why);
+
+/* The lines of `cuvette study run --dry-run`. results: the results folder. */
+void study_estimate_write(FILE *out, const study *s, const char *results, const study_estimate *e);

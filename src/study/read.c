@@ -350,6 +350,12 @@ status study_read_text(const char *name, const char *text, size_t size, study **
     return read_text(name, text, size, NULL, out, why);
 }
 
+status study_read_text_guarded(const char *name, const char *text, size_t size, const study_guard *guard, study **out,
+                               diagnostic *why)
+{
+    return read_text(name, text, size, guard, out, why);
+}
+
 status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why)
 {
     char *text;

@@ -87,6 +87,8 @@ typedef struct study_guard {
 status study_read_guarded(const char *path, const study_guard *guard, study **out, diagnostic *why);
 /* The same from memory; name is used in diagnostics, and scene paths are relative to its folder. */
 status study_read_text(const char *name, const char *text, size_t size, study **out, diagnostic *why);
+status study_read_text_guarded(const char *name, const char *text, size_t size, const study_guard *guard, study **out,
+                               diagnostic *why);
 void study_destroy(study *s);
 
 /* Cells are the grid's points, numbered 0.. with the last axis fastest. */

@@ -106,6 +106,39 @@ export const cases = {
     t.equal(await screen.page.evaluate(() => window.lab.picture.film_hash), film, 'the film of the changed scene');
   },
 
+  'a new study is estimated, saved and accepted by the program': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    await lab.post('/api/set', { set: { 'liquid.ior': 1.5, 'render.width': 120 } });
+    const form = { file: 'form.study', axes: ['render.depth=1,2,4', 'rod.visible=on,off'], repetitions: 7 };
+    const estimate = await lab.post('/api/studies', form);
+    t.equal([estimate.name, estimate.cells, estimate.rows], ['form', 6, 42], 'name, cells and rows');
+    t.more(estimate.most_s, 0, 'estimated time');
+    const files = async () => (await lab.get('/api/files')).studies;
+    t.check(!(await files()).includes('form.study'), 'an estimate writes nothing');
+    const saved = await lab.post('/api/studies', { ...form, save: true });
+    t.equal(saved, { name: 'form', file: 'form.study', cells: 6 }, 'the saved study');
+    t.equal(await readFile(join(lab.folder, 'form.study'), 'utf8'), estimate.text, 'the file is the text shown before');
+    t.check(estimate.text.includes('liquid.ior: 1.5'), 'a change since the scene was opened is set in all cells');
+    const said = await lab.run('study', 'run', '--dry-run', 'form.study');
+    t.equal(estimate.said.split('\n')[0], said.split('\n')[0], 'rows to measure, as the program counts them');
+
+    for (const [change, status, field, words] of [
+      [{ axes: ['render.depth=1,x'] }, 400, '--axis render.depth=1,x', "'x' is not an integer"],
+      [{ axes: [] }, 400, undefined, 'a study has 1 to 16 axes'],
+      [{ repetitions: 0.5 }, 400, 'repetitions', 'invalid number of repetitions'],
+      [{ file: '../form.study' }, 400, 'file', 'not a valid study name'],
+      [{ axes: ['background.picture=/etc/passwd'] }, 400, undefined, 'outside of the folder'],
+      [{ save: true }, 409, undefined, 'already exists'],
+    ]) {
+      const reply = await lab.ask('POST', '/api/studies', { ...form, ...change });
+      const { error, remedy, file } = JSON.parse(new TextDecoder().decode(reply.bytes));
+      t.equal([reply.status, file], [status, field], `status and field of ${JSON.stringify(change)}`);
+      t.check(error.includes(words) && remedy, `an error with a remedy: ${error}; ${remedy}`);
+    }
+    await lab.post('/api/objects', { kind: 'light' });
+    t.equal((await lab.ask('POST', '/api/studies', form)).status, 409, 'a scene with other objects than its file');
+  },
+
   'the panel Machine has the kernel and version of cuvette machine': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);

@@ -25,7 +25,8 @@ api_handler api_state, api_scene, api_set, api_reset, api_undo, api_redo, api_ca
     api_scale, api_rename, api_material, api_copy, api_contents, api_files, api_open, api_save, api_media, api_slime,
     api_grab, api_move_hand, api_release, api_studies, api_study, api_study_run, api_study_stop, api_study_rows,
     api_study_compare, api_study_draw, api_study_figure, api_figure, api_machine, api_notes, api_link, api_beams,
-    api_beam_screen, api_lessons, api_lesson_open, api_lesson_measure, api_lesson_thumbnail, api_thumbnail;
+    api_beam_screen, api_lessons, api_lesson_open, api_lesson_measure, api_lesson_thumbnail, api_thumbnail,
+    api_study_new;
 
 /* Fills l->routes with all routes, bound to the lab. */
 status api_bind(lab *l, size_t *count, diagnostic *why);
@@ -57,6 +58,11 @@ json_t *changed_params(const scene *a, const scene *b);
  * text is allocated memory. */
 status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,
                     diagnostic *why);
+
+/* The same as a list of PATH=VALUE for the scene's file, whose path *path is; NULL if it cannot be read. Both are the
+ * caller's. */
+status command_settings(const folder *files, const char *file, const scene *s, int threads, char **path,
+                        json_t **settings, bool *complete, diagnostic *why);
 
 /* --- reading a request --- */
 

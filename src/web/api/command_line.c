@@ -46,9 +46,9 @@ static bool same_objects(const scene *a, const scene *b)
     return same;
 }
 
-/* The command line so far, and the scene that it renders. */
+/* The settings so far, and the scene that they give. */
 typedef struct writing {
-    FILE *out;
+    json_t *settings;
     scene *so_far;
     bool camera; /* the camera is aimed differently: write all its parameters */
 } writing;
@@ -61,8 +61,8 @@ static status add_option(void *of, const char *path, const param *row, const cha
     if (code != STATUS_OK || strcmp(current, value) != 0 || (w->camera && row->group == PARAM_CAMERA)) {
         code = scene_set(w->so_far, path, value, NULL);
         char *both = text_format("%s=%s", path, value);
-        fputs(" --set ", w->out);
-        write_word(w->out, both ? both : "");
+        if (!both || json_array_append_new(w->settings, json_string(both)) != 0)
+            code = STATUS_FAILURE;
         free(both);
     }
     free(current);
@@ -94,35 +94,53 @@ static scene *rebase_paths(const scene *s, const char *path)
     return rebased;
 }
 
-static bool write_line(FILE *out, scene *from, const char *path, const scene *s)
+/* The settings that turn `from` into s; false where settings do not suffice. */
+static bool collect(json_t *settings, scene *from, const char *path, const scene *s)
 {
-    fputs("cuvette render ", out);
-    write_word(out, path);
     scene *rebased = rebase_paths(s, path);
-    writing w = {.out = out, .so_far = from};
+    writing w = {.settings = settings, .so_far = from};
     if (rebased)
         w.camera = from->camera.aimed != rebased->camera.aimed;
     const bool complete =
         rebased && same_objects(from, rebased) && scene_each_param(rebased, add_option, &w) == STATUS_OK;
     scene_destroy(rebased);
-    fputs(" -o image.png", out);
     return complete;
+}
+
+status command_settings(const folder *files, const char *file, const scene *s, int threads, char **path,
+                        json_t **settings, bool *complete, diagnostic *why)
+{
+    scene *from = NULL;
+    *complete = false;
+    *path = NULL;
+    *settings = json_array();
+    if (!*settings)
+        return out_of_memory(why);
+    if (file && read_again(files, file, threads, &from, path) == STATUS_OK)
+        *complete = collect(*settings, from, *path, s);
+    else if (*path)
+        free(*path), *path = NULL;
+    scene_destroy(from);
+    return STATUS_OK;
 }
 
 status command_line(const folder *files, const char *file, const scene *s, int threads, char **text, bool *complete,
                     diagnostic *why)
 {
-    scene *from = NULL;
     char *path = NULL;
-    *complete = false;
+    json_t *settings = NULL;
     *text = NULL;
     text_writer writer;
     TRY(text_writer_open(&writer, why));
-    if (file && read_again(files, file, threads, &from, &path) == STATUS_OK)
-        *complete = write_line(writer.stream, from, path, s);
-    else
-        fputs("cuvette render scene.yaml -o image.png", writer.stream);
-    scene_destroy(from);
+    status code = command_settings(files, file, s, threads, &path, &settings, complete, why);
+    fputs("cuvette render ", writer.stream);
+    write_word(writer.stream, path ? path : "scene.yaml");
+    for (size_t i = 0; i < json_array_size(settings); i++) {
+        fputs(" --set ", writer.stream);
+        write_word(writer.stream, json_string_value(json_array_get(settings, i)));
+    }
+    fputs(" -o image.png", writer.stream);
+    json_decref(settings);
     free(path);
-    return text_writer_close(&writer, text, NULL, why);
+    return text_writer_end(&writer, code, text, NULL, why);
 }

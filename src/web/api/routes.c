@@ -51,6 +51,7 @@ static const struct api_route {
     {"POST", "/api/slime/move", api_move_hand, OBJECT},
     {"POST", "/api/slime/release", api_release, OBJECT},
     {"GET", "/api/studies", api_studies, NO_BODY},
+    {"POST", "/api/studies", api_study_new, OBJECT},
     {"GET", "/api/studies/{name}", api_study, NO_BODY},
     {"POST", "/api/studies/{name}/run", api_study_run, EMPTY},
     {"POST", "/api/studies/{name}/stop", api_study_stop, EMPTY},

@@ -91,9 +91,14 @@ static status may_load(void *context, const scene *setting, diagnostic *why)
     return folder_check_scene(l->files, setting, why);
 }
 
+study_guard study_guard_of(const lab *l)
+{
+    return (study_guard){may_open, may_load, (void *)(uintptr_t)l, folder_real(l->files)};
+}
+
 status study_open(const lab *l, const char *file, study **out, diagnostic *why)
 {
-    const study_guard guard = {may_open, may_load, (void *)(uintptr_t)l, folder_real(l->files)};
+    const study_guard guard = study_guard_of(l);
     char *path = NULL;
     *out = NULL;
     status code = folder_path(l->files, file, true, &path, why);

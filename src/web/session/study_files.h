@@ -12,6 +12,8 @@ status study_each(const lab *l, bool (*visit)(void *context, const char *name, c
                   diagnostic *why);
 /* Reads a study; file is relative to the folder. */
 status study_open(const lab *l, const char *file, study **out, diagnostic *why);
+/* Permits only what is in the folder; for readers of studies. Valid as long as the lab. */
+study_guard study_guard_of(const lab *l);
 /* The file of the study with that name, allocated memory; NULL with STATUS_OK if there is none. */
 status study_find(const lab *l, const char *name, char **file, diagnostic *why);
 

@@ -1,7 +1,7 @@
-/* The parts of `cuvette study new` that need no command line: axes and the text of the file. */
+/* The axes of a new study, and the text of its file. */
+#include "study/new_study.h"
 #include "base/grow.h"
 #include "base/number.h"
-#include "cli/study_new.h"
 #include "scene/file/write_parts.h"
 #include "scene/model/params_path.h"
 #include <stdlib.h>
