@@ -27,7 +27,7 @@ static const struct {
     {-0.0, 0},
     {1.0, (int64_t)1 << 44},
     {0x1p-44, 1},
-    {0x1p-45, 1}, /* half a unit */
+    {0x1p-45, 1},      /* half a unit */
     {0x1.ffffp-46, 0}, /* less than half */
     {3.0 * 0x1p-45, 2},
     {262143.0, (int64_t)262143 << 44},
@@ -60,10 +60,10 @@ static void arrived_light_is_exact(void **state)
                     assert_int_equal(sent.out_of_range < 0, known[k].units < 0);
                     for (int i = 0; i < count; i++)
                         for (int ch = 0; ch < 3; ch++)
-                            assert_int_equal(units[ch][i], i != at                ? quarter
-                                                           : known[k].units < 0   ? 0 /* the whole light is left out */
-                                                           : ch == channel        ? known[k].units
-                                                                                  : quarter);
+                            assert_int_equal(units[ch][i], i != at              ? quarter
+                                                           : known[k].units < 0 ? 0 /* the whole light is left out */
+                                                           : ch == channel      ? known[k].units
+                                                                                : quarter);
                 }
 }
 

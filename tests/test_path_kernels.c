@@ -174,6 +174,66 @@ static void samples_are_on_their_spheres(void **state)
     }
 }
 
+/* Rays toward points at chosen distances from a centre, some of them away from it: the line's distance is exact by the
+ * Pythagorean theorem. What is kept may exceed the sphere by a thousandth, no more. */
+static void rays_near_a_sphere_are_found(void **state)
+{
+    (void)state;
+    static double o[3][ROW], d[3][ROW];
+    static int64_t near[ROW];
+    static const double ratios[] = {0.0, 0.5, 0.999999, 1.001, 1.5, 100.0};
+    for (int level = ISA_SSE2; level <= (int)isa_best(); level++)
+        for (uint32_t round = 0; round < 200; round++) {
+            const int count = 1 + (int)(round % BATCH);
+            const vec3 centre = vec3_make(4 * unit(round, 1) - 2, 4 * unit(round, 2) - 2, 4 * unit(round, 3) - 2);
+            const double radius = 0.01 + unit(round, 4), far = 2.0 + 50.0 * unit(round, 5);
+            bool expected[ROW], any = false;
+            for (int i = 0; i < count; i++) {
+                const uint32_t r = round * ROW + (uint32_t)i;
+                const vec3 along = vec3_normalize(vec3_make(unit(r, 6) - 0.5, unit(r, 7) - 0.5, unit(r, 8) - 0.5));
+                const vec3 across = vec3_normalize(vec3_cross(along, vec3_make(0.3, 1.0, -0.2)));
+                const double ratio = ratios[i % 6], side = i % 5 == 4 ? -1.0 : 1.0;
+                const vec3 from =
+                    vec3_add(vec3_sub(centre, vec3_scale(along, far)), vec3_scale(across, ratio * radius));
+                o[0][i] = from.x, o[1][i] = from.y, o[2][i] = from.z;
+                d[0][i] = side * along.x, d[1][i] = side * along.y, d[2][i] = side * along.z;
+                expected[i] = ratio < 1.0 && side > 0.0;
+                any |= expected[i];
+            }
+            const ray_batch rays = {
+                .count = count, .ox = o[0], .oy = o[1], .oz = o[2], .dx = d[0], .dy = d[1], .dz = d[2]};
+            assert_int_equal(kernels[level]->near_sphere(&rays, centre, radius, near), any);
+            for (int i = 0; i < count; i++)
+                assert_int_equal(near[i], expected[i] ? -1 : 0);
+        }
+}
+
+/* The radiance of a point on a plane from a lamp, in double precision: k_d cos + k_s, with and without falloff. */
+static void weights_follow_the_law_of_distance(void **state)
+{
+    (void)state;
+    static lamp_table lamps;
+    const vec3 n = vec3_make(0.0, 0.6, 0.8), point = vec3_make(0.1, -0.2, 0.3);
+    lamps.blocks = 5;
+    for (int k = 0; k < lamps.blocks * LAMP_BLOCK; k++) {
+        lamps.x[k] = 6 * unit(1, (uint32_t)k) - 3, lamps.y[k] = 6 * unit(2, (uint32_t)k) - 3;
+        lamps.z[k] = 6 * unit(3, (uint32_t)k) - 3;
+        lamps.strength[k] = (float)unit(4, (uint32_t)k);
+        lamps.even[k] = k % 2 ? 1.0f : 0.0f, lamps.falling[k] = 1.0f - lamps.even[k];
+    }
+    for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
+        float weight[LAMPS_MAX];
+        kernels[level]->light_weights(&lamps, point, n, 0.7f, 0.1f, weight);
+        for (int k = 0; k < lamps.blocks * LAMP_BLOCK; k++) {
+            const vec3 to = vec3_sub(vec3_make(lamps.x[k], lamps.y[k], lamps.z[k]), point);
+            const double distance2 = vec3_dot(to, to), cosine = vec3_dot(n, to) / sqrt(distance2);
+            const double radiance = (double)lamps.strength[k] / (k % 2 ? 1.0 : distance2) * (0.7 * cosine + 0.1);
+            const double expected = cosine > 0.0 ? radiance : 0.0;
+            assert_true(fabs((double)weight[k] - expected) <= 1e-5 * (1.0 + expected));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -182,6 +242,8 @@ int main(void)
         cmocka_unit_test(turns_are_those_of_the_scalar_function),
         cmocka_unit_test(directions_have_their_angles),
         cmocka_unit_test(samples_are_on_their_spheres),
+        cmocka_unit_test(rays_near_a_sphere_are_found),
+        cmocka_unit_test(weights_follow_the_law_of_distance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

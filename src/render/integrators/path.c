@@ -17,14 +17,11 @@
 /* Below this depth every path continues; from it on faint paths end by Russian roulette. */
 enum { ROULETTE_DEPTH = 3 };
 
-/* Distance at which the ray hits the sphere from outside, or HUGE_VAL. */
+/* Distance at which a ray near the sphere hits it from outside, or HUGE_VAL. */
 static double distance_to_light(const light *l, vec3 origin, vec3 direction)
 {
     const vec3 to_light = vec3_sub(l->position, origin);
     const double along = vec3_dot(to_light, direction), distance2 = vec3_dot(to_light, to_light);
-    /* Most rays miss; the margin covers the rounding of this difference. */
-    if (!(along > 0.0) || distance2 - along * along > l->radius * l->radius + 1e-12 * distance2)
-        return (double)HUGE_VAL;
     const vec3 across = vec3_sub(to_light, vec3_scale(direction, along));
     const double discriminant = l->radius * l->radius - vec3_dot(across, across);
     if (!(discriminant > 0.0) || distance2 <= l->radius * l->radius)
@@ -57,33 +54,43 @@ static int lamp_of(int64_t hit_primitive)
     return (int)(-2 - hit_primitive);
 }
 
-static void intersect_lights(tracer *t, const ray_queue *q, int first, int i)
+/* The nearest sphere light before each ray's surface. Light by light, since few rays of a batch pass near one. */
+static void intersect_lights(tracer *t, const ray_queue *q, int first, const ray_batch *rays)
 {
     const plan *p = t->target.frame_plan;
-    const int at = first + i;
-    double nearest = t->batch.hits.t[i];
-    int nearest_lamp = -1;
-    for (int k = 0; k < p->light_count && q->sample_key[at] & SAMPLE_KEY_SPECULAR_BOUNCE; k++) {
-        if (p->lights[k].radius == 0.0)
+    hit_batch *hits = &t->batch.hits;
+    double nearest[ROW];
+    int lamp[ROW];
+    int64_t near[ROW];
+    int64_t seen = 0; /* the others left a surface that sampled the lights itself */
+    for (int i = 0; i < rays->count; i++) {
+        nearest[i] = hits->t[i], lamp[i] = -1;
+        seen |= q->sample_key[first + i] & SAMPLE_KEY_SPECULAR_BOUNCE;
+    }
+    for (int k = 0; seen && k < p->light_count; k++) {
+        const light *l = &p->lights[k];
+        if (l->radius == 0.0 || !t->path->near_sphere(rays, l->position, l->radius, near))
             continue;
-        const vec3 origin = vec3_make(q->ox[at], q->oy[at], q->oz[at]);
-        const double distance = distance_to_light(&p->lights[k], origin, vec3_make(q->dx[at], q->dy[at], q->dz[at]));
-        if (distance < nearest) {
-            nearest = distance;
-            nearest_lamp = k;
+        for (int i = 0; i < rays->count; i++) {
+            if (!near[i] || !(q->sample_key[first + i] & SAMPLE_KEY_SPECULAR_BOUNCE))
+                continue;
+            const double distance = distance_to_light(l, vec3_make(rays->ox[i], rays->oy[i], rays->oz[i]),
+                                                      vec3_make(rays->dx[i], rays->dy[i], rays->dz[i]));
+            if (distance < nearest[i])
+                nearest[i] = distance, lamp[i] = k;
         }
     }
-    if (nearest_lamp < 0)
-        return;
-    t->batch.hits.hit_primitive[i] = mark_of(nearest_lamp);
-    clip_segments(t->batch.scratch.segments, i, nearest);
+    for (int i = 0; i < rays->count; i++)
+        if (lamp[i] >= 0) {
+            hits->hit_primitive[i] = mark_of(lamp[i]);
+            clip_segments(t->batch.scratch.segments, i, nearest[i]);
+        }
 }
 
 static void intersect(tracer *t, ray_queue *q, int first, int depth, const ray_batch *rays)
 {
     intersect_nearest(t, q, first, depth, rays);
-    for (int i = 0; i < rays->count; i++)
-        intersect_lights(t, q, first, i);
+    intersect_lights(t, q, first, rays);
 }
 
 static void expose_light(tracer *t, const ray_queue *q, int at, int lamp, int priority_index)

@@ -3,24 +3,18 @@
 #include "render/shade/path_kernels.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Lights are summed in blocks, whose order does not depend on the width of the processor's vectors. */
-enum { BLOCK = 8, BLOCKS_MAX = (SCENE_LIGHTS_MAX + BLOCK - 1) / BLOCK, LAMPS_MAX = BLOCK * BLOCKS_MAX };
-
-/* The lights' parameters as arrays, padded with lights of strength 0. */
-typedef struct lamp_table {
-    int blocks;
-    bool cones;
-    double x[LAMPS_MAX], y[LAMPS_MAX], z[LAMPS_MAX];
-    float radius[LAMPS_MAX], strength[LAMPS_MAX]; /* intensity; with falloff, times the square of the reach */
-    float even[LAMPS_MAX], falling[LAMPS_MAX];    /* 1 and 0 for a light without falloff, otherwise 0 and 1 */
-} lamp_table;
+enum { BLOCK = LAMP_BLOCK, BLOCKS_MAX = LAMPS_MAX / BLOCK };
 
 static void fill_table(const plan *p, lamp_table *lamps)
 {
-    memset(lamps, 0, sizeof *lamps);
     lamps->blocks = (p->light_count + BLOCK - 1) / BLOCK;
+    lamps->cones = false;
+    for (int k = p->light_count; k < lamps->blocks * BLOCK; k++) {
+        lamps->x[k] = lamps->y[k] = lamps->z[k] = 0.0;
+        lamps->radius[k] = lamps->strength[k] = lamps->even[k] = lamps->falling[k] = 0.0f;
+    }
     for (int k = 0; k < p->light_count; k++) {
         const light *l = &p->lights[k];
         const bool falls = l->reach > 0.0;
@@ -30,24 +24,6 @@ static void fill_table(const plan *p, lamp_table *lamps)
         lamps->strength[k] = (float)(falls ? strength * l->reach * l->reach : strength);
         lamps->even[k] = falls ? 0.0f : 1.0f, lamps->falling[k] = 1.0f - lamps->even[k];
         lamps->cones |= l->kind != LIGHT_POINT && l->radius == 0.0;
-    }
-}
-
-/* For each light k_d cos + k_s over the squared distance. Of a sphere that the horizon cuts, with n.v between -r and r
- * for the vector v to its centre, (n.v + r) / 2 takes the place of n.v, which continues it at r and ends at 0. Single
- * precision: weights need not be exact. */
-static void estimate(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float *weight)
-{
-    const float nx = (float)n.x, ny = (float)n.y, nz = (float)n.z;
-    const int count = lamps->blocks * BLOCK;
-    for (int k = 0; k < count; k++) {
-        const float x = (float)(lamps->x[k] - point.x), y = (float)(lamps->y[k] - point.y),
-                    z = (float)(lamps->z[k] - point.z), r = lamps->radius[k];
-        const float above = nx * x + ny * y + nz * z, cut = 0.5f * (above + r), height = above < r ? cut : above,
-                    distance2 = x * x + y * y + z * z, inverse = 1.0f / sqrtf(distance2);
-        const float falloff = lamps->falling[k] * inverse * inverse + lamps->even[k];
-        const float seen = lamps->strength[k] * falloff * (k_d * (height * inverse) + k_s);
-        weight[k] = height > 0.0f ? seen : 0.0f;
     }
 }
 
@@ -115,7 +91,8 @@ void light_choice_make(const tracer *t, const material *m, int depth, int *lamp,
     for (int i = 0; i < g->count; i++) {
         float each[LAMPS_MAX], sum[BLOCKS_MAX];
         const vec3 point = vec3_make(g->points.px[i], g->points.py[i], g->points.pz[i]);
-        estimate(&lamps, point, vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]), k_d, k_s, each);
+        t->path->light_weights(&lamps, point, vec3_make(g->points.nx[i], g->points.ny[i], g->points.nz[i]), k_d, k_s,
+                               each);
         if (lamps.cones)
             apply_cones(p, point, each);
         const float total = add_up(each, lamps.blocks, sum);

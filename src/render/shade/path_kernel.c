@@ -4,6 +4,7 @@
 #include "base/elementary_inline.h"
 #include "base/kernel.h"
 #include "optics/mueller.h"
+#include <math.h>
 
 /* Between integers below 2^52 and doubles, by the bits of 2^52 + n, which every instruction set supports. */
 ALWAYS_INLINE double real_of(int64_t n)
@@ -117,4 +118,42 @@ static void spheres(const group *g, sphere_samples *restrict s)
     }
 }
 
-const path_kernels KERNEL(path_kernels) = {draw_each, cosine, spheres};
+/* The margin covers the rounding of the difference. */
+static bool near_sphere(const ray_batch *rays, vec3 centre, double radius, int64_t *restrict near)
+{
+    const double *ox = rays->ox, *oy = rays->oy, *oz = rays->oz, *dx = rays->dx, *dy = rays->dy, *dz = rays->dz;
+    const double radius2 = radius * radius;
+    const int count = rays->count;
+    int64_t any = 0;
+    /* VECTORISE */
+    for (int i = 0; i < count; i++) {
+        const vec3 to_centre = vec3_sub(centre, vec3_make(ox[i], oy[i], oz[i]));
+        const double along = vec3_dot(to_centre, vec3_make(dx[i], dy[i], dz[i])),
+                     distance2 = vec3_dot(to_centre, to_centre);
+        near[i] = mask_less(0.0, along) & ~mask_less(radius2 + 1e-12 * distance2, distance2 - along * along);
+        any |= near[i];
+    }
+    return any != 0;
+}
+
+/* For each light k_d cos + k_s over the squared distance. Of a sphere that the horizon cuts, with n.v between -r and r
+ * for the vector v to its centre, (n.v + r) / 2 takes the place of n.v, which continues it at r and ends at 0. Single
+ * precision: weights need not be exact. */
+static void light_weights(const lamp_table *restrict lamps, vec3 point, vec3 n, float k_d, float k_s,
+                          float *restrict weight)
+{
+    const float nx = (float)n.x, ny = (float)n.y, nz = (float)n.z;
+    const int count = lamps->blocks * LAMP_BLOCK;
+    /* VECTORISE */
+    for (int k = 0; k < count; k++) {
+        const float x = (float)(lamps->x[k] - point.x), y = (float)(lamps->y[k] - point.y),
+                    z = (float)(lamps->z[k] - point.z), r = lamps->radius[k];
+        const float above = nx * x + ny * y + nz * z, cut = 0.5f * (above + r), height = above < r ? cut : above,
+                    distance2 = x * x + y * y + z * z, inverse = 1.0f / sqrtf(distance2);
+        const float falloff = lamps->falling[k] * inverse * inverse + lamps->even[k];
+        const float seen = lamps->strength[k] * falloff * (k_d * (height * inverse) + k_s);
+        weight[k] = height > 0.0f ? seen : 0.0f;
+    }
+}
+
+const path_kernels KERNEL(path_kernels) = {draw_each, cosine, spheres, near_sphere, light_weights};

@@ -14,6 +14,16 @@ typedef struct sphere_samples {
     double dx[ROW], dy[ROW], dz[ROW], cap[ROW], reach[ROW], n_l[ROW];
 } sphere_samples;
 
+/* The lights' parameters as arrays, of whole blocks, padded with lights of strength 0. */
+enum { LAMP_BLOCK = 8, LAMPS_MAX = (SCENE_LIGHTS_MAX + LAMP_BLOCK - 1) / LAMP_BLOCK * LAMP_BLOCK };
+typedef struct lamp_table {
+    int blocks;
+    bool cones; /* some are cone lights that are points */
+    double x[LAMPS_MAX], y[LAMPS_MAX], z[LAMPS_MAX];
+    float radius[LAMPS_MAX], strength[LAMPS_MAX]; /* intensity; with falloff, times the square of the reach */
+    float even[LAMPS_MAX], falling[LAMPS_MAX];    /* 1 and 0 for a light without falloff, otherwise 0 and 1 */
+} lamp_table;
+
 typedef struct path_kernels {
     /* path_draw for each sample key. */
     void (*draw)(const path_sampling *p, int count, const int64_t *sample_key, int depth, int purpose, double *u,
@@ -21,6 +31,11 @@ typedef struct path_kernels {
     /* Unit directions about the normals of g's points by the cosine law. */
     void (*cosine)(const group *g, const double *u, const double *v, double *dx, double *dy, double *dz);
     void (*spheres)(const group *g, sphere_samples *s);
+    /* The rays, -1 each, whose lines ahead pass within the radius of a centre, and some that just miss; returns whether
+     * there are any. */
+    bool (*near_sphere)(const ray_batch *rays, vec3 centre, double radius, int64_t *near);
+    /* An estimate of each light's radiance at a point with normal n, for the choice of one: weight[blocks*LAMP_BLOCK]. */
+    void (*light_weights)(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float *weight);
 } path_kernels;
 
 extern const path_kernels path_kernels_sse2, path_kernels_avx2, path_kernels_avx512;
