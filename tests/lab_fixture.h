@@ -119,6 +119,23 @@ static inline char *room_refused(const lab_room *room, const char *method, const
     return text;
 }
 
+/* The body of a reply of that type, such as an image. */
+static inline unsigned char *room_bytes(const lab_room *room, const char *target, const char *type, size_t *size)
+{
+    char *reply = client_ask(room->server, "GET", target, "", NULL), *head = text_format("Content-Type: %s", type);
+    if (reply_code(reply) != 200 || !reply_has(reply, head))
+        fail_msg("%s: expected %s, got: %.800s", target, type, reply);
+    const char *length = strstr(reply, "Content-Length: ");
+    assert_non_null(length);
+    *size = (size_t)strtoul(length + strlen("Content-Length: "), NULL, 10);
+    unsigned char *bytes = malloc(*size + 1);
+    assert_non_null(bytes);
+    memcpy(bytes, reply_body(reply), *size);
+    free(head);
+    free(reply);
+    return bytes;
+}
+
 /* Waits for the final image of the scene document and returns the hash of its film. */
 static inline char *room_film(const lab_room *room)
 {

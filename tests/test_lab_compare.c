@@ -68,25 +68,10 @@ static void refused(const lab_room *room, const char *method, const char *target
     free(json);
 }
 
-/* The image in the body of a reply. */
-static unsigned char *bytes_of(const lab_room *room, const char *target, size_t *size)
-{
-    char *reply = client_ask(room->server, "GET", target, "", NULL);
-    assert_int_equal(reply_code(reply), 200);
-    assert_true(reply_has(reply, "Content-Type: image/png"));
-    const char *length = strstr(reply, "Content-Length: ");
-    assert_non_null(length);
-    *size = (size_t)strtoul(length + strlen("Content-Length: "), NULL, 10);
-    unsigned char *bytes = malloc(*size + 1);
-    memcpy(bytes, reply_body(reply), *size);
-    free(reply);
-    return bytes;
-}
-
 static image *decoded(const lab_room *room, const char *target)
 {
     size_t size;
-    unsigned char *bytes = bytes_of(room, target, &size);
+    unsigned char *bytes = room_bytes(room, target, "image/png", &size);
     char *path = room_path(room, "reply.png");
     FILE *out = fopen(path, "wb");
     assert_int_equal(fwrite(bytes, 1, size, out), size);
@@ -146,7 +131,7 @@ static void check_map(const lab_room *room, const image *a, const image *b)
     size_t size, there_size;
     assert_int_equal(image_compare_map(a, b, &map, NULL), STATUS_OK);
     assert_int_equal(image_encode(map, IMAGE_PNG, 8, true, &bytes, &size, NULL), STATUS_OK);
-    unsigned char *there = bytes_of(room, "/api/compare.png?wait=1", &there_size);
+    unsigned char *there = room_bytes(room, "/api/compare.png?wait=1", "image/png", &there_size);
     assert_int_equal(there_size, size);
     assert_memory_equal(there, bytes, size);
     free(there);

@@ -129,6 +129,7 @@ export const cases = {
     const screen = await t.open(lab);
     await tabTo(t, screen, '[role=tab]');
     await checkFocusShows(t, screen, 'the tabs');
+    await screen.page.keyboard.press('Home');
     const names = await screen.page.getByRole('tab').allInnerTexts();
     for (let i = 0; i < names.length; i++) {
       const shown = await screen.page.getByRole('tabpanel').getAttribute('aria-labelledby');

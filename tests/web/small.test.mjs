@@ -1,7 +1,8 @@
 // Small windows, touch, large text and the projector mode: the image stays visible, targets are large enough, and axe
 // reports no violation in these layouts.
 
-const PANELS = ['Parameters', 'Objects', 'Pixel', 'Bench', 'Compare', 'Slime', 'Machine', 'Studies'];
+const PANELS = ['Lessons', 'Parameters', 'Objects', 'Pixel', 'Bench', 'Compare', 'Slime', 'Machine', 'Studies'];
+const WIDE = ['Lessons', 'Studies']; // panels that cover the image
 const PHONE = { width: 390, height: 844, touch: true };
 const SMALL = { width: 800, height: 600 };
 const TARGET = 44;
@@ -20,6 +21,17 @@ const smallTargets = (least) => {
       found.push(`${target.outerHTML.slice(0, 70)} ${Math.round(width)} x ${Math.round(height)}`);
   }
   return found;
+};
+
+/** The rows of tabs, and whether the chosen one is out of sight. */
+const tabRows = () => {
+  const list = document.querySelector('.tabs').getBoundingClientRect();
+  const chosen = document.querySelector('.tab[aria-selected=true]').getBoundingClientRect();
+  return {
+    rows: new Set([...document.querySelectorAll('.tab')].map((tab) => Math.round(tab.getBoundingClientRect().top)))
+      .size,
+    hidden: chosen.left < list.left - 1 || chosen.right > list.right + 1,
+  };
 };
 
 /** How much of the image is visible, and whether the page itself scrolls. */
@@ -68,7 +80,10 @@ async function layout(t, name, options, key) {
   if (key) await screen.page.keyboard.press(key);
   await fill(screen);
   await eachPanel(t, screen, name, async (panel) => {
-    if (panel !== 'Studies') {
+    const { rows, hidden } = await screen.page.evaluate(tabRows);
+    t.check(rows <= (options.width < 640 ? 1 : key ? 3 : 2), `${panel}: ${rows} rows of tabs`);
+    t.check(!hidden, `${panel}: its tab is out of sight`);
+    if (!WIDE.includes(panel)) {
       await screen.page.evaluate(() => {
         const root = [...document.querySelectorAll('.panel')].find((each) => each.checkVisibility());
         [...root.querySelectorAll('button, input')]
@@ -102,6 +117,20 @@ export const cases = {
   },
   'the projector mode': (t) => layout(t, 'projector', { width: 1366, height: 768 }, 'p'),
   'the projector mode on a phone, dark': (t) => layout(t, 'projector-phone', { ...PHONE, dark: true }, 'p'),
+
+  'a lesson on a phone': async (t) => {
+    const lab = await t.lab();
+    const screen = await t.open(lab, PHONE);
+    await screen.page.getByRole('button', { name: /When water becomes a mirror/ }).click();
+    await screen.button('Show the measurement').click();
+    await screen.page.locator('.lesson-value').waitFor();
+    await screen.settled();
+    t.none(await screen.page.evaluate(smallTargets, TARGET), 'targets below 44 px');
+    const { share, covered, scrolls } = await screen.page.evaluate(imageShown);
+    t.check(share > 0.99 && !covered && !scrolls, `the image is visible next to the lesson: ${share}`);
+    await t.axe(screen, 'a lesson on a phone');
+    await t.picture(screen, 'phone-lesson');
+  },
 
   'the bottom sheet is moved by keys and by its handle': async (t) => {
     const screen = await t.open(await t.lab('scenes/rod.yaml'), PHONE);

@@ -1,5 +1,5 @@
-// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER [--only VIEW]: screenshots of every view of
-// the laboratory, light and dark, for the README. Not a test; run it from the project's root,
+// tests/web/views.mjs --program CUVETTE --modules FOLDER --out FOLDER [--only VIEW] [--png]: screenshots of every view
+// of the laboratory, light and dark, for the README. Not a test; run it from the project's root,
 // whose scenes, studies and reference run it shows.
 import { mkdir } from 'node:fs/promises';
 import { createRequire } from 'node:module';
@@ -14,6 +14,7 @@ const { values: options } = parseArgs({
     modules: { type: 'string' },
     out: { type: 'string' },
     only: { type: 'string' },
+    png: { type: 'boolean' },
   },
 });
 const { chromium } = createRequire(join(options.modules, 'package.json'))('playwright-core');
@@ -195,11 +196,8 @@ try {
       const screen = await Screen.open(browser, lab, { ...size, ...view.size, dark });
       if (view.key) await screen.page.keyboard.press(view.key);
       await view.show(screen);
-      await screen.page.screenshot({
-        path: join(options.out, `${name}-${dark ? 'dark' : 'light'}.jpg`),
-        type: 'jpeg',
-        quality: 88,
-      });
+      const path = join(options.out, `${name}-${dark ? 'dark' : 'light'}.${options.png ? 'png' : 'jpg'}`);
+      await screen.page.screenshot(options.png ? { path } : { path, type: 'jpeg', quality: 88 });
       await screen.close();
       await lab.stop();
     }

@@ -6,6 +6,8 @@ import { plot } from './plot.js';
 
 const MARKS = 30; /* more would hide the line */
 
+let unfolded = false; /* a new measurement leaves the table open */
+
 /* A unit in ASCII, as on the command line, in the page's spelling. */
 export const pretty = (text) => text.replace(/, deg\b/, ' (°)').replace(/, (px|m|scene units)\b/, ' ($1)');
 
@@ -35,7 +37,12 @@ export function lessonChart(lesson, { points }) {
     ),
     element(
       'details',
-      {},
+      {
+        open: unfolded,
+        ontoggle: (event) => {
+          unfolded = event.target.open;
+        },
+      },
       element('summary', { text: 'Numbers' }),
       table({
         caption: `${lesson.title}: curve`,

@@ -2,6 +2,8 @@
  * exports: openLink(lab)   opens the scene of the address, if it has one; undo restores the scene before
  *          copyLink(lab)   copies the address with the current scene */
 
+import { copy } from './ui.js';
+
 export async function openLink(lab) {
   const link = location.hash;
   if (!link.startsWith('#scene=')) return;
@@ -17,7 +19,7 @@ export async function openLink(lab) {
 export async function copyLink(lab) {
   try {
     const { fragment, code } = await lab.get('/api/link');
-    await navigator.clipboard.writeText(`${location.origin}/${fragment}${code}`);
+    await copy(`${location.origin}/${fragment}${code}`);
     lab.say('Link copied. It holds the whole scene, and opens in any laboratory at that address.');
   } catch (error) {
     lab.fail(error);

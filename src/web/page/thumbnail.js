@@ -18,7 +18,7 @@ function fetchOne(lab, path) {
   return fetched.get(path);
 }
 
-const sights = new Map();
+const sights = new WeakMap();
 const watcher = new IntersectionObserver((entries) => {
   for (const { target, isIntersecting } of entries) {
     if (!isIntersecting) continue;

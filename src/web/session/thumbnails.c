@@ -12,8 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pixels are about those of the widest card; more scenes than a folder's gallery shows at once. */
-enum { KEPT = 128, PIXELS = 240 * 180, WAVELENGTHS = 24, SAMPLES = 4 };
+/* Pixels are about those of the widest card; more scenes than a folder's gallery shows at once. Fewer wavelengths would
+ * show a prism's spectrum as grains of colour. */
+enum { KEPT = 128, PIXELS = 240 * 180, WAVELENGTHS = 96, SAMPLES = 4 };
 static const double limit_s = 8.0;
 
 typedef struct kept {
@@ -139,9 +140,12 @@ static status render(thumbnails *t, scene *s, unsigned char **bytes, size_t *siz
 status thumbnails_render(thumbnails *t, const char *key, scene *s, unsigned char **bytes, size_t *size, diagnostic *why)
 {
     pthread_mutex_lock(&t->one);
-    const status code = render(t, s, bytes, size, why);
+    status code = thumbnails_find(t, key, bytes, size, why); /* rendered for another page meanwhile? */
+    if (code == STATUS_OK && !*bytes) {
+        code = render(t, s, bytes, size, why);
+        if (code == STATUS_OK)
+            keep(t, key, *bytes, *size);
+    }
     pthread_mutex_unlock(&t->one);
-    if (code == STATUS_OK)
-        keep(t, key, *bytes, *size);
     return code;
 }
