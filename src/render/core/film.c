@@ -8,8 +8,8 @@
 #include <string.h>
 
 /* Two cache lines, which processors fetch together: if the widths of the image and the tiles are multiples of 16, tiles
- * share no line, and workers do not contend for lines. A film of several large pages consists of whole ones: a last part
- * in small pages would take longer than all others together. */
+ * share no line, and workers do not contend for lines. A film of several large pages consists of whole ones: a last
+ * part in small pages would take longer than all others together. */
 enum { ALIGNMENT = 128, PAGE = 4096 };
 
 static size_t values_of(const film *f)

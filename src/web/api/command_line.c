@@ -1,5 +1,6 @@
 /* The command line that renders the film of the scene document. */
 #include "web/api/api.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "base/text_writer.h"
 #include "scene/model/params.h"
@@ -10,19 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Writes a word, in single quotes where a shell would change it. */
-static void write_word(FILE *out, const char *word)
-{
-    if (*word && word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,=:+-")] == 0) {
-        fputs(word, out);
-        return;
-    }
-    fputc('\'', out);
-    for (const char *c = word; *c; c++)
-        fputs(*c == '\'' ? "'\\''" : (const char[]){*c, 0}, out);
-    fputc('\'', out);
-}
 
 static const char *material_of(const scene *s, const solid *one)
 {
@@ -62,7 +50,7 @@ static status add_option(void *of, const char *path, const param *row, const cha
         code = scene_set(w->so_far, path, value, NULL);
         char *both = text_format("%s=%s", path, value);
         fputs(" --set ", w->out);
-        write_word(w->out, both ? both : "");
+        shell_word_write(w->out, both ? both : "");
         free(both);
     }
     free(current);
@@ -97,7 +85,7 @@ static scene *rebase_paths(const scene *s, const char *path)
 static bool write_line(FILE *out, scene *from, const char *path, const scene *s)
 {
     fputs("cuvette render ", out);
-    write_word(out, path);
+    shell_word_write(out, path);
     scene *rebased = rebase_paths(s, path);
     writing w = {.out = out, .so_far = from};
     if (rebased)

@@ -1,5 +1,5 @@
-/* libmicrohttpd's functions, loaded when a server starts: the library brings GnuTLS, and all its dependencies would cost
- * every command 6 ms at its start. The library's own header gives their types and their meanings. */
+/* libmicrohttpd's functions, loaded when a server starts: the library brings GnuTLS, and all its dependencies would
+ * cost every command 6 ms at its start. The library's own header gives their types and their meanings. */
 #pragma once
 
 #include "base/status.h"
