@@ -1,5 +1,5 @@
 // The self-contained HTML file of `cuvette render -o FILE.html`: opened from the disk without a network it shows the
-// image and the rays with the numbers of `cuvette trace`, asks for nothing, and runs no script.
+// image and the rays with the numbers of `cuvette trace`, requests nothing, and runs no script.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
