@@ -83,8 +83,16 @@ run render "$scene" -o b.png "${small[@]}"
 check "the same scene gives the same bytes" cmp a.png b.png
 run render "$scene" -o c.png --bits 16 "${small[@]}"
 check "--bits 16 gives a PNG of 16 bits" is "$(od -An -tu1 -j24 -N1 c.png | tr -d ' ')" 16
+run render "$scene" -o a.html "${small[@]}" --set 'liquid.ior=1.4'
+page_hash=$(grep -o 'film [0-9a-f]\{16\}' out)
+check "a .html is a page with the film's hash" grep -q "$page_hash" a.html
+check "a page shows its command" grep -qF -- "--set liquid.ior=1.4 -o a.html</pre>" a.html
+run render a.html -o page.png
+check "a page's scene gives the same film" is "$(grep -o 'film [0-9a-f]\{16\}' out)" "$page_hash"
+run render "$scene" -o a.html --beams
+check "a page needs no --beams" matches "$(<err)" 'a page shows the beams anyway'
 check "no other files are left" is "$(find . -type f -printf '%f\n' | LC_ALL=C sort | tr '\n' ' ')" \
-    "a.jpg a.pfm a.png b.png c.png check.log err json_get out "
+    "a.html a.jpg a.pfm a.png b.png c.png check.log err json_get out page.png "
 
 # --- the JSON output of render
 run render "$scene" --json "${small[@]}" --set render.depth=3 --set lamp.position.x=2 --set render.threads=3

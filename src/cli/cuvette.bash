@@ -72,6 +72,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         mesh) _cuvette_files 'obj|bin|ply' ;;
         study) _cuvette_files 'png|svg|pdf' ;;
         animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m' ;;
+        render) _cuvette_files 'png|jpg|jpeg|pfm|html' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
         esac
         ;;

@@ -25,6 +25,11 @@ bool outputs_ends_with(const char *path, const char *ending)
     return length > tail && strcasecmp(path + length - tail, ending) == 0;
 }
 
+bool outputs_is_page(const char *path)
+{
+    return outputs_ends_with(path, ".html");
+}
+
 bool outputs_same_entry(const char *a, const char *b)
 {
     struct stat first, second;
@@ -143,9 +148,9 @@ static status check_file(const outputs *o, const named_file *files, size_t at, c
 {
     enum { TIMELINE = 4 };
     const named_file *file = &files[at];
-    if (at < TIMELINE)
+    if (at < TIMELINE && !(at == 0 && outputs_is_page(file->path)))
         TRY(check_image(o, file, at > 0, why));
-    else if (!outputs_ends_with(file->path, ".json"))
+    else if (at >= TIMELINE && !outputs_ends_with(file->path, ".json"))
         return wrong(file, why, "use .json", "a timeline must be a JSON file");
     TRY(check_folder(file, why));
     TRY(check_not_read(file, s, why));
@@ -248,7 +253,7 @@ status outputs_write_text(const char *path, status (*write)(const void *content,
 
 status outputs_write(const outputs *o, const scene *s, const render_result *result, diagnostic *why)
 {
-    if (o->img)
+    if (o->img && !outputs_is_page(o->img))
         TRY(record_image(result->img, s, o->img, o->bits == 16 ? 16 : 8, why));
     if (o->rays && result->pixel_rays)
         TRY(record_map(result->pixel_rays, result->img, "rays per pixel", o->rays, why));

@@ -15,6 +15,7 @@ typedef struct outputs {
 char *outputs_folder_of(const char *path);
 bool outputs_same_entry(const char *a, const char *b);
 bool outputs_ends_with(const char *path, const char *ending); /* ignores case */
+bool outputs_is_page(const char *path);                       /* .html: cli/render_page.h writes it */
 
 /* Calls matches with each file that a scene reads until it returns true, and returns whether it did. Paths are relative
  * to the working folder: the scene file, its environment image, textures, meshes and scripts of slimes, but not files
@@ -44,6 +45,6 @@ status outputs_check_script(const char *option, const char *path, const scene *s
 status outputs_write_text(const char *path, status (*write)(const void *content, FILE *out, diagnostic *why),
                           const void *content, diagnostic *why);
 
-/* Writes all outputs for which result has data; an interrupted render has a part of them. s: the scene,
+/* Writes all outputs for which result has data, but no page; an interrupted render has a part of them. s: the scene,
  * for the metadata of a PNG. */
 status outputs_write(const outputs *o, const scene *s, const render_result *result, diagnostic *why);

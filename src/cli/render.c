@@ -3,6 +3,7 @@
 #include "report/json.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
+#include "cli/render_page.h"
 #include "render/core/record.h"
 #include "render/inspect/beam_drawing.h"
 #include "report/report.h"
@@ -37,7 +38,7 @@ static status take_bits(const command_option *o, void *context, const char *valu
 }
 
 static const command_option options[] = {
-    {"output", 'o', "FILE", "write the image: .png, .jpg or .pfm (linear floats)",
+    {"output", 'o', "FILE", "write the image: .png, .jpg or .pfm (linear floats); .html: a page with the rays",
      OPTION_FILLS(option_text, render_request, files.img)},
     OPTION_SET("'render.depth=8' or 'lamp.position.x=2'"),
     {"json", 0, NULL, "print one JSON object: hash, times, counts, parameters",
@@ -64,6 +65,8 @@ static status check_request(void *context, diagnostic *why)
 {
     const render_request *request = context;
     const outputs *files = &request->files;
+    if (request->beams && files->img && outputs_is_page(files->img))
+        return options_wrong("--beams", NULL, why, "remove it", "a page shows the beams anyway");
     if (request->beams && (!files->img || image_format_of(files->img) == IMAGE_PFM))
         return options_wrong("--beams", NULL, why, "add -o FILE.png or -o FILE.jpg",
                              files->img ? "a PFM file holds the film, which has no beams" : "no image is written");
@@ -149,12 +152,15 @@ static status draw_beams(const render_request *request, const job_account *f, jo
 
 static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
 {
-    TRY(outputs_write(&request->files, f->of, f->result, why));
+    const outputs *files = &request->files;
+    TRY(outputs_write(files, f->of, f->result, why));
+    if (files->img && outputs_is_page(files->img))
+        TRY(render_page_write(&request->input, f, job_isa(with), files->img, files->bits == 16 ? 16 : 8, why));
     if (request->beams && f->count > 0)
         TRY(draw_beams(request, f, with, why));
     if (request->json)
         return json_print(report_create(f, request->repeat > 0), why);
-    print_summary(f, &request->files);
+    print_summary(f, files);
     return STATUS_OK;
 }
 

@@ -56,15 +56,6 @@ static void write_number(FILE *out, const char *key, double value)
     json_write_real(out, value);
 }
 
-/* The beam's own colour, or that of the wavelength. */
-static void write_line_color(FILE *out, const beam *b, double lambda_nm)
-{
-    double rgb[3] = {b->color.x, b->color.y, b->color.z};
-    if (rgb[0] == 0.0 && rgb[1] == 0.0 && rgb[2] == 0.0)
-        beam_wavelength_color(lambda_nm, rgb);
-    write_color(out, "color", rgb);
-}
-
 static void close_beam(beam_writer *w)
 {
     fputs(w->beam >= 0 ? "]}" : "", w->out);
@@ -89,7 +80,9 @@ static status write_json_ray(void *context, const beam_ray *ray, const ray_tree 
     fprintf(w->out, "{\"number\":%d", ray->number);
     write_number(w->out, "lambda_nm", ray->lambda_nm);
     write_number(w->out, "power", ray->power);
-    write_line_color(w->out, b, ray->lambda_nm);
+    double rgb[3];
+    beam_line_color(b, ray->lambda_nm, rgb);
+    write_color(w->out, "color", rgb);
     fputs(",\"root\":", w->out);
     w->short_of_memory |= !trace_write_json_ray(&(traced){w->of->s, p, tree, w->of->scene_path}, w->out, 0);
     fputc('}', w->out);

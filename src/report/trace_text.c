@@ -16,7 +16,7 @@ static void write_channels(FILE *out, const double c[3])
         fprintf(out, "%.6g,%.6g,%.6g", c[0], c[1], c[2]);
 }
 
-static double angle_deg(double cosine)
+double trace_angle_deg(double cosine)
 {
     return elementary_atan2_deg(sqrt(fmax(0.0, 1.0 - cosine * cosine)), cosine);
 }
@@ -27,13 +27,13 @@ static void write_hit(const traced *t, FILE *out, const ray_hit *h)
     if (h->face_solid != h->solid)
         fprintf(out, " (a face of %s)", scene_solid_name(t->s, h->face_solid));
     if (h->opaque) {
-        fprintf(out, "  %.4f deg, opaque, reflects %.6g", angle_deg(h->cos_i), h->R);
+        fprintf(out, "  %.4f deg, opaque, reflects %.6g", trace_angle_deg(h->cos_i), h->R);
     } else {
-        fprintf(out, "  n %.6g to %.6g  %.4f deg to ", h->n_from, h->n_to, angle_deg(h->cos_i));
+        fprintf(out, "  n %.6g to %.6g  %.4f deg to ", h->n_from, h->n_to, trace_angle_deg(h->cos_i));
         if (h->tir)
             fputs("none, TIR", out);
         else
-            fprintf(out, "%.4f deg", angle_deg(h->cos_t));
+            fprintf(out, "%.4f deg", trace_angle_deg(h->cos_t));
         fprintf(out, "  R_s %.6g R_p %.6g R %.6g T %.6g", h->R_s, h->R_p, h->R, h->T);
         if (!h->tir)
             fprintf(out, "  radiance x %.6g, basic x %.6g", h->gain_classic, h->gain_basic);

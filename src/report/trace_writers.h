@@ -15,6 +15,9 @@ typedef struct traced {
 extern const char *const trace_kind_words[]; /* by ray_kind */
 extern const char *const trace_end_words[];  /* by ray_end */
 
+/* The angle of a ray from the normal. */
+double trace_angle_deg(double cosine);
+
 /* The rays only, without the line of the radiance; and one ray with its children as a JSON object, false if memory runs
  * out. */
 void trace_write_text_rays(const traced *t, FILE *out);

@@ -1,3 +1,8 @@
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
 // A link that holds the scene: copied from one page, opened by another, it gives the same film; undo goes back.
 export const cases = {
   'a link reproduces the film': async (t) => {
@@ -20,4 +25,69 @@ export const cases = {
     t.equal(await screen.page.evaluate(() => location.hash), '', 'the address no longer has the scene');
     t.equal((await lab.get('/api/state')).file, null, 'the scene of a link has no file');
   },
+
+  'the dialog: link, image and page give the film again': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    const { page } = screen;
+    const film = () => page.evaluate(() => window.lab.picture.film_hash);
+    const first = await film();
+    await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+    await screen.setNumber('liquid.ior', 1.45);
+    const changed = await film();
+    t.equal(changed === first, false, 'the change alters the film');
+    await screen.showPanel('Objects');
+    const open = () => screen.button('Share …').click();
+    await open();
+    await t.axe(screen, 'the dialog');
+    await t.picture(screen, 'share');
+
+    await screen.button('Copy link').click();
+    await page.waitForFunction(() => document.body.textContent.includes('Link copied'));
+    const link = await page.evaluate(() => navigator.clipboard.readText());
+    t.equal(link.startsWith(`${lab.origin}/#scene=`), true, 'the link is of this address');
+    const filmOf = (file) => JSON.parse(execFileSync(t.program, ['render', file, '--json'])).film_hash;
+    t.equal(filmOf(link), changed, 'the film of the copied link');
+
+    const folder = mkdtempSync(join(tmpdir(), 'cuvette-share-'));
+    try {
+      for (const [label, name] of [
+        ['PNG with the scene', 'rod.png'],
+        ['HTML file', 'rod.html'],
+      ]) {
+        const file = join(folder, name);
+        await open();
+        const [download] = await Promise.all([page.waitForEvent('download'), screen.button(label).click()]);
+        await download.saveAs(file);
+        t.equal(filmOf(file), changed, `the film of ${name}`);
+
+        for (const way of ['chosen', 'dropped']) {
+          const { generation } = await lab.get('/api/state');
+          await lab.post('/api/undo', {});
+          await screen.settled(generation + 1);
+          t.equal(await film(), first, 'the film after undo');
+          if (way === 'chosen') {
+            await open();
+            await page.locator('dialog input[type=file]').setInputFiles(file);
+          } else await drop(page, file, name);
+          await screen.settled(generation + 2);
+          t.equal(await film(), changed, `the film of ${name}, ${way}`);
+        }
+      }
+    } finally {
+      rmSync(folder, { recursive: true });
+    }
+  },
 };
+
+function drop(page, file, name) {
+  return page.evaluate(
+    ([base64, as]) => {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File([bytes], as));
+      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer, bubbles: true, cancelable: true }));
+    },
+    [readFileSync(file).toString('base64'), name],
+  );
+}

@@ -1,6 +1,7 @@
 /* Lines with soft edges, tested by pixel against the distance of opaque surfaces. */
 #include "render/inspect/beam_drawing.h"
 
+#include "render/inspect/segment_place.h"
 #include "scene/model/camera.h"
 #include "scene/model/medium.h"
 #include "scene/model/params.h"
@@ -35,16 +36,6 @@ status beams_hiding_scene(const scene *s, scene **out, diagnostic *why)
     return scene_set(only, "render.integrator", "aov", why);
 }
 
-/* A point in front of the camera: pixels from the image's corner, and the distance from the eye. */
-static vec3 seen(const beam_canvas *c, vec3 at)
-{
-    const vec3 d = vec3_sub(at, c->view.eye);
-    const double depth = vec3_dot(d, c->view.forward);
-    return vec3_make((vec3_dot(d, c->view.right) / (depth * c->view.half_width) + 1.0) * 0.5 * c->img->width,
-                     (1.0 - vec3_dot(d, c->view.up) / (depth * c->view.half_height)) * 0.5 * c->img->height,
-                     vec3_length(d));
-}
-
 static void blend(beam_canvas *c, int x, int y, double distance, double cover, const double rgb[3])
 {
     const size_t pixel = (size_t)y * (size_t)c->img->width + (size_t)x;
@@ -72,30 +63,14 @@ static void draw_line(beam_canvas *c, vec3 a, vec3 b, double strength, const dou
         }
 }
 
-/* The part of a segment that is in front of the camera. */
-static void draw_segment(beam_canvas *c, vec3 from, vec3 to, double strength, const double rgb[3])
-{
-    const double depth_from = vec3_dot(vec3_sub(from, c->view.eye), c->view.forward);
-    const double depth_to = vec3_dot(vec3_sub(to, c->view.eye), c->view.forward);
-    const double near = 1e-4 * fmax(depth_from, depth_to);
-    if (!(near > 0.0))
-        return;
-    const vec3 cut = vec3_add(from, vec3_scale(vec3_sub(to, from), (near - depth_from) / (depth_to - depth_from)));
-    const vec3 a = seen(c, depth_from < near ? cut : from), b = seen(c, depth_to < near ? cut : to);
-    const double far = 1e7; /* px; such a line does not cross the image */
-    if (fabs(a.x) < far && fabs(a.y) < far && fabs(b.x) < far && fabs(b.y) < far)
-        draw_line(c, a, b, strength, rgb);
-}
-
 static status draw_ray(void *context, const beam_ray *ray, const ray_tree *tree, const probe *p, diagnostic *why)
 {
     beam_canvas *c = context;
     const beam *b = &c->s->beams[ray->beam];
-    double rgb[3] = {b->color.x, b->color.y, b->color.z};
+    double rgb[3];
     (void)p;
     (void)why;
-    if (rgb[0] == 0.0 && rgb[1] == 0.0 && rgb[2] == 0.0)
-        beam_wavelength_color(ray->lambda_nm, rgb);
+    beam_line_color(b, ray->lambda_nm, rgb);
     const double start = beam_share(&tree->node[0]);
     for (size_t i = 0; i < tree->count; i++) {
         const ray_node *node = &tree->node[i];
@@ -104,7 +79,9 @@ static status draw_ray(void *context, const beam_ray *ray, const ray_tree *tree,
         const double reach = 10.0 * vec3_length(vec3_sub(c->view.eye, node->origin));
         const vec3 to =
             node->end == RAY_END_HIT ? node->hit.point : vec3_add(node->origin, vec3_scale(node->direction, reach));
-        draw_segment(c, node->origin, to, 0.25 + 0.75 * sqrt(fmin(1.0, beam_share(node) / start)), rgb);
+        vec3 ends[2];
+        if (segment_place(&c->view, c->img->width, c->img->height, node->origin, to, ends))
+            draw_line(c, ends[0], ends[1], 0.25 + 0.75 * sqrt(fmin(1.0, beam_share(node) / start)), rgb);
     }
     return STATUS_OK;
 }

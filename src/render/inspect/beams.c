@@ -136,3 +136,10 @@ void beam_wavelength_color(double lambda_nm, double rgb[3])
     for (int k = 0; k < 3; k++)
         rgb[k] = most > 0.0 ? rgb[k] / most : 0.5;
 }
+
+void beam_line_color(const beam *b, double lambda_nm, double rgb[3])
+{
+    rgb[0] = b->color.x, rgb[1] = b->color.y, rgb[2] = b->color.z;
+    if (rgb[0] == 0.0 && rgb[1] == 0.0 && rgb[2] == 0.0)
+        beam_wavelength_color(lambda_nm, rgb);
+}

@@ -30,3 +30,6 @@ double beam_share_at(const ray_node *node, double t);
 
 /* The colour of a wavelength, linear sRGB in 0..1, the largest component 1; grey outside the visible range. */
 void beam_wavelength_color(double lambda_nm, double rgb[3]);
+
+/* The colour of a beam's lines: its own, or that of the wavelength if it is black. */
+void beam_line_color(const beam *b, double lambda_nm, double rgb[3]);

@@ -1,5 +1,6 @@
 /* API: the rendered image. See web/README.md. */
 #include "web/api/api.h"
+#include "scene/file/shared.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -24,17 +25,32 @@ static void name_download(http_reply *r, const char *name)
     http_reply_header(r, "Content-Disposition", text);
 }
 
-/* How a reply has the image. quick: as pages display it, encoded once for all of them. */
+/* How a reply has the image. quick: as pages display it, encoded once for all of them. with_scene: a PNG that carries
+ * its scene (scene/file/shared.h). */
 typedef struct encoding {
     image_format format;
     const char *type;
     int bits;
-    bool quick;
+    bool quick, with_scene;
 } encoding;
+
+static status encode_with_scene(const shared_image *p, int bits, unsigned char **bytes, size_t *size, diagnostic *why)
+{
+    shared_texts texts;
+    shared_texts_make(p->of, &texts);
+    image_rows rows = image_rows_of(p->linear);
+    rows.texts = texts.item;
+    rows.text_count = texts.count;
+    const status code = image_encode_rows(&rows, IMAGE_PNG, bits, false, bytes, size, why);
+    free(texts.scene);
+    return code;
+}
 
 /* Encodes into memory owned by the reply. */
 static status encode_own(const shared_image *p, const encoding *e, unsigned char **bytes, size_t *size, diagnostic *why)
 {
+    if (e->with_scene && p->of)
+        return encode_with_scene(p, e->bits, bytes, size, why);
     if (!e->quick)
         return image_encode(p->linear, e->format, e->bits, false, bytes, size, why);
     const unsigned char *shared;
@@ -68,6 +84,7 @@ static status reply_image(call *c, encoding e)
     size_t size;
     if (!api_take_bits(c, &e.bits))
         return api_refuse(c, 400, "unsupported bit depth", "use ?bits=8 or ?bits=16");
+    e.with_scene = e.format == IMAGE_PNG && api_query_flag(c, "scene");
     e.quick = e.format == IMAGE_PNG ? e.bits == 8 : api_query_flag(c, "quick");
     if (api_query_flag(c, "wait") && api_wait_for_final(c, &p) != STATUS_OK) {
         c->refused = 409;

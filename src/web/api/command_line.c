@@ -1,5 +1,6 @@
 /* The command line that renders the film of the scene document. */
 #include "web/api/api.h"
+#include "base/shell_word.h"
 #include "base/text.h"
 #include "base/text_writer.h"
 #include "scene/model/params.h"
@@ -10,19 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Writes a word, in single quotes where a shell would change it. */
-static void write_word(FILE *out, const char *word)
-{
-    if (*word && word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,=:+-")] == 0) {
-        fputs(word, out);
-        return;
-    }
-    fputc('\'', out);
-    for (const char *c = word; *c; c++)
-        fputs(*c == '\'' ? "'\\''" : (const char[]){*c, 0}, out);
-    fputc('\'', out);
-}
 
 static const char *material_of(const scene *s, const solid *one)
 {
@@ -134,10 +122,10 @@ status command_line(const folder *files, const char *file, const scene *s, int t
     TRY(text_writer_open(&writer, why));
     status code = command_settings(files, file, s, threads, &path, &settings, complete, why);
     fputs("cuvette render ", writer.stream);
-    write_word(writer.stream, path ? path : "scene.yaml");
+    shell_word_write(writer.stream, path ? path : "scene.yaml");
     for (size_t i = 0; i < json_array_size(settings); i++) {
         fputs(" --set ", writer.stream);
-        write_word(writer.stream, json_string_value(json_array_get(settings, i)));
+        shell_word_write(writer.stream, json_string_value(json_array_get(settings, i)));
     }
     fputs(" -o image.png", writer.stream);
     json_decref(settings);

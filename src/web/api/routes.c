@@ -21,6 +21,7 @@ static const struct api_route {
     {"GET", "/api/scene.yaml", api_scene_file, NO_BODY},
     {"GET", "/api/command", api_command, NO_BODY},
     {"GET", "/api/link", api_link, NO_BODY},
+    {"GET", "/api/page.html", api_page, NO_BODY},
     {"GET", "/api/picture.png", api_image_png, NO_BODY},
     {"GET", "/api/picture.jpg", api_image_jpeg, NO_BODY},
     {"GET", "/api/trace", api_trace_json, NO_BODY},

@@ -2,9 +2,10 @@
  * exports: createHead(root, lab); sets lab.undo(redo) and lab.name() (the scene's file name without folder and
  * extension) */
 
-import { ask, button, copy, download, element, icon } from './ui.js';
+import { ask, button, copy, element, icon } from './ui.js';
 import { displayButton, themeButton } from './display.js';
 import { showHelp } from './keys.js';
+import { saveFile } from './save_file.js';
 
 export function createHead(root, lab) {
   lab.undo = (redo = false) => lab.change(redo ? '/api/redo' : '/api/undo', {}).catch(lab.fail);
@@ -32,13 +33,13 @@ export function createHead(root, lab) {
     element(
       'div',
       { class: 'head-group', role: 'group', 'aria-label': 'Save and copy' },
-      button('PNG', () => savePicture(lab, 'png'), {
+      button('PNG', () => saveFile(lab, '/api/picture.png?wait=1&scene=1', 'png'), {
         icon: 'image',
         kind: 'quiet',
         title: 'Save the final image as PNG',
         'aria-label': 'Save PNG',
       }),
-      button('JPEG', () => savePicture(lab, 'jpg'), {
+      button('JPEG', () => saveFile(lab, '/api/picture.jpg?wait=1', 'jpg'), {
         icon: 'image',
         kind: 'quiet',
         title: 'Save the final image as JPEG',
@@ -88,17 +89,6 @@ async function resetAll(lab) {
     'Reset all',
   );
   if (yes) lab.change('/api/reset', {}).then(() => lab.say('The scene is reset.'), lab.fail);
-}
-
-async function savePicture(lab, ending) {
-  lab.say('Waiting for the final image …');
-  try {
-    const { blob } = await lab.blob(`/api/picture.${ending}?wait=1`);
-    download(blob, `${lab.name()}.${ending}`);
-    lab.say(`${lab.name()}.${ending} saved.`);
-  } catch (error) {
-    lab.fail(error);
-  }
 }
 
 async function copyScene(lab) {

@@ -13,6 +13,7 @@ import { createKeys } from './keys.js';
 import { orbitTool } from './tool_orbit.js';
 import { lightTool } from './tool_light.js';
 import { cameraBox } from './camera_box.js';
+import { acceptDrops } from './shared_file.js';
 import { openLink } from './shared_link.js';
 
 /* A panel that cannot be loaded does not affect the others. */
@@ -39,6 +40,7 @@ async function start() {
   lab.panels = createPanels(at('side'), at('splitter'), at('workspace'), panels, lab);
   for (const each of loaded) if (each.status === 'rejected') lab.fail(each.reason);
   lab.start();
+  acceptDrops(lab);
   await openLink(lab);
 }
 

@@ -1,7 +1,7 @@
 /* The panel Objects: scene files, objects to add, the list of all objects, and the selected one. exports: panel. The
  * tool Object selects and moves objects in the image. */
 
-import { copyLink } from './shared_link.js';
+import { share } from './shared_dialog.js';
 import { button, choice as choiceOf, element, group } from './ui.js';
 import { createChoice } from './object_choice.js';
 import { createDetails } from './object_details.js';
@@ -33,7 +33,7 @@ function fileButtons(lab) {
     button('New', files.fresh, { icon: 'plus' }),
     button('Save', files.save, { icon: 'save', title: 'Save (Ctrl S)' }),
     button('Save as …', () => files.saveAs()),
-    button('Copy link', () => copyLink(lab), { title: 'Copy a link that holds the whole scene' }),
+    button('Share …', () => share(lab), { title: 'Share the scene as a link, an image or an HTML file' }),
   );
 }
 

@@ -1,0 +1,35 @@
+/* The rays of a page: collected from the probe, written as a drawing over the image and as a table. Ownership: zero a
+ * page_rays before its first use; page_rays_release frees it. */
+#pragma once
+
+#include "render/inspect/beams.h"
+#include <stdio.h>
+
+enum { PAGE_RAYS_MAX = 300, PAGE_NAME_MAX = 64 };
+
+typedef struct page_ray {
+    ray_node node;
+    vec3 ends[2];  /* segment_place */
+    bool drawn;    /* some of it is in front of the camera */
+    double weight; /* share of its light at its start */
+    double rgb[3]; /* of a beam's line, linear */
+    double power, lambda_nm;
+    char from[PAGE_NAME_MAX], to[PAGE_NAME_MAX], surface[2 * PAGE_NAME_MAX], of[PAGE_NAME_MAX];
+    size_t place; /* order of tracing */
+} page_ray;
+
+typedef struct page_rays {
+    page_ray *ray; /* the heaviest, in the order of tracing */
+    size_t count, capacity;
+    size_t traced; /* without those that depth or weight cut off */
+    bool beams;
+    int x, y; /* the pixel, without beams */
+    double lambda_nm;
+} page_rays;
+
+status page_rays_collect(page_rays *r, const scene *s, isa level, int width, int height, diagnostic *why);
+void page_rays_release(page_rays *r);
+
+/* Each line of the drawing leads to its row (#rN), each row to its line (#sN). */
+void page_rays_write_drawing(const page_rays *r, int width, int height, FILE *out);
+void page_rays_write_table(const page_rays *r, FILE *out);
