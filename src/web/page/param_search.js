@@ -1,6 +1,6 @@
 /* The search for parameters by words of their path, their description or everyday language.
- * exports: findParams(rows, text, near) -> rows, first those with parts of the path that begin with the words, then those
- *   whose path has their meanings; of each the paths of the set near first */
+ * exports: findParams(rows, text, near) -> rows, first those with parts of the path that begin with the words, then
+ *   those whose path has their meanings; of each the paths of the set near first */
 
 import { meaningsOf } from './param_synonyms.js';
 
