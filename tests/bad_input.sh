@@ -133,6 +133,7 @@ new_study "a control character" "--axis .*control characters" "$scene" --axis $'
 new_study "a name with a slash" "--name a/b: invalid name" "$scene" --axis render.depth=1 --name a/b
 new_study "a reserved name" "--name tables: invalid name" "$scene" --axis render.depth=1 --name tables
 new_study "no repetitions" "integer from 1" "$scene" --axis render.depth=1 --repetitions 0
+new_study "no number of warm-ups" "integer from 0" "$scene" --axis render.depth=1 --warmups=-1
 new_study "another ending" "end it with .study" "$scene" --axis render.depth=1 -o x.yaml
 new_study "a missing folder" "folder does not exist" "$scene" --axis render.depth=1 -o nowhere/x.study
 echo 'kept' >kept.study

@@ -90,7 +90,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         compopt -o nospace
         _cuvette_words solid: light: material: mesh: texture:
         ;;
-    --title | --name | --repetitions | --row | --reason) COMPREPLY=() ;;
+    --title | --name | --repetitions | --warmups | --row | --reason) COMPREPLY=() ;;
     --duration | --start) COMPREPLY=() ;;
     --bits) _cuvette_words 8 16 ;;
     --repeat | --shard | --at | --pixel | --ray | --depth | --lambda | --from | --to | --width | --spread | --plane) COMPREPLY=() ;;
@@ -106,7 +106,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 
 _cuvette_study() # VERB
 {
-    local -A options=([new]='--axis --set --name --repetitions --output --force'
+    local -A options=([new]='--axis --set --name --repetitions --warmups --output --force'
         [run]='--results --shard --by --any-environment --processes --against --dry-run --quiet' [status]=--results [merge]=--results
         [verify]=--results [upgrade]='--results --to' [summary]='--results --environment --interval' [list]=''
         [exclude]='--row --reason --results'

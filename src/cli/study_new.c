@@ -17,7 +17,7 @@ typedef struct new_request {
     const char *scene, *name, *output;
     const char **axes, **sets;
     size_t axis_count, set_count;
-    int64_t repetitions;
+    int64_t repetitions, warmups;
     bool force;
 } new_request;
 
@@ -49,6 +49,8 @@ static const command_option options[] = {
      OPTION_FILLS(option_text, new_request, name)},
     {"repetitions", 0, "N", "measured frames of each cell (default: 6)",
      OPTION_FILLS(option_integer, new_request, repetitions), .lowest = 1, .highest = STUDY_REPETITIONS_MAX},
+    {"warmups", 0, "N", "frames of each cell before its first measured one (default: 1)",
+     OPTION_FILLS(option_integer, new_request, warmups), .lowest = 0, .highest = STUDY_WARMUPS_MAX},
     {"output", 'o', "FILE", "write to FILE instead of standard output; it must end in .study",
      OPTION_FILLS(option_text, new_request, output)},
     {"force", 0, NULL, "overwrite FILE if it exists", OPTION_FILLS(option_flag, new_request, force)},
@@ -114,7 +116,8 @@ static status make_study(const new_request *r, scene *s, diagnostic *why)
                                    .axis_count = r->axis_count,
                                    .sets = r->sets,
                                    .set_count = r->set_count,
-                                   .repetitions = r->repetitions};
+                                   .repetitions = r->repetitions,
+                                   .warmups = r->warmups};
     status code = new_study_compose(&order, s, &text, &made, why);
     if (code == STATUS_OK && is_written(r))
         code = outputs_check_place("-o", r->output, s, why);
@@ -134,7 +137,7 @@ static status make_study(const new_request *r, scene *s, diagnostic *why)
 
 status study_new(int argc, char **argv, diagnostic *why)
 {
-    new_request request = {.repetitions = 6};
+    new_request request = {.repetitions = 6, .warmups = 1};
     scene *s = NULL;
     status code = command_form_read(&form, argc, argv, &request, why);
     THEN(code, check_request(&request, why));

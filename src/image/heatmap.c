@@ -21,13 +21,6 @@ typedef struct key_layout {
     int scale, margin, bar_x, bar_width, bar_y, bar_height, tick, numbers_y, title_y, height;
 } key_layout;
 
-/* The scale of the colours. */
-typedef struct key_scale {
-    double end; /* value of the last colour; the first is 0 */
-    bool cut;   /* values above end have the last colour */
-    bool whole; /* all values are integers */
-} key_scale;
-
 void heatmap_color(double t, unsigned char rgb[3])
 {
     double exact[3];
@@ -127,7 +120,7 @@ static void draw_number(const canvas *on, const key_layout *key, int top, int ce
 }
 
 /* A tick and its number, at its position in the bar. */
-static void draw_tick(const canvas *on, const key_layout *key, int top, double value, const key_scale *scale)
+static void draw_tick(const canvas *on, const key_layout *key, int top, double value, const heatmap_scale *scale)
 {
     int line = (key->scale + 1) / 2;
     bool first = value == 0, last = value == scale->end;
@@ -139,7 +132,7 @@ static void draw_tick(const canvas *on, const key_layout *key, int top, double v
     draw_number(on, key, top, x, text);
 }
 
-static void draw_key(const canvas *on, const key_layout *key, int top, const key_scale *scale, const char *title)
+static void draw_key(const canvas *on, const key_layout *key, int top, const heatmap_scale *scale, const char *title)
 {
     int line = (key->scale + 1) / 2, bar_top = top + key->bar_y;
     fill(on, key->bar_x - line, bar_top - line, key->bar_width + 2 * line, key->bar_height + 2 * line, FRAME);
@@ -198,7 +191,7 @@ static double nth_smallest(const double *values, size_t count, size_t rank)
     return value;
 }
 
-static status find_scale(const double *values, size_t count, key_scale *out, diagnostic *why)
+status heatmap_scale_of(const double *values, size_t count, heatmap_scale *out, diagnostic *why)
 {
     double largest;
     TRY(inspect(values, count, &largest, &out->whole, why));
@@ -222,7 +215,7 @@ static void draw_values(const canvas *on, int left, const double *values, int wi
     }
 }
 
-static void draw(const canvas *on, const double *values, int width, int height, const key_scale *scale,
+static void draw(const canvas *on, const double *values, int width, int height, const heatmap_scale *scale,
                  const char *title, const key_layout *key)
 {
     fill(on, 0, 0, on->img->width, on->img->height, PAPER);
@@ -232,12 +225,12 @@ static void draw(const canvas *on, const double *values, int width, int height, 
 
 status heatmap_create(const double *values, int width, int height, const char *title, image **out, diagnostic *why)
 {
-    key_scale scale;
+    heatmap_scale scale;
     *out = NULL;
     if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
                         "a heat map cannot have %d x %d values", width, height);
-    TRY(find_scale(values, (size_t)width * (size_t)height, &scale, why));
+    TRY(heatmap_scale_of(values, (size_t)width * (size_t)height, &scale, why));
     int image_width = width < WIDTH_MIN ? WIDTH_MIN : width;
     key_layout key = lay_out_key(image_width);
     float *decoded = codec_decode_table(255);

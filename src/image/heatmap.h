@@ -4,6 +4,16 @@
 
 #include "image/image.h"
 
+/* The scale of the colours. */
+typedef struct heatmap_scale {
+    double end; /* value of the last colour; the first is 0 */
+    bool cut;   /* values above end have the last colour */
+    bool whole; /* all values are integers */
+} heatmap_scale;
+
+/* The scale for count values, which must be as for heatmap_create. */
+status heatmap_scale_of(const double *values, size_t count, heatmap_scale *out, diagnostic *why);
+
 /* values: width*height, rows from the top, finite, >= 0. The scale runs linearly from 0 to the maximum, in a
  * perceptually uniform map (viridis). If the maximum is more than twice the 99.5th percentile, a few outliers would
  * darken everything else: the scale then ends at that percentile, with '>=' before its last number, and larger values

@@ -106,7 +106,8 @@ static status compose(const new_study_order *r, scene *s, new_axis *axes, char *
                             .set_count = r->set_count,
                             .axes = axes,
                             .axis_count = r->axis_count,
-                            .repetitions = r->repetitions};
+                            .repetitions = r->repetitions,
+                            .warmups = r->warmups};
     const status code = write_and_read(r, &made, target, text, read, why);
     free(path);
     return code;

@@ -32,7 +32,7 @@ typedef struct new_study {
     size_t set_count;
     const new_axis *axes;
     size_t axis_count;
-    int64_t repetitions;
+    int64_t repetitions, warmups;
 } new_study;
 
 /* Writes the study file, with a comment on each parameter. */
@@ -45,7 +45,7 @@ typedef struct new_study_order {
     const char *name;                      /* NULL: from target, or from the scene and the first axis */
     const char *const *axes, *const *sets; /* PATH=VALUES; PATH=VALUE for all cells */
     size_t axis_count, set_count;
-    int64_t repetitions;
+    int64_t repetitions, warmups;
     const study_guard *guard; /* of the files that the study reads; NULL: none */
 } new_study_order;
 

@@ -7,6 +7,7 @@
 #include "web/api/api.h"
 #include "web/api/scene_since.h"
 #include "web/page.h"
+#include "web/session/pixel_maps.h"
 #include "web/session/thumbnails.h"
 #include "web/session/reference_image.h"
 #include "web/session/studies.h"
@@ -185,7 +186,8 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
     THEN(code, render_worker_create(l->scene_document, settings->level, &listener, &l->render_worker, why));
     if (code == STATUS_OK &&
         (!(l->sent = sent_scenes_create()) || !(l->reference_image = reference_image_create()) ||
-         !(l->heavy = semaphore_create(HEAVY_AT_ONCE)) || !(l->thumbnails = thumbnails_create(settings->level))))
+         !(l->heavy = semaphore_create(HEAVY_AT_ONCE)) || !(l->thumbnails = thumbnails_create(settings->level)) ||
+         !(l->pixel_maps = pixel_maps_create(settings->level))))
         code = out_of_memory(why);
     THEN(code, studies_create(l, &l->studies, why));
     THEN(code, serve(l, why));
@@ -216,6 +218,7 @@ void lab_stop(lab *l)
     http_stop(l->server);
     studies_destroy(l->studies);
     semaphore_destroy(l->heavy);
+    pixel_maps_destroy(l->pixel_maps);
     thumbnails_destroy(l->thumbnails);
     sent_scenes_destroy(l->sent);
     reference_image_destroy(l->reference_image);

@@ -21,6 +21,7 @@ struct lab {
     struct reference_image *reference_image;
     struct studies *studies;
     struct sent_scenes *sent;      /* web/api/scene_since.h */
+    struct pixel_maps *pixel_maps; /* web/session/pixel_maps.h */
     struct thumbnails *thumbnails; /* web/session/thumbnails.h */
     semaphore *heavy;              /* limits the handlers that need much memory and time */
     http_server *server;

@@ -22,6 +22,10 @@ export class Checks {
     return this.check(Math.abs(found - expected) <= within, `${what}: ${found}, not ${expected} within ${within}`);
   }
 
+  less(found, bound, what) {
+    return this.check(found < bound, `${what}: ${found}, not less than ${bound}`);
+  }
+
   more(found, bound, what) {
     return this.check(found > bound, `${what}: ${found}, not more than ${bound}`);
   }

@@ -18,6 +18,24 @@ async function chosen(t) {
   return { lab, screen, study };
 }
 
+async function openForm(screen) {
+  if (!(await screen.page.getByRole('tabpanel', { name: 'Studies' }).isVisible())) await screen.showPanel('Studies');
+  await screen.button('New study').click();
+  const dialog = screen.page.getByRole('dialog', { name: 'New study' });
+  await dialog.waitFor();
+  return dialog;
+}
+
+/** The visible controls of a dialog that are narrower or lower than 44 px; a label counts with its control. */
+const small = (dialog) =>
+  dialog.evaluate((root) =>
+    [...root.querySelectorAll('button, input, summary, [role=option]')]
+      .filter((node) => node.checkVisibility({ visibilityProperty: true }))
+      .map((node) => (node.closest('label') || node).getBoundingClientRect())
+      .filter(({ width, height }) => width < 43.5 || height < 43.5)
+      .map(({ width, height, x, y }) => `${width} x ${height} at ${x}, ${y}`),
+  );
+
 const rowsOf = async (lab) =>
   (await readFile(join(lab.folder, 'results/quick/rows.csv'), 'utf8')).trim().split('\n').slice(1);
 /** The rows without warm-ups, which a resumed run repeats. */
@@ -128,7 +146,8 @@ export const cases = {
       [{ repetitions: 0.5 }, 400, 'repetitions', 'invalid number of repetitions'],
       [{ file: '../form.study' }, 400, 'file', 'not a valid study name'],
       [{ axes: ['background.picture=/etc/passwd'] }, 400, undefined, 'outside of the folder'],
-      [{ save: true }, 409, undefined, 'already exists'],
+      [{ warmups: -1 }, 400, 'warmups', 'invalid number of warmups'],
+      [{ save: true }, 409, 'file', 'already exists'],
     ]) {
       const reply = await lab.ask('POST', '/api/studies', { ...form, ...change });
       const { error, remedy, file } = JSON.parse(new TextDecoder().decode(reply.bytes));
@@ -137,6 +156,111 @@ export const cases = {
     }
     await lab.post('/api/objects', { kind: 'light' });
     t.equal((await lab.ask('POST', '/api/studies', form)).status, 409, 'a scene with other objects than its file');
+  },
+
+  'the form New study: estimate, errors at their fields, save and start': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    await lab.post('/api/set', { set: { 'render.width': 80, 'render.height': 60 } });
+    const screen = await t.open(lab, { width: 1366, height: 900 });
+    screen.context.setDefaultTimeout(60000);
+    screen.expect(/status of 4(00|09)/);
+    const dialog = await openForm(screen);
+    const button = (name) => dialog.getByRole('button', { name, exact: true });
+    const axis = (number) => dialog.getByRole('group', { name: `Axis ${number}` });
+    const alert = (of) => of.getByRole('alert');
+    await button('Save').click();
+    t.match(await alert(axis(1)).innerText(), /Choose a parameter/, 'an axis without a parameter');
+
+    // The list of parameters is searched by everyday words, and by keys alone.
+    await axis(1).getByRole('combobox', { name: 'Parameter' }).fill('bounces');
+    t.equal(await axis(1).getByRole('option').first().locator('code').innerText(), 'render.depth', 'parameter found');
+    await screen.page.keyboard.press('ArrowDown');
+    await screen.page.keyboard.press('Enter');
+    await axis(1).getByRole('textbox', { name: 'Values' }).fill('1, x');
+    await button('Add an axis').click();
+    await axis(2).getByRole('combobox', { name: 'Parameter' }).fill('liquid ior');
+    await axis(2).getByRole('option').first().click();
+    await axis(2).getByText('Range', { exact: true }).click();
+    await axis(2).getByLabel('From').fill('1,1');
+    await axis(2).getByLabel('To').fill('1.7');
+    await axis(2).getByLabel('Count').fill('3');
+    await dialog.getByLabel('File', { exact: true }).fill('sub form');
+    await dialog.getByLabel('Repetitions').fill('2');
+    await dialog.getByLabel('Warm-ups').fill('0');
+    await button('Estimate').click();
+    await alert(axis(1)).waitFor();
+    t.match(await alert(axis(1)).innerText(), /'x' is not an integer/, 'the error of an axis is at its field');
+    t.equal(await alert(axis(2)).count(), 0, 'errors at the other axis');
+    t.equal(
+      await axis(1)
+        .getByLabel('Values')
+        .evaluate((node) => node === document.activeElement),
+      true,
+      'the field with the error has the focus',
+    );
+    await t.axe(screen, 'the form with an error');
+
+    await axis(1).getByLabel('Values').fill('1; 2');
+    await button('Estimate').click();
+    const facts = dialog.locator('.study-estimate .facts');
+    await facts.waitFor();
+    t.match(await facts.innerText(), /Cells\s+6\s+Rows\s+12\s+Time\s+.*\d+ (ms|s)/, 'the estimate');
+    await t.axe(screen, 'the form with an estimate');
+    t.equal((await lab.get('/api/files')).studies, ['studies/quick.study'], 'an estimate writes nothing');
+
+    await dialog.getByLabel('File', { exact: true }).fill('studies/quick');
+    t.equal(await facts.count(), 0, 'a changed form has no estimate');
+    await button('Save').click();
+    await alert(dialog.locator('.form-part').first()).waitFor();
+    t.match(await alert(dialog).first().innerText(), /already exists/, 'the error of the file is at its field');
+    t.check(await dialog.getByText('Replace the existing file').isVisible(), 'the form offers to replace the file');
+    await screen.page.keyboard.press('Escape');
+    await openForm(screen);
+    t.equal(await axis(2).getByLabel('From').inputValue(), '1,1', 'a closed form keeps its values');
+
+    await dialog.getByLabel('File', { exact: true }).fill('form');
+    await button('Save and start').click();
+    await dialog.waitFor({ state: 'detached' });
+    const study = screen.page.getByRole('article', { name: 'Study' });
+    await study.getByRole('heading', { name: 'Time and rays by render.depth, liquid.ior' }).waitFor();
+    await screen.until(() => window.lab.study?.name === 'form' && !window.lab.study.running);
+    await screen.page.getByRole('button', { name: /^form complete/ }).waitFor();
+    const { rows, columns } = await lab.get('/api/studies/form/rows');
+    const of = (name) => [...new Set(rows.map((row) => row[columns.indexOf(name)]))].sort();
+    t.equal([rows.length, of('render.depth'), of('liquid.ior')], [12, ['1', '2'], ['1.1', '1.4', '1.7']], 'rows');
+    const text = await readFile(join(lab.folder, 'form.study'), 'utf8');
+    t.check(/render.width: 80/.test(text) && /warmups: 0/.test(text), 'unsaved changes and warm-ups are in the file');
+    t.equal(
+      await study.getByRole('region', { name: 'Summary' }).getByRole('table').locator('tbody tr').count(),
+      6,
+      'lines of the summary in the page',
+    );
+  },
+
+  'the form on a telephone, and dark': async (t) => {
+    for (const [name, options] of [
+      ['phone', { width: 390, height: 844, touch: true }],
+      ['dark', { width: 1366, height: 900, dark: true }],
+      ['light', { width: 1366, height: 900 }],
+    ]) {
+      const screen = await t.open(await t.lab('scenes/rod.yaml'), options);
+      const dialog = await openForm(screen);
+      await dialog.getByRole('combobox', { name: 'Parameter' }).fill('depth');
+      await t.axe(screen, `${name}: the list of parameters`);
+      await t.picture(screen, `study-form-found-${name}`);
+      if (options.touch) t.none(await small(dialog), 'targets below 44 px in the list');
+      await dialog.getByRole('option').first().click();
+      await dialog.getByLabel('Values').fill('1, 2, 4');
+      await dialog.getByText('Range', { exact: true }).click();
+      await dialog.getByText('List', { exact: true }).click();
+      await dialog.getByRole('button', { name: 'Estimate' }).click();
+      await dialog.locator('.study-estimate .facts').waitFor();
+      await t.axe(screen, `${name}: the estimate`);
+      await t.picture(screen, `study-form-${name}`);
+      if (options.touch) t.none(await small(dialog), 'targets below 44 px');
+      const over = await dialog.evaluate((node) => node.scrollWidth - node.clientWidth);
+      t.check(over <= 0, `${name}: the dialog is ${over} pixels too narrow`);
+    }
   },
 
   'the panel Machine has the kernel and version of cuvette machine': async (t) => {

@@ -153,6 +153,35 @@ const views = {
       await screen.quiet();
     },
   },
+  'study-form': {
+    scene: 'experiments/scenes/rod.yaml',
+    async show(screen) {
+      await screen.showPanel('Studies');
+      await screen.button('New study').click();
+      const form = screen.page.getByRole('dialog', { name: 'New study' });
+      const axis = (number) => form.getByRole('group', { name: `Axis ${number}` });
+      await axis(1).getByRole('combobox').fill('render.depth');
+      await axis(1).getByRole('option').first().click();
+      await axis(1).getByLabel('Values').fill('1, 2, 4');
+      await form.getByRole('button', { name: 'Add an axis' }).click();
+      await axis(2).getByRole('combobox').fill('liquid.ior');
+      await axis(2).getByRole('option').first().click();
+      await axis(2).getByText('Range', { exact: true }).click();
+      await axis(2).getByLabel('From').fill('1,1');
+      await axis(2).getByLabel('To').fill('1,7');
+      await form.getByRole('button', { name: 'Estimate' }).click();
+      await form.locator('.study-estimate .facts').waitFor();
+    },
+  },
+  cost: {
+    scene: 'experiments/scenes/rod.yaml',
+    async show(screen) {
+      await screen.showPanel('Compare');
+      await screen.page.getByText('Rays', { exact: true }).click();
+      await screen.page.getByText('rays per pixel', { exact: true }).waitFor();
+      await screen.quiet();
+    },
+  },
   machine: {
     scene: 'experiments/scenes/rod.yaml',
     async show(screen) {

@@ -17,7 +17,7 @@ enum { WORDS_MAX = 64 }; /* more than axes of a study; settings have no such lim
 typedef struct form {
     const char *file;
     bool save, replace;
-    double repetitions;
+    double repetitions, warmups;
     const char *axes[WORDS_MAX];
     size_t axis_count;
     char *scene, *target; /* paths */
@@ -42,16 +42,24 @@ static bool is_study_name(const char *name)
     return length > 6 && strcmp(name + length - 6, ".study") == 0 && name[0] != '.' && !strstr(name, "/.");
 }
 
+static status take_frames(call *c, const char *key, double least, double most, const char *range, double *value)
+{
+    if (!api_take_number(c, key, false, value))
+        return STATUS_BAD_INPUT;
+    if (!(*value >= least && *value <= most) || *value != (double)(long)*value)
+        return diagnose_at(&c->why, key, STATUS_BAD_INPUT, range, "invalid number of %s", key);
+    return STATUS_OK;
+}
+
 static status take_form(call *c, form *f)
 {
     f->repetitions = 6;
+    f->warmups = 1;
     if (!api_take_text(c, "file", true, &f->file) || !api_take_flag(c, "save", &f->save) ||
-        !api_take_flag(c, "replace", &f->replace) || !api_take_number(c, "repetitions", false, &f->repetitions))
+        !api_take_flag(c, "replace", &f->replace))
         return STATUS_BAD_INPUT;
-    if (!(f->repetitions >= 1 && f->repetitions <= STUDY_REPETITIONS_MAX) ||
-        f->repetitions != (double)(long)f->repetitions)
-        return diagnose_at(&c->why, "repetitions", STATUS_BAD_INPUT, "give an integer from 1 to 100000",
-                           "invalid number of repetitions");
+    TRY(take_frames(c, "repetitions", 1, STUDY_REPETITIONS_MAX, "give an integer from 1 to 100000", &f->repetitions));
+    TRY(take_frames(c, "warmups", 0, STUDY_WARMUPS_MAX, "give an integer from 0 to 1000", &f->warmups));
     if (!is_study_name(f->file))
         return diagnose_at(&c->why, "file", STATUS_BAD_INPUT, "use a name such as depth.study",
                            "'%.200s' is not a valid study name", f->file);
@@ -99,6 +107,7 @@ static status compose(call *c, form *f, char **text, study **made)
                              .axes = f->axes,
                              .axis_count = f->axis_count,
                              .repetitions = (int64_t)f->repetitions,
+                             .warmups = (int64_t)f->warmups,
                              .guard = &guard};
     status code = sets ? STATUS_OK : out_of_memory(&c->why);
     for (size_t i = 0; sets && i < most; i++) {
@@ -153,10 +162,13 @@ static status check_new(call *c, const form *f, const study *s)
     TRY(study_find(c->l, s->name, &other, &c->why));
     const bool taken = other && strcmp(other, f->file) != 0;
     free(other);
+    c->refused = 409;
     if (taken)
-        return api_refuse(c, 409, "another study has that name", "choose another name");
+        return diagnose_at(&c->why, "file", STATUS_BAD_INPUT, "choose another name", "another study has that name");
     if (!f->replace && access(f->target, F_OK) == 0)
-        return api_refuse(c, 409, "the file already exists", "choose another name, or set 'replace'");
+        return diagnose_at(&c->why, "file", STATUS_BAD_INPUT, "choose another name, or set 'replace'",
+                           "the file already exists");
+    c->refused = 0;
     return STATUS_OK;
 }
 

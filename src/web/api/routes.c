@@ -1,6 +1,7 @@
 /* The table of all routes of the API, and the handling of one call. */
 #include "web/api/api.h"
 
+#include "report/json.h"
 #include <stdlib.h>
 
 typedef enum body_kind { NO_BODY, ANY_BODY, OBJECT, EMPTY } body_kind;
@@ -34,6 +35,9 @@ static const struct api_route {
     {"GET", "/api/pin.png", api_reference_image, NO_BODY},
     {"GET", "/api/compare", api_compare, NO_BODY},
     {"GET", "/api/compare.png", api_compare_map, NO_BODY},
+    {"GET", "/api/maps", api_maps, NO_BODY},
+    {"GET", "/api/maps/rays.png", api_map_of_rays, NO_BODY},
+    {"GET", "/api/maps/time.png", api_map_of_time, NO_BODY},
     {"POST", "/api/objects", api_add, ANY_BODY},
     {"DELETE", "/api/objects/{name}", api_remove, NO_BODY},
     {"POST", "/api/objects/{name}/move", api_move, ANY_BODY},
@@ -100,7 +104,7 @@ static void answer(void *context, const http_request *request, http_reply *reply
         if (code == STATUS_OK && !c.sent)
             http_reply_json(reply, 200, json_incref(c.json));
         else if (code != STATUS_OK && code != STATUS_FAILURE && c.refused)
-            http_reply_error(reply, c.refused, c.why.what, c.why.remedy);
+            http_reply_json(reply, c.refused, json_of_diagnostic(&c.why));
         else if (code != STATUS_OK)
             http_reply_diagnostic(reply, code, &c.why);
     }

@@ -1,8 +1,10 @@
-/* The panel Compare: the reference image A and the newest image B, as images and in numbers. exports: panel */
+/* The panel Compare: the reference image A and the newest image B, as images and in numbers, and maps of the cost of
+ * each pixel. exports: panel */
 
 import { button, choice, element, empty, notice, replace, slider } from './ui.js';
 import { changes, costs, similarity, sizes } from './compare_numbers.js';
 import { createCompareView } from './compare_view.js';
+import { createCostMaps } from './cost_maps.js';
 
 const CLOSE_UP = 12; /* CSS pixels per image pixel */
 const writes = (target) =>
@@ -218,7 +220,7 @@ function create(root, lab) {
   const buttons = pinButtons(lab);
   const how = createShow(lab);
   const below = element('div', { class: 'compare-below' });
-  root.append(buttons.node, how.node, below);
+  root.append(buttons.node, how.node, below, createCostMaps(lab).node);
   const goto = (x, y) => {
     how.markPixel([x, y]);
     closeUp(lab, x, y);

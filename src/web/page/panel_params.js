@@ -5,7 +5,7 @@
 import { button, check, element, empty, group, icon, memory, replace } from './ui.js';
 import { createRow, valueText } from './param_row.js';
 import { hasLaw } from './param_laws.js';
-import { meaningsOf } from './param_synonyms.js';
+import { findParams } from './param_search.js';
 
 const FOUND_MAX = 80;
 const LATER_MS = 300; /* the list is not rebuilt while one of its controls is dragged */
@@ -32,10 +32,6 @@ function grouped(rows) {
   }
   return groups;
 }
-
-/* What a search looks in: for a choice also its words, such as the names of media. */
-const hayOf = (row) =>
-  `${row.path} ${row.path.replaceAll('_', ' ')} ${row.meaning} ${(row.choices || []).join(' ')}`.toLowerCase();
 
 const rank = { solid: 0, light: 1, material: 2, mesh: 3, texture: 4 };
 
@@ -275,26 +271,17 @@ export const panel = {
     }
 
     function find() {
-      const words = search.value.trim().toLowerCase().split(/\s+/).filter(Boolean);
+      const words = search.value.trim();
       rows.delete('found');
-      list.hidden = words.length > 0;
+      list.hidden = words !== '';
       results.hidden = !list.hidden;
-      if (!words.length) {
+      if (!words) {
         countLabel.textContent = '';
         results.replaceChildren();
         return;
       }
-      const hays = new Map(lab.scene.params.map((row) => [row, hayOf(row)]));
-      const has = (hay, some) => some.some((word) => hay.includes(word));
-      const meant = words.map(meaningsOf);
-      const found = lab.scene.params.filter((row) => meant.every((some) => has(hays.get(row), some)));
-      const paths = found.filter((row) => meant.every((some) => has(row.path.toLowerCase(), some)));
       const near = new Set(handParts(lab, onceClear).flatMap(([, own]) => own.map((row) => row.path)));
-      const handFirst = (some) => [
-        ...some.filter((row) => near.has(row.path)),
-        ...some.filter((row) => !near.has(row.path)),
-      ];
-      const best = [...handFirst(paths), ...handFirst(found.filter((row) => !paths.includes(row)))];
+      const best = findParams(lab.scene.params, words, near);
       countLabel.textContent = `${best.length} found`;
       replace(
         results,

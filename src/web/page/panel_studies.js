@@ -4,6 +4,7 @@
 import { button, element, empty, memory, replace } from './ui.js';
 import { createStudyList } from './study_list.js';
 import { createDetails } from './study_details.js';
+import { createStudyForm } from './study_form.js';
 
 const APART_MS = 3000;
 let visible = false;
@@ -20,6 +21,7 @@ function create(root, lab) {
   let seen = { running: false, name: null };
   let fetched = -1;
   let asking = false;
+  const form = createStudyForm(lab, { files: () => studies.map(({ file }) => file), onsaved: saved });
   root.append(
     element(
       'div',
@@ -28,6 +30,7 @@ function create(root, lab) {
         'div',
         { class: 'study-side-head' },
         element('h2', { text: 'Studies' }),
+        button('New study', form.open, { icon: 'plus', small: true }),
         button('Refresh', () => refresh(), {
           icon: 'reset',
           kind: 'quiet',
@@ -53,6 +56,19 @@ function create(root, lab) {
     one().catch(lab.fail);
   }
 
+  async function saved(file, start) {
+    chosen = file;
+    memory.set('study', chosen);
+    lab.say(`${file} saved.`);
+    try {
+      await all();
+      const study = studies.find((each) => each.file === file);
+      if (start && study) await run(study);
+    } catch (error) {
+      lab.fail(error);
+    }
+  }
+
   function showList() {
     list.show(studies, chosen, lab.study?.running ? lab.study : null);
   }
@@ -68,7 +84,7 @@ function create(root, lab) {
         place,
         empty(
           'The folder contains no study. A study is a file NAME.study with a scene, a grid over its ' +
-            'parameters, and repetitions.',
+            'parameters, and repetitions; New study makes one.',
         ),
       );
     else await one();

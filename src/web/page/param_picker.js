@@ -1,0 +1,114 @@
+/* A field that chooses a parameter of the scene: a search with a list of the parameters found.
+ * exports: createParamPicker(lab, {label, onchoose(row)}) -> {node, input, row}
+ *   row: the chosen row of the parameter table, or null while the text is no parameter's path */
+
+import { element, replace, unique } from './ui.js';
+import { findParams } from './param_search.js';
+
+const FOUND_MAX = 60;
+
+export function createParamPicker(lab, { label, onchoose }) {
+  const id = unique('found');
+  const input = element('input', {
+    type: 'text',
+    class: 'input',
+    id: unique('param'),
+    role: 'combobox',
+    'aria-autocomplete': 'list',
+    'aria-expanded': 'false',
+    'aria-controls': id,
+    placeholder: 'Search, such as depth or water',
+    autocomplete: 'off',
+    spellcheck: 'false',
+  });
+  const list = element('ul', { class: 'param-found', id, role: 'listbox', 'aria-label': label, hidden: true });
+  const node = element(
+    'div',
+    { class: 'field param-picker' },
+    element('label', { for: input.id, text: label }),
+    element('span', { class: 'field-control' }, input, list),
+  );
+  let rows = [];
+  let at = -1;
+
+  input.addEventListener('input', () => {
+    show();
+    onchoose(row());
+  });
+  input.addEventListener('click', () => list.hidden && show());
+  input.addEventListener('blur', hide);
+  input.addEventListener('keydown', key);
+  /* The field keeps the focus while an option is pressed. */
+  list.addEventListener('pointerdown', (event) => event.preventDefault());
+  list.addEventListener('click', (event) => {
+    const option = event.target.closest('[role=option]');
+    if (option) choose(rows[[...list.children].indexOf(option)]);
+  });
+  return {
+    node,
+    input,
+    get row() {
+      return row();
+    },
+  };
+
+  function row() {
+    return lab.param(input.value.trim()) || null;
+  }
+
+  function show() {
+    rows = findParams(lab.scene?.params || [], input.value).slice(0, FOUND_MAX);
+    replace(
+      list,
+      rows.map((each) =>
+        element(
+          'li',
+          { role: 'option', id: unique('option'), 'aria-selected': 'false' },
+          element('code', { text: each.path }),
+          element('span', { class: 'hint', text: each.meaning }),
+        ),
+      ),
+    );
+    mark(-1);
+    list.hidden = !rows.length;
+    input.setAttribute('aria-expanded', String(!list.hidden));
+  }
+
+  function hide() {
+    list.hidden = true;
+    mark(-1);
+    input.setAttribute('aria-expanded', 'false');
+  }
+
+  function mark(next) {
+    list.children[at]?.setAttribute('aria-selected', 'false');
+    at = next;
+    const option = list.children[at];
+    option?.setAttribute('aria-selected', 'true');
+    option?.scrollIntoView({ block: 'nearest' });
+    if (option) input.setAttribute('aria-activedescendant', option.id);
+    else input.removeAttribute('aria-activedescendant');
+  }
+
+  function choose(chosen) {
+    input.value = chosen.path;
+    hide();
+    onchoose(chosen);
+  }
+
+  function key(event) {
+    const way = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (way) {
+      if (list.hidden) show();
+      if (rows.length) mark((at + way + rows.length) % rows.length);
+    } else if (event.key === 'Enter' && !list.hidden && rows.length) {
+      choose(rows[Math.max(0, at)]);
+    } else if (event.key === 'Escape' && !list.hidden) {
+      hide(); /* and the dialog stays open */
+      event.stopPropagation();
+    } else {
+      return;
+    }
+    event.preventDefault();
+  }
+}
