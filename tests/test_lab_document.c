@@ -339,7 +339,7 @@ static void a_view_is_kept_on_demand(void **state)
     const char same[] = "camera.roll_deg=0"; /* what the view shows already */
     assert_int_equal(scene_document_apply_to_camera(d, same, NULL, set_one, (void *)(uintptr_t)same, NULL, NULL),
                      STATUS_OK);
-    assert_true(view_x(d) == shown && eye_x(d, scene_document_take_kept) == shown && !is_saved(d));
+    assert_true(view_x(d) == shown && eye_x(d, take_kept) == shown && !is_saved(d));
     assert_int_equal(scene_document_undo(d, false, NULL, NULL), STATUS_OK);
     assert_true(view_x(d) == own && is_saved(d));
     apply(d, "camera.fov_deg=30"); /* a parameter of the camera is one of the scene */
