@@ -145,9 +145,9 @@ static void only_the_named_objects_change(void **state)
         const char *name;
         scene_parts parts;
     } names[] = {
-        {"all", {true, true, false}},       {"solids", {true, false, false}},
-        {"lights", {false, true, false}},   {"solids+camera", {true, false, true}},
-        {"camera+all", {true, true, true}}, {"lights+camera", {false, true, true}},
+        {"all", {true, true, true, false}},       {"solids", {true, false, false, false}},
+        {"lights", {false, true, true, false}},   {"solids+camera", {true, false, false, true}},
+        {"camera+all", {true, true, true, true}}, {"lights+camera", {false, true, true, true}},
     };
     for (size_t k = 0; k < COUNT(names); k++) {
         const scene_parts p = names[k].parts;
