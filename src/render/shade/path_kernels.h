@@ -34,7 +34,8 @@ typedef struct path_kernels {
     /* The rays, -1 each, whose lines ahead pass within the radius of a centre, and some that just miss; returns whether
      * there are any. */
     bool (*near_sphere)(const ray_batch *rays, vec3 centre, double radius, int64_t *near);
-    /* An estimate of each light's radiance at a point with normal n, for the choice of one: weight[blocks*LAMP_BLOCK]. */
+    /* An estimate of each light's radiance at a point with normal n, for the choice of one:
+     * weight[blocks * LAMP_BLOCK]. */
     void (*light_weights)(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float *weight);
 } path_kernels;
 
