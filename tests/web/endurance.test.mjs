@@ -53,7 +53,7 @@ function ask(lab, agent, { method = 'GET', path, body, token = lab.token }) {
   });
 }
 
-/** What a page asks for, and mistakes. */
+/** What a page requests, and mistakes. */
 const QUESTIONS = [
   [200, { path: '/api/state' }],
   [200, { path: '/api/scene' }],
