@@ -79,7 +79,9 @@ for threads in 2 7; do
     check "$threads threads give the same frames" same_frames one "threads-$threads"
 done
 "$program" render slime.yaml --set toy.time_s=0.32 -o still.png >/dev/null
-check "a frame equals a render at its time" cmp still.png one/00008.png
+# Without what comes before the pixels: a rendered image holds its scene too.
+pixels() { tail -c "+$(grep -abom1 IDAT "$1" | head -n 1 | cut -d: -f1)" "$1"; }
+check "a frame equals a render at its time" cmp <(pixels still.png) <(pixels one/00008.png)
 
 # --- resuming
 animate -o part/%05d.png --duration 0.24
