@@ -2,33 +2,18 @@
  * in a job, which belongs to a function that does not call setjmp; the function that does has no modified local
  * variables. */
 #include "image/png_bands.h"
+#include "image/png_library.h"
 
-#include <png.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct png_job {
-    png_structp png;
-    png_infop info;
-    char message[256]; /* libpng's error message */
+    png_library of; /* first: libpng hands it back */
     const image_rows *rows;
     png_bands *bands;
     int bits;
     png_text texts[IMAGE_TEXTS_MAX];
 } png_job;
-
-static _Noreturn void on_error(png_structp png, png_const_charp message)
-{
-    png_job *job = png_get_error_ptr(png);
-    snprintf(job->message, sizeof job->message, "%s", message);
-    png_longjmp(png, 1);
-}
-
-static void on_warning(png_structp png, png_const_charp message)
-{
-    (void)png;
-    (void)message;
-}
 
 static void set_texts(png_job *job)
 {
@@ -38,32 +23,32 @@ static void set_texts(png_job *job)
                                    .key = (png_charp)(uintptr_t)from->keyword,
                                    .text = (png_charp)(uintptr_t)from->text,
                                    .itxt_length = strlen(from->text)};
-        png_set_text(job->png, job->info, &job->texts[i], 1);
+        png_set_text(job->of.png, job->of.info, &job->texts[i], 1);
     }
 }
 
 static void write_chunks(png_job *job, FILE *stream)
 {
-    png_init_io(job->png, stream);
-    png_set_IHDR(job->png, job->info, (png_uint_32)job->rows->width, (png_uint_32)job->rows->height, job->bits,
+    png_init_io(job->of.png, stream);
+    png_set_IHDR(job->of.png, job->of.info, (png_uint_32)job->rows->width, (png_uint_32)job->rows->height, job->bits,
                  PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_set_sRGB(job->of.png, job->of.info, PNG_sRGB_INTENT_PERCEPTUAL);
     set_texts(job);
-    png_write_info(job->png, job->info);
+    png_write_info(job->of.png, job->of.info);
     for (size_t count; (count = png_bands_compress(job->bands)) > 0;)
         for (size_t i = 0; i < count; i++) {
             const unsigned char *bytes;
             size_t size;
             if (!png_bands_get(job->bands, i, &bytes, &size))
-                png_error(job->png, "zlib failed");
-            png_write_chunk(job->png, (png_const_bytep) "IDAT", bytes, size);
+                png_error(job->of.png, "zlib failed");
+            png_write_chunk(job->of.png, (png_const_bytep) "IDAT", bytes, size);
         }
-    png_write_chunk(job->png, (png_const_bytep) "IEND", NULL, 0); /* png_write_end wants IDAT written by libpng */
+    png_write_chunk(job->of.png, (png_const_bytep) "IEND", NULL, 0); /* png_write_end wants IDAT written by libpng */
 }
 
 static bool write_guarded(png_job *job, FILE *stream)
 {
-    if (setjmp(png_jmpbuf(job->png)))
+    if (setjmp(png_jmpbuf(job->of.png)))
         return false;
     write_chunks(job, stream);
     return true;
@@ -75,13 +60,13 @@ status codec_png_write(const image_rows *rows, FILE *stream, int bits, bool fast
     status code = png_bands_create(rows, bits, fast, &job.bands, why);
     if (code != STATUS_OK)
         return code;
-    job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
-    job.info = job.png ? png_create_info_struct(job.png) : NULL;
-    if (!job.info)
+    job.of.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, png_library_error, png_library_warning);
+    job.of.info = job.of.png ? png_create_info_struct(job.of.png) : NULL;
+    if (!job.of.info)
         code = out_of_memory(why);
     else if (!write_guarded(&job, stream))
-        code = diagnose(why, STATUS_FAILURE, NULL, "cannot write the PNG file: %s", job.message);
-    png_destroy_write_struct(&job.png, &job.info);
+        code = diagnose(why, STATUS_FAILURE, NULL, "cannot write the PNG file: %s", job.of.message);
+    png_destroy_write_struct(&job.of.png, &job.of.info);
     png_bands_destroy(job.bands);
     return code;
 }

@@ -46,20 +46,23 @@ void curve_add(realism_points *out, double x, double measured, double theory)
         out->at[out->count++] = (realism_point){x, measured, theory};
 }
 
-static status trace_fresnel(const metrics *m, realism_curve which, realism_points *out, diagnostic *why)
+enum reflected { REFLECTED_S, REFLECTED_P, REFLECTED_BOTH };
+
+/* Reflectances of one component or of unpolarised light, by the angle of incidence. */
+static status trace_reflectance(const metrics *m, setup_medium from, setup_medium to, enum reflected part,
+                                realism_points *out, diagnostic *why)
 {
     static double (*const theory[])(double, double, double) = {theory_fresnel_s, theory_fresnel_p, theory_fresnel};
-    const double *n = m->at.n;
     double start_y = 0.0;
     trial t;
-    scene *s = arrange_interface(m->traced, &m->at, SETUP_OUTSIDE, SETUP_VESSEL, &start_y);
+    scene *s = arrange_interface(m->traced, &m->at, from, to, &start_y);
     status code = trial_start(&t, s, m->level, why);
     for (int i = 0; i < 180 && code == STATUS_OK; i++) {
+        const double angle = 0.5 * i * DEGREE;
         interface_shares seen;
-        code = interface_measure(t.p, &t.tree, start_y, 0.5 * i * DEGREE, &seen, why);
+        code = interface_measure(t.p, &t.tree, start_y, angle, &seen, why);
         const double measured[] = {seen.R_s, seen.R_p, seen.R};
-        const int at = (int)which - (int)REALISM_CURVE_FRESNEL_S;
-        curve_add(out, 0.5 * i, measured[at], theory[at](0.5 * i * DEGREE, n[SETUP_OUTSIDE], n[SETUP_VESSEL]));
+        curve_add(out, 0.5 * i, measured[part], theory[part](angle, m->at.n[from], m->at.n[to]));
     }
     trial_end(&t);
     return code;
@@ -126,22 +129,6 @@ static status trace_edges(const metrics *m, realism_points *out, diagnostic *why
         curve_add(out, liquid->ior, measured[0], theory[0]);
     }
     scene_destroy(s);
-    return code;
-}
-
-static status trace_mirror(const metrics *m, realism_points *out, diagnostic *why)
-{
-    const double *n = m->at.n;
-    double start_y = 0.0;
-    trial t;
-    scene *s = arrange_interface(m->traced, &m->at, SETUP_LIQUID, SETUP_OUTSIDE, &start_y);
-    status code = trial_start(&t, s, m->level, why);
-    for (int i = 0; i < 180 && code == STATUS_OK; i++) {
-        interface_shares seen;
-        code = interface_measure(t.p, &t.tree, start_y, 0.5 * i * DEGREE, &seen, why);
-        curve_add(out, 0.5 * i, seen.R, theory_fresnel(0.5 * i * DEGREE, n[SETUP_LIQUID], n[SETUP_OUTSIDE]));
-    }
-    trial_end(&t);
     return code;
 }
 
@@ -214,12 +201,14 @@ status realism_trace_curve(const scene *s, isa level, realism_curve which, reali
     switch (which) {
     case REALISM_CURVE_FRESNEL_S:
     case REALISM_CURVE_FRESNEL_P:
-    case REALISM_CURVE_FRESNEL: return trace_fresnel(&m, which, out, why);
+    case REALISM_CURVE_FRESNEL:
+        return trace_reflectance(&m, SETUP_OUTSIDE, SETUP_VESSEL,
+                                 (enum reflected)((int)which - (int)REALISM_CURVE_FRESNEL_S), out, why);
     case REALISM_CURVE_DEVIATION: return trace_deviation(&m, out, why);
     case REALISM_CURVE_DEPTH: return trace_depth(&m, out, why);
     case REALISM_CURVE_ABSORPTION: return trace_absorption(&m, out, why);
     case REALISM_CURVE_EDGES: return trace_edges(&m, out, why);
-    case REALISM_CURVE_MIRROR: return trace_mirror(&m, out, why);
+    case REALISM_CURVE_MIRROR: return trace_reflectance(&m, SETUP_LIQUID, SETUP_OUTSIDE, REFLECTED_BOTH, out, why);
     case REALISM_CURVE_APPARENT_DEPTH: return trace_apparent_depth(&m, out, why);
     case REALISM_CURVE_PRISM:
     case REALISM_CURVE_RAINBOW:

@@ -47,35 +47,26 @@ export function createLesson(root, lab, lesson, back) {
   function createPrediction() {
     const { ask, choices } = lesson.prediction;
     const reveal = button('Show the measurement', () => show(null), { small: true });
-    if (!choices) {
-      const field = number({ onchange: null });
-      field.input.setAttribute('aria-label', ask);
-      const go = () => Number.isFinite(field.value) && show(field.value);
-      field.input.addEventListener('keydown', (event) => event.key === 'Enter' && go());
-      return element(
-        'div',
-        { class: 'lesson-prediction' },
-        element('p', { text: ask }),
-        element(
-          'div',
-          { class: 'buttons' },
-          field.node,
-          button('Compare', go, { kind: 'primary', small: true }),
-          reveal,
-        ),
-      );
-    }
-    return element(
-      'div',
-      { class: 'lesson-prediction' },
-      element('p', { text: ask }),
-      element(
-        'div',
-        { class: 'lesson-choices', role: 'group', 'aria-label': ask },
-        choices.map((word) => button(word, () => show(word))),
-      ),
-      element('div', { class: 'buttons' }, reveal),
-    );
+    const answer = choices
+      ? [
+          element(
+            'div',
+            { class: 'lesson-choices', role: 'group', 'aria-label': ask },
+            choices.map((word) => button(word, () => show(word))),
+          ),
+          element('div', { class: 'buttons' }, reveal),
+        ]
+      : [createNumber(ask, reveal)];
+    return element('div', { class: 'lesson-prediction' }, element('p', { text: ask }), ...answer);
+  }
+
+  function createNumber(ask, reveal) {
+    const field = number({ onchange: null });
+    field.input.setAttribute('aria-label', ask);
+    const go = () => Number.isFinite(field.value) && show(field.value);
+    field.input.addEventListener('keydown', (event) => event.key === 'Enter' && go());
+    const compare = button('Compare', go, { kind: 'primary', small: true });
+    return element('div', { class: 'buttons' }, field.node, compare, reveal);
   }
 
   function show(prediction) {

@@ -1,0 +1,37 @@
+/* Callbacks of libpng. */
+#include "image/png_library.h"
+#include "image/image.h"
+
+#include <stdio.h>
+#include <string.h>
+
+_Noreturn void png_library_error(png_structp png, png_const_charp message)
+{
+    png_library *of = png_get_error_ptr(png);
+    snprintf(of->message, sizeof of->message, "%s", message);
+    png_longjmp(png, 1);
+}
+
+void png_library_warning(png_structp png, png_const_charp message)
+{
+    (void)png;
+    (void)message;
+}
+
+static void take_bytes(png_structp png, png_bytep to, size_t count)
+{
+    png_library *from = png_get_io_ptr(png);
+    if (count > from->size - from->used)
+        png_error(png, "the file is truncated");
+    memcpy(to, from->bytes + from->used, count);
+    from->used += count;
+}
+
+void png_library_guard(png_library *of, size_t chunk_max)
+{
+    png_set_read_fn(of->png, of, take_bytes);
+    png_set_user_limits(of->png, IMAGE_SIDE_MAX, IMAGE_SIDE_MAX);
+    png_set_chunk_malloc_max(of->png, chunk_max);
+    png_set_chunk_cache_max(of->png, 128);
+    png_set_crc_action(of->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+}
