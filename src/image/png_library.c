@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-_Noreturn void png_library_error(png_structp png, png_const_charp message)
+void png_library_error(png_structp png, png_const_charp message)
 {
     png_library *of = png_get_error_ptr(png);
     snprintf(of->message, sizeof of->message, "%s", message);

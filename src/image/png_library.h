@@ -12,7 +12,7 @@ typedef struct png_library {
     size_t size, used;
 } png_library;
 
-_Noreturn void png_library_error(png_structp png, png_const_charp message);
+void png_library_error(png_structp png, png_const_charp message) __attribute__((noreturn));
 void png_library_warning(png_structp png, png_const_charp message);
 /* Before the first byte of a file that anyone may have made: it is read from memory, no chunk takes more than that
  * many bytes, also when it is expanded, and a wrong checksum is an error. */
