@@ -57,8 +57,10 @@ export class Screen {
   }
 
   async load() {
+    const broken = new Promise((_, reject) => this.page.once('pageerror', reject)); // sooner than by a time limit
     await this.page.goto(this.lab.address);
-    await this.page.waitForFunction(() => window.lab?.picture);
+    await Promise.race([this.page.waitForFunction(() => window.lab?.picture), broken]);
+    broken.catch(() => {}); // later errors are found by watch
     await this.settled();
   }
 

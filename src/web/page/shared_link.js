@@ -5,8 +5,6 @@
 
 import { copy } from './ui.js';
 
-import { copy } from './ui.js';
-
 export async function openLink(lab) {
   const link = location.hash;
   if (!link.startsWith('#scene=')) return;
