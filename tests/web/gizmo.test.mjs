@@ -33,6 +33,24 @@ async function drag(screen, label, dx, dy) {
 const far = (a, b) => Math.hypot(...a.map((x, i) => x - b[i]));
 
 export const cases = {
+  'the marks of an object are lines, through which it is seen': async (t) => {
+    const lab = await t.lab('scenes/models.yaml');
+    const screen = await t.open(lab, { width: 1366, height: 900 });
+    for (const [name, tag] of [
+      ['glass', 'circle'], // a mesh
+      ['lamp', 'path'],
+    ]) {
+      await select(screen, name);
+      await screen.page.locator(`.layer-object ${tag}`).first().waitFor({ state: 'attached' });
+      const filled = await screen.page.evaluate(
+        () =>
+          [...document.querySelectorAll('.layer-object *')].filter((mark) => getComputedStyle(mark).fill !== 'none')
+            .length,
+      );
+      t.equal(filled, 0, `filled marks of ${name}`);
+    }
+  },
+
   'a handle moves an object along its axis': async (t) => {
     const lab = await t.lab('tests/shadow.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });
