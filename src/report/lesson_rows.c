@@ -1,3 +1,4 @@
+/* Writes the columns of lessons. */
 #include "report/lesson_rows.h"
 
 #include "report/json.h"

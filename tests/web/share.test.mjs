@@ -1,3 +1,4 @@
+// Scenes shared by link, PNG image and HTML file: all give the film again.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';

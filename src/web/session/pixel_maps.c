@@ -1,3 +1,4 @@
+/* Renders and keeps the maps of cost of the newest image. */
 #include "web/session/pixel_maps.h"
 
 #include "image/image.h"

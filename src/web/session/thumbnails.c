@@ -1,3 +1,4 @@
+/* Keeps and renders thumbnails, one render at a time. */
 #include "web/session/thumbnails.h"
 
 #include "base/text.h"
