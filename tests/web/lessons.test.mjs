@@ -42,10 +42,10 @@ export const cases = {
       const { choices, right } = lesson.prediction;
       if (choices) await panel(screen).getByRole('button', { name: right, exact: true }).click();
       else {
+        const answer = panel(screen).getByRole('spinbutton', { name: lesson.prediction.ask });
+        await answer.waitFor(); /* the lesson's scene is open, not the last one's */
         const truth = (await lab.get(`/api/lessons/${lesson.name}/measure`)).measured;
-        await panel(screen)
-          .getByRole('spinbutton', { name: lesson.prediction.ask })
-          .fill(String(Math.round(truth)));
+        await answer.fill(String(Math.round(truth)));
         await screen.button('Compare', true).click();
       }
       await panel(screen).getByText('That is right.').waitFor();

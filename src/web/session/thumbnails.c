@@ -115,23 +115,48 @@ static void make_small(scene *s)
     r->height = (int64_t)fmax(1.0, (double)r->height * shrink);
     r->threads = 1;
     r->wavelengths = r->wavelengths < WAVELENGTHS ? r->wavelengths : WAVELENGTHS;
-    r->samples = r->samples < SAMPLES ? SAMPLES : r->samples;
+}
+
+/* Renders the scene into an image that the caller destroys. */
+static status render_image(job *j, scene *s, image **img, diagnostic *why)
+{
+    job_account account = {.result = NULL};
+    status code = job_render(j, s, NULL, &account, why);
+    THEN(code, film_image(account.result->img, img, why));
+    job_account_release(&account);
+    return code;
+}
+
+/* The scene's own samples first, then more if the time is likely to suffice: a busy machine shows a coarser image, not
+ * none. */
+static status render_twice(thumbnails *t, job *j, scene *s, image **img, diagnostic *why)
+{
+    const int64_t own = s->render.samples;
+    const double start_s = clock_wall_s();
+    TRY(render_image(j, s, img, why));
+    if (own >= SAMPLES || (clock_wall_s() - start_s) * (double)(SAMPLES + own) / (double)own > limit_s)
+        return STATUS_OK;
+    image *fine = NULL;
+    s->render.samples = SAMPLES;
+    const status code = render_image(j, s, &fine, why);
+    if (code == STATUS_OK) {
+        image_destroy(*img);
+        *img = fine;
+    }
+    return code == STATUS_INTERRUPTED && !atomic_load(&t->ended) ? STATUS_OK : code;
 }
 
 static status render(thumbnails *t, scene *s, unsigned char **bytes, size_t *size, diagnostic *why)
 {
     job *j = NULL;
-    job_account account = {.result = NULL};
     image *img = NULL;
     make_small(s);
     t->late_s = clock_wall_s() + limit_s;
     status code = job_create(&(job_settings){.level = &t->level, .stop = must_end, .context = t}, &j, why);
     THEN(code, job_load(j, s, NULL, why));
-    THEN(code, job_render(j, s, NULL, &account, why));
-    THEN(code, film_image(account.result->img, &img, why));
+    THEN(code, render_twice(t, j, s, &img, why));
     THEN(code, image_encode(img, IMAGE_JPEG, 8, false, bytes, size, why));
     image_destroy(img);
-    job_account_release(&account);
     job_destroy(j);
     return code == STATUS_INTERRUPTED && !atomic_load(&t->ended)
                ? diagnose(why, STATUS_FAILURE, "open the scene", "the thumbnail takes too long")
