@@ -1,13 +1,15 @@
 // tests/web/bench.mjs --program CUVETTE --modules FOLDER [--changes N] [--drag SECONDS]: the latency of the page in
 // milliseconds: from the start of the program to the first drawn image, and from a change of an index to its first and
-// its final drawn image, as median and worst of N; and images a second while the camera is dragged at 60 Hz (or a slime
-// plays): the median over the seconds, the longest gap, drawn over fetched images, and their pixels. Not a test: times
-// depend on the machine.
+// its final drawn image, as median and worst of N; images a second while the camera is dragged at 60 Hz (or a slime
+// plays): the median over the seconds, the longest gap, drawn over fetched images, and their pixels; and, over a link
+// of 1 Mbit/s and 100 ms, the time from a change to the first full-size image and to the final, exact one, with the bytes of a
+// change. Not a test: times depend on the machine.
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 import { Lab } from './lab.mjs';
 import { Screen } from './screen.mjs';
+import { SlowLink } from './slow_link.mjs';
 
 const { values: options } = parseArgs({
   options: {
@@ -18,6 +20,12 @@ const { values: options } = parseArgs({
   },
 });
 const { chromium } = createRequire(resolve(options.modules, 'package.json'))('playwright-core');
+
+const launch = (...more) =>
+  chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: [...(process.getuid() === 0 ? ['--no-sandbox'] : []), ...more],
+  });
 
 const median = (times) => [...times].sort((a, b) => a - b)[times.length >> 1];
 const summary = (times) => `${median(times).toFixed(0)} (worst ${Math.max(...times).toFixed(0)})`;
@@ -100,10 +108,52 @@ async function drag(screen, scene, moves) {
   );
 }
 
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  args: process.getuid() === 0 ? ['--no-sandbox'] : [],
-});
+/** Milliseconds from a change to the first image of full size and to the exact one. */
+const slowChange = (page, ior) =>
+  page.evaluate(async (value) => {
+    const { lab } = window;
+    const began = performance.now();
+    const width = lab.param('render.width').value;
+    let full = null;
+    const done = new Promise((resolve) => {
+      const end = lab.on('picture', () => {
+        if (!lab.picture || lab.picture.generation <= before) return;
+        if (lab.picture.width === width) full ??= performance.now() - began;
+        if (!lab.picture.final) return;
+        end();
+        resolve();
+      });
+    });
+    const before = lab.newestGeneration;
+    lab.set({ 'liquid.ior': value });
+    await done;
+    return { full, exact: performance.now() - began };
+  }, ior);
+
+async function slow(lab) {
+  const link = await SlowLink.open(lab.port, { bitsPerS: 1e6, latencyMs: 100 });
+  const browser = await launch(`--host-resolver-rules=MAP 127.0.0.1:${lab.port} 127.0.0.1:${link.port}`);
+  const page = await browser.newPage();
+  await page.goto(lab.address);
+  await page.waitForFunction(() => window.lab?.picture?.final, null, { polling: 50 });
+  const loaded = link.down.bytes;
+  const full = [],
+    exact = [];
+  for (let i = 0; i < Number(options.changes); i++) {
+    const times = await slowChange(page, 1.2 + 0.01 * i);
+    full.push(times.full);
+    exact.push(times.exact);
+  }
+  const each = (direction, from = 0) => ((direction.bytes - from) / 1000 / full.length).toFixed(1);
+  console.log(
+    `rod, 1 Mbit/s, 100 ms: full-size image ${summary(full)} ms, exact image ${summary(exact)} ms, ` +
+      `a change ${each(link.down, loaded)} kB down, start ${(loaded / 1000).toFixed(0)} kB`,
+  );
+  await browser.close();
+  link.close();
+}
+
+const browser = await launch();
 try {
   const starts = [];
   for (let i = 0; i < 5; i++) {
@@ -124,6 +174,9 @@ try {
   await measure(screen, 'rod, 800x600, depth 8, 16 samples', { 'render.depth': 8, 'render.samples': 16 });
   await screen.close();
   await lab.end();
+  const far = await Lab.start(options.program, 'scenes/rod.yaml');
+  await slow(far);
+  await far.end();
   for (const scene of ['rod', 'models', 'rainbow', 'slime']) {
     const room = await Lab.start(options.program, `scenes/${scene}.yaml`);
     const view = await Screen.open(browser, room);
