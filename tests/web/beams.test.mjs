@@ -54,6 +54,35 @@ export const cases = {
     await t.axe(screen, 'bench');
   },
 
+  'the start and the target of a beam are dragged over the image': async (t) => {
+    const { lab, screen } = await withLaser(t, { width: 1366, height: 768 });
+    const param = async (name) => (await lab.get('/api/scene')).params.find(({ path }) => path === name).value;
+    for (const [name, path, other] of [
+      ['start', 'laser.position', 'laser.target'],
+      ['target', 'laser.target', 'laser.position'],
+    ]) {
+      const [before, still] = [await param(path), await param(other)];
+      const from = await screen.page.evaluate((p) => window.lab.view.project(p), before);
+      await screen.drag(from, { x: from.x + 60, y: from.y - 40 });
+      await screen.settled();
+      const now = await param(path);
+      const to = await screen.page.evaluate((p) => window.lab.view.project(p), now);
+      t.near(to.x, from.x + 60, 2, `${name}: across the image`);
+      t.near(to.y, from.y - 40, 2, `${name}: down the image`);
+      t.equal(await param(other), still, `${name}: the other point stays`);
+    }
+    const handle = screen.page.getByRole('button', { name: /^start of laser/ });
+    const before = await param('laser.position');
+    await handle.press('Shift+ArrowUp'); /* farther along the line of sight */
+    await screen.settled();
+    const { camera } = await lab.get('/api/state');
+    const way = (await param('laser.position')).map((x, axis) => x - before[axis]);
+    const along = way.reduce((sum, x, axis) => sum + x * camera.forward[axis], 0);
+    t.near(along, Math.hypot(...way), 1e-3, 'farther along the line of sight');
+    t.more(along, 0.01, 'farther');
+    await t.picture(screen, 'beam-handles');
+  },
+
   'orbiting draws the beams anew and traces nothing': async (t) => {
     const { lab, screen } = await withLaser(t);
     const before = await lines(screen).first().getAttribute('x1');

@@ -2,8 +2,8 @@
 // milliseconds: from the start of the program to the first drawn image, and from a change of an index to its first and
 // its final drawn image, as median and worst of N; images a second while the camera is dragged at 60 Hz (or a slime
 // plays): the median over the seconds, the longest gap, drawn over fetched images, and their pixels; and, over a link
-// of 1 Mbit/s and 100 ms, the time from a change to the first full-size image and to the final, exact one, with the bytes of a
-// change. Not a test: times depend on the machine.
+// of 1 Mbit/s and 100 ms, the time from a change to the first full-size image and to the final, exact one, with the
+// bytes of a change. Not a test: times depend on the machine.
 import { createRequire } from 'node:module';
 import { resolve } from 'node:path';
 import { parseArgs } from 'node:util';

@@ -96,7 +96,7 @@ export const cases = {
     const screen = await t.open(lab);
     await screen.chooseTool('Light');
     await screen.page.locator('#head').click({ position: { x: 5, y: 5 } });
-    await tabTo(t, screen, '.light-handle');
+    await tabTo(t, screen, '.point-handle');
     await checkFocusShows(t, screen, 'the light');
     const before = await lab.value('lamp.position');
     await screen.page.keyboard.press('ArrowLeft');

@@ -7,14 +7,17 @@ import { createBenchRays } from './bench_rays.js';
 import { createBenchScreen } from './bench_screen.js';
 import { hitFacts, measure } from './bench_measure.js';
 import { createRow } from './param_row.js';
+import { createPointHandles } from './point_handles.js';
 import { describe, isCut } from './ray_tree.js';
 
 const bench = { rays: null, chosen: null, points: [], screen: null, measuring: false, beam: '' };
 const listeners = new Set();
 let overlay = null;
+let handles = null;
 
 function changed() {
   overlay.draw();
+  handles.draw();
   for (const listener of listeners) listener();
 }
 
@@ -27,6 +30,7 @@ function choose(segment) {
 function start(lab) {
   bench.rays = createBenchRays(lab);
   overlay = createBenchOverlay(lab, bench);
+  handles = createPointHandles(lab, { list: () => endsOf(lab, bench.beam), symbol: 'beam', what: 'point of a beam' });
   bench.rays.on(() => {
     bench.chosen = sameSegment(bench.chosen);
     changed();
@@ -38,8 +42,14 @@ function start(lab) {
     icon: 'beam',
     order: 45,
     cursor: 'crosshair',
-    hint: 'Choose a segment of a beam by a click; with Measure on, set points',
-    chosen: () => lab.panels?.use('bench'),
+    hint:
+      'Click a beam to choose it; drag its start or target, with Shift nearer and farther; with Measure on, set ' +
+      'points',
+    chosen() {
+      lab.panels?.use('bench');
+      handles.show();
+    },
+    dropped: handles.hide,
     down: (point) => {
       pick(lab, point);
       return false;
@@ -51,6 +61,15 @@ function start(lab) {
       return true;
     },
   });
+}
+
+/* The start and the target of a beam, which can be dragged; a ruler's points are set there instead. */
+function endsOf(lab, beam) {
+  if (bench.measuring) return [];
+  return [
+    { path: `${beam}.position`, name: `start of ${beam}` },
+    { path: `${beam}.target`, name: `target of ${beam}` },
+  ].filter(({ path }) => beam && lab.param(path));
 }
 
 /* After a change of the scene: the segment at the same place in the trees. */
@@ -112,6 +131,7 @@ function createBeams(lab) {
     const reply = await attempt(lab, lab.change('/api/objects', { kind: 'beam' }));
     if (!reply?.name) return;
     bench.beam = reply.name;
+    lab.view.use('bench');
     const values = Object.fromEntries(Object.entries(set).map(([key, value]) => [`${reply.name}.${key}`, value]));
     if (Object.keys(values).length) await attempt(lab, lab.set(values));
   };
@@ -204,6 +224,7 @@ function createRuler(lab) {
   const on = check('Measure: clicks in the image set points', false, (checked) => {
     bench.measuring = checked;
     if (checked) lab.view.use('bench');
+    handles.draw();
   });
   const clear = button('Clear points', () => {
     bench.points = [];
