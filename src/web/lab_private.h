@@ -9,6 +9,7 @@
 #include "web/lab.h"
 #include "web/live/render_worker.h"
 #include <pthread.h>
+#include <stdatomic.h>
 
 typedef struct reference_image reference_image; /* web/session/reference_image.h */
 typedef struct studies studies;                 /* web/session/studies.h */
@@ -25,6 +26,7 @@ struct lab {
     struct sent_scenes *sent;      /* web/api/scene_since.h */
     struct pixel_maps *pixel_maps; /* web/session/pixel_maps.h */
     struct thumbnails *thumbnails; /* web/session/thumbnails.h */
+    atomic_uint motion_stops;      /* requests to stop /api/motion */
     semaphore *heavy;              /* limits the handlers that need much memory and time */
     http_server *server;
     http_route *routes;

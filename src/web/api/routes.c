@@ -65,6 +65,8 @@ static const struct api_route {
     {"POST", "/api/slime/grab", api_grab, OBJECT},
     {"POST", "/api/slime/move", api_move_hand, OBJECT},
     {"POST", "/api/slime/release", api_release, OBJECT},
+    {"GET", "/api/motion", api_motion, NO_BODY},
+    {"POST", "/api/motion/stop", api_motion_stop, EMPTY},
     {"GET", "/api/studies", api_studies, NO_BODY},
     {"POST", "/api/studies", api_study_new, OBJECT},
     {"GET", "/api/studies/{name}", api_study, NO_BODY},
