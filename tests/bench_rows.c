@@ -4,7 +4,7 @@
 #include "base/number.h"
 #include "measure/clock.h"
 #include "study/check.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include "study/row_files.h"
 #include "study/runs.h"
 #include "study/summary.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "study/check.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>

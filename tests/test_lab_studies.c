@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "lab_study_fixture.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include <errno.h>
 
 /* --- the list --- */

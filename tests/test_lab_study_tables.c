@@ -7,7 +7,7 @@
 
 #include "lab_study_fixture.h"
 #include "rows_fixture.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include "study/summary.h"
 #include <pthread.h>
 

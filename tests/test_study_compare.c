@@ -3,7 +3,7 @@
 #include "image/compare.h"
 #include "render/core/renderer.h"
 #include "scene/model/params.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include "study/summary.h"
 #include <dirent.h>
 

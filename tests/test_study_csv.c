@@ -1,6 +1,6 @@
 /* Tests of the CSV reader and writer: quoting, incomplete lines and damaged files. */
 #include "study_fixture.h"
-#include "study/csv.h"
+#include "base/csv.h"
 
 static void csv_fields_round_trip(void **state)
 {

@@ -1,6 +1,6 @@
 /* Tests of a study's shards: partition of the cells, merging, duplicate and incomplete rows. */
 #include "study_fixture.h"
-#include "study/csv.h"
+#include "base/csv.h"
 
 static const char study_text[] = "study: test\n"
                                  "scene: scene.yaml\n"

@@ -4,7 +4,7 @@
 #include "realism/realism.h"
 #include "scene/model/params.h"
 #include "softbody/trials.h"
-#include "study/csv.h"
+#include "base/csv.h"
 
 static const char vessel_text[] = "study: test\n"
                                   "scene: vessel.yaml\n"

@@ -5,7 +5,7 @@
 #include "rows_fixture.h"
 #include "scene/model/params_path.h"
 #include "scene/model/params_value.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include "study/definition_v1.h"
 #include "study/grid.h"
 #include "study/manifest.h"

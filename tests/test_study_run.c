@@ -5,7 +5,7 @@
 #include "rows_fixture.h"
 #include <inttypes.h>
 #include "image/image.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include <pthread.h>
 #include <signal.h>
 #include <sys/file.h>

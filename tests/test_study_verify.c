@@ -4,7 +4,7 @@
 #include "base/build_id.h"
 #include "random_stream.h"
 #include "study/check.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include "study/environment.h"
 #include "study/row_environments.h"
 #include "study/summary.h"

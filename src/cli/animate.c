@@ -31,22 +31,12 @@ static status set_scripts(const animate_request *request, scene *s, diagnostic *
     return result;
 }
 
-/* Without --duration: the length of the scripts plus two seconds in which the slimes come to rest. */
 static status choose_duration(animate_request *request, const scene *s, diagnostic *why)
 {
-    const double rest_s = 2, without_script_s = 4;
-    bool any;
-    double end_s;
-    TRY(animate_script_end_s(s, &any, &end_s, why));
-    if (request->duration_s < 0)
-        request->duration_s = any ? fmax(0, end_s + rest_s - request->start_s) : without_script_s;
-    status result = animate_check_length(request, why);
-    for (size_t i = 0; i < s->mesh_count && result == STATUS_OK; i++) {
-        diagnostic_locate(why, request->input.path, 0, 0);
-        if (s->meshes[i].source == MESH_SLIME)
-            result = slime_check_end(&s->meshes[i], request->start_s + request->duration_s, why);
-    }
-    return result;
+    TRY(frame_times_choose(&request->times, s, why));
+    TRY(animate_check_length(request, why));
+    diagnostic_locate(why, request->input.path, 0, 0);
+    return frame_times_check_end(&request->times, s, why);
 }
 
 static status read_scene(animate_request *request, const animate_names *names, scene **out, diagnostic *why)
@@ -69,8 +59,8 @@ static status read_scene(animate_request *request, const animate_names *names, s
 static void print_summary(const animate_request *request, const scene *s, const animate_account *a)
 {
     printf("%" PRId64 " frames of %lldx%lld pixels, %.6g per second -> %s: %" PRId64 " rendered", a->rendered + a->kept,
-           (long long)s->render.width, (long long)s->render.height, (double)request->fps_num / (double)request->fps_den,
-           request->output, a->rendered);
+           (long long)s->render.width, (long long)s->render.height,
+           (double)request->times.fps_num / (double)request->times.fps_den, request->output, a->rendered);
     if (a->rendered)
         printf(" in %.4f s each", a->wall_s / (double)a->rendered);
     printf(", %" PRId64 " kept; %.3g s of motion simulated", a->kept, a->simulated_s);
@@ -88,9 +78,10 @@ static status print_account(const animate_request *request, const scene *s, cons
         "{s:i,s:s,s:s,s:s,s:o,s:I,s:I,s:I,s:[I,I],s:o,s:o,s:I,s:o,s:o,s:o,s:o,s:o}", "schema", REPORT_SCHEMA, "version",
         CUVETTE_VERSION, "isa", isa_name(level), "definition", hash, "output", json_of_text(request->output), "frames",
         (json_int_t)(a->rendered + a->kept), "rendered", (json_int_t)a->rendered, "kept", (json_int_t)a->kept, "fps",
-        (json_int_t)request->fps_num, (json_int_t)request->fps_den, "start_s", json_of_real(request->start_s),
-        "simulated_s", json_of_real(a->simulated_s), "steps", (json_int_t)a->steps, "step_s", json_of_real(a->step_s),
-        "skin_s", json_of_real(a->skin_s), "wall_s", json_of_real(a->wall_s), "wall_s_mean",
+        (json_int_t)request->times.fps_num, (json_int_t)request->times.fps_den, "start_s",
+        json_of_real(request->times.start_s), "simulated_s", json_of_real(a->simulated_s), "steps",
+        (json_int_t)a->steps, "step_s", json_of_real(a->step_s), "skin_s", json_of_real(a->skin_s), "wall_s",
+        json_of_real(a->wall_s), "wall_s_mean",
         json_of_real(a->rendered ? a->wall_s / (double)a->rendered : (double)NAN), "params", report_params(s));
     return o ? json_print(o, why) : out_of_memory(why);
 }
@@ -103,7 +94,7 @@ static status make(const animate_request *request, const animate_names *names, j
     status result = scene_motion_create(s, &motion, why);
     THEN(result, animate_define(request, s, &d, why));
     if (result == STATUS_OK && names)
-        result = animate_index_check(names, &d, animate_count(request), request->restart, why);
+        result = animate_index_check(names, &d, frame_times_count(&request->times), request->restart, why);
     THEN(result, animate_film(request, names, &d, with, s, motion, &account, why));
     if (result == STATUS_OK && request->json)
         result = print_account(request, s, &d, job_isa(with), &account, why);

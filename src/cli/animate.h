@@ -1,37 +1,34 @@
 /* The parts of `cuvette animate`: the request, the names of the frames, the definition of an animation, its progress
  * index, its table of rows, and the rendering. Frames are written atomically, one file each. An interrupted animation
  * can be resumed: existing frames are not rendered again, but the motion is simulated again from the start, so that the
- * frames are bit-identical with those of an uninterrupted run. A stream (YUV4MPEG2) always starts again. Ownership:
- * arguments of the command line are borrowed; *_create and *_parse allocate, *_release frees. Errors are located. */
+ * frames are bit-identical with those of an uninterrupted run. A video file always starts again.
+ * Ownership: arguments of the command line are borrowed; *_create and *_parse allocate, *_release frees. Errors are
+ * located. */
 #pragma once
 
 #include "cli/scene_input.h"
 #include "job/account.h"
+#include "scene/motion/frame_times.h"
 #include "scene/motion/motion.h"
 #include <jansson.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Frame k, counted from 0, shows the time start_s + k fps_den / fps_num. */
 typedef struct animate_request {
     scene_input input;
-    const char *output;         /* a pattern of frame names, "-", or a name that ends in .y4m */
-    const char *script, *rows;  /* NULL: not given */
-    char *script_path;          /* script as an absolute path; owned */
-    double start_s, duration_s; /* duration_s < 0: not given */
+    const char *output;        /* a pattern of frame names, "-", or a name that ends in .y4m or .apng */
+    const char *script, *rows; /* NULL: not given */
+    char *script_path;         /* script as an absolute path; owned */
+    frame_times times;
     bool restart, json;
-    int64_t fps_num, fps_den; /* in lowest terms */
 } animate_request;
 
 status animate_request_parse(int argc, char **argv, animate_request *out, diagnostic *why);
 void animate_request_release(animate_request *request);
 
 bool animate_is_stream(const animate_request *request);
-/* Number of frames: duration_s times the frame rate, rounded, at least 1. */
-int64_t animate_count(const animate_request *request);
 /* STATUS_BAD_INPUT if there are too many frames, or the last one is too late. */
 status animate_check_length(const animate_request *request, diagnostic *why);
-double animate_time_s(const animate_request *request, int64_t frame);
 
 /* The names of an animation's frames: a pattern with exactly one integer conversion of printf, %d or %05d. */
 typedef struct animate_names {
@@ -59,9 +56,6 @@ typedef struct animate_definition {
 /* Requires that the scene's files have been loaded. */
 status animate_define(const animate_request *request, const scene *s, animate_definition *out, diagnostic *why);
 void animate_definition_release(animate_definition *d);
-
-/* *end_s: the latest key time of all scripts of the scene's slimes; *any: whether any slime has a script. */
-status animate_script_end_s(const scene *s, bool *any, double *end_s, diagnostic *why);
 
 /* Checks the progress index, PATTERN.json, which records the definition of the frames next to it and their number.
  * STATUS_BAD_INPUT where the existing frames belong to another or an unknown animation; with restart, only where no

@@ -28,13 +28,13 @@ static status add_param(void *context, const char *path, const param *row, const
 static bool add_request(json_t *parameters, const animate_request *request, const scene *s)
 {
     char fps[64], start[NUMBER_TEXT_MAX];
-    snprintf(fps, sizeof fps, "%" PRId64 "/%" PRId64, request->fps_num, request->fps_den);
+    snprintf(fps, sizeof fps, "%" PRId64 "/%" PRId64, request->times.fps_num, request->times.fps_den);
     const char *accel = s->render.accel == HIERARCHY_EMBREE
                             ? "embree"
                             : "not embree"; /* Embree's hits have single precision and give other frames */
     return json_object_set_new(parameters, "render.accel", json_string(accel)) == 0 &&
            json_object_set_new(parameters, "--fps", json_string(fps)) == 0 &&
-           json_object_set_new(parameters, "--start", json_string(number_format(request->start_s, start))) == 0;
+           json_object_set_new(parameters, "--start", json_string(number_format(request->times.start_s, start))) == 0;
 }
 
 static void hash_parameters(uint64_t *hash, json_t *parameters)
@@ -75,22 +75,4 @@ void animate_definition_release(animate_definition *d)
 {
     json_decref(d->parameters);
     *d = (animate_definition){0};
-}
-
-status animate_script_end_s(const scene *s, bool *any, double *end_s, diagnostic *why)
-{
-    *any = false;
-    *end_s = 0;
-    status result = STATUS_OK;
-    for (size_t i = 0; i < s->mesh_count && result == STATUS_OK; i++) {
-        hand_script *script = NULL;
-        if (s->meshes[i].source == MESH_SLIME)
-            result = slime_read_script(s, &s->meshes[i], &script, why);
-        if (script) {
-            *any = true;
-            *end_s = fmax(*end_s, hand_script_end_s(script));
-        }
-        hand_script_destroy(script);
-    }
-    return result;
 }

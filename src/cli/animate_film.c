@@ -2,7 +2,7 @@
 #include "cli/animate.h"
 #include "base/file.h"
 #include "cli/terminal.h"
-#include "image/y4m.h"
+#include "image/video.h"
 #include "render/core/record.h"
 #include "scene/model/open.h"
 #include "scene/model/render_settings.h"
@@ -21,6 +21,7 @@ typedef struct animation_job {
     scene_motion *motion;
     job *with;
     file_writer stream;
+    video video;
     animate_rows *rows; /* NULL: no table */
     int64_t frame, count;
     progress_line line;
@@ -100,7 +101,7 @@ static status write_image(animation_job *f, const char *path, const film *img, d
     image *frame = NULL;
     status result = film_image(img, &frame, why);
     errno = 0;
-    THEN(result, y4m_frame(f->stream.stream, frame, why));
+    THEN(result, video_frame(&f->video, frame, why));
     image_destroy(frame);
     return result == STATUS_OK ? flush_stream(f, why) : result;
 }
@@ -116,7 +117,7 @@ static status render_frame(animation_job *f, const char *path, diagnostic *why)
     if (ended == STATUS_OK && f->rows) {
         const animate_row row = {.definition = f->definition,
                                  .frame = f->frame,
-                                 .time_s = animate_time_s(f->request, f->frame),
+                                 .time_s = frame_times_at(&f->request->times, f->frame),
                                  .account = &rendered,
                                  .motion = f->last_motion,
                                  .body = scene_motion_body(f->motion, 0)};
@@ -138,7 +139,7 @@ static status make_frame(animation_job *f, diagnostic *why)
     const bool exists = is_done(f, path);
     snprintf(f->label, sizeof f->label, "frame %" PRId64 " of %" PRId64, f->frame + 1, f->count);
     status result = show_progress(f, 0) ? STATUS_OK : report_interrupted(f, why);
-    THEN(result, advance(f, animate_time_s(f->request, f->frame), !exists, why));
+    THEN(result, advance(f, frame_times_at(&f->request->times, f->frame), !exists, why));
     if (result == STATUS_OK && exists)
         f->account->kept++;
     else if (result == STATUS_OK)
@@ -161,8 +162,10 @@ static status open_stream(animation_job *f, diagnostic *why)
 {
     const animate_request *request = f->request;
     TRY(file_writer_open(&f->stream, request->output, why));
-    return y4m_begin(f->stream.stream, (int)scene_settings(f->s)->width, (int)scene_settings(f->s)->height,
-                     request->fps_num, request->fps_den, why);
+    const video_format format = video_format_of(request->output);
+    return video_begin(&f->video, format == VIDEO_NONE ? VIDEO_Y4M : format, f->stream.stream,
+                       (int)scene_settings(f->s)->width, (int)scene_settings(f->s)->height, f->count,
+                       request->times.fps_num, request->times.fps_den, why);
 }
 
 static status close_stream(animation_job *f, status ended, diagnostic *why)
@@ -186,7 +189,7 @@ status animate_film(const animate_request *request, const animate_names *names, 
                        .s = s,
                        .motion = motion,
                        .with = with,
-                       .count = animate_count(request),
+                       .count = frame_times_count(&request->times),
                        .account = account};
     *account = (animate_account){0};
     status result =

@@ -59,8 +59,8 @@ status animate_names_parse(const char *pattern, animate_names *out, diagnostic *
     const char *name = file_name_of(pattern);
     *out = (animate_names){.pattern = pattern, .digits = -1};
     if (image_format_of(name) == IMAGE_UNKNOWN)
-        return wrong(pattern, "use .png, .jpg or .pfm for frames, .y4m for one video file", "unknown file name ending",
-                     why);
+        return wrong(pattern, "use .png, .jpg or .pfm for frames, .y4m or .apng for one video file",
+                     "unknown file name ending", why);
     if (memchr(pattern, '%', (size_t)(name - pattern)))
         return wrong(pattern, "number the files, not their folder", "the folder's name has a %", why);
     out->folder = outputs_folder_of(pattern);

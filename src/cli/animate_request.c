@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
+#include "image/video.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -50,23 +51,24 @@ static status take_rate(const command_option *o, void *context, const char *valu
                              "give an integer or a fraction of integers up to 1000000, such as 25 or 30000/1001",
                              "invalid frame rate");
     const int64_t divisor = common_divisor(num, den);
-    request->fps_num = num / divisor;
-    request->fps_den = den / divisor;
+    request->times.fps_num = num / divisor;
+    request->times.fps_den = den / divisor;
     return STATUS_OK;
 }
 
 static const command_option options[] = {
     {"output", 'o', "PATTERN",
-     "write frames, .png, .jpg or .pfm, numbered from 0 by one %d or %05d in the name; or one .y4m file (-: standard "
-     "output)",
+     "write frames, .png, .jpg or .pfm, numbered from 0 by one %d or %05d in the name; or one .y4m or .apng file (-: "
+     ".y4m to "
+     "standard output)",
      OPTION_FILLS(option_text, animate_request, output)},
     {"script", 0, "FILE", "read the hand script of all slimes from FILE",
      OPTION_FILLS(option_text, animate_request, script)},
     {"duration", 0, "S", "length in seconds (default: that of the script plus 2, or 4 without a script)",
-     OPTION_FILLS(take_seconds, animate_request, duration_s)},
+     OPTION_FILLS(take_seconds, animate_request, times.duration_s)},
     {"fps", 0, "N", "frames per second, such as 25 (the default) or 30000/1001", .take = take_rate},
     {"start", 0, "S", "time of the first frame, in seconds since the start of the motion (default: 0)",
-     OPTION_FILLS(take_seconds, animate_request, start_s)},
+     OPTION_FILLS(take_seconds, animate_request, times.start_s)},
     OPTION_SET("'toy.stiffness=80'"),
     {"rows", 0, "FILE", "append one row per frame to a .csv: times, counts, energies",
      OPTION_FILLS(option_text, animate_request, rows)},
@@ -80,7 +82,7 @@ static status check_output(const animate_request *request, diagnostic *why)
 {
     if (!request->output)
         return options_wrong("animate", NULL, why,
-                             "add -o frames/%05d.png for images, or -o NAME.y4m for one video file",
+                             "add -o frames/%05d.png for images, or -o NAME.y4m or NAME.apng for one video file",
                              "no output is given");
     const bool to_stdout = strcmp(request->output, "-") == 0;
     if (to_stdout && request->json)
@@ -142,7 +144,7 @@ static const scene_command animate_command = {
 
 status animate_request_parse(int argc, char **argv, animate_request *out, diagnostic *why)
 {
-    *out = (animate_request){.input.from_beginning = true, .duration_s = -1, .fps_num = 25, .fps_den = 1};
+    *out = (animate_request){.input.from_beginning = true, .times = {.duration_s = -1, .fps_num = 25, .fps_den = 1}};
     return scene_command_read(&animate_command, argc, argv, out, why);
 }
 
@@ -155,23 +157,13 @@ void animate_request_release(animate_request *request)
 
 bool animate_is_stream(const animate_request *request)
 {
-    return strcmp(request->output, "-") == 0 || outputs_ends_with(request->output, ".y4m");
-}
-
-double animate_time_s(const animate_request *request, int64_t frame)
-{
-    return request->start_s + (double)(frame * request->fps_den) / (double)request->fps_num;
-}
-
-int64_t animate_count(const animate_request *request)
-{
-    return (int64_t)fmax(1, round(request->duration_s * (double)request->fps_num / (double)request->fps_den));
+    return strcmp(request->output, "-") == 0 || video_format_of(request->output) != VIDEO_NONE;
 }
 
 status animate_check_length(const animate_request *request, diagnostic *why)
 {
-    const double frames = request->duration_s * (double)request->fps_num / (double)request->fps_den;
-    if (frames <= FRAMES_MAX && request->start_s + request->duration_s <= SECONDS_MAX)
+    const double frames = request->times.duration_s * (double)request->times.fps_num / (double)request->times.fps_den;
+    if (frames <= FRAMES_MAX && request->times.start_s + request->times.duration_s <= SECONDS_MAX)
         return STATUS_OK;
     return options_wrong("animate", NULL, why, "give a --duration of at most 10000000 frames that ends within 86400 s",
                          "the animation is too long");

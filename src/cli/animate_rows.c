@@ -1,7 +1,7 @@
 /* The CSV table of an animation: one row per rendered frame. */
 #include "cli/animate.h"
 #include "base/number.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include "study/rows.h"
 #include "study/table.h"
 #include <inttypes.h>

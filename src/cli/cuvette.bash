@@ -71,7 +71,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         study) _cuvette_files 'study' ;;
         mesh) _cuvette_files 'obj|bin|ply' ;;
         study) _cuvette_files 'png|svg|pdf' ;;
-        animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m' ;;
+        animate) _cuvette_files 'png|jpg|jpeg|pfm|y4m|apng' ;;
         render) _cuvette_files 'png|jpg|jpeg|pfm|html' ;;
         *) _cuvette_files 'png|jpg|jpeg|pfm' ;;
         esac

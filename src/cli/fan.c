@@ -1,6 +1,6 @@
 /* `cuvette fan`: follows a fan of rays and writes its caustic and focus as a drawing or CSV. */
 #include "cli/cli.h"
-#include "cli/fan_writers.h"
+#include "report/fan_writers.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/scene_input.h"

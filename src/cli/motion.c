@@ -1,14 +1,13 @@
 /* `cuvette motion`: the motion of a scene's slimes against closed-form mechanics, as a table, CSV or JSON. */
 #include "cli/cli.h"
 #include "report/json.h"
+#include "report/motion_rows.h"
 #include "report/wrap.h"
 #include "base/number.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
 #include "scene/motion/motion.h"
-#include "scene/model/params.h"
 #include "scene/model/slime.h"
-#include "softbody/trials.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <stdio.h>
@@ -41,11 +40,6 @@ static status check_scene(void *context, const scene *s, diagnostic *why)
     return scene_moves(s) ? STATUS_OK
                           : options_wrong(request->input.path, NULL, why, "add a mesh with 'generate: slime'",
                                           "nothing moves in this scene: it has no slime");
-}
-
-static const char *motion_word(const mesh_entry *m)
-{
-    return param_find(PARAM_MESH, "integrator")->choices[m->slime.integrator];
 }
 
 static const char *number_text(double value, int digits, char text[NUMBER_TEXT_MAX])
@@ -81,7 +75,7 @@ static void print_text(const mesh_entry *m, const softbody_trial_report *r, int 
 {
     static const trial_cells titles = {"", "measured", "theory", "error", "unit", "description"};
     char measured[NUMBER_TEXT_MAX], theory[NUMBER_TEXT_MAX], error[NUMBER_TEXT_MAX];
-    printf("%s: level %lld, %s, steps of %g s\n", m->name, (long long)m->level, motion_word(m), m->slime.dt_s);
+    printf("%s: level %lld, %s, steps of %g s\n", m->name, (long long)m->level, motion_integrator(m), m->slime.dt_s);
     print_cells(&titles, columns);
     for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++) {
         const softbody_trial *v = &r->value[i];
@@ -95,72 +89,28 @@ static void print_text(const mesh_entry *m, const softbody_trial_report *r, int 
     }
 }
 
-static void print_real(double value)
-{
-    if (isfinite(value))
-        printf("%.17g,", value);
-    else
-        fputs("NA,", stdout);
-}
-
-static void print_csv(const mesh_entry *m, const softbody_trial_report *r)
-{
-    for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++) {
-        const softbody_trial *v = &r->value[i];
-        printf("%s,%s,", m->name, v->name);
-        print_real(v->measured);
-        print_real(v->theory);
-        print_real(softbody_trial_error(v));
-        printf("%s,\"%s\"\n", v->unit, v->what);
-    }
-}
-
-static json_t *slime_object(const mesh_entry *m, const softbody_trial_report *r)
-{
-    json_t *values = json_array();
-    int bad = 0;
-    for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++) {
-        const softbody_trial *v = &r->value[i];
-        json_t *one = json_pack("{s:s,s:o,s:o,s:o,s:s,s:s}", "name", v->name, "measured", json_of_real(v->measured),
-                                "theory", json_of_real(v->theory), "error", json_of_real(softbody_trial_error(v)),
-                                "unit", v->unit, "what", v->what);
-        bad |= json_array_append_new(values, one);
-    }
-    json_t *o = bad ? NULL
-                    : json_pack("{s:s,s:I,s:s,s:o,s:O}", "name", m->name, "level", (json_int_t)m->level, "integrator",
-                                motion_word(m), "dt_s", json_of_real(m->slime.dt_s), "values", values);
-    json_decref(values);
-    return o;
-}
-
-static status write_json(const motion_request *request, json_t *slimes, diagnostic *why)
-{
-    json_t *o = json_pack("{s:i,s:o,s:O}", "schema", 1, "scene", json_of_text(request->input.path), "slimes", slimes);
-    return json_print(o, why);
-}
-
 static status run(void *context, scene *s, isa level, diagnostic *why)
 {
     const motion_request *request = context;
     json_t *slimes = json_array();
     status result = STATUS_OK;
     if (request->csv)
-        puts("slime,name,measured,theory,error,unit,what");
+        motion_write_csv_header(stdout);
     for (size_t i = 0; result == STATUS_OK && i < s->mesh_count; i++) {
         const mesh_entry *m = &s->meshes[i];
         const softbody_settings settings = slime_settings(m);
         softbody_trial_report report;
         if (m->source != MESH_SLIME || (result = softbody_trials(&settings, level, &report, why)) != STATUS_OK)
             continue;
-        if (request->json && json_array_append_new(slimes, slime_object(m, &report)) != 0)
+        if (request->json && json_array_append_new(slimes, motion_slime_json(m, &report)) != 0)
             result = out_of_memory(why);
         else if (request->csv)
-            print_csv(m, &report);
+            motion_write_csv(m, &report, stdout);
         else if (!request->json)
             print_text(m, &report, terminal_columns(STDOUT_FILENO));
     }
     if (result == STATUS_OK && request->json)
-        result = write_json(request, slimes, why);
+        return json_print(motion_json(slimes, request->input.path), why);
     json_decref(slimes);
     return result;
 }

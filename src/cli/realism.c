@@ -1,12 +1,11 @@
 /* `cuvette realism`: metrics of a traced scene against closed-form optics, as a table, CSV, JSON or a curve. */
 #include "cli/cli.h"
 #include "report/json.h"
+#include "report/realism_rows.h"
 #include "report/wrap.h"
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
-#include "realism/realism.h"
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -46,11 +45,6 @@ static status check_request(void *context, diagnostic *why)
                : STATUS_OK;
 }
 
-static const char *verdict(const realism_value *v)
-{
-    return !realism_is_defined(v) ? "none" : realism_passes(v) ? "pass" : "FAIL";
-}
-
 /* The cells of a row as text; unit and what may have any length. */
 typedef struct metric_cells {
     const char *verdict, *metric, *measured, *theory, *error, *tolerance, *unit, *what;
@@ -85,7 +79,7 @@ static void print_value(const realism_value *v, int columns)
         snprintf(error, sizeof error, "%.1e", realism_error(v));
         snprintf(tolerance, sizeof tolerance, "%.1e", v->tolerance);
     }
-    const metric_cells cells = {verdict(v), v->metric, measured, theory, error, tolerance, v->unit, v->what};
+    const metric_cells cells = {realism_verdict(v), v->metric, measured, theory, error, tolerance, v->unit, v->what};
     print_cells(&cells, columns);
 }
 
@@ -106,64 +100,11 @@ static void print_text(const realism_report *r, int columns)
     putchar('\n');
 }
 
-static void print_real(double value, const char *after)
-{
-    if (isnan(value))
-        printf("%s%s", "NA", after);
-    else
-        printf("%.17g%s", value, after);
-}
-
-static void print_csv(const realism_report *r)
-{
-    puts("metric,verdict,measured,theory,error,tolerance,unit,what");
-    for (int i = 0; i < r->count; i++) {
-        const realism_value *v = &r->value[i];
-        const bool defined = realism_is_defined(v);
-        printf("%s,%s,", v->metric, verdict(v));
-        print_real(defined ? v->measured : NAN, ",");
-        print_real(v->theory, ",");
-        print_real(realism_error(v), ",");
-        print_real(v->tolerance, ",");
-        printf("%s,\"%s\"\n", v->unit, v->what);
-    }
-}
-
-static json_t *value_object(const realism_value *v)
-{
-    return json_pack("{s:s,s:s,s:o,s:o,s:o,s:o,s:s,s:s}", "metric", v->metric, "verdict", verdict(v), "measured",
-                     json_of_real(realism_is_defined(v) ? v->measured : NAN), "theory", json_of_real(v->theory),
-                     "error", json_of_real(realism_error(v)), "tolerance", json_of_real(v->tolerance), "unit", v->unit,
-                     "what", v->what);
-}
-
-static status print_json(const realism_request *request, const realism_report *r, diagnostic *why)
-{
-    json_t *values = json_array(), *o = json_object();
-    int passed = 0, defined = 0, bad = 0;
-    for (int i = 0; i < r->count; i++) {
-        bad |= json_array_append_new(values, value_object(&r->value[i]));
-        passed += realism_passes(&r->value[i]);
-        defined += realism_is_defined(&r->value[i]);
-    }
-    bad |= json_object_set_new(o, "schema", json_integer(1));
-    bad |= json_object_set_new(o, "scene", json_of_text(request->input.path));
-    bad |= json_object_set_new(o, "defined", json_integer(defined));
-    bad |= json_object_set_new(o, "passed", json_integer(passed));
-    bad |= json_object_set_new(o, "values", values);
-    return json_print(json_whole(o, bad == 0), why);
-}
-
 static status print_curve(const scene *s, isa level, realism_curve which, diagnostic *why)
 {
     realism_points points;
     TRY(realism_trace_curve(s, level, which, &points, why));
-    printf("\"%s\",\"%s: measured\",\"theory\"\n", realism_curve_x(which), realism_curve_y(which));
-    for (int i = 0; i < points.count; i++) {
-        print_real(points.at[i].x, ",");
-        print_real(points.at[i].measured, ",");
-        print_real(points.at[i].theory, "\n");
-    }
+    realism_write_curve(which, &points, stdout);
     return STATUS_OK;
 }
 
@@ -177,9 +118,9 @@ static status run(void *context, scene *s, isa level, diagnostic *why)
     realism_report report;
     TRY(realism_measure(s, level, &report, why));
     if (request->json)
-        return print_json(request, &report, why);
+        return json_print(realism_json(&report, request->input.path), why);
     if (request->csv)
-        print_csv(&report);
+        realism_write_csv(&report, stdout);
     else
         print_text(&report, terminal_columns(STDOUT_FILENO));
     return STATUS_OK;

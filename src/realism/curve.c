@@ -175,29 +175,46 @@ static const struct other_curve {
      "use the names and shapes of experiments/scenes/plates.yaml"},
 };
 
-static status trace_other(const metrics *m, const struct other_curve *o, realism_points *out, diagnostic *why)
+/* NULL for the curves of the vessel. */
+static const struct other_curve *other_of(realism_curve which)
 {
-    if (o->is_there(m->traced))
-        return o->trace(m, out, why);
-    return diagnose_at(why, m->traced->path, STATUS_BAD_INPUT, o->remedy, "the scene has %s", o->lacks);
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (others[i].which == which)
+            return &others[i];
+    return NULL;
+}
+
+/* The solids of a curve; at is filled for the curves of the vessel. */
+static status find_solids(const scene *s, realism_curve which, setup *at, diagnostic *why)
+{
+    const struct other_curve *o = other_of(which);
+    if (o && !o->is_there(s))
+        return diagnose_at(why, s->path, STATUS_BAD_INPUT, o->remedy, "the scene has %s", o->lacks);
+    if (o)
+        return STATUS_OK;
+    TRY(setup_read(s, at, why));
+    const bool of_liquid = which == REALISM_CURVE_ABSORPTION || which == REALISM_CURVE_EDGES ||
+                           which == REALISM_CURVE_MIRROR || which == REALISM_CURVE_APPARENT_DEPTH;
+    if (of_liquid && at->liquid < 0)
+        return diagnose(why, STATUS_BAD_INPUT, "add a cylinder named 'liquid'", "the curve '%s' requires a liquid",
+                        words[which].name);
+    return STATUS_OK;
+}
+
+status realism_check_curve(const scene *s, realism_curve which, diagnostic *why)
+{
+    setup unused;
+    return find_solids(s, which, &unused, why);
 }
 
 status realism_trace_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why)
 {
     metrics m = {.traced = s, .supposed = s, .level = level};
     out->count = 0;
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (others[i].which == which)
-            return trace_other(&m, &others[i], out, why);
-    status code = setup_read(s, &m.at, why);
+    TRY(find_solids(s, which, &m.at, why));
     m.theory_at = m.at;
-    if (code != STATUS_OK)
-        return code;
-    const bool of_liquid = which == REALISM_CURVE_ABSORPTION || which == REALISM_CURVE_EDGES ||
-                           which == REALISM_CURVE_MIRROR || which == REALISM_CURVE_APPARENT_DEPTH;
-    if (of_liquid && m.at.liquid < 0)
-        return diagnose(why, STATUS_BAD_INPUT, "add a cylinder named 'liquid'", "the curve '%s' requires a liquid",
-                        words[which].name);
+    if (other_of(which))
+        return other_of(which)->trace(&m, out, why);
     switch (which) {
     case REALISM_CURVE_FRESNEL_S:
     case REALISM_CURVE_FRESNEL_P:

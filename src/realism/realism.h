@@ -86,4 +86,6 @@ const char *realism_curve_name(realism_curve which);
 /* Labels of x and of the value, with units: "angle of incidence, deg". */
 const char *realism_curve_x(realism_curve which);
 const char *realism_curve_y(realism_curve which);
+/* Whether the scene has the solids of a curve. STATUS_BAD_INPUT describes what is missing. Fast. */
+status realism_check_curve(const scene *s, realism_curve which, diagnostic *why);
 status realism_trace_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why);

@@ -49,17 +49,23 @@ static const struct {
     [RATE_SIMULATED] = {"rate.simulated_s_per_s", "", "simulated over wall time"},
 };
 
-status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why)
+status softbody_trials_until(const softbody_settings *s, isa level, bool (*stop)(void *context), void *context,
+                             softbody_trial_report *out, diagnostic *why)
 {
     static status (*const all[])(const trials *) = {trials_spring, trials_fall, trials_bounce,
                                                     trials_free,   trials_rest, trials_stable};
-    const trials t = {s, level, out, why};
+    const trials t = {s, level, out, why, stop, context};
     for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++)
         out->value[i] = (softbody_trial){trial_table[i].name, trial_table[i].unit, trial_table[i].what, NAN, NAN};
     TRY(softbody_check(s, why));
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
         TRY(all[i](&t));
     return STATUS_OK;
+}
+
+status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why)
+{
+    return softbody_trials_until(s, level, NULL, NULL, out, why);
 }
 
 double softbody_trial_error(const softbody_trial *t)
@@ -91,18 +97,20 @@ uint64_t trial_steps(const softbody_settings *s, double time_s)
     return steps <= TRIAL_STEPS_MAX ? (uint64_t)steps : 0;
 }
 
-status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, diagnostic *why)
+status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, const trials *t)
 {
     diagnostic bad = {.what = ""};
     *held = steps > 0;
     for (uint64_t i = 0; i < steps; i++) {
+        if (t->stop && t->stop(t->context))
+            return diagnose(t->why, STATUS_INTERRUPTED, "", "the trials were stopped");
         const status code = softbody_step(b, &bad);
         if (code == STATUS_BAD_INPUT) {
             *held = false;
             return STATUS_OK;
         }
         if (code != STATUS_OK)
-            return diagnose(why, code, bad.remedy, "%s", bad.what);
+            return diagnose(t->why, code, bad.remedy, "%s", bad.what);
         if (watch && !watch(b, context))
             break;
     }

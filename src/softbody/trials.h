@@ -39,6 +39,9 @@ typedef struct softbody_trial_report {
 } softbody_trial_report;
 
 status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why);
+/* The same; stop is called before each step, and ends the trials with STATUS_INTERRUPTED when it returns true. */
+status softbody_trials_until(const softbody_settings *s, isa level, bool (*stop)(void *context), void *context,
+                             softbody_trial_report *out, diagnostic *why);
 
 /* |measured - theory|; NaN if one of them is. */
 double softbody_trial_error(const softbody_trial *t);

@@ -10,7 +10,7 @@ static status measure_fall(const trials *t)
     softbody *b;
     bool held;
     status code = trial_one_mass(t, &s, &b);
-    THEN(code, trial_run(b, steps, NULL, NULL, &held, t->why));
+    THEN(code, trial_run(b, steps, NULL, NULL, &held, t));
     if (code == STATUS_OK) {
         vec3 at;
         softbody_positions(b, &at);
@@ -59,12 +59,12 @@ static bool follow_body(const softbody *b, void *context)
 /* Time for a fall from a height, and three times as much again: the bounce is complete by then, and the body has
  * oscillated. It mostly ends earlier. */
 static status run_bounce(softbody *b, const softbody_settings *s, double height, trial_watch *watch, double *high,
-                         diagnostic *why)
+                         const trials *t)
 {
     const double wanted = ceil(4.0 * sqrt(2.0 * height / -s->gravity.y) / s->dt_s);
     bounce k = {0};
     bool held;
-    const status code = trial_run(b, (uint64_t)fmin(wanted, TRIAL_STEPS_MAX), watch, &k, &held, why);
+    const status code = trial_run(b, (uint64_t)fmin(wanted, TRIAL_STEPS_MAX), watch, &k, &held, t);
     if (code == STATUS_OK && held && (k.done || (k.up && wanted <= TRIAL_STEPS_MAX)))
         *high = k.high;
     return code;
@@ -85,7 +85,7 @@ static status bounce_of_mass(const trials *t, double *high)
     const softbody_settings s = over_floor(t, 1.0);
     softbody *b;
     status code = trial_one_mass(t, &s, &b);
-    THEN(code, run_bounce(b, &s, 1.0, follow_mass, high, t->why));
+    THEN(code, run_bounce(b, &s, 1.0, follow_mass, high, t));
     softbody_destroy(b);
     return code;
 }
@@ -96,7 +96,7 @@ static status bounce_of_body(const trials *t, double *high)
     s.adaptive = t->set->adaptive;
     softbody *b;
     status code = softbody_create(&s, t->level, &b, t->why);
-    THEN(code, run_bounce(b, &s, s.radius, follow_body, high, t->why));
+    THEN(code, run_bounce(b, &s, s.radius, follow_body, high, t));
     *high = (*high - s.radius) / s.radius;
     softbody_destroy(b);
     return code;

@@ -39,7 +39,7 @@ static status follow_energy(const trials *t, double damping, energies *e)
     status code = free_toy(t, damping, &field, &b);
     if (code == STATUS_OK) {
         e->first = e->before = e->now = trial_energy(b);
-        code = trial_run(b, trial_steps(t->set, 1.0), watch_energy, e, &held, t->why);
+        code = trial_run(b, trial_steps(t->set, 1.0), watch_energy, e, &held, t);
     }
     if (!held)
         *e = (energies){NAN, NAN, NAN, NAN, NAN};
@@ -88,7 +88,7 @@ static status follow_momenta(const trials *t)
         code = trial_each_mass(b, add_sizes, &(sizes){&speeds, &moments}, false, t->why);
     if (code == STATUS_OK) {
         m.first = softbody_measure(b);
-        code = trial_run(b, trial_steps(t->set, 1.0), watch_momenta, &m, &held, t->why);
+        code = trial_run(b, trial_steps(t->set, 1.0), watch_momenta, &m, &held, t);
     }
     trial_put(t, MOMENTUM_DRIFT, held ? m.off / (mass_kg * speeds) : NAN, 0.0);
     trial_put(t, ANGULAR_MOMENTUM_DRIFT, held ? m.angular_off / (mass_kg * moments) : NAN, 0.0);

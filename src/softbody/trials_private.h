@@ -11,6 +11,8 @@ typedef struct trials {
     isa level;
     softbody_trial_report *out;
     diagnostic *why;
+    bool (*stop)(void *context); /* NULL: never */
+    void *context;
 } trials;
 
 typedef enum trial_name {
@@ -53,9 +55,9 @@ double trial_omega(const softbody_settings *s);
 uint64_t trial_steps(const softbody_settings *s, double time_s);
 
 /* Takes steps and calls watch, if not NULL, after each, until it returns false. *held: no step diverged, and there was
- * one. */
+ * one. STATUS_INTERRUPTED after a stop request. */
 typedef bool trial_watch(const softbody *b, void *context);
-status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, diagnostic *why);
+status trial_run(softbody *b, uint64_t steps, trial_watch *watch, void *context, bool *held, const trials *t);
 
 /* All energy except gravity's. */
 double trial_energy(const softbody *b);

@@ -26,7 +26,7 @@ static status time_steps(const trials *t, softbody *b)
     const uint64_t before = softbody_measure(b).substeps;
     timing w = {.last_s = clock_wall_s()};
     bool held;
-    const status code = trial_run(b, TIMED, watch_clock, &w, &held, t->why);
+    const status code = trial_run(b, TIMED, watch_clock, &w, &held, t);
     if (code != STATUS_OK || !held)
         return code;
     const double step_s = summarize(w.wall_s, TIMED).median;
@@ -46,7 +46,7 @@ status trials_rest(const trials *t)
     softbody *b;
     bool held = false;
     status code = softbody_create(&s, t->level, &b, t->why);
-    THEN(code, trial_run(b, trial_steps(&s, 3.0), NULL, NULL, &held, t->why));
+    THEN(code, trial_run(b, trial_steps(&s, 3.0), NULL, NULL, &held, t));
     if (code == STATUS_OK && held) {
         const softbody_account a = softbody_measure(b);
         trial_put(t, VOLUME_DRIFT, a.volume / a.volume_at_rest - 1.0, 0.0);

@@ -49,7 +49,7 @@ static status measure_period(const trials *t, double omega, double *period_s, do
     bool held;
     double factor, angle;
     status code = trial_swing(t, &s, SWING, &b);
-    THEN(code, trial_run(b, r.stride * SAMPLES, record, &r, &held, t->why));
+    THEN(code, trial_run(b, r.stride * SAMPLES, record, &r, &held, t));
     if (code == STATUS_OK && held && fit_swing(&r, &factor, &angle)) {
         *period_s = 2.0 * M_PI * (double)r.stride * s.dt_s / angle;
         *decay = pow(factor, 1.0 / (double)r.stride);
@@ -67,7 +67,7 @@ static status quarter_error(const trials *t, double omega, uint64_t steps, doubl
     bool held;
     s.dt_s = 0.5 * M_PI / omega / (double)steps;
     status code = trial_swing(t, &s, SWING, &b);
-    THEN(code, trial_run(b, steps, NULL, NULL, &held, t->why));
+    THEN(code, trial_run(b, steps, NULL, NULL, &held, t));
     if (code == STATUS_OK && held) {
         const swing_state end = trial_swing_state(b, omega);
         *error = hypot(end.q, end.p + SWING) / SWING;

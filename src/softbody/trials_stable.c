@@ -58,7 +58,7 @@ static status spring_holds(const trials *t, double dt_s, bool *holds)
     bool held = false;
     softbody *b;
     status code = trial_swing(t, &s, FIRST_SWING, &b);
-    THEN(code, trial_run(b, STEPS, watch_swing, &w, &held, t->why));
+    THEN(code, trial_run(b, STEPS, watch_swing, &w, &held, t));
     *holds = held && !w.grown;
     softbody_destroy(b);
     return code;
@@ -101,7 +101,7 @@ static status toy_holds(const trials *t, double dt_s, bool *holds)
         code = trial_each_mass(b, shake, &(double){2e-4 * t->set->radius}, true, t->why);
     if (code == STATUS_OK) {
         g.first = trial_energy(b);
-        code = trial_run(b, STEPS, watch_energy, &g, &held, t->why);
+        code = trial_run(b, STEPS, watch_energy, &g, &held, t);
     }
     *holds = held && !g.grown;
     softbody_destroy(b);

@@ -4,7 +4,7 @@
  * order of the columns, so that a file may get more columns. It detects accidents and careless edits, not forgery. */
 #pragma once
 
-#include "study/csv.h"
+#include "base/csv.h"
 
 enum { CHECK_TEXT = 17 };
 

@@ -3,7 +3,7 @@
  * csv_layout_destroy releases. */
 #pragma once
 
-#include "study/csv.h"
+#include "base/csv.h"
 
 typedef struct csv_layout csv_layout;
 

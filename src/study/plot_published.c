@@ -1,7 +1,7 @@
 /* Numbers of others next to the measured ones: a CSV file with the columns of the figure's axes. */
 #include "study/plot_parts.h"
 #include "base/text.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

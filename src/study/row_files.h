@@ -4,7 +4,7 @@
  * gives, row_files_destroy releases; results point into it. */
 #pragma once
 
-#include "study/csv.h"
+#include "base/csv.h"
 #include "study/runs.h"
 #include "study/study.h"
 

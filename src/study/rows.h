@@ -4,7 +4,7 @@
 #pragma once
 
 #include "job/quantities.h"
-#include "study/csv.h"
+#include "base/csv.h"
 #include "study/study.h"
 
 /* A name in angle brackets represents several columns: "<axis>" one for each path of the grid, "first_hits.<solid>" one

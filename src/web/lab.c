@@ -11,6 +11,7 @@
 #include "web/session/thumbnails.h"
 #include "web/session/reference_image.h"
 #include "web/session/studies.h"
+#include "web/session/videos.h"
 #include "scene/model/scene.h"
 
 #include <stdlib.h>
@@ -36,10 +37,12 @@ json_t *lab_state(lab *l)
     json_t *state = json_pack("{s:s}", "version", CUVETTE_VERSION);
     const bool good =
         state && scene_document_json(l->scene_document, state) && render_worker_json(l->render_worker, state) &&
-        json_object_update_new(
-            state, json_pack("{s:o, s:o, s:o, s:{s:i, s:i}}", "slime", live_json(render_worker_live(l->render_worker)),
-                             "pin", reference_image_json(l->reference_image), "study", studies_json(l->studies),
-                             "limits", "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) == 0;
+        json_object_update_new(state, json_pack("{s:o, s:o, s:o, s:o, s:{s:i, s:i}}", "slime",
+                                                live_json(render_worker_live(l->render_worker)), "pin",
+                                                reference_image_json(l->reference_image), "study",
+                                                studies_json(l->studies), "video", videos_json(l->videos), "limits",
+                                                "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) ==
+            0;
     return json_whole(state, good);
 }
 
@@ -190,6 +193,7 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
          !(l->pixel_maps = pixel_maps_create(settings->level))))
         code = out_of_memory(why);
     THEN(code, studies_create(l, &l->studies, why));
+    THEN(code, videos_create(l, &l->videos, why));
     THEN(code, serve(l, why));
     if (code == STATUS_OK)
         *out = l;
@@ -211,11 +215,14 @@ void lab_stop(lab *l)
         semaphore_close(l->heavy);
     if (l->thumbnails)
         thumbnails_end(l->thumbnails);
+    if (l->videos)
+        videos_end(l->videos);
     if (l->studies)
         studies_end(l->studies);
     if (l->render_worker)
         render_worker_end(l->render_worker);
     http_stop(l->server);
+    videos_destroy(l->videos);
     studies_destroy(l->studies);
     semaphore_destroy(l->heavy);
     pixel_maps_destroy(l->pixel_maps);

@@ -9,9 +9,11 @@
 #include "web/lab.h"
 #include "web/live/render_worker.h"
 #include <pthread.h>
+#include <stdatomic.h>
 
 typedef struct reference_image reference_image; /* web/session/reference_image.h */
 typedef struct studies studies;                 /* web/session/studies.h */
+typedef struct videos videos;                   /* web/session/videos.h */
 
 struct lab {
     lab_settings settings;
@@ -20,9 +22,11 @@ struct lab {
     struct render_worker *render_worker;
     struct reference_image *reference_image;
     struct studies *studies;
+    struct videos *videos;
     struct sent_scenes *sent;      /* web/api/scene_since.h */
     struct pixel_maps *pixel_maps; /* web/session/pixel_maps.h */
     struct thumbnails *thumbnails; /* web/session/thumbnails.h */
+    atomic_uint motion_stops;      /* requests to stop /api/motion */
     semaphore *heavy;              /* limits the handlers that need much memory and time */
     http_server *server;
     http_route *routes;

@@ -1,5 +1,6 @@
 /* Helpers of the API's handlers: replies, values of a request's body and query, and the current image. */
 #include "web/api/api.h"
+#include "base/number.h"
 #include "report/json.h"
 
 #include <math.h>
@@ -120,6 +121,25 @@ bool api_query_flag(const call *c, const char *key)
 {
     const char *value = http_query_value(c->request, key);
     return value && strcmp(value, "0") != 0;
+}
+
+bool api_query_numbers(call *c, const char *key, int count, double *out, const char *form)
+{
+    const char *text = http_query_value(c->request, key);
+    char word[64];
+    int found = 0;
+    for (const char *at = text; at && found < count; found++) {
+        const size_t length = strcspn(at, ",");
+        snprintf(word, sizeof word, "%.*s", (int)length, at);
+        if (length >= sizeof word || !number_parse_real(word, &out[found]))
+            break;
+        at = at[length] ? at + length + 1 : NULL;
+        if (!at && found + 1 == count)
+            return true;
+    }
+    diagnose(&c->why, STATUS_BAD_INPUT, form, text ? "%s is not %d number%s: '%.80s'" : "%s is missing", key, count,
+             count == 1 ? "" : "s", text);
+    return false;
 }
 
 bool api_take_bits(const call *c, int *bits)

@@ -26,7 +26,9 @@ api_handler api_state, api_scene, api_set, api_reset, api_undo, api_redo, api_ca
     api_open, api_save, api_media, api_slime, api_grab, api_move_hand, api_release, api_studies, api_study,
     api_study_run, api_study_stop, api_study_rows, api_study_compare, api_study_draw, api_study_figure, api_figure,
     api_machine, api_notes, api_link, api_page, api_beams, api_beam_screen, api_lessons, api_lesson_open,
-    api_lesson_measure, api_lesson_thumbnail, api_thumbnail, api_study_new;
+    api_lesson_measure, api_lesson_thumbnail, api_thumbnail, api_study_new, api_fan, api_fan_csv, api_fan_drawing,
+    api_realism, api_realism_csv, api_realism_curve, api_realism_curve_csv, api_video, api_video_stop, api_video_file,
+    api_motion, api_motion_stop;
 
 /* Fills l->routes with all routes, bound to the lab. */
 status api_bind(lab *l, size_t *count, diagnostic *why);
@@ -79,6 +81,8 @@ bool api_take_gesture(call *c, const char **gesture);
 
 /* Whether the query contains the key with a value other than "0". */
 bool api_query_flag(const call *c, const char *key);
+/* Reads the `count` numbers of a query's key, separated by commas; form: the remedy where they are not. */
+bool api_query_numbers(call *c, const char *key, int count, double *out, const char *form);
 /* Reads ?bits, the bit depth of a PNG; 8 by default. Returns false for values other than 8 and 16. */
 bool api_take_bits(const call *c, int *bits);
 

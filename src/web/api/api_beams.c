@@ -2,11 +2,9 @@
  * power. */
 #include "web/api/api.h"
 
-#include "base/number.h"
 #include "base/text_writer.h"
 #include "report/beam_rows.h"
 #include <stdlib.h>
-#include <string.h>
 
 /* A page draws fewer; about one kilobyte each. */
 enum { SEGMENTS_MAX = 20000 };
@@ -60,31 +58,15 @@ status api_beams(call *c)
     return answer(c, &q);
 }
 
-/* Reads `count` numbers, separated by commas. */
-static bool take_numbers(call *c, const char *key, int count, double *out)
-{
-    const char *text = http_query_value(c->request, key);
-    char word[64];
-    int found = 0;
-    for (const char *at = text; at && found < count; found++) {
-        const size_t length = strcspn(at, ",");
-        snprintf(word, sizeof word, "%.*s", (int)length, at);
-        if (length >= sizeof word || !number_parse_real(word, &out[found]))
-            break;
-        at = at[length] ? at + length + 1 : NULL;
-        if (!at && found + 1 == count)
-            return true;
-    }
-    diagnose(&c->why, STATUS_BAD_INPUT, "give ?centre=X,Y,Z&normal=X,Y,Z&size=WIDTH,HEIGHT&bins=COLUMNS,ROWS&rays=N",
-             text ? "%s is not %d numbers: '%.80s'" : "%s is missing", key, count, text);
-    return false;
-}
+#define SCREEN_FORM "give ?centre=X,Y,Z&normal=X,Y,Z&size=WIDTH,HEIGHT&bins=COLUMNS,ROWS&rays=N"
 
 status api_beam_screen(call *c)
 {
     double centre[3], normal[3], size[2], bins[2], rays = 0;
-    if (!take_numbers(c, "centre", 3, centre) || !take_numbers(c, "normal", 3, normal) ||
-        !take_numbers(c, "size", 2, size) || !take_numbers(c, "bins", 2, bins) || !take_numbers(c, "rays", 1, &rays))
+    if (!api_query_numbers(c, "centre", 3, centre, SCREEN_FORM) ||
+        !api_query_numbers(c, "normal", 3, normal, SCREEN_FORM) ||
+        !api_query_numbers(c, "size", 2, size, SCREEN_FORM) || !api_query_numbers(c, "bins", 2, bins, SCREEN_FORM) ||
+        !api_query_numbers(c, "rays", 1, &rays, SCREEN_FORM))
         return STATUS_BAD_INPUT;
     const double most = 1e6; /* beam_screen_expose checks the ranges */
     for (int i = 0; i < 2; i++)

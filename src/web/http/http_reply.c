@@ -4,6 +4,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char *const on_every_reply[][2] = {
     {"Content-Security-Policy",
@@ -66,6 +67,14 @@ void http_reply_bytes(http_reply *r, int code, const char *type, void *bytes, si
     struct MHD_Response *response = mhd.create_response_from_buffer(size, bytes, MHD_RESPMEM_MUST_FREE);
     if (!response)
         free(bytes);
+    http_reply_set(r, code, type, response);
+}
+
+void http_reply_file(http_reply *r, int code, const char *type, int file, size_t size)
+{
+    struct MHD_Response *response = mhd.create_response_from_fd(size, file);
+    if (!response)
+        close(file);
     http_reply_set(r, code, type, response);
 }
 

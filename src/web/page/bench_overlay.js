@@ -1,12 +1,13 @@
-/* Draws the bench over the image: beams, the chosen segment with its normal, measured points, the screen.
+/* Draws the bench over the image: beams, the chosen segment with its normal, measured points, the screen, the fan.
  *
  * exports: createBenchOverlay(lab, bench) -> {draw(), nearest(point) -> {segment, at} or null}
- *   bench: {rays, chosen, points, screen} of panel_bench.js; at: the point in the scene, a hit or start if one is near
- */
+ *   bench: {rays, chosen, points, screen, fan} of panel_bench.js; at: the point in the scene, a hit or start if one is
+ *   near */
 
 import { labelSize } from './display.js';
 import { digits, svg } from './ui.js';
 import { clipBox, clipNear, distance } from './ray_overlay.js';
+import { fanMarks } from './bench_fan_marks.js';
 import { isCut } from './ray_tree.js';
 import { add, length, minus, times } from './ray_vectors.js';
 import { degrees } from './bench_measure.js';
@@ -29,6 +30,7 @@ export function createBenchOverlay(lab, bench) {
     layer.replaceChildren(
       ...pieces.map((each) => line(each, 'bench-halo')),
       ...pieces.map((each) => line(each, each.segment === chosen ? 'bench-ray chosen' : 'bench-ray')),
+      ...(bench.fan ? fanMarks(bench.fan, 2 * (lab.state?.camera?.distance || 1), { stroke, dot }) : []),
       ...(bench.screen ? outline(bench.screen) : []),
       ...(chosen ? atHit(chosen) : []),
       ...measured(points),

@@ -6,6 +6,7 @@ import { ask, button, copy, element, icon } from './ui.js';
 import { displayButton, themeButton } from './display.js';
 import { showHelp } from './keys.js';
 import { saveFile } from './save_file.js';
+import { saveVideo } from './video_dialog.js';
 
 export function createHead(root, lab) {
   lab.undo = (redo = false) => lab.change(redo ? '/api/redo' : '/api/undo', {}).catch(lab.fail);
@@ -44,6 +45,12 @@ export function createHead(root, lab) {
         kind: 'quiet',
         title: 'Save the final image as JPEG',
         'aria-label': 'Save JPEG',
+      }),
+      button('Film', () => saveVideo(lab), {
+        icon: 'film',
+        kind: 'quiet',
+        title: 'Save a film: a parameter that changes, or the slime',
+        'aria-label': 'Save film',
       }),
       button('Scene', () => copyScene(lab), {
         icon: 'copy',

@@ -1,16 +1,19 @@
-/* The panel Bench: beams and lasers, their paths over the image, the numbers at each hit, ruler, protractor, screen.
+/* The panel Bench: beams and lasers, their paths over the image, the numbers at each hit, ruler, protractor, screen, a
+ * fan of rays, and the scene's optics compared with theory.
  * exports: panel. The tool Bench chooses a segment by a click; with Measure on, it sets points. */
 
 import { button, check, digits, element, empty, facts, group, notice, replace, table } from './ui.js';
 import { createBenchOverlay } from './bench_overlay.js';
 import { createBenchRays } from './bench_rays.js';
 import { createBenchScreen } from './bench_screen.js';
+import { createBenchFan } from './bench_fan.js';
+import { createBenchTheory } from './bench_theory.js';
 import { hitFacts, measure } from './bench_measure.js';
 import { createRow } from './param_row.js';
 import { createPointHandles } from './point_handles.js';
 import { describe, isCut } from './ray_tree.js';
 
-const bench = { rays: null, chosen: null, points: [], screen: null, measuring: false, beam: '' };
+const bench = { rays: null, chosen: null, points: [], screen: null, fan: null, measuring: false, beam: '' };
 const listeners = new Set();
 let overlay = null;
 let handles = null;
@@ -247,11 +250,15 @@ function createRuler(lab) {
 function create(root, lab) {
   const parts = [createBeams(lab), createNumbers(), createRuler(lab)];
   const screen = createBenchScreen(lab, bench, changed);
+  const fan = createBenchFan(lab, bench, changed);
+  const theory = createBenchTheory(lab);
   root.append(
     parts[0].node,
     group('Segments and hits', { id: 'bench.hits' }, parts[1].node),
     group('Ruler and protractor', { id: 'bench.ruler' }, parts[2].node),
     group('Screen', { id: 'bench.screen', open: false }, screen.node),
+    group('Fan of rays', { id: 'bench.fan', open: false, hint: 'caustic and focus' }, fan.node),
+    group('Optics and theory', { id: 'bench.theory', open: false, hint: 'measured next to closed forms' }, theory.node),
   );
   const show = () => {
     for (const part of parts) part.show();

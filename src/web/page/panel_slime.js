@@ -5,6 +5,7 @@
 import { button, choice, digits, element, empty, group, notice, replace } from './ui.js';
 import { createCurve } from './slime_curve.js';
 import { createGrab } from './slime_grab.js';
+import { createMotion } from './slime_motion.js';
 import { createSliders } from './slime_sliders.js';
 
 /* The solids that show a slime, each with its mesh. */
@@ -175,6 +176,11 @@ export const panel = {
       parts.readings.node,
       curve.node,
       parts.tuning.node,
+      group(
+        'Motion and theory',
+        { id: 'slime-motion', open: false, hint: 'measured next to closed forms' },
+        createMotion(lab).node,
+      ),
     );
     const none = element(
       'div',

@@ -1,5 +1,6 @@
-/* Files of the final image, saved by the browser.
- * exports: saveFile(lab, address, ending)   waits for the image; the name is the scene's */
+/* Files from the server, saved by the browser.
+ * exports: saveFile(lab, address, ending)   waits for the final image; the name is the scene's
+ *          saveReply(lab, address, name)    any other reply */
 
 import { download } from './ui.js';
 
@@ -9,6 +10,16 @@ export async function saveFile(lab, address, ending) {
     const { blob } = await lab.blob(address);
     download(blob, `${lab.name()}.${ending}`);
     lab.say(`${lab.name()}.${ending} saved.`);
+  } catch (error) {
+    lab.fail(error);
+  }
+}
+
+export async function saveReply(lab, address, name) {
+  try {
+    const { blob } = await lab.blob(address);
+    download(blob, name);
+    lab.say(`${name} saved.`);
   } catch (error) {
     lab.fail(error);
   }

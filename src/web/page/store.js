@@ -9,7 +9,7 @@
  *   lab.connected                       'opening', 'open', 'lost' or 'refused'
  *   lab.on(name, f) -> end()            names: state, scene, picture (a pass is displayed), pass (a pass is
  *   available),
- *                                       slime, study, connection,
+ *                                       slime, study, video, connection,
  *                                       restarted (a new server: all earlier data is void), view (the image's
  *                                       placement
  *                                       changed), tool, panel (one was selected)
@@ -38,7 +38,7 @@ const PULSE_MS = 10000;
 const SCENE_MS = 150; /* minimum time between two fetches of the scene */
 const TOGETHER_MS = 250; /* changes that follow each other within this time are a drag */
 const REST_MS = 150; /* a drag without a change for this time rests */
-const EVENTS = ['state', 'picture', 'slime', 'study'];
+const EVENTS = ['state', 'picture', 'slime', 'study', 'video'];
 
 function createEmitter() {
   const listeners = new Map();

@@ -1,8 +1,10 @@
-/* Writers of a fan of rays, as CSV and as a drawing. Errors of the stream stay in the stream, where the caller checks
- * them. Ownership: everything is borrowed. */
+/* Writers of a fan of rays, as CSV, drawing and JSON, for `cuvette fan` and the laboratory. Errors of the stream stay
+ * in the stream, where the caller checks them. Ownership: everything is borrowed; JSON is a new reference. */
 #pragma once
 
 #include "render/inspect/fan.h"
+#include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 
 typedef struct fanned {
@@ -14,6 +16,9 @@ typedef struct fanned {
     bool as_csv;
 } fanned;
 
+/* The end of a path: "sky", "cut", or the name of the opaque solid that it hit. */
+const char *fan_end_words(const fanned *t, const fan_ray *ray);
+
 /* A coordinate rounded to 1e-9, so that rounding errors around zero print as 0. */
 static inline double fan_shown(double value)
 {
@@ -22,3 +27,5 @@ static inline double fan_shown(double value)
 
 status fan_write_csv(const fanned *t, FILE *out, diagnostic *why);
 status fan_write_drawing(const fanned *t, FILE *out, diagnostic *why);
+/* web/README.md documents it; NULL when out of memory. */
+json_t *fan_json(const fanned *t);

@@ -1,6 +1,6 @@
 /* A fan of rays as CSV, one row per ray. */
-#include "cli/fan_writers.h"
-#include "study/csv.h"
+#include "report/fan_writers.h"
+#include "base/csv.h"
 #include "scene/model/open.h"
 
 static void add_vector(csv_line *line, bool there, vec3 v)
@@ -10,8 +10,7 @@ static void add_vector(csv_line *line, bool there, vec3 v)
     csv_real(line, there ? v.z : (double)NAN);
 }
 
-/* The end of a path: "sky", "cut", or the name of the opaque solid that it hit. */
-static const char *end_words(const fanned *t, const fan_ray *ray)
+const char *fan_end_words(const fanned *t, const fan_ray *ray)
 {
     const ray_node *last = &t->f->node[ray->first + ray->count - 1];
     if (last->end == RAY_END_HIT)
@@ -31,7 +30,7 @@ status fan_write_csv(const fanned *t, FILE *out, diagnostic *why)
         csv_count(&line, i);
         csv_real(&line, ray->offset);
         csv_count(&line, (int64_t)ray->count - 1);
-        csv_text(&line, end_words(t, ray));
+        csv_text(&line, fan_end_words(t, ray));
         add_vector(&line, ray->leaves, ray->exit_point);
         add_vector(&line, ray->leaves, ray->exit_direction);
         csv_real(&line, ray->leaves ? ray->deviation_deg : (double)NAN);

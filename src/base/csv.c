@@ -1,4 +1,4 @@
-#include "study/csv.h"
+#include "base/csv.h"
 #include "base/file.h"
 #include "base/number.h"
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 /* A fan of rays drawn in its plane: the section of the solids, the ray paths, the caustic and the mean focus. */
 #include "report/diagram.h"
-#include "cli/fan_writers.h"
+#include "report/fan_writers.h"
 #include "report/svg.h"
 #include "scene/model/scene.h"
 

@@ -1,0 +1,347 @@
+/* The thread that renders a video, and its progress for pages. */
+#include "web/session/videos.h"
+#include "base/float_environment.h"
+#include "base/number.h"
+#include "job/job.h"
+#include "measure/clock.h"
+#include "render/core/film.h"
+#include "report/json.h"
+#include "scene/model/params.h"
+#include "scene/model/render_settings.h"
+#include "scene/motion/motion.h"
+#include "web/session/studies.h"
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const double publish_period_s = 0.25;
+#define FRAME_LIMIT_S 600.0
+
+struct videos {
+    lab *l;
+    pthread_mutex_t life; /* held while a thread is started or joined; acquired before lock */
+    pthread_t thread;
+    bool started; /* a thread must be joined */
+    video_plan plan;
+    atomic_bool stop;
+
+    pthread_mutex_t lock; /* guards the fields below */
+    bool ending, running, begun;
+    int64_t done;
+    double share, began_s, published_s, wall_s;
+    FILE *file; /* of the finished video; NULL: none */
+    size_t size;
+    bool failed;
+    diagnostic trouble;
+};
+
+status videos_create(lab *l, videos **out, diagnostic *why)
+{
+    *out = calloc(1, sizeof **out);
+    if (!*out)
+        return out_of_memory(why);
+    (*out)->l = l;
+    pthread_mutex_init(&(*out)->life, NULL);
+    pthread_mutex_init(&(*out)->lock, NULL);
+    return STATUS_OK;
+}
+
+void video_plan_release(video_plan *plan)
+{
+    scene_destroy(plan->s);
+    free(plan->path);
+    *plan = (video_plan){.s = NULL};
+}
+
+/* The caller holds the life lock. */
+static void join_thread(videos *v)
+{
+    if (!v->started)
+        return;
+    pthread_join(v->thread, NULL);
+    v->started = false;
+    pthread_mutex_lock(&v->lock);
+    video_plan_release(&v->plan);
+    pthread_mutex_unlock(&v->lock);
+}
+
+void videos_end(videos *v)
+{
+    pthread_mutex_lock(&v->life);
+    pthread_mutex_lock(&v->lock);
+    v->ending = true;
+    pthread_mutex_unlock(&v->lock);
+    atomic_store(&v->stop, true);
+    join_thread(v);
+    pthread_mutex_unlock(&v->life);
+}
+
+void videos_destroy(videos *v)
+{
+    if (!v)
+        return;
+    videos_end(v);
+    if (v->file)
+        fclose(v->file);
+    pthread_mutex_destroy(&v->life);
+    pthread_mutex_destroy(&v->lock);
+    free(v);
+}
+
+/* --- progress for pages --- */
+
+static double left_s(const videos *v)
+{
+    const double done = (double)v->done + v->share;
+    return v->running && done > 0.0 ? (clock_wall_s() - v->began_s) / done * ((double)v->plan.count - done) : NAN;
+}
+
+json_t *videos_json(videos *v)
+{
+    pthread_mutex_lock(&v->lock);
+    json_t *json = !v->begun ? json_null()
+                             : json_pack("{s:b, s:I, s:I, s:o, s:o, s:s, s:o, s:o}", "running", (int)v->running, "done",
+                                         (json_int_t)v->done, "frames", (json_int_t)v->plan.count, "left_s",
+                                         json_of_real(left_s(v)), "wall_s", json_of_real(v->wall_s), "format",
+                                         v->plan.format == VIDEO_Y4M ? "y4m" : "apng", "bytes",
+                                         v->file ? json_integer((json_int_t)v->size) : json_null(), "error",
+                                         v->failed ? json_of_diagnostic(&v->trouble) : json_null());
+    pthread_mutex_unlock(&v->lock);
+    return json;
+}
+
+static void publish(videos *v)
+{
+    lab_publish(v->l, "video", videos_json(v));
+}
+
+static bool must_stop(void *context)
+{
+    videos *v = context;
+    return atomic_load(&v->stop) || studies_runs(v->l->studies, NULL);
+}
+
+static bool on_progress(void *context, double share)
+{
+    videos *v = context;
+    const double now_s = clock_wall_s();
+    pthread_mutex_lock(&v->lock);
+    const bool due = now_s - v->published_s >= publish_period_s;
+    v->share = share;
+    if (due)
+        v->published_s = now_s;
+    pthread_mutex_unlock(&v->lock);
+    if (due)
+        publish(v);
+    return !must_stop(v);
+}
+
+/* Motion up to a frame is no share of the frame. */
+static bool on_motion(void *context, double share)
+{
+    (void)share;
+    return on_progress(context, 0.0);
+}
+
+/* --- frames --- */
+
+status video_plan_scene(const video_plan *plan, int64_t frame, scene **out, diagnostic *why)
+{
+    const double share = plan->count > 1 ? (double)frame / (double)(plan->count - 1) : 0.0;
+    const double value = share == 1.0 ? plan->to : plan->from + share * (plan->to - plan->from);
+    char text[NUMBER_TEXT_MAX];
+    number_format(plan->whole ? round(value) : value, text);
+    *out = scene_clone(plan->s);
+    if (!*out)
+        return out_of_memory(why);
+    status code = scene_set(*out, plan->path, text, why);
+    THEN(code, scene_document_check(*out, NULL, why));
+    if (code != STATUS_OK) {
+        scene_destroy(*out);
+        *out = NULL;
+    }
+    return code;
+}
+
+static status render_frame(videos *v, job *j, const scene *s, video *out, diagnostic *why)
+{
+    const render_options options = {.progress = on_progress, .context = v};
+    job_account account = {.result = NULL};
+    image *img = NULL;
+    status code = job_render(j, s, &options, &account, why);
+    THEN(code, film_image(account.result->img, &img, why));
+    THEN(code, video_frame(out, img, why));
+    image_destroy(img);
+    job_account_release(&account);
+    if (code == STATUS_OK && (fflush(out->stream) != 0 || ferror(out->stream)))
+        return diagnose(why, STATUS_FAILURE, "free space in the folder for temporary files",
+                        "cannot write the video: %s", strerror(errno));
+    return code;
+}
+
+static status next_frame(videos *v, job *j, scene_motion *motion, int64_t frame, video *out, diagnostic *why)
+{
+    const video_plan *plan = &v->plan;
+    const load_watch watch = {on_motion, v};
+    if (motion) {
+        TRY(scene_motion_advance_until(motion, frame_times_at(&plan->times, frame), true, &watch, why));
+        return render_frame(v, j, plan->s, out, why);
+    }
+    scene *s = NULL;
+    status code = video_plan_scene(plan, frame, &s, why);
+    THEN(code, job_load(j, s, &watch, why));
+    THEN(code, render_frame(v, j, s, out, why));
+    scene_destroy(s);
+    return code;
+}
+
+static status render_frames(videos *v, job *j, scene_motion *motion, FILE *file, diagnostic *why)
+{
+    const video_plan *plan = &v->plan;
+    const render_settings *r = scene_settings(plan->s);
+    video out;
+    status code = video_begin(&out, plan->format, file, (int)r->width, (int)r->height, plan->count, plan->times.fps_num,
+                              plan->times.fps_den, why);
+    for (int64_t i = 0; i < plan->count && code == STATUS_OK; i++) {
+        code = next_frame(v, j, motion, i, &out, why);
+        pthread_mutex_lock(&v->lock);
+        v->done += code == STATUS_OK;
+        v->share = 0.0;
+        pthread_mutex_unlock(&v->lock);
+    }
+    return code;
+}
+
+static status make(videos *v, FILE *file, diagnostic *why)
+{
+    job *j = NULL;
+    scene_motion *motion = NULL;
+    const job_settings settings = {
+        .level = &v->l->settings.level, .keeps_meshes = true, .stop = must_stop, .context = v, .time_s = FRAME_LIMIT_S};
+    status code = job_create(&settings, &j, why);
+    if (code == STATUS_OK && !v->plan.path)
+        code = scene_motion_create(v->plan.s, &motion, why);
+    THEN(code, render_frames(v, j, motion, file, why));
+    scene_motion_destroy(motion);
+    job_destroy(j);
+    return code;
+}
+
+/* --- the thread --- */
+
+/* Keeps the video if it is whole. */
+static void finish(videos *v, FILE *file, status code, const diagnostic *why)
+{
+    const off_t size = file ? ftello(file) : 0;
+    const bool whole = code == STATUS_OK && size > 0;
+    pthread_mutex_lock(&v->lock);
+    v->running = false;
+    v->wall_s = clock_wall_s() - v->began_s;
+    v->failed = code != STATUS_OK && !atomic_load(&v->stop);
+    v->trouble = *why;
+    v->file = whole ? file : NULL;
+    v->size = whole ? (size_t)size : 0;
+    pthread_mutex_unlock(&v->lock);
+    if (file && !whole)
+        fclose(file);
+    publish(v);
+    lab_publish_state(v->l);
+}
+
+static void *run(void *context)
+{
+    videos *v = context;
+    diagnostic why = {.what = ""};
+    float_environment_set();
+    FILE *file = tmpfile();
+    status code = file ? semaphore_acquire(v->l->heavy, &why)
+                       : diagnose(&why, STATUS_FAILURE, "free space in the folder for temporary files",
+                                  "cannot write the video: %s", strerror(errno));
+    if (code == STATUS_OK) {
+        code = make(v, file, &why);
+        semaphore_release(v->l->heavy);
+    }
+    if (code == STATUS_INTERRUPTED && studies_runs(v->l->studies, NULL))
+        diagnose(&why, code, "save the video again when the study has ended", "a study began to measure");
+    finish(v, file, code, &why);
+    return NULL;
+}
+
+/* The caller holds the life lock. */
+static status claim(videos *v, diagnostic *why)
+{
+    pthread_mutex_lock(&v->lock);
+    const bool busy = v->running, ending = v->ending;
+    FILE *before = NULL;
+    if (!busy && !ending) {
+        before = v->file;
+        v->file = NULL;
+        v->running = v->begun = true;
+        v->failed = false;
+        v->done = 0;
+        v->share = v->published_s = v->wall_s = 0.0;
+        v->began_s = clock_wall_s();
+    }
+    pthread_mutex_unlock(&v->lock);
+    if (before)
+        fclose(before);
+    if (ending)
+        return diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is shutting down");
+    return busy ? diagnose(why, STATUS_INTERRUPTED, "wait until it ends, or stop it", "another video is being rendered")
+                : STATUS_OK;
+}
+
+static status begin(videos *v, video_plan *plan, diagnostic *why)
+{
+    TRY(claim(v, why));
+    join_thread(v);
+    pthread_mutex_lock(&v->lock);
+    v->plan = *plan;
+    *plan = (video_plan){.s = NULL};
+    pthread_mutex_unlock(&v->lock);
+    atomic_store(&v->stop, false);
+    v->started = pthread_create(&v->thread, NULL, run, v) == 0;
+    if (v->started)
+        return STATUS_OK;
+    pthread_mutex_lock(&v->lock);
+    v->running = false;
+    video_plan_release(&v->plan);
+    pthread_mutex_unlock(&v->lock);
+    return diagnose(why, STATUS_FAILURE, "", "a thread cannot be started");
+}
+
+status videos_start(videos *v, video_plan *plan, diagnostic *why)
+{
+    pthread_mutex_lock(&v->life);
+    const status code = begin(v, plan, why);
+    pthread_mutex_unlock(&v->life);
+    video_plan_release(plan);
+    return code;
+}
+
+status videos_stop(videos *v, diagnostic *why)
+{
+    pthread_mutex_lock(&v->life);
+    pthread_mutex_lock(&v->lock);
+    const bool running = v->running;
+    pthread_mutex_unlock(&v->lock);
+    atomic_store(&v->stop, true);
+    pthread_mutex_unlock(&v->life);
+    return running ? STATUS_OK : diagnose(why, STATUS_INTERRUPTED, "start one first", "no video is being rendered");
+}
+
+status videos_open(videos *v, int *file, size_t *size, video_format *format, diagnostic *why)
+{
+    pthread_mutex_lock(&v->lock);
+    *file = v->file ? dup(fileno(v->file)) : -1;
+    *size = v->size;
+    *format = v->plan.format;
+    const bool none = !v->file;
+    pthread_mutex_unlock(&v->lock);
+    if (none)
+        return diagnose(why, STATUS_BAD_INPUT, "render one by POST /api/video", "there is no finished video");
+    return *file >= 0 ? STATUS_OK
+                      : diagnose(why, STATUS_FAILURE, "try again", "cannot read the video: %s", strerror(errno));
+}
