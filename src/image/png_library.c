@@ -27,7 +27,7 @@ static void take_bytes(png_structp png, png_bytep to, size_t count)
     from->used += count;
 }
 
-/* libpng takes memory for a chunk of any length, up to 2 GiB, before it reads the chunk: its limit is only a warning. */
+/* libpng takes memory for a chunk of any length, up to 2 GiB, before it reads it: its limit is only a warning. */
 static void check_lengths(const png_library *of)
 {
     for (size_t at = 8; of->size > at && of->size - at >= 8;) {

@@ -8,6 +8,7 @@
 #include "web/api/scene_since.h"
 #include "web/page.h"
 #include "web/session/pixel_maps.h"
+#include "web/session/rescue.h"
 #include "web/session/thumbnails.h"
 #include "web/session/reference_image.h"
 #include "web/session/studies.h"
@@ -39,7 +40,8 @@ json_t *lab_state(lab *l)
         json_object_update_new(
             state, json_pack("{s:o, s:o, s:o, s:{s:i, s:i}}", "slime", live_json(render_worker_live(l->render_worker)),
                              "pin", reference_image_json(l->reference_image), "study", studies_json(l->studies),
-                             "limits", "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) == 0;
+                             "limits", "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) == 0 &&
+        rescue_json(l->rescue, state);
     return json_whole(state, good);
 }
 
@@ -63,6 +65,7 @@ static void on_document(void *of)
 {
     lab *l = of;
     render_worker_wake(l->render_worker);
+    rescue_wake(l->rescue);
     lab_publish_state(l);
 }
 
@@ -190,6 +193,7 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
          !(l->pixel_maps = pixel_maps_create(settings->level))))
         code = out_of_memory(why);
     THEN(code, studies_create(l, &l->studies, why));
+    THEN(code, rescue_create(l, &l->rescue, why));
     THEN(code, serve(l, why));
     if (code == STATUS_OK)
         *out = l;
@@ -216,6 +220,7 @@ void lab_stop(lab *l)
     if (l->render_worker)
         render_worker_end(l->render_worker);
     http_stop(l->server);
+    rescue_destroy(l->rescue, l->left);
     studies_destroy(l->studies);
     semaphore_destroy(l->heavy);
     pixel_maps_destroy(l->pixel_maps);
@@ -230,6 +235,11 @@ void lab_stop(lab *l)
     free(l->bound);
     free(l->routes);
     free(l);
+}
+
+void lab_leave_unsaved(lab *l)
+{
+    l->left = true;
 }
 
 const char *lab_address(const lab *l)

@@ -26,7 +26,7 @@ api_handler api_state, api_scene, api_set, api_reset, api_undo, api_redo, api_ca
     api_open, api_save, api_media, api_slime, api_grab, api_move_hand, api_release, api_studies, api_study,
     api_study_run, api_study_stop, api_study_rows, api_study_compare, api_study_draw, api_study_figure, api_figure,
     api_machine, api_notes, api_link, api_page, api_beams, api_beam_screen, api_lessons, api_lesson_open,
-    api_lesson_measure, api_lesson_thumbnail, api_thumbnail, api_study_new;
+    api_lesson_measure, api_lesson_thumbnail, api_thumbnail, api_study_new, api_rescue;
 
 /* Fills l->routes with all routes, bound to the lab. */
 status api_bind(lab *l, size_t *count, diagnostic *why);
