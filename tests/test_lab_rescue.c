@@ -44,17 +44,16 @@ static int remove_place(void **state)
     return 0;
 }
 
-static lab_room begin_in(const char *scenes, const char *kept, const char *file)
+/* The laboratory borrows the room's texts. */
+static void begin_in(lab_room *room, const char *scenes, const char *kept, const char *file)
 {
-    lab_room room = {.lab = NULL};
-    snprintf(room.folder, sizeof room.folder, "%s", scenes);
-    room_start(&room, file, (lab_settings){.rescue = kept});
-    return room;
+    snprintf(room->folder, sizeof room->folder, "%s", scenes);
+    room_start(room, file, (lab_settings){.rescue = kept});
 }
 
-static lab_room begin(const place *p, const char *file)
+static void begin(lab_room *room, const place *p, const char *file)
 {
-    return begin_in(p->scenes, p->kept, file);
+    begin_in(room, p->scenes, p->kept, file);
 }
 
 /* The number of kept scenes, and the path of the last; "" if the folder is missing. */
@@ -154,7 +153,8 @@ static pid_t begin_elsewhere(const place *p, const char *file, const char *value
     const pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0) {
-        lab_room room = begin(p, file);
+        lab_room room;
+        begin(&room, p, file);
         set(&room, values);
         wait_for_words(p, words);
         (void)!write(ready[1], "+", 1);
@@ -190,7 +190,8 @@ static void a_killed_laboratory_loses_nothing(void **state)
     const place *p = *state;
     const pid_t child = begin_elsewhere(p, "scene.yaml", "\"ball.ior\": 1.7", "ior: 1.7");
     assert_private(p);
-    lab_room second = begin(p, NULL); /* while the first runs, its scene is its own */
+    lab_room second;
+    begin(&second, p, NULL); /* while the first runs, its scene is its own */
     json_decref(offers_of(&second, 0));
     set(&second, "\"camera.fov_deg\": 41");
     wait_for_kept(p, 2);
@@ -198,7 +199,8 @@ static void a_killed_laboratory_loses_nothing(void **state)
     assert_int_equal(count_kept(p, NULL), 1);
 
     kill_it(child);
-    lab_room room = begin(p, "scene.yaml");
+    lab_room room;
+    begin(&room, p, "scene.yaml");
     json_t *offers = offers_of(&room, 1);
     assert_string_equal(offer_text(offers, 0, "title"), "Ball");
     assert_string_equal(offer_text(offers, 0, "file"), "scene.yaml");
@@ -230,7 +232,8 @@ static void a_rescued_scene_survives_a_second_kill(void **state)
 {
     const place *p = *state;
     kill_it(begin_elsewhere(p, NULL, "\"camera.fov_deg\": 37", "fov_deg: 37"));
-    lab_room room = begin(p, NULL);
+    lab_room room;
+    begin(&room, p, NULL);
     json_t *offers = offers_of(&room, 1);
     assert_true(json_is_null(json_object_get(json_array_get(offers, 0), "file")));
     lab_leave_unsaved(room.lab);
@@ -238,7 +241,7 @@ static void a_rescued_scene_survives_a_second_kill(void **state)
     json_decref(offers);
     kill_it(begin_elsewhere(p, "scene.yaml", "\"ball.ior\": 1.8", "ior: 1.8"));
     wait_for_kept(p, 2);
-    room = begin(p, NULL);
+    begin(&room, p, NULL);
     offers = offers_of(&room, 2);
     for (size_t i = 0; i < 2; i++) {
         char *body = order(offers, i, "discard");
@@ -253,12 +256,13 @@ static void a_rescued_scene_survives_a_second_kill(void **state)
 static void a_clean_end_leaves_nothing_unless_told_to(void **state)
 {
     const place *p = *state;
-    lab_room room = begin(p, "scene.yaml");
+    lab_room room;
+    begin(&room, p, "scene.yaml");
     set(&room, "\"ball.ior\": 1.6");
     wait_for_kept(p, 1);
     lab_stop(room.lab);
     assert_int_equal(count_kept(p, NULL), 0);
-    room = begin(p, "scene.yaml");
+    begin(&room, p, "scene.yaml");
     set(&room, "\"ball.ior\": 1.6");
     wait_for_kept(p, 1);
     set(&room, "\"ball.ior\": 1.9"); /* within the same second */
@@ -270,7 +274,8 @@ static void a_clean_end_leaves_nothing_unless_told_to(void **state)
 static void what_is_in_a_file_is_not_kept(void **state)
 {
     const place *p = *state;
-    lab_room room = begin(p, "scene.yaml");
+    lab_room room;
+    begin(&room, p, "scene.yaml");
     room_post(&room, "/api/camera", "{\"orbit\": [10, 0]}");
     room_post(&room, "/api/open", "{\"new\": true}");
     usleep(300000);
@@ -284,7 +289,8 @@ static void changes_are_written_once_a_second(void **state)
     struct stat before, after;
     char path[512];
     int files = 1;
-    lab_room room = begin(p, "scene.yaml");
+    lab_room room;
+    begin(&room, p, "scene.yaml");
     set(&room, "\"ball.ior\": 1.6");
     wait_for_kept(p, 1);
     count_kept(p, path);
@@ -341,7 +347,8 @@ static void an_unwritable_folder_is_reported(void **state)
         {"", "there is no folder in which to keep unsaved changes; set HOME or XDG_STATE_HOME"},
         {"/tmp", "/tmp: the folder belongs to, or can be written by, somebody else; make it your own"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        lab_room room = begin_in(p->scenes, bad[i].folder, "scene.yaml");
+        lab_room room;
+        begin_in(&room, p->scenes, bad[i].folder, "scene.yaml");
         char *none = unkept(&room);
         assert_null(none); /* nothing is unsaved yet */
         set(&room, "\"ball.ior\": 1.6");
@@ -362,7 +369,8 @@ static void a_full_disk_is_reported_until_it_has_room(void **state)
     struct rlimit own;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &own), 0);
     signal(SIGXFSZ, SIG_IGN);
-    lab_room room = begin(p, "scene.yaml");
+    lab_room room;
+    begin(&room, p, "scene.yaml");
     set(&room, "\"ball.ior\": 1.6");
     wait_for_words(p, "ior: 1.6");
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){100, own.rlim_max}), 0);
@@ -379,7 +387,8 @@ static void a_full_disk_is_reported_until_it_has_room(void **state)
 static void nothing_is_written_while_a_study_measures(void **state)
 {
     const place *p = *state;
-    lab_room room = begin(p, "scene.yaml");
+    lab_room room;
+    begin(&room, p, "scene.yaml");
     room_write(&room, "tiny.study", ENDLESS);
     json_decref(room_ask(&room, "POST", "/api/studies/tiny/run", "{}", 200));
     wait_for_rows(&room, 1);
@@ -432,7 +441,8 @@ static void the_newest_are_kept_and_strange_files_left_alone(void **state)
     char *old = text_format("%s/.cuvette-1-0.part", p->kept);
     assert_int_equal(utime(old, &(struct utimbuf){1000, 1000}), 0);
     free(old);
-    lab_room room = begin(p, NULL);
+    lab_room room;
+    begin(&room, p, NULL);
     json_t *offers = offers_of(&room, KEPT_SCENES_MAX);
     for (int i = 0; i < KEPT_SCENES_MAX; i++)
         assert_int_equal(atoi(offer_text(offers, (size_t)i, "title")), KEPT_SCENES_MAX + 2 - i);
@@ -450,7 +460,8 @@ static void what_cannot_be_opened_stays(void **state)
     assert_int_equal(file_make_directory(p->kept, NULL), STATUS_OK);
     write_old(p, 1, "/tmp/cuvette-elsewhere", BALL_SCENE "textures:\n  wood: {file: wood.png}\n");
     write_old(p, 2, p->scenes, "solids: 7\n");
-    lab_room room = begin(p, "scene.yaml");
+    lab_room room;
+    begin(&room, p, "scene.yaml");
     json_t *offers = offers_of(&room, 2);
     assert_string_equal(offer_text(offers, 0, "file"), "scene.yaml");
     assert_string_equal(offer_text(offers, 1, "file"), "/tmp/cuvette-elsewhere/scene.yaml");
