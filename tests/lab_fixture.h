@@ -39,17 +39,13 @@ static inline void room_write(const lab_room *room, const char *name, const char
     free(path);
 }
 
-/* yaml: the text of scene.yaml, which is opened; NULL: none. */
-static inline void room_open_with(lab_room *room, const char *yaml, lab_settings settings)
+/* Starts a laboratory in a folder that exists. file: the scene's name in it, NULL for none. */
+static inline void room_start(lab_room *room, const char *file, lab_settings settings)
 {
-    snprintf(room->folder, sizeof room->folder, "/tmp/cuvette-lab-XXXXXX");
-    assert_non_null(mkdtemp(room->folder));
+    char *path = file ? room_path(room, file) : NULL;
     snprintf(room->results, sizeof room->results, "%s/results", room->folder);
-    char *path = room_path(room, "scene.yaml");
-    if (yaml)
-        room_write(room, "scene.yaml", yaml);
     settings.folder = room->folder;
-    settings.scene = yaml ? path : NULL;
+    settings.scene = path;
     settings.results = room->results;
     settings.level = isa_best();
     settings.threads = 2;
@@ -60,6 +56,16 @@ static inline void room_open_with(lab_room *room, const char *yaml, lab_settings
         fail_msg("%s", diagnostic_text(&why, text, sizeof text));
     room->server = lab_server(room->lab);
     free(path);
+}
+
+/* yaml: the text of scene.yaml, which is opened; NULL: none. */
+static inline void room_open_with(lab_room *room, const char *yaml, lab_settings settings)
+{
+    snprintf(room->folder, sizeof room->folder, "/tmp/cuvette-lab-XXXXXX");
+    assert_non_null(mkdtemp(room->folder));
+    if (yaml)
+        room_write(room, "scene.yaml", yaml);
+    room_start(room, yaml ? "scene.yaml" : NULL, settings);
 }
 
 static inline void room_open(lab_room *room, const char *yaml)
@@ -73,10 +79,15 @@ static inline int room_unlink(const char *path, const struct stat *what, int kin
     return remove(path);
 }
 
+static inline void room_remove(const char *folder)
+{
+    nftw(folder, room_unlink, 16, FTW_DEPTH | FTW_PHYS);
+}
+
 static inline void room_close(lab_room *room)
 {
     lab_stop(room->lab);
-    nftw(room->folder, room_unlink, 16, FTW_DEPTH | FTW_PHYS);
+    room_remove(room->folder);
 }
 
 /* Sends a request, checks the code, and returns the body as JSON (NULL if it is not JSON). */

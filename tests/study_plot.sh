@@ -53,6 +53,11 @@ sed -e 's/^study: .*/study: words/' -e '/liquid.ior/d' \
     -e 's/repetitions: .*/repetitions: 2/' -e '/^keep/d' own.study >words.study
 "$program" study run --quiet --results res own.study words.study || exit 1
 
+film=$(awk -F, 'NR == 1 {for (i = 1; i <= NF; i++) at[$i] = i}
+    $at["cell"] == 5 {print $at["film_hash"]; exit}' res/own/rows.csv)
+check "the image of a cell holds its scene" grep -q "\"film_hash\": *\"${film:-none}\"" \
+    <("$program" render res/own/images/0005.png --json 2>&1)
+
 run own.study
 check "a figure is drawn without a word of gnuplot" clean
 check "its name is results/STUDY/figure.png" is_png res/own/figure.png

@@ -540,14 +540,17 @@ run_lab() {    # ARGUMENT...: starts a laboratory in the background; its address
         sleep 0.1
     done
 }
-ask() { # PATH: prints the whole reply, read through bash's /dev/tcp
-    local port=${address#http://127.0.0.1:}
+ask() { # PATH [JSON]: prints the whole reply, read through bash's /dev/tcp
+    local port=${address#http://127.0.0.1:} method=GET body=${2-}
+    [[ $body ]] && method=POST
     exec 9<>"/dev/tcp/127.0.0.1/${port%%/*}"
-    printf 'GET %s HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nAuthorization: Bearer %s\r\nConnection: close\r\n\r\n' "$1" \
+    printf '%s %s HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nAuthorization: Bearer %s\r\nConnection: close\r\n' $method "$1" \
         "${port%%/*}" "${address##*token=}" >&9
+    printf 'Content-Type: application/json\r\nContent-Length: %d\r\n\r\n%s' ${#body} "$body" >&9
     cat <&9
     exec 9>&-
 }
+export XDG_STATE_HOME=$PWD/state
 cp "$scene" here.yaml
 run_lab here.yaml
 check "lab prints its address, and nothing else" matches "$address $(wc -l <lab.out) $(wc -c <lab.err)" \
@@ -592,6 +595,30 @@ check "lab needs no scene" matches "$address" '^http'
 kill -TERM $lab
 wait $lab
 check "SIGTERM ends lab with status 0" is $? 0
+
+change_and_end() { # SIGNAL: a laboratory with an unsaved change ends
+    run_lab here.yaml
+    ask /api/set '{"set": {"liquid.ior": 1.5}}' >lab.reply
+    kill "-$1" $lab
+    wait $lab
+}
+change_and_end INT
+check "Ctrl-C ends lab and leaves no unsaved scene" is "$? $(find state -type f 2>/dev/null | wc -l)" "0 0"
+change_and_end TERM
+check "SIGTERM leaves the unsaved scene for its owner alone" is \
+    "$? $(stat -c '%a' state/cuvette) $(stat -c '%a' state/cuvette/unsaved-*)" "0 700 600"
+check "an unsaved scene is a scene file" grep -q 'ior: 1.5' <("$program" scene state/cuvette/unsaved-*)
+check "it has no token" is "$(grep -c "${address##*token=}" state/cuvette/unsaved-*)" 0
+run_lab here.yaml
+check "the next lab offers it" grep -q '"rescued":\[{"id":"[0-9a-f]*","time":.*"file":"here.yaml"' <(ask /api/state)
+kill -INT $lab
+wait $lab
+check "what was offered only stays" is "$(find state -name 'unsaved-*' | wc -l)" 1
+XDG_STATE_HOME=relative HOME=$PWD/home change_and_end TERM
+check "without XDG_STATE_HOME it is below HOME" is "$(find home -name 'unsaved-*' | cut -d/ -f1-4)" \
+    home/.local/state/cuvette
+check "a relative XDG_STATE_HOME is ignored" is "$(ls -d relative 2>/dev/null)" ""
+rm -r state home
 refused_lab() { # WHAT ERROR ARGUMENT...
     local what=$1 error=$2
     shift 2

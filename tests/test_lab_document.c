@@ -250,6 +250,43 @@ static uint64_t version_now(scene_document *d)
     return number;
 }
 
+static bool is_unsaved(scene_document *d)
+{
+    uint64_t number;
+    return scene_document_unsaved(d, &number, NULL);
+}
+
+static void changes_without_a_file_would_be_lost(void **state)
+{
+    (void)state;
+    scene_document *d = open_document(BALL_SCENE);
+    diagnostic why = {0};
+    assert_false(is_unsaved(d));
+    apply(d, "ball.ior=1.6");
+    assert_true(is_unsaved(d));
+    orbit_view(d, 10.0, NULL);
+    scene_document_undo(d, false, NULL, NULL);
+    assert_false(is_unsaved(d));
+    worked(scene_document_open(d, scene_from(BALL_SCENE), NULL, NULL, &why), &why); /* it can be opened again */
+    assert_false(is_unsaved(d));
+    assert_false(is_saved(d));
+    worked(scene_document_rescue(d, scene_from(BALL_SCENE), "ball.yaml", NULL, &why), &why);
+    assert_true(is_unsaved(d));
+    assert_false(is_saved(d));
+    assert_state(d, "file", "ball.yaml");
+    assert_state(d, "undo", "open a rescued scene");
+    uint64_t before, written;
+    assert_true(scene_document_unsaved(d, &before, NULL));
+    apply(d, "ball.ior=1.7");
+    assert_true(scene_document_unsaved(d, &written, NULL));
+    assert_true(written > before);
+    scene_document_saved(d, "ball.yaml", written);
+    assert_false(is_unsaved(d));
+    scene_document_undo(d, false, NULL, NULL);
+    assert_true(is_unsaved(d)); /* the file has the later scene */
+    scene_document_destroy(d);
+}
+
 static void the_document_tracks_whether_it_is_saved(void **state)
 {
     (void)state;
@@ -414,6 +451,7 @@ int main(void)
         cmocka_unit_test(a_gesture_is_one_undo_step),
         cmocka_unit_test(the_undo_history_has_a_limit),
         cmocka_unit_test(resets_restore_the_opened_scene),
+        cmocka_unit_test(changes_without_a_file_would_be_lost),
         cmocka_unit_test(the_document_tracks_whether_it_is_saved),
         cmocka_unit_test(views_have_a_history_of_their_own),
         cmocka_unit_test(a_view_is_kept_on_demand),

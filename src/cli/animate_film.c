@@ -96,8 +96,8 @@ static status flush_stream(animation_job *f, diagnostic *why)
 
 static status write_image(animation_job *f, const char *path, const film *img, diagnostic *why)
 {
-    if (path)
-        return record_image(img, NULL, path, 8, why);
+    if (path) /* the slimes of the scene have the time of this frame */
+        return record_image(img, f->s, path, 8, why);
     image *frame = NULL;
     status result = film_image(img, &frame, why);
     errno = 0;

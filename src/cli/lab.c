@@ -66,6 +66,16 @@ static char *choose_folder(const lab_request *request)
     return strdup(".");
 }
 
+/* The XDG Base Directory Specification: state that should survive; a relative path is ignored. Allocated; "" if no
+ * folder is known. */
+static char *state_folder(void)
+{
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    if (state && state[0] == '/')
+        return text_format("%s/cuvette", state);
+    return home && home[0] == '/' ? text_format("%s/.local/state/cuvette", home) : strdup("");
+}
+
 static void wait_for_stop(void)
 {
     while (!terminal_stop_requested(NULL))
@@ -85,27 +95,31 @@ static status run_lab(const lab_request *request, const char *folder, const char
 {
     lab *l = NULL;
     topology *machine = NULL;
-    char *file = NULL;
+    char *file = NULL, *rescue = state_folder();
     lab_settings settings = {.folder = folder,
                              .scene = request->scene,
                              .results = results,
+                             .rescue = rescue,
                              .port = (int)request->port,
                              .threads = (int)request->threads};
-    status code = scene_input_isa(&settings.level, why);
+    status code = rescue ? scene_input_isa(&settings.level, why) : out_of_memory(why);
     if (code == STATUS_OK && settings.threads == 0 && (code = topology_create(&machine, why)) == STATUS_OK)
         settings.threads = topology_pu_count(machine);
     topology_destroy(machine);
     THEN(code, lab_start(&settings, &l, why));
-    if (code != STATUS_OK)
-        return code;
-    printf("%s\n", lab_address(l));
-    code = terminal_flush(why);
+    if (code == STATUS_OK) {
+        printf("%s\n", lab_address(l));
+        code = terminal_flush(why);
+    }
     if (code == STATUS_OK && !request->no_browser)
         open_browser(lab_address(l), &file);
     if (code == STATUS_OK)
         wait_for_stop();
     browser_forget(file);
+    if (code == STATUS_OK && !terminal_stopped_by_user())
+        lab_leave_unsaved(l);
     lab_stop(l);
+    free(rescue);
     return code;
 }
 

@@ -17,14 +17,18 @@ static volatile sig_atomic_t stop_requested;
 
 static void request_stop(int signal_number)
 {
-    (void)signal_number;
-    stop_requested = 1;
+    stop_requested = signal_number;
 }
 
 bool terminal_stop_requested(void *unused)
 {
     (void)unused;
     return stop_requested != 0;
+}
+
+bool terminal_stopped_by_user(void)
+{
+    return stop_requested == SIGINT;
 }
 
 /* An image file must never get descriptor 1 because the caller has closed it: a closed descriptor is opened on

@@ -12,6 +12,9 @@ void terminal_prepare(void);
 /* Returns whether SIGINT or SIGTERM has arrived. unused: lets the function serve as a callback. */
 bool terminal_stop_requested(void *unused);
 
+/* Whether that was SIGINT: Ctrl-C, not the end of the session or the machine. */
+bool terminal_stopped_by_user(void);
+
 /* Flushes standard output. STATUS_FAILURE where data could not be written; if the reader of a pipe has closed it, *why
  * stays empty, so that nothing is printed. */
 status terminal_flush(diagnostic *why);

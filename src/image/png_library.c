@@ -27,6 +27,19 @@ static void take_bytes(png_structp png, png_bytep to, size_t count)
     from->used += count;
 }
 
+/* libpng takes memory for a chunk of any length, up to 2 GiB, before it reads it: its limit is only a warning. */
+static void check_lengths(const png_library *of)
+{
+    for (size_t at = 8; of->size > at && of->size - at >= 8;) {
+        const size_t length = png_get_uint_32(of->bytes + at), left = of->size - at - 8;
+        if (length > left)
+            png_error(of->png, "the file is truncated");
+        if (memcmp(of->bytes + at + 4, "IEND", 4) == 0)
+            return;
+        at += 12 + length;
+    }
+}
+
 void png_library_guard(png_library *of, size_t chunk_max)
 {
     png_set_read_fn(of->png, of, take_bytes);
@@ -34,4 +47,5 @@ void png_library_guard(png_library *of, size_t chunk_max)
     png_set_chunk_malloc_max(of->png, chunk_max);
     png_set_chunk_cache_max(of->png, 128);
     png_set_crc_action(of->png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    check_lengths(of);
 }

@@ -14,6 +14,6 @@ typedef struct png_library {
 
 void png_library_error(png_structp png, png_const_charp message) __attribute__((noreturn));
 void png_library_warning(png_structp png, png_const_charp message);
-/* Before the first byte of a file that anyone may have made: it is read from memory, no chunk takes more than that
- * many bytes, also when it is expanded, and a wrong checksum is an error. */
+/* Before the first byte of a file that anyone may have made, and after setjmp: it is read from memory, no chunk takes
+ * more bytes than the file has or than chunk_max when it is expanded, and a wrong checksum is an error. */
 void png_library_guard(png_library *of, size_t chunk_max);

@@ -8,6 +8,7 @@
 #include "web/api/scene_since.h"
 #include "web/page.h"
 #include "web/session/pixel_maps.h"
+#include "web/session/rescue.h"
 #include "web/session/thumbnails.h"
 #include "web/session/reference_image.h"
 #include "web/session/studies.h"
@@ -42,7 +43,8 @@ json_t *lab_state(lab *l)
                                                 reference_image_json(l->reference_image), "study",
                                                 studies_json(l->studies), "video", videos_json(l->videos), "limits",
                                                 "pixels", DOCUMENT_PIXELS_MAX, "triangles", DOCUMENT_TRIANGLES_MAX)) ==
-            0;
+            0 &&
+        rescue_json(l->rescue, state);
     return json_whole(state, good);
 }
 
@@ -66,6 +68,7 @@ static void on_document(void *of)
 {
     lab *l = of;
     render_worker_wake(l->render_worker);
+    rescue_wake(l->rescue);
     lab_publish_state(l);
 }
 
@@ -194,6 +197,7 @@ status lab_start(const lab_settings *settings, lab **out, diagnostic *why)
         code = out_of_memory(why);
     THEN(code, studies_create(l, &l->studies, why));
     THEN(code, videos_create(l, &l->videos, why));
+    THEN(code, rescue_create(l, &l->rescue, why));
     THEN(code, serve(l, why));
     if (code == STATUS_OK)
         *out = l;
@@ -223,6 +227,7 @@ void lab_stop(lab *l)
         render_worker_end(l->render_worker);
     http_stop(l->server);
     videos_destroy(l->videos);
+    rescue_destroy(l->rescue, l->left);
     studies_destroy(l->studies);
     semaphore_destroy(l->heavy);
     pixel_maps_destroy(l->pixel_maps);
@@ -237,6 +242,11 @@ void lab_stop(lab *l)
     free(l->bound);
     free(l->routes);
     free(l);
+}
+
+void lab_leave_unsaved(lab *l)
+{
+    l->left = true;
 }
 
 const char *lab_address(const lab *l)

@@ -15,6 +15,9 @@ typedef struct lab_settings {
     /* Scene file to open, relative to the working directory and below folder; NULL: a room with a floor, a light and a
      * camera. */
     const char *scene;
+    /* Folder that keeps the unsaved scene while it is unsaved (web/session/rescue.h), created when it is needed; "":
+     * there is no such folder, which pages report; NULL: nothing is kept or offered. */
+    const char *rescue;
     const char *results; /* folder for the rows of studies: folder itself or below it; it need not exist */
     int port;            /* 0: any free port */
     isa level;
@@ -24,6 +27,8 @@ typedef struct lab_settings {
 
 status lab_start(const lab_settings *settings, lab **out, diagnostic *why);
 void lab_stop(lab *l); /* NULL is allowed */
+/* An unsaved scene stays on disk at the stop, to be offered by the next laboratory; otherwise a stop removes it. */
+void lab_leave_unsaved(lab *l);
 
 /* "http://127.0.0.1:PORT/?token=TOKEN" */
 const char *lab_address(const lab *l);

@@ -27,6 +27,7 @@ struct lab {
     struct pixel_maps *pixel_maps; /* web/session/pixel_maps.h */
     struct thumbnails *thumbnails; /* web/session/thumbnails.h */
     atomic_uint motion_stops;      /* requests to stop /api/motion */
+    struct rescue *rescue;         /* web/session/rescue.h */
     semaphore *heavy;              /* limits the handlers that need much memory and time */
     http_server *server;
     http_route *routes;
@@ -36,6 +37,7 @@ struct lab {
     pthread_mutex_t state_lock;
     pthread_mutex_t publish_lock;
     bool open; /* events may be published */
+    bool left; /* the unsaved scene stays on disk at the stop */
 };
 
 /* Sends an event to all pages; takes the reference to value. Thread-safe. */

@@ -39,9 +39,9 @@ function firstMatch(child, pattern) {
 /** Running programs and temporary folders, which every exit of this program removes. */
 const running = new Set();
 process.on('exit', () => {
-  for (const { child, folder } of running) {
+  for (const { child, folder, state } of running) {
     child?.kill('SIGKILL');
-    rmSync(folder, { recursive: true, force: true });
+    for (const each of [folder, state]) rmSync(each, { recursive: true, force: true });
   }
 });
 for (const [signal, code] of [
@@ -57,6 +57,7 @@ export class Lab {
     const lab = new Lab();
     lab.program = program;
     lab.folder = await mkdtemp(join(tmpdir(), 'cuvette-web-'));
+    lab.state = `${lab.folder}-state`; // unsaved scenes, not among those of the user
     running.add(lab);
     for (const [from, to] of [
       ['experiments/scenes', 'scenes'],
@@ -76,23 +77,28 @@ export class Lab {
     this.child = spawn(
       this.program,
       ['lab', ...(scene ? [join(this.folder, scene)] : []), '--no-browser', '--folder', this.folder, ...port, ...more],
-      { cwd: this.folder, stdio: ['ignore', 'pipe', 'pipe'] },
+      {
+        cwd: this.folder,
+        stdio: ['ignore', 'pipe', 'pipe'],
+        env: { ...process.env, XDG_STATE_HOME: this.state },
+      },
     );
     const [address, number, token] = await firstMatch(this.child, /http:\/\/127\.0\.0\.1:(\d+)\/\?token=([0-9a-f]+)/);
     Object.assign(this, { address, port: Number(number), token, origin: `http://127.0.0.1:${number}` });
   }
 
-  async stop() {
+  /** Ends the program: by Ctrl-C, or as a crash does (SIGKILL). */
+  async stop(signal = 'SIGINT') {
     const { child } = this;
     if (child.exitCode !== null || child.signalCode !== null) return;
     const ended = new Promise((resolve) => child.once('exit', resolve));
-    child.kill('SIGTERM');
+    child.kill(signal);
     await ended;
   }
 
   async end() {
     await this.stop();
-    await rm(this.folder, { recursive: true, force: true });
+    for (const each of [this.folder, this.state]) await rm(each, { recursive: true, force: true });
     running.delete(this);
   }
 

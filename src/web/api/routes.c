@@ -60,6 +60,7 @@ static const struct api_route {
     {"GET", "/api/files", api_files, NO_BODY},
     {"POST", "/api/open", api_open, ANY_BODY},
     {"POST", "/api/save", api_save, ANY_BODY},
+    {"POST", "/api/rescue", api_rescue, OBJECT},
     {"GET", "/api/media", api_media, NO_BODY},
     {"POST", "/api/slime", api_slime, OBJECT},
     {"POST", "/api/slime/grab", api_grab, OBJECT},

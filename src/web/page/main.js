@@ -8,6 +8,7 @@ import { createHead } from './head.js';
 import { createStatus } from './status.js';
 import { createNotes } from './notes.js';
 import { createBanner } from './banner.js';
+import { createRescue } from './rescue.js';
 import { createDisplay } from './display.js';
 import { createKeys } from './keys.js';
 import { orbitTool } from './tool_orbit.js';
@@ -26,7 +27,8 @@ async function start() {
   window.lab = lab;
   createStatus(at('status'), at('live'), lab);
   lab.notes = createNotes(lab);
-  createBanner(at('banner'), [at('head'), at('workspace')], lab);
+  createBanner(at('banner'), [at('head'), at('rescue'), at('workspace')], lab);
+  createRescue(at('rescue'), lab);
   lab.view = createView(at('view'), lab);
   orbitTool(lab);
   lightTool(lab);

@@ -179,7 +179,8 @@ status scene_document_apply_to_camera(scene_document *d, const char *what, const
     return apply(d, what, gesture, true, change, context, generation, why);
 }
 
-status scene_document_open(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why)
+static status open_as(scene_document *d, scene *s, const char *file, bool rescued, uint64_t *generation,
+                      diagnostic *why)
 {
     status code = scene_document_check(s, d->files, why);
     THEN(code, scene_document_limit(s, d->files, why));
@@ -189,16 +190,27 @@ status scene_document_open(scene_document *d, scene *s, const char *file, uint64
         return code == STATUS_OK ? out_of_memory(why) : code;
     }
     char words[128];
-    snprintf(words, sizeof words, "open %.100s", file ? file : "a new scene");
+    from->unfiled = rescued;
+    snprintf(words, sizeof words, "open %.100s", rescued ? "a rescued scene" : file ? file : "a new scene");
     pthread_mutex_lock(&d->lock);
     code = scene_document_push(d, s, file, from, &s->camera, words, NULL, why);
     if (code != STATUS_OK) {
         origin_release(from);
         scene_destroy(s);
-    } else if (file) {
+    } else if (file && !rescued) {
         d->saved_number = d->now.number;
     }
     return scene_document_finish(d, code, generation);
+}
+
+status scene_document_open(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why)
+{
+    return open_as(d, s, file, false, generation, why);
+}
+
+status scene_document_rescue(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why)
+{
+    return open_as(d, s, file, true, generation, why);
 }
 
 /* A version with the same camera of its own leaves the view as it is, and one with another camera shows it. Versions of
@@ -322,12 +334,26 @@ void scene_document_saved(scene_document *d, const char *file, uint64_t number)
         free(d->now.file);
         d->now.file = name;
         d->saved_number = d->now.number;
+        d->now.from->unfiled = true;
         name = NULL;
     }
     pthread_mutex_unlock(&d->lock);
     free(name);
     if (d->changed)
         d->changed(d->context);
+}
+
+/* A scene that was opened and not changed can be opened again. */
+bool scene_document_unsaved(scene_document *d, uint64_t *number, char **file)
+{
+    pthread_mutex_lock(&d->lock);
+    const origin *from = d->now.from;
+    const bool unsaved = d->now.number != d->saved_number && (from->unfiled || d->now.number != from->number);
+    *number = d->now.number;
+    if (file)
+        *file = copy_or_null(d->now.file);
+    pthread_mutex_unlock(&d->lock);
+    return unsaved;
 }
 
 static json_t *top_json(const version_stack *p)

@@ -45,6 +45,8 @@ status scene_document_apply_to_camera(scene_document *d, const char *what, const
 /* Replaces the scene by one from a file, or a new one (file NULL): a change like others; resets return to this scene
  * from now on. Takes ownership of s, also after an error. */
 status scene_document_open(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why);
+/* The same for a scene whose changes are in no file, not even in `file`, into which they can be saved. */
+status scene_document_rescue(scene_document *d, scene *s, const char *file, uint64_t *generation, diagnostic *why);
 
 /* Moves the camera: a view of the scene, not a change of it. It makes a new generation, but no undo step, and the scene
  * stays saved; the views have a history of their own. The document keeps the move's pivot. gesture: NULL, or a string;
@@ -79,6 +81,10 @@ void scene_document_share_loaded(scene_document *d, const scene *loaded, uint64_
 
 /* Records that the version with that number, of scene_document_take_kept, was written to that file. */
 void scene_document_saved(scene_document *d, const char *file, uint64_t number);
+
+/* Whether the scene has changes that would be lost with the program; number as above. file: a copy of its file's name,
+ * NULL for none (or out of memory); may be NULL. */
+bool scene_document_unsaved(scene_document *d, uint64_t *number, char **file);
 
 /* Adds generation, file, title, saved, undo, redo and view; false when out of memory. */
 bool scene_document_json(scene_document *d, json_t *state);

@@ -11,6 +11,7 @@
 typedef struct origin {
     scene *s;
     uint64_t number; /* of its version */
+    bool unfiled;    /* no file may have it: it was rescued, or its file has been saved into */
     int owners;
 } origin;
 

@@ -1,5 +1,6 @@
 /* The thread that runs a study, and its progress for pages. */
 #include "web/session/studies.h"
+#include "web/session/rescue.h"
 #include "base/float_environment.h"
 #include "base/text.h"
 #include "measure/clock.h"
@@ -135,6 +136,7 @@ static void *run(void *context)
     st->failed = code != STATUS_OK && code != STATUS_INTERRUPTED;
     st->trouble = why;
     pthread_mutex_unlock(&st->lock);
+    rescue_wake(st->l->rescue);
     publish(st);
     lab_publish_state(st->l);
     return NULL;
