@@ -19,6 +19,7 @@ static const acts_small acts_smaller[] = {
     {"soup", "soup.count=500"},
     {"vessel-mesh", "cup.around=32"},
     {"rainbow", "render.wavelengths=8 render.samples=1"},
+    {"rainbow-landscape", "render.samples=1 ridge.around=30 downs.around=30 fir.around=6"},
     {"prism", "render.wavelengths=4 render.width=300 render.height=150"},
     {"plates", "render.width=120 render.height=90"},
     {"solids", "render.samples=1"},

@@ -169,8 +169,8 @@ static const struct other_curve {
 } others[] = {
     {REALISM_CURVE_PRISM, prism_is_there, prism_curve, "no solids 'prism', 'left' and 'right'",
      "use the names and shapes of experiments/scenes/prism.yaml"},
-    {REALISM_CURVE_RAINBOW, drop_is_there, drop_curve, "no sphere whose name begins with 'drop'",
-     "use the names and shapes of experiments/scenes/rainbow.yaml"},
+    {REALISM_CURVE_RAINBOW, drop_is_there, drop_curve, "no sphere whose name begins with 'drop', and no rain",
+     "set background.kind=rain, or use the names and shapes of experiments/scenes/rainbow.yaml"},
     {REALISM_CURVE_PLATES, stack_is_there, stack_curve, "no solids 'plate1' and 'plate2'",
      "use the names and shapes of experiments/scenes/plates.yaml"},
 };

@@ -1,9 +1,12 @@
-/* The first rainbow of a drop: a sphere, the first solid whose name begins with drop (experiments/scenes/rainbow.yaml).
- * It appears where rays with one internal reflection have minimum deviation, at an angle from the antisolar point. */
+/* The first rainbow of a drop: a sphere, the first solid whose name begins with drop (experiments/scenes/rainbow.yaml);
+ * in a scene without one, a drop of its rain (rainbow-landscape.yaml). The rainbow appears where rays
+ * with one internal reflection have minimum deviation, at an angle from the antisolar point. */
 #include "realism/metrics.h"
 
 #include "geometry/shapes/shape.h"
 
+#include "scene/model/edit/edit.h"
+#include "scene/model/medium.h"
 #include "scene/model/scene.h"
 #include <math.h>
 #include <string.h>
@@ -20,7 +23,47 @@ static int drop_of(const scene *s)
 
 bool drop_is_there(const scene *s)
 {
-    return drop_of(s) >= 0;
+    setup unused;
+    return drop_of(s) >= 0 || (s->background.kind == BACKGROUND_RAIN && setup_read(s, &unused, NULL) != STATUS_OK);
+}
+
+/* A scene of one drop of the rain, in air; NULL if memory runs out. */
+static scene *drop_of_rain(const scene *s)
+{
+    size_t at;
+    scene *one = scene_create();
+    if (!one || scene_add_solid(one, "drop", SHAPE_SPHERE, &at, NULL) != STATUS_OK) {
+        scene_destroy(one);
+        return NULL;
+    }
+    one->solids[at].shape = ball_at(vec3_make(0.0, 0.0, 0.0), 1.0);
+    one->solids[at].surface.transparency = 1.0;
+    one->solids[at].surface.medium = MEDIUM_CATALOGUE + s->background.drops + DROPS_CATALOGUE - SURROUNDING_CATALOGUE;
+    one->background.medium = SURROUNDING_CATALOGUE; /* air is the first of the catalogue */
+    one->render.lambda_nm = s->render.lambda_nm;
+    return one;
+}
+
+/* Metrics of scenes with a drop; each begin needs an end. */
+typedef struct drop_metrics {
+    metrics m;
+    scene *traced, *supposed; /* owned, or NULL */
+} drop_metrics;
+
+static status begin(const metrics *m, drop_metrics *out, diagnostic *why)
+{
+    *out = (drop_metrics){.m = *m};
+    if (drop_of(m->traced) < 0)
+        out->m.traced = out->traced = drop_of_rain(m->traced);
+    if (drop_of(m->supposed) < 0)
+        out->m.supposed = out->supposed = drop_of_rain(m->supposed);
+    return out->m.traced && out->m.supposed ? STATUS_OK : out_of_memory(why);
+}
+
+static void end(drop_metrics *own)
+{
+    scene_destroy(own->traced);
+    scene_destroy(own->supposed);
 }
 
 /* A copy with the drop alone. */
@@ -91,11 +134,15 @@ status realism_drop(const metrics *m, diagnostic *why)
         "angle of the first rainbow at the F line, 486.1 nm", "angle of the first rainbow at the d line, 587.6 nm",
         "angle of the first rainbow at the C line, 656.3 nm", "angle of the first rainbow at render.lambda_nm"};
     double unused[2];
-    return metrics_at_lines(m, names, what, "a refractive index outside 1..2 has no primary rainbow", at_line,
-                            ANGLE_TOLERANCE, unused, why);
+    drop_metrics own;
+    status code = begin(m, &own, why);
+    THEN(code, metrics_at_lines(&own.m, names, what, "a refractive index outside 1..2 has no primary rainbow", at_line,
+                                ANGLE_TOLERANCE, unused, why));
+    end(&own);
+    return code;
 }
 
-status drop_curve(const metrics *m, realism_points *out, diagnostic *why)
+static status trace_curve(const metrics *m, realism_points *out, diagnostic *why)
 {
     const double lambda_nm = m->traced->render.lambda_nm, degree = M_PI / 180.0;
     const solid *drop = &m->traced->solids[drop_of(m->traced)];
@@ -107,4 +154,13 @@ status drop_curve(const metrics *m, realism_points *out, diagnostic *why)
         curve_add(out, 0.01 * i, -minus_turned_back(&look, 0.01 * i) / degree, theory_drop_angle(0.01 * i, n) / degree);
     trial_end(&t);
     return look.code;
+}
+
+status drop_curve(const metrics *m, realism_points *out, diagnostic *why)
+{
+    drop_metrics own;
+    status code = begin(m, &own, why);
+    THEN(code, trace_curve(&own.m, out, why));
+    end(&own);
+    return code;
 }

@@ -145,6 +145,15 @@ static status aim_cones(const scene *s, plan *p, diagnostic *why)
     return STATUS_OK;
 }
 
+static status let_it_rain(const scene *s, plan *p, diagnostic *why)
+{
+    const bool traced = !integrator_traits_of(&s->render)->layers;
+    if (s->background.kind != BACKGROUND_RAIN || s->background.rain == 0.0 || !traced)
+        return STATUS_OK;
+    p->rain = rain_create(&s->background, s->render.spectrum == SPECTRUM_SPECTRAL);
+    return p->rain ? STATUS_OK : out_of_memory(why);
+}
+
 /* By solid; the last one is that of the surrounding medium. */
 static status laws_of(const scene *s, index_law *laws, diagnostic *why)
 {
@@ -211,6 +220,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     THEN(code, arrange(s, laws, p, why));
     THEN(code, fill_priority_indices(s, laws, p, why));
     THEN(code, aim_cones(s, p, why));
+    THEN(code, let_it_rain(s, p, why));
     free(laws);
     if (code != STATUS_OK) {
         plan_destroy(p);
@@ -226,7 +236,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     p->camera_priority_index = scene_geometry_priority_index(p->geometry, p->eye_inside);
     p->sky = &s->background;
     if (s->render.beyond == DEPTH_LIMIT_MEAN)
-        p->sky_mean = sky_mean(p->sky);
+        p->sky_mean = p->rain && !p->spectral ? vec3_add(sky_mean(p->sky), rain_color_mean(p->rain)) : sky_mean(p->sky);
     p->lights = s->lights;
     p->light_count = (int)s->light_count;
     p->solid_shadows = s->render.shadows == SHADOWS_OPAQUE;
@@ -258,5 +268,6 @@ void plan_destroy(plan *p)
     free(p->absorption);
     free(p->cones);
     spectra_destroy(p->spectral);
+    rain_destroy(p->rain);
     free(p);
 }

@@ -8,6 +8,7 @@
 #include "render/core/mesh_report.h"
 #include "render/core/path_sampling.h"
 #include "render/shade/light_cone.h"
+#include "render/shade/rain.h"
 #include "render/shade/spectra.h"
 #include "scene/model/camera.h"
 #include "scene/model/face_materials.h"
@@ -49,6 +50,7 @@ typedef struct plan {
     /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
     const background *sky;
+    rain *rain;    /* what rain adds to the sky, or NULL */
     vec3 sky_mean; /* over all directions; computed if render.beyond is mean */
     const light *lights;
     light_cone *cones; /* by light; undefined for a point light */

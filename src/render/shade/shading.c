@@ -60,15 +60,41 @@ static void expose_all(tracer *t, const film_light *sent, int count, const int64
     t->account.overflow |= overflow;
 }
 
+/* Colours of a rainbow are outside the gamut, those of the sky behind it are not. */
+static vec3 sky_and_rain(const plan *p, vec3 direction)
+{
+    const vec3 l = sky_radiance(p->sky, direction);
+    if (!p->rain)
+        return l;
+    const vec3 sum = vec3_add(l, rain_color(p->rain, direction));
+    return vec3_make(greater(sum.x, 0.0), greater(sum.y, 0.0), greater(sum.z, 0.0));
+}
+
+static double spectral_sky_and_rain(const plan *p, int64_t sample_key, vec3 direction)
+{
+    const spectral_row *row = spectra_row(p->spectral, sample_key);
+    const double l = spectra_sky(row, p->sky, direction);
+    const double lambda_nm = spectra_lambda(sample_key_wavelength(sample_key));
+    return p->rain ? l + row->basis[SKY_BASIS_WHITE] * rain_share(p->rain, lambda_nm, direction) : l;
+}
+
+static double spectral_mean(const plan *p, int64_t sample_key)
+{
+    const spectral_row *row = spectra_row(p->spectral, sample_key);
+    const double l = spectra_sky_mean(row, p->sky, p->sky_mean);
+    const double lambda_nm = spectra_lambda(sample_key_wavelength(sample_key));
+    return p->rain ? l + row->basis[SKY_BASIS_WHITE] * rain_share_mean(p->rain, lambda_nm) : l;
+}
+
 static __attribute__((noinline)) void expose_sky_by_sample_key(tracer *t, int64_t sample_key, vec3 direction, double wr,
                                                                double wg, double wb)
 {
     const plan *p = t->target.frame_plan;
     vec3 l;
     if (p->spectral)
-        l.x = l.y = l.z = spectra_sky(spectra_row(p->spectral, sample_key), p->sky, direction);
+        l.x = l.y = l.z = spectral_sky_and_rain(p, sample_key, direction);
     else
-        l = sky_radiance(p->sky, direction);
+        l = sky_and_rain(p, direction);
     if (p->basic) /* the sky is in the surrounding medium, wherever the ray ends */
         l = vec3_scale(l, radiance_share(p, sample_key, 0));
     expose_by_sample_key(t, sample_key, wr * l.x, wg * l.y, wb * l.z);
@@ -76,12 +102,12 @@ static __attribute__((noinline)) void expose_sky_by_sample_key(tracer *t, int64_
 
 static inline void expose_sky(tracer *t, int64_t sample_key, vec3 direction, double wr, double wg, double wb)
 {
-    const background *sky = t->target.frame_plan->sky;
+    const plan *p = t->target.frame_plan;
     if (t->by_sample_key) {
         expose_sky_by_sample_key(t, sample_key, direction, wr, wg, wb);
         return;
     }
-    const vec3 l = sky->kind == BACKGROUND_UNIFORM ? sky->color : sky_radiance(sky, direction);
+    const vec3 l = p->sky->kind == BACKGROUND_UNIFORM ? p->sky->color : sky_and_rain(p, direction);
     expose_at(t, sample_key, wr * l.x, wg * l.y, wb * l.z);
 }
 
@@ -115,7 +141,7 @@ static inline void expose_at_depth_limit(tracer *t, int64_t sample_key, vec3 dir
     }
     vec3 l = p->sky_mean;
     if (p->spectral)
-        l.x = l.y = l.z = spectra_sky_mean(spectra_row(p->spectral, sample_key), p->sky, p->sky_mean);
+        l.x = l.y = l.z = spectral_mean(p, sample_key);
     if (p->basic)
         l = vec3_scale(l, radiance_share(p, sample_key, 0));
     expose(t, sample_key, wr * l.x, wg * l.y, wb * l.z);

@@ -1,4 +1,4 @@
-/* Radiance and mean of the background's three kinds. */
+/* Radiance and mean of the background's kinds. */
 #include "render/shade/sky.h"
 
 #include "base/elementary.h"
@@ -43,6 +43,7 @@ vec3 sky_radiance(const background *sky, vec3 direction)
 {
     switch ((background_kind)sky->kind) {
     case BACKGROUND_UNIFORM: return sky->color;
+    case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return mix(sky->horizon, sky->color, direction.y > 0.0 ? direction.y : 0.0);
     case BACKGROUND_IMAGE: return sky->img ? sky_image_radiance(sky->img, direction) : sky->color;
     }
@@ -82,6 +83,7 @@ vec3 sky_mean(const background *sky)
 {
     switch ((background_kind)sky->kind) {
     case BACKGROUND_UNIFORM: return sky->color;
+    case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return mix(sky->horizon, sky->color, 0.25);
     case BACKGROUND_IMAGE: return sky->img ? sky_image_mean(sky->img) : sky->color;
     }

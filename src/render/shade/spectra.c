@@ -191,6 +191,7 @@ double spectra_sky(const spectral_row *row, const background *sky, vec3 directio
     const double up = direction.y > 0.0 ? direction.y : 0.0;
     switch ((background_kind)sky->kind) {
     case BACKGROUND_UNIFORM: break;
+    case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return (1.0 - up) * row->horizon + up * row->sky;
     case BACKGROUND_IMAGE: return texel_at(row, sky_radiance(sky, direction));
     }
@@ -201,6 +202,7 @@ double spectra_sky_mean(const spectral_row *row, const background *sky, vec3 mea
 {
     switch ((background_kind)sky->kind) {
     case BACKGROUND_UNIFORM: break;
+    case BACKGROUND_RAIN:
     case BACKGROUND_GRADIENT: return 0.75 * row->horizon + 0.25 * row->sky;
     case BACKGROUND_IMAGE: return texel_at(row, mean);
     }

@@ -36,7 +36,7 @@ static const char *const wrap_words[] = {"repeat", "mirror", "clamp", NULL};
 static const char *const space_words[] = {"srgb", "linear", NULL};
 static const char *const light_words[] = {"point", "cone", "soft_cone", NULL};
 static const char *const beam_words[] = {"pencil", "fan", "sheet", "bundle", NULL};
-static const char *const background_words[] = {"uniform", "gradient", "picture", NULL};
+static const char *const background_words[] = {"uniform", "gradient", "picture", "rain", NULL};
 
 enum { ON_SLIME = 1 << MESH_SLIME, ON_ALL = 0 };
 
@@ -205,13 +205,22 @@ static const param table[] = {
     POSITIVE(PARAM_CAMERA, camera, fov_deg, "deg", 179, "45", "vertical field of view"),
 
     CHOICE(PARAM_BACKGROUND, background, kind, background_words, "uniform",
-           "one colour, a vertical gradient, or an equirectangular image"),
+           "one colour, a vertical gradient, an equirectangular image, or a gradient with sunlit rain in front of it: "
+           "rainbows"),
     COLOR(PARAM_BACKGROUND, background, color, BRIGHT, "0.53,0.75,0.92", "linear colour; of a gradient: at the zenith"),
     COLOR(PARAM_BACKGROUND, background, horizon, BRIGHT, "1,1,1",
           "linear colour of a gradient at the horizon and below"),
     {PARAM_BACKGROUND, "picture", PARAM_PATH, "", 0, 0, false, "",
      "PNG, JPEG, PFM or 24-bit BMP file, relative to the scene file; sets kind to picture", NULL,
      OF(background, image_path)},
+    REAL(PARAM_BACKGROUND, background, rain, "", 0, BRIGHT, "0.3",
+         "brightness of the rain: its radiance if drops scattered sunlight evenly in all directions"),
+    ROW(PARAM_BACKGROUND, "drops", PARAM_CHOICE, "", 0, 0, false, "water", "liquid of the rain's drops, in air",
+        surrounding_words + DROPS_CATALOGUE, OF(background, drops)),
+    REAL(PARAM_BACKGROUND, background, sun_elevation_deg, "deg", -90, 90, "20",
+         "elevation of the sun that shines on the rain; the sun itself is not drawn"),
+    REAL(PARAM_BACKGROUND, background, sun_azimuth_deg, "deg", -360, 360, "180",
+         "azimuth of the sun that shines on the rain: 0 along +z, 90 along +x; 180 is behind a camera along +z"),
     COLOR(PARAM_BACKGROUND, background, ambient, BRIGHT, "1,1,1", "ambient light, I_a of the Phong model"),
 
     REAL(PARAM_BACKGROUND, background, ior, "", 0.1, 100, "1",

@@ -5,7 +5,12 @@
 #include "image/image.h"
 #include <stdint.h>
 
-typedef enum background_kind { BACKGROUND_UNIFORM, BACKGROUND_GRADIENT, BACKGROUND_IMAGE } background_kind;
+typedef enum background_kind {
+    BACKGROUND_UNIFORM,
+    BACKGROUND_GRADIENT,
+    BACKGROUND_IMAGE,
+    BACKGROUND_RAIN
+} background_kind;
 /* Maximum value of a background image: below the film's limit, and the range of half floats. */
 #define SCENE_SKY_MAX 65536.0F
 
@@ -22,12 +27,15 @@ typedef struct camera {
 typedef struct background {
     int64_t kind;                  /* background_kind */
     vec3 color;                    /* linear RGB in x, y, z; uniform, or the zenith of a gradient */
-    vec3 horizon;                  /* gradient: colour at and below the horizon */
+    vec3 horizon;                  /* gradient: colour at and below the horizon; rain adds to a gradient */
     char *image_path;              /* equirectangular sky; "" for none; relative to the scene file */
     long image_line, image_column; /* its location in the scene file; 0 if it was set otherwise */
     image *img;                    /* owned; NULL until loaded by scene_load */
     vec3 ambient;                  /* I_a of Phong's equation, linear RGB */
     double ior;                    /* of the surroundings of all solids, if medium is MEDIUM_IOR */
     int64_t medium;                /* see scene/model/medium.h */
+    double rain;                   /* radiance of the rain if its drops scattered evenly in all directions */
+    int64_t drops;                 /* the drops' medium, see DROPS_CATALOGUE in scene/model/medium.h */
+    double sun_elevation_deg, sun_azimuth_deg; /* of the sun that shines on the rain; azimuth as the camera's yaw */
     vec3 absorb_per_m; /* of the surroundings of all solids, by channel, along rays that end at a surface or a light */
 } background;

@@ -190,7 +190,7 @@ function hitRows(segments) {
     const words = describe(segment.one);
     const name = `${segment.one.level === 1 ? 'start' : words.kind}: ${words.surface || words.end}`;
     return [
-      button(name, () => choose(segment), { small: true, kind: 'quiet', pressed: segment === bench.chosen }),
+      button(name, () => {}, { small: true, kind: 'quiet', pressed: segment === bench.chosen }), /* its row chooses */
       words.angles,
       words.reflectance,
       words.transmitted,
@@ -205,7 +205,7 @@ function createNumbers() {
     node,
     show() {
       const { chosen, rays } = bench;
-      if (!rays.segments.length && !rays.error) return replace(node);
+      if (!rays.segments.length && !rays.error) return replace(node, empty('The hits of a beam are shown here.'));
       if (rays.error) return replace(node, notice(rays.error.message, { kind: 'error', remedy: rays.error.remedy }));
       const first = chosen || rays.segments.find(({ beam }) => beam === bench.beam) || rays.segments[0];
       const same = rays.segments.filter(({ tree, one }) => tree === first.tree && !isCut(one));
@@ -216,6 +216,7 @@ function createNumbers() {
           caption: `Hits of ${first.beam}, ray ${first.ray.number + 1}, ${digits(first.ray.lambda_nm, 5)} nm`,
           columns: ['Ray', 'Angles', 'R', 'T', { label: 'Power', numeric: true }],
           rows: hitRows(same.slice(0, 200)),
+          onrow: (row, _, line) => row.addEventListener('click', () => choose(same[line])),
         }),
       );
     },

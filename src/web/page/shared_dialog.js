@@ -18,7 +18,7 @@ export function share(lab) {
       form(
         'Copy link',
         'copy',
-        'A link with the scene, for a laboratory at the same address.',
+        'A link with the scene, for a laboratory at the same address on this machine. Others can open the HTML file.',
         act(() => copyLink(lab)),
       ),
       form(

@@ -67,8 +67,8 @@ bool say_not_bent(const inert_case *c)
 bool is_dark_at_depth_limit(const scene *s)
 {
     const background *b = &s->background;
-    const bool dark_sky = is_black(b->color) &&
-                          (b->kind == BACKGROUND_UNIFORM || (b->kind == BACKGROUND_GRADIENT && is_black(b->horizon)));
+    const bool gradient = b->kind == BACKGROUND_GRADIENT || (b->kind == BACKGROUND_RAIN && b->rain == 0.0);
+    const bool dark_sky = is_black(b->color) && (b->kind == BACKGROUND_UNIFORM || (gradient && is_black(b->horizon)));
     return s->render.beyond == DEPTH_LIMIT_BLACK || dark_sky;
 }
 

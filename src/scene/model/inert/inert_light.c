@@ -48,18 +48,35 @@ static bool background_color(const inert_case *c)
 
 static bool horizon(const inert_case *c)
 {
-    return c->s->background.kind != BACKGROUND_GRADIENT &&
+    return c->s->background.kind != BACKGROUND_GRADIENT && c->s->background.kind != BACKGROUND_RAIN &&
            inert_say(c, "no-gradient", "set background.kind=gradient", "the background is not a gradient");
 }
 
-/* A gradient between equal colours is uniform; an image background needs a file. */
+/* A gradient between equal colours is uniform; an image background needs a file; rain may be black. */
 static bool kind(const inert_case *c)
 {
     const background *b = &c->s->background;
     const bool flat = b->color.x == b->horizon.x && b->color.y == b->horizon.y && b->color.z == b->horizon.z;
-    return flat && b->kind != BACKGROUND_IMAGE && !b->image_path[0] &&
+    return flat && b->rain == 0.0 && b->kind != BACKGROUND_IMAGE && !b->image_path[0] &&
            inert_say(c, "flat-gradient", "set background.horizon=0.5,0.4,0.3",
                      "'horizon' equals 'color', so there is no gradient");
+}
+
+static bool sunlit_rain(const inert_case *c)
+{
+    const background *b = &c->s->background;
+    if (b->kind != BACKGROUND_RAIN)
+        return inert_say(c, "no-rain", "set background.kind=rain", "the background is not rain");
+    return strcmp(c->at.row->name, "rain") != 0 && b->rain == 0.0 &&
+           inert_say(c, "no-rain", "set background.rain=0.3", "background.rain is 0: nothing scatters the sun's light");
+}
+
+static bool azimuth(const inert_case *c)
+{
+    const double elevation = c->s->background.sun_elevation_deg;
+    return sunlit_rain(c) || ((elevation == 90.0 || elevation == -90.0) &&
+                              inert_say(c, "sun-overhead", "set background.sun_elevation_deg=20",
+                                        "the sun is vertically above or below, where it has no azimuth"));
 }
 
 static bool has_ambient(const scene *s, const solid *one)
@@ -107,6 +124,10 @@ bool inert_background(const inert_case *c)
         {"kind", kind},
         {"color", background_color},
         {"horizon", horizon},
+        {"rain", sunlit_rain},
+        {"drops", sunlit_rain},
+        {"sun_elevation_deg", sunlit_rain},
+        {"sun_azimuth_deg", azimuth},
         {"ambient", ambient},
         {"ior", surrounding_index},
         {"medium", surrounding_index},
