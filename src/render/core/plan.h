@@ -50,7 +50,7 @@ typedef struct plan {
     /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
     const background *sky;
-    rain *rain;    /* what rain adds to the sky, or NULL */
+    struct rain *rain;    /* what rain adds to the sky, or NULL */
     vec3 sky_mean; /* over all directions; computed if render.beyond is mean */
     const light *lights;
     light_cone *cones; /* by light; undefined for a point light */

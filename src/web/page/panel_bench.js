@@ -190,7 +190,7 @@ function hitRows(segments) {
     const words = describe(segment.one);
     const name = `${segment.one.level === 1 ? 'start' : words.kind}: ${words.surface || words.end}`;
     return [
-      button(name, () => {}, { small: true, kind: 'quiet', pressed: segment === bench.chosen }), /* its row chooses */
+      button(name, () => {}, { small: true, kind: 'quiet', pressed: segment === bench.chosen }) /* its row chooses */,
       words.angles,
       words.reflectance,
       words.transmitted,
