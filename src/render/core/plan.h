@@ -50,8 +50,8 @@ typedef struct plan {
     /* every solid blocks light: either render settings require it, or random paths find the transmitted light */
     bool solid_shadows;
     const background *sky;
-    struct rain *rain;    /* what rain adds to the sky, or NULL */
-    vec3 sky_mean; /* over all directions; computed if render.beyond is mean */
+    struct rain *rain; /* what rain adds to the sky, or NULL */
+    vec3 sky_mean;     /* over all directions; computed if render.beyond is mean */
     const light *lights;
     light_cone *cones; /* by light; undefined for a point light */
     int light_count;
