@@ -30,17 +30,21 @@ const launch = (...more) =>
 const median = (times) => [...times].sort((a, b) => a - b)[times.length >> 1];
 const summary = (times) => `${median(times).toFixed(0)} (worst ${Math.max(...times).toFixed(0)})`;
 
-/** Changes the index and waits until the page has drawn the first and the final image of that generation or a newer
- * one. */
-const change = (screen, ior) =>
-  screen.page.evaluate(async (value) => {
+/** Changes the index; milliseconds until the page has drawn the first image of that generation or a newer one, the
+ * first of full size, and the final one, which is exact. */
+const change = (page, ior) =>
+  page.evaluate(async (value) => {
     const { lab } = window;
     const began = performance.now();
-    let first = null;
+    const width = lab.param('render.width').value;
+    let first = null,
+      full = null;
     const done = new Promise((resolve) => {
       const end = lab.on('picture', () => {
         if (!lab.picture || lab.picture.generation <= before) return;
-        first ??= performance.now() - began;
+        const now = performance.now() - began;
+        first ??= now;
+        if (lab.picture.width === width) full ??= now;
         if (!lab.picture.final) return;
         end();
         resolve();
@@ -49,7 +53,7 @@ const change = (screen, ior) =>
     const before = lab.newestGeneration;
     lab.set({ 'liquid.ior': value });
     await done;
-    return { first, final: performance.now() - began };
+    return { first, full, final: performance.now() - began };
   }, ior);
 
 async function measure(screen, what, settings) {
@@ -58,7 +62,7 @@ async function measure(screen, what, settings) {
   const first = [],
     final = [];
   for (let i = 0; i < Number(options.changes); i++) {
-    const times = await change(screen, 1.2 + 0.01 * i);
+    const times = await change(screen.page, 1.2 + 0.01 * i);
     first.push(times.first);
     final.push(times.final);
   }
@@ -108,28 +112,6 @@ async function drag(screen, scene, moves) {
   );
 }
 
-/** Milliseconds from a change to the first image of full size and to the exact one. */
-const slowChange = (page, ior) =>
-  page.evaluate(async (value) => {
-    const { lab } = window;
-    const began = performance.now();
-    const width = lab.param('render.width').value;
-    let full = null;
-    const done = new Promise((resolve) => {
-      const end = lab.on('picture', () => {
-        if (!lab.picture || lab.picture.generation <= before) return;
-        if (lab.picture.width === width) full ??= performance.now() - began;
-        if (!lab.picture.final) return;
-        end();
-        resolve();
-      });
-    });
-    const before = lab.newestGeneration;
-    lab.set({ 'liquid.ior': value });
-    await done;
-    return { full, exact: performance.now() - began };
-  }, ior);
-
 async function slow(lab) {
   const link = await SlowLink.open(lab.port, { bitsPerS: 1e6, latencyMs: 100 });
   const browser = await launch(`--host-resolver-rules=MAP 127.0.0.1:${lab.port} 127.0.0.1:${link.port}`);
@@ -140,9 +122,9 @@ async function slow(lab) {
   const full = [],
     exact = [];
   for (let i = 0; i < Number(options.changes); i++) {
-    const times = await slowChange(page, 1.2 + 0.01 * i);
+    const times = await change(page, 1.2 + 0.01 * i);
     full.push(times.full);
-    exact.push(times.exact);
+    exact.push(times.final);
   }
   const each = (direction, from = 0) => ((direction.bytes - from) / 1000 / full.length).toFixed(1);
   console.log(
