@@ -72,6 +72,15 @@ export const cases = {
     // One line per depth or index with four markers each, and one in the legend.
     t.equal(await plot.locator('.plot-series .plot-marker').count(), CELLS + 4, 'markers in the figure');
     await t.axe(screen, 'a study with rows');
+    const complete = study.getByRole('button', { name: 'Complete', exact: true });
+    t.check(await complete.isDisabled(), 'a complete study cannot be started again');
+    t.equal(await study.getByRole('button', { name: 'Measure the missing rows' }).count(), 0, 'buttons that measure');
+    t.match(await study.locator('.facts').first().innerText(), /results\/quick/, 'the results folder');
+    t.equal(
+      await study.locator('.notice.warning').count(),
+      report.disturbed ? 1 : 0,
+      `notices of ${report.disturbed} disturbed rows`,
+    );
 
     const summary = (await lab.run('study', 'summary', 'studies/quick.study'))
       .trim()
@@ -87,6 +96,19 @@ export const cases = {
       hashes.filter((hash) => !text.includes(hash)),
       'film hashes that the page does not show',
     );
+
+    await study.getByText('Raw rows', { exact: true }).click();
+    for (const [label, name, bytes] of [
+      ['rows as CSV', 'quick-rows.csv', await readFile(join(lab.folder, 'results/quick/rows.csv'), 'utf8')],
+      ['summary as TSV', 'quick.tsv', await lab.run('study', 'summary', 'studies/quick.study')],
+    ]) {
+      const saved = screen.page.waitForEvent('download');
+      await study.getByRole('button', { name: `Save ${label}` }).click();
+      const file = await saved;
+      t.equal(file.suggestedFilename(), name, `name of the saved ${label}`);
+      t.check((await readFile(await file.path(), 'utf8')) === bytes, `the saved ${label} are the program's bytes`);
+    }
+    await t.picture(screen, 'study-complete');
 
     for (const [format, start] of [
       ['SVG', '<?xml'],

@@ -102,6 +102,13 @@ status api_take_study(call *c, study **s)
     return code;
 }
 
+/* Whether a run would make files: true also if they cannot be read, since a run tells why. */
+static bool lacks_files(const lab *l, const study *s)
+{
+    bool lacks = true;
+    return study_lacks_files(s, l->settings.results, &lacks, NULL) != STATUS_OK || lacks;
+}
+
 /* A study that cannot be read is returned with its error. */
 status api_study(call *c)
 {
@@ -113,8 +120,9 @@ status api_study(call *c)
         json_t *json = study_json(l, http_path_value(c->request, "name"), file, s, &c->why), *summary = NULL;
         if (s && study_json_summary(s, l->settings.results, &summary, &c->why) != STATUS_OK)
             json_object_set_new(json, "error", json_of_diagnostic(&c->why));
-        json_object_update_new(json, json_pack("{s:o, s:o, s:o, s:o}", "summary", summary ? summary : json_null(),
-                                               "runs", s ? study_runs(l, s->name) : json_array(), "figures",
+        json_object_update_new(json, json_pack("{s:b, s:o, s:o, s:o, s:o}", "lacks_files", s && lacks_files(l, s),
+                                               "summary", summary ? summary : json_null(), "runs",
+                                               s ? study_runs(l, s->name) : json_array(), "figures",
                                                s ? figures_of(l, s->name) : json_array(), "drawable",
                                                s ? figures_drawable(l, s->name) : json_array()));
         api_reply_json(c, json);
