@@ -110,6 +110,30 @@ export const cases = {
     }
     await t.picture(screen, 'study-complete');
 
+    const compare = study.getByRole('group').filter({ has: screen.page.getByText('Compare', { exact: true }) });
+    for (const [what, a, b, sides] of [
+      ['Two rows of the summary', '3', '12', ['cell=3', 'cell=12']],
+      ['Values of render.depth', '2', '8', ['render.depth=2', 'render.depth=8']],
+    ]) {
+      await compare.getByLabel('Compare', { exact: true }).selectOption(what);
+      await compare.getByLabel('A', { exact: true }).selectOption(a);
+      await compare.getByLabel('B', { exact: true }).selectOption(b);
+      const said = JSON.parse(await lab.run('study', 'compare', 'studies/quick.study', ...sides, '--json'));
+      const reply = await lab.get(`/api/studies/quick/compare?a=${sides[0]}&b=${sides[1]}`);
+      t.equal(reply, said, `the comparison of ${sides} is that of the program`);
+      const words = compare.getByText(/^.*B takes .* times as long as A/);
+      await words.waitFor();
+      const ratio = Number((await words.innerText()).match(/B takes ([\d.]+) times/)[1]);
+      t.near(ratio, said.all.ratio, 0.01 * said.all.ratio, `ratio of ${sides}`);
+      t.match(await words.innerText(), new RegExp(`Verdict: ${said.all.verdict}`), `verdict of ${sides}`);
+      t.equal(await compare.locator('tbody tr').last().isVisible(), true, `a table of ${sides}`);
+      await words.scrollIntoViewIfNeeded();
+      await t.axe(screen, what);
+      await t.picture(screen, `study-compare-${a}`);
+    }
+    const outside = await lab.ask('GET', '/api/studies/quick/compare?a=/etc,cell=0&b=cell=1');
+    t.equal(outside.status, 400, 'a side in another folder');
+
     for (const [format, start] of [
       ['SVG', '<?xml'],
       ['PNG', '\x89PNG'],

@@ -166,34 +166,6 @@ status api_study_rows(call *c)
     return code;
 }
 
-/* The results folder of that name, which holds rows of the study. */
-static status take_run(call *c, const char *run, const study *s, char **results)
-{
-    char *rows = text_format("%s/%s/rows.csv", run, s->name);
-    status code = rows ? folder_path(c->l->files, rows, true, results, &c->why) : out_of_memory(&c->why);
-    if (code == STATUS_OK) {
-        (*results)[strlen(*results) - strlen(rows) + strlen(run)] = 0;
-        code = study_check_results(c->l, *results, s->name, &c->why);
-    }
-    free(rows);
-    return code;
-}
-
-status api_study_compare(call *c)
-{
-    const char *with = http_query_value(c->request, "with");
-    study *s;
-    char *other = NULL;
-    if (!with || !with[0])
-        return api_refuse(c, 400, "the folder to compare with is missing", "add ?with=FOLDER, one of the study's runs");
-    status code = api_take_study(c, &s);
-    THEN(code, take_run(c, with, s, &other));
-    THEN(code, study_json_compare(s, c->l->settings.results, other, &c->json, &c->why));
-    free(other);
-    study_destroy(s);
-    return code;
-}
-
 /* --- figures --- */
 
 status api_figure(call *c)

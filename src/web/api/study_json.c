@@ -1,4 +1,4 @@
-/* Studies as JSON: axes of the grid, summaries, rows, and wall times of two runs. */
+/* Studies as JSON: axes of the grid, summaries and rows. */
 #include "web/api/study_json.h"
 #include "base/text_writer.h"
 #include "report/json.h"

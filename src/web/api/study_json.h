@@ -18,5 +18,3 @@ status study_summary_text(const study *s, const char *results, char **text, size
 status study_json_summary(const study *s, const char *results, json_t **out, diagnostic *why);
 /* The raw rows in the same form, from row `from` on, at most STUDY_JSON_ROWS_MAX. */
 status study_json_rows(const study *s, const char *results, size_t from, json_t **out, diagnostic *why);
-/* {"columns": paths of the grid, "cells": [..]}: wall times of the cells in two results folders, see web/README.md. */
-status study_json_compare(const study *s, const char *results, const char *other, json_t **out, diagnostic *why);

@@ -156,7 +156,7 @@ export function createDetails(lab, { onrun, onstop }) {
     group('Summary', { id: 'study-summary', hint: 'one line per cell' }, summary.node),
     rows.node,
     group('Figures of plots/', { id: 'study-drawn', hint: 'drawn by gnuplot' }, figures.node),
-    group('Compare two runs', { id: 'study-compare', hint: 'cell by cell' }, compare.node),
+    group('Compare', { id: 'study-compare', hint: 'two runs, cells or values of a parameter' }, compare.node),
   );
   const node = element(
     'article',
