@@ -5,6 +5,7 @@
 #include "study/row_files.h"
 #include "study/run_state.h"
 #include "scene/model/open.h"
+#include <stdlib.h>
 
 status run_find_compared(run *r, diagnostic *why)
 {
@@ -34,6 +35,22 @@ bool run_complete(const run *r)
         if (!progress_index_cell_done(r->done, r->cells[i]) || lacks_anything(r, r->cells[i]))
             return false;
     return true;
+}
+
+status study_lacks_files(const study *s, const char *results, bool *lacks, diagnostic *why)
+{
+    const size_t cells = study_cell_count(s);
+    run r = {.s = s,
+             .options = &(study_options){.results = results},
+             .folder = study_folder(s, results),
+             .compared = calloc(cells, sizeof *r.compared)};
+    status code = r.folder && r.compared ? run_find_compared(&r, why) : out_of_memory(why);
+    *lacks = false;
+    for (size_t cell = 0; code == STATUS_OK && !*lacks && cell < cells; cell++)
+        *lacks = lacks_anything(&r, cell);
+    free(r.compared);
+    free(r.folder);
+    return code;
 }
 
 static status render_reference(run *r, const scene *setting, reference *out, diagnostic *why)

@@ -145,6 +145,9 @@ long study_processes(const study *s);
 /* Measures what is missing; for a complete study *ran = 0 rows are written. */
 status study_run(const study *s, const study_options *options, size_t *ran, diagnostic *why);
 
+/* *lacks: whether a kept file or a comparison with a reference is missing for a cell; rows are not looked at. */
+status study_lacks_files(const study *s, const char *results, bool *lacks, diagnostic *why);
+
 /* The progress of a study on disk, over rows.csv and the files of shards. Cells, rows and warm-up rows are those of the
  * present environment (study/environment.h). */
 typedef struct study_progress {

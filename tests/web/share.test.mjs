@@ -79,6 +79,45 @@ export const cases = {
       rmSync(folder, { recursive: true });
     }
   },
+
+  'a scene that names files is saved without it, and the page says so': async (t) => {
+    const lab = await t.lab('scenes/chequer.yaml');
+    const screen = await t.open(lab);
+    const { page } = screen;
+    screen.expect(/status of 409/);
+    await screen.showPanel('Objects');
+    const folder = mkdtempSync(join(tmpdir(), 'cuvette-share-'));
+    try {
+      for (const [label, name] of [
+        ['PNG without the scene', 'chequer.png'],
+        ['HTML file without the scene', 'chequer.html'],
+      ]) {
+        await screen.button('Share …').click();
+        const dialog = page.getByRole('dialog', { name: 'Share' });
+        await dialog.getByText(/Files are saved without the scene: .* reads .*chequer\.png/).waitFor();
+        t.check(await screen.button('Copy link').isDisabled(), 'no link of such a scene');
+        await t.axe(screen, 'the dialog of a scene that names files');
+        await t.picture(screen, 'share-without');
+        const [download] = await Promise.all([page.waitForEvent('download'), screen.button(label).click()]);
+        await page
+          .getByText(new RegExp(`${name} saved without the scene: .*chequer\\.png`))
+          .first()
+          .waitFor();
+        await t.picture(screen, 'share-without-saved');
+        const file = join(folder, name);
+        await download.saveAs(file);
+        let refused = '';
+        try {
+          execFileSync(t.program, ['render', file, '--json'], { stdio: 'pipe' });
+        } catch (error) {
+          refused = String(error.stderr);
+        }
+        t.check(refused !== '', `the program opens ${name} as a scene`);
+      }
+    } finally {
+      rmSync(folder, { recursive: true });
+    }
+  },
 };
 
 function drop(page, file, name) {

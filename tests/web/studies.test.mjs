@@ -72,6 +72,15 @@ export const cases = {
     // One line per depth or index with four markers each, and one in the legend.
     t.equal(await plot.locator('.plot-series .plot-marker').count(), CELLS + 4, 'markers in the figure');
     await t.axe(screen, 'a study with rows');
+    const complete = study.getByRole('button', { name: 'Complete', exact: true });
+    t.check(await complete.isDisabled(), 'a complete study cannot be started again');
+    t.equal(await study.getByRole('button', { name: 'Measure the missing rows' }).count(), 0, 'buttons that measure');
+    t.match(await study.locator('.facts').first().innerText(), /results\/quick/, 'the results folder');
+    t.equal(
+      await study.locator('.notice.warning').count(),
+      report.disturbed ? 1 : 0,
+      `notices of ${report.disturbed} disturbed rows`,
+    );
 
     const summary = (await lab.run('study', 'summary', 'studies/quick.study'))
       .trim()
@@ -87,6 +96,43 @@ export const cases = {
       hashes.filter((hash) => !text.includes(hash)),
       'film hashes that the page does not show',
     );
+
+    await study.getByText('Raw rows', { exact: true }).click();
+    for (const [label, name, bytes] of [
+      ['rows as CSV', 'quick-rows.csv', await readFile(join(lab.folder, 'results/quick/rows.csv'), 'utf8')],
+      ['summary as TSV', 'quick.tsv', await lab.run('study', 'summary', 'studies/quick.study')],
+    ]) {
+      const saved = screen.page.waitForEvent('download');
+      await study.getByRole('button', { name: `Save ${label}` }).click();
+      const file = await saved;
+      t.equal(file.suggestedFilename(), name, `name of the saved ${label}`);
+      t.check((await readFile(await file.path(), 'utf8')) === bytes, `the saved ${label} are the program's bytes`);
+    }
+    await t.picture(screen, 'study-complete');
+
+    const compare = study.getByRole('group').filter({ has: screen.page.getByText('Compare', { exact: true }) });
+    for (const [what, a, b, sides] of [
+      ['Two rows of the summary', '3', '12', ['cell=3', 'cell=12']],
+      ['Values of render.depth', '2', '8', ['render.depth=2', 'render.depth=8']],
+    ]) {
+      await compare.getByLabel('Compare', { exact: true }).selectOption(what);
+      await compare.getByLabel('A', { exact: true }).selectOption(a);
+      await compare.getByLabel('B', { exact: true }).selectOption(b);
+      const said = JSON.parse(await lab.run('study', 'compare', 'studies/quick.study', ...sides, '--json'));
+      const reply = await lab.get(`/api/studies/quick/compare?a=${sides[0]}&b=${sides[1]}`);
+      t.equal(reply, said, `the comparison of ${sides} is that of the program`);
+      const words = compare.getByText(/^.*B takes .* times as long as A/);
+      await words.waitFor();
+      const ratio = Number((await words.innerText()).match(/B takes ([\d.]+) times/)[1]);
+      t.near(ratio, said.all.ratio, 0.01 * said.all.ratio, `ratio of ${sides}`);
+      t.match(await words.innerText(), new RegExp(`Verdict: ${said.all.verdict}`), `verdict of ${sides}`);
+      t.equal(await compare.locator('tbody tr').last().isVisible(), true, `a table of ${sides}`);
+      await words.scrollIntoViewIfNeeded();
+      await t.axe(screen, what);
+      await t.picture(screen, `study-compare-${a}`);
+    }
+    const outside = await lab.ask('GET', '/api/studies/quick/compare?a=/etc,cell=0&b=cell=1');
+    t.equal(outside.status, 400, 'a side in another folder');
 
     for (const [format, start] of [
       ['SVG', '<?xml'],

@@ -102,6 +102,13 @@ status api_take_study(call *c, study **s)
     return code;
 }
 
+/* Whether a run would make files: true also if they cannot be read, since a run tells why. */
+static bool lacks_files(const lab *l, const study *s)
+{
+    bool lacks = true;
+    return study_lacks_files(s, l->settings.results, &lacks, NULL) != STATUS_OK || lacks;
+}
+
 /* A study that cannot be read is returned with its error. */
 status api_study(call *c)
 {
@@ -113,8 +120,9 @@ status api_study(call *c)
         json_t *json = study_json(l, http_path_value(c->request, "name"), file, s, &c->why), *summary = NULL;
         if (s && study_json_summary(s, l->settings.results, &summary, &c->why) != STATUS_OK)
             json_object_set_new(json, "error", json_of_diagnostic(&c->why));
-        json_object_update_new(json, json_pack("{s:o, s:o, s:o, s:o}", "summary", summary ? summary : json_null(),
-                                               "runs", s ? study_runs(l, s->name) : json_array(), "figures",
+        json_object_update_new(json, json_pack("{s:b, s:o, s:o, s:o, s:o}", "lacks_files", s && lacks_files(l, s),
+                                               "summary", summary ? summary : json_null(), "runs",
+                                               s ? study_runs(l, s->name) : json_array(), "figures",
                                                s ? figures_of(l, s->name) : json_array(), "drawable",
                                                s ? figures_drawable(l, s->name) : json_array()));
         api_reply_json(c, json);
@@ -154,34 +162,6 @@ status api_study_rows(call *c)
         return api_refuse(c, 400, "'from' is not a row number", "use ?from=N with N >= 0");
     status code = api_take_study(c, &s);
     THEN(code, study_json_rows(s, c->l->settings.results, (size_t)from, &c->json, &c->why));
-    study_destroy(s);
-    return code;
-}
-
-/* The results folder of that name, which holds rows of the study. */
-static status take_run(call *c, const char *run, const study *s, char **results)
-{
-    char *rows = text_format("%s/%s/rows.csv", run, s->name);
-    status code = rows ? folder_path(c->l->files, rows, true, results, &c->why) : out_of_memory(&c->why);
-    if (code == STATUS_OK) {
-        (*results)[strlen(*results) - strlen(rows) + strlen(run)] = 0;
-        code = study_check_results(c->l, *results, s->name, &c->why);
-    }
-    free(rows);
-    return code;
-}
-
-status api_study_compare(call *c)
-{
-    const char *with = http_query_value(c->request, "with");
-    study *s;
-    char *other = NULL;
-    if (!with || !with[0])
-        return api_refuse(c, 400, "the folder to compare with is missing", "add ?with=FOLDER, one of the study's runs");
-    status code = api_take_study(c, &s);
-    THEN(code, take_run(c, with, s, &other));
-    THEN(code, study_json_compare(s, c->l->settings.results, other, &c->json, &c->why));
-    free(other);
     study_destroy(s);
     return code;
 }

@@ -74,6 +74,8 @@ static const struct api_route {
     {"POST", "/api/studies/{name}/run", api_study_run, EMPTY},
     {"POST", "/api/studies/{name}/stop", api_study_stop, EMPTY},
     {"GET", "/api/studies/{name}/rows", api_study_rows, NO_BODY},
+    {"GET", "/api/studies/{name}/rows.csv", api_study_rows_csv, NO_BODY},
+    {"GET", "/api/studies/{name}/summary.tsv", api_study_summary_tsv, NO_BODY},
     {"GET", "/api/studies/{name}/compare", api_study_compare, NO_BODY},
     {"POST", "/api/studies/{name}/draw", api_study_draw, EMPTY},
     {"GET", "/api/studies/{name}/figure", api_study_figure, NO_BODY},

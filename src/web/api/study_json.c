@@ -1,4 +1,4 @@
-/* Studies as JSON: axes of the grid, summaries, rows, and wall times of two runs. */
+/* Studies as JSON: axes of the grid, summaries and rows. */
 #include "web/api/study_json.h"
 #include "base/text_writer.h"
 #include "report/json.h"
@@ -86,21 +86,26 @@ static json_t *lines_json(char *text)
     return json_whole(table_json(columns, rows, count), !bad);
 }
 
-status study_json_summary(const study *s, const char *results, json_t **out, diagnostic *why)
+status study_summary_text(const study *s, const char *results, char **text, size_t *size, diagnostic *why)
 {
     study_progress progress;
-    *out = NULL;
+    *text = NULL;
     TRY(study_status(s, results, &progress, why));
     if (progress.rows == 0)
-        return (*out = json_null()) ? STATUS_OK : out_of_memory(why);
-    char *text = NULL;
+        return STATUS_OK;
     text_writer writer;
     TRY(text_writer_open(&writer, why));
-    status code = text_writer_end(&writer, study_summary(s, results, writer.stream, why), &text, NULL, why);
-    if (code == STATUS_OK && !(*out = lines_json(text)))
-        code = out_of_memory(why);
+    return text_writer_end(&writer, study_summary(s, results, writer.stream, why), text, size, why);
+}
+
+status study_json_summary(const study *s, const char *results, json_t **out, diagnostic *why)
+{
+    char *text;
+    *out = NULL;
+    TRY(study_summary_text(s, results, &text, NULL, why));
+    *out = text ? lines_json(text) : json_null();
     free(text);
-    return code;
+    return *out ? STATUS_OK : out_of_memory(why);
 }
 
 /* The column names, or the fields of one row (of any file) in these columns. */

@@ -1,146 +1,144 @@
-/* Compares two runs of a study cell by cell: a chart of ratios and a table. exports: createCompare(lab) -> {node,
- * show(study, details, results), forget()} */
+/* Compares two sides of a study as `cuvette study compare` does: two runs, two values of an axis, or two rows of the
+ * summary. exports: createCompare(lab) -> {node, show(study, details, results)} */
 
-import { choice, count, digits, element, empty, notice, replace } from './ui.js';
-import { createChart } from './study_chart.js';
-import { createSortTable } from './study_table.js';
+import { choice, element, empty, notice, replace } from './ui.js';
+import { createContrast } from './study_contrast.js';
 import { pathsOf } from './study_data.js';
 
-const text = (value) => (value === null || value === undefined ? 'NA' : String(value));
-const sameness = (value) => (value === null ? 'NA' : value ? 'yes' : 'no');
+const ROWS_MAX = 500; /* of a list */
+const RUNS = 'runs';
+const CELLS = 'cells';
 
-const quantity = { key: 'ratio', label: 'wall time B / wall time A', unit: '' };
+const valuesOf = ({ columns, rows }, path) => [...new Set(rows.map((row) => row[columns.indexOf(path)]))];
 
-function rowsOf(answer) {
-  const columns = [
-    'cell',
-    ...answer.columns,
-    'A / s',
-    'A n',
-    'B / s',
-    'B n',
-    'B / A',
-    'low',
-    'high',
-    'verdict',
-    'same film',
-  ];
-  const rows = answer.cells.map((cell) =>
-    [
-      cell.cell,
-      ...answer.columns.map((path) => cell[path]),
-      cell.a.median,
-      cell.a.n,
-      cell.b.median,
-      cell.b.n,
-      cell.ratio,
-      cell.low,
-      cell.high,
-      cell.reason ? `${cell.verdict}: ${cell.reason}` : cell.verdict,
-    ]
-      .map(text)
-      .concat(sameness(cell.same_film)),
-  );
-  return [columns, rows];
+/* The axes with more than one value, each by a parameter that tells its points apart: [{path, paths, values}]. */
+function axesOf(study, summary) {
+  return study.axes
+    .map(({ paths, count }) => {
+      const path = paths.find((one) => valuesOf(summary, one).length === count);
+      return { path, paths, values: path ? valuesOf(summary, path) : [] };
+    })
+    .filter(({ values }) => values.length > 1);
 }
 
-function verdict({ cells, all }) {
-  const others = cells.filter((cell) => cell.same_film === false).length;
-  const both = cells.filter((cell) => cell.ratio !== null);
-  if (!both.length) return notice('No cell was measured in both runs.', { kind: 'warning' });
-  const { ratio, low, high, verdict: word, reason, pairs_needed: needed } = all;
-  const interval = low === null ? '' : ` (95% interval ${digits(low, 3)} to ${digits(high, 3)})`;
-  return [
-    element('p', {
-      text:
-        `${both.length} of ${cells.length} cells were measured in both runs; B takes ` +
-        `${digits(ratio, 3)} times as long as A in the geometric mean${interval}. Verdict: ${word}` +
-        `${reason ? `, because ${reason}` : ''}.`,
-    }),
-    needed
-      ? element('p', { text: `${count(needed)} processes of each side, in turn, find a difference of 3%.` })
-      : null,
-    others
-      ? notice(`${others} ${others === 1 ? 'cell has' : 'cells have'} different films: the rendered images differ.`, {
-          kind: 'warning',
-        })
-      : null,
-  ];
+function cellChoices(study, { columns, rows }) {
+  const paths = pathsOf(study).map(({ path }) => path);
+  const cell = columns.indexOf('cell');
+  const name = (row) => paths.map((path) => `${path} ${row[columns.indexOf(path)]}`).join(', ');
+  const all = new Map(rows.map((row) => [row[cell], `${row[cell]}: ${name(row)}`]));
+  return [...all].slice(0, ROWS_MAX);
+}
+
+/* What can be compared: [{key, label, a: choices or a text, b: choices, query(a, b), paths, runs, advice}]. */
+function subjectsOf(study, details, results) {
+  const runs = (details.runs || []).filter((run) => run !== results);
+  const all = pathsOf(study);
+  const subjects = [];
+  if (runs.length)
+    subjects.push({
+      key: RUNS,
+      label: 'Two runs',
+      a: [[results, results]],
+      b: runs.map((run) => [run, run]),
+      query: (a, b) => ({ with: b }),
+      paths: all,
+      runs: true,
+      advice: 'For a verdict, measure both in turn: cuvette study run --against=PROGRAM --processes=8.',
+    });
+  if (!details.summary) return subjects;
+  const command = `cuvette study run --processes=8 ${study.file}`;
+  const advice = `For a verdict, measure A and B in turn in fresh processes: ${command}.`;
+  for (const { path, paths, values } of axesOf(study, details.summary))
+    subjects.push({
+      key: `value ${path}`,
+      label: `Values of ${path}`,
+      a: values.map((value) => [value, value]),
+      query: (a, b) => ({ a: `${path}=${a}`, b: `${path}=${b}` }),
+      paths: all.filter((one) => !paths.includes(one.path)),
+      advice,
+    });
+  const cells = cellChoices(study, details.summary);
+  if (cells.length > 1)
+    subjects.push({
+      key: CELLS,
+      label: 'Two rows of the summary',
+      a: cells,
+      query: (a, b) => ({ a: `cell=${a}`, b: `cell=${b}` }),
+      paths: [],
+      advice,
+    });
+  return subjects;
 }
 
 export function createCompare(lab) {
-  const bar = element('div');
-  const below = element('div', { class: 'study-compare' });
-  const chart = createChart({ caption: 'Ratios of two runs', id: 'study-ratios' });
-  const sorted = createSortTable({ caption: 'Two runs, cell by cell' });
-  const node = element('div', { class: 'study-part' }, bar, below);
+  const bar = element('div', { class: 'study-choices' });
+  const contrast = createContrast();
+  const node = element('div', { class: 'study-part' }, bar, contrast.node);
+  const chosen = { key: null, a: null, b: null };
+  let study = null;
+  let subjects = [];
   let shown = '';
-  let other = '';
-  return {
-    node,
-    show,
-    forget() {
-      shown = other = '';
-    },
-  };
+  let asked = 0;
+  return { node, show };
 
-  function show(study, details, results) {
-    const runs = (details.runs || []).filter((run) => run !== results);
-    const key = [study.name, ...runs].join('\n');
+  function show(next, details, results) {
+    if (lab.study?.running && next.name === study?.name) return; /* requests disturb the measurement */
+    const key = JSON.stringify([next.name, details.runs, details.rows]);
     if (key === shown) return;
     shown = key;
-    if (!runs.includes(other)) other = '';
-    if (!runs.length) {
-      replace(
-        bar,
-        empty(
-          `No other folder has rows of ${study.name}. Copy ${results || 'results'} to another folder before ` +
-            `you measure again, then compare.`,
-        ),
-      );
-      replace(below);
+    if (next.name !== study?.name) Object.assign(chosen, { key: null, a: null, b: null });
+    study = next;
+    subjects = subjectsOf(study, details, results);
+    draw();
+  }
+
+  function draw() {
+    const subject = subjects.find(({ key }) => key === chosen.key) || subjects[0];
+    if (!subject) {
+      replace(bar);
+      contrast.clear(empty('No rows to compare yet: measure two cells, or a copy of the results folder.'));
       return;
     }
-    const choices = [['', 'Choose a run'], ...runs.map((run) => [run, run])];
+    const { key, a, b = a } = subject;
+    const has = (list, value) => list.some(([one]) => one === value);
+    chosen.key = key;
+    if (!has(a, chosen.a)) [[chosen.a]] = a;
+    if (!has(b, chosen.b)) chosen.b = null;
+    const select = (label, choices, of) =>
+      choice({ label, choices, value: chosen[of] ?? '', onchange: (value) => pick(of, value || null) }).node;
     replace(
       bar,
-      choice({ label: `A is ${results || 'results'}, B is`, choices, value: other, onchange: (run) => ask(study, run) })
-        .node,
+      select(
+        'Compare',
+        subjects.map((one) => [one.key, one.label]),
+        'key',
+      ),
+      select('A', a, 'a'),
+      select('B', [['', 'Choose'], ...b], 'b'),
     );
-    ask(study, other);
+    ask(subject);
   }
 
-  async function ask(study, run) {
-    other = run;
-    replace(below);
-    if (!run) return;
+  function pick(of, value) {
+    const at = [...bar.querySelectorAll('select')].indexOf(document.activeElement);
+    chosen[of] = value;
+    if (of === 'key') chosen.a = chosen.b = null;
+    draw();
+    bar.querySelectorAll('select')[at]?.focus();
+  }
+
+  async function ask(subject) {
+    const number = ++asked;
+    const { a, b } = chosen;
+    const of = study;
+    contrast.clear();
+    if (b === null) return;
     try {
-      const answer = await lab.get(
-        `/api/studies/${encodeURIComponent(study.name)}/compare?with=${encodeURIComponent(run)}`,
-      );
-      if (run === other) draw(study, answer, run);
+      const address = `/api/studies/${encodeURIComponent(of.name)}/compare?${new URLSearchParams(subject.query(a, b))}`;
+      const answer = await lab.get(address);
+      if (number === asked) contrast.show({ ...subject, answer, title: `${of.title}: B is ${b}, A is ${a}` });
     } catch (error) {
-      if (run === other) replace(below, notice(error.message, { kind: 'error', remedy: error.remedy }));
+      if (number === asked) contrast.clear(notice(error.message, { kind: 'error', remedy: error.remedy }));
     }
-  }
-
-  function draw(study, answer, run) {
-    const paths = pathsOf(study);
-    const cells = answer.cells.map((cell) => ({
-      at: Object.fromEntries(paths.map(({ path }) => [path, cell[path]])),
-      y: cell.ratio ?? NaN,
-      low: cell.low ?? NaN,
-      high: cell.high ?? NaN,
-    }));
-    replace(below, verdict(answer), chart.node, sorted.node);
-    chart.show({
-      title: `${study.title}, ${run} compared with the current results`,
-      paths,
-      quantities: [quantity],
-      cells: () => cells,
-      mark: 1,
-      note: 'Ratios of typical wall times with 95% intervals.',
-    });
-    sorted.show(...rowsOf(answer));
   }
 }

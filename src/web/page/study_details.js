@@ -8,10 +8,18 @@ import { createCompare } from './study_compare.js';
 import { createFigures } from './study_figures.js';
 import { createRows } from './study_rows.js';
 import { createSave } from './study_save.js';
+import { saveReply } from './save_file.js';
 import { createSortTable } from './study_table.js';
 
 const FIRST =
   /^(cell|n|wall_s_(median|low|high)|cpu_s_median|rays_total|noise_rms|psnr_db|flip|film_hash|marked|excluded)$/;
+const MEASURES = 'measures the missing rows; rendering is paused until it finishes';
+const STARTS = {
+  start: ['Start', MEASURES],
+  continue: ['Continue', MEASURES],
+  files: ['Make the missing files', 'all rows are measured; makes the missing images, maps and comparisons'],
+  complete: ['Complete', 'all rows are measured'],
+};
 const stages = { measuring: 'measuring', moving: 'simulating the slime', pictures: 'rendering images' };
 
 function axisWords({ name, paths, units, count: points }) {
@@ -19,7 +27,20 @@ function axisWords({ name, paths, units, count: points }) {
   return `${paths.length === 1 && paths[0] === name ? own : `${name} (${own})`}: ${points} values`;
 }
 
-const about = (study, details) =>
+/* Rows that were disturbed, which are kept and used. */
+const warnings = ({ disturbed, rows, warmups }) =>
+  disturbed
+    ? notice(
+        `${count(disturbed)} of ${count(rows - warmups)} rows were measured while other programs ran, or with a ` +
+          `lower frequency of the processor.`,
+        {
+          kind: 'warning',
+          remedy: 'Their times may be too long: close other programs, and measure again into another results folder.',
+        },
+      )
+    : null;
+
+const about = (study, details, results) =>
   facts(
     [
       ['File', study.file],
@@ -35,12 +56,7 @@ const about = (study, details) =>
       ],
       ['Cells', `${count(details.cells_done)} of ${count(details.cells)} done`],
       ['Rows', `${count(details.rows)}, of which ${count(details.warmups)} warm-ups`],
-      details.disturbed
-        ? [
-            'Disturbed',
-            `${count(details.disturbed)} rows, by the rule of the study: other programs, steal or the frequency`,
-          ]
-        : null,
+      results && details.rows ? ['Results', element('code', { text: `${results}/${study.name}` })] : null,
       details.marked
         ? ['Marked', `${count(details.marked)} rows with another film than the first row of their cell`]
         : null,
@@ -78,15 +94,22 @@ function createProgress() {
   };
 }
 
-function createSummary() {
+function createSummary(lab) {
   const sorted = createSortTable({ caption: 'Summary: one line per cell' });
   const all = check('All columns', false, () => draw());
   const place = element('div', { class: 'study-part' });
+  const save = button(
+    'Save summary as TSV',
+    () => saveReply(lab, `/api/studies/${encodeURIComponent(name)}/summary.tsv`, `${name}.tsv`),
+    { icon: 'save', small: true, title: 'all columns, separated by tabs, as printed by cuvette study summary' },
+  );
+  let name = '';
   let summary = null;
   let paths = [];
   return {
     node: place,
-    show(next, nextPaths) {
+    show(study, next, nextPaths) {
+      name = study.name;
       summary = next;
       paths = nextPaths.map(({ path }) => path);
       draw();
@@ -103,7 +126,7 @@ function createSummary() {
       .filter((i) => all.value || paths.includes(summary.columns[i]) || FIRST.test(summary.columns[i]));
     const known = kept.filter((i) => all.value || summary.rows.some((row) => row[i] !== 'NA'));
     const pick = (row) => known.map((i) => row[i]);
-    if (!place.contains(sorted.node)) replace(place, all.node, sorted.node);
+    if (!place.contains(sorted.node)) replace(place, all.node, sorted.node, element('div', { class: 'buttons' }, save));
     sorted.show(pick(summary.columns), summary.rows.map(pick));
   }
 }
@@ -117,7 +140,7 @@ export function createDetails(lab, { onrun, onstop }) {
   const what = element('div');
   const chart = createChart({ caption: 'Chart of the study', id: 'study-figure-numbers' });
   const save = createSave(lab, chart.chosen);
-  const summary = createSummary();
+  const summary = createSummary(lab);
   const rows = createRows(lab);
   const figures = createFigures(lab);
   const compare = createCompare(lab);
@@ -133,7 +156,7 @@ export function createDetails(lab, { onrun, onstop }) {
     group('Summary', { id: 'study-summary', hint: 'one line per cell' }, summary.node),
     rows.node,
     group('Figures of plots/', { id: 'study-drawn', hint: 'drawn by gnuplot' }, figures.node),
-    group('Compare two runs', { id: 'study-compare', hint: 'cell by cell' }, compare.node),
+    group('Compare', { id: 'study-compare', hint: 'two runs, cells or values of a parameter' }, compare.node),
   );
   const node = element(
     'article',
@@ -155,7 +178,7 @@ export function createDetails(lab, { onrun, onstop }) {
     const broken = details.error && details.cells === undefined;
     parts.hidden = broken;
     showProgress(lab.study);
-    replace(what, broken ? null : about(study, details));
+    replace(what, broken ? null : [warnings(details), about(study, details, results)]);
     if (broken) return;
     const paths = pathsOf(study);
     chart.show({
@@ -165,7 +188,7 @@ export function createDetails(lab, { onrun, onstop }) {
       cells: (quantity) => cellsOf(details.summary, paths, quantity),
     });
     save.show(study, details.rows, running());
-    summary.show(details.summary, paths);
+    summary.show(study, details.summary, paths);
     rows.show(study, details.rows);
     figures.show(study, details, running());
     compare.show(study, details, results);
@@ -183,18 +206,11 @@ export function createDetails(lab, { onrun, onstop }) {
     start.hidden = Boolean(mine && now.running);
     stop.hidden = !start.hidden;
     const complete = details.cells > 0 && details.cells_done >= details.cells;
-    start.querySelector('.button-label').textContent = complete
-      ? 'Measure the missing rows'
-      : details.rows
-        ? 'Continue'
-        : 'Start';
+    const next = !complete ? (details.rows ? 'continue' : 'start') : details.lacks_files ? 'files' : 'complete';
+    start.querySelector('.button-label').textContent = STARTS[next][0];
     start.classList.toggle('primary', !complete);
-    start.disabled = Boolean(other) || (Boolean(details.error) && details.cells === undefined);
-    start.title = other
-      ? `the study ${other} is running`
-      : complete
-        ? 'all rows are measured; renders the missing images'
-        : 'measures the missing rows; rendering is paused until it finishes';
+    start.disabled = next === 'complete' || Boolean(other) || (Boolean(details.error) && details.cells === undefined);
+    start.title = other ? `the study ${other} is running` : STARTS[next][1];
     const error = details.error || (mine && now.error) || null;
     const where = error?.file ? `${error.file}${error.line ? `:${error.line}` : ''}: ` : '';
     if (trouble.dataset.of !== JSON.stringify(error)) {

@@ -1,10 +1,12 @@
 /* The raw rows of a study, newest first. exports: createRows(lab) -> {node, show(study, count), forget()} */
 
 import { button, count as inWords, element, empty, group, replace } from './ui.js';
+import { saveReply } from './save_file.js';
 import { createSortTable } from './study_table.js';
 
 const PAGE = 50;
 const MOST = 1000;
+const addressOf = (study) => `/api/studies/${encodeURIComponent(study.name)}/rows`;
 
 export function createRows(lab) {
   const sorted = createSortTable({ caption: 'Raw rows, newest first' });
@@ -17,6 +19,10 @@ export function createRows(lab) {
     },
     { small: true },
   );
+  const save = button('Save rows as CSV', () => saveReply(lab, `${addressOf(study)}.csv`, `${study.name}-rows.csv`), {
+    icon: 'save',
+    small: true,
+  });
   const place = element('div', { class: 'study-part' });
   const node = group('Raw rows', { open: false, id: 'study-rows', hint: 'as measured' }, place);
   node.addEventListener('toggle', () => fetchRows());
@@ -44,9 +50,7 @@ export function createRows(lab) {
       return;
     }
     try {
-      const reply = await lab.get(
-        `/api/studies/${encodeURIComponent(study.name)}/rows?from=${Math.max(0, count - limit)}`,
-      );
+      const reply = await lab.get(`${addressOf(study)}?from=${Math.max(0, count - limit)}`);
       if (key === shown) draw(reply);
     } catch (error) {
       lab.fail(error);
@@ -57,7 +61,8 @@ export function createRows(lab) {
     const rows = reply.rows.slice(-limit).reverse();
     about.textContent = `${inWords(rows.length)} of ${inWords(reply.count)} rows`;
     more.disabled = rows.length >= reply.count || limit >= MOST;
-    if (!place.contains(sorted.node)) replace(place, sorted.node, element('div', { class: 'buttons' }, more, about));
+    if (!place.contains(sorted.node))
+      replace(place, sorted.node, element('div', { class: 'buttons' }, save, more, about));
     sorted.show(reply.columns, rows);
   }
 }
