@@ -152,6 +152,9 @@ export const cases = {
   'strangers delay neither the owner nor the tabs of two browsers': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const { pid } = lab.child;
+    // A scene with changes is kept in a file, which stays open and locked.
+    await lab.post('/api/set', { set: { 'liquid.ior': 1.4 } });
+    await pause(1500);
     const before = await usage(pid);
     const screens = [await t.open(lab), await t.open(lab)];
     const tabs = screens.map((screen) => screen.page);
