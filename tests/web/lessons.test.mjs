@@ -76,13 +76,60 @@ export const cases = {
     await screen.until(() => window.lab.param('liquid.ior').value === 1.5);
     await panel(screen).getByText('41.8103°', { exact: true }).waitFor();
     t.match(
-      await panel(screen).locator('.lesson-command code').last().innerText(),
+      await panel(screen).locator('.lesson-command code').last().textContent(),
       / --set liquid\.ior=1\.5$/,
       'command',
     );
     await screen.settled();
     await t.picture(screen, 'lesson-dark');
     await t.axe(screen, 'lesson, dark');
+  },
+
+  'keys move a control step by step over a slow link; nothing moves it back': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Lessons');
+    await screen.page.getByRole('button', { name: /When water becomes a mirror/ }).click();
+    const range = panel(screen).getByRole('slider', { name: 'Refractive index of the liquid' });
+    await range.waitFor();
+    await screen.settled();
+    await screen.page.route('**/api/set', async (route) => {
+      await new Promise((resolve) => setTimeout(resolve, 200));
+      await route.continue();
+    });
+    const { generation } = await lab.get('/api/state');
+    const start = Number(await range.inputValue());
+    const seen = [];
+    for (let i = 0; i < 30; i++) {
+      await range.press('ArrowRight');
+      seen.push(Number(await range.inputValue()) - start - (i + 1));
+    }
+    for (let i = 0; i < 20; i++) {
+      await range.press('ArrowLeft');
+      seen.push(Number(await range.inputValue()) - start - (29 - i));
+    }
+    await screen.page.waitForTimeout(1500);
+    await screen.settled();
+    t.equal(seen.filter(Boolean).length, 0, 'steps that were lost or undone');
+    t.equal(Number(await range.inputValue()) - start, 10, 'steps at the end');
+    const after = (await lab.get('/api/state')).generation;
+    t.check(after - generation < 40, `${after - generation} generations for 50 keys`);
+  },
+
+  'a lesson whose scene is gone says so and starts again': async (t) => {
+    const lab = await t.lab();
+    const screen = await t.open(lab);
+    await screen.page.getByRole('button', { name: /When water becomes a mirror/ }).click();
+    const range = panel(screen).getByRole('slider', { name: 'Refractive index of the liquid' });
+    await range.waitFor();
+    await screen.settled();
+    await screen.page.getByRole('button', { name: /^Undo/ }).first().click();
+    await panel(screen).getByText('The scene of this lesson is not shown any more.').waitFor();
+    t.check(await range.evaluate((node) => Boolean(node.closest('[inert]'))), 'the controls are inert');
+    await screen.button('Start this lesson again').click();
+    await panel(screen).getByText('The scene of this lesson is not shown any more.').waitFor({ state: 'hidden' });
+    await screen.settled();
+    t.check(await range.evaluate((node) => !node.closest('[inert]')), 'the controls work again');
   },
 
   'a broken lesson of the folder is shown with its place; scenes have thumbnails in the Open list': async (t) => {

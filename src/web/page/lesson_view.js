@@ -1,5 +1,6 @@
 /* A lesson that was chosen: question, prediction, controls, measured curve next to theory, answer, commands.
- * exports: createLesson(root, lab, lesson, back) -> {shown(), end()} */
+ * exports: createLesson(root, lab, lesson, {back, again}) -> {shown(), end()}
+ *   back(), again(): to the gallery, or to the start of the lesson */
 
 import { button, check, choice, copy, digits, element, number, notice, replace, slider } from './ui.js';
 import { lessonChart } from './lesson_chart.js';
@@ -8,12 +9,24 @@ const REST_MS = 200; /* measured when the controls rest */
 
 const unitOf = (lesson) => (lesson.measure.unit === 'deg' ? '°' : lesson.measure.unit ? ` ${lesson.measure.unit}` : '');
 
-export function createLesson(root, lab, lesson, back) {
+export function createLesson(root, lab, lesson, { back, again }) {
   const result = element('div', { class: 'lesson-result', 'aria-live': 'polite' });
   const verdict = element('div', { 'aria-live': 'polite' });
   const answer = element('div', { class: 'lesson-answer' });
-  const commands = element('div');
+  const typed = element('div');
+  const commands = element(
+    'details',
+    { class: 'lesson-commands' },
+    element('summary', { text: 'The same numbers on the command line' }),
+    typed,
+  );
   const controls = lesson.controls.map((control) => createControl(lab, control));
+  const tries = element(
+    'div',
+    {},
+    controls.map((control) => control.node),
+  );
+  const lost = element('div', { 'aria-live': 'polite' });
   let measured = null;
   let open = false; /* the measurement is shown, after the prediction or without it */
   let predicted = null;
@@ -33,7 +46,8 @@ export function createLesson(root, lab, lesson, back) {
       createPrediction(),
       verdict,
       element('h4', { text: 'Try it' }),
-      controls.map((control) => control.node),
+      lost,
+      tries,
       result,
       answer,
       commands,
@@ -80,12 +94,11 @@ export function createLesson(root, lab, lesson, back) {
     const { choices, right, within } = lesson.prediction;
     const good = choices ? predicted === right : Math.abs(predicted - measured.measured) <= within;
     const words = choices ? predicted : `${digits(predicted)}${unitOf(lesson)}`;
-    return notice(
-      good ? `You predicted: ${words}. That is right.` : `You predicted: ${words}. See what was measured.`,
-      {
-        kind: good ? 'good' : 'info',
-      },
-    );
+    const by = choices ? 0 : predicted - measured.measured;
+    const off = choices
+      ? 'See what was measured.'
+      : `That is ${digits(Math.abs(by), 3)}${unitOf(lesson)} too ${by < 0 ? 'small' : 'large'}.`;
+    return notice(`You predicted: ${words}. ${good ? 'That is right.' : off}`, { kind: good ? 'good' : 'info' });
   }
 
   function draw() {
@@ -121,12 +134,23 @@ export function createLesson(root, lab, lesson, back) {
     );
   }
 
+  /* After Undo, or when another scene was opened. */
+  function whenGone() {
+    return [
+      notice('The scene of this lesson is not shown any more.', { kind: 'warning' }),
+      element('div', { class: 'buttons' }, button('Start this lesson again', again, { kind: 'primary', small: true })),
+    ];
+  }
+
   /* The scene changed: by these controls, undo or another page. */
   function changed() {
-    for (const control of controls) control.update();
+    const there = controls.map((control) => control.update());
+    const gone = Boolean(lab.scene) && there.includes(false);
+    tries.inert = gone;
+    replace(lost, gone ? whenGone() : null);
     drawCommands();
     clearTimeout(timer);
-    timer = setTimeout(measure, measured ? REST_MS : 0);
+    if (!gone) timer = setTimeout(measure, measured ? REST_MS : 0);
   }
 
   async function measure() {
@@ -150,8 +174,7 @@ export function createLesson(root, lab, lesson, back) {
       .map((row) => ` --set ${row.path}=${row.value}`)
       .join('');
     replace(
-      commands,
-      element('h4', { text: 'The same numbers on the command line' }),
+      typed,
       lesson.commands.map((text) =>
         element(
           'div',
@@ -174,21 +197,34 @@ export function createLesson(root, lab, lesson, back) {
 
 /* A control of one parameter, named as a person names it; the parameter's path is its link to the panel Parameters. */
 function createControl(lab, { parameter, label, from, to, choices }) {
-  const set = (value, gesture) => lab.set({ [parameter]: value }, gesture).catch(lab.fail);
+  let waiting = 0;
+  let settled = 0; /* a value sent from here is newer than a scene that was requested before */
+  const set = async (value, gesture) => {
+    waiting += 1;
+    try {
+      settled = Math.max(settled, (await lab.set({ [parameter]: value }, gesture)).generation || 0);
+    } catch (error) {
+      lab.fail(error);
+    }
+    waiting -= 1;
+  };
   const isSwitch = choices?.length === 2 && choices.includes('on') && choices.includes('off');
   const made = isSwitch
     ? check(label, false, (on) => set(on ? 'on' : 'off'))
     : choices
       ? choice({ label, choices: choices.map(String), value: '', onchange: (value) => set(value) })
-      : slider({ label, min: from, max: to, value: from, oninput: set, onchange: set });
+      : slider({ label, min: from, max: to, value: from, oninput: set });
   const path = element('code', { class: 'lesson-path', text: parameter });
   return {
     node: element('div', { class: 'lesson-control' }, made.node, path),
+    /* False if the scene has no such parameter. */
     update() {
       const value = lab.param(parameter.replace(/\.[xyzrgb]$/, ''))?.value;
+      if (waiting || lab.scene?.generation < settled) return true;
       const part = parameter.match(/\.([xyzrgb])$/);
       const one = Array.isArray(value) && part ? value['xyzrgb'.indexOf(part[1]) % 3] : value;
       if (one !== undefined) made.set(isSwitch ? String(one) === 'on' || one === true : choices ? String(one) : one);
+      return one !== undefined;
     },
   };
 }

@@ -55,7 +55,8 @@ async function choose(lab, one) {
     await lab.change(`/api/lessons/${encodeURIComponent(one.name)}/open`, {});
     lab.choice?.choose('');
     cover(false);
-    lesson = createLesson(place, lab, one, () => gallery(lab));
+    lesson?.end();
+    lesson = createLesson(place, lab, one, { back: () => gallery(lab), again: () => choose(lab, one) });
   } catch (error) {
     lab.fail(error);
   }

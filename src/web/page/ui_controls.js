@@ -5,6 +5,8 @@ import { element, gesture, unique } from './ui_base.js';
 import { digits } from './ui_numbers.js';
 import { numberInput, numberOf } from './ui_number_input.js';
 
+const PAUSE_MS = 1000; /* faster key presses on a slider are one gesture */
+
 const shown = (value) => (Number.isFinite(value) ? String(Number(Number(value).toPrecision(7))) : '');
 
 function frame(label, input, unit) {
@@ -121,14 +123,19 @@ export function slider({ label, min, max, step = (max - min) / 200, value, log =
   });
   const box = numberInput({ value: shown(value), 'aria-label': `${label}, number` });
   let mine = null;
+  let last = -Infinity;
   let dragged = false;
   const show = (next) => {
     input.value = ruler.position(next);
     input.setAttribute('aria-valuetext', `${digits(next)}${unit ? ` ${unit}` : ''}`);
     input.style.setProperty('--filled', `${(100 * input.value) / ruler.steps}%`);
   };
-  input.addEventListener('input', () => {
-    mine ??= gesture('slider');
+  input.addEventListener('pointerdown', () => {
+    last = -Infinity;
+  });
+  input.addEventListener('input', (event) => {
+    if (!dragged && event.timeStamp - last > PAUSE_MS) mine = gesture('slider');
+    last = event.timeStamp;
     dragged = true;
     const next = ruler.value(Number(input.value));
     box.value = shown(next);
@@ -137,7 +144,6 @@ export function slider({ label, min, max, step = (max - min) / 200, value, log =
   });
   input.addEventListener('change', () => {
     onchange?.(ruler.value(Number(input.value)), mine ?? gesture('slider'));
-    mine = null;
     dragged = false;
   });
   box.addEventListener('change', () => {
