@@ -327,6 +327,8 @@ static const condition conditions[] = {
     {"rod", "rod.position=0,50,0 rod.priority=0", "rod.color", "unseen", false},
     {"rod", "rod.position=0,50,0 rod.priority=0", "rod.priority", "apart", false},
     {"rod", "background.picture=models.jpg", "background.color", "picture-sky", true},
+    {"rod", "background.horizon=0.53,0.75,0.92 background.color=0.53,0.75,0.92 background.rain=0", "background.kind",
+     "flat-gradient", true},
     {"rod", "", "background.rain", "no-rain", true},
     {"rod", "", "background.drops", "no-rain", true},
     {"rod", "background.kind=rain background.rain=0", "background.sun_elevation_deg", "no-rain", true},

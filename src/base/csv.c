@@ -1,3 +1,4 @@
+/* Writing lines and reading tables of comma-separated values. */
 #include "base/csv.h"
 #include "base/file.h"
 #include "base/number.h"

@@ -1,10 +1,9 @@
 /* The first rainbow of a drop: a sphere, the first solid whose name begins with drop (experiments/scenes/rainbow.yaml);
- * in a scene without one, a drop of its rain (rainbow-landscape.yaml). The rainbow appears where rays
- * with one internal reflection have minimum deviation, at an angle from the antisolar point. */
+ * in a scene without one, a drop of its rain (rainbow-landscape.yaml). The rainbow appears where rays with one internal
+ * reflection have minimum deviation, at an angle from the antisolar point. */
 #include "realism/metrics.h"
 
 #include "geometry/shapes/shape.h"
-
 #include "scene/model/edit/edit.h"
 #include "scene/model/medium.h"
 #include "scene/model/scene.h"
@@ -21,6 +20,7 @@ static int drop_of(const scene *s)
     return -1;
 }
 
+/* A scene with a vessel is measured as such, also in the rain. */
 bool drop_is_there(const scene *s)
 {
     setup unused;
@@ -38,7 +38,7 @@ static scene *drop_of_rain(const scene *s)
     }
     one->solids[at].shape = ball_at(vec3_make(0.0, 0.0, 0.0), 1.0);
     one->solids[at].surface.transparency = 1.0;
-    one->solids[at].surface.medium = MEDIUM_CATALOGUE + s->background.drops + DROPS_CATALOGUE - SURROUNDING_CATALOGUE;
+    one->solids[at].surface.medium = MEDIUM_CATALOGUE + DROPS_FIRST + s->background.drops;
     one->background.medium = SURROUNDING_CATALOGUE; /* air is the first of the catalogue */
     one->render.lambda_nm = s->render.lambda_nm;
     return one;

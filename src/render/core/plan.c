@@ -145,13 +145,25 @@ static status aim_cones(const scene *s, plan *p, diagnostic *why)
     return STATUS_OK;
 }
 
-static status let_it_rain(const scene *s, plan *p, diagnostic *why)
+static status add_rain(const scene *s, plan *p, diagnostic *why)
 {
     const bool traced = !integrator_traits_of(&s->render)->layers;
     if (s->background.kind != BACKGROUND_RAIN || s->background.rain == 0.0 || !traced)
         return STATUS_OK;
     p->rain = rain_create(&s->background, s->render.spectrum == SPECTRUM_SPECTRAL);
     return p->rain ? STATUS_OK : out_of_memory(why);
+}
+
+/* A gradient between equal colours is uniform to the last bit. */
+static const background *sky_of(const scene *s, plan *p)
+{
+    const background *b = &s->background;
+    const bool gradient = b->kind == BACKGROUND_GRADIENT || (b->kind == BACKGROUND_RAIN && !p->rain);
+    if (!gradient || b->color.x != b->horizon.x || b->color.y != b->horizon.y || b->color.z != b->horizon.z)
+        return b;
+    p->flat_sky = *b;
+    p->flat_sky.kind = BACKGROUND_UNIFORM;
+    return &p->flat_sky;
 }
 
 /* By solid; the last one is that of the surrounding medium. */
@@ -220,7 +232,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     THEN(code, arrange(s, laws, p, why));
     THEN(code, fill_priority_indices(s, laws, p, why));
     THEN(code, aim_cones(s, p, why));
-    THEN(code, let_it_rain(s, p, why));
+    THEN(code, add_rain(s, p, why));
     free(laws);
     if (code != STATUS_OK) {
         plan_destroy(p);
@@ -234,7 +246,7 @@ status plan_build(const scene *s, plan **out, diagnostic *why)
     else
         p->eye_inside = scene_geometry_inside(p->geometry, p->view.eye);
     p->camera_priority_index = scene_geometry_priority_index(p->geometry, p->eye_inside);
-    p->sky = &s->background;
+    p->sky = sky_of(s, p);
     if (s->render.beyond == DEPTH_LIMIT_MEAN)
         p->sky_mean = p->rain && !p->spectral ? vec3_add(sky_mean(p->sky), rain_color_mean(p->rain)) : sky_mean(p->sky);
     p->lights = s->lights;

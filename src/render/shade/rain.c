@@ -62,8 +62,7 @@ static void add_color(rain *r, int node, const double *p)
 
 static void fill(rain *r, const background *sky, drop_angles *a)
 {
-    const medium *drops = media_at((size_t)(sky->drops + DROPS_CATALOGUE - SURROUNDING_CATALOGUE)),
-                 *air = media_find("air");
+    const medium *drops = media_at((size_t)(DROPS_FIRST + sky->drops)), *air = media_find("air");
     drop_angles_make(SUN_RADIUS_DEG, a);
     for (int node = 0; node < NODES; node++) {
         double *p = r->at[r->spectral ? node : 0];

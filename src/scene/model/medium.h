@@ -15,8 +15,8 @@ extern const char *const medium_words[];
 /* For the surroundings: `ior`, then the catalogue. */
 enum { SURROUNDING_CATALOGUE = 1 };
 extern const char *const surrounding_words[];
-/* Rain's drops: all of the catalogue but air, in surrounding_words from there on. */
-enum { DROPS_CATALOGUE = SURROUNDING_CATALOGUE + 1 };
+/* Rain's drops: the catalogue from there on, all but air. */
+enum { DROPS_FIRST = 1 };
 
 /* A dispersion law, ready for evaluation. */
 typedef struct index_law {

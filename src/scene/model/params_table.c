@@ -216,7 +216,7 @@ static const param table[] = {
     REAL(PARAM_BACKGROUND, background, rain, "", 0, BRIGHT, "0.3",
          "brightness of the rain: its radiance if drops scattered sunlight evenly in all directions"),
     ROW(PARAM_BACKGROUND, "drops", PARAM_CHOICE, "", 0, 0, false, "water", "liquid of the rain's drops, in air",
-        surrounding_words + DROPS_CATALOGUE, OF(background, drops)),
+        surrounding_words + SURROUNDING_CATALOGUE + DROPS_FIRST, OF(background, drops)),
     REAL(PARAM_BACKGROUND, background, sun_elevation_deg, "deg", -90, 90, "20",
          "elevation of the sun that shines on the rain; the sun itself is not drawn"),
     REAL(PARAM_BACKGROUND, background, sun_azimuth_deg, "deg", -360, 360, "180",

@@ -35,7 +35,7 @@ typedef struct background {
     double ior;                    /* of the surroundings of all solids, if medium is MEDIUM_IOR */
     int64_t medium;                /* see scene/model/medium.h */
     double rain;                   /* radiance of the rain if its drops scattered evenly in all directions */
-    int64_t drops;                 /* the drops' medium, see DROPS_CATALOGUE in scene/model/medium.h */
+    int64_t drops;                 /* the drops' medium, from DROPS_FIRST in scene/model/medium.h */
     double sun_elevation_deg, sun_azimuth_deg; /* of the sun that shines on the rain; azimuth as the camera's yaw */
     vec3 absorb_per_m; /* of the surroundings of all solids, by channel, along rays that end at a surface or a light */
 } background;

@@ -7,7 +7,7 @@
  *   createWheelZoom(lab)                a tool's function wheel(point, event, pixels): scales the distance
  *   goView(lab, what)                   'back', 'forward', 'home' or 'keep' */
 
-import { gesture } from './ui.js';
+import { gestures } from './ui.js';
 
 const WHEEL = 0.0012; /* logarithm of the distance per CSS pixel of the wheel: 12 % per notch */
 const PAUSE_MS = 400;
@@ -39,12 +39,8 @@ export function panCamera(lab, dx, dy, name) {
 }
 
 export function createWheelZoom(lab) {
-  let wheeling = null;
-  return (point, event, pixels) => {
-    if (!wheeling || event.timeStamp - wheeling.at > PAUSE_MS) wheeling = { gesture: gesture('wheel') };
-    wheeling.at = event.timeStamp;
-    moveCamera(lab, { zoom: Math.exp(pixels * WHEEL) }, wheeling.gesture);
-  };
+  const turns = gestures('wheel', PAUSE_MS);
+  return (point, event, pixels) => moveCamera(lab, { zoom: Math.exp(pixels * WHEEL) }, turns.at(event.timeStamp));
 }
 
 export const goView = (lab, what) => lab.change('/api/view', { do: what }).catch(lab.fail);

@@ -148,6 +148,11 @@ export function createLesson(root, lab, lesson, { back, again }) {
     const gone = Boolean(lab.scene) && there.includes(false);
     tries.inert = gone;
     replace(lost, gone ? whenGone() : null);
+    if (gone) {
+      measured = null;
+      asked++; /* a measurement under way is of no use */
+      draw();
+    }
     drawCommands();
     clearTimeout(timer);
     if (!gone) timer = setTimeout(measure, measured ? REST_MS : 0);
@@ -205,8 +210,10 @@ function createControl(lab, { parameter, label, from, to, choices }) {
       settled = Math.max(settled, (await lab.set({ [parameter]: value }, gesture)).generation || 0);
     } catch (error) {
       lab.fail(error);
+      settled = 0;
     }
     waiting -= 1;
+    control.update();
   };
   const isSwitch = choices?.length === 2 && choices.includes('on') && choices.includes('off');
   const made = isSwitch
@@ -215,7 +222,7 @@ function createControl(lab, { parameter, label, from, to, choices }) {
       ? choice({ label, choices: choices.map(String), value: '', onchange: (value) => set(value) })
       : slider({ label, min: from, max: to, value: from, oninput: set });
   const path = element('code', { class: 'lesson-path', text: parameter });
-  return {
+  const control = {
     node: element('div', { class: 'lesson-control' }, made.node, path),
     /* False if the scene has no such parameter. */
     update() {
@@ -227,4 +234,5 @@ function createControl(lab, { parameter, label, from, to, choices }) {
       return one !== undefined;
     },
   };
+  return control;
 }

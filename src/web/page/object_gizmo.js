@@ -3,7 +3,7 @@
  * keys change the object. Shift while dragging, or the switch Snap, rounds to the steps of the panel Objects.
  * exports: createGizmo(lab, choice, mark, movable(object)) -> {show(), hide(), key(event), snaps, inSteps(vector)} */
 
-import { check, choice as choiceOf, element, gesture, memory, svg } from './ui.js';
+import { check, choice as choiceOf, element, gesture, gestures, memory, svg } from './ui.js';
 import { AXES, angleAbout, handlesOf, ringPoints, travelAlong } from './gizmo_geometry.js';
 
 const MODES = [
@@ -12,7 +12,6 @@ const MODES = [
   ['scale', 'Scale'],
 ];
 const SCALE_STEP = 0.1;
-const PAUSE_MS = 800;
 const signs = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 };
 
 const unit = (axis, length) => AXES.map((_, at) => (at === axis ? length : 0));
@@ -25,7 +24,7 @@ export function createGizmo(lab, choice, mark, movable) {
   let mode = memory.get('gizmo.mode', 'move');
   let snaps = memory.get('gizmo.snap', false);
   let drag = null;
-  let keys = null;
+  const keys = gestures('gizmo');
 
   const modes = choiceOf({ label: 'Handles', choices: MODES, value: mode, radios: true, onchange: setMode });
   const snap = check('Snap', snaps, setSnap);
@@ -221,19 +220,16 @@ export function createGizmo(lab, choice, mark, movable) {
     const sign = signs[event.key];
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     if (sign) {
-      if (!keys || keys.name !== name || event.timeStamp - keys.at > PAUSE_MS)
-        keys = { name, gesture: gesture('gizmo') };
-      keys.at = event.timeStamp;
-      stepBy(AXES.indexOf(name), event.shiftKey ? sign * 0.1 : sign);
+      stepBy(AXES.indexOf(name), event.shiftKey ? sign * 0.1 : sign, keys.at(event.timeStamp, name));
     } else if (!key(event)) return;
     else [...nodes.values()][0]?.focus({ preventScroll: true }); /* the handles of the new mode */
     event.preventDefault();
     event.stopPropagation();
   }
 
-  function stepBy(axis, count) {
-    if (mode === 'move') choice.move(unit(axis, count * step()), keys.gesture);
-    else if (mode === 'turn') choice.turn(unit(axis, count * memory.get('object.angle', 15)), keys.gesture);
-    else choice.scale(memory.get('object.factor', 1.1) ** count, keys.gesture);
+  function stepBy(axis, count, series) {
+    if (mode === 'move') choice.move(unit(axis, count * step()), series);
+    else if (mode === 'turn') choice.turn(unit(axis, count * memory.get('object.angle', 15)), series);
+    else choice.scale(memory.get('object.factor', 1.1) ** count, series);
   }
 }

@@ -3,10 +3,9 @@
  *   choice: {name, move(by, gesture), turn(by, gesture), scale(factor, gesture)}; id: key of the stored step sizes;
  *   many: a word for the labels */
 
-import { button, element, gesture, memory, number } from './ui.js';
+import { button, element, gestures, memory, number } from './ui.js';
 
 const AXES = ['x', 'y', 'z'];
-const PAUSE_MS = 800;
 
 export function createPads(choice, { id = 'object', many = '' } = {}) {
   const steps = {
@@ -15,15 +14,9 @@ export function createPads(choice, { id = 'object', many = '' } = {}) {
     factor: memory.get(`${id}.factor`, 1.1),
   };
   const named = (verb) => (many ? `${verb} ${many}` : verb);
-  let last = null;
-
+  const presses = gestures('step');
   /* Consecutive presses of one button are one undo step. */
-  function nameOf(what) {
-    const now = performance.now();
-    if (!last || last.what !== what || now - last.at > PAUSE_MS) last = { what, gesture: gesture('step') };
-    last.at = now;
-    return last.gesture;
-  }
+  const nameOf = (what) => presses.at(performance.now(), what);
 
   function pad(label, size, act) {
     return element(

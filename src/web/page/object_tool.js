@@ -5,17 +5,16 @@
 
 import { createWheelZoom } from './camera_moves.js';
 import { createGizmo } from './object_gizmo.js';
-import { gesture } from './ui.js';
+import { gesture, gestures } from './ui.js';
 import { add, dot, minus, times } from './ray_vectors.js';
 
 const STILL_PX = 3; /* a shorter drag is a click */
 const KEY_PX = 8; /* CSS pixels per key press */
-const PAUSE_MS = 600;
 
 export function objectTool(lab, choice, mark) {
   const { view } = lab;
   let drag = null;
-  let keys = null;
+  const keys = gestures('object');
 
   const isUnbounded = (object) => lab.scene.shapes.find((each) => each.shape === object.shape)?.unbounded;
   const moves = (object) => object && (object.kind === 'light' || (object.kind === 'solid' && !isUnbounded(object)));
@@ -127,13 +126,11 @@ export function objectTool(lab, choice, mark) {
     else if (event.key === 'Delete') choice.remove();
     else if (gizmo.key(event)) return true;
     else if (steps[event.key] && moves(choice.object) && mark.at()) {
-      if (!keys || event.timeStamp - keys.at > PAUSE_MS) keys = { gesture: gesture('object') };
-      keys.at = event.timeStamp;
       const fine = event.shiftKey ? 0.1 : 1;
       const [dx, dy] = steps[event.key];
       choice.move(
         offset((dx * fine) / view.scale, (dy * fine) / view.scale, Math.max(depthOf(mark.at()), 0)),
-        keys.gesture,
+        keys.at(event.timeStamp),
       );
     } else return false;
     return true;

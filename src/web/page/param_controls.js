@@ -4,14 +4,13 @@
  *   single: the one input that a label belongs to, or null for a group; busy: it is being dragged; set(value, true):
  *   after a rejected value */
 
-import { element, gesture, toByte, toLinear, unique } from './ui.js';
+import { element, gesture, gestures, toByte, toLinear, unique } from './ui.js';
 import { scale } from './ui_controls.js';
 import { numberInput, numberOf } from './ui_number_input.js';
 import { workingRange } from './param_range.js';
 
 const CHANNELS = ['red', 'green', 'blue'];
 const AXES = ['x', 'y', 'z'];
-const PAUSE_MS = 1000; /* faster key presses are one undo step */
 const COEFFICIENT = 1e6; /* colours with a larger upper bound are per-channel coefficients */
 
 export const written = (x) => (Number.isFinite(x) ? String(Number(x.toPrecision(7))) : '');
@@ -41,8 +40,7 @@ function numberBox(context, label, onvalue) {
 
 function slider(row, context, label, send) {
   let ruler = null;
-  let mine = null;
-  let last = -Infinity;
+  const presses = gestures('slider');
   let dragged = false;
   const range = element('input', { type: 'range', class: 'range', min: 0, step: 1, ...attributes(context, label) });
   const box = numberBox(context, `${label || context.name}, number`, (value) => {
@@ -61,12 +59,9 @@ function slider(row, context, label, send) {
     range.setAttribute('aria-valuetext', `${written(value)}${row.unit ? ` ${row.unit}` : ''}`);
     range.style.setProperty('--filled', `${(100 * range.value) / ruler.steps}%`);
   };
-  range.addEventListener('pointerdown', () => {
-    last = -Infinity;
-  });
+  range.addEventListener('pointerdown', presses.end);
   range.addEventListener('input', (event) => {
-    if (!dragged && event.timeStamp - last > PAUSE_MS) mine = gesture('slider');
-    last = event.timeStamp;
+    const mine = presses.at(event.timeStamp, '', dragged);
     dragged = true;
     const value = ruler.value(Number(range.value));
     show(value);

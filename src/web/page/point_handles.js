@@ -4,11 +4,10 @@
  *   list() -> [{path, name}]: the parameters to move and their names; symbol: an icon; what: a word for screen
  *   readers */
 
-import { digits, element, gesture, icon } from './ui.js';
+import { digits, element, gesture, gestures, icon } from './ui.js';
 
 const EDGE = 30;
 const KEY_PX = 12; /* CSS pixels per key press */
-const PAUSE_MS = 600;
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const minus = (a, b) => a.map((value, axis) => value - b[axis]);
@@ -136,7 +135,7 @@ export function createPointHandles(lab, { list, symbol, what }) {
   }
 
   function createHandle(path, name) {
-    const handle = { path, name, moved: null, drag: null, keys: null };
+    const handle = { path, name, moved: null, drag: null, keys: gestures('point') };
     handle.label = element('span', { class: 'point-name', text: name });
     handle.node = element(
       'button',
@@ -186,12 +185,10 @@ export function createPointHandles(lab, { list, symbol, what }) {
         ArrowDown: [0, KEY_PX],
       }[event.key];
       if (!offset || event.ctrlKey || event.altKey) return;
-      if (!handle.keys || event.timeStamp - handle.keys.at > PAUSE_MS) handle.keys = { gesture: gesture('point') };
-      handle.keys.at = event.timeStamp;
       move(
         handle,
         along(position(handle), ...offset, { deep: event.shiftKey, seen: !where(position(handle)).outside }),
-        handle.keys.gesture,
+        handle.keys.at(event.timeStamp),
       );
       event.preventDefault();
       event.stopPropagation();

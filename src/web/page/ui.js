@@ -11,6 +11,8 @@
  *   replace(node, ...children)                 replaces all children
  *   unique(prefix)                             a unique id
  *   gesture(prefix)                            a unique string for one drag
+ *   gestures(prefix, pauseMs)                  {at(timeStamp, what, held), end()}: that of the presses which follow
+ *       each other without a pause; what: their kind
  *   icon(name)                                 a line icon; see icons.js
  *   button(label, onclick, {icon, kind: 'primary' | 'quiet' | 'danger', title, pressed, small, bare, disabled})
  *       bare: the label is for screen readers only
@@ -47,7 +49,7 @@ import { icon } from './icons.js';
 import { table } from './ui_table.js';
 import { dialog, ask } from './ui_dialog.js';
 import { slider, choice, number, text, check } from './ui_controls.js';
-import { element, svg, replace, unique, gesture, memory } from './ui_base.js';
+import { element, svg, replace, unique, gesture, gestures, memory } from './ui_base.js';
 import { digits, seconds, count, vector, toLinear, toByte } from './ui_numbers.js';
 
 export {
@@ -65,6 +67,7 @@ export {
   replace,
   unique,
   gesture,
+  gestures,
   memory,
 };
 export { digits, seconds, count, vector, toLinear, toByte };

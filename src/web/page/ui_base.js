@@ -1,5 +1,5 @@
 /* Elements, ids and memory for ui.js and its parts.
- * exports: element, svg, replace, unique, gesture, memory (see ui.js) */
+ * exports: element, svg, replace, unique, gesture, gestures, memory (see ui.js) */
 
 const SVG = 'http://www.w3.org/2000/svg';
 let counter = 0;
@@ -35,6 +35,21 @@ export function replace(node, ...children) {
 export const unique = (prefix = 'id') => `${prefix}-${++counter}`;
 export const gesture = (prefix = 'drag') =>
   `${prefix}-${Date.now().toString(36)}-${++counter}-${Math.random().toString(36).slice(2, 8)}`.slice(-64);
+
+/* Presses of one kind that follow each other without a pause are one gesture; held: a drag goes on, with pauses. */
+export function gestures(prefix, pauseMs = 800) {
+  let last = null;
+  return {
+    at(timeStamp, what = '', held = false) {
+      const goes = last && last.what === what && (held || timeStamp - last.at <= pauseMs);
+      last = { what, name: goes ? last.name : gesture(prefix), at: timeStamp };
+      return last.name;
+    },
+    end() {
+      last = null;
+    },
+  };
+}
 
 /* Storage may be disabled or cleared at any time: it is only a convenience. */
 export const memory = {

@@ -1,11 +1,9 @@
 /* Labelled controls. exports: number, text, check, slider, choice (see ui.js)
  * Each is {node, set(value), ..}; set updates the control without calling its listener. */
 
-import { element, gesture, unique } from './ui_base.js';
+import { element, gesture, gestures, unique } from './ui_base.js';
 import { digits } from './ui_numbers.js';
 import { numberInput, numberOf } from './ui_number_input.js';
-
-const PAUSE_MS = 1000; /* faster key presses on a slider are one gesture */
 
 const shown = (value) => (Number.isFinite(value) ? String(Number(Number(value).toPrecision(7))) : '');
 
@@ -123,19 +121,16 @@ export function slider({ label, min, max, step = (max - min) / 200, value, log =
   });
   const box = numberInput({ value: shown(value), 'aria-label': `${label}, number` });
   let mine = null;
-  let last = -Infinity;
+  const presses = gestures('slider');
   let dragged = false;
   const show = (next) => {
     input.value = ruler.position(next);
     input.setAttribute('aria-valuetext', `${digits(next)}${unit ? ` ${unit}` : ''}`);
     input.style.setProperty('--filled', `${(100 * input.value) / ruler.steps}%`);
   };
-  input.addEventListener('pointerdown', () => {
-    last = -Infinity;
-  });
+  input.addEventListener('pointerdown', presses.end);
   input.addEventListener('input', (event) => {
-    if (!dragged && event.timeStamp - last > PAUSE_MS) mine = gesture('slider');
-    last = event.timeStamp;
+    mine = presses.at(event.timeStamp, '', dragged);
     dragged = true;
     const next = ruler.value(Number(input.value));
     box.value = shown(next);
@@ -143,7 +138,7 @@ export function slider({ label, min, max, step = (max - min) / 200, value, log =
     oninput?.(next, mine);
   });
   input.addEventListener('change', () => {
-    onchange?.(ruler.value(Number(input.value)), mine ?? gesture('slider'));
+    onchange?.(ruler.value(Number(input.value)), mine ?? presses.at(performance.now()));
     dragged = false;
   });
   box.addEventListener('change', () => {

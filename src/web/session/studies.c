@@ -1,25 +1,20 @@
 /* The thread that runs a study, and its progress for pages. */
 #include "web/session/studies.h"
 #include "web/session/rescue.h"
+#include "web/session/task_thread.h"
 #include "base/float_environment.h"
 #include "base/text.h"
-#include "measure/clock.h"
 #include "report/json.h"
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* At most four events per second: sending disturbs the measurement. */
-static const double publish_period_s = 0.25;
-
 struct studies {
     lab *l;
-    pthread_mutex_t life; /* held while a thread is started or joined; acquired before lock */
-    pthread_t thread;
-    bool started; /* a thread must be joined */
-    study *s;     /* used by the thread while it runs */
-    atomic_bool stop, ending, drawing;
+    task_thread task; /* its lock is acquired before this one's */
+    study *s;         /* used by the thread while it runs */
+    atomic_bool drawing;
 
     pthread_mutex_t lock; /* guards the fields below */
     bool running;
@@ -36,7 +31,7 @@ status studies_create(lab *l, studies **out, diagnostic *why)
     if (!*out)
         return out_of_memory(why);
     (*out)->l = l;
-    pthread_mutex_init(&(*out)->life, NULL);
+    task_thread_create(&(*out)->task);
     pthread_mutex_init(&(*out)->lock, NULL);
     return STATUS_OK;
 }
@@ -44,21 +39,18 @@ status studies_create(lab *l, studies **out, diagnostic *why)
 /* The caller holds the life lock. */
 static void join_thread(studies *st)
 {
-    if (!st->started)
+    if (!task_thread_join(&st->task))
         return;
-    pthread_join(st->thread, NULL);
-    st->started = false;
     study_destroy(st->s);
     st->s = NULL;
 }
 
 void studies_end(studies *st)
 {
-    pthread_mutex_lock(&st->life);
-    atomic_store(&st->ending, true);
-    atomic_store(&st->stop, true);
+    pthread_mutex_lock(&st->task.life);
+    task_thread_end(&st->task);
     join_thread(st);
-    pthread_mutex_unlock(&st->life);
+    pthread_mutex_unlock(&st->task.life);
 }
 
 void studies_destroy(studies *st)
@@ -66,7 +58,7 @@ void studies_destroy(studies *st)
     if (!st)
         return;
     studies_end(st);
-    pthread_mutex_destroy(&st->life);
+    task_thread_destroy(&st->task);
     pthread_mutex_destroy(&st->lock);
     free(st->name);
     free(st);
@@ -99,12 +91,9 @@ static void publish(studies *st)
 static void on_progress(void *context, const study_moment *now)
 {
     studies *st = context;
-    const double now_s = clock_wall_s();
     pthread_mutex_lock(&st->lock);
-    const bool due = now_s - st->published_s >= publish_period_s;
+    const bool due = task_publish_is_due(&st->published_s);
     st->now = *now;
-    if (due)
-        st->published_s = now_s;
     pthread_mutex_unlock(&st->lock);
     if (due)
         publish(st);
@@ -113,7 +102,7 @@ static void on_progress(void *context, const study_moment *now)
 static bool should_stop(void *context)
 {
     const studies *st = context;
-    return atomic_load(&st->stop);
+    return atomic_load(&st->task.stop);
 }
 
 /* --- the run --- */
@@ -168,27 +157,25 @@ static status claim_run(studies *st, study *s, diagnostic *why)
 
 static status begin(studies *st, study *s, diagnostic *why)
 {
-    if (atomic_load(&st->ending))
-        return diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is shutting down");
+    TRY(task_thread_may_start(&st->task, why));
     TRY(claim_run(st, s, why));
     join_thread(st);
     st->s = s;
-    atomic_store(&st->stop, false);
-    st->started = pthread_create(&st->thread, NULL, run, st) == 0;
-    if (st->started)
-        return STATUS_OK;
+    const status code = task_thread_start(&st->task, run, st, why);
+    if (code == STATUS_OK)
+        return code;
     st->s = NULL;
     pthread_mutex_lock(&st->lock);
     st->running = false;
     pthread_mutex_unlock(&st->lock);
-    return diagnose(why, STATUS_FAILURE, "", "a thread cannot be started");
+    return code;
 }
 
 status studies_start(studies *st, study *s, diagnostic *why)
 {
-    pthread_mutex_lock(&st->life);
+    pthread_mutex_lock(&st->task.life);
     const status code = begin(st, s, why);
-    pthread_mutex_unlock(&st->life);
+    pthread_mutex_unlock(&st->task.life);
     if (code != STATUS_OK)
         study_destroy(s);
     return code;
@@ -204,18 +191,18 @@ bool studies_runs(studies *st, const char *name)
 
 status studies_stop(studies *st, const char *name, diagnostic *why)
 {
-    pthread_mutex_lock(&st->life); /* otherwise the next study might be stopped */
+    pthread_mutex_lock(&st->task.life); /* otherwise the next study might be stopped */
     const bool runs = studies_runs(st, name);
     if (runs)
-        atomic_store(&st->stop, true);
-    pthread_mutex_unlock(&st->life);
+        atomic_store(&st->task.stop, true);
+    pthread_mutex_unlock(&st->task.life);
     return runs ? STATUS_OK
                 : diagnose(why, STATUS_INTERRUPTED, "start the study first", "the study %s is not running", name);
 }
 
 const atomic_bool *studies_ending(const studies *st)
 {
-    return &st->ending;
+    return &st->task.ending;
 }
 
 bool studies_begin_drawing(studies *st)

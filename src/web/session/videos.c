@@ -10,25 +10,22 @@
 #include "scene/model/render_settings.h"
 #include "scene/motion/motion.h"
 #include "web/session/studies.h"
+#include "web/session/task_thread.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-static const double publish_period_s = 0.25;
 #define FRAME_LIMIT_S 600.0
 
 struct videos {
     lab *l;
-    pthread_mutex_t life; /* held while a thread is started or joined; acquired before lock */
-    pthread_t thread;
-    bool started; /* a thread must be joined */
+    task_thread task; /* its lock is acquired before this one's */
     video_plan plan;
-    atomic_bool stop;
 
     pthread_mutex_t lock; /* guards the fields below */
-    bool ending, running, begun;
+    bool running, begun;
     int64_t done;
     double share, began_s, published_s, wall_s;
     FILE *file; /* of the finished video; NULL: none */
@@ -43,7 +40,7 @@ status videos_create(lab *l, videos **out, diagnostic *why)
     if (!*out)
         return out_of_memory(why);
     (*out)->l = l;
-    pthread_mutex_init(&(*out)->life, NULL);
+    task_thread_create(&(*out)->task);
     pthread_mutex_init(&(*out)->lock, NULL);
     return STATUS_OK;
 }
@@ -58,10 +55,8 @@ void video_plan_release(video_plan *plan)
 /* The caller holds the life lock. */
 static void join_thread(videos *v)
 {
-    if (!v->started)
+    if (!task_thread_join(&v->task))
         return;
-    pthread_join(v->thread, NULL);
-    v->started = false;
     pthread_mutex_lock(&v->lock);
     video_plan_release(&v->plan);
     pthread_mutex_unlock(&v->lock);
@@ -69,13 +64,10 @@ static void join_thread(videos *v)
 
 void videos_end(videos *v)
 {
-    pthread_mutex_lock(&v->life);
-    pthread_mutex_lock(&v->lock);
-    v->ending = true;
-    pthread_mutex_unlock(&v->lock);
-    atomic_store(&v->stop, true);
+    pthread_mutex_lock(&v->task.life);
+    task_thread_end(&v->task);
     join_thread(v);
-    pthread_mutex_unlock(&v->life);
+    pthread_mutex_unlock(&v->task.life);
 }
 
 void videos_destroy(videos *v)
@@ -85,7 +77,7 @@ void videos_destroy(videos *v)
     videos_end(v);
     if (v->file)
         fclose(v->file);
-    pthread_mutex_destroy(&v->life);
+    task_thread_destroy(&v->task);
     pthread_mutex_destroy(&v->lock);
     free(v);
 }
@@ -120,18 +112,15 @@ static void publish(videos *v)
 static bool must_stop(void *context)
 {
     videos *v = context;
-    return atomic_load(&v->stop) || studies_runs(v->l->studies, NULL);
+    return atomic_load(&v->task.stop) || studies_runs(v->l->studies, NULL);
 }
 
 static bool on_progress(void *context, double share)
 {
     videos *v = context;
-    const double now_s = clock_wall_s();
     pthread_mutex_lock(&v->lock);
-    const bool due = now_s - v->published_s >= publish_period_s;
+    const bool due = task_publish_is_due(&v->published_s);
     v->share = share;
-    if (due)
-        v->published_s = now_s;
     pthread_mutex_unlock(&v->lock);
     if (due)
         publish(v);
@@ -239,7 +228,7 @@ static void finish(videos *v, FILE *file, status code, const diagnostic *why)
     pthread_mutex_lock(&v->lock);
     v->running = false;
     v->wall_s = clock_wall_s() - v->began_s;
-    v->failed = code != STATUS_OK && !atomic_load(&v->stop);
+    v->failed = code != STATUS_OK && !atomic_load(&v->task.stop);
     v->trouble = *why;
     v->file = whole ? file : NULL;
     v->size = whole ? (size_t)size : 0;
@@ -273,9 +262,9 @@ static void *run(void *context)
 static status claim(videos *v, diagnostic *why)
 {
     pthread_mutex_lock(&v->lock);
-    const bool busy = v->running, ending = v->ending;
+    const bool busy = v->running;
     FILE *before = NULL;
-    if (!busy && !ending) {
+    if (!busy) {
         before = v->file;
         v->file = NULL;
         v->running = v->begun = true;
@@ -287,48 +276,46 @@ static status claim(videos *v, diagnostic *why)
     pthread_mutex_unlock(&v->lock);
     if (before)
         fclose(before);
-    if (ending)
-        return diagnose(why, STATUS_INTERRUPTED, "start the laboratory again", "the laboratory is shutting down");
     return busy ? diagnose(why, STATUS_INTERRUPTED, "wait until it ends, or stop it", "another video is being rendered")
                 : STATUS_OK;
 }
 
 static status begin(videos *v, video_plan *plan, diagnostic *why)
 {
+    TRY(task_thread_may_start(&v->task, why));
     TRY(claim(v, why));
     join_thread(v);
     pthread_mutex_lock(&v->lock);
     v->plan = *plan;
     *plan = (video_plan){.s = NULL};
     pthread_mutex_unlock(&v->lock);
-    atomic_store(&v->stop, false);
-    v->started = pthread_create(&v->thread, NULL, run, v) == 0;
-    if (v->started)
-        return STATUS_OK;
+    const status code = task_thread_start(&v->task, run, v, why);
+    if (code == STATUS_OK)
+        return code;
     pthread_mutex_lock(&v->lock);
     v->running = false;
     video_plan_release(&v->plan);
     pthread_mutex_unlock(&v->lock);
-    return diagnose(why, STATUS_FAILURE, "", "a thread cannot be started");
+    return code;
 }
 
 status videos_start(videos *v, video_plan *plan, diagnostic *why)
 {
-    pthread_mutex_lock(&v->life);
+    pthread_mutex_lock(&v->task.life);
     const status code = begin(v, plan, why);
-    pthread_mutex_unlock(&v->life);
+    pthread_mutex_unlock(&v->task.life);
     video_plan_release(plan);
     return code;
 }
 
 status videos_stop(videos *v, diagnostic *why)
 {
-    pthread_mutex_lock(&v->life);
+    pthread_mutex_lock(&v->task.life);
     pthread_mutex_lock(&v->lock);
     const bool running = v->running;
     pthread_mutex_unlock(&v->lock);
-    atomic_store(&v->stop, true);
-    pthread_mutex_unlock(&v->life);
+    atomic_store(&v->task.stop, true);
+    pthread_mutex_unlock(&v->task.life);
     return running ? STATUS_OK : diagnose(why, STATUS_INTERRUPTED, "start one first", "no video is being rendered");
 }
 
