@@ -1,5 +1,5 @@
 /* The thread of a long task of the laboratory, one at a time: a study, a video. Members other than life and stop are
- * private. Ownership: task_thread_create prepares a value, task_thread_destroy releases it, without a running thread. */
+ * private. Ownership: task_thread_create prepares a value; task_thread_destroy releases it, when no thread runs. */
 #pragma once
 
 #include "base/status.h"
