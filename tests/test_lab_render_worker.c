@@ -23,6 +23,7 @@ typedef struct studio {
     uint64_t serial, generation; /* of the last image */
     int images, passes_after_final, json;
     bool final;
+    double finer_s; /* when the first pass after the first one came, of the last generation that has one */
 } studio;
 
 /* Images arrive in order: serials increase, generations and passes never decrease. */
@@ -38,6 +39,8 @@ static void take_image(void *of, const shared_image *shown)
     s->generation = shown->generation;
     s->final = shown->final;
     s->images++;
+    if (shown->pass == 2)
+        s->finer_s = clock_wall_s();
     pthread_mutex_unlock(&s->lock);
 }
 
@@ -147,6 +150,21 @@ static void the_last_of_many_changes_wins(void **state)
     }
     assert_int_equal(final_film(&s), film_of(rod_scene("render.width=320 render.height=240 liquid.ior=1.999")));
     close_studio(&s);
+}
+
+/* Two changes without a pause are a drag: its finer passes wait for 0.15 s, which the first passes may use. */
+static void finer_passes_wait_until_a_drag_rests(void **state)
+{
+    (void)state;
+    studio s;
+    open_studio(&s, rod_scene("render.width=400 render.height=300 render.samples=16"));
+    final_film(&s);
+    apply(&s, "liquid.ior=1.4");
+    const double changed_s = clock_wall_s();
+    apply(&s, "liquid.ior=1.5");
+    final_film(&s);
+    close_studio(&s);
+    assert_true(s.finer_s >= changed_s + 0.15);
 }
 
 static void errors_are_reported_and_cleared(void **state)
@@ -424,6 +442,7 @@ int main(void)
         cmocka_unit_test(the_final_image_is_the_film_of_the_scene),
         cmocka_unit_test(coarse_passes_come_first_and_leave_the_film_unchanged),
         cmocka_unit_test(the_last_of_many_changes_wins),
+        cmocka_unit_test(finer_passes_wait_until_a_drag_rests),
         cmocka_unit_test(errors_are_reported_and_cleared),
         cmocka_unit_test(nothing_is_rendered_while_suspended),
         cmocka_unit_test(ending_the_worker_ends_all_waits),

@@ -34,6 +34,7 @@ void render_worker_suspend(render_worker *p, const char *text)
     pthread_mutex_lock(&p->lock);
     snprintf(p->waiting_text, sizeof p->waiting_text, "%s", text ? text : "");
     p->waiting = text ? p->waiting_text : NULL;
+    p->wake_requested = true;
     pthread_cond_broadcast(&p->changed);
     pthread_cond_signal(&p->wake);
     while (text && p->busy)

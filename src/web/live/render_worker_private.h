@@ -38,7 +38,9 @@ struct render_worker {
     int interrupted;  /* interrupted first passes in a row, including the loads before them */
     double started_s; /* start time of the current load or pass */
     uint64_t
-        taken_generation; /* generation of the document that the snapshot copies, loaded or not; 0: copy it again */
+        taken_generation;     /* generation of the document that the snapshot copies, loaded or not; 0: copy it again */
+    uint64_t seen_generation; /* the newest that was ever taken */
+    double changed_s, finer_after_s; /* when it was taken; when its passes after the first may begin */
     bool was_on;
     adaptive_resolution traced, raster; /* of the frames of the live slime */
 };

@@ -59,6 +59,21 @@ static void set_ready(render_worker *p, bool ready)
     pthread_mutex_unlock(&p->lock);
 }
 
+/* Changes that follow each other within TOGETHER_S are a drag: the passes after the first wait until it rests for
+ * REST_S. They would be interrupted anyway, and meanwhile take the processors from whoever shows the first pass. */
+static const double together_s = 0.25, rest_s = 0.15;
+
+static void note_change(render_worker *p, uint64_t generation)
+{
+    if (generation == p->seen_generation)
+        return;
+    const double now_s = clock_wall_s();
+    const bool several = p->seen_generation > 0 && generation - p->seen_generation > 1;
+    p->finer_after_s = several || now_s - p->changed_s < together_s ? now_s + rest_s : now_s;
+    p->changed_s = now_s;
+    p->seen_generation = generation;
+}
+
 /* Copies the scene document to the snapshot and reuses as much loaded data as possible. */
 void render_worker_renew_snapshot(render_worker *p)
 {
@@ -66,6 +81,7 @@ void render_worker_renew_snapshot(render_worker *p)
     uint64_t generation;
     scene *next = scene_document_take(p->scene_document, &generation);
     p->taken_generation = generation; /* set before loading, which a newer generation interrupts */
+    note_change(p, generation);
     p->pass = 0;
     const bool had_slime = has_slime(p);
     pthread_rwlock_wrlock(&p->snapshot_lock);

@@ -2,6 +2,9 @@
 #include "web/live/render_worker_private.h"
 
 #include "base/float_environment.h"
+#include "measure/clock.h"
+#include <errno.h>
+#include <math.h>
 #include <string.h>
 
 void render_worker_notify(render_worker *p)
@@ -28,22 +31,41 @@ void render_worker_set_error(render_worker *p, status code, const diagnostic *wh
         render_worker_notify(p);
 }
 
+/* Seconds until there is work, unless somebody wakes the thread; INFINITY: nothing is left to do. */
+static double work_due_s(render_worker *p)
+{
+    if (render_worker_is_stale(p) || live_is_due(p->live_slime))
+        return 0.0;
+    if (!p->snapshot_ready || p->pass >= p->plan.count)
+        return INFINITY;
+    return p->pass > 0 ? fmax(0.0, p->finer_after_s - clock_wall_s()) : 0.0;
+}
+
+/* Sleeps until somebody wakes the thread or that time is over. The caller holds the lock. */
+static void sleep_for(render_worker *p, double seconds)
+{
+    const bool ends = isfinite(seconds) && !p->waiting;
+    const struct timespec until = clock_after(ends ? seconds : 0.0);
+    int ended = 0;
+    while (!p->wake_requested && !p->stop && ended != ETIMEDOUT)
+        ended = ends ? pthread_cond_clockwait(&p->wake, &p->lock, CLOCK_MONOTONIC, &until)
+                     : pthread_cond_wait(&p->wake, &p->lock);
+    p->wake_requested = false;
+}
+
 /* Sleeps until there is work; false at the end. */
 static bool wait_for_work(render_worker *p)
 {
     pthread_mutex_lock(&p->lock);
     for (;;) {
         pthread_mutex_unlock(&p->lock);
-        const bool due =
-            render_worker_is_stale(p) || (p->snapshot_ready && p->pass < p->plan.count) || live_is_due(p->live_slime);
+        const double due_s = work_due_s(p);
         pthread_mutex_lock(&p->lock);
-        if (p->stop || (due && !p->waiting))
+        if (p->stop || (due_s <= 0.0 && !p->waiting))
             break;
         p->busy = false;
         pthread_cond_broadcast(&p->changed);
-        while (!p->wake_requested && !p->stop && (p->waiting || !due))
-            pthread_cond_wait(&p->wake, &p->lock);
-        p->wake_requested = false;
+        sleep_for(p, due_s);
     }
     p->busy = !p->stop;
     const bool go_on = !p->stop;

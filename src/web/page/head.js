@@ -2,7 +2,7 @@
  * exports: createHead(root, lab); sets lab.undo(redo) and lab.name() (the scene's file name without folder and
  * extension) */
 
-import { ask, button, copy, element, icon } from './ui.js';
+import { ask, button, copy, element, icon, write } from './ui.js';
 import { displayButton, themeButton } from './display.js';
 import { showHelp } from './keys.js';
 import { saveFile } from './save_file.js';
@@ -75,16 +75,15 @@ export function createHead(root, lab) {
   );
 
   lab.on('state', (state) => {
-    title.textContent = state.title || 'Untitled scene';
-    file.textContent = state.file || 'not saved to a file yet';
-    mark.hidden = state.saved;
-    document.title = `${state.saved ? '' : '• '}${state.title || 'Cuvette'}`;
+    write(title, { textContent: state.title || 'Untitled scene' });
+    write(file, { textContent: state.file || 'not saved to a file yet' });
+    write(mark, { hidden: state.saved });
+    write(document, { title: `${state.saved ? '' : '• '}${state.title || 'Cuvette'}` });
     for (const [node, what, word] of [
       [undo, state.undo, 'Undo'],
       [redo, state.redo, 'Redo'],
     ]) {
-      node.disabled = !what;
-      node.title = what ? `${word} ${what}` : `Nothing to ${word.toLowerCase()}`;
+      write(node, { disabled: !what, title: what ? `${word} ${what}` : `Nothing to ${word.toLowerCase()}` });
     }
   });
 }

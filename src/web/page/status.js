@@ -5,12 +5,14 @@
 import { button, copy, count, digits, element, icon, replace, seconds } from './ui.js';
 
 const LINGER_MS = 6000;
+const PACE_MS = 200; /* numbers that change faster cannot be read, and cost the images time */
 
 export function createStatus(root, live, lab) {
   const facts = element('div', { class: 'status-facts' });
   const message = element('div', { class: 'status-message', hidden: true });
   let timer = 0;
-  let frame = 0;
+  let due = 0;
+  let drawnAt = -Infinity;
   root.append(facts, message);
 
   const clear = () => {
@@ -48,11 +50,12 @@ export function createStatus(root, live, lab) {
   };
 
   const draw = () => {
-    frame = 0;
+    due = 0;
+    drawnAt = performance.now();
     replace(facts, items(lab));
   };
   const soon = () => {
-    frame ||= requestAnimationFrame(draw);
+    due ||= setTimeout(draw, Math.max(0, drawnAt + PACE_MS - performance.now()));
   };
   for (const name of ['picture', 'state', 'connection', 'pass', 'notes']) lab.on(name, soon);
   draw();

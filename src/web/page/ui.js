@@ -9,6 +9,7 @@
  *                                              null is omitted
  *   svg(tag, attributes, ...children)          the same for SVG elements
  *   replace(node, ...children)                 replaces all children
+ *   write(node, {property: value})             assigns the properties that differ
  *   unique(prefix)                             a unique id
  *   gesture(prefix)                            a unique string for one drag
  *   gestures(prefix, pauseMs)                  {at(timeStamp, what, held), end()}: that of the presses which follow
@@ -49,7 +50,7 @@ import { icon } from './icons.js';
 import { table } from './ui_table.js';
 import { dialog, ask } from './ui_dialog.js';
 import { slider, choice, number, text, check } from './ui_controls.js';
-import { element, svg, replace, unique, gesture, gestures, memory } from './ui_base.js';
+import { element, svg, replace, write, unique, gesture, gestures, memory } from './ui_base.js';
 import { digits, seconds, count, vector, toLinear, toByte } from './ui_numbers.js';
 
 export {
@@ -65,6 +66,7 @@ export {
   element,
   svg,
   replace,
+  write,
   unique,
   gesture,
   gestures,

@@ -1,5 +1,5 @@
 /* Elements, ids and memory for ui.js and its parts.
- * exports: element, svg, replace, unique, gesture, gestures, memory (see ui.js) */
+ * exports: element, svg, replace, write, unique, gesture, gestures, memory (see ui.js) */
 
 const SVG = 'http://www.w3.org/2000/svg';
 let counter = 0;
@@ -30,6 +30,11 @@ export function replace(node, ...children) {
     ...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false),
   );
   return node;
+}
+
+/* Assigns only what differs: an equal value would cost a layout all the same. */
+export function write(node, properties) {
+  for (const [name, value] of Object.entries(properties)) if (node[name] !== value) node[name] = value;
 }
 
 export const unique = (prefix = 'id') => `${prefix}-${++counter}`;

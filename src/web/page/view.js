@@ -38,7 +38,7 @@
  *                                            button that removes it
  * lab.on('view', f) reports a change of scale, position or size: elements in overlay must be placed again. */
 
-import { element, svg } from './ui.js';
+import { element, svg, write } from './ui.js';
 import { createPlace } from './view_place.js';
 import { createPainting } from './view_painting.js';
 import { createToolbar } from './view_tools.js';
@@ -106,8 +106,7 @@ export function createView(root, lab) {
     const why = state.trouble
       ? [state.trouble.error, state.trouble.remedy].filter(Boolean).join(' – ')
       : state.waiting || (lab.picture ? '' : 'Loading the scene …');
-    waiting.textContent = why || '';
-    waiting.hidden = !why;
+    write(waiting, { textContent: why || '', hidden: !why });
     waiting.classList.toggle('trouble', Boolean(state.trouble));
   };
   lab.on('state', explain);

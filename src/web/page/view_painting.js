@@ -29,13 +29,7 @@ export function createPainting(canvas, view, place, lab) {
   lab.on('state', (state) => {
     if (state.picture) onPass(state.picture);
   });
-  return {
-    paint: () => {
-      frame ||= requestAnimationFrame(paint);
-    },
-    pixel,
-    show,
-  };
+  return { paint: schedule, pixel, show };
 
   function due() {
     return newer(lab.newestPass, shown) || (lacksExact() && !lab.dragging());
@@ -111,7 +105,7 @@ export function createPainting(canvas, view, place, lab) {
       full_height: height,
     };
     if (resized) place.fit();
-    else view.redraw();
+    else schedule();
     lab.emit('picture', lab.picture);
   }
 
@@ -119,7 +113,11 @@ export function createPainting(canvas, view, place, lab) {
     const next = blob ? await createImageBitmap(blob, { colorSpaceConversion: 'none' }) : null;
     if (instead) instead.close();
     instead = next;
-    view.redraw();
+    schedule();
+  }
+
+  function schedule() {
+    frame ||= requestAnimationFrame(paint);
   }
 
   function paint() {
@@ -133,7 +131,7 @@ export function createPainting(canvas, view, place, lab) {
     if (!drawn || !view.width) return;
     const coarse = drawn.width < view.width;
     context.imageSmoothingEnabled = coarse || place.scale * ratio < 2;
-    context.imageSmoothingQuality = 'high';
+    context.imageSmoothingQuality = lab.dragging() ? 'low' : 'high';
     context.drawImage(
       drawn,
       place.left * ratio,

@@ -3,7 +3,7 @@
  * exports: createToolbar(view, lab, readout) -> {node, bar, options, tool, use, chosen} */
 
 import { panCamera } from './camera_moves.js';
-import { button, element, gesture, icon, unique } from './ui.js';
+import { button, element, gesture, icon, unique, write } from './ui.js';
 import { createPinch } from './view_pinch.js';
 
 const ZOOM = 1.25;
@@ -62,7 +62,7 @@ export function createToolbar(view, lab, readout) {
 
   listen(view.stage);
   lab.on('view', () => {
-    level.textContent = `${Math.round(view.scale * devicePixelRatio * 100)} %`;
+    write(level, { textContent: `${Math.round(view.scale * devicePixelRatio * 100)} %` });
   });
   return { node, bar, options, tool, use, chosen: () => chosen };
 
@@ -197,9 +197,10 @@ export function createToolbar(view, lab, readout) {
     event.preventDefault();
   }
 
+  /* Position and bytes of a pixel; not in a drag, in which the image moves and reading it costs as much as drawing. */
   function read(point) {
-    const bytes = point.inside ? view.pixel(point.x, point.y) : null;
-    readout.hidden = !bytes;
+    const bytes = point.inside && !drag ? view.pixel(point.x, point.y) : null;
+    write(readout, { hidden: !bytes });
     if (!bytes) return;
     const [r, g, b] = bytes;
     readout.replaceChildren(
