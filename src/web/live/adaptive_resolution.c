@@ -1,18 +1,19 @@
 /* The steps of the adaptive resolution, with hysteresis. */
 #include "web/live/adaptive_resolution.h"
 
-static const int shrinks[] = {1, 2, 3, 4, 6, 8, 12, 16};
-enum { STEPS = sizeof shrinks / sizeof *shrinks };
+const int resolution_shrinks[RESOLUTION_STEPS] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
+
+enum { STEPS = 8 }; /* of a live frame: the slime is still seen in the coarsest */
 
 int adaptive_resolution_divisor(const adaptive_resolution *p)
 {
-    return shrinks[p->step];
+    return resolution_shrinks[p->step];
 }
 
 /* The ratio of the pixel counts of two steps. */
 static double growth(int from, int to)
 {
-    const double ratio = (double)shrinks[from] / shrinks[to];
+    const double ratio = (double)resolution_shrinks[from] / resolution_shrinks[to];
     return ratio * ratio;
 }
 

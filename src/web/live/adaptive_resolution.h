@@ -2,6 +2,10 @@
  * when there is time left, one step at a time, with hysteresis. Pure functions. */
 #pragma once
 
+/* The factors by which width and height are divided, finest first. */
+enum { RESOLUTION_STEPS = 10 };
+extern const int resolution_shrinks[RESOLUTION_STEPS];
+
 typedef struct adaptive_resolution {
     int step;       /* index of the resolution step; 0 is the finest */
     double frame_s; /* smoothed frame time; 0: unknown */

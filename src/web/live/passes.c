@@ -1,13 +1,14 @@
 /* The choice of the render passes from the measured speed. */
 #include "web/live/passes.h"
 #include "scene/model/work.h"
+#include "web/live/adaptive_resolution.h"
 
 #include <math.h>
 
 /* The rate before any measurement: a scene of moderate depth on one slow core. */
 static const double rate_unknown = 1e6;
 
-enum { SHRINK_MAX = 32, STEP = 4 }; /* of the coarsest pass; from one pass to the next */
+enum { STEP = 4 }; /* from one pass to the next */
 
 render_settings passes_settings(const render_settings *r, int shrink, bool single)
 {
@@ -38,10 +39,10 @@ pass_plan passes_plan(const render_settings *r, double rate, double first_s)
     const double speed = rate > 0.0 ? rate : rate_unknown;
     const bool many = r->samples > 1 || integrator_traits_of(r)->by_chance;
     if (passes_work(r, 1, false) / speed > first_s) {
-        int shrink = 1;
-        while (shrink < SHRINK_MAX && passes_work(r, shrink, true) / speed > first_s)
-            shrink *= 2;
-        for (; shrink > 1; shrink /= shrink > STEP ? STEP : shrink)
+        int step = 0;
+        while (step < RESOLUTION_STEPS - 1 && passes_work(r, resolution_shrinks[step], true) / speed > first_s)
+            step++;
+        for (int shrink = resolution_shrinks[step]; shrink > 1; shrink /= shrink > STEP ? STEP : shrink)
             put(&plan, shrink, true);
         if (many)
             put(&plan, 1, true);

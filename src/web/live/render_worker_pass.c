@@ -72,10 +72,14 @@ static bool describe(render_worker *p, const job_account *account, int pass, boo
     return false;
 }
 
+/* Smoothed, so that the images of a drag keep their size. */
 static void take_rate(render_worker *p, int pass, const render_result *result)
 {
-    if (result->wall_s > 0.0)
-        p->rate = passes_work(&p->snapshot->render, p->plan.shrink[pass], p->plan.single[pass]) / result->wall_s;
+    const double recent = 0.4;
+    if (result->wall_s <= 0.0)
+        return;
+    const double rate = passes_work(&p->snapshot->render, p->plan.shrink[pass], p->plan.single[pass]) / result->wall_s;
+    p->rate = p->rate > 0.0 ? p->rate + recent * (rate - p->rate) : rate;
 }
 
 void render_worker_render_pass(render_worker *p)

@@ -45,8 +45,9 @@ struct render_worker {
     adaptive_resolution traced, raster; /* of the frames of the live slime */
 };
 
-/* Time limit of the first pass, so that the image follows a dragged slider at about 25 frames a second. */
-#define RENDER_WORKER_FIRST_S 0.04
+/* Time limit of the first pass, so that the image follows a drag at 20 images a second on two processors: whoever draws
+ * them needs about half of the time. */
+#define RENDER_WORKER_FIRST_S 0.025
 
 /* --- for the thread alone --- */
 
