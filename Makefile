@@ -420,33 +420,32 @@ bench: all peers $(build)/tests/bench_mesh $(build)/tests/bench_rows ## benchmar
 # --- installation, upkeep ---
 
 .PHONY: install uninstall
-man := $(DESTDIR)$(PREFIX)/share/man
+LIBDIR ?= $(PREFIX)/lib
+share := $(PREFIX)/share
 pages := $(patsubst src/manual/%,%,$(wildcard src/manual/man?/*))
-completion := $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cuvette
-shared := $(DESTDIR)$(PREFIX)/share/cuvette
-libexec := $(DESTDIR)$(PREFIX)/libexec/cuvette
-libraries := $(DESTDIR)$(PREFIX)/lib
-description := $(libraries)/pkgconfig/cuvette.pc
+# What is installed: mode, file and place of each, without DESTDIR. The list that notes it is what `make uninstall` reads.
+list := $(share)/cuvette/installed-files
+define files
+  echo '755 $(build)/cuvette $(PREFIX)/bin/cuvette'; \
+  echo '755 $(build)/cuvette-import $(PREFIX)/libexec/cuvette/cuvette-import'; \
+  echo '644 src/cuvette.h $(PREFIX)/include/cuvette.h'; \
+  echo '644 $(build)/engine/libcuvette.a $(LIBDIR)/libcuvette.a'; \
+  echo '644 $(build)/$(soname) $(LIBDIR)/libcuvette.so.$(version)'; \
+  echo 'link libcuvette.so.$(version) $(LIBDIR)/$(soname)'; \
+  echo 'link $(soname) $(LIBDIR)/libcuvette.so'; \
+  echo '644 $(build)/cuvette.pc $(LIBDIR)/pkgconfig/cuvette.pc'; \
+  for page in $(pages); do echo "644 src/manual/$$page $(share)/man/$$page"; done; \
+  echo '644 src/cli/cuvette.bash $(share)/bash-completion/completions/cuvette'; \
+  for text in LICENSE README.md CHANGELOG.md src/licences.md; do echo "644 $$text $(share)/doc/cuvette/$${text##*/}"; done; \
+  find experiments plots -type f ! -path '*/__pycache__/*' | while read -r file; do \
+    test -x "$$file" && mode=755 || mode=644; echo "$$mode $$file $(share)/cuvette/$$file"; done
+endef
 install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a ## install under PREFIX (/usr/local), below DESTDIR
-	install -D -m 755 $(build)/cuvette $(DESTDIR)$(PREFIX)/bin/cuvette
-	install -D -m 755 $(build)/cuvette-import $(libexec)/cuvette-import
-	install -D -m 644 src/cuvette.h $(DESTDIR)$(PREFIX)/include/cuvette.h
-	install -D -m 644 $(build)/engine/libcuvette.a $(libraries)/libcuvette.a
-	install -D -m 644 $(build)/$(soname) $(libraries)/libcuvette.so.$(version)
-	ln -sf libcuvette.so.$(version) $(libraries)/$(soname)
-	ln -sf $(soname) $(libraries)/libcuvette.so
-	@mkdir -p $(libraries)/pkgconfig
-	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(description)
-	for page in $(pages); do install -D -m 644 src/manual/$$page $(man)/$$page || exit 1; done
-	install -D -m 644 src/cli/cuvette.bash $(completion)
-	install -D -m 644 LICENSE $(DESTDIR)$(PREFIX)/share/doc/cuvette/LICENSE
-	install -D -m 644 README.md $(DESTDIR)$(PREFIX)/share/doc/cuvette/README.md
-	find experiments plots -type f -exec sh -c 'for f; do test -x "$$f" && mode=755 || mode=644; \
-	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
-uninstall: ## remove the installed files
-	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(DESTDIR)$(PREFIX)/include/cuvette.h $(pages:%=$(man)/%) $(completion)
-	rm -f $(libraries)/libcuvette.a $(libraries)/libcuvette.so $(libraries)/$(soname) $(libraries)/libcuvette.so.$(version) $(description)
-	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette
+	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(build)/cuvette.pc
+	@{ $(files); } | DESTDIR='$(DESTDIR)' .ci/install '$(list)'
+	@.ci/install-notes '$(DESTDIR)' '$(PREFIX)' '$(LIBDIR)'
+uninstall: ## remove the files that make install installed
+	@DESTDIR='$(DESTDIR)' .ci/install --remove '$(list)'
 
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json

@@ -40,7 +40,7 @@ skip() {
 }
 have() { command -v "$1" >/dev/null; }
 run_make() { make -s --no-print-directory config="$config" build="$build" CC="$cc" "$@" 2>&1 |
-    grep -v -i -e jobserver -e '^ '; }
+    grep -v -i -e jobserver -e '^ ' -e '^installed: '; }
 
 # --- installation, with and without DESTDIR
 prefix=$work/prefix staged=$work/destination/opt/cuvette
@@ -136,7 +136,24 @@ try_example() { # NAME WIDTH HEIGHT PATTERN: the part of its output that is the 
 try_example glass_ball 320 240 'film.*preview\|rays:.*'
 try_example slime 800 120 'film.*'
 
+# --- the installed program, from elsewhere
+empty "studies and scenes of the installation are listed anywhere" \
+    "$(
+        list=$(cd "$work" && "$prefix/bin/cuvette" study list 2>&1)
+        for file in depth.study scenes/rod.yaml; do
+            grep -q "^$prefix/share/cuvette/experiments/$file " <<<"$list" || head -n 3 <<<"$list"
+        done
+    )"
+empty "the installed program finds its importer" \
+    "$(cd "$work" && env -u CUVETTE_IMPORT "$prefix/bin/cuvette" render -o models.png \
+        "$prefix/share/cuvette/experiments/scenes/models.yaml" 2>&1 >/dev/null)"
+
 # --- uninstallation
+echo "a user's file" >"$prefix/share/cuvette/plots/mine.gp"
+sed -i 's|/share/man/man1/cuvette.1$|/share/man/man1/cuvette-formerly.1|' "$prefix/share/cuvette/installed-files"
+mv "$prefix/share/man/man1/cuvette.1" "$prefix/share/man/man1/cuvette-formerly.1"
+run_make install PREFIX="$prefix"
 run_make uninstall PREFIX="$prefix"
-empty "make uninstall leaves no file" "$(find "$prefix" -type f -o -type l)"
+empty "make uninstall removes what this and earlier installations installed, and nothing else" \
+    "$(diff <(find "$prefix" -type f -o -type l) <(echo "$prefix/share/cuvette/plots/mine.gp"))"
 exit $failed

@@ -14,8 +14,6 @@
 #include "study/summary.h"
 #include "study/upgrade.h"
 #include "study/verify.h"
-#include <dirent.h>
-#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -335,60 +333,10 @@ static status command_summary(int argc, char **argv, diagnostic *why)
     return for_each_study(STUDY_SUMMARY, print_summary, argc, argv, why);
 }
 
-static int is_study_file(const struct dirent *entry)
-{
-    size_t length = strlen(entry->d_name);
-    return length > 6 && strcmp(entry->d_name + length - 6, ".study") == 0;
-}
-
-/* Prints the line of one study; an unreadable file is an error that does not end the list. */
-static status list_one(const char *folder, const char *name, diagnostic *why)
-{
-    char path[4096];
-    study *s = NULL;
-    diagnostic error = {0};
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    status result = study_read(path, &s, &error);
-    if (result == STATUS_OK)
-        printf("%-40s %5zu cells  %s\n", path, study_cell_count(s), s->title ? s->title : "");
-    else
-        *why = error;
-    study_destroy(s);
-    return result;
-}
-
-static status list_folder(const char *folder, diagnostic *why)
-{
-    struct dirent **entries = NULL;
-    int count = scandir(folder, &entries, is_study_file, alphasort);
-    if (count < 0)
-        return options_wrong(folder, NULL, why, "give a folder with *.study files", "cannot list the folder: %s",
-                             strerrordesc_np(errno));
-    status result = STATUS_OK;
-    for (int i = 0; i < count; i++) {
-        if (result != STATUS_OK)
-            terminal_error(why); /* main prints the last one */
-        status listed = list_one(folder, entries[i]->d_name, why);
-        result = listed == STATUS_OK ? result : listed;
-        free(entries[i]);
-    }
-    free(entries);
-    return result;
-}
-
-static status command_list(int argc, char **argv, diagnostic *why)
-{
-    study_request request;
-    status result = study_request_parse(STUDY_LIST, argc, argv, &request, why);
-    THEN(result, list_folder(request.file_count ? request.files[0] : "experiments", why));
-    study_request_release(&request);
-    return result;
-}
-
 static const command commands[] = {
     {"new", "write a study file for a scene and the parameters to vary", study_new},
     {"run", "run studies, or resume them: measure the missing rows", command_run},
-    {"list", "list the studies in a folder", command_list},
+    {"list", "list the studies and scenes in a folder", study_list},
     {"status", "print the progress of studies", command_status},
     {"merge", "merge the rows of a study that was run in shards", command_merge},
     {"verify", "check every row: damaged, edited, missing, duplicate and marked ones", command_verify},

@@ -116,7 +116,8 @@ static const command_form forms[STUDY_VERB_COUNT] = {
                        "run again. Rows are never rewritten."},
     [STUDY_LIST] = {.take_argument = take_file,
                     .synopsis = "[DIR]",
-                    .about = "List the study files of a folder (default: experiments)."},
+                    .about = "List the study files of a folder, and the scenes of its folder scenes (default: "
+                             "experiments, or those that were installed with the program)."},
     [STUDY_STATUS] =
         {.options = results_options,
          .take_argument = take_file,

@@ -2,36 +2,16 @@
 #include "lesson/lesson.h"
 
 #include "base/grow.h"
+#include "base/installed.h"
 #include "base/text.h"
 #include <dirent.h>
 #include <errno.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-/* From the program in bin to where `make install` puts them, and from build or build/NAME to the sources. */
 char *lesson_folder(void)
 {
-    static const char *const places[] = {"/../share/cuvette", "/..", "/../.."};
-    char own[PATH_MAX];
-    const ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
-    own[length > 0 ? length : 0] = 0;
-    char *slash = strrchr(own, '/');
-    if (!slash)
-        return NULL;
-    *slash = 0;
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        struct stat about;
-        char *path = text_format("%s%s/experiments/lessons", own, places[i]),
-             *real = path ? realpath(path, NULL) : NULL;
-        free(path);
-        if (real && stat(real, &about) == 0 && S_ISDIR(about.st_mode))
-            return real;
-        free(real);
-    }
-    return NULL;
+    return installed_folder("experiments/lessons");
 }
 
 static bool is_lesson(const char *name)

@@ -1,8 +1,7 @@
 #include "scene/assets/mesh_child.h"
 
+#include "base/installed.h"
 #include "base/text.h"
-#include <dlfcn.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +11,6 @@
 #ifndef CUVETTE_LIBEXEC
 #define CUVETTE_LIBEXEC "/usr/local/libexec/cuvette"
 #endif
-
-static const char here;
 
 /* Looks next to a file, or where `make install` puts it if the file is in bin, lib or lib/ARCHITECTURE; NULL if it is
  * in none of them. */
@@ -38,14 +35,11 @@ char *mesh_child_program(void)
     const char *asked = getenv("CUVETTE_IMPORT");
     if (asked && *asked)
         return strdup(asked);
-    char own[PATH_MAX];
-    ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
-    own[length > 0 ? length : 0] = 0;
-    char *path = near(own);
-    Dl_info library; /* the shared library with this code, if it is not part of the program */
-    if (!path && dladdr(&here, &library) && library.dli_fname) {
-        snprintf(own, sizeof own, "%s", library.dli_fname);
-        path = near(own);
+    char *path = NULL;
+    for (code_file of = CODE_PROGRAM; !path && of <= CODE_LIBRARY; of++) {
+        char *own = code_path(of);
+        path = own ? near(own) : NULL;
+        free(own);
     }
     return path ? path : strdup(CUVETTE_LIBEXEC "/" PROGRAM);
 }

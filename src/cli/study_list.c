@@ -1,0 +1,116 @@
+/* `cuvette study list`: the studies of a folder and the scenes below it. */
+#include "cli/study_commands.h"
+
+#include "base/installed.h"
+#include "base/text.h"
+#include "cli/cli.h"
+#include "cli/options.h"
+#include "cli/terminal.h"
+#include "scene/model/scene.h"
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A kind of file in the list; print writes its line, after its path. */
+typedef struct listed_kind {
+    const char *ending;
+    status (*print)(const char *path, diagnostic *why);
+} listed_kind;
+
+static status print_study(const char *path, diagnostic *why)
+{
+    study *s = NULL;
+    TRY(study_read(path, &s, why));
+    printf("%-40s %5zu cells  %s\n", path, study_cell_count(s), s->title ? s->title : "");
+    study_destroy(s);
+    return STATUS_OK;
+}
+
+static status print_scene(const char *path, diagnostic *why)
+{
+    scene *s = NULL;
+    TRY(scene_read(path, &s, why));
+    printf("%-40s       scene  %s\n", path, s->title ? s->title : "");
+    scene_destroy(s);
+    return STATUS_OK;
+}
+
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+/* An unreadable file is an error that does not end the list: main prints the last one. */
+static status print_all(const char *folder, const listed_kind *kind, struct dirent **entries, int count,
+                        diagnostic *why)
+{
+    status result = STATUS_OK;
+    for (int i = 0; i < count; i++) {
+        const char *ending = strrchr(entries[i]->d_name, '.');
+        if (entries[i]->d_name[0] == '.' || !ending || strcmp(ending, kind->ending) != 0)
+            continue;
+        if (result != STATUS_OK)
+            terminal_error(why);
+        char *path = text_format("%s/%s", folder, entries[i]->d_name);
+        diagnostic error = {.line = 0};
+        const status listed = path ? kind->print(path, &error) : out_of_memory(&error);
+        free(path);
+        if (listed != STATUS_OK) {
+            result = listed;
+            *why = error;
+        }
+    }
+    return result;
+}
+
+static status list_folder(const char *folder, const listed_kind *kind, diagnostic *why)
+{
+    struct dirent **entries = NULL;
+    const int count = scandir(folder, &entries, NULL, by_name);
+    if (count < 0)
+        return options_wrong(folder, NULL, why, "give a folder with *.study files", "cannot list the folder: %s",
+                             strerrordesc_np(errno));
+    const status result = print_all(folder, kind, entries, count, why);
+    for (int i = 0; i < count; i++)
+        free(entries[i]);
+    free(entries);
+    return result;
+}
+
+static bool is_folder(const char *path)
+{
+    DIR *d = opendir(path);
+    if (d)
+        closedir(d);
+    return d;
+}
+
+static status list_studies_and_scenes(const char *folder, diagnostic *why)
+{
+    static const listed_kind studies = {".study", print_study}, scenes = {".yaml", print_scene};
+    TRY(list_folder(folder, &studies, why));
+    char *below = text_format("%s/scenes", folder);
+    if (!below)
+        return out_of_memory(why);
+    const status result = is_folder(below) ? list_folder(below, &scenes, why) : STATUS_OK;
+    free(below);
+    return result;
+}
+
+status study_list(int argc, char **argv, diagnostic *why)
+{
+    study_request request;
+    status result = study_request_parse(STUDY_LIST, argc, argv, &request, why);
+    if (result == STATUS_OK) {
+        char *installed = is_folder("experiments") ? NULL : installed_folder("experiments");
+        result = list_studies_and_scenes(request.file_count ? request.files[0]
+                                         : installed        ? installed
+                                                            : "experiments",
+                                         why);
+        free(installed);
+    }
+    study_request_release(&request);
+    return result;
+}
