@@ -29,7 +29,7 @@ export function createStatus(root, live, lab) {
         element('strong', { text: words }),
         remedy ? ` – ${remedy}` : null,
       ),
-      action ? button(action.label, action.act, { small: true }) : null,
+      action ? element('span', { class: 'status-action' }, button(action.label, action.act, { small: true })) : null,
       button('Dismiss', clear, { icon: 'close', bare: true, kind: 'quiet', small: true }),
     );
     message.className = `status-message ${kind}`;
