@@ -123,6 +123,24 @@ static const realism_value *value(const realism_report *r, const char *metric)
     return NULL;
 }
 
+static void one_metric_equals_that_of_the_report(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"edges.left", "lens.focal_length", "reversal.way"};
+    scene *s = rod_scene("");
+    const realism_report r = measured_against(s, s);
+    realism_value one;
+    diagnostic why = {.what = ""};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        worked(realism_measure_one(s, isa_best(), names[i], &one, &why), &why);
+        assert_string_equal(one.metric, names[i]);
+        assert_true(one.measured == value(&r, names[i])->measured && one.theory == value(&r, names[i])->theory);
+    }
+    assert_int_equal(realism_measure_one(s, isa_best(), "lens.pover", &one, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "no metric 'lens.pover'"));
+    scene_destroy(s);
+}
+
 static bool starts_with(const char *text, const char *words)
 {
     return strncmp(text, words, strlen(words)) == 0;
@@ -336,6 +354,7 @@ int main(void)
         cmocka_unit_test(an_empty_vessel_is_a_diverging_lens),
         cmocka_unit_test(apparent_depth_of_a_pond_follows_from_its_index),
         cmocka_unit_test(the_view_equals_the_cameras),
+        cmocka_unit_test(one_metric_equals_that_of_the_report),
         cmocka_unit_test(all_metrics_pass_for_various_indices),
         cmocka_unit_test(undefined_metrics_are_reported_as_undefined),
         cmocka_unit_test(a_relative_error_of_the_index_of_1e_6_fails),

@@ -293,6 +293,24 @@ static void trials_accept_a_slime_without_forces(void **state)
     assert_int_equal(softbody_trials(&s, isa_best(), &unused, NULL), STATUS_BAD_INPUT);
 }
 
+static void one_trial_equals_that_of_the_report(void **state)
+{
+    (void)state;
+    const char *const names[] = {"spring.period_s", "fall.depth",   "bounce.height",
+                                 "momentum.drift",  "volume.drift", "stable_dt.spring_s"};
+    softbody_trial one;
+    diagnostic why = {.what = ""};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        assert_true(softbody_has_trial(names[i]));
+        assert_int_equal(softbody_trial_one(&all.set[0], isa_best(), names[i], &one, &why), STATUS_OK);
+        assert_string_equal(one.name, names[i]);
+        assert_near(one.measured, measured(&all.whole[0], names[i]), 0.0);
+    }
+    assert_false(softbody_has_trial("spring."));
+    assert_int_equal(softbody_trial_one(&all.set[0], isa_best(), "spring.", &one, &why), STATUS_BAD_INPUT);
+    assert_non_null(strstr(why.what, "'spring.'"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -308,6 +326,7 @@ int main(void)
         cmocka_unit_test(names_are_unique_and_have_units),
         cmocka_unit_test(diverged_trials_have_no_value),
         cmocka_unit_test(trials_accept_a_slime_without_forces),
+        cmocka_unit_test(one_trial_equals_that_of_the_report),
     };
     return cmocka_run_group_tests(tests, make_reports, NULL);
 }

@@ -51,13 +51,21 @@ static status print_row(const lesson *l, isa level, diagnostic *why)
     return STATUS_OK;
 }
 
+static void print_pass(const lesson *l, const lesson_result *r)
+{
+    printf("pass  %-16s %s = %.10g%s%s; ", l->name, l->reading, r->measured, l->unit[0] ? " " : "", l->unit);
+    if (lesson_is_timed(l))
+        printf("%d times, no tolerance\n", r->points.count);
+    else
+        printf("largest error of %d points %.1e, tolerance %.1e\n", r->points.count, r->error, l->tolerance);
+}
+
 static status check_one(const lesson *l, isa level, diagnostic *why)
 {
     lesson_result *r = malloc(sizeof *r);
     status code = r ? lesson_check(l, level, r, why) : out_of_memory(why);
     if (code == STATUS_OK)
-        printf("pass  %-16s %s = %.10g%s%s; largest error of %d points %.1e, tolerance %.1e\n", l->name, l->reading,
-               r->measured, l->unit[0] ? " " : "", l->unit, r->points.count, r->error, l->tolerance);
+        print_pass(l, r);
     free(r);
     return code;
 }

@@ -1,6 +1,7 @@
 /* Lessons: guided experiments for the laboratory's gallery, as data files that a teacher writes and translates. A
- * lesson names a scene, a few of its parameters as controls, a prediction to make, and a curve of `cuvette realism`
- * (realism/realism.h) with a value to read; cuvette-lesson(5) describes the format. Every word and parameter is tried
+ * lesson names a scene, a few of its parameters as controls, a prediction to make, and a curve with a value to read: of
+ * `cuvette realism --curve` (realism/realism.h), or a metric at values of one of the controls; cuvette-lesson(5)
+ * describes the format. Every word and parameter is tried
  * when a file is read; lesson_check traces it too.
  *
  * Ownership: lesson_read and lesson_list_find give, lesson_destroy and lesson_list_release release. Errors:
@@ -11,6 +12,7 @@
 #include "scene/model/open.h"
 
 enum { LESSON_CONTROLS_MAX = 5, LESSON_CHOICES_MAX = 6 };
+#define LESSON_SPEEDUP "speedup" /* the metric that measures times */
 
 typedef struct lesson_control {
     char *parameter, *label;
@@ -30,8 +32,10 @@ typedef struct lesson {
     char *ask;                         /* the prediction's question */
     char *choices[LESSON_CHOICES_MAX]; /* of the prediction; none: a number, compared with the reading */
     int choice_count, right;           /* right: index of the correct choice */
+    char predicts;                     /* 'x' or 'y': the axis of the curve with the predicted number; 0: none */
+    int over;                          /* the control whose values are the curve's x axis; -1: curve is used */
     realism_curve curve;
-    double tolerance; /* largest |measured - theory| of the curve */
+    double tolerance; /* largest |measured - theory| of the curve; INFINITY for times */
     char *metric;     /* of the value to read; NULL: the curve's point at `at` */
     double at;
     char *reading, *unit; /* label of the value to read, and its unit; "deg" converts a metric in radians */
@@ -44,6 +48,12 @@ status lesson_read(const char *path, lesson **out, diagnostic *why);
 /* The same for a file below root (base/below.h), and a scene below it. */
 status lesson_read_below(const char *path, const char *root, lesson **out, diagnostic *why);
 void lesson_destroy(lesson *l); /* NULL is allowed */
+
+/* Whether its curve is made of times, which differ from one measurement to the next and have no tolerance. */
+bool lesson_is_timed(const lesson *l);
+/* Labels of its axes, with units; fresh memory, NULL if that runs out. */
+char *lesson_x_label(const lesson *l);
+char *lesson_y_label(const lesson *l);
 
 /* What is measured in a scene, which may be the lesson's with other values of its controls. */
 typedef struct lesson_result {
@@ -58,7 +68,7 @@ status lesson_measure(const lesson *l, const scene *s, isa level, lesson_result 
 status lesson_check(const lesson *l, isa level, lesson_result *out, diagnostic *why);
 
 /* The command that prints the curve, and the one that prints the value; --set for the parameters that the lesson sets.
- * Fresh memory; NULL if memory runs out. */
+ * A metric over a control has only the latter. Fresh memory; NULL if memory runs out. */
 char *lesson_command(const lesson *l, bool curve);
 
 /* The folder of the lessons that belong to the program: experiments/lessons next to its source or where `make install`

@@ -11,12 +11,14 @@
  *     - {parameter: liquid.medium, label: TEXT, choices: [water, ethanol]}
  *   prediction: {ask: TEXT, within: 3}                              a number, compared with the value to read
  *   prediction: {ask: TEXT, choices: [TEXT, ..], right: TEXT}       or a choice
+ *     axis: x                        * of the curve, where the predicted number is; or y
  *   measure:
- *     curve: mirror                  of `cuvette realism --curve`
- *     tolerance: 1e-9
+ *     curve: mirror                  of `cuvette realism --curve`; or
+ *     over: liquid.ior               the metric at the values of this control
+ *     tolerance: 1e-9                not with the metric speedup
  *     reading: TEXT                  label of the value to read
  *     unit: deg                      *
- *     metric: critical.liquid        of `cuvette realism`; or
+ *     metric: critical.liquid        of `cuvette realism` or `cuvette motion`, or speedup; or
  *     at: 60                         the curve's point there
  *   answer: TEXT */
 #include "base/file.h"
@@ -25,6 +27,7 @@
 #include "lesson/lesson.h"
 #include "scene/file/document.h"
 #include "scene/model/params.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -200,14 +203,26 @@ static status read_settings(const reader *r, const node *root)
     return STATUS_OK;
 }
 
+static status read_axis(const reader *r, const node *n)
+{
+    const node *axis = node_get(n, "axis");
+    if (!axis)
+        return STATUS_OK;
+    if (axis->kind != NODE_SCALAR || (strcmp(axis->text, "x") != 0 && strcmp(axis->text, "y") != 0))
+        return node_error(r->file, axis, r->why, "write x or y", "'axis' is neither x nor y");
+    r->l->predicts = axis->text[0];
+    return STATUS_OK;
+}
+
 static status read_prediction(const reader *r, const node *root)
 {
-    static const char *const keys[] = {"ask", "choices", "right", "within"};
+    static const char *const keys[] = {"ask", "choices", "right", "within", "axis"};
     lesson *l = r->l;
     const node *n = NULL;
     TRY(expect_map(r, root, "prediction", &n));
     TRY(node_check_keys(r->file, n, keys, COUNT(keys), r->why));
     TRY(read_text(r, n, "ask", true, &l->ask));
+    TRY(read_axis(r, n));
     const node *choices = node_get(n, "choices"), *right = node_get(n, "right");
     if (!choices)
         return read_number(r, n, "within", &l->answer_within);
@@ -238,23 +253,68 @@ static status read_curve(const reader *r, const node *n)
                       curve && curve->kind == NODE_SCALAR ? curve->text : "");
 }
 
+/* Each value must be a number of the parameter's type. */
+static status try_over(const reader *r, const node *at, const lesson_control *c)
+{
+    double number;
+    char text[NUMBER_TEXT_MAX];
+    for (int i = 0; i < c->choice_count; i++)
+        if (!number_parse_real(c->choices[i], &number))
+            return node_error(r->file, at, r->why, "choose a control whose values are numbers",
+                              "'%.64s', a choice of %.128s, is not a number", c->choices[i], c->parameter);
+    if (c->choice_count)
+        return STATUS_OK;
+    scene *tried = scene_clone(r->l->start);
+    diagnostic refused = {.what = ""};
+    status code = tried ? STATUS_OK : out_of_memory(r->why);
+    THEN(code, scene_set(tried, c->parameter, number_format(c->from + (c->to - c->from) / M_PI, text), &refused));
+    scene_destroy(tried);
+    return code == STATUS_BAD_INPUT
+               ? node_error(r->file, at, r->why, "give the control's values as choices", "%s", refused.what)
+               : code;
+}
+
+static status read_over(const reader *r, const node *measure, const node *over)
+{
+    lesson *l = r->l;
+    if (node_get(measure, "curve") || node_get(measure, "at"))
+        return node_error(r->file, over, r->why, "give either 'curve', or 'over' with 'metric'",
+                          "'over' cannot be combined with 'curve' or 'at'");
+    for (l->over = 0; over->kind == NODE_SCALAR && l->over < l->control_count; l->over++)
+        if (strcmp(l->control[l->over].parameter, over->text) == 0)
+            return try_over(r, over, &l->control[l->over]);
+    return node_error(r->file, over, r->why, "write the parameter of one of the controls",
+                      "'over' is none of the controls");
+}
+
+/* A time has none. */
+static status read_tolerance(const reader *r, const node *n)
+{
+    const node *tolerance = node_get(n, "tolerance");
+    if (!lesson_is_timed(r->l))
+        return read_number(r, n, "tolerance", &r->l->tolerance);
+    r->l->tolerance = INFINITY;
+    return tolerance ? node_error(r->file, tolerance, r->why, "remove it", "times have no tolerance") : STATUS_OK;
+}
+
 static status read_measure(const reader *r, const node *root)
 {
-    static const char *const keys[] = {"curve", "tolerance", "reading", "unit", "metric", "at"};
+    static const char *const keys[] = {"curve", "over", "tolerance", "reading", "unit", "metric", "at"};
     lesson *l = r->l;
     const node *n = NULL;
     TRY(expect_map(r, root, "measure", &n));
     TRY(node_check_keys(r->file, n, keys, COUNT(keys), r->why));
     l->line = n->line;
     l->column = n->column;
-    TRY(read_curve(r, n));
-    TRY(read_number(r, n, "tolerance", &l->tolerance));
+    const node *over = node_get(n, "over"), *at = node_get(n, "at");
+    l->over = -1;
+    TRY(over ? read_over(r, n, over) : read_curve(r, n));
+    TRY(read_text(r, n, "metric", false, &l->metric));
+    TRY(read_tolerance(r, n));
     TRY(read_text(r, n, "reading", true, &l->reading));
     TRY(read_text(r, n, "unit", false, &l->unit));
     if (!l->unit && !(l->unit = strdup("")))
         return out_of_memory(r->why);
-    TRY(read_text(r, n, "metric", false, &l->metric));
-    const node *at = node_get(n, "at");
     if (!l->metric == !at)
         return node_error(r->file, n, r->why, "give either 'metric' or 'at'",
                           at ? "'metric' and 'at' cannot be combined" : "the value to read is missing");

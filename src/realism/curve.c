@@ -40,6 +40,11 @@ const char *realism_curve_y(realism_curve which)
     return words[which].y;
 }
 
+const char *realism_curve_parameter(realism_curve which)
+{
+    return which == REALISM_CURVE_EDGES ? "liquid.ior" : which == REALISM_CURVE_DEPTH ? "render.depth" : NULL;
+}
+
 void curve_add(realism_points *out, double x, double measured, double theory)
 {
     if (out->count < REALISM_POINTS_MAX)

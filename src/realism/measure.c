@@ -1,6 +1,7 @@
 #include "realism/metrics.h"
 
 #include <math.h>
+#include <string.h>
 
 void metrics_add(const metrics *m, realism_value value)
 {
@@ -51,12 +52,23 @@ status realism_check(const scene *s, bool curves, diagnostic *why)
     return setup_read(s, &unused, why);
 }
 
-status realism_measure_against(const scene *traced, const scene *supposed, isa level, realism_report *out,
-                               diagnostic *why)
+typedef status measure_call(const metrics *m, diagnostic *why);
+static measure_call *const of_vessel[] = {realism_edges,      realism_water_line, realism_lens, realism_interfaces,
+                                          realism_balance,    realism_slab,       realism_gap,  realism_radiance,
+                                          realism_absorption, realism_reversal};
+
+static const realism_value *find_value(const realism_report *r, const char *metric)
 {
-    static status (*const of_vessel[])(const metrics *, diagnostic *) = {
-        realism_edges, realism_water_line, realism_lens,     realism_interfaces, realism_balance,
-        realism_slab,  realism_gap,        realism_radiance, realism_absorption, realism_reversal};
+    for (int i = 0; i < r->count; i++)
+        if (strcmp(r->value[i].metric, metric) == 0)
+            return &r->value[i];
+    return NULL;
+}
+
+/* All metrics, or the groups up to that of metric. */
+static status measure_until(const scene *traced, const scene *supposed, isa level, const char *metric,
+                            realism_report *out, diagnostic *why)
+{
     metrics m = {.traced = traced, .supposed = supposed, .level = level, .report = out};
     out->count = 0;
     for (size_t i = 0; i < sizeof scene_geometries / sizeof scene_geometries[0]; i++)
@@ -64,7 +76,25 @@ status realism_measure_against(const scene *traced, const scene *supposed, isa l
             return scene_geometries[i].measure(&m, why);
     TRY(setup_read(traced, &m.at, why));
     TRY(setup_read(supposed, &m.theory_at, why));
-    for (size_t i = 0; i < sizeof of_vessel / sizeof of_vessel[0]; i++)
+    for (size_t i = 0; i < sizeof of_vessel / sizeof of_vessel[0] && !(metric && find_value(out, metric)); i++)
         TRY(of_vessel[i](&m, why));
+    return STATUS_OK;
+}
+
+status realism_measure_against(const scene *traced, const scene *supposed, isa level, realism_report *out,
+                               diagnostic *why)
+{
+    return measure_until(traced, supposed, level, NULL, out, why);
+}
+
+status realism_measure_one(const scene *s, isa level, const char *metric, realism_value *out, diagnostic *why)
+{
+    realism_report report;
+    TRY(measure_until(s, s, level, metric, &report, why));
+    const realism_value *found = find_value(&report, metric);
+    if (!found)
+        return diagnose(why, STATUS_BAD_INPUT, "'cuvette realism SCENE' lists the metrics",
+                        "the scene has no metric '%.64s'", metric);
+    *out = *found;
     return STATUS_OK;
 }

@@ -41,6 +41,9 @@ status realism_check(const scene *s, bool curves, diagnostic *why);
 /* All metrics, in a fixed order: the same names for every scene. */
 status realism_measure(const scene *s, isa level, realism_report *out, diagnostic *why);
 
+/* One metric. NaN in measured and theory if it is undefined; STATUS_BAD_INPUT if the scene has none of that name. */
+status realism_measure_one(const scene *s, isa level, const char *metric, realism_value *out, diagnostic *why);
+
 /* Measures in one scene and evaluates theory for another one. Two slightly different scenes show which metrics detect
  * the difference. */
 status realism_measure_against(const scene *traced, const scene *supposed, isa level, realism_report *out,
@@ -86,6 +89,8 @@ const char *realism_curve_name(realism_curve which);
 /* Labels of x and of the value, with units: "angle of incidence, deg". */
 const char *realism_curve_x(realism_curve which);
 const char *realism_curve_y(realism_curve which);
+/* The parameter that x is, such as "liquid.ior"; NULL if x is none. */
+const char *realism_curve_parameter(realism_curve which);
 /* Whether the scene has the solids of a curve. STATUS_BAD_INPUT describes what is missing. Fast. */
 status realism_check_curve(const scene *s, realism_curve which, diagnostic *why);
 status realism_trace_curve(const scene *s, isa level, realism_curve which, realism_points *out, diagnostic *why);

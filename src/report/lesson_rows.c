@@ -29,27 +29,61 @@ static json_t *controls(const lesson *l)
 
 static json_t *prediction(const lesson *l)
 {
-    return l->choice_count ? json_pack("{s:o,s:o,s:o}", "ask", json_of_text(l->ask), "choices",
-                                       texts(l->choices, l->choice_count), "right", json_of_text(l->choices[l->right]))
-                           : json_pack("{s:o,s:f}", "ask", json_of_text(l->ask), "within", l->answer_within);
+    json_t *one = l->choice_count
+                      ? json_pack("{s:o,s:o,s:o}", "ask", json_of_text(l->ask), "choices",
+                                  texts(l->choices, l->choice_count), "right", json_of_text(l->choices[l->right]))
+                      : json_pack("{s:o,s:f}", "ask", json_of_text(l->ask), "within", l->answer_within);
+    json_object_set_new(one, "axis", l->predicts ? json_stringn(&l->predicts, 1) : json_null());
+    return one;
+}
+
+/* The parameter on the curve's x axis, or null. */
+static json_t *x_parameter(const lesson *l)
+{
+    const char *of_curve = l->over < 0 ? realism_curve_parameter(l->curve) : l->control[l->over].parameter;
+    return of_curve ? json_of_text(of_curve) : json_null();
+}
+
+static json_t *measure(const lesson *l)
+{
+    char *x = lesson_x_label(l), *y = lesson_y_label(l);
+    json_t *one = NULL;
+    if (x && y)
+        one = json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:b}", "curve",
+                        l->over < 0 ? json_string(realism_curve_name(l->curve)) : json_null(), "over",
+                        l->over < 0 ? json_null() : json_of_text(l->control[l->over].parameter), "x", json_of_text(x),
+                        "y", json_of_text(y), "x_parameter", x_parameter(l), "reading", json_of_text(l->reading),
+                        "unit", json_of_text(l->unit), "tolerance", json_of_real(l->tolerance), "metric",
+                        l->metric ? json_of_text(l->metric) : json_null(), "timed", (int)lesson_is_timed(l));
+    if (one && !l->metric)
+        json_object_set_new(one, "at", json_of_real(l->at));
+    free(x);
+    free(y);
+    return one;
+}
+
+static json_t *commands(const lesson *l)
+{
+    json_t *list = json_array();
+    const bool kinds[] = {true, false};
+    for (int i = 0; i < 2; i++) {
+        if (kinds[i] ? l->over >= 0 : !l->metric)
+            continue;
+        char *text = lesson_command(l, kinds[i]);
+        if (text)
+            json_array_append_new(list, json_of_text(text));
+        free(text);
+    }
+    return list;
 }
 
 json_t *lesson_json(const lesson *l)
 {
-    char *curve = lesson_command(l, true), *value = l->metric ? lesson_command(l, false) : NULL;
-    json_t *all = NULL;
-    if (curve && (value || !l->metric))
-        all = json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:{s:s,s:s,s:s,s:o,s:o,s:f,s:o},s:o,s:o}", "name",
-                        json_of_text(l->name), "title", json_of_text(l->title), "language", json_of_text(l->language),
-                        "question", json_of_text(l->question), "scene", json_of_text(l->scene_path), "controls",
-                        controls(l), "prediction", prediction(l), "measure", "curve", realism_curve_name(l->curve), "x",
-                        realism_curve_x(l->curve), "y", realism_curve_y(l->curve), "reading", json_of_text(l->reading),
-                        "unit", json_of_text(l->unit), "tolerance", l->tolerance, "metric",
-                        l->metric ? json_of_text(l->metric) : json_null(), "answer", json_of_text(l->answer),
-                        "commands", value ? json_pack("[s,s]", curve, value) : json_pack("[s]", curve));
-    free(curve);
-    free(value);
-    return all;
+    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "name", json_of_text(l->name), "title",
+                     json_of_text(l->title), "language", json_of_text(l->language), "question",
+                     json_of_text(l->question), "scene", json_of_text(l->scene_path), "controls", controls(l),
+                     "prediction", prediction(l), "measure", measure(l), "answer", json_of_text(l->answer), "commands",
+                     commands(l));
 }
 
 json_t *lesson_result_json(const lesson *l, const lesson_result *r)
@@ -60,7 +94,7 @@ json_t *lesson_result_json(const lesson *l, const lesson_result *r)
         json_array_append_new(
             points, json_pack("[o,o,o]", json_of_real(p->x), json_of_real(p->measured), json_of_real(p->theory)));
     }
-    return json_pack("{s:o,s:o,s:f,s:b,s:o,s:o,s:o}", "points", points, "error", json_of_real(r->error), "tolerance",
-                     l->tolerance, "passes", (int)r->passes, "measured", json_of_real(r->measured), "theory",
-                     json_of_real(r->theory), "value_tolerance", json_of_real(r->tolerance));
+    return json_pack("{s:o,s:o,s:o,s:b,s:o,s:o,s:o}", "points", points, "error", json_of_real(r->error), "tolerance",
+                     json_of_real(l->tolerance), "passes", (int)r->passes, "measured", json_of_real(r->measured),
+                     "theory", json_of_real(r->theory), "value_tolerance", json_of_real(r->tolerance));
 }

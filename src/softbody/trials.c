@@ -1,6 +1,8 @@
 #include "softbody/trials_private.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* HLW: Hairer, Lubich, Wanner, "Geometric numerical integration", 2nd edition. */
 static const struct {
@@ -49,23 +51,69 @@ static const struct {
     [RATE_SIMULATED] = {"rate.simulated_s_per_s", "", "simulated over wall time"},
 };
 
+static const struct {
+    const char *starts; /* of the names of its values */
+    status (*run)(const trials *t);
+} groups[] = {{"spring.", trials_spring},     {"fall.", trials_fall},
+              {"bounce.", trials_bounce},     {"energy. momentum. angular_momentum.", trials_free},
+              {"volume. rate.", trials_rest}, {"stable_dt.", trials_stable}};
+
+/* Whether a group measures the value of that name; NULL: of any. */
+static bool measures(size_t group, const char *name)
+{
+    char start[32] = "";
+    if (name)
+        snprintf(start, sizeof start, "%.*s.", (int)strcspn(name, "."), name);
+    return strstr(groups[group].starts, start);
+}
+
+static int find_trial(const char *name)
+{
+    for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++)
+        if (strcmp(trial_table[i].name, name) == 0)
+            return i;
+    return -1;
+}
+
+static status run_groups(const trials *t, const char *name)
+{
+    for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++)
+        t->out->value[i] = (softbody_trial){trial_table[i].name, trial_table[i].unit, trial_table[i].what, NAN, NAN};
+    TRY(softbody_check(t->set, t->why));
+    for (size_t i = 0; i < sizeof groups / sizeof groups[0]; i++)
+        if (measures(i, name))
+            TRY(groups[i].run(t));
+    return STATUS_OK;
+}
+
 status softbody_trials_until(const softbody_settings *s, isa level, bool (*stop)(void *context), void *context,
                              softbody_trial_report *out, diagnostic *why)
 {
-    static status (*const all[])(const trials *) = {trials_spring, trials_fall, trials_bounce,
-                                                    trials_free,   trials_rest, trials_stable};
     const trials t = {s, level, out, why, stop, context};
-    for (int i = 0; i < SOFTBODY_TRIAL_COUNT; i++)
-        out->value[i] = (softbody_trial){trial_table[i].name, trial_table[i].unit, trial_table[i].what, NAN, NAN};
-    TRY(softbody_check(s, why));
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-        TRY(all[i](&t));
-    return STATUS_OK;
+    return run_groups(&t, NULL);
 }
 
 status softbody_trials(const softbody_settings *s, isa level, softbody_trial_report *out, diagnostic *why)
 {
     return softbody_trials_until(s, level, NULL, NULL, out, why);
+}
+
+bool softbody_has_trial(const char *name)
+{
+    return find_trial(name) >= 0;
+}
+
+status softbody_trial_one(const softbody_settings *s, isa level, const char *name, softbody_trial *out, diagnostic *why)
+{
+    softbody_trial_report report;
+    const trials t = {.set = s, .level = level, .out = &report, .why = why};
+    const int which = find_trial(name);
+    if (which < 0)
+        return diagnose(why, STATUS_BAD_INPUT, "'cuvette motion SCENE' lists them", "nothing is measured as '%.64s'",
+                        name);
+    TRY(run_groups(&t, name));
+    *out = report.value[which];
+    return STATUS_OK;
 }
 
 double softbody_trial_error(const softbody_trial *t)

@@ -43,5 +43,10 @@ status softbody_trials(const softbody_settings *s, isa level, softbody_trial_rep
 status softbody_trials_until(const softbody_settings *s, isa level, bool (*stop)(void *context), void *context,
                              softbody_trial_report *out, diagnostic *why);
 
+/* One of them, without running the other groups; STATUS_BAD_INPUT for an unknown name. */
+status softbody_trial_one(const softbody_settings *s, isa level, const char *name, softbody_trial *out,
+                          diagnostic *why);
+bool softbody_has_trial(const char *name);
+
 /* |measured - theory|; NaN if one of them is. */
 double softbody_trial_error(const softbody_trial *t);

@@ -35,7 +35,7 @@ export const cases = {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab);
     const { lessons } = await lab.get('/api/lessons');
-    t.more(lessons.length, 7, 'lessons');
+    t.more(lessons.length, 11, 'lessons');
     await screen.showPanel('Lessons');
     for (const lesson of lessons) {
       await screen.page.getByRole('button', { name: new RegExp(`^${lesson.title.replace('?', '\\?')}`) }).click();
@@ -48,9 +48,19 @@ export const cases = {
         await answer.fill(String(Math.round(truth)));
         await screen.button('Compare', true).click();
       }
-      await panel(screen).getByText('That is right.').waitFor();
+      await panel(screen).getByText('That is right.').waitFor({ timeout: 60000 });
       await panel(screen).getByText(lesson.answer).waitFor();
-      await panel(screen).locator('.lesson-chart .plot-marker').nth(8).waitFor({ state: 'attached' });
+      const least = lesson.measure.timed ? 5 : 9; /* markers: one a number of threads */
+      const markers = panel(screen).locator('.lesson-chart .plot-marker');
+      await markers.nth(least - 1).waitFor({ state: 'attached' });
+      if (lesson.measure.timed) t.equal(await markers.count(), least, 'numbers of threads');
+      if (lesson.measure.timed) {
+        /* The machine may be busy: times are not compared. */
+        t.match(await panel(screen).locator('.lesson-result').innerText(), /Times differ from one/, 'times');
+        t.check((await reading(screen)) > 0, 'a speed-up');
+        await screen.button('All lessons').click();
+        continue;
+      }
       const result = await lab.get(`/api/lessons/${lesson.name}/measure`);
       t.check(result.passes && result.error <= lesson.measure.tolerance, `${lesson.name}: ${result.error}`);
       t.near(
@@ -83,6 +93,79 @@ export const cases = {
     await screen.settled();
     await t.picture(screen, 'lesson-dark');
     await t.axe(screen, 'lesson, dark');
+  },
+
+  'the curve shows the present value of the control, the prediction and the value to read': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    const marks = () =>
+      panel(screen)
+        .locator('.plot-line-mark')
+        .evaluateAll((all) => all.map((mark) => [mark.textContent, mark.querySelector('path').getAttribute('d')]));
+    const lines = async () => Object.fromEntries(await marks());
+    await screen.showPanel('Lessons');
+    await screen.page.getByRole('button', { name: /^A glass of water is a lens/ }).click();
+    const guess = panel(screen).getByRole('spinbutton', { name: /At which distance/ });
+    await guess.fill('2,5');
+    await screen.button('Compare', true).click();
+    await panel(screen).locator('.plot-line-mark').nth(1).waitFor();
+    t.equal(Object.keys(await lines()).join('; '), 'now: 1.333; your prediction: 2.5', 'marks');
+    await panel(screen).getByText('That is 0.421 scene units too large.').waitFor();
+    const ring = panel(screen).locator('.plot-spot');
+    const { [`now: 1.333`]: before } = await lines();
+    t.equal(`M${await ring.getAttribute('cx')}`, before.split(' ')[0], 'the ring is at the present value');
+    await screen.settled();
+    await t.picture(screen, 'lens-light');
+    await t.axe(screen, 'lens');
+    const field = panel(screen).getByRole('spinbutton', { name: 'Refractive index of the liquid, number' });
+    await field.fill('1.5');
+    await field.press('Enter');
+    await panel(screen).getByText('now: 1.5', { exact: true }).waitFor();
+    const { [`now: 1.5`]: after } = await lines();
+    t.check(parseFloat(after.slice(1)) > parseFloat(before.slice(1)) + 40, `${before} moved to ${after}`);
+    await guess.fill('50');
+    await screen.button('Compare', true).click();
+    await panel(screen).getByText('↑ your prediction: 50').waitFor();
+    await screen.button('All lessons').click();
+    await screen.page.getByRole('button', { name: /^Light without reflection/ }).click();
+    await screen.button('about 56 degrees', true).click();
+    await panel(screen).getByText('your prediction: 56').waitFor();
+    t.match((await lines())['your prediction: 56'], /v/, 'the angle is on the x axis');
+  },
+
+  'a medium is shown by its name instead of the index that it replaces': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await screen.showPanel('Lessons');
+    await screen.page.getByRole('button', { name: /^A glass of water is a lens/ }).click();
+    const range = panel(screen).getByRole('slider', { name: 'Refractive index of the liquid' });
+    const field = panel(screen).getByRole('spinbutton', { name: 'Refractive index of the liquid, number' });
+    await range.waitFor();
+    await screen.settled();
+    t.equal(await field.inputValue(), '1.333', 'an index');
+    await lab.ask('POST', '/api/set', { set: { 'liquid.medium': 'olive-oil' } });
+    await panel(screen).getByText('olive-oil; this control replaces it by an index').waitFor();
+    t.equal(await field.inputValue(), '', 'no index next to a medium');
+    t.equal(await range.getAttribute('aria-valuetext'), 'olive-oil', 'read aloud');
+    await screen.button('Show the measurement').click();
+    await panel(screen).locator('.lesson-value').waitFor();
+    t.equal(await panel(screen).locator('.plot-now').count(), 0, 'no index is marked');
+    await field.fill('1.4');
+    await field.press('Enter');
+    await panel(screen).getByText('now: 1.4', { exact: true }).waitFor();
+    t.equal(await panel(screen).getByText('olive-oil').count(), 0, 'the index replaced the medium');
+
+    await screen.button('All lessons').click();
+    await screen.page.getByRole('button', { name: /^Colours of a prism/ }).click();
+    const glass = panel(screen).getByRole('combobox', { name: 'Glass' });
+    await glass.waitFor();
+    await screen.settled();
+    await lab.ask('POST', '/api/set', { set: { 'prism.ior': 1.7 } });
+    await panel(screen).locator('option', { hasText: 'index 1.7' }).waitFor({ state: 'attached' });
+    t.equal(await glass.inputValue(), 'ior', 'the index of a glass that has no name');
+    await glass.selectOption('bk7');
+    await screen.until(() => window.lab.param('prism.medium').value === 'bk7');
+    t.equal(await panel(screen).locator('option', { hasText: 'index' }).count(), 0, 'only the named glasses');
   },
 
   'keys move a control step by step over a slow link; nothing moves it back': async (t) => {

@@ -70,6 +70,14 @@ export const cases = {
       await t.axe(screen, 'the map of the rays');
       await t.picture(screen, `map-rays-${dark ? 'dark' : 'light'}`);
 
+      const [saved] = await Promise.all([
+        screen.page.waitForEvent('download'),
+        part.getByRole('button', { name: 'Save this map' }).click(),
+      ]);
+      t.equal(saved.suggestedFilename(), 'rod-rays.png', 'name of the saved map');
+      const file = readPng(await readFile(await saved.path()));
+      t.equal(difference(file, await mapOf(lab, 'rays')), 0, 'the saved map is that of the program');
+
       // The map follows the scene.
       const { generation } = await lab.post('/api/set', { set: { 'render.depth': 1 } });
       await screen.settled(generation);

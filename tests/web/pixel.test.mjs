@@ -111,6 +111,27 @@ export const cases = {
     }
   },
 
+  'a pixel that the depth limit cuts off says so, with a button that raises the depth': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab);
+    await lab.post('/api/set', { set: { 'render.depth': 1, 'render.beyond': 'black' } });
+    await screen.settled();
+    await screen.showPanel('Pixel');
+    const panel = screen.page.getByRole('tabpanel', { name: 'Pixel' });
+    const ask = async (x, y) => {
+      await panel.getByRole('spinbutton', { name: 'Pixel x' }).fill(String(x));
+      await panel.getByRole('spinbutton', { name: 'y', exact: true }).fill(String(y));
+      await panel.getByRole('spinbutton', { name: 'y', exact: true }).press('Enter');
+    };
+    await ask(330, 420);
+    await panel.getByText(/end at the depth limit, 1, and are black there/).waitFor();
+    await panel.getByRole('button', { name: 'Raise the depth to 3' }).click();
+    await screen.until(() => window.lab.param('render.depth').value === 3);
+    await ask(60, 100); // the sky
+    await panel.getByText(/1 from the camera/).waitFor();
+    t.equal(await panel.getByText(/end at the depth limit/).count(), 0, 'nothing is cut off in the sky');
+  },
+
   'the table follows a change of the scene': async (t) => {
     const lab = await t.lab('scenes/rod.yaml');
     const screen = await t.open(lab, { width: 1920, height: 1080 });

@@ -132,6 +132,57 @@ export const cases = {
     await t.picture(screen, 'phone-lesson');
   },
 
+  'on a phone a note is shown whole, and a view is undone by a touch': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab, PHONE);
+    const { page } = screen;
+    await screen.settled();
+    const back = page.getByRole('button', { name: 'Previous view' });
+    const box = await back.boundingBox();
+    t.check(box.x >= 0 && box.x + box.width <= PHONE.width, `the button is in sight: ${box.x}`);
+    const eye = async () => (await lab.get('/api/state')).camera.eye;
+    const before = await eye();
+    await lab.post('/api/camera', { orbit: [30, 0], gesture: 'hand' });
+    await screen.until(() => document.querySelector('.view-history:not(:disabled)'));
+    t.check((await eye())[0] !== before[0], 'the view was turned');
+    await back.tap();
+    await screen.until((x) => Math.abs(window.lab.state.camera.eye[0] - x) < 1e-9, before[0]);
+    t.near((await eye())[0], before[0], 1e-9, 'the view before');
+
+    await lab.post('/api/set', { set: { 'render.depth': 2 } });
+    const raise = page.getByRole('button', { name: /^Raise the depth/ });
+    await raise.waitFor();
+    const cut = await page.locator('.status-words').evaluate((node) => ({
+      across: node.scrollWidth - node.clientWidth,
+      down: node.scrollHeight - node.clientHeight,
+      left: node.getBoundingClientRect().left,
+      right: innerWidth - node.getBoundingClientRect().right,
+    }));
+    t.check(cut.across <= 0 && cut.down <= 0 && cut.left >= 0 && cut.right >= 0, JSON.stringify(cut));
+    await t.picture(screen, 'phone-note');
+    await raise.tap();
+    await screen.until(() => window.lab.param('render.depth').value > 2);
+  },
+
+  'labels in the image are large for a projector': async (t) => {
+    const lab = await t.lab('scenes/rod.yaml');
+    const screen = await t.open(lab, { width: 1366, height: 768 });
+    await screen.showPanel('Objects');
+    await screen.page.getByRole('radio', { name: 'Light' }).check({ force: true });
+    const size = () =>
+      screen.page
+        .locator('.point-name')
+        .first()
+        .evaluate((node) => parseFloat(getComputedStyle(node).fontSize));
+    await screen.page.locator('.point-name').first().waitFor();
+    const usual = await size();
+    await screen.page.keyboard.press('p');
+    await screen.until(() => document.documentElement.hasAttribute('data-projector'));
+    t.more(await size(), 1.3 * usual, 'size of the names of lights');
+    t.more(await size(), 17.9, 'in CSS pixels');
+    await t.picture(screen, 'projector-labels');
+  },
+
   'the bottom sheet is moved by keys and by its handle': async (t) => {
     const screen = await t.open(await t.lab('scenes/rod.yaml'), PHONE);
     const { page } = screen;

@@ -97,6 +97,35 @@ export const cases = {
       'film hashes that the page does not show',
     );
 
+    const at = summary[0].indexOf('wall_s_median');
+    const longest = Math.max(...summary.slice(1).map((line) => Number(line[at])));
+    const [unit, factor] = longest >= 1 ? ['s', 1] : ['ms', 1000];
+    const head = table.getByRole('columnheader', { name: /^wall_s_median/ });
+    t.equal(await head.innerText(), unit === 's' ? 'wall_s_median' : `wall_s_median / ${unit}`, 'unit of the times');
+    const column = (await table.locator('thead th').allInnerTexts()).findIndex((name) => /^wall_s_median/.test(name));
+    const cell = table.locator('tbody tr').first().locator('th, td').nth(column);
+    const exact = factor * Number(summary[1][at]);
+    t.near(Number(await cell.innerText()), exact, 1e-4 * exact, 'the first time of the summary');
+    t.equal(await plot.getByText(`wall time per frame / ${unit}`).count(), 1, 'unit of the figure');
+    const places = await plot.locator('.plot-series').evaluateAll((all) =>
+      all.map((one) => ({
+        bars: [...one.querySelectorAll('.plot-interval')].map((bar) => parseFloat(bar.getAttribute('d').slice(1)) + 4),
+        points: [...one.querySelectorAll('.plot-marker')].map((mark) =>
+          parseFloat(mark.getAttribute('transform').slice(10)),
+        ),
+      })),
+    );
+    const drawn = places.filter(({ bars }) => bars.length);
+    t.more(drawn.length, 1, 'curves with intervals');
+    const firsts = drawn.map(({ points }) => points[0]);
+    t.equal(new Set(firsts).size, drawn.length, `curves are apart at one x: ${firsts}`);
+    t.less(Math.max(...firsts) - Math.min(...firsts), 30, 'but not far');
+    for (const { bars, points } of drawn)
+      t.check(
+        bars.every((bar) => points.some((point) => Math.abs(point - bar) < 0.02)),
+        'intervals through markers',
+      );
+
     await study.getByText('Raw rows', { exact: true }).click();
     for (const [label, name, bytes] of [
       ['rows as CSV', 'quick-rows.csv', await readFile(join(lab.folder, 'results/quick/rows.csv'), 'utf8')],

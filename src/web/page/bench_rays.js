@@ -8,6 +8,8 @@ import { toByte } from './ui.js';
 import { buildTree } from './ray_tree.js';
 import { mean } from './ray_vectors.js';
 
+const TO_SKY = 2.5; /* rays that leave a lens are seen beyond their focus */
+
 export function createBenchRays(lab) {
   const listeners = new Set();
   const rays = { segments: [], error: null, on: (listener) => listeners.add(listener) };
@@ -48,7 +50,7 @@ export function createBenchRays(lab) {
 
 function ofBeam({ name, rays }) {
   return rays.flatMap((ray) => {
-    const tree = buildTree({ root: ray.root });
+    const tree = buildTree({ root: ray.root }, { toSky: TO_SKY });
     const css = `rgb(${ray.color.map(toByte).join(' ')})`;
     return tree.rays.map((one) => ({
       beam: name,

@@ -139,6 +139,7 @@ function historyButtons(lab) {
     make(back, { icon: 'left', bare: true }),
     make(forward, { icon: 'right', bare: true }),
   ];
+  for (const node of nodes.slice(1)) node.classList.add('view-history');
   lab.on('state', ({ view }) => {
     nodes[0].disabled = view.kept;
     nodes[1].disabled = !view.back;

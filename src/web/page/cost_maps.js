@@ -1,7 +1,8 @@
 /* Maps of what each pixel of the final image costs, drawn over the image, with a legend in units.
  * exports: createCostMaps(lab) -> {node} */
 
-import { choice, count, element, digits, facts, group, notice, replace, seconds, svg } from './ui.js';
+import { button, choice, count, element, digits, facts, group, notice, replace, seconds, svg } from './ui.js';
+import { saveReply } from './save_file.js';
 
 const TITLES = { rays: 'Rays per pixel', time: 'Time per pixel' };
 
@@ -106,8 +107,14 @@ export function createCostMaps(lab) {
   }
 
   function show() {
-    replace(below, legend(answer, how.value));
+    replace(below, legend(answer, how.value), element('div', { class: 'buttons' }, save(how.value)));
     draw();
+  }
+
+  /* With the key below it, as the file of `cuvette render --rays` or `--time`. */
+  function save(which) {
+    const act = () => saveReply(lab, `/api/maps/${which}.png`, `${lab.name()}-${which}.png`);
+    return button('Save this map', act, { icon: 'save', small: true });
   }
 
   /* The map of an earlier image would hide the newest one. */

@@ -1,5 +1,7 @@
-/* The curve of a lesson: measured points over the line of theory, and a table of them for screen readers.
- * exports: lessonChart(lesson, result) -> node */
+/* The curve of a lesson: measured points over the line of theory, the present value of the control on its x axis, the
+ * prediction, and a table of the points for screen readers.
+ * exports: lessonChart(lesson, result, {now, predicted}) -> node
+ *   now: the present value of measure.x_parameter, NaN if there is none; predicted: as typed or chosen, or null */
 
 import { digits, element, table } from './ui.js';
 import { plot } from './plot.js';
@@ -11,10 +13,37 @@ let unfolded = false; /* a new measurement leaves the table open */
 /* A unit in ASCII, as on the command line, in the page's spelling. */
 export const pretty = (text) => text.replace(/, deg\b/, ' (°)').replace(/, (px|m|scene units)\b/, ' ($1)');
 
-export function lessonChart(lesson, { points }) {
+/* The number of a prediction; the only one in the text of a choice. */
+function numberIn(predicted) {
+  if (typeof predicted === 'number') return predicted;
+  const all = String(predicted ?? '').match(/[-\u2212]?\d+([.,]\d+)?/g) || [];
+  return all.length === 1 ? Number(all[0].replace(',', '.').replace('\u2212', '-')) : NaN;
+}
+
+function marksOf({ prediction }, now, predicted) {
+  const guess = numberIn(predicted);
+  return [
+    Number.isFinite(now) ? { axis: 'x', at: now, text: `now: ${digits(now)}`, kind: 'now' } : null,
+    prediction?.axis && Number.isFinite(guess)
+      ? { axis: prediction.axis, at: guess, text: `your prediction: ${digits(guess)}`, kind: 'predicted' }
+      : null,
+  ].filter(Boolean);
+}
+
+/* The value to read, if it is a point of the curve. */
+function spotsOf({ measure }, { points, measured }, now) {
+  const near = (at) => points.reduce((a, b) => (Math.abs(b[0] - at) < Math.abs(a[0] - at) ? b : a));
+  const x = Number.isFinite(measure.at) ? near(measure.at)[0] : measure.over ? now : NaN;
+  return Number.isFinite(x) && Number.isFinite(measured)
+    ? [{ x, y: measured, text: `${measure.reading}: ${digits(measured, 6)}` }]
+    : [];
+}
+
+export function lessonChart(lesson, result, { now = NaN, predicted = null } = {}) {
+  const { points } = result;
   const sparse = Math.max(1, Math.ceil(points.length / MARKS));
   const drawn = points.filter((_, i) => i % sparse === 0 || i === points.length - 1);
-  const { x, y } = lesson.measure;
+  const { x, y, timed } = lesson.measure;
   return element(
     'figure',
     { class: 'lesson-chart' },
@@ -24,6 +53,8 @@ export function lessonChart(lesson, { points }) {
       legends: false,
       x: { label: pretty(x) },
       y: { label: pretty(y) },
+      marks: marksOf(lesson, now, predicted),
+      spots: spotsOf(lesson, result, now),
       series: [
         { name: 'theory', marked: false, points: points.map(([at, , theory]) => ({ x: at, y: theory })) },
         { name: 'measured', joined: false, points: drawn.map(([at, measured]) => ({ x: at, y: measured })) },
@@ -32,8 +63,11 @@ export function lessonChart(lesson, { points }) {
     element(
       'figcaption',
       { class: 'hint' },
-      element('span', { class: 'lesson-key theory', text: 'theory: closed form' }),
-      element('span', { class: 'lesson-key measured', text: 'measured: rays traced by the program' }),
+      element('span', { class: 'lesson-key theory', text: `theory: ${timed ? 'ideal' : 'closed form'}` }),
+      element('span', {
+        class: 'lesson-key measured',
+        text: timed ? 'measured: times of frames' : 'measured by the program',
+      }),
     ),
     element(
       'details',

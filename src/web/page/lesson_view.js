@@ -2,10 +2,15 @@
  * exports: createLesson(root, lab, lesson, {back, again}) -> {shown(), end()}
  *   back(), again(): to the gallery, or to the start of the lesson */
 
-import { button, check, choice, copy, digits, element, number, notice, replace, slider } from './ui.js';
+import { button, copy, digits, element, number, notice, replace } from './ui.js';
 import { lessonChart } from './lesson_chart.js';
+import { createControl, presentValue } from './lesson_control.js';
 
 const REST_MS = 200; /* measured when the controls rest */
+
+const TIMES =
+  'Times differ from one measurement to the next, and are longer while other programs run. ' +
+  'Each is the median of three frames.';
 
 const unitOf = (lesson) => (lesson.measure.unit === 'deg' ? '°' : lesson.measure.unit ? ` ${lesson.measure.unit}` : '');
 
@@ -112,7 +117,8 @@ export function createLesson(root, lab, lesson, { back, again }) {
       replace(result, notice(measured.failure.message, { kind: 'warning', remedy: measured.failure.remedy }));
       return;
     }
-    const { measured: value, theory, error, tolerance, points, passes } = measured;
+    const { measured: value, theory, error, points, passes } = measured;
+    const allowed = digits(measured.tolerance, 2);
     replace(
       result,
       element('h4', { text: 'Measured' }),
@@ -126,11 +132,13 @@ export function createLesson(root, lab, lesson, { back, again }) {
           text: theory === null ? 'no theory for these values' : `theory: ${digits(theory, 6)}${unitOf(lesson)}`,
         }),
       ),
-      lessonChart(lesson, measured),
-      element('p', {
-        class: passes ? 'hint' : 'hint lesson-off',
-        text: `Largest difference of ${points.length} points: ${digits(error, 2)} (tolerance ${digits(tolerance, 2)}).`,
-      }),
+      lessonChart(lesson, measured, { now: presentValue(lab, lesson.measure.x_parameter), predicted }),
+      lesson.measure.timed
+        ? [element('p', { class: 'hint', text: TIMES }), button('Measure again', measure, { small: true })]
+        : element('p', {
+            class: passes ? 'hint' : 'hint lesson-off',
+            text: `Largest difference of ${points.length} points: ${digits(error, 2)} (tolerance ${allowed}).`,
+          }),
     );
   }
 
@@ -198,41 +206,4 @@ export function createLesson(root, lab, lesson, { back, again }) {
       ),
     );
   }
-}
-
-/* A control of one parameter, named as a person names it; the parameter's path is its link to the panel Parameters. */
-function createControl(lab, { parameter, label, from, to, choices }) {
-  let waiting = 0;
-  let settled = 0; /* a value sent from here is newer than a scene that was requested before */
-  const set = async (value, gesture) => {
-    waiting += 1;
-    try {
-      settled = Math.max(settled, (await lab.set({ [parameter]: value }, gesture)).generation || 0);
-    } catch (error) {
-      lab.fail(error);
-      settled = 0;
-    }
-    waiting -= 1;
-    control.update();
-  };
-  const isSwitch = choices?.length === 2 && choices.includes('on') && choices.includes('off');
-  const made = isSwitch
-    ? check(label, false, (on) => set(on ? 'on' : 'off'))
-    : choices
-      ? choice({ label, choices: choices.map(String), value: '', onchange: (value) => set(value) })
-      : slider({ label, min: from, max: to, value: from, oninput: set });
-  const path = element('code', { class: 'lesson-path', text: parameter });
-  const control = {
-    node: element('div', { class: 'lesson-control' }, made.node, path),
-    /* False if the scene has no such parameter. */
-    update() {
-      const value = lab.param(parameter.replace(/\.[xyzrgb]$/, ''))?.value;
-      if (waiting || lab.scene?.generation < settled) return true;
-      const part = parameter.match(/\.([xyzrgb])$/);
-      const one = Array.isArray(value) && part ? value['xyzrgb'.indexOf(part[1]) % 3] : value;
-      if (one !== undefined) made.set(isSwitch ? String(one) === 'on' || one === true : choices ? String(one) : one);
-      return one !== undefined;
-    },
-  };
-  return control;
 }

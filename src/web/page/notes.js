@@ -10,6 +10,7 @@ export function createNotes(lab) {
   let notes = [];
   let checkedGeneration = 0; /* the last generation that was checked */
   let openDialog = null;
+  let said = null; /* the note in the status line, withdrawn when it is no longer true */
 
   const line = (note) => [note.place, note.text].filter(Boolean).join(': ');
 
@@ -57,7 +58,15 @@ export function createNotes(lab) {
     }
     const [first, ...more] = notes.filter((note) => !known.has(line(note)));
     const rest = more.length ? `; and ${more.length} more` : '';
-    if (first && !openDialog) lab.say(`Note: ${line(first)}`, `${first.remedy}${rest}`, actionOf(first));
+    if (said && !notes.some((note) => line(note) === said.line)) {
+      said.withdraw();
+      said = null;
+    }
+    if (first && !openDialog)
+      said = {
+        line: line(first),
+        withdraw: lab.say(`Note: ${line(first)}`, `${first.remedy}${rest}`, actionOf(first)),
+      };
     if (openDialog) openDialog.node.querySelector('.dialog-body').replaceChildren(list());
     lab.emit('notes', notes);
   }

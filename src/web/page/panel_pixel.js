@@ -19,6 +19,7 @@ import {
   svg,
   toByte,
 } from './ui.js';
+import { depthNote } from './note_actions.js';
 import { createQuestion } from './pixel_question.js';
 import { createRayOverlay } from './ray_overlay.js';
 import { createRayPlot, sidePlane, topPlane } from './ray_plot.js';
@@ -161,6 +162,16 @@ function otherwise(lab) {
   return null;
 }
 
+function cutOff(lab, tree) {
+  const cut = depthNote(tree, lab.param('render.beyond')?.value);
+  if (!cut) return null;
+  const raise = () => lab.set({ [cut.path]: cut.value }).catch(lab.fail);
+  return [
+    notice(cut.text, { kind: 'warning' }),
+    element('div', { class: 'buttons' }, button(cut.label, raise, { small: true })),
+  ];
+}
+
 function legend() {
   return element(
     'ul',
@@ -233,7 +244,7 @@ function createAnswer(lab) {
       top.show(tree, topPlane(), solids);
       if (!tree) return;
       const note = otherwise(lab);
-      replace(head, summary(tree), note ? notice(note) : null);
+      replace(head, summary(tree), note ? notice(note) : cutOff(lab, tree));
       left.textContent = overlay.left
         ? `Rays drawn: ${count(overlay.count)}. Rays of lower weight, in the table only: ${count(overlay.left)}.`
         : '';

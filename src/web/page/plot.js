@@ -1,13 +1,17 @@
 /* A line chart with intervals over one axis; series differ by colour, marker and dash.
  *
- * exports: plot({title, x, y, series, heading, mark, width, legends}) -> SVG element
+ * exports: plot({title, x, y, series, heading, mark, marks, spots, width, legends}) -> SVG element
  *   x: {label, log, values}       values: words of a categorical axis; points are then at 0, 1, 2 ..
  *   y: {label, log}
  *   series: [{name, points: [{x, y, low, high}], marked, joined}]      low and high NaN: no interval is known;
  *     marked or joined false: without markers or without the line
  *   width: of the drawing in its own units; legends false: none
  *   heading: title of the legend, the parameters in which the series differ
- *   mark: a value of y with a horizontal line, such as 1 for ratios */
+ *   mark: a value of y with a horizontal line, such as 1 for ratios
+ *   marks: [{axis: 'x' or 'y', at, text, kind}] labelled lines; one beyond the axis is at its end, with an arrow
+ *   spots: [{x, y, text}] points with a ring
+ *
+ * Curves that share an x with intervals are shifted sideways, each by a few units of the drawing. */
 
 import { digits, svg, unique } from './ui.js';
 
@@ -19,6 +23,8 @@ const LEGEND = 226;
 const NAME_MAX = 23; /* characters that fit into the legend's width */
 const TICKS = 6;
 const COLOURS = 5;
+const SHIFT = 7; /* of a curve from the next, and of all together */
+const SHIFTS = 28;
 const DASHES = ['', '7 4', '2 3', '9 3 2 3', '4 2'];
 const MARKERS = [
   'M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0',
@@ -126,12 +132,26 @@ function axes(area, x, y, across, up) {
 
 const looks = (index) => ({ class: `plot-series plot-colour-${(index % COLOURS) + 1}` });
 
-function line(one, index, across, up) {
+const hasInterval = (point) => point.low < point.high;
+
+/* How far each curve is shifted sideways. */
+function shiftsOf(series) {
+  const owners = series.filter((one) => one.points.some(hasInterval));
+  const xs = owners.map((one) => one.points.filter(hasInterval).map((point) => point.x));
+  const shared = xs.some((some, i) => xs.slice(0, i).some((other) => some.some((x) => other.includes(x))));
+  const step = Math.min(SHIFT, SHIFTS / owners.length);
+  return series.map((one) =>
+    shared && owners.includes(one) ? round((owners.indexOf(one) - (owners.length - 1) / 2) * step) : 0,
+  );
+}
+
+function line(one, index, across, up, shift) {
   const points = one.points.filter(
     (point) =>
       Number.isFinite(point.x) && Number.isFinite(point.y) && (!up.log || point.y > 0) && (!across.log || point.x > 0),
   );
-  const at = points.map((point) => `${across.at(point.x)} ${up.at(point.y)}`);
+  const place = ({ x }) => round(across.at(x) + shift);
+  const at = points.map((point) => `${place(point)} ${up.at(point.y)}`);
   return svg(
     'g',
     looks(index),
@@ -139,11 +159,11 @@ function line(one, index, across, up) {
       ? svg('path', { class: 'plot-line', d: `M${at.join('L')}`, 'stroke-dasharray': DASHES[index % DASHES.length] })
       : null,
     points
-      .filter((point) => point.low < point.high && (!up.log || point.low > 0))
+      .filter((point) => hasInterval(point) && (!up.log || point.low > 0))
       .map((point) =>
         svg('path', {
           class: 'plot-interval',
-          d: `M${across.at(point.x) - 4} ${up.at(point.low)}h8m-4 0V${up.at(point.high)}m-4 0h8`,
+          d: `M${place(point) - 4} ${up.at(point.low)}h8m-4 0V${up.at(point.high)}m-4 0h8`,
         }),
       ),
     (one.marked === false ? [] : points).map((point, i) =>
@@ -155,6 +175,32 @@ function line(one, index, across, up) {
     ),
   );
 }
+
+/* Texts of vertical lines are at the top, each lower than the one before; those of horizontal ones at the right. */
+function lines(marks, area, across, up) {
+  const inside = (scale, at) => Math.min(Math.max(at, scale.from), scale.to);
+  let down = 0;
+  return marks.map(({ axis, at, text: words, kind }) => {
+    const [scale, arrows] = axis === 'x' ? [across, '←→'] : [up, '↓↑'];
+    const arrow = at < scale.from ? `${arrows[0]} ` : at > scale.to ? `${arrows[1]} ` : '';
+    const to = scale.at(inside(scale, at));
+    const right = to > area.x + area.width / 2;
+    down += axis === 'x' ? 16 : 0;
+    return svg(
+      'g',
+      { class: `plot-line-mark plot-${kind}` },
+      svg('path', { d: axis === 'x' ? `M${to} ${area.y}v${area.height}` : `M${area.x} ${to}h${area.width}` }),
+      axis === 'x'
+        ? text(to + (right ? -5 : 5), area.y + down - 4, right ? 'end' : 'start', arrow + words)
+        : text(area.x + area.width - 4, to + (to < area.y + 20 ? 15 : -5), 'end', arrow + words),
+    );
+  });
+}
+
+const rings = (spots, across, up) =>
+  spots.map(({ x, y, text: words }) =>
+    svg('circle', { class: 'plot-spot', cx: across.at(x), cy: up.at(y), r: 8 }, svg('title', {}, words)),
+  );
 
 function legend(series, heading, left) {
   const short = (name) => (name.length > NAME_MAX ? `${name.slice(0, NAME_MAX - 1)}…` : name);
@@ -180,7 +226,8 @@ function legend(series, heading, left) {
   );
 }
 
-export function plot({ title, x, y, series, heading = '', mark, width: whole = WIDTH, legends = true }) {
+export function plot({ title, x, y, series, heading = '', mark, marks = [], spots = [], ...more }) {
+  const { width: whole = WIDTH, legends = true } = more;
   const many = legends && series.length > 1;
   const width = whole - FRAME.left - FRAME.right - (many ? LEGEND : 0);
   const area = {
@@ -198,6 +245,7 @@ export function plot({ title, x, y, series, heading = '', mark, width: whole = W
   const [low, high] = ends(ys, y.log, mark === undefined);
   const across = ruler({ log: x.log && !x.values, from: left, to: right, a: area.x, b: area.x + area.width });
   const up = ruler({ log: y.log, from: low, to: high, a: area.y + area.height, b: area.y });
+  const shifts = shiftsOf(series);
   const name = unique('plot');
   return svg(
     'svg',
@@ -206,7 +254,9 @@ export function plot({ title, x, y, series, heading = '', mark, width: whole = W
     text(area.x, 17, 'start', title, { class: 'plot-title', 'aria-hidden': 'true' }),
     axes(area, { ...x, points: xs }, y, across, up),
     mark === undefined ? null : svg('path', { class: 'plot-mark', d: `M${area.x} ${up.at(mark)}h${area.width}` }),
-    series.map((one, index) => line(one, index, across, up)),
+    lines(marks, area, across, up),
+    series.map((one, index) => line(one, index, across, up, shifts[index])),
+    rings(spots, across, up),
     many ? legend(series, heading, area.x + area.width + 24) : null,
   );
 }

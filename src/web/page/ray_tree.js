@@ -1,11 +1,9 @@
 /* A pixel's ray tree from /api/trace as a list, and the texts for each ray. Pure functions without page and server.
  *
  * exports:
- *   buildTree(answer) -> {answer, rays, roots, reach}    rays in table order; each {index, node, parent, level,
- *                                                        children, weight, from, to};
- *                                                        weight: 0..1 of the camera ray's; reach: drawn length of
- *                                                        rays
- *                                                        that hit nothing
+ *   buildTree(answer, {toSky}) -> {answer, rays, roots, reach}
+ *     rays in table order; each {index, node, parent, level, children, weight, from, to}; weight: 0..1 of the camera
+ *     ray's; reach: extent of the hits, toSky times that is the drawn length of rays that hit nothing
  *   isCut(ray)                                       whether it was cut off by depth or weight
  *   lineClass(ray)                                   the class of its line in a drawing
  *   kinds                                            [class, description] of each, for legends
@@ -42,7 +40,7 @@ export function lineClass(ray) {
   return ray.node.end === 'blocked' ? 'ray ray-blocked' : `ray ray-${ray.node.kind}`;
 }
 
-export function buildTree(answer) {
+export function buildTree(answer, { toSky = 0.5 } = {}) {
   const first = answer.roots || [answer.root];
   const all = mean(first[0].throughput) || 1;
   const rays = [];
@@ -58,7 +56,7 @@ export function buildTree(answer) {
   const reach = extent(rays);
   for (const ray of rays) {
     ray.from = ray.node.origin;
-    ray.to = endOf(ray, reach);
+    ray.to = endOf(ray, reach, toSky);
   }
   return { answer, rays, roots, reach };
 }
@@ -79,11 +77,11 @@ function extent(rays) {
   return Math.max(length(sides), 0.25 * hits[0].t);
 }
 
-function endOf(ray, reach) {
+function endOf(ray, reach, toSky) {
   const { node } = ray;
   if (node.hit) return node.hit.point;
   if (node.kind === 'shadow') return add(node.origin, times(node.direction, node.light_distance));
-  return add(node.origin, times(node.direction, isCut(ray) ? 0.15 * reach : 0.5 * reach));
+  return add(node.origin, times(node.direction, (isCut(ray) ? 0.15 : toSky) * reach));
 }
 
 /* --- texts --- */

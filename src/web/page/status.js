@@ -1,6 +1,7 @@
 /* The status line: properties and cost of the displayed image, the last message; and the live region for screen
  * readers.
- * exports: createStatus(root, live, lab); sets lab.say(words, remedy, {label, act} of a button) and lab.fail */
+ * exports: createStatus(root, live, lab); sets lab.say(words, remedy, {label, act} of a button), which returns
+ * a function that withdraws the message, and lab.fail */
 
 import { button, copy, count, digits, element, icon, replace, seconds } from './ui.js';
 
@@ -31,7 +32,7 @@ export function createStatus(root, live, lab) {
         element('strong', { text: words }),
         remedy ? ` – ${remedy}` : null,
       ),
-      action ? button(action.label, action.act, { small: true }) : null,
+      action ? element('span', { class: 'status-action' }, button(action.label, action.act, { small: true })) : null,
       button('Dismiss', clear, { icon: 'close', bare: true, kind: 'quiet', small: true }),
     );
     message.className = `status-message ${kind}`;
@@ -41,6 +42,8 @@ export function createStatus(root, live, lab) {
       live.textContent = [words, remedy].filter(Boolean).join('. ');
     });
     timer = setTimeout(clear, kind === 'error' ? 3 * LINGER_MS : LINGER_MS);
+    const mine = timer;
+    return () => mine === timer && clear();
   }
   lab.say = (words, remedy, action) => tell(words, 'info', remedy, action);
   lab.fail = (error) => {

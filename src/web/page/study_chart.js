@@ -2,7 +2,7 @@
  * exports: createChart({caption, id}) -> {node, show({title, cells(quantity), quantities, paths, mark, note}),
  * chosen(): {quantity, x, by, logX, logY} of the chart; null: none, or left to the values} */
 
-import { check, choice, digits, element, empty, group, replace, table } from './ui.js';
+import { check, choice, digits, element, empty, group, replace, table, timeUnit } from './ui.js';
 import { plot } from './plot.js';
 import { axesFor, seriesOf } from './study_data.js';
 
@@ -12,6 +12,17 @@ const spread = (values) => {
   const some = values.filter((value) => Number.isFinite(value));
   return some.length && Math.min(...some) > 0 ? Math.max(...some) / Math.min(...some) : 0;
 };
+
+/* Times in s, ms or µs, whichever the largest needs. */
+function inOwnUnit(quantity, cells) {
+  if (quantity.unit !== 's') return { quantity, cells };
+  const { unit, factor } = timeUnit(cells.map(({ y }) => y));
+  const times = (value) => value * factor;
+  return {
+    quantity: { ...quantity, unit },
+    cells: cells.map((cell) => ({ ...cell, y: times(cell.y), low: times(cell.low), high: times(cell.high) })),
+  };
+}
 
 function numbers(series, x, quantity, caption) {
   const rows = series.flatMap(({ name, points }) =>
@@ -89,10 +100,9 @@ export function createChart({ caption, id }) {
   }
 
   function draw() {
-    const quantity = what.quantities.find(({ key }) => key === chosen.quantity) || what.quantities[0];
-    const cells = quantity
-      ? what.cells(quantity)
-      : []; /* includes unmeasured cells, so that each line keeps its style */
+    const asked = what.quantities.find(({ key }) => key === chosen.quantity) || what.quantities[0];
+    /* Includes unmeasured cells, so that each line keeps its style. */
+    const { quantity, cells } = asked ? inOwnUnit(asked, what.cells(asked)) : { quantity: null, cells: [] };
     bar.hidden = alternative.hidden = !cells.some(({ y }) => Number.isFinite(y));
     if (bar.hidden) {
       replace(place, empty('No data to draw yet.'));

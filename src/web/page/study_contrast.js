@@ -3,7 +3,7 @@
  *   paths: axes in which both sides agree; runs: the sides are runs, so their films must agree; advice: what to do for
  *   a verdict if the sides did not alternate */
 
-import { count, digits, element, notice, replace } from './ui.js';
+import { count, digits, element, notice, replace, timeUnit } from './ui.js';
 import { createChart } from './study_chart.js';
 import { createSortTable } from './study_table.js';
 
@@ -13,12 +13,14 @@ const sameness = (value) => (value === null ? 'NA' : value ? 'yes' : 'no');
 const quantity = { key: 'ratio', label: 'wall time B / wall time A', unit: '' };
 
 function rowsOf(answer, paths, runs) {
+  const { unit, factor } = timeUnit(answer.cells.flatMap(({ a, b }) => [a.median, b.median]));
+  const time = ({ median }) => (median === null ? null : median * factor);
   const columns = [
     ...(runs ? ['cell'] : ['cell A', 'cell B']),
     ...paths.map(({ path }) => path),
-    'A / s',
+    `A / ${unit}`,
     'A n',
-    'B / s',
+    `B / ${unit}`,
     'B n',
     'B / A',
     'low',
@@ -30,9 +32,9 @@ function rowsOf(answer, paths, runs) {
     [
       ...(runs ? [cell.cell] : [cell.a.cell, cell.b.cell]),
       ...paths.map(({ path }) => cell[path]),
-      cell.a.median,
+      time(cell.a),
       cell.a.n,
-      cell.b.median,
+      time(cell.b),
       cell.b.n,
       cell.ratio,
       cell.low,

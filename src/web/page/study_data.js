@@ -4,6 +4,7 @@
  *   numberOf(text)                    NaN for NA and words
  *   isNumeric(column, rows, index)    whether all known values of the column are numbers; fingerprints are not
  *   pathsOf(study)                    [{path, unit}] of the grid
+ *   unitOf(column)                    's' for times, 'B', 'rays', 'dB' or ''
  *   quantitiesOf(summary, paths)      [{key, label, unit, column, low, high}] that a chart can show
  *   cellsOf(summary, paths, quantity) [{at: {path: text}, y, low, high}]
  *   axesFor(cells, paths)             paths with more than one value, numbers first

@@ -1,9 +1,10 @@
-/* A text table with sortable columns. exports: createSortTable({caption, mono}) -> {node, show(columns, rows)}
+/* A text table with sortable columns; columns of times are shown in s, ms or µs.
+ * exports: createSortTable({caption, mono}) -> {node, show(columns, rows)}
  * columns: names; rows: lists of texts. The first click on a head sorts by that column, the second reverses the
  * order, the third restores the original order. */
 
-import { digits, element, icon, replace } from './ui.js';
-import { isNumeric, numberOf } from './study_data.js';
+import { digits, element, icon, replace, timeUnit } from './ui.js';
+import { isNumeric, numberOf, unitOf } from './study_data.js';
 
 const ORDERS = ['none', 'ascending', 'descending'];
 
@@ -23,15 +24,17 @@ export function createSortTable({ caption }) {
   );
   let columns = [];
   let rows = [];
+  let units = []; /* of columns of times */
   let by = null;
   let order = 'none';
   return { node: frame, show };
 
   function show(nextColumns, nextRows) {
-    const changed = nextColumns.join() !== columns.join();
+    const before = columns.join() + units.join();
     columns = nextColumns;
     rows = nextRows;
-    if (changed) drawHead();
+    units = columns.map((_, index) => timesIn(index)?.unit);
+    if (columns.join() + units.join() !== before) drawHead();
     drawBody();
   }
 
@@ -41,6 +44,12 @@ export function createSortTable({ caption }) {
     drawHead();
     drawBody();
     head.querySelectorAll('button')[columns.indexOf(column)].focus();
+  }
+
+  /* The unit of a column of times; null for others. */
+  function timesIn(index) {
+    const values = rows.map((row) => numberOf(row[index]));
+    return unitOf(columns[index]) === 's' && isNumeric(columns[index], rows, index) ? timeUnit(values) : null;
   }
 
   function drawHead() {
@@ -55,6 +64,7 @@ export function createSortTable({ caption }) {
             'button',
             { type: 'button', class: 'study-sort', onclick: () => sortBy(column) },
             column,
+            units[index] && units[index] !== 's' ? ` / ${units[index]}` : null,
             sorted === 'none' ? null : icon(sorted === 'ascending' ? 'up' : 'down'),
           ),
         );
@@ -76,6 +86,7 @@ export function createSortTable({ caption }) {
 
   function drawBody() {
     const numeric = columns.map((column, index) => isNumeric(column, rows, index));
+    const factors = columns.map((_, index) => timesIn(index)?.factor ?? 1);
     replace(
       body,
       inOrder(numeric).map((row) =>
@@ -87,7 +98,7 @@ export function createSortTable({ caption }) {
               class: numeric[index] ? 'numeric' : null,
               scope: index === 0 ? 'row' : null,
               title: numeric[index] && value.length > 7 ? value : null,
-              text: value === 'NA' ? '–' : numeric[index] ? digits(numberOf(value), 5) : value,
+              text: value === 'NA' ? '–' : numeric[index] ? digits(factors[index] * numberOf(value), 5) : value,
             }),
           ),
         ),

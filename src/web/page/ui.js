@@ -44,6 +44,7 @@
  *   copy(text)                                 copies to the clipboard; returns a promise
  *   memory.get(key, otherwise), memory.set(key, value)      localStorage, if available
  *   digits(x, n), seconds(s), count(n), vector([..], n)     numbers as text: 4 significant digits unless n is given
+ *   timeUnit([s, ..])                                       {unit, factor} for times of about the largest
  *   toLinear(byte), toByte(linear)             sRGB 0..255 to and from linear 0..1 */
 
 import { icon } from './icons.js';
@@ -51,7 +52,7 @@ import { table } from './ui_table.js';
 import { dialog, ask } from './ui_dialog.js';
 import { slider, choice, number, text, check } from './ui_controls.js';
 import { element, svg, replace, write, unique, gesture, gestures, memory } from './ui_base.js';
-import { digits, seconds, count, vector, toLinear, toByte } from './ui_numbers.js';
+import { digits, seconds, timeUnit, count, vector, toLinear, toByte } from './ui_numbers.js';
 
 export {
   icon,
@@ -72,7 +73,7 @@ export {
   gestures,
   memory,
 };
-export { digits, seconds, count, vector, toLinear, toByte };
+export { digits, seconds, timeUnit, count, vector, toLinear, toByte };
 
 export function button(label, onclick, { icon: drawing, kind, title, pressed, small, bare, disabled, ...rest } = {}) {
   const face = drawing ? icon(drawing) : null;

@@ -1,4 +1,5 @@
-/* Numbers as text, and the sRGB curve. exports: digits, seconds, count, vector, toLinear, toByte (see ui.js) */
+/* Numbers as text, and the sRGB curve. exports: digits, seconds, timeUnit, count, vector, toLinear, toByte
+ * (see ui.js) */
 
 const MINUS = '\u2212';
 
@@ -13,6 +14,13 @@ export function digits(x, n = 4) {
       .replace('e+', 'e')
       .replace('-', MINUS);
   return String(Number(x.toPrecision(n))).replace('-', MINUS);
+}
+
+/* The unit for a list of times in s, and the factor to it. */
+export function timeUnit(times) {
+  const largest = Math.max(0, ...times.filter((time) => Number.isFinite(time)).map(Math.abs));
+  if (largest === 0 || largest >= 1) return { unit: 's', factor: 1 };
+  return largest >= 1e-3 ? { unit: 'ms', factor: 1e3 } : { unit: 'µs', factor: 1e6 };
 }
 
 export function seconds(s) {
