@@ -205,9 +205,9 @@ static bool is_inside(const instance_set *f, uint64_t bit, double reach, vec3 po
     for (;;) {
         instance_hit back, front;
         ray.inside = bit; /* look for backs */
-        instance_kernels_sse2.nearest(f, &ray, 1, &back);
+        ISA_BASE_OF(instance_kernels).nearest(f, &ray, 1, &back);
         ray.inside = 0;
-        instance_kernels_sse2.nearest(f, &ray, 1, &front);
+        ISA_BASE_OF(instance_kernels).nearest(f, &ray, 1, &front);
         const double first = fmin(back.t, front.t), tie = 0x1p-40 * (first + reach);
         if (first == HUGE_VAL || fabs(back.t - front.t) > tie)
             return back.t < front.t;

@@ -108,7 +108,7 @@ status texture_read_below(const char *path, const char *root, texture_space spac
 vec3 texture_sample(const texture *t, double u, double v, double footprint)
 {
     vec3 c = {1.0, 1.0, 1.0};
-    texture_tint_sse2(t, 1, &u, &v, &footprint, &c.x, &c.y, &c.z);
+    ISA_BASE_OF(texture_tint)(t, 1, &u, &v, &footprint, &c.x, &c.y, &c.z);
     return c;
 }
 
