@@ -237,7 +237,7 @@ setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install the programs that the 
 # Checks of the sources, run in one configuration only.
 source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
   tests/compile_commands.sh tests/words.sh
-scripts := $(filter-out $(source_checks),$(wildcard tests/*.sh))
+scripts := $(filter-out $(source_checks) tests/arch.sh,$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
 endif
@@ -277,6 +277,13 @@ test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMD
 	@tests/format.sh --check $(build)/web-tests
 	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
 	  $(if $(screenshots),--screenshots '$(abspath $(screenshots))') $(only)
+
+# Other architectures, with Debian's cross compilers and qemu-user: arch="s390x" for one of .ci/architectures, SIZE=160x120 for larger films.
+.PHONY: test-arch setup-arch
+setup-arch: | $(filter setup,$(MAKECMDGOALS)) ## install what test-arch requires: cross compilers, qemu-user, libraries in build/arch
+	@.ci/setup-arch $(build)/arch $(arch)
+test-arch: $(build)/cuvette $(build)/cuvette-import | $(filter setup-arch,$(MAKECMDGOALS)) ## build for arm64, s390x and riscv64; compare films, files and rows with this machine's
+	@CUVETTE='$(abspath $(build)/cuvette)' MAKE='$(MAKE)' tests/arch.sh $(build)/arch $(arch)
 
 .PHONY: layers headers vectorise
 layers: ## check the layers of includes
