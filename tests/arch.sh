@@ -1,9 +1,9 @@
 #!/bin/bash
-# tests/arch.sh FOLDER [ARCHITECTURE...], run by `make test-arch`: builds Cuvette for other architectures in FOLDER, which
-# .ci/setup-arch prepares, and runs it with qemu-user. Every scene of experiments/scenes must have the film hash of the
-# native build $CUVETTE; unit tests must pass; each must read what the other writes (rows, images, scenes, shared scenes,
-# meshes) as if it were its own. SIZE=80x60: pixels of the films; qemu is 50 to 100 times slower than a processor.
-# UNIT="NAME NAME": the unit tests. Prints a table, and a line for each difference.
+# tests/arch.sh FOLDER [ARCHITECTURE...], run by `make test-arch`: builds Cuvette for other architectures in FOLDER,
+# which .ci/setup-arch prepares, and runs it with qemu-user. Every scene of experiments/scenes must have the film hash
+# of the native build $CUVETTE; unit tests must pass; each must read what the other writes (rows, images, scenes, shared
+# scenes, meshes) as if it were its own. SIZE=80x60: pixels of the films; qemu is 50 to 100 times slower than a
+# processor. UNIT="NAME NAME": the unit tests. Prints a table, and a line for each difference.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 folder=${1:?tests/arch.sh: give a folder}
