@@ -75,11 +75,13 @@ embree = $(eval embree := $$(shell $$(CC) -E -include embree3/rtcore.h -x c /dev
 embree_cflags = $(if $(embree),-DCUVETTE_EMBREE=1)
 embree_libs = $(if $(embree),-lembree3)
 
-# One source, three instruction sets: *_kernel.c is compiled once for each level.
+# One source for all instruction sets of the architecture (src/base/isa.h): *_kernel.c is compiled once for each.
 isa_flags_sse2   := -msse2 -Wno-psabi
 isa_flags_avx2   := -mavx2 -Wno-psabi
 isa_flags_avx512 := -mavx512f -mavx512dq -mavx512bw -mavx512vl -mprefer-vector-width=512
-isas := sse2 avx2 avx512
+isas = $(eval isas := $$(call isas_of,$$(shell $$(CC) -dumpmachine)))$(isas)
+isas_of = $(if $(filter x86_64-% amd64-%,$(1)),sse2 avx2 avx512,$(if $(filter aarch64-% arm64-%,$(1)),neon,plain))
+isas_flags = $(foreach i,$(isas),$(isa_flags_$(i)))
 
 sources := $(wildcard src/*.c src/*/*.c src/*/*/*.c src/*/*/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
@@ -154,7 +156,7 @@ $(build)/$(soname): $(library_objects)
 measured_code := $(sort $(foreach room,base optics geometry measure image softbody scene render realism job,$(wildcard \
   $(addprefix src/$(room)/,*.[ch] */*.[ch] */*/*.[ch]))))
 $(build)/build_id: always $(build)/flags
-	@{ $(CC) --version | head -n 1; echo '$(subst ','\'',$(code_flags) $(isa_flags_avx512) $(embree_cflags))'; cat $(measured_code); } | \
+	@{ $(CC) --version | head -n 1; echo '$(subst ','\'',$(code_flags) $(isas_flags) $(embree_cflags))'; cat $(measured_code); } | \
 	  sha256sum | cut -c 1-16 >$@.new
 	@{ git rev-parse --short HEAD && git diff --quiet HEAD -- src Makefile || echo +; } 2>/dev/null | tr -d '\n' >>$@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
@@ -199,7 +201,7 @@ $(benches) $(build)/tests/recheck: $(build)/tests/%: tests/%.c $(build)/libcuvet
 # Rebuilds everything when the compiler or its flags change. Everything that is compiled depends on it, so that it
 # also waits for setup when both are requested.
 .PHONY: always
-flags_text = $(subst ','\'',$(filter-out -Werror,$(CC) $(all_cflags) $(isa_flags_avx512) $(embree_cflags)))
+flags_text = $(subst ','\'',$(filter-out -Werror,$(CC) $(all_cflags) $(isas_flags) $(embree_cflags)))
 $(build)/flags: always | $(filter setup setup-peers,$(MAKECMDGOALS))
 	@mkdir -p $(@D)
 	@echo '$(flags_text)' | cmp -s - $@ || echo '$(flags_text)' >$@
@@ -235,7 +237,7 @@ setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install the programs that the 
 # Checks of the sources, run in one configuration only.
 source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
   tests/compile_commands.sh tests/words.sh
-scripts := $(filter-out $(source_checks),$(wildcard tests/*.sh))
+scripts := $(filter-out $(source_checks) tests/arch.sh,$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
 endif
@@ -275,6 +277,13 @@ test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMD
 	@tests/format.sh --check $(build)/web-tests
 	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
 	  $(if $(screenshots),--screenshots '$(abspath $(screenshots))') $(only)
+
+# Other architectures, with Debian's cross compilers and qemu-user: arch="s390x" for one of .ci/architectures, SIZE=160x120 for larger films.
+.PHONY: test-arch setup-arch
+setup-arch: | $(filter setup,$(MAKECMDGOALS)) ## install what test-arch requires: cross compilers, qemu-user, libraries in build/arch
+	@.ci/setup-arch $(build)/arch $(arch)
+test-arch: $(build)/cuvette $(build)/cuvette-import | $(filter setup-arch,$(MAKECMDGOALS)) ## build for arm64, s390x and riscv64; compare films, files and rows with this machine's
+	@CUVETTE='$(abspath $(build)/cuvette)' MAKE='$(MAKE)' tests/arch.sh $(build)/arch $(arch)
 
 .PHONY: layers headers vectorise
 layers: ## check the layers of includes

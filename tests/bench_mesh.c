@@ -17,8 +17,7 @@
 enum { COLUMNS = MESH_RAYS_COLUMNS, ROWS = MESH_RAYS_ROWS };
 enum { TILE_COLUMNS = MESH_RAYS_TILE_COLUMNS, TILE_ROWS = MESH_RAYS_TILE_ROWS, TILE = TILE_COLUMNS * TILE_ROWS };
 
-static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2,
-                                                            &hierarchy_kernels_avx512};
+static const hierarchy_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(hierarchy_kernels);
 
 typedef struct tally {
     uint64_t hits, occluded, sum;
@@ -113,7 +112,7 @@ static bool bench(const char *mode, size_t count, hierarchy_kind kind, const cha
     mesh *m = NULL;
     hierarchy *h = NULL;
     diagnostic why = {0};
-    isa level = ISA_SSE2;
+    isa level = ISA_BASE;
     char text[DIAGNOSTIC_TEXT_MAX];
     status s = isa_choose(&level, &why);
     if (s == STATUS_OK)

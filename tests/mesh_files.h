@@ -80,14 +80,24 @@ static inline void add_text(bytes *b, const char *text)
     add(b, text, strlen(text));
 }
 
+/* The formats are little-endian. */
 static inline void add_u32(bytes *b, uint32_t value)
 {
-    add(b, &value, sizeof value); /* the formats are little-endian, and so are all supported machines */
+    for (int k = 0; k < 4; k++)
+        add(b, &(unsigned char){(unsigned char)(value >> 8 * k)}, 1);
 }
 
 static inline void add_float(bytes *b, float value)
 {
-    add(b, &value, sizeof value);
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    add_u32(b, bits);
+}
+
+static inline void add_floats(bytes *b, const float *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        add_float(b, values[i]);
 }
 
 /* A tetrahedron with outward normals; the coordinates are floats but not short decimals. */
@@ -101,9 +111,9 @@ static inline bytes binary_stl(void)
     add(&b, header, sizeof header);
     add_u32(&b, 4);
     for (int f = 0; f < 4; f++) {
-        add(&b, (float[3]){0, 0, 1}, 12);
+        add_floats(&b, (float[3]){0, 0, 1}, 3);
         for (int k = 0; k < 3; k++)
-            add(&b, corners[faces[f][k]], 12);
+            add_floats(&b, corners[faces[f][k]], 3);
         add(&b, "\0\0", 2);
     }
     return b;
@@ -116,7 +126,7 @@ static inline bytes binary_ply(void)
         &b,
         "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 4\nproperty list uchar int vertex_indices\nend_header\n");
-    add(&b, corners, sizeof corners);
+    add_floats(&b, corners[0], 12);
     for (int f = 0; f < 4; f++) {
         add(&b, "\3", 1);
         for (int k = 0; k < 3; k++)
@@ -156,7 +166,7 @@ static inline bytes tetrahedron_glb(const char *node)
              "\"buffers\":[{\"byteLength\":60}]}",
              node);
     bytes data = {0};
-    add(&data, corners, sizeof corners);
+    add_floats(&data, corners[0], 12);
     add(&data, faces, sizeof faces);
     bytes b = glb_of(json, data.at, data.size);
     free(data.at);

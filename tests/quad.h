@@ -1,11 +1,17 @@
 /* Quadruple precision (113 bits) as a reference for tests: the arithmetic for roots, rotations and Fresnel angles,
- * written here because libquadmath exists only for gcc, and long double is a double under valgrind. Pure. */
+ * written here because libquadmath exists only for gcc, and long double is a double under valgrind. Elsewhere than on
+ * x86, long double itself has them. Pure. */
 #pragma once
 
 #include "base/vec3.h"
+#include <float.h>
 #include <math.h>
 
+#if LDBL_MANT_DIG == 113
+typedef long double quad;
+#else
 __extension__ typedef __float128 quad;
+#endif
 typedef struct quad3 {
     quad x, y, z;
 } quad3;

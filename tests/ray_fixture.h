@@ -23,9 +23,8 @@ typedef struct one_hit {
 
 static inline const geometry_kernels *kernels_of(isa level)
 {
-    return level == ISA_AVX512 ? &geometry_kernels_avx512
-           : level == ISA_AVX2 ? &geometry_kernels_avx2
-                               : &geometry_kernels_sse2;
+    static const geometry_kernels *const all[ISA_COUNT] = ISA_ARRAY(geometry_kernels);
+    return all[level];
 }
 
 static inline ray_batch batch_of_one(const one_ray *r)

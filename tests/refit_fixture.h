@@ -13,8 +13,7 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { BATCH = 128, SHOWN_MAX = 4096 };
 
-static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2,
-                                                            &hierarchy_kernels_avx512};
+static const hierarchy_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(hierarchy_kernels);
 
 static inline int effort(int full)
 {
@@ -176,7 +175,7 @@ static inline long compare(const mesh *m, const hierarchy *refitted, int batches
         bool shadowed[BATCH];
         for (int i = 0; i < BATCH; i++)
             r[i] = random_ray(m, seed);
-        kernels[ISA_SSE2]->nearest_batch(none, r, BATCH, expected);
+        kernels[ISA_BASE]->nearest_batch(none, r, BATCH, expected);
         kernel->nearest_batch(refitted, r, BATCH, hits);
         kernel->any_batch(refitted, r, BATCH, shadowed);
         for (int i = 0; i < BATCH; i++) {

@@ -13,8 +13,7 @@
 #include "render/core/film.h"
 #include "render/shade/shade.h"
 
-static const shade_kernels *const kernels[ISA_COUNT] = {&shade_kernels_sse2, &shade_kernels_avx2,
-                                                        &shade_kernels_avx512};
+static const shade_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(shade_kernels);
 static const int counts[] = {1, 2, 3, 7, 8, 9, 31, 32, 33, 63, 64, 100, ROW};
 enum { COUNTS = sizeof counts / sizeof *counts };
 
@@ -45,7 +44,7 @@ enum { KNOWN = sizeof known / sizeof *known };
 static void arrived_light_is_exact(void **state)
 {
     (void)state;
-    for (int level = ISA_SSE2; level <= (int)isa_best(); level++)
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
         for (int channel = 0; channel < 3; channel++)
             for (int k = 0; k < KNOWN; k++)
                 for (int c = 0; c < COUNTS; c++) {
@@ -71,7 +70,7 @@ static void arrived_light_is_exact(void **state)
 static void rays_without_a_share_add_nothing(void **state)
 {
     (void)state;
-    for (int level = ISA_SSE2; level <= (int)isa_best(); level++)
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
         for (int k = 0; k < KNOWN; k++) {
             static double share[ROW], value[ROW];
             static film_light sent;
@@ -117,7 +116,7 @@ static void own_and_cut_light_are_products(void **state)
     static branch_group b;
     static film_light own, cut;
     const vec3 radiance = vec3_make(0.5, 0.0, 0.001);
-    for (int level = ISA_SSE2; level <= (int)isa_best(); level++)
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
         for (int c = 0; c < COUNTS; c++) {
             fill(&g, &b, counts[c]);
             kernels[level]->own_light(&g, radiance, &own);
@@ -143,7 +142,7 @@ static void light_out_of_range_is_noted(void **state)
     static group g;
     static branch_group b;
     static film_light sent;
-    for (int level = ISA_SSE2; level <= (int)isa_best(); level++)
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
         for (int c = 0; c < COUNTS; c++)
             for (int at = 0; at < ROW; at++) {
                 fill(&g, &b, counts[c]);

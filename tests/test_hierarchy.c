@@ -16,8 +16,7 @@
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 enum { BATCH = 128 };
 
-static const hierarchy_kernels *const kernels[ISA_COUNT] = {&hierarchy_kernels_sse2, &hierarchy_kernels_avx2,
-                                                            &hierarchy_kernels_avx512};
+static const hierarchy_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(hierarchy_kernels);
 static const hierarchy_kind own_kinds[] = {HIERARCHY_NONE, HIERARCHY_SPHERE, HIERARCHY_OCTANT, HIERARCHY_BVH};
 
 /* Less work in builds for analysis, such as sanitizers. */
@@ -162,7 +161,7 @@ static void batches_of_coherent_rays_have_the_hits_of_single_rays(void **state)
             kernel->nearest_batch(h, r, count, hits);
             kernel->any_batch(h, r, count, shadowed);
             for (int i = 0; i < count; i++) {
-                kernels[ISA_SSE2]->nearest(h, &r[i], &expected);
+                kernels[ISA_BASE]->nearest(h, &r[i], &expected);
                 same_hit(&hits[i], &expected);
                 assert_int_equal(shadowed[i], expected.triangle != TRIANGLE_NONE);
                 hit_count += shadowed[i];
@@ -241,8 +240,8 @@ static void instruction_sets_give_the_same_hits(void **state)
             for (int i = 0; i < effort(2000); i++) {
                 const mesh_ray r = random_ray(m, &seed);
                 mesh_hit one, other;
-                kernels[ISA_SSE2]->nearest(h, &r, &one);
-                for (int level = ISA_AVX2; level <= (int)isa_best(); level++) {
+                kernels[ISA_BASE]->nearest(h, &r, &one);
+                for (int level = ISA_BASE + 1; level <= (int)isa_best(); level++) {
                     kernels[level]->nearest(h, &r, &other);
                     same_hit(&one, &other);
                 }

@@ -40,7 +40,7 @@ static void embree_hits_the_sphere_at_the_closed_form_distance(void **state)
     }
     assert_int_equal(built, STATUS_OK);
     assert_true(hierarchy_describe(h).bytes > 50000 * 12);
-    const hierarchy_kernels *kernel = &hierarchy_kernels_sse2;
+    const hierarchy_kernels *kernel = &ISA_BASE_OF(hierarchy_kernels);
     uint64_t seed = 77;
     for (int i = 0; i < 2000; i++) {
         vec3 origin = vec3_scale(random_direction(&seed), 3.0), target = vec3_scale(random_direction(&seed), 0.9);

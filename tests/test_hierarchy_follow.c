@@ -100,10 +100,10 @@ static void same_by_all_kinds(const mesh *m, uint64_t *seed)
     for (int i = 0; i < effort(1000); i++) {
         const mesh_ray r = random_ray(m, seed);
         mesh_hit expected, hit;
-        kernels[ISA_SSE2]->nearest(kept(m, HIERARCHY_BVH), &r, &expected);
-        kernels[ISA_SSE2]->nearest(kept(m, HIERARCHY_NONE), &r, &hit);
+        kernels[ISA_BASE]->nearest(kept(m, HIERARCHY_BVH), &r, &expected);
+        kernels[ISA_BASE]->nearest(kept(m, HIERARCHY_NONE), &r, &hit);
         same_hit(&hit, &expected);
-        kernels[ISA_SSE2]->nearest(kept(m, HIERARCHY_OCTANT), &r, &hit);
+        kernels[ISA_BASE]->nearest(kept(m, HIERARCHY_OCTANT), &r, &hit);
         same_hit(&hit, &expected);
     }
 }

@@ -10,8 +10,7 @@
 #include "geometry/hierarchy_bvh.h"
 #include "refit_fixture.h"
 
-static void (*const refit_nodes[ISA_COUNT])(hierarchy *) = {hierarchy_refit_nodes_sse2, hierarchy_refit_nodes_avx2,
-                                                            hierarchy_refit_nodes_avx512};
+static hierarchy_refitter *const refit_nodes[ISA_COUNT] = ISA_ARRAY(hierarchy_refit_nodes);
 static deformation *const deformations[] = {squash, twist, scatter, collapse, far_away, tiny, on_floats};
 
 static void a_refitted_hierarchy_has_the_hits_of_a_rebuilt_one(void **state)

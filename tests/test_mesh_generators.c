@@ -23,8 +23,11 @@ static uint64_t float_hash(const mesh *m, size_t *bytes)
     for (size_t k = 0; k < 3 * m->triangle_count; k++) {
         const vec3 p = m->vertices[m->triangles[k / 3].corner[k % 3]];
         const float at[3] = {(float)p.x, (float)p.y, (float)p.z};
-        for (size_t b = 0; b < sizeof at; b++, ++*bytes)
-            hash = (hash ^ ((const unsigned char *)at)[b]) * UINT64_C(1099511628211);
+        for (size_t b = 0; b < sizeof at; b++, ++*bytes) {
+            uint32_t bits;
+            memcpy(&bits, &at[b / 4], sizeof bits);
+            hash = (hash ^ (bits >> 8 * (b % 4) & 0xff)) * UINT64_C(1099511628211);
+        }
     }
     return hash;
 }

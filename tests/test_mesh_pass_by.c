@@ -62,9 +62,9 @@ static void compare(const placed_mesh *p, uint64_t *seed, int *hits, int *misses
     mesh_hit expected;
     instance_hit got;
     bool blocked;
-    hierarchy_kernels_sse2.nearest(p->tree, &local, &expected);
-    instance_kernels_sse2.nearest(p->set, &ray, 1, &got);
-    instance_kernels_sse2.any(p->set, &ray, 1, &blocked);
+    ISA_BASE_OF(hierarchy_kernels).nearest(p->tree, &local, &expected);
+    ISA_BASE_OF(instance_kernels).nearest(p->set, &ray, 1, &got);
+    ISA_BASE_OF(instance_kernels).any(p->set, &ray, 1, &blocked);
     assert_int_equal(got.face != FACE_NONE, expected.triangle != TRIANGLE_NONE);
     assert_int_equal(blocked, expected.triangle != TRIANGLE_NONE);
     if (expected.triangle != TRIANGLE_NONE) {

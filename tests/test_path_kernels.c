@@ -14,7 +14,7 @@
 #include "base/random.h"
 #include "render/shade/path_kernels.h"
 
-static const path_kernels *const kernels[ISA_COUNT] = {&path_kernels_sse2, &path_kernels_avx2, &path_kernels_avx512};
+static const path_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(path_kernels);
 
 static double unit(uint32_t a, uint32_t b)
 {
@@ -34,7 +34,7 @@ static void fill_keys(uint32_t round, int64_t paths, int64_t *sample_key)
 
 static void expect_draws(const path_sampling *p, const int64_t *sample_key, int depth, int purpose)
 {
-    for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++) {
         double u[ROW], v[ROW];
         kernels[level]->draw(p, ROW, sample_key, depth, purpose, u, v);
         for (int i = 0; i < ROW; i++) {
@@ -129,7 +129,7 @@ static void directions_have_their_angles(void **state)
         fill_group(&g, round);
         for (uint32_t i = 0; i < ROW; i++)
             u[i] = unit(i, 10 + round), v[0][i] = 0.5 * unit(i, 50 + round), v[1][i] = v[0][i] + 0.5;
-        for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
+        for (int level = ISA_BASE; level <= (int)isa_best(); level++) {
             for (int k = 0; k < 2; k++)
                 kernels[level]->cosine(&g, u, v[k], x[k], y[k], z[k]);
             for (int i = 0; i < g.count; i++) {
@@ -153,7 +153,7 @@ static void samples_are_on_their_spheres(void **state)
         s.x[i] = 4.0 * unit(i, 7), s.y[i] = 3.0 + unit(i, 8), s.z[i] = -unit(i, 9);
         s.radius[i] = i % 8 == 0 ? 9.0 : unit(i, 20), s.u[i] = unit(i, 21), s.v[i] = unit(i, 22);
     }
-    for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++) {
         kernels[level]->spheres(&g, &s);
         for (int i = 0; i < g.count; i++) {
             const vec3 d = vec3_make(s.dx[i], s.dy[i], s.dz[i]),
@@ -182,7 +182,7 @@ static void rays_near_a_sphere_are_found(void **state)
     static double o[3][ROW], d[3][ROW];
     static int64_t near[ROW];
     static const double ratios[] = {0.0, 0.5, 0.999999, 1.001, 1.5, 100.0};
-    for (int level = ISA_SSE2; level <= (int)isa_best(); level++)
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++)
         for (uint32_t round = 0; round < 200; round++) {
             const int count = 1 + (int)(round % BATCH);
             const vec3 centre = vec3_make(4 * unit(round, 1) - 2, 4 * unit(round, 2) - 2, 4 * unit(round, 3) - 2);
@@ -221,7 +221,7 @@ static void weights_follow_the_law_of_distance(void **state)
         lamps.strength[k] = (float)unit(4, (uint32_t)k);
         lamps.even[k] = k % 2 ? 1.0f : 0.0f, lamps.falling[k] = 1.0f - lamps.even[k];
     }
-    for (int level = ISA_SSE2; level <= (int)isa_best(); level++) {
+    for (int level = ISA_BASE; level <= (int)isa_best(); level++) {
         float weight[LAMPS_MAX];
         kernels[level]->light_weights(&lamps, point, n, 0.7f, 0.1f, weight);
         for (int k = 0; k < lamps.blocks * LAMP_BLOCK; k++) {

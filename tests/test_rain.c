@@ -257,7 +257,7 @@ static void all_threads_and_instruction_sets_give_the_same_film(void **state)
         scene *s = rain_scene("render.width=80 render.height=60 camera.fov_deg=90");
         set_all(s, modes[m]);
         uint64_t first = 0;
-        for (int level = ISA_SSE2; level <= (int)isa_best(); level++)
+        for (int level = ISA_BASE; level <= (int)isa_best(); level++)
             for (int threads = 1; threads <= 3; threads += 2) {
                 s->render.threads = threads;
                 render_result *result = render_at(s, (isa)level, NULL);

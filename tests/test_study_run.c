@@ -364,7 +364,7 @@ static void kept_files_follow_their_cells(void **state)
             fixture_path(f, name, path);
             image *img = NULL;
             assert_int_equal(image_read(path, &img, NULL, NULL), STATUS_OK);
-            uint64_t hash = hash_bytes(HASH_START, img->pixel, 24 * 18 * 3 * sizeof *img->pixel);
+            uint64_t hash = hash_numbers(HASH_START, img->pixel, 24 * 18 * 3, sizeof *img->pixel);
             snprintf(name, sizeof name, "%016" PRIx64, hash);
             char **known = &images[depths[i][cell]];
             if (*known)

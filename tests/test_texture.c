@@ -587,7 +587,7 @@ static void every_instruction_set_tints_with_the_same_samples(void **state)
 {
     (void)state;
     enum { POINTS = 150 };
-    texture_tinter *const tint[ISA_COUNT] = {texture_tint_sse2, texture_tint_avx2, texture_tint_avx512};
+    texture_tinter *const tint[ISA_COUNT] = ISA_ARRAY(texture_tint);
     uint64_t s = 9;
     double u[POINTS], v[POINTS], footprint[POINTS];
     for (int k = 0; k < POINTS; k++) {
@@ -597,7 +597,7 @@ static void every_instruction_set_tints_with_the_same_samples(void **state)
     }
     for (size_t i = 0; i < COUNT(wraps) * COUNT(filters); i++) {
         texture *t = owned(noise(11, 6), wraps[i / COUNT(filters)], filters[i % COUNT(filters)]);
-        for (isa level = ISA_SSE2; level <= isa_best(); level++) {
+        for (isa level = ISA_BASE; level <= isa_best(); level++) {
             double r[POINTS], g[POINTS], b[POINTS];
             for (int k = 0; k < POINTS; k++)
                 r[k] = 1.0, g[k] = 0.25, b[k] = 4.0;

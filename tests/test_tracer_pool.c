@@ -29,7 +29,7 @@ static void open_stage(stage *st)
     *st = (stage){.s = rod_scene("render.width=64 render.height=48 render.depth=2 render.threads=4 render.tile=8")};
     assert_int_equal(plan_build(st->s, &st->p, NULL), STATUS_OK);
     assert_int_equal(film_create(64, 48, 1, FILM_RGB, &st->img, NULL), STATUS_OK);
-    assert_non_null(st->set = tracer_pool_create(ISA_SSE2));
+    assert_non_null(st->set = tracer_pool_create(ISA_BASE));
     st->target = (tracer_target){.frame_plan = st->p, .img = st->img};
     schedule_start(&st->pieces, &st->s->render);
 }

@@ -25,6 +25,19 @@ uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
     return hash;
 }
 
+uint64_t hash_numbers(uint64_t hash, const void *numbers, size_t count, size_t size)
+{
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    const unsigned char *number = numbers;
+    for (size_t i = 0; i < count; i++, number += size)
+        for (size_t k = size; k-- > 0;)
+            hash = step(hash, number[k]);
+    return hash;
+#else
+    return hash_bytes(hash, numbers, count * size);
+#endif
+}
+
 /* Austin Appleby, MurmurHash3, fmix64. */
 uint64_t hash_finish(uint64_t hash)
 {

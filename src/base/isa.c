@@ -4,7 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const names[] = {"sse2", "avx2", "avx512"};
+#define NAME(set, ...) #set,
+#define LISTED(set, ...) " " #set
+static const char *const names[] = {ISA_EACH(NAME, )};
+static const char listed[] = ISA_EACH(LISTED, );
 
 const char *isa_name(isa level)
 {
@@ -13,28 +16,50 @@ const char *isa_name(isa level)
 
 isa isa_best(void)
 {
+#if defined __x86_64__
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
         __builtin_cpu_supports("avx512vl"))
-        return ISA_AVX512;
-    return __builtin_cpu_supports("avx2") ? ISA_AVX2 : ISA_SSE2;
+        return ISA_avx512;
+    return __builtin_cpu_supports("avx2") ? ISA_avx2 : ISA_sse2;
+#else
+    return (isa)(ISA_COUNT - 1);
+#endif
+}
+
+/* NAME's place in the list; ISA_COUNT if it is not there. */
+static isa find(const char *name)
+{
+    int level = 0;
+    while (level < ISA_COUNT && strcmp(name, names[level]) != 0)
+        level++;
+    return (isa)level;
 }
 
 status isa_choose(isa *out, diagnostic *why)
 {
     const char *wanted = getenv("CUVETTE_ISA");
-    *out = isa_best();
-    if (!wanted || !*wanted)
-        return STATUS_OK;
-    for (int level = 0; level < ISA_COUNT; level++) {
-        if (strcmp(wanted, names[level]) != 0)
-            continue;
-        if (level > (int)*out)
-            return diagnose(why, STATUS_BAD_INPUT, "unset it, or choose a lower level",
-                            "CUVETTE_ISA=%s is not supported by this processor, which has %s", wanted, names[*out]);
-        *out = (isa)level;
-        return STATUS_OK;
-    }
-    return diagnose(why, STATUS_BAD_INPUT, "use sse2, avx2 or avx512", "CUVETTE_ISA=%s is not an instruction set",
-                    wanted);
+    const isa best = isa_best();
+    const isa level = wanted && *wanted ? find(wanted) : best;
+    if (level == ISA_COUNT)
+        return diagnose(why, STATUS_BAD_INPUT, "unset it, or use one of this machine's",
+                        "CUVETTE_ISA=%s is not an instruction set; this architecture has%s", wanted, listed);
+    if (level > best)
+        return diagnose(why, STATUS_BAD_INPUT, "unset it, or choose a lower level",
+                        "CUVETTE_ISA=%s is not supported by this processor, which has %s", wanted, names[best]);
+    *out = level;
+    return STATUS_OK;
+}
+
+status isa_named(const char *name, isa *out, diagnostic *why)
+{
+    const isa level = find(name);
+    if (level == ISA_COUNT)
+        return diagnose(why, STATUS_BAD_INPUT, "pass NULL for the best one, or one of this machine's",
+                        "unknown instruction set '%.64s'; this architecture has%s", name, listed);
+    if (level > isa_best())
+        return diagnose(why, STATUS_BAD_INPUT, "pass NULL for the best supported one",
+                        "this processor does not support %s", name);
+    *out = level;
+    return STATUS_OK;
 }

@@ -1,18 +1,47 @@
-/* The selection of vector instructions for the kernels. The kernels are plain C, compiled once per level from one
- * source; the best level that the processor supports is chosen at run time, and CUVETTE_ISA selects a lower one (sse2,
- * avx2, avx512). The results are bit-identical. */
+/* The selection of vector instructions for the kernels. The kernels are plain C, compiled once per instruction set from
+ * one source; the best set that the processor supports is chosen at run time, and CUVETTE_ISA selects a lower one. The
+ * results are bit-identical, on every architecture. */
 #pragma once
 
 #include "base/status.h"
 
-typedef enum isa { ISA_SSE2, ISA_AVX2, ISA_AVX512, ISA_COUNT } isa;
+/* The instruction sets of this architecture, from the one that all its processors have to the best: X(set, ...) for
+ * each. The Makefile compiles the kernels for the same list. Another architecture has one set, the compiler's own. */
+#if defined __x86_64__
+#define ISA_BASELINE sse2
+#define ISA_EACH(X, ...) X(sse2, __VA_ARGS__) X(avx2, __VA_ARGS__) X(avx512, __VA_ARGS__)
+#elif defined __aarch64__
+#define ISA_BASELINE neon
+#define ISA_EACH(X, ...) X(neon, __VA_ARGS__)
+#else
+#define ISA_BASELINE plain
+#define ISA_EACH(X, ...) X(plain, __VA_ARGS__)
+#endif
 
-/* The best level that this processor supports. */
+#define ISA_MEMBER(set, ...) ISA_##set,
+typedef enum isa { ISA_EACH(ISA_MEMBER, ) ISA_COUNT, ISA_BASE = 0 } isa;
+
+/* What *_kernel.c defines as KERNEL(name), for each set: declared, as the members of an array, and for the baseline.
+ * A function's type needs no `extern`. */
+#define ISA_DECLARED(set, type, name) extern type name##_##set;
+#define ISA_DECLARE(type, name) ISA_EACH(ISA_DECLARED, type, name)
+#define ISA_ADDRESS(set, name) &name##_##set,
+#define ISA_ARRAY(name)             \
+    {                               \
+        ISA_EACH(ISA_ADDRESS, name) \
+    }
+#define ISA_PASTE(name, set) name##_##set
+#define ISA_PASTED(name, set) ISA_PASTE(name, set)
+#define ISA_BASE_OF(name) ISA_PASTED(name, ISA_BASELINE)
+
+/* The best set that this processor supports. */
 isa isa_best(void);
 
-/* The level to use: CUVETTE_ISA if set, otherwise the best one. STATUS_BAD_INPUT for an unknown level or one that this
+/* The set to use: CUVETTE_ISA if set, otherwise the best one. STATUS_BAD_INPUT for an unknown set or one that this
  * processor does not support. */
 status isa_choose(isa *out, diagnostic *why);
+/* The same for a name that the caller of an engine gives. */
+status isa_named(const char *name, isa *out, diagnostic *why);
 
-/* "sse2", "avx2", "avx512". */
+/* Such as "avx2". */
 const char *isa_name(isa level);

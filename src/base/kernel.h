@@ -1,4 +1,4 @@
-/* Names of functions that are compiled once per instruction set: KERNEL(f) is f_sse2, f_avx2 or f_avx512, by the
+/* Names of functions that are compiled once per instruction set: KERNEL(f) is f_SET, such as f_avx2, by the
  * KERNEL_ISA that the Makefile defines for *_kernel.c. A loop under the comment VECTORISE must be vectorised for AVX2
  * and AVX-512 by gcc and clang; `make vectorise` checks it. */
 #pragma once

@@ -135,7 +135,7 @@ static status check_files(const scene_request *request, scene *s, diagnostic *wh
             diagnostic_locate(why, request->path ? request->path : "--new", 0, 0);
         return result;
     }
-    isa level = ISA_SSE2;
+    isa level = ISA_BASE;
     TRY(scene_input_isa(&level, why));
     TRY(scene_input_lint(s, level, why));
     printf("%s: valid; meshes %zu, textures %zu, materials %zu, lights %zu, solids %zu\n",

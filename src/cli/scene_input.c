@@ -47,7 +47,7 @@ status scene_command_read(const scene_command *command, int argc, char **argv, v
 status scene_command_run(const scene_command *command, int argc, char **argv, void *request, diagnostic *why)
 {
     scene *s = NULL;
-    isa level = ISA_SSE2;
+    isa level = ISA_BASE;
     status result = scene_command_read(command, argc, argv, request, why);
     THEN(result, scene_input_isa(&level, why));
     THEN(result, scene_input_read(request, &s, why));
@@ -108,7 +108,7 @@ status scene_input_isa(isa *level, diagnostic *why)
 
 status scene_input_job(bool measured, job **out, diagnostic *why)
 {
-    isa level = ISA_SSE2;
+    isa level = ISA_BASE;
     const job_settings settings = {.level = &level, .measured = measured, .stop = terminal_stop_requested};
     TRY(scene_input_isa(&level, why));
     return job_create(&settings, out, why);

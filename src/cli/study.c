@@ -61,7 +61,7 @@ static status for_each_study(study_verb verb, study_action *act, int argc, char 
 {
     study_request request;
     status result = study_request_parse(verb, argc, argv, &request, why);
-    isa level = ISA_SSE2; /* part of the environment */
+    isa level = ISA_BASE; /* part of the environment */
     if (result == STATUS_OK && (verb == STUDY_RUN || verb == STUDY_STATUS))
         result = scene_input_isa(&level, why);
     THEN(result, read_and_act(&request, act, why));

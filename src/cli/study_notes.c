@@ -197,7 +197,7 @@ static status trace_cells(collector *c, size_t *order, size_t *weights, size_t *
 {
     const size_t total = study_cell_count(c->s);
     const double began_s = clock_wall_s();
-    isa level = ISA_SSE2;
+    isa level = ISA_BASE;
     TRY(scene_input_isa(&level, why));
     for (size_t cell = 0; cell < total; cell++) {
         order[cell] = cell;

@@ -11,18 +11,7 @@ enum { PREVIEW_MAX = 64 };
 
 status engine_isa(const char *name, isa *out, diagnostic *why)
 {
-    if (!name)
-        return isa_choose(out, why);
-    for (int level = 0; level < ISA_COUNT; level++) {
-        if (strcmp(isa_name((isa)level), name) != 0)
-            continue;
-        if ((isa)level > isa_best())
-            return diagnose(why, STATUS_BAD_INPUT, "pass NULL for the best supported one",
-                            "this processor does not support %s", name);
-        *out = (isa)level;
-        return STATUS_OK;
-    }
-    return diagnose(why, STATUS_BAD_INPUT, "use sse2, avx2, avx512, or NULL", "unknown instruction set '%.64s'", name);
+    return name ? isa_named(name, out, why) : isa_choose(out, why);
 }
 
 cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **out, cuvette_diagnostic *why)
@@ -30,7 +19,7 @@ cuvette_status cuvette_engine_create(const char *instructions, cuvette_engine **
     ENGINE_CALL(out);
     *out = NULL;
     cuvette_engine *e = calloc(1, sizeof *e);
-    isa level = ISA_SSE2;
+    isa level = ISA_BASE;
     status code = e ? engine_isa(instructions, &level, &inner) : out_of_memory(&inner);
     if (code == STATUS_OK)
         code = job_create(&(job_settings){.level = &level}, &e->workers, &inner);

@@ -23,16 +23,10 @@ void cuvette_query_destroy(cuvette_query *query)
     free(query);
 }
 
-static const geometry_kernels *kernels_of(isa level)
-{
-    return level == ISA_AVX512 ? &geometry_kernels_avx512
-           : level == ISA_AVX2 ? &geometry_kernels_avx2
-                               : &geometry_kernels_sse2;
-}
-
 static status prepare(cuvette_query *q, const scene *s, const char *instructions, diagnostic *why)
 {
-    isa level = ISA_SSE2;
+    static const geometry_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(geometry_kernels);
+    isa level = ISA_BASE;
     scene without_sky = *s; /* no query uses it */
     without_sky.background.img = NULL;
     if (integrator_traits_of(&s->render)->drawn)
@@ -41,7 +35,7 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
     THEN(code, scene_check(s, why));
     if (code != STATUS_OK)
         return code;
-    q->kernels = kernels_of(level);
+    q->kernels = kernels[level];
     q->model = scene_clone(&without_sky);
     return q->model ? plan_build(q->model, &q->ready, why) : out_of_memory(why);
 }

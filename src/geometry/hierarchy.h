@@ -13,6 +13,7 @@
  * it. Any number of threads may use it at once. */
 #pragma once
 
+#include "base/isa.h"
 #include "geometry/mesh.h"
 
 typedef enum hierarchy_kind {
@@ -108,4 +109,4 @@ typedef struct hierarchy_kernels {
     void (*any_batch)(const hierarchy *h, const mesh_ray *rays, int count, bool *hit);
 } hierarchy_kernels;
 
-extern const hierarchy_kernels hierarchy_kernels_sse2, hierarchy_kernels_avx2, hierarchy_kernels_avx512;
+ISA_DECLARE(const hierarchy_kernels, hierarchy_kernels)

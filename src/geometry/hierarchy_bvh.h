@@ -10,6 +10,7 @@
  * tree. */
 #pragma once
 
+#include "base/isa.h"
 #include "geometry/hierarchy_private.h"
 #include "base/thread_team.h"
 
@@ -211,9 +212,8 @@ void bvh_free(bvh_tree *tree);
 void bvh_find_reach(hierarchy *h);
 
 /* The kernels of hierarchy_refit: recompute blocks and boxes. */
-void hierarchy_refit_nodes_sse2(hierarchy *h);
-void hierarchy_refit_nodes_avx2(hierarchy *h);
-void hierarchy_refit_nodes_avx512(hierarchy *h);
+typedef void hierarchy_refitter(hierarchy *h);
+ISA_DECLARE(hierarchy_refitter, hierarchy_refit_nodes)
 
 /* Collapses the tree into nodes and leaves and writes it to h. root NULL: no triangles. STATUS_FAILURE: out of memory
  * or the tree is too large. */

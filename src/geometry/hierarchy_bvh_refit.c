@@ -4,8 +4,7 @@
 
 bool hierarchy_refit(hierarchy *h)
 {
-    static void (*const refit[ISA_COUNT])(hierarchy *) = {hierarchy_refit_nodes_sse2, hierarchy_refit_nodes_avx2,
-                                                          hierarchy_refit_nodes_avx512};
+    static hierarchy_refitter *const refit[ISA_COUNT] = ISA_ARRAY(hierarchy_refit_nodes);
     if (h->kind != HIERARCHY_BVH || h->referred != h->of->triangle_count || (h->single && !h->of->single))
         return false;
     refit[isa_best()](h); /* all kernels give identical bits */

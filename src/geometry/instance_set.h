@@ -5,6 +5,7 @@
  * creates, instance_set_destroy frees; meshes and their hierarchies are borrowed. */
 #pragma once
 
+#include "base/isa.h"
 #include "geometry/hierarchy.h"
 #include "geometry/primitives/mapping.h"
 #include "geometry/rays.h"
@@ -128,4 +129,4 @@ typedef struct instance_kernels {
     void (*each)(const instance_set *f, const instance_ray *ray, instance_found *found, void *context);
 } instance_kernels;
 
-extern const instance_kernels instance_kernels_sse2, instance_kernels_avx2, instance_kernels_avx512;
+ISA_DECLARE(const instance_kernels, instance_kernels)

@@ -2,6 +2,7 @@
  * arrays of a ray_batch belong to the caller that queued the rays; hits and scratch are plain values. */
 #pragma once
 
+#include "base/isa.h"
 #include "geometry/scene_geometry.h"
 #include "geometry/solid_view.h"
 #include <float.h>
@@ -163,4 +164,4 @@ typedef struct geometry_kernels {
                          surface_batch *points, mesh_points *more);
 } geometry_kernels;
 
-extern const geometry_kernels geometry_kernels_sse2, geometry_kernels_avx2, geometry_kernels_avx512;
+ISA_DECLARE(const geometry_kernels, geometry_kernels)

@@ -50,7 +50,7 @@ static void add_primitive(scene_geometry *a, int priority_index, const primitive
     *p = *part;
     p->priority_index = priority_index;
     p->first_face = (int64_t)a->primitive_count++ * FACES_MAX;
-    p->rows = p->rule ? p->rule->sse2->intervals : 1;
+    p->rows = p->rule ? p->rule->ISA_BASELINE->intervals : 1;
     p->normals = p->sides > 0 ? add_normals(a, p->sides) : NULL;
     if (p->extent > a->extent)
         a->extent = p->extent;

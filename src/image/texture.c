@@ -108,7 +108,7 @@ status texture_read_below(const char *path, const char *root, texture_space spac
 vec3 texture_sample(const texture *t, double u, double v, double footprint)
 {
     vec3 c = {1.0, 1.0, 1.0};
-    texture_tint_sse2(t, 1, &u, &v, &footprint, &c.x, &c.y, &c.z);
+    ISA_BASE_OF(texture_tint)(t, 1, &u, &v, &footprint, &c.x, &c.y, &c.z);
     return c;
 }
 
@@ -132,7 +132,7 @@ uint64_t texture_hash(const texture *t, uint64_t hash)
     hash = hash_words(hash, size, 2);
     for (size_t i = 0; i < (size_t)l->width * (size_t)l->height; i++) {
         const float c[3] = {l->texels[i].r, l->texels[i].g, l->texels[i].b};
-        hash = hash_bytes(hash, c, sizeof c);
+        hash = hash_numbers(hash, c, 3, sizeof *c);
     }
     return hash;
 }

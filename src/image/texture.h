@@ -5,6 +5,7 @@
  * sampling needs no lock. It keeps nothing of its source image. */
 #pragma once
 
+#include "base/isa.h"
 #include "base/status.h"
 #include "base/vec3.h"
 #include "image/image.h"
@@ -50,7 +51,7 @@ vec3 texture_sample(const texture *t, double u, double v, double footprint);
  * bit-identical results. */
 typedef void texture_tinter(const texture *t, int count, const double *u, const double *v, const double *footprint,
                             double *r, double *g, double *b);
-texture_tinter texture_tint_sse2, texture_tint_avx2, texture_tint_avx512;
+ISA_DECLARE(texture_tinter, texture_tint)
 
 /* Adds size and texels of the image itself to a hash (base/hash.h). */
 uint64_t texture_hash(const texture *t, uint64_t hash);

@@ -218,10 +218,10 @@ static status check_ply(ply *p)
 
 static status check_stl(const char *bytes, size_t size, diagnostic *why)
 {
-    uint32_t count = 0;
-    if (size >= 84)
-        memcpy(&count, bytes + 80, sizeof count); /* little-endian, as this machine */
-    uint64_t needed = 84 + 50 * (uint64_t)count;
+    uint64_t count = 0;
+    for (size_t i = 0; size >= 84 && i < 4; i++)
+        count |= (uint64_t)(unsigned char)bytes[80 + i] << 8 * i; /* little-endian */
+    const uint64_t needed = 84 + 50 * count;
     if (size >= 84 && size == needed)
         return STATUS_OK;
     if (strncasecmp(bytes, "solid", size < 5 ? size : 5) == 0 && size > 5) {

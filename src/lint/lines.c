@@ -43,7 +43,7 @@ static bool through_copy(const instanced_mesh *p, uint32_t copy, const line *l, 
                           .skip = TRIANGLE_NONE,
                           .facing = FACING_ANY};
     mesh_crossings c = {.count = 0};
-    hierarchy_kernels_sse2.all(p->tree, &ray, take_crossing, &c);
+    ISA_BASE_OF(hierarchy_kernels).all(p->tree, &ray, take_crossing, &c);
     if (c.count > 2 * SPANS_MAX || c.count % 2 || out->count + c.count / 2 > SPANS_MAX)
         return false;
     for (int i = 0; i < c.count; i++)

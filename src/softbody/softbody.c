@@ -179,10 +179,8 @@ static status check_net(const softbody_net *net, diagnostic *why)
 status softbody_create_net(const softbody_net *net, const softbody_settings *s, isa level, softbody **out,
                            diagnostic *why)
 {
-    static const softbody_kernels *const kernels[ISA_COUNT] = {&softbody_kernels_sse2, &softbody_kernels_avx2,
-                                                               &softbody_kernels_avx512};
-    static const softbody_force_kernels *const force_kernels[ISA_COUNT] = {
-        &softbody_force_kernels_sse2, &softbody_force_kernels_avx2, &softbody_force_kernels_avx512};
+    static const softbody_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(softbody_kernels);
+    static const softbody_force_kernels *const force_kernels[ISA_COUNT] = ISA_ARRAY(softbody_force_kernels);
     *out = NULL;
     TRY(softbody_check(s, why));
     TRY(check_net(net, why));

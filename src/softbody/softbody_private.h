@@ -6,6 +6,7 @@
  * because all its inputs only change sign: so it is computed once, in batches. */
 #pragma once
 
+#include "base/isa.h"
 #include "base/thread_team.h"
 #include "softbody/softbody.h"
 
@@ -85,9 +86,8 @@ typedef struct softbody_force_kernels {
                      vectors gradient, size_t begin, size_t end);
 } softbody_force_kernels;
 
-extern const softbody_force_kernels softbody_force_kernels_sse2, softbody_force_kernels_avx2,
-    softbody_force_kernels_avx512;
-extern const softbody_kernels softbody_kernels_sse2, softbody_kernels_avx2, softbody_kernels_avx512;
+ISA_DECLARE(const softbody_force_kernels, softbody_force_kernels)
+ISA_DECLARE(const softbody_kernels, softbody_kernels)
 
 typedef struct held_mass {
     uint32_t mass;

@@ -1,5 +1,5 @@
 /* Hashes the contents of a scene's files for the study's definition: equal names with other contents are another scene.
- * */
+ * The hash is the same on every machine. */
 #include "study/grid.h"
 
 #include "base/file.h"
@@ -12,7 +12,7 @@
 static void hash_array(uint64_t *hash, const void *array, size_t count, size_t size)
 {
     if (array)
-        *hash = hash_bytes(*hash, array, count * size);
+        *hash = hash_numbers(*hash, array, count, size);
 }
 
 static void hash_texture(uint64_t *hash, const texture *t)
@@ -37,10 +37,10 @@ static void hash_visit(uint64_t *hash, const face_material *l)
 
 static void hash_mesh(uint64_t *hash, const mesh *m)
 {
-    hash_array(hash, m->vertices, m->vertex_count, sizeof *m->vertices);
-    hash_array(hash, m->triangles, m->triangle_count, sizeof *m->triangles);
-    hash_array(hash, m->normals, m->vertex_count, sizeof *m->normals);
-    hash_array(hash, m->uvs, m->vertex_count, sizeof *m->uvs);
+    hash_array(hash, m->vertices, m->vertex_count * 3, sizeof(double));
+    hash_array(hash, m->triangles, m->triangle_count * 3, sizeof(uint32_t));
+    hash_array(hash, m->normals, m->vertex_count * 3, sizeof(double));
+    hash_array(hash, m->uvs, m->vertex_count * 2, sizeof(double));
     hash_array(hash, m->slots, m->triangle_count, sizeof *m->slots);
     for (int i = 0; i < m->slot_count; i++)
         if (m->slot_names[i])

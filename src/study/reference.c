@@ -69,7 +69,7 @@ static char *file_path(const char *folder, uint64_t scene_hash, const char *endi
 static uint64_t pixel_hash(const image *img)
 {
     size_t count = (size_t)img->width * (size_t)img->height * 3;
-    return hash_finish(hash_bytes(HASH_START, img->pixel, count * sizeof *img->pixel));
+    return hash_finish(hash_numbers(HASH_START, img->pixel, count, sizeof *img->pixel));
 }
 
 static status damaged(const char *path, diagnostic *why)

@@ -6,6 +6,7 @@
  * mesh has no rule (geometry/instance_set.h): the functions at the end return false, 0 or zeros for it. */
 #pragma once
 
+#include "base/isa.h"
 #include "geometry/primitives/mapping.h"
 #include "geometry/rays.h"
 #include "geometry/roots.h"
@@ -44,13 +45,14 @@ typedef struct primitive_functions {
 } primitive_functions;
 
 typedef struct primitive_rule {
-    const primitive_functions *sse2, *avx2, *avx512;
+#define PRIMITIVE_RULE_MEMBER(set, ...) const primitive_functions *set;
+    ISA_EACH(PRIMITIVE_RULE_MEMBER, )
 } primitive_rule;
 
 /* Declares name_rule, the rule of the kind in name_kernel.c. */
-#define PRIMITIVE_RULE(name)                                                                                \
-    extern const primitive_functions name##_functions_sse2, name##_functions_avx2, name##_functions_avx512; \
-    static const primitive_rule name##_rule = {&name##_functions_sse2, &name##_functions_avx2, &name##_functions_avx512}
+#define PRIMITIVE_RULE(name)                                 \
+    ISA_DECLARE(const primitive_functions, name##_functions) \
+    static const primitive_rule name##_rule = ISA_ARRAY(name##_functions)
 
 /* Does it contain the point, in world coordinates? */
 bool primitive_contains(const primitive *p, vec3 point);

@@ -9,17 +9,16 @@
 
 tracer *tracer_create(isa level)
 {
+    static const geometry_kernels *const geometry[ISA_COUNT] = ISA_ARRAY(geometry_kernels);
+    static const shade_kernels *const shade[ISA_COUNT] = ISA_ARRAY(shade_kernels);
+    static const path_kernels *const path[ISA_COUNT] = ISA_ARRAY(path_kernels);
     tracer *t = aligned_alloc(64, (sizeof(tracer) + 63) / 64 * 64);
     if (!t)
         return NULL;
     memset(t, 0, offsetof(tracer, batch));
-    t->geometry = level == ISA_AVX512 ? &geometry_kernels_avx512
-                  : level == ISA_AVX2 ? &geometry_kernels_avx2
-                                      : &geometry_kernels_sse2;
-    t->shade = level == ISA_AVX512 ? &shade_kernels_avx512
-               : level == ISA_AVX2 ? &shade_kernels_avx2
-                                   : &shade_kernels_sse2;
-    t->path = level == ISA_AVX512 ? &path_kernels_avx512 : level == ISA_AVX2 ? &path_kernels_avx2 : &path_kernels_sse2;
+    t->geometry = geometry[level];
+    t->shade = shade[level];
+    t->path = path[level];
     return t;
 }
 

@@ -2,6 +2,7 @@
  * set. The caller owns all arrays, of at most ROW elements; nothing fails. */
 #pragma once
 
+#include "base/isa.h"
 #include "render/core/path_sampling.h"
 #include "render/shade/shade.h"
 
@@ -39,4 +40,4 @@ typedef struct path_kernels {
     void (*light_weights)(const lamp_table *lamps, vec3 point, vec3 n, float k_d, float k_s, float *weight);
 } path_kernels;
 
-extern const path_kernels path_kernels_sse2, path_kernels_avx2, path_kernels_avx512;
+ISA_DECLARE(const path_kernels, path_kernels)

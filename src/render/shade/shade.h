@@ -2,6 +2,7 @@
  * compiled once for each instruction set. Ownership: the caller owns all arrays (the tracer's scratch). */
 #pragma once
 
+#include "base/isa.h"
 #include "geometry/rays.h"
 #include "image/texture.h"
 #include "render/core/plan.h"
@@ -86,4 +87,4 @@ typedef struct shade_kernels {
     texture_tinter *tint; /* a texture's colours */
 } shade_kernels;
 
-extern const shade_kernels shade_kernels_sse2, shade_kernels_avx2, shade_kernels_avx512;
+ISA_DECLARE(const shade_kernels, shade_kernels)
