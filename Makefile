@@ -226,6 +226,10 @@ $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)
 setup: ## install the required packages (Debian 12); does nothing if they are installed
 	@.ci/setup
 
+.PHONY: setup-python
+setup-python: | $(filter setup,$(MAKECMDGOALS)) ## install what the Python module and its tests require (Debian's cffi, NumPy, pandas, pytest)
+	@PYTHON='$(PYTHON)' .ci/setup-python
+
 .PHONY: setup-peers
 setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install the programs that the benchmarks compare with: POV-Ray, Tachyon, Embree
 	@.ci/setup-peers
@@ -275,6 +279,22 @@ test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMD
 	@tests/format.sh --check $(build)/web-tests
 	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
 	  $(if $(screenshots),--screenshots '$(abspath $(screenshots))') $(only)
+
+# The Python module (src/python): Python text only, which loads the shared library of this build or installation.
+PYTHON ?= $(firstword $(wildcard /usr/bin/python3) python3)
+module := $(build)/python/cuvette
+module_sources := $(wildcard src/python/cuvette/*.py src/python/cuvette/py.typed)
+$(module)/_declarations.py: src/python/declare.py src/cuvette.h $(module_sources) $(build)/cuvette | $(filter setup-python,$(MAKECMDGOALS))
+	$(call say,python $@)
+	@mkdir -p $(@D)
+	$(quiet)$(build)/cuvette params --json >$(build)/python/params.json
+	$(quiet)cp $(module_sources) $(@D)/
+	$(quiet)$(PYTHON) src/python/declare.py src/cuvette.h $(build)/python/params.json $(@D)
+.PHONY: python test-python
+python: $(module)/_declarations.py all ## build the Python module; try it with PYTHONPATH=build/python
+test-python: python | $(filter test experiments bench,$(MAKECMDGOALS)) ## test the Python module with pytest; only=NAME for tests/python/test_NAME.py alone
+	@PYTHONPATH='$(abspath $(build)/python)' CUVETTE='$(abspath $(build)/cuvette)' CC='$(CC)' \
+	  $(PYTHON) -m pytest -q -p no:cacheprovider $(if $(only),$(only:%=tests/python/test_%.py),tests/python)
 
 .PHONY: layers headers vectorise
 layers: ## check the layers of includes
@@ -419,7 +439,7 @@ bench: all peers $(build)/tests/bench_mesh $(build)/tests/bench_rows ## benchmar
 
 # --- installation, upkeep ---
 
-.PHONY: install uninstall
+.PHONY: install install-python uninstall
 man := $(DESTDIR)$(PREFIX)/share/man
 pages := $(patsubst src/manual/%,%,$(wildcard src/manual/man?/*))
 completion := $(DESTDIR)$(PREFIX)/share/bash-completion/completions/cuvette
@@ -443,7 +463,13 @@ install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/en
 	install -D -m 644 README.md $(DESTDIR)$(PREFIX)/share/doc/cuvette/README.md
 	find experiments plots -type f -exec sh -c 'for f; do test -x "$$f" && mode=755 || mode=644; \
 	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
+module_place = $(DESTDIR)$(shell $(PYTHON) src/python/place.py $(PREFIX))/cuvette
+install-python: python install ## the same, and the Python module where python3 finds it
+	install -d $(module_place)
+	install -m 644 $(wildcard $(module)/*.py) $(module)/py.typed $(module_place)
 uninstall: ## remove the installed files
+	-$(PYTHON) src/python/place.py $(PREFIX) >/dev/null 2>&1 && cd $(module_place) 2>/dev/null && \
+	  rm -f $(notdir $(module_sources)) _declarations.py _documents.py __pycache__/*.pyc && rmdir __pycache__ $(module_place) 2>/dev/null || true
 	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(DESTDIR)$(PREFIX)/include/cuvette.h $(pages:%=$(man)/%) $(completion)
 	rm -f $(libraries)/libcuvette.a $(libraries)/libcuvette.so $(libraries)/$(soname) $(libraries)/libcuvette.so.$(version) $(description)
 	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette

@@ -14,6 +14,8 @@ mapfile -t shell < <(find .ci src tests plots experiments paper -type f -print0 
     xargs -0 grep -lE '^#!/bin/(ba)?sh' | sort)
 mapfile -t page < <(find src/web/page tests/web -name '*.js' -o -name '*.mjs' -o -name '*.css' -o -name '*.html' | sort)
 
+mapfile -t python < <(find src/python tests/python -name '*.py' | sort)
+
 # check WHAT TOOL COMMAND...: the command prints the lines with another layout, and fails if there are any
 check() {
     local what=$1 tool=$2 found
@@ -46,5 +48,5 @@ fi
 check "${#c[@]} files of C" clang-format clang-format --dry-run -Werror "${c[@]}"
 check "${#shell[@]} shell scripts" shfmt shfmt -i 4 -d "${shell[@]}"
 check "${#page[@]} files of the page and its tests" "$prettier" "$prettier" --log-level warn --check "${page[@]}"
-check 'no line over 120 columns' grep too_long "${c[@]}" "${shell[@]}" "${page[@]}"
+check 'no line over 120 columns' grep too_long "${c[@]}" "${shell[@]}" "${page[@]}" "${python[@]}"
 exit $failed
