@@ -83,9 +83,9 @@ isas := sse2 avx2 avx512
 
 sources := $(wildcard src/*.c src/*/*.c src/*/*/*.c src/*/*/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
-library := $(filter-out src/cli/% src/import/% src/report/% src/web/% $(kernels),$(sources))
+library := $(filter-out src/cli/% src/import/% src/web/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
-web := $(filter src/report/% src/web/%,$(sources))
+web := $(filter src/web/%,$(sources))
 page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
 importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c number.c below.c float_environment.c grow.c large_pages.c)
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
@@ -109,7 +109,7 @@ $(build)/cuvette: $(program_objects) $(build)/libweb.a $(build)/libcuvette.a
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
 
-# Reports shared by commands and the laboratory's page, the page's server and the page itself: only for the program, not for the library.
+# The laboratory's server and its page: only for the program, not for the library.
 $(build)/libweb.a: $(web_objects)
 	@rm -f $@
 	$(quiet)ar rcs $@ $^

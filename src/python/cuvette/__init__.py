@@ -10,7 +10,13 @@ The manual is `man cuvette-python`; parameters are described by help(cuvette.Sce
 """
 
 from ._library import BusyError, Cancelled, Error, InputError, SystemFailure, version
+from .comparison import Comparison, compare, read_image
 from .image import Counts, Image, SolidCounts
+from .motion import Hand, Motion, Slime
+from .optics import Curve, Metric, Metrics
+from .rays import Fan, FanRay, Hit, Node, Query, Tree
 from .scene import Parameter, Parameters, Scene, read, read_text_scene as parse
+from .study import Figure, Study, columns, rows, study
 
 __version__ = version()
+__all__ = [name for name in dir() if not name.startswith("_") and name not in ("version", "progress")]

@@ -156,6 +156,11 @@ def callback(result: str, *arguments: str) -> Any:
 on_progress = callback("bool", "double")
 on_parameter = callback("bool", "const cuvette_parameter *")
 on_text = callback("void", "const char *")
+on_metric = callback("bool", "const cuvette_metric *")
+on_curve = callback("bool", "const cuvette_curve *")
+on_value = callback("bool", "const char *", "const char *")
+on_column = callback("bool", "const cuvette_column *")
+on_run = callback("bool", "double", "double")
 
 
 def visited(function: Callable, callback: Any, take: Callable, *arguments: Any) -> None:
@@ -199,6 +204,28 @@ class Engines:
 
 
 engines = Engines()
+
+
+def sized(kind: str) -> Any:
+    """A struct of zeros whose size is set."""
+    out = ffi.new(f"cuvette_{kind} *")
+    out.size = ffi.sizeof(f"cuvette_{kind}")
+    return out
+
+
+def taken(text: Any) -> Optional[str]:
+    """A text that the library gave away; None for NULL."""
+    if not text:
+        return None
+    try:
+        return text_of(text)
+    finally:
+        lib.cuvette_text_destroy(text)
+
+
+def borrowed(pointer: Any, owner: Any) -> Any:
+    """A pointer that keeps the owner of its memory alive, and with it NumPy arrays that show the memory."""
+    return ffi.gc(pointer, lambda _: owner)
 
 
 def version() -> str:

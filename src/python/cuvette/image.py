@@ -7,7 +7,7 @@ from typing import Any, Optional, Tuple, Union
 
 import numpy
 
-from ._library import call, described, encoded, ffi, lib
+from ._library import borrowed, call, described, encoded, ffi, lib, sized
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -39,12 +39,6 @@ class SolidCounts:
     tests: int  #: rays tested against it; 0 for a solid that a hierarchy finds
     hits: int  #: hits on its interfaces, without shadow rays
     first_hits: int  #: camera rays whose first interface is on it
-
-
-def _sized(kind: str) -> Any:
-    out = ffi.new(f"cuvette_{kind} *")
-    out.size = ffi.sizeof(f"cuvette_{kind}")
-    return out
 
 
 class Image:
@@ -92,12 +86,31 @@ class Image:
             self._srgb = out
         return self._srgb
 
+    @described("cuvette_frame_layer")
+    def layer(self, name: str) -> numpy.ndarray:
+        """float32 of height x width x channels, or of height x width for one channel; a view of the library's own
+        memory. The image was rendered with layers=True."""
+        values, channels = ffi.new("float **"), ffi.new("int *")
+        call(lib.cuvette_frame_layer, self._frame, encoded(name), values, channels)
+        size = self.height * self.width * channels[0]
+        memory = ffi.buffer(borrowed(values[0], self._frame), size * ffi.sizeof("float"))
+        out = numpy.frombuffer(memory, numpy.float32)
+        out.setflags(write=False)
+        return out.reshape((self.height, self.width, 3) if channels[0] == 3 else (self.height, self.width))
+
+    @described("cuvette_frame_map")
+    def map(self, name: str) -> numpy.ndarray:
+        """float64 of height x width. The image was rendered with maps=True for "rays" and "time"."""
+        out = numpy.empty((self.height, self.width), numpy.float64)
+        call(lib.cuvette_frame_map, self._frame, encoded(name), ffi.from_buffer("double[]", out))
+        return out
+
     def __array__(self, dtype: Any = None, copy: Any = None) -> numpy.ndarray:
         return self.array if dtype is None else self.array.astype(dtype)
 
     @property
     def counts(self) -> Counts:
-        c = _sized("counters")
+        c = sized("counters")
         call(lib.cuvette_frame_counters, self._frame, c)
         depths = list(c.by_depth)
         while len(depths) > 1 and depths[-1] == 0:
@@ -111,13 +124,13 @@ class Image:
         index = self._solids.index(solid) if isinstance(solid, str) and solid in self._solids else solid
         if isinstance(index, str):
             raise KeyError(f"the scene has no solid '{index}'; it has {', '.join(self._solids)}")
-        c = _sized("solid_counters")
+        c = sized("solid_counters")
         call(lib.cuvette_frame_solid_counters, self._frame, index, c)
         return SolidCounts(c.tests, c.hits, c.first_hits)
 
     @property
     def _times(self) -> Any:
-        out = _sized("statistics")
+        out = sized("statistics")
         call(lib.cuvette_frame_statistics, self._frame, out)
         return out
 

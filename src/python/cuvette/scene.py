@@ -1,6 +1,5 @@
 """Scenes: parameters by name, objects, rendering."""
 
-import html
 import os
 from dataclasses import dataclass
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
@@ -10,8 +9,13 @@ import numpy
 from . import progress as bars
 from ._documents import PARAMETERS
 from ._library import (NULL, Cancelled, InputError, Visit, call, described, encoded, engines, error_of, ffi, lib, made,
-                       names_of, on_parameter, on_progress, on_text, read_text, text_of, visited)
+                       names_of, on_curve, on_metric, on_parameter, on_progress, on_text, read_text, sized, text_of,
+                       visited)
 from .image import Image, Path
+from .motion import Motion
+from .optics import Curve, Metric, Metrics
+from .rays import Fan, Query, Tree
+from .records import Records
 
 Value = Union[bool, int, float, str, Tuple[float, ...]]
 
@@ -28,15 +32,8 @@ class Parameter:
     meaning: str
 
 
-class Parameters(List[Parameter]):
-    """A list of parameters; a notebook shows it as a table."""
-
-    def _repr_html_(self) -> str:
-        titles = ("parameter", "value", "unit", "default", "range", "meaning")
-        rows = [(p.path, p.value, p.unit, p.initial, p.range, p.meaning) for p in self]
-        cells = ["".join(f"<td>{html.escape(text)}</td>" for text in row) for row in rows]
-        head = "".join(f"<th>{title}</th>" for title in titles)
-        return f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
+class Parameters(Records[Parameter]):
+    """A list of parameters."""
 
 
 def _text_of_value(value: Any) -> str:
@@ -160,8 +157,7 @@ class Scene:
         """A mesh from arrays: vertices n x 3, corners (indices of vertices) m x 3."""
         kinds = {"vertices": (vertices, numpy.float64, 3), "corners": (corners, numpy.uint32, 3),
                  "normals": (normals, numpy.float64, 3), "uvs": (uvs, numpy.float64, 2)}
-        given = ffi.new("cuvette_triangles *")
-        given.size = ffi.sizeof("cuvette_triangles")
+        given = sized("triangles")
         arrays = {}
         for key, (values, dtype, columns) in kinds.items():
             if values is None:
@@ -275,20 +271,90 @@ class Scene:
     def _repr_html_(self) -> str:
         return self.changes._repr_html_()
 
+    # --- rays and optics
+
+    @described("cuvette_query_create")
+    def query(self, **short: Any) -> Query:
+        """The scene as it is now, with these settings, for rays of your own."""
+        scene = self.copy().set(**short) if short else self
+        handle = made("query", lib.cuvette_query_create, lib.cuvette_query_destroy, scene._scene, NULL)
+        return Query(handle, scene.lights, scene.solids)
+
+    def trace(self, pixel: Optional[Sequence[int]] = None, origin: Optional[Sequence[float]] = None,
+              direction: Optional[Sequence[float]] = None, **short: Any) -> Tree:
+        """The ray tree of a pixel, `scene.trace((400, 300))`, or of a ray, `scene.trace(origin=..., direction=...)`."""
+        query = self.query(**short)
+        if pixel is not None and origin is None and direction is None:
+            return query.trace_pixel(*pixel)
+        if pixel is None and origin is not None and direction is not None:
+            return query.trace(origin, direction)
+        raise InputError("a tree starts with a pixel or a ray", "give pixel, or origin and direction")
+
+    def fan(self, start: Sequence[float], to: Sequence[float], rays: int = 21, width: float = 1.0, spread_deg: float = 0,
+            plane: Sequence[float] = (0, 0, 0), **short: Any) -> Fan:
+        """Rays around the axis from `start` through `to`, parallel over `width`, or spread from one point; plane is the
+        normal of their plane."""
+        return self.query(**short).fan(start, to, rays, width, spread_deg, plane)
+
+    @described("cuvette_scene_each_metric")
+    def realism(self) -> Metrics:
+        """Traced quantities and textbook formulas; a notebook shows a table, `.table()` is a pandas DataFrame."""
+        found = Metrics()
+
+        def take(one: Any) -> None:
+            numbers = (one.measured, one.theory, one.error, one.tolerance)
+            found.append(Metric(text_of(one.name), text_of(one.verdict), *numbers, text_of(one.unit), text_of(one.meaning)))
+
+        visited(lib.cuvette_scene_each_metric, on_metric, take, self._scene)
+        return found
+
+    @property
+    def curves(self) -> Tuple[str, ...]:
+        """Names of the curves that the scene has."""
+        return tuple(self._curves())
+
+    def _curves(self) -> Dict[str, Tuple[str, str]]:
+        found = {}
+
+        def take(one: Any) -> None:
+            found[text_of(one.name)] = text_of(one.x), text_of(one.y)
+
+        visited(lib.cuvette_scene_each_curve, on_curve, take, self._scene)
+        return found
+
+    @described("cuvette_scene_curve")
+    def curve(self, name: str) -> Curve:
+        """A curve of measured and theoretical values."""
+        points, count = numpy.empty((1024, 3)), ffi.new("size_t *")
+        memory = ffi.cast("double (*)[3]", ffi.from_buffer("double[]", points))
+        call(lib.cuvette_scene_curve, self._scene, encoded(name), memory, len(points), count)
+        x, measured, theory = points[: count[0]].T
+        return Curve(name, *self._curves().get(name, ("x", "y")), x, measured, theory)
+
+    def motion(self) -> Motion:
+        """The slimes of the scene in motion, from their initial state: the scene shows their shapes."""
+        return Motion(self)
+
     # --- rendering
 
     def render(self, values: Optional[Mapping[str, Any]] = None, *, progress: bars.Progress = None,
-               preview: int = 0, **short: Any) -> Image:
+               layers: bool = False, maps: bool = False, **short: Any) -> Image:
         """Renders the scene. Parameters as for `set` count for this render only: `scene.render(depth=8)`.
 
         progress: None, a bar on a terminal or in a notebook if it takes longer than half a second; True or False; or a
         function that gets the share from 0 to 1 and may return False to stop. Ctrl-C stops the render and raises
-        KeyboardInterrupt. Other Python threads run meanwhile."""
+        KeyboardInterrupt. Other Python threads run meanwhile.
+
+        layers: keep the layers of render.integrator aov, which is then set (Image.layer). maps: keep the number of rays
+        and the time of each pixel (Image.map)."""
+        if layers:
+            short = {"integrator": "aov", **short}
         scene = self.copy().set(values, **short) if values or short else self
         bar = bars.bar_of(progress, "render")
         visit = Visit(bar or (lambda share: True))
-        request = ffi.new("cuvette_request *")
-        request.size, request.progress, request.context = ffi.sizeof("cuvette_request"), on_progress, visit.context
+        request = sized("request")
+        request.progress, request.context = on_progress, visit.context
+        request.layers, request.pixel_rays, request.pixel_time = layers, maps, maps
         engine, out, why = engines.take(), ffi.new("cuvette_frame **"), ffi.new("cuvette_diagnostic *")
         try:
             status = lib.cuvette_engine_render(engine, scene._scene, request, out, why)

@@ -1,0 +1,34 @@
+"""Lists of results as tables: in a notebook, and of pandas."""
+
+import dataclasses
+import html
+from typing import Any, List, Sequence, TypeVar
+
+Item = TypeVar("Item")
+
+
+def html_table(titles: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
+    def cell(value: Any) -> str:
+        return f"<td>{html.escape(f'{value:.6g}' if isinstance(value, float) else str(value))}</td>"
+
+    head = "".join(f"<th>{html.escape(title)}</th>" for title in titles)
+    return f"<table><tr>{head}</tr>{''.join('<tr>' + ''.join(map(cell, row)) + '</tr>' for row in rows)}</table>"
+
+
+class Records(List[Item]):
+    """A list of results, each with the same fields; a notebook shows a table."""
+
+    def _rows(self) -> List[List[Any]]:
+        return [[getattr(one, field.name) for field in dataclasses.fields(one)] for one in self]  # type: ignore
+
+    def _titles(self) -> List[str]:
+        return [field.name for field in dataclasses.fields(self[0])] if self else []  # type: ignore
+
+    def _repr_html_(self) -> str:
+        return html_table(self._titles(), self._rows())
+
+    def table(self) -> Any:
+        """A pandas DataFrame."""
+        import pandas
+
+        return pandas.DataFrame(self._rows(), columns=self._titles())
