@@ -293,7 +293,7 @@ $(module)/_declarations.py: src/python/declare.py src/cuvette.h $(module_sources
 .PHONY: python test-python
 python: $(module)/_declarations.py all ## build the Python module; try it with PYTHONPATH=build/python
 test-python: python | $(filter test experiments bench,$(MAKECMDGOALS)) ## test the Python module with pytest; only=NAME for tests/python/test_NAME.py alone
-	@PYTHONPATH='$(abspath $(build)/python)' CUVETTE='$(abspath $(build)/cuvette)' CC='$(CC)' \
+	@MALLOC_PERTURB_=165 PYTHONPATH='$(abspath $(build)/python)' CUVETTE='$(abspath $(build)/cuvette)' CC='$(CC)' \
 	  $(PYTHON) -m pytest -q -p no:cacheprovider $(if $(only),$(only:%=tests/python/test_%.py),tests/python)
 
 .PHONY: layers headers vectorise

@@ -115,6 +115,7 @@ bench *query_take_bench(const cuvette_query *query)
     pthread_mutex_unlock(&q->lock);
     if (!b && (b = aligned_alloc(64, (sizeof *b + 63) / 64 * 64))) {
         b->scratch.segments = NULL;
+        b->scratch.crossings = NULL;
         b->scratch.meshes = &b->meshes;
     }
     return b;

@@ -57,13 +57,13 @@ def _environments(folder: str) -> Tuple[Dict[str, str], Dict[str, Dict[str, str]
     return of_run, facts
 
 
-def _excluded(folder: str) -> List[Tuple[str, str, str]]:
-    """Run, identity and repetition of the rows that a person excluded."""
+def _excluded(folder: str) -> List[str]:
+    """The checks of the rows that a person excluded."""
     path = os.path.join(folder, "excluded.csv")
     if not os.path.exists(path):
         return []
     with open(path, encoding="utf-8", newline="") as file:
-        return [(one["run"], one["identity"], one["repetition"]) for one in csv.DictReader(file)]
+        return [one["check"] for one in csv.DictReader(file)]
 
 
 def _chosen(table: "pandas.DataFrame", folder: str, environment: Optional[str]) -> "pandas.DataFrame":
@@ -105,14 +105,11 @@ def rows(folder: Path, environment: Optional[str] = None, raw: bool = False,
     of_run, facts = _environments(place)
     table["environment"] = table["run"].map(of_run).fillna("unknown")
     left_out: Dict[str, int] = {}
-    gone = set(_excluded(place))
-    is_excluded = [key in gone for key in zip(table["run"], table["identity"], table["repetition"].astype(str))]
-    for reason, mask in (("warm-ups", table["warmup"] == 1), ("marked", table["marked"] == 1),
-                         ("excluded", pandas.Series(is_excluded, dtype=bool))):
-        left_out[reason] = int(mask.sum())
+    reasons = {"warm-ups": table["warmup"] == 1, "marked": table["marked"] == 1,
+               "excluded": table["check"].isin(_excluded(place))}
     if not raw:
-        table = table[(table["warmup"] == 0) & (table["marked"] == 0) & ~pandas.Series(is_excluded, dtype=bool)]
-        table = table.reset_index(drop=True)
+        left_out = {reason: int(mask.sum()) for reason, mask in reasons.items()}
+        table = table[~(reasons["warm-ups"] | reasons["marked"] | reasons["excluded"])].reset_index(drop=True)
     table = _chosen(table, place, environment)
     known, given = columns(), units or {}
     described_columns = {name: _described(name, known, given) for name in table.columns if name != "environment"}
@@ -207,7 +204,8 @@ class Study:
 
     def _run(self, results: Path, any_environment: bool, wait_quiet_s: float, process: int, bar: Any) -> None:
         visit = Visit(lambda share, left_s: bar(share) if bar else True)
-        news = Visit(lambda text: warnings.warn(f"{self.name}: {text_of(text)}", stacklevel=4))
+        news = Visit(lambda text: warnings.warn(f"{self.name}: {text_of(text)}".replace("--wait-quiet", "wait_quiet_s=60"),
+                                                stacklevel=7))
         visit.news = news  # type: ignore[attr-defined]
         run = sized("run")
         folder = _or_null(results)
