@@ -118,19 +118,23 @@ def read_text(function: Callable, *arguments: Any) -> str:
 
 
 class Visit:
-    """A callback and its context. An exception of the Python function ends the C call, if the callback returns bool;
-    it is raised by `finish`."""
+    """A callback and its context; `also` is a second callback with the same context. An exception of the Python function
+    ends the C call, if the callback returns bool; it is raised by `finish`."""
 
     def __init__(self, function: Callable) -> None:
         self.function, self.error = function, None  # type: Callable, Optional[BaseException]
+        self.also: Optional[Callable] = None
         self.context = ffi.new_handle(self)
 
-    def __call__(self, *arguments: Any) -> bool:
+    def guard(self, function: Any, *arguments: Any) -> bool:
         try:
-            return self.error is None and self.function(*arguments) is not False
+            return self.error is None and function(*arguments) is not False
         except BaseException as error:  # KeyboardInterrupt too: it is raised where the call was made
             self.error = error
             return False
+
+    def __call__(self, *arguments: Any) -> bool:
+        return self.guard(self.function, *arguments)
 
     def finish(self) -> None:
         if self.error is not None:
@@ -161,6 +165,14 @@ on_curve = callback("bool", "const cuvette_curve *")
 on_value = callback("bool", "const char *", "const char *")
 on_column = callback("bool", "const cuvette_column *")
 on_run = callback("bool", "double", "double")
+
+
+def _pass_news(context: Any, text: Any) -> None:
+    visit = ffi.from_handle(context)
+    visit.guard(visit.also, text)
+
+
+on_news = ffi.callback("void(void *, const char *)", _pass_news, onerror=_keep_error)
 
 
 def visited(function: Callable, callback: Any, take: Callable, *arguments: Any) -> None:

@@ -8,6 +8,7 @@ import numpy
 
 from ._library import InputError, NULL, borrowed, call, described, encoded, ffi, lib, made, sized, text_of
 from .image import Path
+from .records import html_table, svg_of
 
 KINDS = ("camera", "reflect", "refract", "shadow")
 ENDS = ("hit", "sky", "cut_depth", "cut_weight", "lit", "blocked")
@@ -68,8 +69,6 @@ class _View:
         return [*super().__dir__(), *self._fields]
 
     def _repr_html_(self) -> str:
-        from .records import html_table
-
         return html_table(("", ""), [(name, getattr(self, name)) for name in self._fields])
 
 
@@ -186,7 +185,7 @@ class Tree(_Nodes):
         return _written(lib.cuvette_tree_write, self._handle, ".txt")
 
     def _repr_svg_(self) -> str:
-        return _written(lib.cuvette_tree_write, self._handle, ".svg")
+        return svg_of(_written(lib.cuvette_tree_write, self._handle, ".svg"))
 
     def __repr__(self) -> str:
         return f"<cuvette.Tree of {len(self)} rays, radiance {', '.join(f'{v:.6g}' for v in self.radiance)}>"
@@ -269,7 +268,7 @@ class Fan:
         call(lib.cuvette_fan_write, self._handle, encoded(path))
 
     def _repr_svg_(self) -> str:
-        return _written(lib.cuvette_fan_write, self._handle, ".svg")
+        return svg_of(_written(lib.cuvette_fan_write, self._handle, ".svg"))
 
     def __repr__(self) -> str:
         focus = self.focus

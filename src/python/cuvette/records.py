@@ -9,10 +9,16 @@ Item = TypeVar("Item")
 
 def html_table(titles: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
     def cell(value: Any) -> str:
-        return f"<td>{html.escape(f'{value:.6g}' if isinstance(value, float) else str(value))}</td>"
+        text = html.escape(f"{value:.6g}" if isinstance(value, float) else str(value))
+        return f'<td style="text-align: {"right" if isinstance(value, (int, float)) else "left"}">{text}</td>'
 
-    head = "".join(f"<th>{html.escape(title)}</th>" for title in titles)
+    head = "".join(f'<th style="text-align: left">{html.escape(title)}</th>' for title in titles)
     return f"<table><tr>{head}</tr>{''.join('<tr>' + ''.join(map(cell, row)) + '</tr>' for row in rows)}</table>"
+
+
+def svg_of(document: str) -> str:
+    """A drawing without what stands before its element, as a notebook needs it."""
+    return document[document.index("<svg") :]
 
 
 class Records(List[Item]):

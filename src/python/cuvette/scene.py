@@ -115,8 +115,16 @@ class Scene:
 
     @property
     def changes(self) -> Parameters:
-        """The parameters that differ from their defaults."""
-        return Parameters(p for p in self.parameters if p.value != p.initial)
+        """The parameters that differ from their defaults; those of a solid's surface only if they differ from its
+        material's."""
+        values = {p.path: p.value for p in self.parameters}
+
+        def differs(one: Parameter) -> bool:
+            group, name = one.path.split(".", 1)
+            of_material = values.get(f"{values.get(f'{group}.material')}.{name}")
+            return one.value != (one.initial if of_material is None else of_material)
+
+        return Parameters(p for p in self.parameters if differs(p))
 
     def keys(self) -> Iterator[str]:
         return (p.path for p in self.parameters)

@@ -11,9 +11,10 @@ import warnings
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
 
 from . import progress as bars
-from ._library import (Cancelled, InputError, NULL, Visit, call, described, encoded, ffi, lib, made, on_column, on_run,
-                       on_value, sized, taken, text_of, visited)
+from ._library import (Cancelled, InputError, NULL, Visit, call, described, encoded, ffi, lib, made, on_column, on_news,
+                       on_run, on_value, sized, taken, text_of, visited)
 from .image import Path
+from .records import html_table, svg_of
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -135,7 +136,7 @@ class Figure:
         if not self.path.endswith(".svg"):
             return None
         with open(self.path, encoding="utf-8") as file:
-            return file.read()
+            return svg_of(file.read())
 
     def __repr__(self) -> str:
         return f"<cuvette.Figure {self.path}>"
@@ -204,9 +205,8 @@ class Study:
 
     def _run(self, results: Path, any_environment: bool, wait_quiet_s: float, process: int, bar: Any) -> None:
         visit = Visit(lambda share, left_s: bar(share) if bar else True)
-        news = Visit(lambda text: warnings.warn(f"{self.name}: {text_of(text)}".replace("--wait-quiet", "wait_quiet_s=60"),
-                                                stacklevel=7))
-        visit.news = news  # type: ignore[attr-defined]
+        visit.also = lambda text: warnings.warn(
+            f"{self.name}: {text_of(text)}".replace("--wait-quiet", "wait_quiet_s=60"), stacklevel=8)
         run = sized("run")
         folder = _or_null(results)
         run.results, run.any_environment, run.wait_quiet_s, run.process = folder, any_environment, wait_quiet_s, process
@@ -307,17 +307,10 @@ class Study:
         return f"<cuvette.Study {self.name}: {self.title}, {len(self)} cells>"
 
     def _repr_html_(self) -> str:
-        from .records import html_table
-
         cells = [self.values(i) for i in range(min(len(self), 200))]
         titles = list(cells[0]) if cells else []
         body = [[i, *(one[t] for t in titles)] for i, one in enumerate(cells)]
         return f"<p>{self.name}: {self.title}</p>{html_table(['cell', *titles], body)}"
-
-
-@ffi.callback("void(void *, const char *)")
-def on_news(context: Any, text: Any) -> None:
-    ffi.from_handle(context).news(text)
 
 
 @described("cuvette_study_read")
