@@ -464,12 +464,13 @@ install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/en
 	find experiments plots -type f -exec sh -c 'for f; do test -x "$$f" && mode=755 || mode=644; \
 	  install -D -m $$mode "$$f" "$(shared)/$$f"; done' sh {} +
 module_place = $(DESTDIR)$(shell $(PYTHON) src/python/place.py $(PREFIX))/cuvette
-install-python: python install ## the same, and the Python module where python3 finds it
+module_installed := $(notdir $(module_sources)) _declarations.py _documents.py
+install-python: python install ## install all of that and the Python module, where python3 finds it
 	install -d $(module_place)
-	install -m 644 $(wildcard $(module)/*.py) $(module)/py.typed $(module_place)
+	install -m 644 $(addprefix $(module)/,$(module_installed)) $(module_place)
+	@echo 'Python module: $(module_place)'
 uninstall: ## remove the installed files
-	-$(PYTHON) src/python/place.py $(PREFIX) >/dev/null 2>&1 && cd $(module_place) 2>/dev/null && \
-	  rm -f $(notdir $(module_sources)) _declarations.py _documents.py __pycache__/*.pyc && rmdir __pycache__ $(module_place) 2>/dev/null || true
+	@if cd $(module_place) 2>/dev/null; then rm -f $(module_installed) __pycache__/*.pyc && rmdir __pycache__ $(module_place); fi 2>/dev/null || true
 	rm -f $(DESTDIR)$(PREFIX)/bin/cuvette $(DESTDIR)$(PREFIX)/include/cuvette.h $(pages:%=$(man)/%) $(completion)
 	rm -f $(libraries)/libcuvette.a $(libraries)/libcuvette.so $(libraries)/$(soname) $(libraries)/libcuvette.so.$(version) $(description)
 	rm -rf $(shared) $(libexec) $(DESTDIR)$(PREFIX)/share/doc/cuvette

@@ -3,9 +3,9 @@
 
     PYTHONPATH=build/python python3 experiments/python_bench.py [ROUNDS] [PROGRAM]
 
-A frame of the command: the time of `cuvette render --repeat N + 1` less that of `--repeat 1`, divided by N. A frame from
-Python: that of N calls of scene.render(), divided by N. Wall time suffers from other programs, CPU time hardly. Columns:
-size, s by the command, s from Python, ratio; the last three of CPU time."""
+A frame of the command: the time of `cuvette render --repeat N + 1` less that of `--repeat 1`, divided by N. A frame
+from Python: that of N calls of scene.render(), divided by N. Wall time suffers from other programs, CPU time hardly.
+Columns: size, s by the command, s from Python, ratio; the last three of CPU time."""
 
 import os
 import statistics
@@ -22,8 +22,9 @@ def process(program: str, size: tuple, frames: int) -> tuple:
     """Wall and CPU time of one process."""
     sets = [part for name, value in zip(("width", "height"), size) for part in ("--set", f"render.{name}={value}")]
     began = time.perf_counter()
-    child = subprocess.Popen([program, "render", SCENE, *sets, "--repeat", str(frames), "--json"],
-                             stdout=subprocess.DEVNULL)
+    child = subprocess.Popen(
+        [program, "render", SCENE, *sets, "--repeat", str(frames), "--json"], stdout=subprocess.DEVNULL
+    )
     usage = os.wait4(child.pid, 0)[2]
     child.returncode = 0
     return time.perf_counter() - began, usage.ru_utime + usage.ru_stime

@@ -1,14 +1,13 @@
 /* The public interface of Cuvette: build a scene, set any of its parameters, render it into the caller's memory, trace
- * rays through it, compare its optics with theory, simulate and grab its soft bodies, and run studies. This is the only header that a program outside src/ includes;
- * link with `pkg-config --cflags --libs cuvette`.
+ * rays through it, compare its optics with theory, simulate and grab its soft bodies, and run studies. This is the only
+ * header that a program outside src/ includes; link with `pkg-config --cflags --libs cuvette`.
  *
- * There are five main handles. A cuvette_scene is a scene description, with the content of a scene file. A cuvette_engine
+ * The main handles are five. A cuvette_scene is a scene description, with the content of a scene file. A cuvette_engine
  * owns worker threads and their memory; it renders scenes, one at a time. A cuvette_frame is the result of a render:
  * film, ray counts, times. A cuvette_query is a snapshot of a scene, prepared for the caller's rays. A cuvette_motion
  * advances the slimes of a scene in time and has hands that grab them. Trees, fans, images and studies are results of
- * these, or read from files. cuvette-scene(5) is the manual of scenes and
- * parameters, cuvette-optics(7) that of the models; `cuvette params` lists every parameter with its range, unit and
- * default.
+ * these, or read from files. cuvette-scene(5) is the manual of scenes and parameters, cuvette-optics(7) that of the
+ * models; `cuvette params` lists every parameter with its range, unit and default.
  *
  * Ownership. The caller owns what a function whose name ends in _create, _read, _clone or _render returns; the function
  * that ends in _destroy releases it, and accepts NULL. Arguments are borrowed for the call only: the library keeps no
@@ -18,8 +17,8 @@
  * Errors. A function that can fail returns a cuvette_status; results are returned through pointers and set only on
  * success (on failure handles are set to NULL). `why`, which may be NULL, then describes the problem and its remedy. A
  * NULL where a handle, a name or a result is required is CUVETTE_BAD_INPUT like any wrong value. The library never
- * prints, never exits, raises no signal, and reads only CUVETTE_ISA (cuvette_engine_create) and CUVETTE_IMPORT (the
- * program that reads mesh files) from the environment.
+ * prints, never exits, raises no signal, and reads only CUVETTE_ISA (cuvette_engine_create), CUVETTE_IMPORT (the
+ * program that reads mesh files) and CUVETTE_MACHINE (cuvette-results(5)) from the environment.
  *
  * Threads. There is no global state: different threads may use different handles at the same time. Any number of
  * functions that take a scene as const may run on it at the same time, including renders by several engines, but not
@@ -464,11 +463,11 @@ CUVETTE_API cuvette_status cuvette_query_medium(const cuvette_query *query, cons
 
 /* --- ray trees and fans ---
  *
- * A tree is one ray with all rays that follow from it, as the renderer traces them: the radiance of a pixel's tree is the
- * film's value, bit for bit (of a scene with random paths, a spectral film or a depth buffer, the tree is that of
- * render.integrator whitted at render.lambda_nm). A fan is many rays in one plane, each followed along its refracted
- * path, with their caustic and focus. Both are immutable; arrays and texts that are read from them are valid until they
- * are destroyed, and they no longer need their query. Calls on one query take turns. */
+ * A tree is one ray with all rays that follow from it, as the renderer traces them: the radiance of a pixel's tree
+ * is the film's value, bit for bit (of a scene with random paths, a spectral film or a depth buffer, the tree is
+ * that of render.integrator whitted at render.lambda_nm). A fan is many rays in one plane, each followed along its
+ * refracted path, with their caustic and focus. Both are immutable; arrays and texts that are read from them are
+ * valid until they are destroyed, and they no longer need their query. Calls on one query take turns. */
 
 typedef struct cuvette_tree cuvette_tree;
 typedef struct cuvette_fan cuvette_fan;
@@ -762,8 +761,8 @@ typedef struct cuvette_run {
     /* the number of a process of a study with several (`processes` in its file), from 1: measure only its part; 0: all,
      * which such a study requires other processes for: run `cuvette study run`, or one program for each number */
     long process;
-    /* share of the frames, 0..1, and the seconds that are left (NaN: unknown), about ten times a second; return false to
-     * stop. May be NULL */
+    /* share of the frames, 0..1, and the seconds that are left (NaN: unknown), about ten times a second; return
+     * false to stop. May be NULL */
     bool (*progress)(void *context, double share, double left_s);
     void (*news)(void *context, const char *text); /* what disturbs the measurement. May be NULL */
     void *context;
@@ -777,13 +776,13 @@ CUVETTE_API cuvette_status cuvette_study_run(const cuvette_study *study, const c
 CUVETTE_API long cuvette_study_processes(const cuvette_study *study);
 
 /* The summary of `cuvette study summary`, as a table with tabs: medians and 95 % intervals, a line for each cell and
- * environment. environment: a key; "main": that with most rows; NULL: all. *fault, which may be NULL, is set to the first
- * fault of the rows, or NULL. */
+ * environment. environment: a key; "main": that with most rows; NULL: all. *fault, which may be NULL, is set to the
+ * first fault of the rows, or NULL. */
 CUVETTE_API cuvette_status cuvette_study_summary(const cuvette_study *study, const char *results,
                                                  const char *environment, char **out, char **fault,
                                                  cuvette_diagnostic *why);
-/* The comparison of `cuvette study compare --json`, as JSON: the ratio b / a of a column (NULL: wall_s), its interval and
- * a verdict for each cell. A side is a results folder, PATH=VALUE, cell=N, environment=KEY or run=ID. */
+/* The comparison of `cuvette study compare --json`, as JSON: the ratio b / a of a column (NULL: wall_s), its
+ * interval and a verdict for each cell. A side is a results folder, PATH=VALUE, cell=N, environment=KEY or run=ID. */
 CUVETTE_API cuvette_status cuvette_study_compare(const cuvette_study *study, const char *results, const char *a,
                                                  const char *b, const char *column, char **out, char **fault,
                                                  cuvette_diagnostic *why);

@@ -172,9 +172,10 @@ static status write_csv(const void *content, FILE *out, diagnostic *why)
     return fan_write_csv(content, out, why);
 }
 
+static const ray_writer writers[] = {{".svg", write_drawing}, {".csv", write_csv}};
+
 cuvette_status cuvette_fan_write(const cuvette_fan *f, const char *path, cuvette_diagnostic *why)
 {
-    static const ray_writer writers[] = {{".svg", write_drawing}, {".csv", write_csv}};
     ENGINE_ENTER();
     ENGINE_NEED_NAMED(f, "fan");
     ENGINE_NEED(path);

@@ -181,9 +181,10 @@ static status write_drawing(const void *content, FILE *out, diagnostic *why)
     return trace_write_drawing(content, out, why);
 }
 
+static const ray_writer writers[] = {{".txt", write_text}, {".json", write_json}, {".svg", write_drawing}};
+
 cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cuvette_diagnostic *why)
 {
-    static const ray_writer writers[] = {{".txt", write_text}, {".json", write_json}, {".svg", write_drawing}};
     ENGINE_CALL(tree, path);
     cuvette_query *q = NULL;
     status code = query_begin_trace(tree->of, &q, &inner);

@@ -1,8 +1,8 @@
 """Writes the generated half of the Python module: `declare.py cuvette.h PARAMETERS.json FOLDER`.
 
-`_declarations.py` has the declarations of cuvette.h, taken from the header itself, in cffi's out-of-line ABI mode: plain
-Python text that loads the shared library when it is imported. No compiler is needed to install it, and one package
-serves every architecture. `_documents.py` has the header's comments and the parameter table, for docstrings.
+`_declarations.py` has the declarations of cuvette.h, taken from the header itself, in cffi's out-of-line ABI mode:
+plain Python text that loads the shared library when it is imported. No compiler is needed to install it, and one
+package serves every architecture. `_documents.py` has the header's comments and the parameter table, for docstrings.
 """
 
 import json
@@ -34,7 +34,9 @@ def plain(comment: str) -> str:
 def comments(header: str) -> dict:
     """The comment above each function, which declarations without a comment of their own share."""
     found, last = {}, ""
-    for match in re.finditer(r"(/\*.*?\*/)|CUVETTE_API [^;]*?\b(cuvette_\w+)\(.*?;|(^typedef|^enum|\n\n)", header, re.S | re.M):
+    for match in re.finditer(
+        r"(/\*.*?\*/)|CUVETTE_API [^;]*?\b(cuvette_\w+)\(.*?;|(^typedef|^enum|\n\n)", header, re.S | re.M
+    ):
         if match[1]:
             last = plain(match[1])
         elif match[2]:

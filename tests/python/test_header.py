@@ -14,8 +14,10 @@ HEADER = (ROOT / "src/cuvette.h").read_text()
 
 
 def structs():
-    names = sorted(set(re.findall(r"^\} (cuvette_\w+);", HEADER, re.M)) - set(re.findall(
-        r"^typedef enum (cuvette_\w+)", HEADER, re.M)))
+    names = sorted(
+        set(re.findall(r"^\} (cuvette_\w+);", HEADER, re.M))
+        - set(re.findall(r"^typedef enum (cuvette_\w+)", HEADER, re.M))
+    )
     return [(name, [field for field, _ in ffi.typeof(name).fields]) for name in names]
 
 

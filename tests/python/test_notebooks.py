@@ -16,8 +16,9 @@ def test_notebook(path, monkeypatch):
     monkeypatch.setenv("JUPYTER_PLATFORM_DIRS", "1")
     notebook = nbformat.read(path, as_version=4)
     assert not any(cell.get("outputs") for cell in notebook.cells), "outputs are not committed: clear them"
-    nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3",
-                            resources={"metadata": {"path": str(path.parent)}}).execute()
+    nbclient.NotebookClient(
+        notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(path.parent)}}
+    ).execute()
     outputs = [one for cell in notebook.cells for one in cell.get("outputs", [])]
     shown = {kind for one in outputs for kind in one.get("data", {})}
     assert {"image/png", "text/html"} <= shown and not any(one["output_type"] == "error" for one in outputs)

@@ -14,7 +14,9 @@ def test_realism_equals_the_programs(program):
     own = scene.realism()
     other = json.loads(program("realism", ROD, "--json"))["values"]
     assert [m.name for m in own] == [m["metric"] for m in other]
-    assert [m.measured for m in own if m.verdict == "pass"] == [m["measured"] for m in other if m["measured"] is not None]
+    assert [m.measured for m in own if m.verdict == "pass"] == [
+        m["measured"] for m in other if m["measured"] is not None
+    ]
     assert not own.failures and own["lens.power"].unit == "1/scene unit" and "lens.power" in own._repr_html_()
     assert list(own.table()["name"]) == [m.name for m in own]
     with pytest.raises(KeyError, match="lens.power"):

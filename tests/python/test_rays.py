@@ -29,7 +29,9 @@ def test_nodes_obey_snell_and_fresnel(rod):
             assert hit.n_before * sin_in > hit.n_after and hit.R == 1 and hit.angle_out_deg is None
             continue
         assert hit.n_before * sin_in == pytest.approx(hit.n_after * math.sqrt(1 - hit.cos_out**2), abs=1e-9)
-        r_s = (hit.n_before * hit.cos_in - hit.n_after * hit.cos_out) / (hit.n_before * hit.cos_in + hit.n_after * hit.cos_out)
+        r_s = (hit.n_before * hit.cos_in - hit.n_after * hit.cos_out) / (
+            hit.n_before * hit.cos_in + hit.n_after * hit.cos_out
+        )
         assert hit.R_s == pytest.approx(r_s**2, abs=1e-12) and hit.R + hit.T == pytest.approx(1)
 
 
@@ -84,8 +86,22 @@ def test_wrong_rays(rod):
 
 def test_fan_equals_the_programs(rod, program, tmp_path):
     fan = rod.fan((-3, 1.5, 0), (3, 1.5, 0), rays=21, width=1.6, rod__visible=False)
-    program("fan", ROD, "--from", "-3,1.5,0", "--to", "3,1.5,0", "--width", "1.6", "--rays", "21", "--set",
-            "rod.visible=off", "-o", str(tmp_path / "fan.csv"))
+    program(
+        "fan",
+        ROD,
+        "--from",
+        "-3,1.5,0",
+        "--to",
+        "3,1.5,0",
+        "--width",
+        "1.6",
+        "--rays",
+        "21",
+        "--set",
+        "rod.visible=off",
+        "-o",
+        str(tmp_path / "fan.csv"),
+    )
     fan.save(tmp_path / "own.csv")
     assert (tmp_path / "own.csv").read_text() == (tmp_path / "fan.csv").read_text()
     with open(tmp_path / "fan.csv", newline="") as file:
@@ -130,8 +146,10 @@ def test_queries_of_many_rays():
 def test_trees_of_one_query_in_several_threads(rod):
     query, found = rod.query(depth=4), []
     expected = query.trace_pixel(40, 30).radiance
-    threads = [threading.Thread(target=lambda: found.extend(query.trace_pixel(40, 30).radiance for _ in range(20)))
-               for _ in range(4)]
+    threads = [
+        threading.Thread(target=lambda: found.extend(query.trace_pixel(40, 30).radiance for _ in range(20)))
+        for _ in range(4)
+    ]
     for one in threads:
         one.start()
     for one in threads:

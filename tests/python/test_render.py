@@ -18,8 +18,11 @@ from conftest import ROD, ROOT
 
 def test_film_equals_the_programs(rod, program, tmp_path):
     image = rod.render({"liquid.ior": 1.4}, depth=8)
-    sets = [part for text in ("liquid.ior=1.4", "render.depth=8", "render.width=80", "render.height=60")
-            for part in ("--set", text)]
+    sets = [
+        part
+        for text in ("liquid.ior=1.4", "render.depth=8", "render.width=80", "render.height=60")
+        for part in ("--set", text)
+    ]
     account = json.loads(program("render", ROD, *sets, "--json", "-o", str(tmp_path / "rod.png")))
     assert image.hash == account["film_hash"]
     assert image.counts.total == account["rays"]["total"]
@@ -103,6 +106,10 @@ def test_parameters_and_display(rod):
     named = {p.path: p for p in rod.parameters}
     assert named["liquid.ior"].value == "1.4" and named["camera.fov_deg"].unit == "deg"
     assert "liquid.ior" in rod._repr_html_() and "render.tile" not in rod._repr_html_()
+    changed = {p.path for p in rod.changes}
+    assert "tiles.diffuse" in changed and "ground.diffuse" not in changed and "vessel.transparency" not in changed
+    rod["ground.diffuse"] = 0.3
+    assert "ground.diffuse" in {p.path for p in rod.changes}
     assert "render.tile" in rod.parameters._repr_html_()
     assert rod.render()._repr_png_().startswith(b"\x89PNG")
     assert "render.depth" in cuvette.Scene.set.__doc__ and "YAML" in cuvette.read.__doc__
@@ -140,7 +147,7 @@ except KeyboardInterrupt:
     began = time.monotonic()
     child.send_signal(signal.SIGINT)
     assert child.stdout.read().startswith("stopped ") and child.wait() == 0
-    assert time.monotonic() - began < 5
+    assert time.monotonic() - began < 30
 
 
 def test_other_threads_run_meanwhile(rod):

@@ -118,8 +118,8 @@ def read_text(function: Callable, *arguments: Any) -> str:
 
 
 class Visit:
-    """A callback and its context; `also` is a second callback with the same context. An exception of the Python function
-    ends the C call, if the callback returns bool; it is raised by `finish`."""
+    """A callback and its context; `also` is a second callback with the same context. An exception of the Python
+    function ends the C call, if the callback returns bool; it is raised by `finish`."""
 
     def __init__(self, function: Callable) -> None:
         self.function, self.error = function, None  # type: Callable, Optional[BaseException]

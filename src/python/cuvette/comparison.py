@@ -62,7 +62,22 @@ def compare(a: Pixels, b: Pixels, map: bool = False) -> Comparison:
     drawn = numpy.empty_like(one) if map else None
     found = sized("comparison")
     memory: Any = ffi.NULL if drawn is None else ffi.from_buffer("float[]", drawn)
-    call(lib.cuvette_compare, one.shape[1], one.shape[0], ffi.from_buffer("float[]", one),
-         ffi.from_buffer("float[]", other), memory, found)
-    return Comparison(found.mse, found.psnr_db, found.ssim, found.flip, found.largest, found.differing_share,
-                      (found.largest_x, found.largest_y), drawn)
+    call(
+        lib.cuvette_compare,
+        one.shape[1],
+        one.shape[0],
+        ffi.from_buffer("float[]", one),
+        ffi.from_buffer("float[]", other),
+        memory,
+        found,
+    )
+    return Comparison(
+        found.mse,
+        found.psnr_db,
+        found.ssim,
+        found.flip,
+        found.largest,
+        found.differing_share,
+        (found.largest_x, found.largest_y),
+        drawn,
+    )

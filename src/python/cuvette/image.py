@@ -42,7 +42,7 @@ class SolidCounts:
 
 
 class Image:
-    """The result of a render. `numpy.asarray(image)` is `image.array`; in a notebook it is shown as a picture."""
+    """The result of a render. `numpy.asarray(image)` is `image.array`; a notebook shows it."""
 
     def __init__(self, frame: Any, solids: Tuple[str, ...]) -> None:
         self._frame, self._solids = frame, solids
@@ -167,4 +167,5 @@ class Image:
                 return file.read()
 
     def __repr__(self) -> str:
-        return f"<cuvette.Image {self.width} x {self.height}, film {self.hash}, {self.counts.total} rays, {self.seconds:.3g} s>"
+        size = f"{self.width} x {self.height}"
+        return f"<cuvette.Image {size}, film {self.hash}, {self.counts.total} rays, {self.seconds:.3g} s>"

@@ -84,7 +84,9 @@ class Motion:
     @property
     def names(self) -> Tuple[str, ...]:
         """The meshes of the slimes."""
-        return tuple(names_of(lib.cuvette_motion_count(self._motion), lambda i: lib.cuvette_motion_name(self._motion, i)))
+        return tuple(
+            names_of(lib.cuvette_motion_count(self._motion), lambda i: lib.cuvette_motion_name(self._motion, i))
+        )
 
     @described("cuvette_motion_state")
     def state(self, name: str) -> Slime:
@@ -101,8 +103,13 @@ class Motion:
         return ffi.new("cuvette_ray *", {"origin": list(origin), "direction": list(direction)})
 
     @described("cuvette_motion_pick")
-    def pick(self, name: str, pixel: Optional[Sequence[float]] = None, origin: Optional[Sequence[float]] = None,
-             direction: Optional[Sequence[float]] = None) -> Optional[Tuple[float, ...]]:
+    def pick(
+        self,
+        name: str,
+        pixel: Optional[Sequence[float]] = None,
+        origin: Optional[Sequence[float]] = None,
+        direction: Optional[Sequence[float]] = None,
+    ) -> Optional[Tuple[float, ...]]:
         """The point, or None on a miss."""
         where, distance = ffi.new("double[3]"), ffi.new("double *")
         ray = self._ray(pixel, origin, direction)
@@ -110,8 +117,14 @@ class Motion:
         return tuple(where) if distance[0] < float("inf") else None
 
     @described("cuvette_motion_grab")
-    def grab(self, name: str, pixel: Optional[Sequence[float]] = None, origin: Optional[Sequence[float]] = None,
-             direction: Optional[Sequence[float]] = None, reach: float = 0.2) -> Optional[Hand]:
+    def grab(
+        self,
+        name: str,
+        pixel: Optional[Sequence[float]] = None,
+        origin: Optional[Sequence[float]] = None,
+        direction: Optional[Sequence[float]] = None,
+        reach: float = 0.2,
+    ) -> Optional[Hand]:
         """The hand, or None on a miss."""
         where, hand = ffi.new("double[3]"), ffi.new("int *")
         ray = self._ray(pixel, origin, direction)

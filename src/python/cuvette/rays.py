@@ -12,9 +12,31 @@ from .records import html_table, svg_of
 
 KINDS = ("camera", "reflect", "refract", "shadow")
 ENDS = ("hit", "sky", "cut_depth", "cut_weight", "lit", "blocked")
-_HIT = ("distance", "point", "normal", "error", "solid", "before", "after", "opaque", "total_internal", "solid_name",
-        "face_name", "n_before", "n_after", "cos_in", "cos_out", "R_s", "R_p", "R", "T", "gain_classic", "gain_basic",
-        "length_m", "transmittance")
+_HIT = (
+    "distance",
+    "point",
+    "normal",
+    "error",
+    "solid",
+    "before",
+    "after",
+    "opaque",
+    "total_internal",
+    "solid_name",
+    "face_name",
+    "n_before",
+    "n_after",
+    "cos_in",
+    "cos_out",
+    "R_s",
+    "R_p",
+    "R",
+    "T",
+    "gain_classic",
+    "gain_basic",
+    "length_m",
+    "transmittance",
+)
 
 
 def dtype_of(kind: str) -> numpy.dtype:
@@ -27,8 +49,13 @@ def dtype_of(kind: str) -> numpy.dtype:
         if item.kind == "struct":
             form: Any = dtype_of(item.cname)
         else:
-            letter = "f" if item.cname in ("double", "float") else "u" if item.kind == "pointer" or item.cname[0] in (
-                "u", "s") else "i"
+            letter = (
+                "f"
+                if item.cname in ("double", "float")
+                else "u"
+                if item.kind == "pointer" or item.cname[0] in ("u", "s")
+                else "i"
+            )
             form = f"{letter}{ffi.sizeof(item)}"
         fields["names"].append(name)
         fields["formats"].append((form, shape) if shape else form)
@@ -84,7 +111,9 @@ class Hit(_View):
     @property
     def angle_out_deg(self) -> Optional[float]:
         """None for total internal reflection, and at an opaque surface."""
-        return None if self.total_internal or self.opaque else float(numpy.degrees(numpy.arccos(min(1.0, self.cos_out))))
+        return (
+            None if self.total_internal or self.opaque else float(numpy.degrees(numpy.arccos(min(1.0, self.cos_out))))
+        )
 
     def __repr__(self) -> str:
         return f"<Hit {self.solid_name} {self.face_name} at {self.distance:.6g}, {self.angle_in_deg:.4f} deg>"
@@ -93,8 +122,20 @@ class Hit(_View):
 class Node(_View):
     """One ray of a tree: kind, end, depth, origin, direction, ... and its hit, parent and children."""
 
-    _fields = ("depth", "origin", "direction", "weight", "stokes", "added", "n", "medium_name", "medium", "light",
-               "light_distance", "light_transmittance")
+    _fields = (
+        "depth",
+        "origin",
+        "direction",
+        "weight",
+        "stokes",
+        "added",
+        "n",
+        "medium_name",
+        "medium",
+        "light",
+        "light_distance",
+        "light_transmittance",
+    )
 
     def __init__(self, nodes: "_Nodes", index: int) -> None:
         super().__init__(nodes._pointer[index], nodes)
@@ -194,8 +235,17 @@ class Tree(_Nodes):
 class FanRay(_View):
     """One ray of a fan: cuvette_fan_ray of cuvette.h describes the fields; `path` has its nodes."""
 
-    _fields = ("offset", "end_name", "exit_point", "exit_direction", "reach", "deviation_deg", "weight", "axis_at",
-               "axis_point")
+    _fields = (
+        "offset",
+        "end_name",
+        "exit_point",
+        "exit_direction",
+        "reach",
+        "deviation_deg",
+        "weight",
+        "axis_at",
+        "axis_point",
+    )
 
     @property
     def leaves(self) -> bool:
@@ -292,8 +342,15 @@ class Query:
         return Tree(made("tree", lib.cuvette_query_trace_pixel, lib.cuvette_tree_destroy, self._query, x, y))
 
     @described("cuvette_query_fan")
-    def fan(self, start: Sequence[float], to: Sequence[float], rays: int = 21, width: float = 1.0, spread_deg: float = 0,
-            plane: Sequence[float] = (0, 0, 0)) -> Fan:
+    def fan(
+        self,
+        start: Sequence[float],
+        to: Sequence[float],
+        rays: int = 21,
+        width: float = 1.0,
+        spread_deg: float = 0,
+        plane: Sequence[float] = (0, 0, 0),
+    ) -> Fan:
         rule = sized("fan_rule")
         rule.to, rule.normal, rule.rays, rule.width, rule.spread_deg = list(to), list(plane), rays, width, spread_deg
         setattr(rule, "from", list(start))
@@ -306,15 +363,15 @@ class Query:
         return numpy.array(list(ray.origin)), numpy.array(list(ray.direction))
 
     def _rays(self, origins: Any, directions: Any, reach: Any) -> numpy.ndarray:
-        starts, ways = numpy.atleast_2d(origins), numpy.atleast_2d(directions)
+        starts, headings = numpy.atleast_2d(origins), numpy.atleast_2d(directions)
         try:
-            starts, ways = numpy.broadcast_arrays(starts, ways)
+            starts, headings = numpy.broadcast_arrays(starts, headings)
         except ValueError:
-            raise InputError(f"{len(starts)} origins for {len(ways)} directions", "give as many, or one") from None
+            raise InputError(f"{len(starts)} origins for {len(headings)} directions", "give as many, or one") from None
         if starts.ndim != 2 or starts.shape[1] != 3:
             raise InputError(f"the rays have the shape {starts.shape}", "give arrays of n x 3")
         rays = numpy.zeros(len(starts), dtype_of("cuvette_ray"))
-        rays["origin"], rays["direction"], rays["reach"] = starts, ways, reach
+        rays["origin"], rays["direction"], rays["reach"] = starts, headings, reach
         return rays
 
     @described("cuvette_query_nearest")
@@ -322,8 +379,13 @@ class Query:
         """Of n rays, origins and directions n x 3 (or one for all): a structured array, `hits["distance"]`."""
         rays = self._rays(origins, directions, reach)
         hits = numpy.empty(len(rays), dtype_of("cuvette_hit"))
-        call(lib.cuvette_query_nearest, self._query, ffi.from_buffer("cuvette_ray[]", rays), len(rays),
-             ffi.from_buffer("cuvette_hit[]", hits))
+        call(
+            lib.cuvette_query_nearest,
+            self._query,
+            ffi.from_buffer("cuvette_ray[]", rays),
+            len(rays),
+            ffi.from_buffer("cuvette_hit[]", hits),
+        )
         return hits
 
     @described("cuvette_query_occluded")
@@ -331,8 +393,13 @@ class Query:
         """An array of bool."""
         rays = self._rays(origins, directions, reach)
         blocked = numpy.empty(len(rays), numpy.uint8)
-        call(lib.cuvette_query_occluded, self._query, ffi.from_buffer("cuvette_ray[]", rays), len(rays),
-             ffi.from_buffer("unsigned char[]", blocked))
+        call(
+            lib.cuvette_query_occluded,
+            self._query,
+            ffi.from_buffer("cuvette_ray[]", rays),
+            len(rays),
+            ffi.from_buffer("unsigned char[]", blocked),
+        )
         return blocked.astype(bool)
 
     @described("cuvette_query_medium")

@@ -17,7 +17,7 @@ def html_table(titles: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
 
 
 def svg_of(document: str) -> str:
-    """A drawing without what stands before its element, as a notebook needs it."""
+    """The svg element of a drawing, without the XML declaration, which notebooks refuse."""
     return document[document.index("<svg") :]
 
 

@@ -1,6 +1,7 @@
 """Scenes: parameters by name, objects, rendering."""
 
 import os
+import re
 from dataclasses import dataclass
 from typing import Any, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
@@ -8,9 +9,30 @@ import numpy
 
 from . import progress as bars
 from ._documents import PARAMETERS
-from ._library import (NULL, Cancelled, InputError, Visit, call, described, encoded, engines, error_of, ffi, lib, made,
-                       names_of, on_curve, on_metric, on_parameter, on_progress, on_text, read_text, sized, text_of,
-                       visited)
+from ._library import (
+    NULL,
+    Cancelled,
+    InputError,
+    Visit,
+    call,
+    described,
+    encoded,
+    engines,
+    error_of,
+    ffi,
+    lib,
+    made,
+    names_of,
+    on_curve,
+    on_metric,
+    on_parameter,
+    on_progress,
+    on_text,
+    read_text,
+    sized,
+    text_of,
+    visited,
+)
 from .image import Image, Path
 from .motion import Motion
 from .optics import Curve, Metric, Metrics
@@ -45,7 +67,9 @@ def _text_of_value(value: Any) -> str:
         return repr(value.item() if isinstance(value, numpy.generic) else value)
     if isinstance(value, (Sequence, numpy.ndarray)):
         return ",".join(_text_of_value(one) for one in value)
-    raise InputError(f"a {type(value).__name__} is no value of a parameter", "give a number, a text or a list of numbers")
+    raise InputError(
+        f"a {type(value).__name__} is no value of a parameter", "give a number, a text or a list of numbers"
+    )
 
 
 def _path_of(name: str) -> str:
@@ -54,8 +78,8 @@ def _path_of(name: str) -> str:
 
 
 class Scene:
-    """A scene. `scene["liquid.ior"] = 1.4` sets a parameter, `scene["liquid.ior"]` is its value, `scene.parameters` lists
-    all. Objects are added by name: `scene.add_solid("ball", "sphere")`."""
+    """A scene. `scene["liquid.ior"] = 1.4` sets a parameter, `scene["liquid.ior"]` is its value, `scene.parameters`
+    lists all. Objects are added by name: `scene.add_solid("ball", "sphere")`."""
 
     def __init__(self, handle: Any = None) -> None:
         self._scene = handle or made("scene", lib.cuvette_scene_create, lib.cuvette_scene_destroy)
@@ -118,10 +142,11 @@ class Scene:
         """The parameters that differ from their defaults; those of a solid's surface only if they differ from its
         material's."""
         values = {p.path: p.value for p in self.parameters}
+        material = dict(re.findall(r"^  ([\w-]+):\n(?:    .*\n)*?    material: ([\w-]+)$", str(self), re.M))
 
         def differs(one: Parameter) -> bool:
             group, name = one.path.split(".", 1)
-            of_material = values.get(f"{values.get(f'{group}.material')}.{name}")
+            of_material = values.get(f"{material.get(group)}.{name}")
             return one.value != (one.initial if of_material is None else of_material)
 
         return Parameters(p for p in self.parameters if differs(p))
@@ -163,8 +188,12 @@ class Scene:
     @described("cuvette_scene_add_triangles")
     def add_triangles(self, name: str, vertices: Any, corners: Any, normals: Any = None, uvs: Any = None) -> None:
         """A mesh from arrays: vertices n x 3, corners (indices of vertices) m x 3."""
-        kinds = {"vertices": (vertices, numpy.float64, 3), "corners": (corners, numpy.uint32, 3),
-                 "normals": (normals, numpy.float64, 3), "uvs": (uvs, numpy.float64, 2)}
+        kinds = {
+            "vertices": (vertices, numpy.float64, 3),
+            "corners": (corners, numpy.uint32, 3),
+            "normals": (normals, numpy.float64, 3),
+            "uvs": (uvs, numpy.float64, 2),
+        }
         given = sized("triangles")
         arrays = {}
         for key, (values, dtype, columns) in kinds.items():
@@ -176,7 +205,9 @@ class Scene:
             setattr(given, key, ffi.from_buffer(f"{'uint32_t' if dtype is numpy.uint32 else 'double'}[]", array))
         for key in ("normals", "uvs"):
             if key in arrays and len(arrays[key]) != len(arrays["vertices"]):
-                raise InputError(f"{len(arrays[key])} {key} for {len(arrays['vertices'])} vertices", "give one per vertex")
+                raise InputError(
+                    f"{len(arrays[key])} {key} for {len(arrays['vertices'])} vertices", "give one per vertex"
+                )
         given.vertex_count, given.triangle_count = len(arrays["vertices"]), len(arrays["corners"])
         call(lib.cuvette_scene_add_triangles, self._scene, encoded(name), given)
 
@@ -288,8 +319,13 @@ class Scene:
         handle = made("query", lib.cuvette_query_create, lib.cuvette_query_destroy, scene._scene, NULL)
         return Query(handle, scene.lights, scene.solids)
 
-    def trace(self, pixel: Optional[Sequence[int]] = None, origin: Optional[Sequence[float]] = None,
-              direction: Optional[Sequence[float]] = None, **short: Any) -> Tree:
+    def trace(
+        self,
+        pixel: Optional[Sequence[int]] = None,
+        origin: Optional[Sequence[float]] = None,
+        direction: Optional[Sequence[float]] = None,
+        **short: Any,
+    ) -> Tree:
         """The ray tree of a pixel, `scene.trace((400, 300))`, or of a ray, `scene.trace(origin=..., direction=...)`."""
         query = self.query(**short)
         if pixel is not None and origin is None and direction is None:
@@ -298,8 +334,16 @@ class Scene:
             return query.trace(origin, direction)
         raise InputError("a tree starts with a pixel or a ray", "give pixel, or origin and direction")
 
-    def fan(self, start: Sequence[float], to: Sequence[float], rays: int = 21, width: float = 1.0, spread_deg: float = 0,
-            plane: Sequence[float] = (0, 0, 0), **short: Any) -> Fan:
+    def fan(
+        self,
+        start: Sequence[float],
+        to: Sequence[float],
+        rays: int = 21,
+        width: float = 1.0,
+        spread_deg: float = 0,
+        plane: Sequence[float] = (0, 0, 0),
+        **short: Any,
+    ) -> Fan:
         """Rays around the axis from `start` through `to`, parallel over `width`, or spread from one point; plane is the
         normal of their plane."""
         return self.query(**short).fan(start, to, rays, width, spread_deg, plane)
@@ -311,7 +355,9 @@ class Scene:
 
         def take(one: Any) -> None:
             numbers = (one.measured, one.theory, one.error, one.tolerance)
-            found.append(Metric(text_of(one.name), text_of(one.verdict), *numbers, text_of(one.unit), text_of(one.meaning)))
+            found.append(
+                Metric(text_of(one.name), text_of(one.verdict), *numbers, text_of(one.unit), text_of(one.meaning))
+            )
 
         visited(lib.cuvette_scene_each_metric, on_metric, take, self._scene)
         return found
@@ -345,8 +391,15 @@ class Scene:
 
     # --- rendering
 
-    def render(self, values: Optional[Mapping[str, Any]] = None, *, progress: bars.Progress = None,
-               layers: bool = False, maps: bool = False, **short: Any) -> Image:
+    def render(
+        self,
+        values: Optional[Mapping[str, Any]] = None,
+        *,
+        progress: bars.Progress = None,
+        layers: bool = False,
+        maps: bool = False,
+        **short: Any,
+    ) -> Image:
         """Renders the scene. Parameters as for `set` count for this render only: `scene.render(depth=8)`.
 
         progress: None, a bar on a terminal or in a notebook if it takes longer than half a second; True or False; or a

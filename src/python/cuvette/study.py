@@ -11,8 +11,26 @@ import warnings
 from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
 
 from . import progress as bars
-from ._library import (Cancelled, InputError, NULL, Visit, call, described, encoded, ffi, lib, made, on_column, on_news,
-                       on_run, on_value, sized, taken, text_of, visited)
+from ._library import (
+    Cancelled,
+    InputError,
+    NULL,
+    Visit,
+    call,
+    described,
+    encoded,
+    ffi,
+    lib,
+    made,
+    on_column,
+    on_news,
+    on_run,
+    on_value,
+    sized,
+    taken,
+    text_of,
+    visited,
+)
 from .image import Path
 from .records import html_table, svg_of
 from .scene import Scene
@@ -20,7 +38,18 @@ from .scene import Scene
 if TYPE_CHECKING:
     import pandas
 
-TEXTS = ("study", "identity", "time_utc", "film_hash", "film_expected", "rays_by_depth", "isa", "config", "run", "check")
+TEXTS = (
+    "study",
+    "identity",
+    "time_utc",
+    "film_hash",
+    "film_expected",
+    "rays_by_depth",
+    "isa",
+    "config",
+    "run",
+    "check",
+)
 ALL = "all"
 
 
@@ -75,15 +104,19 @@ def _chosen(table: "pandas.DataFrame", folder: str, environment: Optional[str]) 
         environment = counts.index[0]
     listed = ", ".join(f"{key}: {count} rows" for key, count in counts.items())
     if environment is None:
-        raise InputError(f"the rows are of {len(counts)} environments ({listed}), whose times must not be pooled",
-                         'choose one with environment=KEY or "main", or "all" and group by the column environment', folder)
+        raise InputError(
+            f"the rows are of {len(counts)} environments ({listed}), whose times must not be pooled",
+            'choose one with environment=KEY or "main", or "all" and group by the column environment',
+            folder,
+        )
     if environment not in counts.index:
         raise InputError(f"there are no rows of the environment '{environment}'", f"choose one of {listed}", folder)
     return table[table["environment"] == environment].reset_index(drop=True)
 
 
-def rows(folder: Path, environment: Optional[str] = None, raw: bool = False,
-         units: Optional[Dict[str, str]] = None) -> "pandas.DataFrame":
+def rows(
+    folder: Path, environment: Optional[str] = None, raw: bool = False, units: Optional[Dict[str, str]] = None
+) -> "pandas.DataFrame":
     """The rows of a study, `cuvette.rows("results/depth")`: one per repetition, without warm-ups, marked rows and those
     excluded by hand (raw=True: with them). The column environment has the key of the row's environment; rows of several
     environments need a choice: a key, "main" (that with most rows), or "all".
@@ -93,30 +126,43 @@ def rows(folder: Path, environment: Optional[str] = None, raw: bool = False,
     import pandas
 
     place = os.fspath(folder)
-    files = [n for n in sorted(os.listdir(place)) if n == "rows.csv" or n.startswith("rows.shard")] if os.path.isdir(
-        place) else []
+    files = (
+        [n for n in sorted(os.listdir(place)) if n == "rows.csv" or n.startswith("rows.shard")]
+        if os.path.isdir(place)
+        else []
+    )
     if not files:
         raise InputError("there are no rows", "give the folder of a study's results, such as results/depth", place)
     kinds = {name: str for name in TEXTS}
-    parts = [pandas.read_csv(os.path.join(place, name), dtype=kinds, na_values=["NA"], keep_default_na=False)
-             for name in files]
+    parts = [
+        pandas.read_csv(os.path.join(place, name), dtype=kinds, na_values=["NA"], keep_default_na=False)
+        for name in files
+    ]
     table = pandas.concat(parts, ignore_index=True).drop_duplicates(ignore_index=True)
     if "run" not in table:
-        raise InputError("the rows are of an early version", "write them in the present form: cuvette study upgrade", place)
+        raise InputError(
+            "the rows are of an early version", "write them in the present form: cuvette study upgrade", place
+        )
     of_run, facts = _environments(place)
     table["environment"] = table["run"].map(of_run).fillna("unknown")
     left_out: Dict[str, int] = {}
-    reasons = {"warm-ups": table["warmup"] == 1, "marked": table["marked"] == 1,
-               "excluded": table["check"].isin(_excluded(place))}
+    reasons = {
+        "warm-ups": table["warmup"] == 1,
+        "marked": table["marked"] == 1,
+        "excluded": table["check"].isin(_excluded(place)),
+    }
     if not raw:
         left_out = {reason: int(mask.sum()) for reason, mask in reasons.items()}
         table = table[~(reasons["warm-ups"] | reasons["marked"] | reasons["excluded"])].reset_index(drop=True)
     table = _chosen(table, place, environment)
     known, given = columns(), units or {}
     described_columns = {name: _described(name, known, given) for name in table.columns if name != "environment"}
-    table.attrs = {"units": {name: one[0] for name, one in described_columns.items()},
-                   "meanings": {name: one[1] for name, one in described_columns.items()},
-                   "environments": facts, "left_out": left_out}
+    table.attrs = {
+        "units": {name: one[0] for name, one in described_columns.items()},
+        "meanings": {name: one[1] for name, one in described_columns.items()},
+        "environments": facts,
+        "left_out": left_out,
+    }
     return table
 
 
@@ -187,8 +233,14 @@ class Study:
         return {name: text_of(v) if isinstance(v := getattr(out, name), ffi.CData) else v for name in fields}
 
     @described("cuvette_study_run")
-    def run(self, results: Path = "results", *, progress: bars.Progress = None, any_environment: bool = False,
-            wait_quiet_s: float = 0.0) -> "Study":
+    def run(
+        self,
+        results: Path = "results",
+        *,
+        progress: bars.Progress = None,
+        any_environment: bool = False,
+        wait_quiet_s: float = 0.0,
+    ) -> "Study":
         """Ctrl-C stops the run and raises KeyboardInterrupt; the next one resumes. A study with `processes` is measured
         by as many fresh processes of Python, one after the other. Returns the study."""
         bar = bars.bar_of(progress, f"study {self.name}")
@@ -206,7 +258,8 @@ class Study:
     def _run(self, results: Path, any_environment: bool, wait_quiet_s: float, process: int, bar: Any) -> None:
         visit = Visit(lambda share, left_s: bar(share) if bar else True)
         visit.also = lambda text: warnings.warn(
-            f"{self.name}: {text_of(text)}".replace("--wait-quiet", "wait_quiet_s=60"), stacklevel=8)
+            f"{self.name}: {text_of(text)}".replace("--wait-quiet", "wait_quiet_s=60"), stacklevel=8
+        )
         run = sized("run")
         folder = _or_null(results)
         run.results, run.any_environment, run.wait_quiet_s, run.process = folder, any_environment, wait_quiet_s, process
@@ -220,12 +273,15 @@ class Study:
         visit.finish()
 
     def _run_process(self, results: str, any_environment: bool, wait_quiet_s: float, process: int) -> None:
-        code = (f"import cuvette\nstudy = cuvette.study({self.path!r})\n"
-                f"study._run({results!r}, {any_environment!r}, {wait_quiet_s!r}, {process}, None)")
+        code = (
+            f"import cuvette\nstudy = cuvette.study({self.path!r})\n"
+            f"study._run({results!r}, {any_environment!r}, {wait_quiet_s!r}, {process}, None)"
+        )
         folder = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
         path = os.pathsep.join(filter(None, (folder, os.environ.get("PYTHONPATH"))))
-        child = subprocess.Popen([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": path},
-                                 stderr=subprocess.PIPE, text=True)
+        child = subprocess.Popen(
+            [sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": path}, stderr=subprocess.PIPE, text=True
+        )
         try:
             errors = child.communicate()[1]
         except KeyboardInterrupt:
@@ -239,7 +295,9 @@ class Study:
     def _folder(self, results: Path) -> str:
         return os.path.join(os.fspath(results), self.name)
 
-    def rows(self, results: Path = "results", environment: Optional[str] = None, raw: bool = False) -> "pandas.DataFrame":
+    def rows(
+        self, results: Path = "results", environment: Optional[str] = None, raw: bool = False
+    ) -> "pandas.DataFrame":
         """The rows of the study, as of cuvette.rows, with the units of the grid's parameters; warns of rows that fail
         a check."""
         fault = self.state(results)["fault"]
@@ -266,7 +324,16 @@ class Study:
         import pandas
 
         out, fault = ffi.new("char **"), ffi.new("char **")
-        call(lib.cuvette_study_compare, self._study, encoded(results), encoded(a), encoded(b), _or_null(column), out, fault)
+        call(
+            lib.cuvette_study_compare,
+            self._study,
+            encoded(results),
+            encoded(a),
+            encoded(b),
+            _or_null(column),
+            out,
+            fault,
+        )
         found = json.loads(taken(out[0]) or "{}")
         self._warn(fault, results)
         lines = []
@@ -286,15 +353,35 @@ class Study:
             warnings.warn(f"{self._folder(results)}: {text}; see cuvette study verify", stacklevel=3)
 
     @described("cuvette_study_plot")
-    def plot(self, output: Optional[Path] = None, *, results: Path = "results", x: Optional[str] = None,
-             y: Optional[str] = None, by: Optional[str] = None, where: Sequence[str] = (), log: Optional[str] = None,
-             published: Optional[Path] = None, images: bool = False) -> Figure:
+    def plot(
+        self,
+        output: Optional[Path] = None,
+        *,
+        results: Path = "results",
+        x: Optional[str] = None,
+        y: Optional[str] = None,
+        by: Optional[str] = None,
+        where: Sequence[str] = (),
+        log: Optional[str] = None,
+        published: Optional[Path] = None,
+        images: bool = False,
+    ) -> Figure:
         """The figure; output is its file, .png, .svg or .pdf (default: figure.png next to the rows)."""
-        path = os.fspath(output) if output else os.path.join(self._folder(results), "sheet.png" if images else "figure.png")
+        path = (
+            os.fspath(output)
+            if output
+            else os.path.join(self._folder(results), "sheet.png" if images else "figure.png")
+        )
         base, ending = os.path.splitext(path)
         given = sized("plot")
-        kept = {"results": _or_null(results), "x": _or_null(x), "y": _or_null(y), "by": _or_null(by), "log": _or_null(log),
-                "published": _or_null(published)}
+        kept = {
+            "results": _or_null(results),
+            "x": _or_null(x),
+            "y": _or_null(y),
+            "by": _or_null(by),
+            "log": _or_null(log),
+            "published": _or_null(published),
+        }
         for name, text in kept.items():
             setattr(given, name, text)
         texts = [ffi.new("char[]", encoded(one)) for one in where]

@@ -19,8 +19,8 @@ status record_map(const double *values, const film *f, const char *title, const 
 char *record_layer_path(const char *prefix, int layer);
 status record_layers(const render_result *result, const char *prefix, diagnostic *why);
 
-/* The standard error of each pixel, root mean square over its channels; result must have a variance. record_noise writes
- * it to a file. */
+/* The standard error of each pixel, root mean square over its channels; result must have a variance. record_noise
+ * writes it to a file. */
 void record_noise_values(const render_result *result, double *values);
 status record_noise(const render_result *result, const char *path, diagnostic *why);
 
