@@ -19,7 +19,7 @@ def test_realism_equals_the_programs(program):
     ]
     assert not own.failures and own["lens.power"].unit == "1/scene unit" and "lens.power" in own._repr_html_()
     assert list(own.table()["name"]) == [m.name for m in own]
-    with pytest.raises(KeyError, match="lens.power"):
+    with pytest.raises(KeyError, match="did you mean 'lens.power'"):
         own["lens.powre"]
     with pytest.raises(cuvette.InputError):
         cuvette.Scene().realism()

@@ -2,6 +2,7 @@
 
 import json
 import math
+import multiprocessing
 import os
 import pickle
 import signal
@@ -209,3 +210,36 @@ def test_many_small_renders_need_no_more_memory(rod):
     before = resident_kib()
     renders(int(os.environ.get("RENDERS", "1000")))
     assert resident_kib() - before < 1024
+
+
+def render_hash(scene: cuvette.Scene) -> str:
+    return scene.render().hash
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_a_pool_of_processes(rod, method):
+    expected = [rod.render(depth=d).hash for d in (1, 2, 3)]
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        assert pool.map(render_hash, [rod.copy().set(depth=d) for d in (1, 2, 3)]) == expected
+
+
+def test_a_scene_in_use_cannot_be_changed(rod):
+    errors = []
+
+    def change(share: float) -> None:
+        with pytest.raises(cuvette.BusyError) as caught:
+            rod["render.depth"] = 2
+        errors.append(caught.value.remedy)
+
+    rod.render(progress=change)
+    assert errors and all(errors)
+    rod["render.depth"] = 2
+
+
+def test_names_are_offered_and_corrected(rod):
+    assert "liquid.ior" in rod._ipython_key_completions_()
+    assert rod.parameters["liquid.ior"].meaning.startswith("refractive index")
+    with pytest.raises(KeyError, match="did you mean 'liquid.ior'"):
+        rod.parameters["liquid.iro"]
+    with pytest.raises(cuvette.InputError, match="did you mean 'render.depth'"):
+        rod.render(dept=8)

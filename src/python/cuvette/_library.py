@@ -1,7 +1,9 @@
 """The shared library: where it is, its errors as exceptions, and what the other modules need to call it."""
 
+import inspect
 import os
 import pathlib
+import textwrap
 import threading
 from typing import Any, Callable, Iterator, Optional, TypeVar
 
@@ -186,7 +188,9 @@ def described(name: str) -> Callable[[Kind], Kind]:
     """Appends the header's comment on a function to a docstring."""
 
     def add(function: Kind) -> Kind:
-        function.__doc__ = f"{function.__doc__ or ''}\n\n{FUNCTIONS[name]}".strip()
+        own = inspect.cleandoc(function.__doc__ or "")
+        comment = "\n\n".join(textwrap.fill(part, 100) for part in FUNCTIONS[name].split("\n\n"))
+        function.__doc__ = f"{own}\n\n{comment}".strip()
         return function
 
     return add

@@ -23,15 +23,7 @@ class Metric:
 
 
 class Metrics(Records[Metric]):
-    """A list of metrics. `metrics["lens.power"]` finds one by its name."""
-
-    def __getitem__(self, key: Any) -> Any:
-        if not isinstance(key, str):
-            return super().__getitem__(key)
-        for one in self:
-            if one.name == key:
-                return one
-        raise KeyError(f"there is no metric '{key}'; there are {', '.join(one.name for one in self)}")
+    """A list of metrics."""
 
     @property
     def failures(self) -> "Metrics":

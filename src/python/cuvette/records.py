@@ -1,6 +1,7 @@
 """Lists of results as tables: in a notebook, and of pandas."""
 
 import dataclasses
+import difflib
 import html
 from typing import Any, List, Sequence, TypeVar
 
@@ -22,7 +23,18 @@ def svg_of(document: str) -> str:
 
 
 class Records(List[Item]):
-    """A list of results, each with the same fields; a notebook shows a table."""
+    """A list of results, each with the same fields; a notebook shows a table. A text finds the one whose first field it
+    is: `scene.parameters["liquid.ior"]`."""
+
+    def __getitem__(self, key: Any) -> Any:
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        names = [row[0] for row in self._rows()]
+        if key not in names:
+            close = difflib.get_close_matches(key, names, 1)
+            hint = f"did you mean '{close[0]}'?" if close else f"there are {', '.join(names)}"
+            raise KeyError(f"there is no '{key}'; {hint}")
+        return self[names.index(key)]
 
     def _rows(self) -> List[List[Any]]:
         return [[getattr(one, field.name) for field in dataclasses.fields(one)] for one in self]  # type: ignore

@@ -154,6 +154,14 @@ class Scene:
     def keys(self) -> Iterator[str]:
         return (p.path for p in self.parameters)
 
+    def _ipython_key_completions_(self) -> List[str]:
+        """What the tab key offers after `scene["`."""
+        return list(self.keys())
+
+    def __reduce__(self) -> Tuple:
+        """For other processes, as the text of its file: without meshes and textures that were given as arrays."""
+        return read_text_scene, (str(self), "scene of another process")
+
     # --- objects
 
     @described("cuvette_scene_add_solid")
