@@ -227,7 +227,7 @@ setup: ## install the required packages (Debian 12); does nothing if they are in
 	@.ci/setup
 
 .PHONY: setup-python
-setup-python: | $(filter setup,$(MAKECMDGOALS)) ## install what the Python module and its tests require (Debian's cffi, NumPy, pandas, pytest)
+setup-python: | $(filter setup setup-peers,$(MAKECMDGOALS)) ## install what the Python module and its tests require (Debian's cffi, NumPy, pandas, pytest)
 	@PYTHON='$(PYTHON)' .ci/setup-python
 
 .PHONY: setup-peers
@@ -273,7 +273,7 @@ dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view. Runs after everything
 # that installs or measures.
 .PHONY: test-web setup-web
-setup-web: | $(filter setup setup-peers,$(MAKECMDGOALS))
+setup-web: | $(filter setup setup-peers setup-python,$(MAKECMDGOALS))
 	@.ci/setup-web $(build)/web-tests
 test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file
 	@tests/format.sh --check $(build)/web-tests
@@ -292,7 +292,7 @@ $(module)/_declarations.py: src/python/declare.py src/cuvette.h $(module_sources
 	$(quiet)$(PYTHON) src/python/declare.py src/cuvette.h $(build)/python/params.json $(@D)
 .PHONY: python test-python
 python: $(module)/_declarations.py all ## build the Python module; try it with PYTHONPATH=build/python
-test-python: python | $(filter test experiments bench,$(MAKECMDGOALS)) ## test the Python module with pytest; only=NAME for tests/python/test_NAME.py alone
+test-python: python | $(filter test test-web experiments bench,$(MAKECMDGOALS)) ## test the Python module with pytest; only=NAME for tests/python/test_NAME.py alone
 	@MALLOC_PERTURB_=165 PYTHONPATH='$(abspath $(build)/python)' CUVETTE='$(abspath $(build)/cuvette)' CC='$(CC)' \
 	  $(PYTHON) -m pytest -q -p no:cacheprovider $(if $(only),$(only:%=tests/python/test_%.py),tests/python)
 

@@ -125,8 +125,12 @@ def test_progress(rod, capsys):
     assert capsys.readouterr().err == ""  # no terminal: nothing is shown
     rod.render(progress=True)
     assert "render [" in capsys.readouterr().err
-    with pytest.raises(cuvette.Cancelled):
+    with pytest.raises(cuvette.Cancelled) as caught:
         rod.render(progress=lambda share: False)
+    assert caught.value.image is None
+    with pytest.raises(cuvette.Cancelled) as caught:
+        rod.render(progress=lambda share: share == 0, width=1600, height=1200, samples=16)
+    assert 0 < caught.value.image.counts.camera < 1600 * 1200 * 16
     with pytest.raises(ZeroDivisionError):
         rod.render(progress=lambda share: 1 / 0)
     assert rod.render().hash == rod.render(progress=False).hash

@@ -63,7 +63,9 @@ class BusyError(Error, RuntimeError):
 
 
 class Cancelled(Error):
-    """Stopped on request."""
+    """Stopped on request. Of a render, `image` has the finished part; None before the first ray."""
+
+    image: Any = None
 
 
 _KINDS = {

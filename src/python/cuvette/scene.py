@@ -433,7 +433,9 @@ class Scene:
         frame = ffi.gc(out[0], lib.cuvette_frame_destroy) if out[0] else None
         visit.finish()
         if status == lib.CUVETTE_CANCELLED:
-            raise Cancelled("the render was stopped by its progress function")
+            stopped = Cancelled("the render was stopped by its progress function")
+            stopped.image = frame and Image(frame, scene.solids)
+            raise stopped
         if status != lib.CUVETTE_OK:
             raise error_of(status, why)
         return Image(frame, scene.solids)
