@@ -61,7 +61,9 @@ def main(header_path: str, parameters_path: str, folder: str) -> None:
     ffi = cffi.FFI()
     ffi.cdef(declarations(header))
     ffi.set_source("cuvette._declarations", None)
-    ffi.emit_python_code(str(place / "_declarations.py"))
+    made = place / "_declarations.py"
+    ffi.emit_python_code(str(made))
+    made.write_text("# mypy: ignore-errors\n" + made.read_text())
     rows = json.loads(pathlib.Path(parameters_path).read_text())["params"]
     (place / "_documents.py").write_text(
         '"""Texts of cuvette.h and of the parameter table; written by declare.py."""\n\n'

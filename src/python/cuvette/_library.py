@@ -7,10 +7,11 @@ import textwrap
 import threading
 from typing import Any, Callable, Iterator, Optional, TypeVar
 
-from ._declarations import ffi
+from . import _declarations
 from ._documents import FUNCTIONS
 
 NAME = "libcuvette.so.0"
+ffi: Any = _declarations.ffi
 
 
 def _find() -> str:
@@ -31,9 +32,7 @@ def _load() -> Any:
     try:
         return ffi.dlopen(path)
     except OSError as error:
-        raise ImportError(
-            f"cannot load {path}: {error}; install libcuvette, or set CUVETTE_LIBRARY to the path of {NAME}"
-        ) from None
+        raise ImportError(f"{error}; install libcuvette, or set CUVETTE_LIBRARY to the path of {NAME}") from None
 
 
 lib = _load()

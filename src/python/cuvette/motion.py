@@ -92,7 +92,7 @@ class Motion:
     def state(self, name: str) -> Slime:
         out = sized("slime")
         call(lib.cuvette_motion_state, self._motion, encoded(name), out)
-        values = (getattr(out, field) for field in Slime.__dataclass_fields__)
+        values: Any = (getattr(out, field) for field in Slime.__dataclass_fields__)
         return Slime(*(tuple(v) if isinstance(v, ffi.CData) else v for v in values))
 
     def _ray(self, pixel: Optional[Sequence[float]], origin: Any, direction: Any) -> Any:
