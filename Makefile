@@ -85,9 +85,9 @@ isas_flags = $(foreach i,$(isas),$(isa_flags_$(i)))
 
 sources := $(wildcard src/*.c src/*/*.c src/*/*/*.c src/*/*/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
-library := $(filter-out src/cli/% src/import/% src/report/% src/web/% $(kernels),$(sources))
+library := $(filter-out src/cli/% src/import/% src/web/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
-web := $(filter src/report/% src/web/%,$(sources))
+web := $(filter src/web/%,$(sources))
 page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
 importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c number.c below.c float_environment.c grow.c large_pages.c)
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
@@ -111,7 +111,7 @@ $(build)/cuvette: $(program_objects) $(build)/libweb.a $(build)/libcuvette.a
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(all_libs)
 
-# Reports shared by commands and the laboratory's page, the page's server and the page itself: only for the program, not for the library.
+# The laboratory's server and its page: only for the program, not for the library.
 $(build)/libweb.a: $(web_objects)
 	@rm -f $@
 	$(quiet)ar rcs $@ $^
@@ -228,6 +228,10 @@ $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)
 setup: ## install the required packages (Debian 12); does nothing if they are installed
 	@.ci/setup
 
+.PHONY: setup-python
+setup-python: | $(filter setup setup-peers,$(MAKECMDGOALS)) ## install what the Python module and its tests require (Debian's cffi, NumPy, pandas, pytest)
+	@PYTHON='$(PYTHON)' .ci/setup-python
+
 .PHONY: setup-peers
 setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install the programs that the benchmarks compare with: POV-Ray, Tachyon, Embree
 	@.ci/setup-peers
@@ -271,7 +275,7 @@ dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view. Runs after everything
 # that installs or measures.
 .PHONY: test-web setup-web
-setup-web: | $(filter setup setup-peers,$(MAKECMDGOALS))
+setup-web: | $(filter setup setup-peers setup-python,$(MAKECMDGOALS))
 	@.ci/setup-web $(build)/web-tests
 test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file
 	@tests/format.sh --check $(build)/web-tests
@@ -284,6 +288,22 @@ setup-arch: | $(filter setup,$(MAKECMDGOALS)) ## install what test-arch requires
 	@.ci/setup-arch $(build)/arch $(arch)
 test-arch: $(build)/cuvette $(build)/cuvette-import | $(filter setup-arch,$(MAKECMDGOALS)) ## build for arm64, s390x and riscv64; compare films, files and rows with this machine's
 	@CUVETTE='$(abspath $(build)/cuvette)' MAKE='$(MAKE)' tests/arch.sh $(build)/arch $(arch)
+
+# The Python module (src/python): Python text only, which loads the shared library of this build or installation.
+PYTHON ?= $(firstword $(wildcard /usr/bin/python3) python3)
+module := $(build)/python/cuvette
+module_sources := $(wildcard src/python/cuvette/*.py src/python/cuvette/py.typed)
+$(module)/_declarations.py: src/python/declare.py src/cuvette.h $(module_sources) $(build)/cuvette | $(filter setup-python,$(MAKECMDGOALS))
+	$(call say,python $@)
+	@mkdir -p $(@D)
+	$(quiet)$(build)/cuvette params --json >$(build)/python/params.json
+	$(quiet)cp $(module_sources) $(@D)/
+	$(quiet)$(PYTHON) src/python/declare.py src/cuvette.h $(build)/python/params.json $(@D)
+.PHONY: python test-python
+python: $(module)/_declarations.py all ## build the Python module; try it with PYTHONPATH=build/python
+test-python: python | $(filter test test-web experiments bench,$(MAKECMDGOALS)) ## test the Python module with pytest; only=NAME for tests/python/test_NAME.py alone
+	@MALLOC_PERTURB_=165 PYTHONPATH='$(abspath $(build)/python)' CUVETTE='$(abspath $(build)/cuvette)' CC='$(CC)' \
+	  $(PYTHON) -m pytest -q -p no:cacheprovider $(if $(only),$(only:%=tests/python/test_%.py),tests/python)
 
 .PHONY: layers headers vectorise
 layers: ## check the layers of includes
@@ -428,7 +448,7 @@ bench: all peers $(build)/tests/bench_mesh $(build)/tests/bench_rows ## benchmar
 
 # --- installation, upkeep ---
 
-.PHONY: install uninstall
+.PHONY: install install-python uninstall
 LIBDIR ?= $(PREFIX)/lib
 share := $(PREFIX)/share
 pages := $(patsubst src/manual/%,%,$(wildcard src/manual/man?/*))
@@ -453,6 +473,11 @@ install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/en
 	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(build)/cuvette.pc
 	@{ $(files); } | DESTDIR='$(DESTDIR)' .ci/install '$(list)'
 	@.ci/install-notes '$(DESTDIR)' '$(PREFIX)' '$(LIBDIR)'
+# The Python module, where python3 finds it.
+module_place = $(shell $(PYTHON) src/python/place.py $(PREFIX))/cuvette
+install-python: python install ## the same, and the Python module where python3 finds it
+	@for file in $(module)/*.py $(module)/py.typed; do echo "644 $$file $(module_place)/$${file##*/}"; done | \
+	  DESTDIR='$(DESTDIR)' .ci/install '$(list)'
 uninstall: ## remove the files that make install installed
 	@DESTDIR='$(DESTDIR)' .ci/install --remove '$(list)'
 

@@ -1,13 +1,13 @@
 /* The public interface of Cuvette: build a scene, set any of its parameters, render it into the caller's memory, trace
- * rays through it, and simulate and grab its soft bodies. This is the only header that a program outside src/ includes;
- * link with `pkg-config --cflags --libs cuvette`.
+ * rays through it, compare its optics with theory, simulate and grab its soft bodies, and run studies. This is the only
+ * header that a program outside src/ includes; link with `pkg-config --cflags --libs cuvette`.
  *
- * There are five handles. A cuvette_scene is a scene description, with the content of a scene file. A cuvette_engine
+ * The main handles are five. A cuvette_scene is a scene description, with the content of a scene file. A cuvette_engine
  * owns worker threads and their memory; it renders scenes, one at a time. A cuvette_frame is the result of a render:
  * film, ray counts, times. A cuvette_query is a snapshot of a scene, prepared for the caller's rays. A cuvette_motion
- * advances the slimes of a scene in time and has hands that grab them. cuvette-scene(5) is the manual of scenes and
- * parameters, cuvette-optics(7) that of the models; `cuvette params` lists every parameter with its range, unit and
- * default.
+ * advances the slimes of a scene in time and has hands that grab them. Trees, fans, images and studies are results of
+ * these, or read from files. cuvette-scene(5) is the manual of scenes and parameters, cuvette-optics(7) that of the
+ * models; `cuvette params` lists every parameter with its range, unit and default.
  *
  * Ownership. The caller owns what a function whose name ends in _create, _read, _clone or _render returns; the function
  * that ends in _destroy releases it, and accepts NULL. Arguments are borrowed for the call only: the library keeps no
@@ -17,8 +17,8 @@
  * Errors. A function that can fail returns a cuvette_status; results are returned through pointers and set only on
  * success (on failure handles are set to NULL). `why`, which may be NULL, then describes the problem and its remedy. A
  * NULL where a handle, a name or a result is required is CUVETTE_BAD_INPUT like any wrong value. The library never
- * prints, never exits, raises no signal, and reads only CUVETTE_ISA (cuvette_engine_create) and CUVETTE_IMPORT (the
- * program that reads mesh files) from the environment.
+ * prints, never exits, raises no signal, and reads only CUVETTE_ISA (cuvette_engine_create), CUVETTE_IMPORT (the
+ * program that reads mesh files) and CUVETTE_MACHINE (cuvette-results(5)) from the environment.
  *
  * Threads. There is no global state: different threads may use different handles at the same time. Any number of
  * functions that take a scene as const may run on it at the same time, including renders by several engines, but not
@@ -306,13 +306,16 @@ typedef struct cuvette_request {
      * render.tile), about ten times a second. Without it the buffers are filled at the end. May be NULL */
     void (*piece)(void *context, const cuvette_piece *piece);
     void *context; /* passed to both callbacks */
+    /* keep further values of each pixel, which cost memory and time: the named layers of render.integrator aov; the
+     * number of its rays; the nanoseconds spent on it */
+    bool layers, pixel_rays, pixel_time;
 } cuvette_request;
 
 #ifdef __cplusplus
-#define CUVETTE_REQUEST                                                      \
-    cuvette_request                                                          \
-    {                                                                        \
-        sizeof(cuvette_request), 0, 0, NULL, 0, NULL, 0, 0, NULL, NULL, NULL \
+#define CUVETTE_REQUEST                                                                           \
+    cuvette_request                                                                               \
+    {                                                                                             \
+        sizeof(cuvette_request), 0, 0, NULL, 0, NULL, 0, 0, NULL, NULL, NULL, false, false, false \
     }
 #else
 #define CUVETTE_REQUEST ((cuvette_request){.size = sizeof(cuvette_request)})
@@ -345,6 +348,16 @@ CUVETTE_API cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0
  * "-" is a PNG on standard output. The file is written completely or not at all. */
 CUVETTE_API cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path, int bits,
                                                cuvette_diagnostic *why);
+
+/* The values of a named layer, row by row from the top, *channels for each pixel (1 or 3), 0 where rays hit nothing:
+ * "normal", "albedo", "depth", "solid", "material", "position". They belong to the frame and are valid until it is
+ * destroyed. The request must have had layers set. */
+CUVETTE_API cuvette_status cuvette_frame_layer(const cuvette_frame *frame, const char *name, const float **values,
+                                               int *channels, cuvette_diagnostic *why);
+/* Writes one number for each pixel, width * height in all: "rays" or "time" (ns), if the request had pixel_rays or
+ * pixel_time set; "noise", the standard error under random paths, root mean square over the channels. */
+CUVETTE_API cuvette_status cuvette_frame_map(const cuvette_frame *frame, const char *name, double *values,
+                                             cuvette_diagnostic *why);
 
 /* Ray counts. A ray is a straight segment between two interactions and is counted when it is traced. The totals do not
  * depend on the number of threads. Set size before the call; later versions add fields at the end. */
@@ -448,6 +461,187 @@ CUVETTE_API cuvette_status cuvette_query_camera_ray(const cuvette_query *query, 
 CUVETTE_API cuvette_status cuvette_query_medium(const cuvette_query *query, const double *point, int32_t *solid,
                                                 cuvette_diagnostic *why);
 
+/* --- ray trees and fans ---
+ *
+ * A tree is one ray with all rays that follow from it, as the renderer traces them: the radiance of a pixel's tree
+ * is the film's value, bit for bit (of a scene with random paths, a spectral film or a depth buffer, the tree is
+ * that of render.integrator whitted at render.lambda_nm). A fan is many rays in one plane, each followed along its
+ * refracted path, with their caustic and focus. Both are immutable; arrays and texts that are read from them are
+ * valid until they are destroyed, and they no longer need their query. Calls on one query take turns. */
+
+typedef struct cuvette_tree cuvette_tree;
+typedef struct cuvette_fan cuvette_fan;
+
+typedef enum cuvette_ray_kind {
+    CUVETTE_RAY_CAMERA,
+    CUVETTE_RAY_REFLECT,
+    CUVETTE_RAY_REFRACT,
+    CUVETTE_RAY_SHADOW
+} cuvette_ray_kind;
+
+/* How a ray ends: at an interface; in the background; not traced, because of render.depth or of render.min_weight; a
+ * shadow ray: whether (part of) its light arrives. */
+typedef enum cuvette_ray_end {
+    CUVETTE_END_HIT,
+    CUVETTE_END_SKY,
+    CUVETTE_END_CUT_DEPTH,
+    CUVETTE_END_CUT_WEIGHT,
+    CUVETTE_END_LIT,
+    CUVETTE_END_BLOCKED
+} cuvette_ray_end;
+
+/* One ray of a tree. Fields from distance on describe its hit; they are 0 unless it ends with one. */
+typedef struct cuvette_node {
+    int32_t kind, end;                  /* cuvette_ray_kind, cuvette_ray_end */
+    int32_t depth;                      /* 0: the first ray; of a shadow ray, that of the ray at whose hit it starts */
+    int32_t parent, first_child, next;  /* indices in the tree, or -1; next: the parent's next child */
+    double origin[3], direction[3];     /* unit vector; of a shadow ray, towards the light */
+    double weight[3];                   /* at its start, RGB; of a shadow ray the radiance that it adds if unblocked */
+    double stokes[4];                   /* under render.polarisation: the analyser's Stokes vector; else 1, 0, 0, 0 */
+    double added[3];                    /* radiance that this ray itself adds to the film, without its children */
+    double n;                           /* refractive index of the medium in which it starts */
+    const char *medium_name;            /* "water", or the solid's name */
+    int32_t medium;                     /* the solid's index, or CUVETTE_OUTSIDE */
+    int32_t light;                      /* of a shadow ray: the light's index; else -1 */
+    double light_distance;              /* of a shadow ray: to its light, scene units; else 0 */
+    double light_transmittance;         /* of a shadow ray: of the surfaces in its path; else 1 */
+    double distance;                    /* scene units */
+    double point[3], normal[3];         /* unit vector, towards the ray */
+    double error;                       /* bound on the point's distance from the exact surface, scene units */
+    int32_t solid, before, after;       /* the solid that was hit, the media on the ray's side and behind */
+    int32_t opaque, total_internal;     /* 0 or 1: no ray continues behind it; total internal reflection */
+    const char *solid_name, *face_name; /* "vessel", "outer side"; NULL without a hit */
+    double n_before, n_after;
+    double cos_in, cos_out;  /* cosines of the angles of incidence and refraction; cos_out is 0 if there is none */
+    double R_s, R_p, R;      /* power reflectances, with coating */
+    double T;                /* power transmittance of the surface, with coating and transparency */
+    double gain_classic;     /* factor of the radiance from behind: T, for either value of render.radiance ... */
+    double gain_basic;       /* ... and T (n_before / n_after)^2 */
+    double length_m;         /* of the ray, metres */
+    double transmittance[3]; /* of the medium over this length (Beer and Lambert), RGB */
+} cuvette_node;
+
+/* Traces the ray and all that follow from it; its reach and start are ignored. */
+CUVETTE_API cuvette_status cuvette_query_trace(const cuvette_query *query, const cuvette_ray *ray, cuvette_tree **out,
+                                               cuvette_diagnostic *why);
+/* Traces the camera rays of a pixel; with several samples the tree has as many first rays, linked by next. */
+CUVETTE_API cuvette_status cuvette_query_trace_pixel(const cuvette_query *query, int x, int y, cuvette_tree **out,
+                                                     cuvette_diagnostic *why);
+CUVETTE_API void cuvette_tree_destroy(cuvette_tree *tree);
+
+/* The rays, the first one first; sets *count. NULL for no tree. */
+CUVETTE_API const cuvette_node *cuvette_tree_nodes(const cuvette_tree *tree, size_t *count);
+/* Writes the radiance that the whole tree brings to its pixel, three numbers. */
+CUVETTE_API cuvette_status cuvette_tree_radiance(const cuvette_tree *tree, double *rgb, cuvette_diagnostic *why);
+/* Writes what `cuvette trace` writes, in the format of the path's ending: .txt, .json, .svg. */
+CUVETTE_API cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cuvette_diagnostic *why);
+
+/* The rays of a fan. Begin with zeros and set size; later versions add fields at the end. */
+typedef struct cuvette_fan_rule {
+    size_t size;           /* sizeof(cuvette_fan_rule) */
+    double from[3], to[3]; /* the axis; the rays start around `from` */
+    double normal[3];      /* of their plane; 0, 0, 0: up for a horizontal axis, else horizontal */
+    int rays;              /* 1..100000 */
+    double width;          /* of a parallel beam, scene units */
+    double spread_deg;     /* above 0: instead, all from one point, with this angle between the first and the last */
+} cuvette_fan_rule;
+
+typedef struct cuvette_fan_ray {
+    double offset;        /* from the axis: scene units, or degrees if the fan spreads */
+    size_t first, count;  /* its nodes */
+    int32_t leaves;       /* 1: it was followed to its end, in the background or at an opaque surface */
+    int32_t crosses_axis; /* 1: its last segment crosses the axis, seen along the plane's normal */
+    const char *end_name; /* "sky", "cut", or the opaque solid that it hit */
+    double exit_point[3], exit_direction[3]; /* of its last segment */
+    double reach;                            /* length of the last segment; infinite into the background */
+    double deviation_deg;                    /* between the first direction and the last */
+    double weight;                           /* of the last segment, mean of RGB */
+    double axis_at;                          /* of the crossing: distance from `from` along the axis */
+    double axis_point[3];
+} cuvette_fan_ray;
+
+/* The crossing of the last segments of the rays number ray and ray + 1. All together are the caustic. */
+typedef struct cuvette_crossing {
+    int64_t ray;
+    double at[3];
+} cuvette_crossing;
+
+/* The point nearest to all deflected rays. */
+typedef struct cuvette_focus {
+    size_t size;        /* sizeof(cuvette_focus) */
+    int32_t exists;     /* 0: the deflected rays are parallel, or fewer than two */
+    int32_t is_virtual; /* 1: it is behind the rays */
+    double point[3];
+    double rms; /* root mean square of the distances of the rays from it, scene units */
+} cuvette_focus;
+
+CUVETTE_API cuvette_status cuvette_query_fan(const cuvette_query *query, const cuvette_fan_rule *rule,
+                                             cuvette_fan **out, cuvette_diagnostic *why);
+CUVETTE_API void cuvette_fan_destroy(cuvette_fan *fan);
+CUVETTE_API const cuvette_fan_ray *cuvette_fan_rays(const cuvette_fan *fan, size_t *count);
+CUVETTE_API const cuvette_node *cuvette_fan_nodes(const cuvette_fan *fan, size_t *count);
+CUVETTE_API const cuvette_crossing *cuvette_fan_crossings(const cuvette_fan *fan, size_t *count);
+CUVETTE_API cuvette_status cuvette_fan_focus(const cuvette_fan *fan, cuvette_focus *out, cuvette_diagnostic *why);
+/* Writes what `cuvette fan` writes: .svg, a drawing, or .csv, one row per ray. */
+CUVETTE_API cuvette_status cuvette_fan_write(const cuvette_fan *fan, const char *path, cuvette_diagnostic *why);
+
+/* --- optics against theory --- */
+
+/* A quantity measured with traced rays, and a textbook's closed form. The texts are valid during the call of visit. */
+typedef struct cuvette_metric {
+    const char *name;    /* "lens.power" */
+    const char *meaning; /* one line; of an undefined one, why this scene has no such thing */
+    const char *unit;    /* "" for ratios */
+    const char *verdict; /* "pass", "FAIL", or "none": undefined, and the numbers are NaN */
+    double measured, theory, error, tolerance;
+} cuvette_metric;
+
+/* Visits the metrics of `cuvette realism`, until visit returns false. CUVETTE_BAD_INPUT describes the solids that the
+ * scene lacks for them. */
+CUVETTE_API cuvette_status cuvette_scene_each_metric(const cuvette_scene *scene,
+                                                     bool (*visit)(void *context, const cuvette_metric *one),
+                                                     void *context, cuvette_diagnostic *why);
+
+/* A curve, such as "fresnel" by angle; x and y are labels with units. */
+typedef struct cuvette_curve {
+    const char *name, *x, *y;
+} cuvette_curve;
+/* Visits the curves that the scene has. */
+CUVETTE_API cuvette_status cuvette_scene_each_curve(const cuvette_scene *scene,
+                                                    bool (*visit)(void *context, const cuvette_curve *one),
+                                                    void *context, cuvette_diagnostic *why);
+/* Measures a curve: x, measured, theory of each point. Writes at most room points (1024 is enough for any curve), and
+ * sets *count to their number, even if that exceeds room, which is CUVETTE_BAD_INPUT. */
+CUVETTE_API cuvette_status cuvette_scene_curve(const cuvette_scene *scene, const char *name, double (*points)[3],
+                                               size_t room, size_t *count, cuvette_diagnostic *why);
+
+/* --- images and their differences --- */
+
+typedef struct cuvette_image cuvette_image;
+
+/* Reads a PNG, JPEG, PFM or 24-bit BMP file. */
+CUVETTE_API cuvette_status cuvette_image_read(const char *path, cuvette_image **out, cuvette_diagnostic *why);
+CUVETTE_API void cuvette_image_destroy(cuvette_image *image);
+/* Linear RGB, row by row from the top, valid until the image is destroyed; sets width and height. NULL for no image. */
+CUVETTE_API const float *cuvette_image_rgb(const cuvette_image *image, int *width, int *height);
+
+/* The difference of two images as a display shows them: clamped to 0..1 and sRGB-encoded. */
+typedef struct cuvette_comparison {
+    size_t size;            /* sizeof(cuvette_comparison) */
+    double mse;             /* mean squared difference of the encoded channels */
+    double psnr_db;         /* 10 log10(1 / mse), infinite if mse is 0 */
+    double ssim;            /* mean structural similarity of the luma, 1 for equal images */
+    double flip;            /* mean FLIP error at 67 pixels per degree, 0 for equal images */
+    double largest;         /* largest difference of an encoded channel */
+    double differing_share; /* fraction of the pixels whose 8-bit encodings differ */
+    int largest_x, largest_y;
+} cuvette_comparison;
+
+/* Compares two images of linear RGB values, 3 * width * height each. map, of the same size, becomes the FLIP error of
+ * each pixel in false colour; NULL: none. */
+CUVETTE_API cuvette_status cuvette_compare(int width, int height, const float *a, const float *b, float *map,
+                                           cuvette_comparison *out, cuvette_diagnostic *why);
+
 /* --- slimes in motion ---
  *
  * A motion advances all slimes of a scene (meshes of `generate` "slime") in time from their initial state: the scene is
@@ -516,6 +710,105 @@ CUVETTE_API cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand,
                                                cuvette_diagnostic *why);
 /* Releases the hand; its number may then be used for another hand. */
 CUVETTE_API cuvette_status cuvette_motion_release(cuvette_motion *motion, int hand, cuvette_diagnostic *why);
+
+/* --- studies ---
+ *
+ * A study varies parameters of a scene and measures each combination, a cell, several times: one row per repetition in
+ * RESULTS/NAME/rows.csv, never changed afterwards. cuvette-study(5) describes the file, cuvette-results(5) the rows.
+ * Rows of unlike environments (machine, limits, build) are never pooled. A study is immutable. Functions that take
+ * `results`, a folder, use "results" for NULL. Texts returned through char ** are the caller's: release them with
+ * cuvette_text_destroy. */
+
+typedef struct cuvette_study cuvette_study;
+
+CUVETTE_API void cuvette_text_destroy(char *text);
+
+/* Reads a study file and its scene. */
+CUVETTE_API cuvette_status cuvette_study_read(const char *path, cuvette_study **out, cuvette_diagnostic *why);
+CUVETTE_API void cuvette_study_destroy(cuvette_study *study);
+/* Valid until the study is destroyed; NULL for no study. title may be "". */
+CUVETTE_API const char *cuvette_study_name(const cuvette_study *study);
+CUVETTE_API const char *cuvette_study_title(const cuvette_study *study);
+CUVETTE_API size_t cuvette_study_cells(const cuvette_study *study);
+/* The scene of a cell, counted from 0. */
+CUVETTE_API cuvette_status cuvette_study_scene(const cuvette_study *study, size_t cell, cuvette_scene **out,
+                                               cuvette_diagnostic *why);
+/* Visits the parameters of the grid with the values of a cell, until visit returns false. */
+CUVETTE_API cuvette_status cuvette_study_each_value(const cuvette_study *study, size_t cell,
+                                                    bool (*visit)(void *context, const char *path, const char *value),
+                                                    void *context, cuvette_diagnostic *why);
+
+/* What exists on disk, of the present environment unless said otherwise. */
+typedef struct cuvette_study_progress {
+    size_t size; /* sizeof(cuvette_study_progress) */
+    size_t cells, cells_done;
+    size_t rows, warmups, marked, disturbed; /* marked: another film than expected; disturbed: by the study's rule */
+    size_t rows_elsewhere;                   /* of other environments */
+    size_t rows_other_cells;                 /* of cells that the study does not have (any more) */
+    size_t faults;                           /* rows that fail a check or are missing, and marked ones */
+    char environment[16];                    /* key of the present environment, 8 hex digits */
+    char fault[512];                         /* the first fault, "" for none */
+} cuvette_study_progress;
+CUVETTE_API cuvette_status cuvette_study_state(const cuvette_study *study, const char *results,
+                                               cuvette_study_progress *out, cuvette_diagnostic *why);
+
+/* Options of a run. Begin with zeros and set size; later versions add fields at the end. */
+typedef struct cuvette_run {
+    size_t size;          /* sizeof(cuvette_run) */
+    const char *results;  /* folder */
+    bool any_environment; /* count rows of other environments too */
+    double wait_quiet_s;  /* before each repetition, wait that long at most until other programs are quiet; 0: never */
+    /* the number of a process of a study with several (`processes` in its file), from 1: measure only its part; 0: all,
+     * which such a study requires other processes for: run `cuvette study run`, or one program for each number */
+    long process;
+    /* share of the frames, 0..1, and the seconds that are left (NaN: unknown), about ten times a second; return
+     * false to stop. May be NULL */
+    bool (*progress)(void *context, double share, double left_s);
+    void (*news)(void *context, const char *text); /* what disturbs the measurement. May be NULL */
+    void *context;
+} cuvette_run;
+
+/* Measures what is missing and writes the kept files; sets *rows, which may be NULL, to the number of new rows.
+ * CUVETTE_CANCELLED after a stop: rows so far are kept, and the next run resumes. */
+CUVETTE_API cuvette_status cuvette_study_run(const cuvette_study *study, const cuvette_run *run, size_t *rows,
+                                             cuvette_diagnostic *why);
+/* The number of processes that divide the repetitions; 1: no others. */
+CUVETTE_API long cuvette_study_processes(const cuvette_study *study);
+
+/* The summary of `cuvette study summary`, as a table with tabs: medians and 95 % intervals, a line for each cell and
+ * environment. environment: a key; "main": that with most rows; NULL: all. *fault, which may be NULL, is set to the
+ * first fault of the rows, or NULL. */
+CUVETTE_API cuvette_status cuvette_study_summary(const cuvette_study *study, const char *results,
+                                                 const char *environment, char **out, char **fault,
+                                                 cuvette_diagnostic *why);
+/* The comparison of `cuvette study compare --json`, as JSON: the ratio b / a of a column (NULL: wall_s), its
+ * interval and a verdict for each cell. A side is a results folder, PATH=VALUE, cell=N, environment=KEY or run=ID. */
+CUVETTE_API cuvette_status cuvette_study_compare(const cuvette_study *study, const char *results, const char *a,
+                                                 const char *b, const char *column, char **out, char **fault,
+                                                 cuvette_diagnostic *why);
+
+/* Options of a figure, as those of `cuvette study plot`; zeros are chosen from the grid. Set size; later versions add
+ * fields at the end. */
+typedef struct cuvette_plot {
+    size_t size; /* sizeof(cuvette_plot) */
+    const char *results, *x, *y, *by;
+    const char *const *where; /* where_count texts, PATH=VALUE */
+    size_t where_count;
+    const char *log;       /* "x", "y", "xy" or "none" */
+    const char *published; /* a CSV file */
+    bool images;           /* the sheet of kept images instead */
+} cuvette_plot;
+/* Draws a figure with gnuplot: its script BASE.gp, its data BASE.tsv, and BASE.format (png, svg or pdf). */
+CUVETTE_API cuvette_status cuvette_study_plot(const cuvette_study *study, const cuvette_plot *plot, const char *base,
+                                              const char *format, cuvette_diagnostic *why);
+
+/* A column of rows.csv; a name with <axis> or <solid> stands for one column for each. */
+typedef struct cuvette_column {
+    const char *name, *unit, *meaning;
+} cuvette_column;
+/* Visits all columns until visit returns false. */
+CUVETTE_API cuvette_status cuvette_each_column(bool (*visit)(void *context, const cuvette_column *one), void *context,
+                                               cuvette_diagnostic *why);
 
 #ifdef __cplusplus
 }

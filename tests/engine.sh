@@ -63,6 +63,8 @@ library=$prefix/lib/libcuvette.so.0
 declared=$(grep -o '\bcuvette_[a-z0-9_]*(' "$prefix/include/cuvette.h" | tr -d '(' | sort -u)
 empty "the shared library exports exactly the functions of the header" \
     "$(diff <(echo "$declared") <(nm -D --defined-only "$library" | awk '{print $3}' | sort))"
+empty "the exported names are those of tests/engine_symbols.txt: one that is gone breaks programs; add new ones there" \
+    "$(diff tests/engine_symbols.txt <(echo "$declared"))"
 empty "the static library exports exactly the functions of the header" \
     "$(diff <(echo "$declared") <(nm -g --defined-only "$prefix/lib/libcuvette.a" | awk 'NF == 3 {print $3}' | sort))"
 empty "the soname is libcuvette.so.0" "$(readelf -d "$library" | grep SONAME | grep -v '\[libcuvette.so.0\]')"

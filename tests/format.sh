@@ -1,6 +1,7 @@
 #!/bin/bash
-# The layout of every source file: C by clang-format (.clang-format), shell by shfmt, the page and its tests by prettier
-# (.prettierrc.json) of FOLDER/node_modules; and no line over 120 columns. A check without its tool is skipped.
+# The layout of every source file: C by clang-format (.clang-format), shell by shfmt, Python by black, the page and its
+# tests by prettier (.prettierrc.json) of FOLDER/node_modules; and no line over 120 columns. A check without its tool is
+# skipped.
 # tests/format.sh [--check|--write] [FOLDER]
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -13,6 +14,8 @@ mapfile -t c < <(find src tests experiments -name '*.[ch]' | sort)
 mapfile -t shell < <(find .ci src tests plots experiments paper -type f -print0 |
     xargs -0 grep -lE '^#!/bin/(ba)?sh' | sort)
 mapfile -t page < <(find src/web/page tests/web -name '*.js' -o -name '*.mjs' -o -name '*.css' -o -name '*.html' | sort)
+
+mapfile -t python < <(find src/python tests/python experiments -name '*.py' | sort)
 
 # check WHAT TOOL COMMAND...: the command prints the lines with another layout, and fails if there are any
 check() {
@@ -39,6 +42,7 @@ too_long() {
 
 if [[ $write ]]; then
     clang-format -i "${c[@]}"
+    ! command -v black >/dev/null || black -q -l 120 "${python[@]}"
     shfmt -i 4 -w "${shell[@]}"
     ! command -v "$prettier" >/dev/null || "$prettier" --log-level warn --write "${page[@]}"
     exit
@@ -46,5 +50,6 @@ fi
 check "${#c[@]} files of C" clang-format clang-format --dry-run -Werror "${c[@]}"
 check "${#shell[@]} shell scripts" shfmt shfmt -i 4 -d "${shell[@]}"
 check "${#page[@]} files of the page and its tests" "$prettier" "$prettier" --log-level warn --check "${page[@]}"
-check 'no line over 120 columns' grep too_long "${c[@]}" "${shell[@]}" "${page[@]}"
+check "${#python[@]} files of Python" black black -q -l 120 --check "${python[@]}"
+check 'no line over 120 columns' grep too_long "${c[@]}" "${shell[@]}" "${page[@]}" "${python[@]}"
 exit $failed

@@ -8,6 +8,8 @@
 #include <string.h>
 
 enum { PREVIEW_MAX = 64 };
+/* The size of a request of the first version. */
+#define REQUEST_FIRST offsetof(cuvette_request, layers)
 
 status engine_isa(const char *name, isa *out, diagnostic *why)
 {
@@ -94,10 +96,10 @@ static status read_request(const cuvette_request *given, const scene *s, cuvette
     *out = CUVETTE_REQUEST;
     if (!given)
         return STATUS_OK;
-    if (given->size < sizeof *out) /* there is no earlier version yet */
+    if (given->size < REQUEST_FIRST)
         return diagnose(why, STATUS_BAD_INPUT, "initialise the request with CUVETTE_REQUEST",
                         "the request's size is %zu, which is too small", given->size);
-    memcpy(out, given, sizeof *out);
+    memcpy(out, given, given->size < sizeof *out ? given->size : sizeof *out);
     if (out->preview != 0 && (out->preview < 2 || out->preview > PREVIEW_MAX))
         return diagnose(why, STATUS_BAD_INPUT, "set it to 0, or from 2 to 64", "the request's preview is %d",
                         out->preview);
@@ -144,7 +146,12 @@ static status render_preview(stage *now, const scene *s, diagnostic *why)
 static status render_frame(stage *now, const scene *s, cuvette_frame *frame, diagnostic *why)
 {
     const cuvette_request *r = now->request;
-    const render_options options = {.progress = watch, .piece_done = r->piece ? take_piece : NULL, .context = now};
+    const render_options options = {.pixel_rays = r->pixel_rays,
+                                    .pixel_time = r->pixel_time,
+                                    .layers = r->layers,
+                                    .progress = watch,
+                                    .piece_done = r->piece ? take_piece : NULL,
+                                    .context = now};
     status code = job_render(now->engine->workers, s, &options, &frame->account, why);
     const film *img = frame->account.result ? frame->account.result->img : NULL;
     if (img && r->piece && now->noted == STATUS_OK)

@@ -56,6 +56,9 @@ cuvette_status engine_begin_advance(cuvette_scene *s, cuvette_diagnostic *why);
 void engine_end_advance(cuvette_scene *s);
 cuvette_status engine_is_advancing(cuvette_diagnostic *why); /* always CUVETTE_BUSY, with a diagnostic */
 
+/* A handle that owns the model, which is destroyed when out of memory. */
+cuvette_status engine_own_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why);
+
 /* Drops one reference; the last one frees the scene. */
 void engine_release_scene(cuvette_scene *s);
 

@@ -129,3 +129,48 @@ cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_stat
                                        .noise_rms = render_noise_rms(r)};
     return engine_copy_struct(&result, sizeof result, out, why);
 }
+
+cuvette_status cuvette_frame_layer(const cuvette_frame *frame, const char *name, const float **values, int *channels,
+                                   cuvette_diagnostic *why)
+{
+    ENGINE_CALL(frame, name, values, channels);
+    const layer_set *layers = frame->account.result->layers;
+    *values = NULL;
+    if (!layers)
+        return engine_report(diagnose(&inner, STATUS_BAD_INPUT,
+                                      "set layers in the request, and render.integrator to aov",
+                                      "the frame has no layers"),
+                             &inner, why);
+    for (int i = 0; i < LAYER_COUNT; i++)
+        if (strcmp(layer_words[i], name) == 0) {
+            *values = layers->values[i];
+            *channels = layer_channels[i];
+            return CUVETTE_OK;
+        }
+    return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "use normal, albedo, depth, solid, material or position",
+                                  "there is no layer '%.64s'", name),
+                         &inner, why);
+}
+
+cuvette_status cuvette_frame_map(const cuvette_frame *frame, const char *name, double *values, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(frame, name, values);
+    const render_result *r = frame->account.result;
+    const size_t pixels = (size_t)r->img->width * (size_t)r->img->height;
+    const bool rays = strcmp(name, "rays") == 0, ns = strcmp(name, "time") == 0, noise = strcmp(name, "noise") == 0;
+    const double *found = rays ? r->pixel_rays : ns ? r->pixel_ns : noise ? r->variance : NULL;
+    if (!rays && !ns && !noise)
+        diagnose(&inner, STATUS_BAD_INPUT, "use rays, time or noise", "there is no map '%.64s'", name);
+    else if (!found)
+        diagnose(&inner, STATUS_BAD_INPUT,
+                 noise ? "set render.integrator to path and render.paths to 16 or more"
+                       : "set pixel_rays or pixel_time in the request",
+                 "the frame has no map '%s'", name);
+    if (!found)
+        return engine_report(STATUS_BAD_INPUT, &inner, why);
+    if (noise)
+        record_noise_values(r, values);
+    else
+        memcpy(values, found, pixels * sizeof *values);
+    return CUVETTE_OK;
+}

@@ -10,16 +10,18 @@
 
 void cuvette_query_destroy(cuvette_query *query)
 {
-    if (!query)
+    if (!query || atomic_fetch_sub(&query->owners, 1) > 1)
         return;
     while (query->free_benches) {
         bench *b = query->free_benches;
         query->free_benches = b->next;
         free(b);
     }
+    probe_destroy(query->inspector);
     plan_destroy(query->ready);
     scene_destroy(query->model);
     pthread_mutex_destroy(&query->lock);
+    pthread_mutex_destroy(&query->tracing);
     free(query);
 }
 
@@ -27,17 +29,55 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
 {
     static const geometry_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(geometry_kernels);
     isa level = ISA_BASE;
-    scene without_sky = *s; /* no query uses it */
-    without_sky.background.img = NULL;
+    scene traced = *s; /* borrows what s owns */
     if (integrator_traits_of(&s->render)->drawn)
-        trace_trees(&without_sky.render); /* rays need the hierarchies, which rasterisation does not build */
+        trace_trees(&traced.render); /* rays need the hierarchies, which rasterisation does not build */
     status code = engine_isa(instructions, &level, why);
     THEN(code, scene_check(s, why));
     if (code != STATUS_OK)
         return code;
+    q->level = level;
     q->kernels = kernels[level];
-    q->model = scene_clone(&without_sky);
+    q->model = scene_clone(&traced);
     return q->model ? plan_build(q->model, &q->ready, why) : out_of_memory(why);
+}
+
+static cuvette_query *new_query(void)
+{
+    cuvette_query *q = calloc(1, sizeof *q);
+    if (!q || pthread_mutex_init(&q->lock, NULL) != 0) {
+        free(q);
+        return NULL;
+    }
+    if (pthread_mutex_init(&q->tracing, NULL) != 0) {
+        pthread_mutex_destroy(&q->lock);
+        free(q);
+        return NULL;
+    }
+    atomic_init(&q->owners, 1);
+    return q;
+}
+
+cuvette_query *query_share(cuvette_query *query)
+{
+    atomic_fetch_add(&query->owners, 1);
+    return query;
+}
+
+status query_begin_trace(const cuvette_query *query, cuvette_query **out, diagnostic *why)
+{
+    cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
+    pthread_mutex_lock(&q->tracing);
+    const status code = q->inspector ? STATUS_OK : probe_create(q->model, q->level, &q->inspector, why);
+    if (code != STATUS_OK)
+        pthread_mutex_unlock(&q->tracing);
+    *out = q;
+    return code;
+}
+
+void query_end_trace(cuvette_query *query)
+{
+    pthread_mutex_unlock(&query->tracing);
 }
 
 cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instructions, cuvette_query **out,
@@ -46,11 +86,9 @@ cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instruct
     ENGINE_CALL(out);
     *out = NULL;
     ENGINE_NEED(s);
-    cuvette_query *q = calloc(1, sizeof *q);
-    if (!q || pthread_mutex_init(&q->lock, NULL) != 0) {
-        free(q);
+    cuvette_query *q = new_query();
+    if (!q)
         return engine_report(out_of_memory(&inner), &inner, why);
-    }
     status code = engine_load((cuvette_scene *)(uintptr_t)s, &inner); /* handles are never const objects */
     THEN(code, prepare(q, s->model, instructions, &inner));
     if (code != STATUS_OK) {
@@ -71,6 +109,7 @@ bench *query_take_bench(const cuvette_query *query)
     pthread_mutex_unlock(&q->lock);
     if (!b && (b = aligned_alloc(64, (sizeof *b + 63) / 64 * 64))) {
         b->scratch.segments = NULL;
+        b->scratch.crossings = NULL;
         b->scratch.meshes = &b->meshes;
     }
     return b;

@@ -1,11 +1,13 @@
-/* Internals of a query, shared by query.c (creation) and query_rays.c (ray queries): the query and the scratch memory
- * of a call. */
+/* Internals of a query, shared by query.c (creation), query_rays.c (ray queries), tree.c and fan.c (ray trees): the
+ * query, the scratch memory of a call, and the nodes of a tree. */
 #pragma once
 
 #include "engine/engine_private.h"
 #include "geometry/instance_set.h"
 #include "geometry/rays.h"
 #include "render/core/plan.h"
+#include "render/inspect/probe.h"
+#include <stdio.h>
 
 typedef struct bench {
     _Alignas(64) ray_scratch scratch;
@@ -33,7 +35,28 @@ struct cuvette_query {
     const geometry_kernels *kernels;
     pthread_mutex_t lock;
     bench *free_benches;
+    isa level;
+    pthread_mutex_t tracing; /* held while the probe traces */
+    probe *inspector;        /* made by the first tree */
+    atomic_int owners;       /* the handle, and the trees and fans, whose names are the scene's */
 };
+
+/* A query, and the right to use its probe until query_end_trace. */
+status query_begin_trace(const cuvette_query *query, cuvette_query **out, diagnostic *why);
+void query_end_trace(cuvette_query *query);
+/* One more and one less owner; the last one frees it. */
+cuvette_query *query_share(cuvette_query *query);
+
+/* The nodes of a tree for the caller, newly allocated; NULL when out of memory. */
+cuvette_node *tree_nodes_make(const cuvette_query *query, const ray_node *nodes, size_t count);
+
+/* Writes a text file with one of the writers of a traced result, by the path's ending. */
+typedef struct ray_writer {
+    const char *ending;
+    status (*write)(const void *content, FILE *out, diagnostic *why);
+} ray_writer;
+status query_write_file(const ray_writer *writers, size_t count, const void *content, const char *path,
+                        diagnostic *why);
 
 /* Takes a bench from the free list, or allocates one; NULL when out of memory. */
 bench *query_take_bench(const cuvette_query *query);

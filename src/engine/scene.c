@@ -6,8 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Takes ownership of the model; destroys it when out of memory. */
-static cuvette_status wrap(scene *model, cuvette_scene **out, cuvette_diagnostic *why)
+cuvette_status engine_own_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
     cuvette_scene *s = model ? calloc(1, sizeof *s) : NULL;
@@ -26,7 +25,7 @@ cuvette_status cuvette_scene_create(cuvette_scene **out, cuvette_diagnostic *why
 {
     ENGINE_CALL(out);
     *out = NULL;
-    return wrap(scene_create(), out, why);
+    return engine_own_scene(scene_create(), out, why);
 }
 
 cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette_diagnostic *why)
@@ -36,7 +35,7 @@ cuvette_status cuvette_scene_read(const char *path, cuvette_scene **out, cuvette
     ENGINE_NEED(path);
     scene *model = NULL;
     const status code = scene_read(path, &model, &inner);
-    return code == STATUS_OK ? wrap(model, out, why) : engine_report(code, &inner, why);
+    return code == STATUS_OK ? engine_own_scene(model, out, why) : engine_report(code, &inner, why);
 }
 
 cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out,
@@ -47,7 +46,7 @@ cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_
     ENGINE_NEED(name, text);
     scene *model = NULL;
     const status code = scene_read_text(name, text, size, &model, &inner);
-    return code == STATUS_OK ? wrap(model, out, why) : engine_report(code, &inner, why);
+    return code == STATUS_OK ? engine_own_scene(model, out, why) : engine_report(code, &inner, why);
 }
 
 /* Locks the scene against loading by another thread: renders of one scene may begin together, and each checks what is
@@ -67,7 +66,7 @@ cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, 
     cuvette_scene *source = hold(s);
     scene *model = scene_clone(source->model);
     pthread_mutex_unlock(&source->loading);
-    return wrap(model, out, why);
+    return engine_own_scene(model, out, why);
 }
 
 void engine_release_scene(cuvette_scene *s)

@@ -57,16 +57,22 @@ status record_map(const double *values, const film *f, const char *title, const 
     return code;
 }
 
+void record_noise_values(const render_result *result, double *values)
+{
+    const size_t pixels = (size_t)result->img->width * (size_t)result->img->height;
+    for (size_t i = 0; i < pixels; i++) {
+        const double *v = &result->variance[3 * i];
+        values[i] = sqrt((v[0] + v[1] + v[2]) / 3.0);
+    }
+}
+
 status record_noise(const render_result *result, const char *path, diagnostic *why)
 {
     const size_t pixels = (size_t)result->img->width * (size_t)result->img->height;
     double *error = malloc((pixels + 1) * sizeof *error);
     if (!error)
         return out_of_memory(why);
-    for (size_t i = 0; i < pixels; i++) {
-        const double *v = &result->variance[3 * i];
-        error[i] = sqrt((v[0] + v[1] + v[2]) / 3.0);
-    }
+    record_noise_values(result, error);
     status code = record_map(error, result->img, "standard error per pixel", path, why);
     free(error);
     return code;

@@ -19,7 +19,9 @@ status record_map(const double *values, const film *f, const char *title, const 
 char *record_layer_path(const char *prefix, int layer);
 status record_layers(const render_result *result, const char *prefix, diagnostic *why);
 
-/* Writes the standard error of each pixel, root mean square over its channels; result must have a variance. */
+/* The standard error of each pixel, root mean square over its channels; result must have a variance. record_noise
+ * writes it to a file. */
+void record_noise_values(const render_result *result, double *values);
 status record_noise(const render_result *result, const char *path, diagnostic *why);
 
 /* Writes the timeline in Chrome's trace event format (Google 2016): one row per worker, one bar per tile, in

@@ -1,0 +1,98 @@
+/* Optics against theory: the metrics and curves of a scene. */
+#include "engine/engine_private.h"
+
+#include "realism/realism.h"
+#include "report/realism_rows.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* The scene, checked and loaded, with the default instruction set. */
+static status prepare(const cuvette_scene *s, isa *level, diagnostic *why)
+{
+    status code = engine_check(s, why);
+    THEN(code, engine_load((cuvette_scene *)(uintptr_t)s, why)); /* handles are never const objects */
+    THEN(code, isa_choose(level, why));
+    return code;
+}
+
+cuvette_status cuvette_scene_each_metric(const cuvette_scene *s,
+                                         bool (*visit)(void *context, const cuvette_metric *one), void *context,
+                                         cuvette_diagnostic *why)
+{
+    ENGINE_CALL(s);
+    ENGINE_NEED_NAMED(visit, "visit");
+    isa level = ISA_BASE;
+    realism_report *report = malloc(sizeof *report);
+    status code = report ? prepare(s, &level, &inner) : out_of_memory(&inner);
+    THEN(code, realism_measure(s->model, level, report, &inner));
+    bool goes_on = true;
+    for (int i = 0; code == STATUS_OK && goes_on && i < report->count; i++) {
+        const realism_value *v = &report->value[i];
+        const cuvette_metric one = {.name = v->metric,
+                                    .meaning = v->what,
+                                    .unit = v->unit,
+                                    .verdict = realism_verdict(v),
+                                    .measured = v->measured,
+                                    .theory = v->theory,
+                                    .error = realism_error(v),
+                                    .tolerance = v->tolerance};
+        float_environment_leave(&host);
+        goes_on = visit(context, &one);
+        float_environment_enter(&host);
+    }
+    free(report);
+    return engine_report(code, &inner, why);
+}
+
+cuvette_status cuvette_scene_each_curve(const cuvette_scene *s, bool (*visit)(void *context, const cuvette_curve *one),
+                                        void *context, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(s);
+    ENGINE_NEED_NAMED(visit, "visit");
+    bool goes_on = true;
+    for (int i = 0; goes_on && i < REALISM_CURVE_COUNT; i++) {
+        const realism_curve which = (realism_curve)i;
+        if (realism_check_curve(s->model, which, NULL) != STATUS_OK)
+            continue;
+        const cuvette_curve one = {realism_curve_name(which), realism_curve_x(which), realism_curve_y(which)};
+        float_environment_leave(&host);
+        goes_on = visit(context, &one);
+        float_environment_enter(&host);
+    }
+    return CUVETTE_OK;
+}
+
+static status curve_named(const char *name, realism_curve *out, diagnostic *why)
+{
+    for (int i = 0; i < REALISM_CURVE_COUNT; i++)
+        if (strcmp(realism_curve_name((realism_curve)i), name) == 0) {
+            *out = (realism_curve)i;
+            return STATUS_OK;
+        }
+    return diagnose(why, STATUS_BAD_INPUT, "cuvette_scene_each_curve lists those of the scene",
+                    "there is no curve '%.64s'", name);
+}
+
+cuvette_status cuvette_scene_curve(const cuvette_scene *s, const char *name, double (*points)[3], size_t room,
+                                   size_t *count, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(s, name, count);
+    if (room > 0)
+        ENGINE_NEED(points);
+    isa level = ISA_BASE;
+    realism_curve which = REALISM_CURVE_FRESNEL;
+    realism_points *made = malloc(sizeof *made);
+    status code = made ? curve_named(name, &which, &inner) : out_of_memory(&inner);
+    THEN(code, prepare(s, &level, &inner));
+    THEN(code, realism_trace_curve(s->model, level, which, made, &inner));
+    if (code == STATUS_OK) {
+        *count = (size_t)made->count;
+        for (size_t i = 0; i < *count && i < room; i++)
+            points[i][0] = made->at[i].x, points[i][1] = made->at[i].measured, points[i][2] = made->at[i].theory;
+        if (*count > room)
+            code = diagnose(&inner, STATUS_BAD_INPUT, "make room for as many points",
+                            "the curve has %zu points, but there is room for %zu", *count, room);
+    }
+    free(made);
+    return engine_report(code, &inner, why);
+}

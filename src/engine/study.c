@@ -1,0 +1,233 @@
+/* Studies: reading, cells, running. */
+#include "engine/engine_private.h"
+#include "engine/study_private.h"
+
+#include "measure/clock.h"
+#include "study/rows.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void cuvette_text_destroy(char *text)
+{
+    free(text);
+}
+
+cuvette_status cuvette_study_read(const char *path, cuvette_study **out, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    ENGINE_NEED(path);
+    cuvette_study *made = calloc(1, sizeof *made);
+    const status code = made ? study_read(path, &made->of, &inner) : out_of_memory(&inner);
+    if (code == STATUS_OK)
+        *out = made;
+    else
+        free(made);
+    return engine_report(code, &inner, why);
+}
+
+void cuvette_study_destroy(cuvette_study *s)
+{
+    if (!s)
+        return;
+    study_destroy(s->of);
+    free(s);
+}
+
+const char *cuvette_study_name(const cuvette_study *s)
+{
+    return s ? s->of->name : NULL;
+}
+
+const char *cuvette_study_title(const cuvette_study *s)
+{
+    return !s ? NULL : s->of->title ? s->of->title : "";
+}
+
+size_t cuvette_study_cells(const cuvette_study *s)
+{
+    return s ? study_cell_count(s->of) : 0;
+}
+
+long cuvette_study_processes(const cuvette_study *s)
+{
+    return s ? study_processes(s->of) : 0;
+}
+
+static status check_cell(const cuvette_study *s, size_t cell, diagnostic *why)
+{
+    const size_t count = study_cell_count(s->of);
+    return cell < count ? STATUS_OK
+                        : diagnose(why, STATUS_BAD_INPUT, "count cells from 0",
+                                   "the study has %zu cells, but no cell %zu", count, cell);
+}
+
+cuvette_status cuvette_study_scene(const cuvette_study *s, size_t cell, cuvette_scene **out, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    ENGINE_NEED_NAMED(s, "study");
+    scene *made = NULL;
+    status code = check_cell(s, cell, &inner);
+    THEN(code, study_cell_scene(s->of, cell, &made, &inner));
+    return code == STATUS_OK ? engine_own_scene(made, out, why) : engine_report(code, &inner, why);
+}
+
+cuvette_status cuvette_study_each_value(const cuvette_study *s, size_t cell,
+                                        bool (*visit)(void *context, const char *path, const char *value),
+                                        void *context, cuvette_diagnostic *why)
+{
+    ENGINE_ENTER();
+    ENGINE_NEED_NAMED(s, "study");
+    ENGINE_NEED_NAMED(visit, "visit");
+    const status code = check_cell(s, cell, &inner);
+    bool goes_on = code == STATUS_OK;
+    for (size_t axis = 0; goes_on && axis < s->of->axis_count; axis++) {
+        const study_point *point = &s->of->axes[axis].points[study_cell_point(s->of, cell, axis)];
+        for (size_t i = 0; goes_on && i < point->count; i++) {
+            float_environment_leave(&host);
+            goes_on = visit(context, point->paths[i], point->values[i]);
+            float_environment_enter(&host);
+        }
+    }
+    return engine_report(code, &inner, why);
+}
+
+const char *engine_results(const char *results)
+{
+    return results ? results : "results";
+}
+
+cuvette_status cuvette_study_state(const cuvette_study *s, const char *results, cuvette_study_progress *out,
+                                   cuvette_diagnostic *why)
+{
+    ENGINE_ENTER();
+    ENGINE_NEED_NAMED(s, "study");
+    ENGINE_NEED(out);
+    study_progress found;
+    const status code = study_status(s->of, engine_results(results), &found, &inner);
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    cuvette_study_progress result = {.cells = found.cells,
+                                     .cells_done = found.cells_done,
+                                     .rows = found.rows - found.warmups,
+                                     .warmups = found.warmups,
+                                     .marked = found.rows_marked,
+                                     .disturbed = found.rows_disturbed,
+                                     .rows_elsewhere = found.rows_elsewhere,
+                                     .rows_other_cells = found.rows_other_cells,
+                                     .faults = found.faults};
+    memcpy(result.environment, found.environment, sizeof result.environment);
+    memcpy(result.fault, found.fault.what, sizeof result.fault);
+    return engine_copy_struct(&result, sizeof result, out, why);
+}
+
+#define ASK_EVERY_S 0.1
+
+/* A run in progress. */
+typedef struct run_call {
+    const cuvette_run *run;
+    float_environment *host; /* the caller's, for callbacks */
+    bool stopped;
+    double share, left_s; /* as told last */
+    double next_s;        /* when the caller is asked again */
+} run_call;
+
+static void ask_caller(run_call *c)
+{
+    if (!c->run->progress || c->stopped || clock_wall_s() < c->next_s)
+        return;
+    c->next_s = clock_wall_s() + ASK_EVERY_S;
+    float_environment_leave(c->host);
+    c->stopped = !c->run->progress(c->run->context, c->share, c->left_s);
+    float_environment_enter(c->host);
+}
+
+static void note_moment(void *context, const study_moment *now)
+{
+    run_call *c = context;
+    const double of_frame = now->stage == STUDY_MEASURING ? now->share : 0.0;
+    c->share = now->frames_all ? fmin(1.0, ((double)now->frames_done + of_frame) / (double)now->frames_all) : 1.0;
+    c->left_s = now->left_s;
+    ask_caller(c);
+}
+
+/* Also polled where there is no progress: while the machine is not quiet, or a reference is rendered. */
+static bool must_stop(void *context)
+{
+    run_call *c = context;
+    ask_caller(c);
+    return c->stopped;
+}
+
+static void pass_news(void *context, const char *text)
+{
+    run_call *c = context;
+    float_environment_leave(c->host);
+    c->run->news(c->run->context, text);
+    float_environment_enter(c->host);
+}
+
+static status check_run(const cuvette_study *s, const cuvette_run *run, diagnostic *why)
+{
+    const long processes = study_processes(s->of);
+    if (run->size < sizeof *run) /* there is no earlier version yet */
+        return diagnose(why, STATUS_BAD_INPUT, "set it to sizeof(cuvette_run)",
+                        "the run's size is %zu, which is too small", run->size);
+    if (run->process < 0 || run->process > processes)
+        return diagnose(why, STATUS_BAD_INPUT, "see processes in the study file",
+                        "the study has %ld processes, but no %ld", processes, run->process);
+    return STATUS_OK;
+}
+
+cuvette_status cuvette_study_run(const cuvette_study *s, const cuvette_run *run, size_t *rows, cuvette_diagnostic *why)
+{
+    ENGINE_ENTER();
+    ENGINE_NEED_NAMED(s, "study");
+    ENGINE_NEED(run);
+    size_t made = 0;
+    run_call call = {.run = run, .host = &host, .left_s = NAN};
+    status code = check_run(s, run, &inner);
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    const study_options options = {.results = engine_results(run->results),
+                                   .process = run->process,
+                                   .any_environment = run->any_environment,
+                                   .stop = must_stop,
+                                   .progressed = note_moment,
+                                   .news = run->news ? pass_news : NULL,
+                                   .wait_quiet_s = run->wait_quiet_s,
+                                   .context = &call};
+    code = study_run(s->of, &options, &made, &inner);
+    if (rows)
+        *rows = made;
+    return engine_report(code, &inner, why);
+}
+
+typedef struct column_call {
+    bool (*visit)(void *context, const cuvette_column *one);
+    void *context;
+    float_environment *host;
+    bool goes_on;
+} column_call;
+
+static void pass_column(void *context, const row_column *column)
+{
+    column_call *c = context;
+    const cuvette_column one = {column->name, column->unit, column->meaning};
+    if (!c->goes_on)
+        return;
+    float_environment_leave(c->host);
+    c->goes_on = c->visit(c->context, &one);
+    float_environment_enter(c->host);
+}
+
+cuvette_status cuvette_each_column(bool (*visit)(void *context, const cuvette_column *one), void *context,
+                                   cuvette_diagnostic *why)
+{
+    ENGINE_ENTER();
+    ENGINE_NEED_NAMED(visit, "visit");
+    row_each_column(pass_column, &(column_call){visit, context, &host, true});
+    return CUVETTE_OK;
+}

@@ -1,0 +1,197 @@
+/* Ray trees: traced by the query's probe, copied into the caller's form of a node. */
+#include "engine/query_private.h"
+
+#include "base/file.h"
+#include "report/trace_writers.h"
+#include "scene/model/scene.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+struct cuvette_tree {
+    cuvette_query *of;
+    ray_tree traced;
+    cuvette_node *nodes;
+};
+
+_Static_assert((int)CUVETTE_RAY_CAMERA == (int)RAY_CAMERA && (int)CUVETTE_RAY_SHADOW == (int)RAY_SHADOW, "kinds");
+_Static_assert((int)CUVETTE_END_HIT == (int)RAY_END_HIT && (int)CUVETTE_END_BLOCKED == (int)RAY_END_BLOCKED, "ends");
+_Static_assert((int)CUVETTE_OUTSIDE == (int)RAY_OUTSIDE, "media");
+
+static void put_vector(double out[3], vec3 v)
+{
+    out[0] = v.x, out[1] = v.y, out[2] = v.z;
+}
+
+static void put_hit(const cuvette_query *q, const ray_hit *h, cuvette_node *out)
+{
+    out->distance = h->t;
+    put_vector(out->point, h->point);
+    put_vector(out->normal, h->normal);
+    out->error = h->error_bound;
+    out->solid = h->solid, out->before = h->from, out->after = h->to;
+    out->opaque = h->opaque, out->total_internal = h->tir;
+    out->solid_name = scene_solid_name(q->model, h->solid);
+    out->face_name = probe_face_name(q->inspector, h);
+    out->n_before = h->n_from, out->n_after = h->n_to;
+    out->cos_in = h->cos_i, out->cos_out = h->cos_t;
+    out->R_s = h->R_s, out->R_p = h->R_p, out->R = h->R, out->T = h->T;
+    out->gain_classic = h->gain_classic, out->gain_basic = h->gain_basic;
+    out->length_m = h->path_length_m;
+    memcpy(out->transmittance, h->transmittance, sizeof out->transmittance);
+}
+
+static void put_node(const cuvette_query *q, const ray_node *n, cuvette_node *out)
+{
+    *out = (cuvette_node){.kind = (int32_t)n->kind,
+                          .end = (int32_t)n->end,
+                          .depth = n->depth,
+                          .parent = n->parent,
+                          .first_child = n->first_child,
+                          .next = n->next,
+                          .n = n->n,
+                          .medium_name = probe_medium_name(q->inspector, n->medium),
+                          .medium = n->medium,
+                          .light = n->light,
+                          .light_distance = n->light_distance,
+                          .light_transmittance = n->let_through};
+    put_vector(out->origin, n->origin);
+    put_vector(out->direction, n->direction);
+    memcpy(out->weight, n->throughput, sizeof out->weight);
+    memcpy(out->stokes, n->stokes, sizeof out->stokes);
+    memcpy(out->added, n->brought, sizeof out->added);
+    if (n->end == RAY_END_HIT)
+        put_hit(q, &n->hit, out);
+}
+
+cuvette_node *tree_nodes_make(const cuvette_query *query, const ray_node *nodes, size_t count)
+{
+    cuvette_node *made = calloc(count + 1, sizeof *made);
+    for (size_t i = 0; made && i < count; i++)
+        put_node(query, &nodes[i], &made[i]);
+    return made;
+}
+
+void cuvette_tree_destroy(cuvette_tree *tree)
+{
+    if (!tree)
+        return;
+    free(tree->nodes);
+    ray_tree_release(&tree->traced);
+    cuvette_query_destroy(tree->of);
+    free(tree);
+}
+
+/* What a tree starts with: a pixel, or a ray. */
+typedef struct tree_root {
+    const cuvette_ray *ray; /* NULL: the pixel */
+    int x, y;
+} tree_root;
+
+static status grow(cuvette_query *q, const tree_root *root, cuvette_tree *tree, diagnostic *why)
+{
+    const cuvette_ray *r = root->ray;
+    const status code = r ? probe_ray(q->inspector, vec3_make(r->origin[0], r->origin[1], r->origin[2]),
+                                      vec3_make(r->direction[0], r->direction[1], r->direction[2]), &tree->traced, why)
+                          : probe_pixel(q->inspector, root->x, root->y, &tree->traced, why);
+    if (code != STATUS_OK)
+        return code;
+    tree->nodes = tree_nodes_make(q, tree->traced.node, tree->traced.count);
+    return tree->nodes ? STATUS_OK : out_of_memory(why);
+}
+
+static cuvette_status trace(const cuvette_query *query, const tree_root *root, cuvette_tree **out, diagnostic *inner,
+                            cuvette_diagnostic *why)
+{
+    cuvette_query *q = NULL;
+    status code = query_begin_trace(query, &q, inner);
+    if (code != STATUS_OK)
+        return engine_report(code, inner, why);
+    cuvette_tree *tree = calloc(1, sizeof *tree);
+    if (tree)
+        tree->of = query_share(q);
+    code = tree ? grow(q, root, tree, inner) : out_of_memory(inner);
+    query_end_trace(q);
+    if (code == STATUS_OK)
+        *out = tree;
+    else
+        cuvette_tree_destroy(tree);
+    return engine_report(code, inner, why);
+}
+
+cuvette_status cuvette_query_trace(const cuvette_query *query, const cuvette_ray *ray, cuvette_tree **out,
+                                   cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    ENGINE_NEED(query, ray);
+    return trace(query, &(tree_root){.ray = ray}, out, &inner, why);
+}
+
+cuvette_status cuvette_query_trace_pixel(const cuvette_query *query, int x, int y, cuvette_tree **out,
+                                         cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    ENGINE_NEED(query);
+    return trace(query, &(tree_root){.x = x, .y = y}, out, &inner, why);
+}
+
+const cuvette_node *cuvette_tree_nodes(const cuvette_tree *tree, size_t *count)
+{
+    if (count)
+        *count = tree ? tree->traced.count : 0;
+    return tree ? tree->nodes : NULL;
+}
+
+cuvette_status cuvette_tree_radiance(const cuvette_tree *tree, double *rgb, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(tree, rgb);
+    memcpy(rgb, tree->traced.radiance, sizeof tree->traced.radiance);
+    return CUVETTE_OK;
+}
+
+status query_write_file(const ray_writer *writers, size_t count, const void *content, const char *path, diagnostic *why)
+{
+    const char *ending = strrchr(path, '.');
+    size_t which = 0;
+    while (which < count && !(ending && strcasecmp(ending, writers[which].ending) == 0))
+        which++;
+    if (which == count)
+        return diagnose_at(why, path, STATUS_BAD_INPUT, count == 3 ? "use .txt, .json or .svg" : "use .svg or .csv",
+                           "unknown file name ending");
+    file_writer writer;
+    TRY(file_writer_open(&writer, path, why));
+    return file_writer_end(&writer, writers[which].write(content, writer.stream, why), why);
+}
+
+static status write_text(const void *content, FILE *out, diagnostic *why)
+{
+    return trace_write_text(content, out, why);
+}
+
+static status write_json(const void *content, FILE *out, diagnostic *why)
+{
+    return trace_write_json(content, out, why);
+}
+
+static status write_drawing(const void *content, FILE *out, diagnostic *why)
+{
+    return trace_write_drawing(content, out, why);
+}
+
+static const ray_writer writers[] = {{".txt", write_text}, {".json", write_json}, {".svg", write_drawing}};
+
+cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(tree, path);
+    cuvette_query *q = NULL;
+    status code = query_begin_trace(tree->of, &q, &inner);
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    const traced content = {q->model, q->inspector, &tree->traced, q->model->path ? q->model->path : ""};
+    code = query_write_file(writers, sizeof writers / sizeof *writers, &content, path, &inner);
+    query_end_trace(q);
+    return engine_report(code, &inner, why);
+}

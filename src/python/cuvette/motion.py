@@ -1,0 +1,132 @@
+"""Slimes in motion, and hands that grab them."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Tuple
+
+from . import progress as bars
+from ._library import Cancelled, InputError, call, described, encoded, ffi, lib, made, names_of, sized
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+SLICES = 50  # of an advance: between two, Ctrl-C and the progress bar have their turn
+
+
+@dataclass(frozen=True)
+class Slime:
+    """The state of a slime; cuvette_slime of cuvette.h describes the units."""
+
+    time_s: float
+    steps: int
+    substeps: int
+    masses: int
+    held: int
+    kinetic: float
+    elastic: float
+    compression: float
+    gravity: float
+    center: Tuple[float, ...]
+    momentum: Tuple[float, ...]
+    volume: float
+    volume_at_rest: float
+    low: float
+    high: float
+    speed_max: float
+
+
+class Hand:
+    """Holds masses of a slime, until it is released; as a context manager, until the end of the block."""
+
+    def __init__(self, motion: "Motion", number: int, where: Tuple[float, ...]) -> None:
+        self._motion, self._number, self.where = motion, number, where
+
+    @described("cuvette_motion_move")
+    def move(self, by: Sequence[float]) -> None:
+        call(lib.cuvette_motion_move, self._motion._motion, self._number, ffi.new("double[3]", list(by)))
+        self._motion._moves = True
+
+    @described("cuvette_motion_release")
+    def release(self) -> None:
+        call(lib.cuvette_motion_release, self._motion._motion, self._number)
+
+    def __enter__(self) -> "Hand":
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        self.release()
+
+
+class Motion:
+    """Advances the slimes of a scene in time. `motion.advance(1.5)`, then `scene.render()` shows the new shapes."""
+
+    @described("cuvette_motion_create")
+    def __init__(self, scene: "Scene") -> None:
+        self.scene, self.time_s, self._moves = scene, 0.0, False
+        self._motion: Any = made("motion", lib.cuvette_motion_create, lib.cuvette_motion_destroy, scene._scene)
+
+    @described("cuvette_motion_advance")
+    def advance(self, time_s: float, progress: bars.Progress = None) -> None:
+        """In slices, which change nothing of the result; in one go after a hand was moved, since it moves in a straight
+        line during one advance."""
+        begin, count = self.time_s, 1 if self._moves else SLICES
+        bar = bars.bar_of(progress, "motion")
+        try:
+            for i in range(1, count + 1):
+                at = time_s if i == count else begin + (time_s - begin) * i / count
+                call(lib.cuvette_motion_advance, self._motion, at)
+                self.time_s = at
+                if bar and bar(i / count) is False:
+                    raise Cancelled(f"stopped at {at:.4g} s")
+        finally:
+            bars.end(bar)
+        self._moves = False
+
+    @property
+    def names(self) -> Tuple[str, ...]:
+        """The meshes of the slimes."""
+        return tuple(
+            names_of(lib.cuvette_motion_count(self._motion), lambda i: lib.cuvette_motion_name(self._motion, i))
+        )
+
+    @described("cuvette_motion_state")
+    def state(self, name: str) -> Slime:
+        out = sized("slime")
+        call(lib.cuvette_motion_state, self._motion, encoded(name), out)
+        values: Any = (getattr(out, field) for field in Slime.__dataclass_fields__)
+        return Slime(*(tuple(v) if isinstance(v, ffi.CData) else v for v in values))
+
+    def _ray(self, pixel: Optional[Sequence[float]], origin: Any, direction: Any) -> Any:
+        if pixel is not None:
+            origin, direction = self.scene.query().camera_ray(*pixel)
+        if origin is None or direction is None:
+            raise InputError("a hand needs a ray", "give pixel, or origin and direction")
+        return ffi.new("cuvette_ray *", {"origin": list(origin), "direction": list(direction)})
+
+    @described("cuvette_motion_pick")
+    def pick(
+        self,
+        name: str,
+        pixel: Optional[Sequence[float]] = None,
+        origin: Optional[Sequence[float]] = None,
+        direction: Optional[Sequence[float]] = None,
+    ) -> Optional[Tuple[float, ...]]:
+        """The point, or None on a miss."""
+        where, distance = ffi.new("double[3]"), ffi.new("double *")
+        ray = self._ray(pixel, origin, direction)
+        call(lib.cuvette_motion_pick, self._motion, encoded(name), ray, where, distance)
+        return tuple(where) if distance[0] < float("inf") else None
+
+    @described("cuvette_motion_grab")
+    def grab(
+        self,
+        name: str,
+        pixel: Optional[Sequence[float]] = None,
+        origin: Optional[Sequence[float]] = None,
+        direction: Optional[Sequence[float]] = None,
+        reach: float = 0.2,
+    ) -> Optional[Hand]:
+        """The hand, or None on a miss."""
+        where, hand = ffi.new("double[3]"), ffi.new("int *")
+        ray = self._ray(pixel, origin, direction)
+        call(lib.cuvette_motion_grab, self._motion, encoded(name), ray, reach, hand, where)
+        return None if hand[0] == lib.CUVETTE_NO_HAND else Hand(self, hand[0], tuple(where))

@@ -1,0 +1,73 @@
+"""The progress bar of a render or a study: on a terminal or in a notebook only, and only for what takes a while."""
+
+import html
+import sys
+import time
+from typing import Any, Callable, Optional, Union
+
+Progress = Union[None, bool, Callable[[float], object]]
+
+AFTER_S = 0.5
+WIDTH = 40
+
+
+def _is_notebook() -> bool:
+    return type(sys.stderr).__module__.startswith("ipykernel")
+
+
+class Bar:
+    """A line on the terminal, erased at the end."""
+
+    def __init__(self, what: str, after_s: float = AFTER_S) -> None:
+        self.what, self.begin, self.next, self.shown = what, time.monotonic(), time.monotonic() + after_s, False
+
+    def __call__(self, share: float) -> None:
+        now = time.monotonic()
+        if now >= self.next:
+            self.next = now + 0.1
+            left = f", {(now - self.begin) * (1 / share - 1):.0f} s left" if share > 0 else ""
+            self.show(share, left)
+            self.shown = True
+
+    def show(self, share: float, left: str) -> None:
+        bar = "#" * int(WIDTH * share)
+        print(f"\r{self.what} [{bar:<{WIDTH}}] {100 * share:3.0f} %{left}\033[K", end="", file=sys.stderr, flush=True)
+
+    def end(self) -> None:
+        if self.shown:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+
+
+class NotebookBar(Bar):
+    """A bar below the cell, empty at the end."""
+
+    display: Any = None
+
+    def show(self, share: float, left: str) -> None:
+        from IPython.display import HTML, display
+
+        text = HTML(f"{html.escape(self.what)} <progress value='{share:.3f}'></progress> {100 * share:.0f} %{left}")
+        if self.display is None:
+            self.display = display(text, display_id=True)
+        else:
+            self.display.update(text)
+
+    def end(self) -> None:
+        if self.display is not None:
+            from IPython.display import HTML
+
+            self.display.update(HTML(""))
+
+
+def bar_of(progress: Progress, what: str) -> Optional[Callable[..., object]]:
+    """None: a bar if someone sees it; True, False: always, never; a function: it gets the share from 0 to 1."""
+    if callable(progress):
+        return progress
+    show = _is_notebook() or sys.stderr.isatty() if progress is None else progress
+    kind = NotebookBar if _is_notebook() else Bar
+    return kind(what, 0 if progress else AFTER_S) if show else None
+
+
+def end(bar: Optional[Callable[..., object]]) -> None:
+    if isinstance(bar, Bar):
+        bar.end()
