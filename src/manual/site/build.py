@@ -14,7 +14,7 @@ import header
 import lessons
 import manual
 from links import Links
-from page import Group, Page, Trouble
+from page import Group, Page, Trouble, output_of
 
 ROOT = Path(__file__).resolve().parents[3]
 REST = 'src/manual/man7/*'  # pages that no other group names
@@ -61,7 +61,7 @@ def convert(source, program):
 
 def markdown(path, source):
     text = re.sub(r'^(#+ .*)<(\w+)>', r'\1\\<\2>', path.read_text(encoding='utf-8'), flags=re.M)  # a name, no tag
-    body = subprocess.run(['cmark-gfm', '-e', 'table'], input=text, check=True, capture_output=True, text=True).stdout
+    body = output_of('cmark-gfm', '-e', 'table', input=text)
     body = re.sub(r'<p>(<img [^>]*alt="([^"]*)"[^>]*>)</p>', r'<figure>\1<figcaption>\2</figcaption></figure>', body)
     title = re.search(r'<h1>(.*?)</h1>', body)[1]
     label = LABELS.get(source, title)

@@ -1,16 +1,14 @@
 """Lessons as pages, from what `cuvette lesson show` prints: question, controls, prediction, curve, answer, command."""
 
 import json
-import subprocess
 from html import escape
 
 from chart import chart
-from page import Page, Trouble
+from page import Page, Trouble, output_of
 
 
 def show(root, source, program):
-    result = subprocess.run([program, 'lesson', 'show', source], cwd=root, check=True, capture_output=True, text=True)
-    return json.loads(result.stdout)
+    return json.loads(output_of(program, 'lesson', 'show', source, cwd=root))
 
 
 def page(root, source, program):

@@ -1,16 +1,14 @@
 """A manual page as HTML, by mandoc."""
 
 import re
-import subprocess
 
-from page import Page
+from page import Page, output_of
 
 COMMAND = 'cuvette-'
 
 
 def page(path):
-    text = subprocess.run(['mandoc', '-T', 'html', '-O', 'fragment', path], check=True, capture_output=True,
-                          text=True).stdout
+    text = output_of('mandoc', '-T', 'html', '-O', 'fragment', path)
     text = re.sub(r'<table class="(?:head|foot)">.*?</table>\n?', '', text, flags=re.S)
     text = re.sub(r'(</?)h2\b', r'\1h3', text)
     text = re.sub(r'(</?)h1\b', r'\1h2', text)

@@ -1,10 +1,16 @@
 """What the documentation consists of."""
 
+import subprocess
 from dataclasses import dataclass, field
 
 
 class Trouble(Exception):
     """One line for the user: what is wrong, where, what to do."""
+
+
+def output_of(*command, **options):
+    """What a program prints."""
+    return subprocess.run(command, check=True, capture_output=True, encoding='utf-8', **options).stdout
 
 
 @dataclass
