@@ -202,7 +202,7 @@ $(benches) $(build)/tests/recheck: $(build)/tests/%: tests/%.c $(build)/libcuvet
 # also waits for setup when both are requested.
 .PHONY: always
 flags_text = $(subst ','\'',$(filter-out -Werror,$(CC) $(all_cflags) $(isas_flags) $(embree_cflags)))
-$(build)/flags: always | $(filter setup setup-peers,$(MAKECMDGOALS))
+$(build)/flags: always | $(filter setup setup-peers setup-doc,$(MAKECMDGOALS))
 	@mkdir -p $(@D)
 	@echo '$(flags_text)' | cmp -s - $@ || echo '$(flags_text)' >$@
 
@@ -236,11 +236,27 @@ setup-python: | $(filter setup setup-peers,$(MAKECMDGOALS)) ## install what the 
 setup-peers: | $(filter setup,$(MAKECMDGOALS)) ## install the programs that the benchmarks compare with: POV-Ray, Tachyon, Embree
 	@.ci/setup-peers
 
+# --- documentation ---
+
+# The manual, the API, the lessons and the gallery as HTML in build/doc, to read offline.
+.PHONY: doc doc-tools setup-doc test-doc
+setup-doc: | $(filter setup setup-peers,$(MAKECMDGOALS)) ## install the programs that make doc needs: mandoc, cmark-gfm, python3
+	@.ci/setup-doc
+doc: $(build)/cuvette doc-tools ## write the documentation as HTML: build/doc/index.html
+	@rm -rf $(build)/doc
+	@python3 -B src/manual/site/build.py $(build)/cuvette $(build)/doc
+	@echo 'documentation: $(build)/doc/index.html'
+doc-tools: | $(filter setup-doc,$(MAKECMDGOALS))
+	@for tool in python3 mandoc cmark-gfm; do command -v $$tool >/dev/null || \
+	  { echo "doc: $$tool is not installed; run: make setup-doc" >&2; exit 1; }; done
+test-doc: $(build)/cuvette | doc-tools ## check the documentation: complete, every link resolves; part of make test
+	@CUVETTE='$(abspath $(build)/cuvette)' tests/run tests/doc.sh
+
 # --- tests ---
 
 # Checks of the sources, run in one configuration only.
 source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
-  tests/compile_commands.sh tests/words.sh
+  tests/compile_commands.sh tests/words.sh tests/doc.sh
 scripts := $(filter-out $(source_checks) tests/arch.sh,$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))

@@ -98,6 +98,7 @@ CUVETTE_API cuvette_status cuvette_scene_read(const char *path, cuvette_scene **
 /* Reads a scene from size bytes of text; diagnostics give name as the file, and relative paths start in its folder. */
 CUVETTE_API cuvette_status cuvette_scene_read_text(const char *name, const char *text, size_t size, cuvette_scene **out,
                                                    cuvette_diagnostic *why);
+/* Creates a copy that is independent of the scene. */
 CUVETTE_API cuvette_status cuvette_scene_clone(const cuvette_scene *scene, cuvette_scene **out,
                                                cuvette_diagnostic *why);
 /* Must not be called during a render of the scene or an advance of its slimes. */
@@ -255,6 +256,7 @@ CUVETTE_API cuvette_status cuvette_scene_look_at(cuvette_scene *scene, const dou
  * material. */
 CUVETTE_API cuvette_status cuvette_scene_give_material(cuvette_scene *scene, const char *solid, const char *material,
                                                        cuvette_diagnostic *why);
+/* Renames an object; references to it follow. */
 CUVETTE_API cuvette_status cuvette_scene_rename(cuvette_scene *scene, const char *name, const char *new_name,
                                                 cuvette_diagnostic *why);
 
@@ -394,6 +396,7 @@ CUVETTE_API cuvette_status cuvette_frame_counters(const cuvette_frame *frame, cu
 /* solid: its index in the rendered scene. */
 CUVETTE_API cuvette_status cuvette_frame_solid_counters(const cuvette_frame *frame, size_t solid,
                                                         cuvette_solid_counters *out, cuvette_diagnostic *why);
+
 CUVETTE_API cuvette_status cuvette_frame_statistics(const cuvette_frame *frame, cuvette_statistics *out,
                                                     cuvette_diagnostic *why);
 

@@ -36,7 +36,8 @@ words() { # PAGE
 }
 has_reference=0
 for file in "$root"/results/reference/*; do [[ -e $file ]] && has_reference=1; done
-pages=(README.md CONTRIBUTING.md src/web/README.md results/README.md experiments/published/README.md)
+pages=(README.md CONTRIBUTING.md src/web/README.md results/README.md experiments/published/README.md
+    src/manual/site/gallery.md)
 for page in "${pages[@]}"; do
     lost=
     while read -r target; do
@@ -73,12 +74,12 @@ try() { # COMMAND LINE: passes when it succeeds; its output is in said
     bash -c "set -e -o pipefail; $1" >said 2>&1 </dev/null
     verdict $? "$1" "$(<said)"
 }
-# The fast commands of README.md, without the part after a |, whose program may be missing.
+# The fast commands of README.md and the gallery, without the part after a |, whose program may be missing.
 while read -r line; do
     try "${line%% | *}"
 done < <(sed -n \
-    's/^    \(cuvette \(render\|fan\|realism\).*\)/\1/p' \
-    "$root/README.md" | sed 's/ *#.*//' |
+    's/^    \(cuvette \(render\|fan\|trace\|realism\).*\)/\1/p' \
+    "$root/README.md" "$root/src/manual/site/gallery.md" | sed 's/ *#.*//' | awk '!seen[$0]++' |
     sed "s/ render / render --set=render.width=160 --set=render.height=120 /")
 
 # --- the dictionary against the files of a study; a name with <...> represents several columns
