@@ -59,12 +59,17 @@ async function showBench(screen) {
   await screen.quiet();
 }
 
-const chooseLesson = async (screen, name) => {
+/** A lesson with a prediction, scrolled to its curve. */
+const predict = async (screen, title, guess) => {
+  const { page } = screen;
   await screen.showPanel('Lessons');
-  await screen.page.getByRole('button', { name }).click();
-  await screen.page.getByRole('button', { name: 'Show the measurement' }).click();
-  await screen.page.locator('.lesson-value').waitFor();
+  await page.getByRole('button', { name: title }).click();
+  await page.locator('.lesson-prediction').getByRole('spinbutton').fill(guess);
+  await screen.button('Compare', true).click();
+  await page.locator('.lesson-value').waitFor();
   await screen.settled();
+  await page.locator('.lesson-chart figcaption').evaluate((node) => node.scrollIntoView({ block: 'end' }));
+  await screen.quiet();
 };
 
 const views = {
@@ -78,7 +83,7 @@ const views = {
   },
   lesson: {
     scene: 'experiments/scenes/rod.yaml',
-    show: (screen) => chooseLesson(screen, /When water becomes a mirror/),
+    show: (screen) => predict(screen, /^A glass of water is a lens/, '2.5'),
   },
   parameters: {
     scene: 'experiments/scenes/rod.yaml',
