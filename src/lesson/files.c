@@ -2,22 +2,20 @@
 #include "lesson/lesson.h"
 
 #include "base/grow.h"
+#include "base/os_process.h"
 #include "base/text.h"
 #include <dirent.h>
 #include <errno.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 /* From the program in bin to where `make install` puts them, and from build or build/NAME to the sources. */
 char *lesson_folder(void)
 {
     static const char *const places[] = {"/../share/cuvette", "/..", "/../.."};
     char own[PATH_MAX];
-    const ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
-    own[length > 0 ? length : 0] = 0;
+    os_program_path(own);
     char *slash = strrchr(own, '/');
     if (!slash)
         return NULL;

@@ -1,8 +1,8 @@
 #include "scene/assets/mesh_child.h"
 
+#include "base/os_process.h"
 #include "base/text.h"
 #include <dlfcn.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,8 +39,7 @@ char *mesh_child_program(void)
     if (asked && *asked)
         return strdup(asked);
     char own[PATH_MAX];
-    ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
-    own[length > 0 ? length : 0] = 0;
+    os_program_path(own);
     char *path = near(own);
     Dl_info library; /* the shared library with this code, if it is not part of the program */
     if (!path && dladdr(&here, &library) && library.dli_fname) {
