@@ -103,7 +103,8 @@ void environment_read(const char *root, isa level, run_environment *out)
 {
     *out = (run_environment){.key = ""};
     read_machine(root, out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
-    read_line(root, "/proc/cpuinfo", "model name", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX);
+    if (!read_line(root, "/proc/cpuinfo", "model name", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX)) /* ARM has none */
+        read_line(root, "/proc/device-tree/model", "", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX);
     read_line(root, "/proc/cpuinfo", "microcode", out->fact[MICROCODE], ENVIRONMENT_FACT_MAX);
     read_line(root, "/sys/devices/system/cpu/smt/active", "", out->fact[SMT], ENVIRONMENT_FACT_MAX);
     read_line(root, "/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "", out->fact[GOVERNOR],
