@@ -10,8 +10,7 @@ folder=${1:?tests/arch.sh: give a folder}
 shift
 cuvette=${CUVETTE:?tests/arch.sh: CUVETTE is the native program}
 size=${SIZE:-80x60}
-unit=(base optics elementary dispersion mueller sobol solid_shape mesh mesh_file mesh_generators texture image png_write
-    hierarchy shared)
+unit=(base optics elementary dispersion mueller sobol solid_shape mesh mesh_file mesh_generators texture image shared)
 [[ ! ${UNIT:-} ]] || read -ra unit <<<"$UNIT"
 scenes=(experiments/scenes/*.yaml)
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-arch.XXXXXX") || exit 1

@@ -290,6 +290,9 @@ static void every_fact_is_part_of_the_key(void **state)
     unsetenv("CUVETTE_MACHINE");
     assert_null(strstr(usual.fact[0], "aaaa")); /* the id is not published */
     assert_string_equal(usual.fact[ENVIRONMENT_FACTS - 1], build_id());
+    write_system(f, "root/proc/cpuinfo", "processor\t: 0\nCPU part\t: 0xd0b\n"); /* of an ARM board */
+    write_system(f, "root/proc/device-tree/model", "Board 5");
+    assert_string_equal(read_system(f, ISA_BASE).fact[1], "Board 5");
 }
 
 static size_t count_environments(const fixture *f, const study *s)

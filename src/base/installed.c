@@ -1,13 +1,12 @@
 /* The places of files that come with the program. */
 #include "base/installed.h"
 
+#include "base/os_process.h"
 #include "base/text.h"
 #include <dlfcn.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 static const char here;
 
@@ -18,9 +17,7 @@ char *code_path(code_file of)
         return dladdr(&here, &library) && library.dli_fname ? realpath(library.dli_fname, NULL) : NULL;
     }
     char own[PATH_MAX];
-    const ssize_t length = readlink("/proc/self/exe", own, sizeof own - 1);
-    own[length > 0 ? length : 0] = 0;
-    return length > 0 ? strdup(own) : NULL;
+    return os_program_path(own) ? strdup(own) : NULL;
 }
 
 /* From bin, lib or lib/ARCHITECTURE to where `make install` puts them, and from build or build/NAME to the sources. */

@@ -4,15 +4,14 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <sys/mman.h>
-
-enum { PAGE = 4096 };
+#include <unistd.h>
 
 void *large_pages(void *memory, size_t bytes)
 {
     if (memory && bytes >= LARGE_PAGES_MIN) {
         /* whole pages, from the one with malloc's header: a mapping of two kinds could not be moved by realloc */
-        const uintptr_t first = (uintptr_t)memory / PAGE * PAGE,
-                        end = ((uintptr_t)memory + bytes + PAGE - 1) / PAGE * PAGE;
+        const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), first = (uintptr_t)memory / page * page,
+                        end = ((uintptr_t)memory + bytes + page - 1) / page * page;
         madvise((char *)memory - ((uintptr_t)memory - first), end - first, MADV_HUGEPAGE);
     }
     return memory;

@@ -2,8 +2,8 @@
 #include "base/thread_team.h"
 
 #include "base/float_environment.h"
+#include "base/os_process.h"
 #include <pthread.h>
-#include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -120,16 +120,9 @@ void thread_team_run(thread_team *t, thread_team_task *task, void *context, size
     pthread_mutex_unlock(&t->lock);
 }
 
-/* The mask has room for more units than any machine has; a smaller mask is an error on a machine with more units. */
 int thread_team_units(void)
 {
-    enum { UNITS_MAX = 16384 };
-    cpu_set_t *set = CPU_ALLOC(UNITS_MAX);
-    const size_t size = CPU_ALLOC_SIZE(UNITS_MAX);
-    int count = 0;
-    if (set && sched_getaffinity(getpid(), size, set) == 0)
-        count = CPU_COUNT_S(size, set);
-    CPU_FREE(set);
+    int count = os_usable_units();
     if (count < 1)
         count = (int)sysconf(_SC_NPROCESSORS_ONLN);
     return count > 1 ? count : 1;

@@ -1,4 +1,5 @@
 /* `cuvette study`: runs, lists, merges and summarises studies. */
+#include "base/os_process.h"
 #include "base/text_writer.h"
 #include "cli/cli.h"
 #include "cli/options.h"
@@ -14,11 +15,9 @@
 #include "study/summary.h"
 #include "study/upgrade.h"
 #include "study/verify.h"
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 /* The action of a subcommand on each given study. */
@@ -183,7 +182,7 @@ static status run_part(const study *s, const study_request *request, diagnostic 
     if (request->process > study_processes(s))
         return options_wrong("--process", NULL, why, "see processes in the study file", "%s has %ld processes", s->path,
                              study_processes(s));
-    prctl(PR_SET_PDEATHSIG, SIGKILL); /* rows survive that, and the next run needs their files */
+    os_die_with_parent(); /* rows survive that, and the next run needs their files */
     const status result = measure(s, request, &rows, why);
     if (result == STATUS_INTERRUPTED)
         *why = (diagnostic){.what = ""};

@@ -4,9 +4,9 @@
 
 #include "base/float_environment.h"
 #include "base/number.h"
+#include "base/os_process.h"
 #include "import/obj.h"
 #include <argp.h>
-#include <signal.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/prctl.h>
@@ -87,7 +87,7 @@ static void limit(__rlimit_resource_t what, rlim_t value)
 /* After this the process cannot create or change a file, dump its memory, open many files, or outlive its parent. */
 static void limit_all(const request *req)
 {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    os_die_with_parent();
     prctl(PR_SET_DUMPABLE, 0);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_FSIZE, 0);

@@ -3,8 +3,8 @@
 
 #include "base/below.h"
 #include "base/grow.h"
+#include "base/os_process.h"
 #include <pthread.h>
-#include <sched.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -36,9 +36,8 @@ static bool divide(obj_file *f, const char *text, size_t size)
     const size_t rest = size - (size_t)(end - text);
     if (rest > OBJ_LINE_MAX)
         return false;
-    cpu_set_t processors;
-    size_t count = sched_getaffinity(0, sizeof processors, &processors) == 0 ? (size_t)CPU_COUNT(&processors) : 1;
-    count = count > OBJ_THREADS_MAX ? OBJ_THREADS_MAX : count;
+    const int units = os_usable_units();
+    size_t count = units < 1 ? 1 : units > OBJ_THREADS_MAX ? OBJ_THREADS_MAX : (size_t)units;
     if (count > size / PART_BYTES_MIN)
         count = size / PART_BYTES_MIN + 1;
     for (const char *at = text; at < end;) {

@@ -1,8 +1,8 @@
 #include "study/environment.h"
 #include "base/build_id.h"
 #include "base/hash.h"
+#include "base/os_process.h"
 #include <inttypes.h>
-#include <sched.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,12 +65,6 @@ static void read_group(const char *root, char *text, size_t size)
         text[0] = 0;
 }
 
-static int usable_units(void)
-{
-    cpu_set_t set;
-    return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
-}
-
 /* A limit of the group or of one above it; the innermost that is set. */
 static void read_limit(const char *root, const char *group, const char *name, char *text, size_t size)
 {
@@ -94,7 +88,7 @@ static void read_limits(const char *root, char *text, size_t size)
     read_group(root, group, sizeof group);
     read_limit(root, group, "cpu.max", cpu, sizeof cpu);
     read_limit(root, group, "memory.max", memory, sizeof memory);
-    snprintf(text, size, "cpu %s, memory %s, units %d", cpu, memory, usable_units());
+    snprintf(text, size, "cpu %s, memory %s, units %d", cpu, memory, os_usable_units());
 }
 
 void environment_close(run_environment *e)
@@ -109,7 +103,8 @@ void environment_read(const char *root, isa level, run_environment *out)
 {
     *out = (run_environment){.key = ""};
     read_machine(root, out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
-    read_line(root, "/proc/cpuinfo", "model name", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX);
+    if (!read_line(root, "/proc/cpuinfo", "model name", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX)) /* ARM has none */
+        read_line(root, "/proc/device-tree/model", "", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX);
     read_line(root, "/proc/cpuinfo", "microcode", out->fact[MICROCODE], ENVIRONMENT_FACT_MAX);
     read_line(root, "/sys/devices/system/cpu/smt/active", "", out->fact[SMT], ENVIRONMENT_FACT_MAX);
     read_line(root, "/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "", out->fact[GOVERNOR],

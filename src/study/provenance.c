@@ -32,7 +32,8 @@ static char *line_of(const char *path, const char *prefix)
 
 char *provenance_cpu_model(void)
 {
-    return provenance_cpu_field("model name");
+    char *name = provenance_cpu_field("model name");
+    return name ? name : line_of("/proc/device-tree/model", "");
 }
 
 char *provenance_cpu_field(const char *name)

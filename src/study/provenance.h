@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* "model name" of /proc/cpuinfo. */
+/* "model name" of /proc/cpuinfo; the name of the board on ARM, which has none. */
 char *provenance_cpu_model(void);
 /* "Linux 6.1.0 x86_64". */
 char *provenance_kernel(void);
