@@ -1,7 +1,7 @@
 """Slimes in motion, and hands that grab them."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple
 
 from . import progress as bars
 from ._library import Cancelled, InputError, call, described, encoded, ffi, lib, made, names_of, sized
@@ -92,8 +92,9 @@ class Motion:
     def state(self, name: str) -> Slime:
         out = sized("slime")
         call(lib.cuvette_motion_state, self._motion, encoded(name), out)
-        values: Any = (getattr(out, field) for field in Slime.__dataclass_fields__)
-        return Slime(*(tuple(v) if isinstance(v, ffi.CData) else v for v in values))
+        values = (getattr(out, field) for field in Slime.__dataclass_fields__)
+        plain: List[Any] = [tuple(v) if isinstance(v, ffi.CData) else v for v in values]
+        return Slime(*plain)
 
     def _ray(self, pixel: Optional[Sequence[float]], origin: Any, direction: Any) -> Any:
         if pixel is not None:
