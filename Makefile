@@ -497,6 +497,14 @@ install-python: python install ## the same, and the Python module where python3 
 uninstall: ## remove the files that make install installed
 	@DESTDIR='$(DESTDIR)' .ci/install --remove '$(list)'
 
+.PHONY: setup-deb deb test-deb
+setup-deb: | $(filter setup,$(MAKECMDGOALS)) ## install what the Debian packages require: debhelper, lintian, ...
+	@.ci/setup-deb
+deb: | $(filter setup setup-deb setup-python setup-doc,$(MAKECMDGOALS)) ## build the Debian packages in build/deb, and check them by lintian
+	@MAKEFLAGS= .ci/deb $(build)/deb
+test-deb: ## install the packages of make deb in a fresh Debian 12, use and remove them (root, debootstrap)
+	@.ci/test-deb $(build)/deb
+
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
 by_scripts := tests/fail_allocation.c tests/json_get.c $(wildcard experiments/engine/*.c)

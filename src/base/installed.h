@@ -1,8 +1,8 @@
-/* Where the files that come with the program are: those of an installation, or those of the sources beside a build.
+/* Where the files that come with the program are: those of an installation, or those of the sources around a build.
  * The caller frees what is returned. */
 #pragma once
 
-/* The folder `below`, such as "experiments/lessons", of share/cuvette beside the program's bin or the library's lib,
+/* The folder `below`, such as "experiments/lessons", of share/cuvette next to the program's bin or the library's lib,
  * or of the sources above a build folder; NULL if there is none. Resolved by realpath. */
 char *installed_folder(const char *below);
 
