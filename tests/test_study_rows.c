@@ -98,7 +98,7 @@ static void expect(const csv *table, size_t row, const char *column, const char 
 static void rows_record_the_measured_values(void **state)
 {
     csv *table = table_of(*state, false);
-    static const char *const known[][2] = {
+    const char *const known[][2] = {
         {"study", "test"},
         {"cell", "3"},
         {"repetition", "2"},
