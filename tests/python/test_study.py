@@ -61,7 +61,10 @@ def test_compare_and_plot(study, tmp_path):
     results = tmp_path / "results"
     study.run(results)
     found = study.compare("render.depth=0", "render.depth=4", results=results)
-    assert len(found) == 2 and found["ratio"].iloc[0] > 1 and "verdict" in found
+    assert len(found) == 2 and found["ratio"].iloc[0] > 0 and "verdict" in found
+    rays = study.compare("render.depth=0", "render.depth=4", "rays_total", results)
+    totals = [study.scene(cell).render().counts.total for cell in (0, 2)]
+    assert rays["ratio"].iloc[0] == pytest.approx(totals[1] / totals[0])  # exact, unlike times
     assert found["reason"].iloc[0] != ""  # one process: no verdict without a reason
     with pytest.raises(cuvette.InputError, match="render.depth"):
         study.compare("render.depth=0", "render.depth=3", results=results)
