@@ -1,4 +1,4 @@
-#!/bin/bash
+# shellcheck shell=bash
 # rounds.sh - sourced by the benchmarks: a folder for their work, the values of contestants that take turns, and lines
 # of medians and ratios over the rounds.
 export LC_ALL=C
