@@ -45,15 +45,22 @@ def prediction(asked):
 
 def answer(lesson):
     """Folded, so that a reader predicts first; without scripts."""
-    measure, result = lesson['measure'], lesson['result']
     right = lesson['prediction'].get('right')
-    unit = f' {escape(measure["unit"])}' if measure['unit'] else ''
     return ''.join([
         '<h2 id="answer">Measure, and compare</h2>\n<details>\n<summary>Show the curve and the answer</summary>\n',
         f'<p>The right prediction: <b>{escape(right)}</b>.</p>\n' if right else '',
-        chart(lesson), f'<p>{escape(measure["reading"])}: measured <b>{result["measured"]:.8g}</b>{unit}, theory ',
-        f'<b>{result["theory"]:.8g}</b>{unit}.</p>\n<p>{escape(lesson["answer"])}</p>\n</details>\n',
+        measured(lesson), f'<p>{escape(lesson["answer"])}</p>\n</details>\n',
     ])
+
+
+def measured(lesson):
+    """Times are of one machine and one moment: a page of the manual would differ with each build."""
+    measure, result = lesson['measure'], lesson['result']
+    if measure.get('timed'):
+        return '<p>This lesson measures times: its curve is that of your machine, in <code>cuvette lab</code>.</p>\n'
+    unit = f' {escape(measure["unit"])}' if measure['unit'] else ''
+    return (chart(lesson) + f'<p>{escape(measure["reading"])}: measured <b>{result["measured"]:.8g}</b>{unit}, theory '
+            f'<b>{result["theory"]:.8g}</b>{unit}.</p>\n')
 
 
 def commands(lines):
