@@ -43,9 +43,14 @@ export function createGroup(lab, choice) {
   });
   lab.on('scene', () => {
     clearTimeout(timer);
-    timer = setTimeout(ask, LATER_MS);
+    timer = setTimeout(askIfNewest, LATER_MS);
   });
   return group;
+
+  /* The object may be gone in a scene that is on its way, whose arrival asks again. */
+  function askIfNewest() {
+    if (lab.change.idle() && lab.newestGeneration === lab.scene.generation) ask();
+  }
 
   function tell() {
     for (const listener of listeners) listener();
