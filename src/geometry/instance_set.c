@@ -74,7 +74,7 @@ static size_t instances_of(const instanced_mesh *p)
 }
 
 /* gcc 12 fails at this function's loop when it vectorises it for aarch64 ("internal compiler error: in
- * vect_transform_reduction"); clang 14 and gcc 14 compile it. A loop of eight corners per mesh needs no vectors. */
+ * vect_transform_reduction"); clang 14 compiles it. A loop of eight corners per mesh needs no vectors. */
 #if defined __aarch64__ && defined __GNUC__ && !defined __clang__ && __GNUC__ < 14
 #define WITHOUT_VECTORS __attribute__((optimize("no-tree-vectorize")))
 #else
