@@ -6,46 +6,38 @@
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char here;
 
-char *code_path(code_file of)
+static char *find_near(const char *file, const char *const *places, size_t count, const char *name)
 {
-    if (of == CODE_LIBRARY) {
-        Dl_info library;
-        return dladdr(&here, &library) && library.dli_fname ? realpath(library.dli_fname, NULL) : NULL;
-    }
-    char own[PATH_MAX];
-    return os_program_path(own) ? strdup(own) : NULL;
-}
-
-/* From bin, lib or lib/ARCHITECTURE to where `make install` puts them, and from build or build/NAME to the sources. */
-static char *near(char *file, const char *below)
-{
-    static const char *const places[] = {"/../share/cuvette", "/../../share/cuvette", "/..", "/../.."};
-    char *slash = strrchr(file, '/');
-    if (!slash)
-        return NULL;
-    *slash = 0;
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        struct stat about;
-        char *path = text_format("%s%s/%s", file, places[i], below), *real = path ? realpath(path, NULL) : NULL;
+    const char *slash = strrchr(file, '/');
+    for (size_t i = 0; slash && i < count; i++) {
+        char *path = text_format("%.*s%s/%s", (int)(slash - file), file, places[i], name);
+        char *real = path ? realpath(path, NULL) : NULL;
         free(path);
-        if (real && stat(real, &about) == 0 && S_ISDIR(about.st_mode))
+        if (real)
             return real;
-        free(real);
     }
     return NULL;
 }
 
+char *installed_find(const char *const *places, size_t count, const char *name)
+{
+    char program[PATH_MAX];
+    Dl_info library;
+    char *found = os_program_path(program) ? find_near(program, places, count, name) : NULL;
+    if (found || !dladdr(&here, &library) || !library.dli_fname)
+        return found;
+    char *file = realpath(library.dli_fname, NULL);
+    found = file ? find_near(file, places, count, name) : NULL;
+    free(file);
+    return found;
+}
+
+/* From bin, lib or lib/ARCHITECTURE to where `make install` puts them, and from build or build/NAME to the sources. */
 char *installed_folder(const char *below)
 {
-    char *found = NULL;
-    for (code_file of = CODE_PROGRAM; !found && of <= CODE_LIBRARY; of++) {
-        char *file = code_path(of);
-        found = file ? near(file, below) : NULL;
-        free(file);
-    }
-    return found;
+    static const char *const places[] = {"/../share/cuvette", "/../../share/cuvette", "/..", "/../.."};
+    return installed_find(places, sizeof places / sizeof *places, below);
 }

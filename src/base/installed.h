@@ -2,10 +2,12 @@
  * The caller frees what is returned. */
 #pragma once
 
-/* The folder `below`, such as "experiments/lessons", of share/cuvette next to the program's bin or the library's lib,
- * or of the sources above a build folder; NULL if there is none. Resolved by realpath. */
-char *installed_folder(const char *below);
+#include <stddef.h>
 
-/* The path of the program, or of the file with this code, which may be a shared library; NULL if it is unknown. */
-typedef enum code_file { CODE_PROGRAM, CODE_LIBRARY } code_file;
-char *code_path(code_file of);
+/* The first that exists of FOLDER PLACE / NAME, where FOLDER is that of the program, then that of the file with this
+ * code, which may be a shared library, and each PLACE is "" or begins with a slash; NULL if none does. */
+char *installed_find(const char *const *places, size_t count, const char *name);
+
+/* The folder `below`, such as "experiments/lessons", of share/cuvette next to the program's bin or the library's lib,
+ * or of the sources above a build folder; NULL if there is none. */
+char *installed_folder(const char *below);

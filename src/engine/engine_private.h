@@ -73,6 +73,14 @@ status engine_load(cuvette_scene *s, diagnostic *why);
 cuvette_status engine_copy_struct(const void *content, size_t known, void *out, cuvette_diagnostic *why);
 
 bool engine_is_finite(const double *v); /* of three numbers */
+static inline vec3 engine_vector(const double v[3])
+{
+    return vec3_make(v[0], v[1], v[2]);
+}
+static inline void engine_put_vector(double out[3], vec3 v)
+{
+    out[0] = v.x, out[1] = v.y, out[2] = v.z;
+}
 /* Checks a ray of the caller: ray i of a query on the plan p, or, if p is NULL, a single ray whose start is ignored. */
 struct plan;
 status engine_check_ray(const struct plan *p, const cuvette_ray *ray, size_t i, diagnostic *why);

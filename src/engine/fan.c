@@ -29,16 +29,6 @@ void cuvette_fan_destroy(cuvette_fan *f)
     free(f);
 }
 
-static vec3 vector_of(const double v[3])
-{
-    return vec3_make(v[0], v[1], v[2]);
-}
-
-static void put_vector(double out[3], vec3 v)
-{
-    out[0] = v.x, out[1] = v.y, out[2] = v.z;
-}
-
 static status read_rule(const cuvette_fan_rule *given, fan_rule *out, diagnostic *why)
 {
     const double *n = given->normal;
@@ -52,10 +42,10 @@ static status read_rule(const cuvette_fan_rule *given, fan_rule *out, diagnostic
     if (!(given->width >= 0 && given->width <= 1e6) || !(given->spread_deg >= 0 && given->spread_deg <= 179))
         return diagnose(why, STATUS_BAD_INPUT, "give a width of 0 to 1e6, or a spread of 0 to 179 degrees",
                         "the fan's width or spread is out of range");
-    *out = (fan_rule){.from = vector_of(given->from),
-                      .to = vector_of(given->to),
+    *out = (fan_rule){.from = engine_vector(given->from),
+                      .to = engine_vector(given->to),
                       .has_normal = n[0] != 0 || n[1] != 0 || n[2] != 0,
-                      .normal = vector_of(n),
+                      .normal = engine_vector(n),
                       .rays = given->rays,
                       .spreads = given->spread_deg > 0,
                       .width = given->width,
@@ -89,13 +79,13 @@ static status copy_out(cuvette_fan *f, diagnostic *why)
                                        .deviation_deg = ray->deviation_deg,
                                        .weight = ray->weight,
                                        .axis_at = ray->axis_at};
-        put_vector(f->rays[i].exit_point, ray->exit_point);
-        put_vector(f->rays[i].exit_direction, ray->exit_direction);
-        put_vector(f->rays[i].axis_point, ray->axis_point);
+        engine_put_vector(f->rays[i].exit_point, ray->exit_point);
+        engine_put_vector(f->rays[i].exit_direction, ray->exit_direction);
+        engine_put_vector(f->rays[i].axis_point, ray->axis_point);
     }
     for (int i = 0; i < from->crossing_count; i++) {
         f->crossings[i].ray = from->crossing[i].ray;
-        put_vector(f->crossings[i].at, from->crossing[i].at);
+        engine_put_vector(f->crossings[i].at, from->crossing[i].at);
     }
     return STATUS_OK;
 }
@@ -156,7 +146,7 @@ cuvette_status cuvette_fan_focus(const cuvette_fan *f, cuvette_focus *out, cuvet
     ENGINE_NEED(out);
     cuvette_focus found = {.exists = f->followed.has_focus, .is_virtual = f->followed.is_virtual};
     if (found.exists) {
-        put_vector(found.point, f->followed.focus);
+        engine_put_vector(found.point, f->followed.focus);
         found.rms = f->followed.focus_rms;
     }
     return engine_copy_struct(&found, sizeof found, out, why);
@@ -184,7 +174,7 @@ cuvette_status cuvette_fan_write(const cuvette_fan *f, const char *path, cuvette
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     const fanned content = content_of(f);
-    code = query_write_file(writers, sizeof writers / sizeof *writers, &content, path, &inner);
+    code = query_write_file(writers, sizeof writers / sizeof *writers, "use .svg or .csv", &content, path, &inner);
     query_end_trace(q);
     return engine_report(code, &inner, why);
 }

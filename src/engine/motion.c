@@ -147,11 +147,6 @@ status motion_find(const cuvette_motion *m, const char *name, size_t *index, int
                     name);
 }
 
-static void put_vector(vec3 v, double *out)
-{
-    out[0] = v.x, out[1] = v.y, out[2] = v.z;
-}
-
 cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *name, cuvette_slime *out,
                                     cuvette_diagnostic *why)
 {
@@ -178,7 +173,7 @@ cuvette_status cuvette_motion_state(const cuvette_motion *motion, const char *na
                             .low = a.low,
                             .high = a.high,
                             .speed_max = a.speed_max};
-    put_vector(a.center, result.center);
-    put_vector(a.momentum, result.momentum);
+    engine_put_vector(result.center, a.center);
+    engine_put_vector(result.momentum, a.momentum);
     return engine_copy_struct(&result, sizeof result, out, why);
 }

@@ -3,11 +3,6 @@
 
 #include <math.h>
 
-static vec3 vector_of(const double *v)
-{
-    return vec3_make(v[0], v[1], v[2]);
-}
-
 /* Finds the solid on which the ray hits the slime of that name; best->distance is infinite on a miss. */
 static status pick(const cuvette_motion *m, const char *name, const cuvette_ray *ray, size_t *slime, motion_place *best,
                    diagnostic *why)
@@ -15,7 +10,7 @@ static status pick(const cuvette_motion *m, const char *name, const cuvette_ray 
     int only;
     status code = motion_find(m, name, slime, &only, why);
     THEN(code, engine_check_ray(NULL, ray, 0, why));
-    THEN(code, scene_motion_pick(m->bodies, *slime, only < 0 ? MOTION_ANY_SOLID : only, vector_of(ray->origin),
+    THEN(code, scene_motion_pick(m->bodies, *slime, only < 0 ? MOTION_ANY_SOLID : only, engine_vector(ray->origin),
                                  engine_unit(ray->direction), best, why));
     if (code == STATUS_OK && ray->reach > 0.0 && best->distance > ray->reach)
         best->distance = INFINITY;
@@ -89,7 +84,7 @@ cuvette_status cuvette_motion_move(cuvette_motion *motion, int hand, const doubl
         return engine_report(
             diagnose(&inner, STATUS_BAD_INPUT, "use three finite numbers", "the hand's displacement is not finite"),
             &inner, why);
-    h->to = motion_hand_offset(h, vector_of(by));
+    h->to = motion_hand_offset(h, engine_vector(by));
     return CUVETTE_OK;
 }
 

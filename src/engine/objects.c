@@ -57,14 +57,13 @@ cuvette_status cuvette_scene_give_material(cuvette_scene *s, const char *to, con
 cuvette_status cuvette_scene_move(cuvette_scene *s, const char *name, const double *by, cuvette_diagnostic *why)
 {
     ENGINE_CHANGE(s, name, by);
-    return engine_report(scene_move(s->model, name, vec3_make(by[0], by[1], by[2]), &inner), &inner, why);
+    return engine_report(scene_move(s->model, name, engine_vector(by), &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_turn(cuvette_scene *s, const char *name, const double *degrees, cuvette_diagnostic *why)
 {
     ENGINE_CHANGE(s, name, degrees);
-    return engine_report(scene_turn(s->model, name, vec3_make(degrees[0], degrees[1], degrees[2]), &inner), &inner,
-                         why);
+    return engine_report(scene_turn(s->model, name, engine_vector(degrees), &inner), &inner, why);
 }
 
 cuvette_status cuvette_scene_scale(cuvette_scene *s, const char *name, double factor, cuvette_diagnostic *why)
@@ -76,7 +75,7 @@ cuvette_status cuvette_scene_scale(cuvette_scene *s, const char *name, double fa
 cuvette_status cuvette_scene_look_at(cuvette_scene *s, const double *target, cuvette_diagnostic *why)
 {
     ENGINE_CHANGE(s, target);
-    return engine_report(scene_look_at(s->model, vec3_make(target[0], target[1], target[2]), &inner), &inner, why);
+    return engine_report(scene_look_at(s->model, engine_vector(target), &inner), &inner, why);
 }
 
 static param_group group_of(cuvette_object kind)

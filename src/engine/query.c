@@ -147,8 +147,6 @@ cuvette_status cuvette_query_medium(const cuvette_query *query, const double *po
         return engine_report(diagnose(&inner, STATUS_BAD_INPUT, "give finite numbers", "the point is not finite"),
                              &inner, why);
     const scene_geometry *a = query->ready->geometry;
-    *at =
-        a->regions[scene_geometry_priority_index(a, scene_geometry_inside(a, vec3_make(point[0], point[1], point[2])))]
-            .solid;
+    *at = a->regions[scene_geometry_priority_index(a, scene_geometry_inside(a, engine_vector(point)))].solid;
     return CUVETTE_OK;
 }

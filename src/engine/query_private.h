@@ -50,13 +50,13 @@ cuvette_query *query_share(cuvette_query *query);
 /* The nodes of a tree for the caller, newly allocated; NULL when out of memory. */
 cuvette_node *tree_nodes_make(const cuvette_query *query, const ray_node *nodes, size_t count);
 
-/* Writes a text file with one of the writers of a traced result, by the path's ending. */
+/* Writes a text file with one of the writers of a traced result, by the path's ending; remedy: names the endings. */
 typedef struct ray_writer {
     const char *ending;
     status (*write)(const void *content, FILE *out, diagnostic *why);
 } ray_writer;
-status query_write_file(const ray_writer *writers, size_t count, const void *content, const char *path,
-                        diagnostic *why);
+status query_write_file(const ray_writer *writers, size_t count, const char *remedy, const void *content,
+                        const char *path, diagnostic *why);
 
 /* Takes a bench from the free list, or allocates one; NULL when out of memory. */
 bench *query_take_bench(const cuvette_query *query);

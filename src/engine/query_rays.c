@@ -62,7 +62,7 @@ status engine_check_ray(const plan *p, const cuvette_ray *ray, size_t i, diagnos
 
 vec3 engine_unit(const double *d)
 {
-    const vec3 v = vec3_make(d[0], d[1], d[2]);
+    const vec3 v = engine_vector(d);
     if (fabs(vec3_dot(v, v) - 1.0) <= 0x1p-50)
         return v;
     const double largest = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
@@ -71,8 +71,7 @@ vec3 engine_unit(const double *d)
 
 static void put_ray(const cuvette_query *q, bench *b, int column, const cuvette_ray *ray, double length)
 {
-    const vec3 origin = vec3_make(ray->origin[0], ray->origin[1], ray->origin[2]),
-               d = vec3_scale(engine_unit(ray->direction), length);
+    const vec3 origin = engine_vector(ray->origin), d = vec3_scale(engine_unit(ray->direction), length);
     b->ox[column] = origin.x, b->oy[column] = origin.y, b->oz[column] = origin.z;
     b->dx[column] = d.x, b->dy[column] = d.y, b->dz[column] = d.z;
     b->start[column] = ray->start.word[0] ? (int64_t)ray->start.word[1] : FACE_NONE;

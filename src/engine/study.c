@@ -177,7 +177,7 @@ static status check_run(const cuvette_study *s, const cuvette_run *run, diagnost
                         "the run's size is %zu, which is too small", run->size);
     if (run->process < 0 || run->process > processes)
         return diagnose(why, STATUS_BAD_INPUT, "see processes in the study file",
-                        "the study has %ld processes, but no %ld", processes, run->process);
+                        "the study has %ld processes, but no process %ld", processes, run->process);
     return STATUS_OK;
 }
 

@@ -19,16 +19,11 @@ _Static_assert((int)CUVETTE_RAY_CAMERA == (int)RAY_CAMERA && (int)CUVETTE_RAY_SH
 _Static_assert((int)CUVETTE_END_HIT == (int)RAY_END_HIT && (int)CUVETTE_END_BLOCKED == (int)RAY_END_BLOCKED, "ends");
 _Static_assert((int)CUVETTE_OUTSIDE == (int)RAY_OUTSIDE, "media");
 
-static void put_vector(double out[3], vec3 v)
-{
-    out[0] = v.x, out[1] = v.y, out[2] = v.z;
-}
-
 static void put_hit(const cuvette_query *q, const ray_hit *h, cuvette_node *out)
 {
     out->distance = h->t;
-    put_vector(out->point, h->point);
-    put_vector(out->normal, h->normal);
+    engine_put_vector(out->point, h->point);
+    engine_put_vector(out->normal, h->normal);
     out->error = h->error_bound;
     out->solid = h->solid, out->before = h->from, out->after = h->to;
     out->opaque = h->opaque, out->total_internal = h->tir;
@@ -56,8 +51,8 @@ static void put_node(const cuvette_query *q, const ray_node *n, cuvette_node *ou
                           .light = n->light,
                           .light_distance = n->light_distance,
                           .light_transmittance = n->let_through};
-    put_vector(out->origin, n->origin);
-    put_vector(out->direction, n->direction);
+    engine_put_vector(out->origin, n->origin);
+    engine_put_vector(out->direction, n->direction);
     memcpy(out->weight, n->throughput, sizeof out->weight);
     memcpy(out->stokes, n->stokes, sizeof out->stokes);
     memcpy(out->added, n->brought, sizeof out->added);
@@ -92,9 +87,9 @@ typedef struct tree_root {
 static status grow(cuvette_query *q, const tree_root *root, cuvette_tree *tree, diagnostic *why)
 {
     const cuvette_ray *r = root->ray;
-    const status code = r ? probe_ray(q->inspector, vec3_make(r->origin[0], r->origin[1], r->origin[2]),
-                                      vec3_make(r->direction[0], r->direction[1], r->direction[2]), &tree->traced, why)
-                          : probe_pixel(q->inspector, root->x, root->y, &tree->traced, why);
+    const status code =
+        r ? probe_ray(q->inspector, engine_vector(r->origin), engine_vector(r->direction), &tree->traced, why)
+          : probe_pixel(q->inspector, root->x, root->y, &tree->traced, why);
     if (code != STATUS_OK)
         return code;
     tree->nodes = tree_nodes_make(q, tree->traced.node, tree->traced.count);
@@ -152,15 +147,15 @@ cuvette_status cuvette_tree_radiance(const cuvette_tree *tree, double *rgb, cuve
     return CUVETTE_OK;
 }
 
-status query_write_file(const ray_writer *writers, size_t count, const void *content, const char *path, diagnostic *why)
+status query_write_file(const ray_writer *writers, size_t count, const char *remedy, const void *content,
+                        const char *path, diagnostic *why)
 {
     const char *ending = strrchr(path, '.');
     size_t which = 0;
     while (which < count && !(ending && strcasecmp(ending, writers[which].ending) == 0))
         which++;
     if (which == count)
-        return diagnose_at(why, path, STATUS_BAD_INPUT, count == 3 ? "use .txt, .json or .svg" : "use .svg or .csv",
-                           "unknown file name ending");
+        return diagnose_at(why, path, STATUS_BAD_INPUT, remedy, "unknown file name ending");
     file_writer writer;
     TRY(file_writer_open(&writer, path, why));
     return file_writer_end(&writer, writers[which].write(content, writer.stream, why), why);
@@ -191,7 +186,8 @@ cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cu
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     const traced content = {q->model, q->inspector, &tree->traced, q->model->path ? q->model->path : ""};
-    code = query_write_file(writers, sizeof writers / sizeof *writers, &content, path, &inner);
+    code =
+        query_write_file(writers, sizeof writers / sizeof *writers, "use .txt, .json or .svg", &content, path, &inner);
     query_end_trace(q);
     return engine_report(code, &inner, why);
 }

@@ -1,3 +1,4 @@
+/* A metric of a lesson at one state of its scene: of optics, of the motion of a slime, or the speed-up by threads. */
 #include "lesson/metric.h"
 
 #include "measure/topology.h"

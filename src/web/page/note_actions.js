@@ -5,11 +5,10 @@
  *          depthNote(tree, beyond) -> {text, label, path, value}: how much of a pixel's light the depth limit cuts off,
  *          as a note and its remedy; null below 1 % */
 
-const DEPTH_MAX = 64;
-const CUT_LEAST = 0.01;
-
 import { digits } from './ui.js';
 
+const DEPTH_MAX = 64;
+const CUT_LEAST = 0.01;
 const LABELS = { 'render.depth': 'Raise the depth' };
 
 export function noteAction({ remedy }) {
