@@ -8,17 +8,8 @@ report=$build/peers/report
 work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-bench.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 
-count=0 failed=0
-verdict() { # STATUS WHAT [WHY]
-    count=$((count + 1))
-    if (($1 == 0)); then
-        echo "ok $count - $2"
-    else
-        failed=1
-        echo "not ok $count - $2"
-        [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3"
-    fi
-}
+# shellcheck source=tests/shell/verdict.sh
+source tests/shell/verdict.sh
 equal() { # WHAT GOT WANTED
     [[ $2 == "$3" ]]
     verdict $? "$1" "got $2, not $3"
@@ -49,8 +40,7 @@ if command -v povray >/dev/null; then
     verdict $? 'the benchmark of frames runs with POV-Ray' "$text"
     for want in "${ours[@]}" "${theirs[@]}"; do has_ratio "$text" "$want"; done
 else
-    count=$((count + 1))
-    echo "ok $count # SKIP POV-Ray is not installed (make setup-peers)"
+    skip "POV-Ray is not installed (make setup-peers)"
 fi
 
 # --- solids, lights, slimes, processes, growth
@@ -157,4 +147,4 @@ else
     grep -q 'mesh_bench.sh: Embree is not installed.*make setup-peers' <<<"$text"
     verdict $? 'a missing Embree is skipped with a note on how to install it' "$text"
 fi
-exit "$failed"
+conclude

@@ -13,21 +13,8 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-claims.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$root" || exit 1
 
-count=0 failed=0
-verdict() { # STATUS WHAT [WHY]
-    count=$((count + 1))
-    if (($1 == 0)); then
-        echo "ok $count - $2"
-    else
-        failed=$((failed + 1))
-        echo "not ok $count - $2"
-        [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3" | head -20
-    fi
-}
-empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
-    [[ -z $2 ]]
-    verdict $? "$1" "$2"
-}
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
 same() { # WHAT HAVE WANT
     [[ $2 == "$3" ]]
     verdict $? "$1" "have '$2', expected '$3'"
@@ -346,4 +333,4 @@ for text in 't[b=1].rays' 't[].rays = 1' 't[b=1].rays = ' 't[b=1].rays = 1 or 2'
     [[ $(predicate "$text") == *": claim c: "* ]]
     verdict $? "malformed: $text" "$(predicate "$text")"
 done
-((failed == 0))
+conclude

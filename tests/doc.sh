@@ -15,21 +15,8 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-doc.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 site=$work/site
 
-count=0 failed=0
-verdict() { # STATUS WHAT [WHY]
-    count=$((count + 1))
-    if (($1 == 0)); then
-        echo "ok $count - $2"
-    else
-        failed=$((failed + 1))
-        echo "not ok $count - $2"
-        [[ -z ${3:-} ]] || head -20 <<<"$3" | sed 's/^/# /'
-    fi
-}
-empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
-    [[ -z $2 ]]
-    verdict $? "$1" "$2"
-}
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
 build() { python3 -B "$root/src/manual/site/build.py" "$program" "$1" 2>&1; }
 check() { python3 -B "$root/tests/doc_check.py" "$1" 2>&1; }
 
@@ -97,5 +84,4 @@ said=$(build "$work/full")
 [[ $? == 1 && $said == "doc: $work/full is not empty; give a new folder" && -e $work/full/mine ]]
 verdict $? 'a folder with files is not overwritten' "$said"
 
-echo "$((count - failed)) passed, $failed failed"
-((failed == 0))
+conclude

@@ -19,25 +19,8 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-engine-XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 unset CUVETTE_ISA
 
-case_number=0 failed=0
-verdict() { # STATUS WHAT [WHY]
-    case_number=$((case_number + 1))
-    if (($1 == 0)); then
-        echo "ok $case_number - $2"
-    else
-        failed=1
-        echo "not ok $case_number - $2"
-        [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3" | head -20
-    fi
-}
-empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
-    [[ -z $2 ]]
-    verdict $? "$1" "$2"
-}
-skip() {
-    case_number=$((case_number + 1))
-    echo "ok $case_number # SKIP $1"
-}
+# shellcheck source=tests/shell/verdict.sh
+source tests/shell/verdict.sh
 have() { command -v "$1" >/dev/null; }
 run_make() { make -s --no-print-directory config="$config" build="$build" CC="$cc" "$@" 2>&1 |
     grep -v -i -e jobserver -e '^ ' -e '^installed: '; }
@@ -158,4 +141,4 @@ run_make install PREFIX="$prefix"
 run_make uninstall PREFIX="$prefix"
 empty "make uninstall removes what this and earlier installations installed, and nothing else" \
     "$(diff <(find "$prefix" -type f -o -type l) <(echo "$prefix/share/cuvette/plots/mine.gp"))"
-exit $failed
+conclude

@@ -59,16 +59,8 @@ EOF
     }
 read -r nearest up down zero < <(./names | tr -d ';' | cut -d' ' -f1-4)
 
-passed=0 failed=0
-verdict() { # STATUS WHAT
-    if (($1 == 0)); then
-        passed=$((passed + 1))
-        echo "ok $((passed + failed)) - $2"
-    else
-        failed=$((failed + 1))
-        echo "not ok $((passed + failed)) - $2"
-    fi
-}
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
 environment= # the value of STRANGE for the following commands; empty: none
 strange() {  # PROGRAM ARGUMENT...
     if [[ $environment ]]; then STRANGE=$environment LD_PRELOAD=$work/strange.so "$@"; else "$@"; fi
@@ -138,5 +130,4 @@ expect "rounding up, FTZ and DAZ" "$up,$both,0,0"
 expect "rounding down, FTZ and DAZ, x87 in single precision" "$down,$both,1,0"
 expect "rounding toward zero, FTZ and DAZ, traps" "$zero,$both,0,1"
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+conclude

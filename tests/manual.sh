@@ -10,26 +10,12 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-manual.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 unset CUVETTE_ISA NO_COLOR
 
-count=0 failed=0 skipped=0
-verdict() { # STATUS WHAT [WHY]
-    count=$((count + 1))
-    if (($1 == 0)); then
-        echo "ok $count - $2"
-    else
-        failed=$((failed + 1))
-        echo "not ok $count - $2"
-        [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3"
-    fi
-}
-empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
-    [[ -z $2 ]]
-    verdict $? "$1" "$2"
-}
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
 
 has() { # PROGRAM WHAT: whether it is installed; a check without it is skipped
     command -v "$1" >/dev/null && return
-    count=$((count + 1)) skipped=$((skipped + 1))
-    echo "ok $count # SKIP $2: $1 is not installed"
+    skip "$2: $1 is not installed"
     return 1
 }
 
@@ -156,5 +142,4 @@ done
 empty "the study of cuvette-tour(7) kept an image of each of its eight cells" \
     "$(tail -n +2 results/oils/images/index.tsv | wc -l | grep -vx 8)"
 
-echo "$((count - failed - skipped)) passed, $failed failed"
-((failed == 0))
+conclude

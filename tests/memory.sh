@@ -25,16 +25,8 @@ export LC_ALL=C ASAN_OPTIONS=verify_asan_link_order=0
         exit 77
     }
 
-passed=0 failed=0
-verdict() { # STATUS WHAT
-    if (($1 == 0)); then
-        passed=$((passed + 1))
-        echo "ok $((passed + failed)) - $2"
-    else
-        failed=$((failed + 1))
-        echo "not ok $((passed + failed)) - $2"
-    fi
-}
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
 failing() { # NUMBER KINDS COMMAND...
     FAIL_AT=$1 FAIL_KINDS=$2 FAIL_COUNT=$work/count LD_PRELOAD=$work/fail.so "${@:3}" >out 2>err
 }
@@ -116,5 +108,4 @@ walk "fan -o" mcgsp 23 drawing.svg "${fan[@]}"
 walk "trace -o of a slime" cgp 3 tree.json trace "$root/experiments/scenes/slime.yaml" --pixel 400,300 --depth 1 \
     --set toy.level=1 --set toy.time_s=0.01 -o tree.json
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+conclude

@@ -7,17 +7,8 @@ set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 folder=$root/experiments/published
-count=0 failed=0
-verdict() { # WHAT ERRORS: passes when the list of errors is empty
-    count=$((count + 1))
-    if [[ -z $2 ]]; then
-        echo "ok $count - $1"
-    else
-        failed=$((failed + 1))
-        echo "not ok $count - $1"
-        sed 's/^/# /' <<<"$2"
-    fi
-}
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
 columns() { # FILE NAMES: the columns, separated by tabs; rows without a value for one of them are omitted
     awk -f "$root/plots/select.awk" -v columns="$2" "$1"
 }
@@ -45,11 +36,11 @@ check_rows() { # FILE KEY_COLUMN TIME_COLUMN: prints the errors of its rows
     ((found > 0 && found == rows)) || echo "$found rows of $rows have $2, $3, where and quote"
 }
 
-verdict "depth.csv quotes the source of every number" "$(check_rows "$folder/depth.csv" depth cpu_s 2>&1)"
-verdict "threads.csv quotes the source of every number" "$(check_rows "$folder/threads.csv" threads wall_s 2>&1)"
-verdict "triangles.csv quotes the source of every number" "$(check_rows "$folder/triangles.csv" triangles time_s 2>&1)"
-verdict "coverage.csv quotes the source of every number" "$(check_rows "$folder/coverage.csv" pixels time_s 2>&1)"
-verdict "crowding.csv quotes the source of every number" "$(check_rows "$folder/crowding.csv" triangles time_s 2>&1)"
+empty "depth.csv quotes the source of every number" "$(check_rows "$folder/depth.csv" depth cpu_s 2>&1)"
+empty "threads.csv quotes the source of every number" "$(check_rows "$folder/threads.csv" threads wall_s 2>&1)"
+empty "triangles.csv quotes the source of every number" "$(check_rows "$folder/triangles.csv" triangles time_s 2>&1)"
+empty "coverage.csv quotes the source of every number" "$(check_rows "$folder/coverage.csv" pixels time_s 2>&1)"
+empty "crowding.csv quotes the source of every number" "$(check_rows "$folder/crowding.csv" triangles time_s 2>&1)"
 # polygons2004 prints six times, then five labels: row i has the i-th time and the label i - 1.
 check_order() { # FILE KEY_COLUMN
     columns "$1" "$2 time_s quote" | tr ',' '.' | awk -F'\t' '{
@@ -59,18 +50,18 @@ check_order() { # FILE KEY_COLUMN
     } END { if (NR != 6) print NR " rows for six times" }'
 }
 for series in triangles:triangles coverage:pixels crowding:triangles; do
-    verdict "${series%:*}.csv pairs times and labels as printed" \
+    empty "${series%:*}.csv pairs times and labels as printed" \
         "$(check_order "$folder/${series%:*}.csv" "${series#*:}" 2>&1)"
 done
-verdict "there are no other series" \
+empty "there are no other series" \
     "$(cd "$folder" && printf '%s\n' *.csv | grep -vxE '(depth|threads|triangles|coverage|crowding)\.csv')"
-verdict "README.md describes every column" \
+empty "README.md describes every column" \
     "$(for name in $(head -q -n 1 "$folder"/*.csv | tr ',' '\n' | sort -u); do
         grep -q "^| \`$name\` |" "$folder/README.md" || echo "$name"
     done)"
 # shellcheck disable=SC2016
 keys=$(sed -n 's/^| `\([a-z0-9]*\)` |.*\.txt` |$/\1/p' "$folder/README.md")
-verdict "the paper cites every report" "$(for key in ${keys:-none}; do
+empty "the paper cites every report" "$(for key in ${keys:-none}; do
     grep -qF "\\bibitem{$key}" "$root/paper/paper.tex" || echo "$key is not in the bibliography"
     grep -qE "\\\\cite\{([a-z0-9]*,)*${key}[,}]" "$root/paper/paper.tex" || echo "$key is not cited"
 done)"
@@ -79,13 +70,13 @@ done)"
 sheet=$(mktemp --suffix=.csv) || exit 1
 trap 'rm -f "$sheet"' EXIT
 printf 'a,b,c\n"1,5 2",3,"x ""y"" z"\n' >"$sheet"
-verdict "select.awk reads quoted fields" "$(diff <(printf '1,5 2\tx "y" z\t3\n') <(columns "$sheet" "a c b"))"
+empty "select.awk reads quoted fields" "$(diff <(printf '1,5 2\tx "y" z\t3\n') <(columns "$sheet" "a c b"))"
 
 if [[ -n ${SOURCES:-} ]]; then
-    verdict "the plain texts exist" "$(for key in $keys; do
+    empty "the plain texts exist" "$(for key in $keys; do
         [[ -r $SOURCES/$(text_of "$key") ]] || echo "$SOURCES/$(text_of "$key")"
     done)"
 else
-    echo "ok $((count + 1)) # SKIP comparison of quotes with the texts: set SOURCES to their folder"
+    skip "comparison of quotes with the texts: set SOURCES to their folder"
 fi
-((failed == 0))
+conclude

@@ -10,21 +10,8 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-readme.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 unset CUVETTE_ISA NO_COLOR
 
-count=0 failed=0 skipped=0
-verdict() { # STATUS WHAT [WHY]
-    count=$((count + 1))
-    if (($1 == 0)); then
-        echo "ok $count - $2"
-    else
-        failed=$((failed + 1))
-        echo "not ok $count - $2"
-        [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3"
-    fi
-}
-empty() { # WHAT TEXT: passes when the text, the list of errors, is empty
-    [[ -z $2 ]]
-    verdict $? "$1" "$2"
-}
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
 
 # --- named files: links and images relative to the page's folder, `src/...` and similar paths relative to the root
 links() { # PAGE: targets of links, except on the web and within the page
@@ -43,8 +30,7 @@ for page in "${pages[@]}"; do
     while read -r target; do
         [[ -e $root/$(dirname "$page")/$target ]] && continue
         if [[ $target == *reference/* ]] && ((!has_reference)); then
-            count=$((count + 1)) skipped=$((skipped + 1))
-            echo "ok $count # SKIP $page: $target, there is no reference run yet"
+            skip "$page: $target, there is no reference run yet"
         else
             lost+="${lost:+$'\n'}$target"
         fi
@@ -119,5 +105,4 @@ compare runs.json "$(
 empty "runs.json has no other part" \
     "$(json_get $folder/runs.json @keys | grep -vx -e schema -e study -e machine -e runs)"
 
-echo "$((count - failed - skipped)) passed, $failed failed"
-((failed == 0))
+conclude

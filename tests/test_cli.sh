@@ -12,16 +12,8 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 unset CUVETTE_ISA NO_COLOR
 
-passed=0 failed=0
-verdict() { # STATUS WHAT
-    if (($1 == 0)); then
-        passed=$((passed + 1))
-        echo "ok $((passed + failed)) - $2"
-    else
-        failed=$((failed + 1))
-        echo "not ok $((passed + failed)) - $2"
-    fi
-}
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
 check() { # WHAT COMMAND...: passes when the command succeeds
     local what=$1
     shift
@@ -989,5 +981,4 @@ check "completion offers groups of objects" is "$(complete_line "$program" scene
 check "completion offers options of lab" is "$(complete_line cuvette lab --no)" --no-browser
 check "completion offers study verbs" is "$(complete_line cuvette study mer)" merge
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+conclude

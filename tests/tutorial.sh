@@ -11,17 +11,8 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/cuvette-tutorial.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 unset CUVETTE_ISA NO_COLOR
 
-passed=0 failed=0
-verdict() { # STATUS WHAT [WHY]
-    if (($1 == 0)); then
-        passed=$((passed + 1))
-        echo "ok $((passed + failed)) - $2"
-    else
-        failed=$((failed + 1))
-        echo "not ok $((passed + failed)) - $2"
-        [[ -z ${3:-} ]] || sed 's/^/# /' <<<"$3"
-    fi
-}
+# shellcheck source=tests/shell/verdict.sh
+source "$root/tests/shell/verdict.sh"
 plain() { sed "s/\\\\-/-/g; s/\\\\(aq/'/g; s/\\\\(ha/^/g; s/\\\\(ti/~/g; s/\\\\e/\\\\/g"; }
 
 functions='function asin(x) {return atan2(x, sqrt(1 - x * x))}
@@ -93,5 +84,4 @@ checked=$(sed -n 's/^\.\\" expect \([^ ]*\) .*/\1/p' "$page" | sort -u | wc -l)
 ((by_hand == checked))
 verdict $? "every value computed by hand has a formula" "$by_hand values, $checked formulas"
 
-echo "$passed passed, $failed failed"
-((failed == 0))
+conclude
