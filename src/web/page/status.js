@@ -58,7 +58,9 @@ export function createStatus(root, live, lab) {
     replace(facts, items(lab));
   };
   const soon = () => {
-    due ||= setTimeout(draw, Math.max(0, drawnAt + PACE_MS - performance.now()));
+    const wait = lab.picture?.final ? 0 : Math.max(0, drawnAt + PACE_MS - performance.now());
+    if (!wait) clearTimeout(due);
+    if (!wait || !due) due = setTimeout(draw, wait);
   };
   for (const name of ['picture', 'state', 'connection', 'pass', 'notes']) lab.on(name, soon);
   draw();
