@@ -58,6 +58,24 @@ void film_destroy(film *f)
     free(f);
 }
 
+void film_begin_piece(film *f, int image_width, int x0, int y0, int x1, int y1, int shares)
+{
+    f->width = x1 - x0;
+    f->height = y1 - y0;
+    f->shares = shares;
+    f->first_pixel = (int64_t)y0 * image_width + x0;
+    f->image_width = image_width;
+    f->row_per_pixel = 1.0 / (double)image_width;
+    memset(f->sum, 0, values_of(f) * (size_t)shares * sizeof *f->sum);
+}
+
+void film_put_piece(film *f, int x0, int y0, int x1, int y1, const int64_t *sum)
+{
+    const size_t length = 3 * (size_t)(x1 - x0);
+    for (int y = y0; y < y1; y++, sum += length)
+        memcpy(&f->sum[3 * ((size_t)y * (size_t)f->width + (size_t)x0)], sum, length * sizeof *sum);
+}
+
 bool film_merge_shares(film *f, double *variance)
 {
     const size_t count = values_of(f), shares = (size_t)f->shares;

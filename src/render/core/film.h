@@ -3,8 +3,9 @@
  * number, raises the overflow flag, which makes the render an error. Linear light; row 0 is the top. The channels are
  * linear sRGB, or CIE XYZ in a spectral film, whose sums are never negative. A film of random paths consists of equal
  * shares of the paths, one film after another: their differences give the standard error. add_units
- * (render/shade/shading.c) writes the film. Ownership: film_create allocates, film_destroy releases. Different threads
- * may write different pixels. */
+ * (render/shade/shading.c) writes the film. A film may also hold one piece of an image at a time, for frames that
+ * several processes share. Ownership: film_create allocates, film_destroy releases. Different threads may write
+ * different pixels. */
 #pragma once
 
 #include "base/status.h"
@@ -35,6 +36,10 @@ typedef struct film {
     int shares;   /* 1, or the number of films of this size stored one after another: see film_merge_shares */
     int64_t *sum; /* [(y*width + x)*3 + channel], a pointer into memory */
     void *memory;
+    /* of a piece: the number of its first pixel in the image, and the width of the image, 0 for a whole film */
+    int64_t first_pixel;
+    int image_width;
+    double row_per_pixel; /* 1 / image_width */
 } film;
 
 status film_create(int width, int height, int shares, film_space space, film **out, diagnostic *why);
@@ -44,6 +49,24 @@ status film_create(int width, int height, int shares, film_space space, film **o
  * film's own space. Returns false when a sum leaves the film's range. */
 bool film_merge_shares(film *f, double *variance);
 void film_destroy(film *f);
+
+/* Makes f the empty film of the pixels x0 <= x < x1, y0 <= y < y1 of an image: at most as many as f was created with.
+ * shares: as f was created, since film_merge_shares forgets them. */
+void film_begin_piece(film *f, int image_width, int x0, int y0, int x1, int y1, int shares);
+
+/* Copies the sums of the piece x0 <= x < x1, y0 <= y < y1, row by row, into a whole film with one share. */
+void film_put_piece(film *f, int x0, int y0, int x1, int y1, const int64_t *sum);
+
+/* The pixel's place in sum, in pixels; pixel: its number in the image, y*image_width + x. Truncation finds the row
+ * exactly: the boundary of a row is half a pixel away, and rounding moves the quotient by less than 2^-52 of itself,
+ * which is below 2^-24 pixels. */
+static inline int64_t film_place(const film *f, int64_t pixel)
+{
+    if (f->image_width == 0)
+        return pixel;
+    const int64_t from = pixel - f->first_pixel, row = (int64_t)(((double)from + 0.5) * f->row_per_pixel);
+    return from - row * (f->image_width - f->width);
+}
 
 /* Radiance of one channel, linear sRGB; in a spectral film negative where a colour is outside the sRGB gamut. */
 double film_value(const film *f, int x, int y, int channel);

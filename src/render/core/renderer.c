@@ -30,7 +30,9 @@ typedef struct worker_account {
     _Alignas(64) worker_report report;
     event_list events;
     atomic_uint_fast64_t pixels; /* begun; read by watch */
-    bool out_of_memory, misplaced;
+    bool out_of_memory, misplaced, out_of_range;
+    film *piece;      /* of the piece that a source gave it, or NULL */
+    double *variance; /* of that piece, or NULL */
 } worker_account;
 
 typedef struct frame {
@@ -40,6 +42,7 @@ typedef struct frame {
     const plan *frame_plan;
     const film *img;
     const integrator *rule;
+    int shares;                /* of the film */
     void *state;               /* the integrator's state for the frame */
     void (*step)(void *state); /* the current step of its pre-pass */
     schedule pieces;
@@ -123,11 +126,49 @@ static void note_tile(const frame *f, worker_account *d, int worker, const span 
         d->out_of_memory = true;
 }
 
+static bool must_stop(const frame *f)
+{
+    return atomic_load_explicit(&f->stop, memory_order_relaxed);
+}
+
+static bool next_piece(frame *f, int worker, uint64_t taken, span *out)
+{
+    const piece_source *source = f->options ? f->options->source : NULL;
+    return !must_stop(f) &&
+           (source ? source->next(source->context, worker, out) : schedule_next(&f->pieces, worker, taken, out));
+}
+
+/* Traces a piece of a source to its last ray, and passes it on. */
+static bool trace_for_source(frame *f, tracer *t, worker_account *d, const span *piece)
+{
+    const piece_source *source = f->options->source;
+    film_begin_piece(d->piece, (int)f->s->render.width, piece->x0, piece->y0, piece->x1, piece->y1, f->shares);
+    tracer_expose_to(t, d->piece);
+    tracer_span(t, piece, &d->pixels, &f->stop);
+    tracer_finish(t, &f->stop);
+    if (must_stop(f))
+        return false;
+    d->out_of_range |= !film_merge_shares(d->piece, d->variance);
+    return source->done(source->context, piece, d->piece, d->variance);
+}
+
+/* Traces a piece into the frame's film. */
+static void trace_piece(frame *f, tracer *t, worker_account *d, const span *piece)
+{
+    tracer_span(t, piece, &d->pixels, &f->stop);
+    if (!f->options || !f->options->piece_done)
+        return;
+    tracer_finish(t, &f->stop);
+    if (!must_stop(f))
+        f->options->piece_done(f->options->context, f->img, piece->x0, piece->y0, piece->x1, piece->y1);
+}
+
 /* Traces one piece after another; rays that do not fill a batch at the end of a piece wait for the rays of the next
  * one. */
 static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
 {
-    const bool timeline = f->options && f->options->timeline, by_piece = f->options && f->options->piece_done;
+    const bool timeline = f->options && f->options->timeline, by_source = f->options && f->options->source;
+    bool goes_on = true;
     const double began_s = since(f);
     tracer *t = tracer_pool_take(f->owner->tracers);
     if (!t) {
@@ -139,17 +180,14 @@ static void trace_pieces(frame *f, int worker, worker_account *d, span piece)
     const uint64_t camera_rays = c->camera, reflect = c->reflect, refract = c->refract, shadow = c->shadow;
     do {
         double tile_began_s = timeline ? since(f) : 0.0;
-        tracer_span(t, &piece, &d->pixels, &f->stop);
-        if (by_piece) {
-            tracer_finish(t, &f->stop);
-            if (!atomic_load_explicit(&f->stop, memory_order_relaxed))
-                f->options->piece_done(f->options->context, f->img, piece.x0, piece.y0, piece.x1, piece.y1);
-        }
+        if (by_source)
+            goes_on = trace_for_source(f, t, d, &piece);
+        else
+            trace_piece(f, t, d, &piece);
         d->report.tiles++;
         if (timeline)
             note_tile(f, d, worker, &piece, tile_began_s);
-    } while (!atomic_load_explicit(&f->stop, memory_order_relaxed) &&
-             schedule_next(&f->pieces, worker, d->report.tiles, &piece));
+    } while (goes_on && next_piece(f, worker, d->report.tiles, &piece));
     tracer_finish(t, &f->stop);
     if (timeline && d->events.count > 0)
         d->events.event[d->events.count - 1].end_s = since(f);
@@ -169,7 +207,7 @@ static void work(void *context, int worker)
     const thread_usage before = measured ? thread_usage_now() : thread_usage_unknown();
     d->misplaced = !take_place(f, worker);
     span piece;
-    if (!atomic_load_explicit(&f->stop, memory_order_relaxed) && schedule_next(&f->pieces, worker, 0, &piece))
+    if (next_piece(f, worker, 0, &piece))
         trace_pieces(f, worker, d, piece);
     d->report.start_s = began_s;
     d->report.pu = topology_current_pu();
@@ -238,6 +276,7 @@ static status collect(frame *f, bool in_range, render_result *result, diagnostic
         result->workers[i] = d->report;
         out_of_memory |= d->out_of_memory;
         misplaced |= d->misplaced;
+        in_range &= !d->out_of_range;
     }
     const bool overflow = tracer_pool_collect(f->owner->tracers, &result->counters) || !in_range;
     if (f->rule->traced)
@@ -276,8 +315,16 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options)
     const uint64_t shares = (uint64_t)shares_of(s), pixels = (uint64_t)s->render.width * (uint64_t)s->render.height;
     const uint64_t maps = options ? (uint64_t)options->pixel_rays + (uint64_t)options->pixel_time : 0;
     const uint64_t named = options && options->layers && integrator_traits_of(&s->render)->layers ? layers_bytes() : 0;
+    if (options && options->source)
+        return (uint64_t)s->render.threads * (uint64_t)options->source->side * (uint64_t)options->source->side *
+               (3 * sizeof(int64_t) * shares + (shares > 1 ? 3 * sizeof(double) : 0));
     return pixels *
            (named + 3 * sizeof(int64_t) * shares + (shares > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
+}
+
+static film_space space_of(const scene *s)
+{
+    return s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
 }
 
 static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)
@@ -287,8 +334,10 @@ static status make_result(const scene *s, const render_options *options, render_
     if (!result)
         return out_of_memory(why);
     result->replicates = shares_of(s);
-    const film_space space = s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
-    status code = film_create((int)s->render.width, (int)s->render.height, shares_of(s), space, &result->img, why);
+    const bool by_source = options && options->source;
+    status code = by_source ? STATUS_OK
+                            : film_create((int)s->render.width, (int)s->render.height, shares_of(s), space_of(s),
+                                          &result->img, why);
     if (code == STATUS_OK) {
         result->worker_count = (int)s->render.threads;
         result->workers = calloc((size_t)result->worker_count, sizeof *result->workers);
@@ -299,7 +348,7 @@ static status make_result(const scene *s, const render_options *options, render_
             missing |= !(result->pixel_ns = make_map(pixels));
         if (options && options->layers && integrator_traits_of(&s->render)->layers)
             missing |= !(result->layers = layers_create((int)s->render.width, (int)s->render.height));
-        if (shares_of(s) > 1)
+        if (shares_of(s) > 1 && !by_source)
             missing |= !(result->variance = make_map(3 * pixels));
         if (missing)
             code = diagnose(why, STATUS_FAILURE, "render a smaller image", "out of memory");
@@ -318,6 +367,28 @@ static worker_account *make_accounts(int count)
     if (accounts)
         memset(accounts, 0, (size_t)count * sizeof *accounts);
     return accounts;
+}
+
+/* Films of one piece for each worker of a frame whose pieces come from a source. */
+static status make_piece_films(const scene *s, int side, worker_account *accounts, diagnostic *why)
+{
+    const int shares = shares_of(s);
+    for (int i = 0; i < (int)s->render.threads; i++) {
+        TRY(film_create(side, side, shares, space_of(s), &accounts[i].piece, why));
+        if (shares > 1 && !(accounts[i].variance = make_map(3 * (size_t)side * (size_t)side)))
+            return out_of_memory(why);
+    }
+    return STATUS_OK;
+}
+
+static void destroy_accounts(worker_account *accounts, int count)
+{
+    for (int i = 0; accounts && i < count; i++) {
+        free(accounts[i].events.event);
+        free(accounts[i].variance);
+        film_destroy(accounts[i].piece);
+    }
+    free(accounts);
 }
 
 static void run_step(void *context, int worker)
@@ -349,6 +420,8 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
     const tracer_target target = {p, result->img, result->pixel_rays, result->pixel_ns, state, result->layers};
     bool has_memory = f && accounts && tracer_pool_begin(r->tracers, count, &target);
     status code = has_memory ? renderer_prepare(r, s, why) : out_of_memory(why);
+    if (options && options->source)
+        THEN(code, make_piece_films(s, options->source->side, accounts, why));
     if (code == STATUS_OK) {
         memset(f, 0, sizeof *f);
         f->owner = r;
@@ -356,6 +429,7 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         f->options = options;
         f->frame_plan = p;
         f->img = result->img;
+        f->shares = shares_of(s);
         f->rule = integrator_for(&s->render);
         f->state = state;
         f->accounts = accounts;
@@ -368,15 +442,13 @@ static status run_frame(renderer *r, const scene *s, const render_options *optio
         result->wall_s = clock_wall_s() - f->began_s;
         result->cpu_s = clock_process_cpu_s() - cpu_s;
         if (code == STATUS_OK) {
-            const bool in_range = film_merge_shares(result->img, result->variance);
+            const bool in_range = !result->img || film_merge_shares(result->img, result->variance);
             code = collect(f, in_range, result, why);
             if (code == STATUS_OK && f->rule->finish)
                 code = f->rule->finish(state, &result->meshes, why);
         }
-        for (int i = 0; i < count; i++)
-            free(accounts[i].events.event);
     }
-    free(accounts);
+    destroy_accounts(accounts, count);
     free(f);
     return code;
 }

@@ -12,6 +12,7 @@
 #include "render/core/film.h"
 #include "render/core/layers.h"
 #include "render/core/mesh_report.h"
+#include "render/core/schedule.h"
 #include "scene/model/open.h"
 #include <stdbool.h>
 
@@ -33,6 +34,7 @@ typedef struct worker_report {
     /* part of busy_s spent in visibility queries (nearest hits and shadows); NaN for scenes without meshes */
     double visibility_s;
     double waiting_s;                          /* the frame's wall time less busy_s */
+    int process;                               /* of the processes that share the frame; 0: the only one */
     uint64_t tiles;                            /* tiles that it rendered */
     uint64_t camera, reflect, refract, shadow; /* rays that it traced */
     int pu;                                    /* processing unit at the end; -1: unknown */
@@ -44,6 +46,19 @@ typedef struct tile_event {
     int x0, y0, x1, y1;
     double begin_s, end_s;
 } tile_event;
+
+/* Pieces of the image from elsewhere, for a frame that several processes share: this one traces those that it is given,
+ * each into a film of that piece alone, and the result has no film. Both functions are called by all workers at the
+ * same time; the first that returns false ends its worker's part of the frame. */
+typedef struct piece_source {
+    int side; /* the largest width and height of a piece */
+    /* Waits for the worker's next piece. */
+    bool (*next)(void *context, int worker, span *out);
+    /* Takes a traced piece: its film, with all shares added, and the variance of its values, or NULL. Both are borrowed
+     * for the call. */
+    bool (*done)(void *context, const span *piece, const film *traced, const double *variance);
+    void *context;
+} piece_source;
 
 /* Outputs of a render in addition to the film. */
 typedef struct render_options {
@@ -61,10 +76,12 @@ typedef struct render_options {
      * across pieces, which costs time but leaves the film bit-identical. May be NULL. */
     void (*piece_done)(void *context, const film *img, int x0, int y0, int x1, int y1);
     void *context;
+    /* NULL: all pieces of the image. Not with maps, layers, piece_done, or render.error. */
+    const piece_source *source;
 } render_options;
 
 typedef struct render_result {
-    film *img;
+    film *img;             /* NULL if the pieces came from a source */
     ray_counters counters; /* sums over all workers */
     /* from the start of the workers to the end of the last one; with render.pool off, including creating and joining
      * them */

@@ -41,7 +41,7 @@ static bool block(int length, int workers, int worker, int *from, int *to)
     return *from < *to;
 }
 
-static bool tile(const schedule *s, int64_t index, span *out)
+bool schedule_tile(const schedule *s, int64_t index, span *out)
 {
     if (index >= s->tile_count)
         return false;
@@ -53,7 +53,7 @@ static bool tile(const schedule *s, int64_t index, span *out)
 /* The worker's reserved tile, then the next one that no worker has. */
 static bool tile_on_demand(schedule *s, int worker, uint64_t taken, span *out)
 {
-    return tile(s, taken == 0 ? worker : atomic_fetch_add_explicit(&s->next, 1, memory_order_relaxed), out);
+    return schedule_tile(s, taken == 0 ? worker : atomic_fetch_add_explicit(&s->next, 1, memory_order_relaxed), out);
 }
 
 bool schedule_next(schedule *s, int worker, uint64_t taken, span *out)
@@ -62,7 +62,7 @@ bool schedule_next(schedule *s, int worker, uint64_t taken, span *out)
     switch (s->rule) {
     case SCHEDULE_COLUMNS: return taken == 0 && block(s->width, s->workers, worker, &out->x0, &out->x1);
     case SCHEDULE_ROWS: return taken == 0 && block(s->height, s->workers, worker, &out->y0, &out->y1);
-    case SCHEDULE_TILES: return tile(s, worker + (int64_t)taken * s->workers, out);
+    case SCHEDULE_TILES: return schedule_tile(s, worker + (int64_t)taken * s->workers, out);
     case SCHEDULE_DYNAMIC: return tile_on_demand(s, worker, taken, out);
     }
     return false;

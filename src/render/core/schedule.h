@@ -21,5 +21,8 @@ typedef struct schedule {
 
 void schedule_start(schedule *s, const render_settings *settings);
 
+/* Tile number index, row by row from the top; false when there are fewer. */
+bool schedule_tile(const schedule *s, int64_t index, span *out);
+
 /* The next piece for a worker that has had `taken` pieces; false when there is none left. */
 bool schedule_next(schedule *s, int worker, uint64_t taken, span *out);

@@ -114,6 +114,11 @@ bool tracer_begin(tracer *t, const tracer_target *target)
     return true;
 }
 
+void tracer_expose_to(tracer *t, film *img)
+{
+    t->target.img = img;
+}
+
 const ray_counters *tracer_counters(const tracer *t)
 {
     return &t->account.counters;

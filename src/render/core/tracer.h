@@ -29,6 +29,9 @@ void tracer_destroy(tracer *t);
 /* Begins a frame: resets the counters and creates queues for the frame's depth. False when out of memory. */
 bool tracer_begin(tracer *t, const tracer_target *target);
 
+/* Lets the tracer, whose queues are empty, write another film from now on, until the frame ends. */
+void tracer_expose_to(tracer *t, film *img);
+
 /* Enqueues the camera rays of a piece of the image and traces until every queue holds less than a batch. Adds the
  * pixels of each row to *begun when they are enqueued. */
 void tracer_span(tracer *t, const span *piece, atomic_uint_fast64_t *begun, const atomic_bool *stop);

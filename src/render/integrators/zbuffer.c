@@ -248,6 +248,16 @@ static void find_hits(tracer *t, ray_queue *q, int first, int depth, const ray_b
     }
 }
 
+/* The padding repeats the last ray, so that what is counted among all lanes can be corrected. */
+static void repeat_last(group *g)
+{
+    const int last = g->count - 1;
+    for (int k = g->count; k < g->padded; k++) {
+        g->dx[k] = g->dx[last], g->dy[k] = g->dy[last], g->dz[k] = g->dz[last];
+        g->points.cos_i[k] = g->points.cos_i[last];
+    }
+}
+
 /* At a curved surface the undeflected view does not hit the point that a refracted ray would: where it leaves a ball
  * near its outline, the normal differs from the refracted ray's, and light that entered could not leave. The view is
  * therefore refracted there as if it had entered through a parallel surface: the tangential component follows from n
@@ -272,6 +282,7 @@ static void bend(tracer *t, const int *list)
         const vec3 d = vec3_sub(along, vec3_scale(n, g->points.cos_i[k]));
         g->dx[k] = d.x, g->dy[k] = d.y, g->dz[k] = d.z;
     }
+    repeat_last(g);
 }
 
 /* Affine weights in the image, of the clipped polygon: they differ from the weights in space unless all corners are

@@ -30,7 +30,7 @@ static __attribute__((noinline)) void expose_by_sample_key(tracer *t, int64_t sa
     const plan *p = t->target.frame_plan;
     const film *f = t->target.img;
     const int64_t share = f->shares == 1 ? 0 : path_replicate(&p->draws, sample_key);
-    const int64_t place = sample_key_pixel(sample_key) + share * f->width * f->height;
+    const int64_t place = film_place(f, sample_key_pixel(sample_key)) + share * f->width * f->height;
     if (p->spectral) {
         const double *eye = spectra_row(p->spectral, sample_key)->eye;
         r *= eye[0], g *= eye[1], b *= eye[2];
@@ -43,7 +43,7 @@ static inline void expose(tracer *t, int64_t sample_key, double r, double g, dou
     if (t->by_sample_key)
         expose_by_sample_key(t, sample_key, r, g, b);
     else
-        expose_at(t, sample_key, r, g, b);
+        expose_at(t, film_place(t->target.img, sample_key), r, g, b);
 }
 
 void shading_expose(tracer *t, int64_t sample_key, double r, double g, double b)
@@ -54,9 +54,14 @@ void shading_expose(tracer *t, int64_t sample_key, double r, double g, double b)
 /* Adds the light of many rays, whose sample keys are pixels. */
 static void expose_all(tracer *t, const film_light *sent, int count, const int64_t *pixel)
 {
-    int64_t *sums = t->target.img->sum, overflow = sent->out_of_range;
-    for (int i = 0; i < count; i++)
-        overflow |= add_units(&sums[pixel[i] * 3], sent->r[i], sent->g[i], sent->b[i]);
+    const film *f = t->target.img;
+    int64_t *sums = f->sum, overflow = sent->out_of_range;
+    if (f->image_width == 0)
+        for (int i = 0; i < count; i++)
+            overflow |= add_units(&sums[pixel[i] * 3], sent->r[i], sent->g[i], sent->b[i]);
+    else
+        for (int i = 0; i < count; i++)
+            overflow |= add_units(&sums[film_place(f, pixel[i]) * 3], sent->r[i], sent->g[i], sent->b[i]);
     t->account.overflow |= overflow;
 }
 
@@ -108,7 +113,7 @@ static inline void expose_sky(tracer *t, int64_t sample_key, vec3 direction, dou
         return;
     }
     const vec3 l = p->sky->kind == BACKGROUND_UNIFORM ? p->sky->color : sky_and_rain(p, direction);
-    expose_at(t, sample_key, wr * l.x, wg * l.y, wb * l.z);
+    expose_at(t, film_place(t->target.img, sample_key), wr * l.x, wg * l.y, wb * l.z);
 }
 
 void shading_expose_shares(tracer *t, const ray_queue *q, int first, int count, const double *share)

@@ -1,0 +1,192 @@
+/* Tests of frames whose pieces come from a source: put together, they are the film, the variance and the counts of the
+ * whole frame, whatever the order, the size of the pieces and the worker that gets them. */
+#include <math.h>
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "base/random.h"
+#include "render_fixture.h"
+
+/* Hands out the tiles of an image in a random order and puts them together. */
+typedef struct hand_out {
+    pthread_mutex_t lock;
+    schedule tiles;
+    int64_t *order, given, taken, limit; /* limit: the number of pieces after which done refuses */
+    int width;
+    film *whole;
+    double *variance;
+} hand_out;
+
+static bool next(void *context, int worker, span *out)
+{
+    hand_out *h = context;
+    (void)worker;
+    pthread_mutex_lock(&h->lock);
+    const bool more = h->given < h->tiles.tile_count && schedule_tile(&h->tiles, h->order[h->given], out);
+    h->given += more;
+    pthread_mutex_unlock(&h->lock);
+    return more;
+}
+
+static bool done(void *context, const span *piece, const film *traced, const double *variance)
+{
+    hand_out *h = context;
+    pthread_mutex_lock(&h->lock);
+    assert_int_equal(traced->shares, 1);
+    film_put_piece(h->whole, piece->x0, piece->y0, piece->x1, piece->y1, traced->sum);
+    const size_t length = 3 * (size_t)(piece->x1 - piece->x0);
+    for (int y = piece->y0; variance && y < piece->y1; y++, variance += length)
+        memcpy(&h->variance[3 * ((size_t)y * (size_t)h->width + (size_t)piece->x0)], variance, length * sizeof(double));
+    const bool goes_on = ++h->taken < h->limit;
+    pthread_mutex_unlock(&h->lock);
+    return goes_on;
+}
+
+static hand_out hand_out_of(const scene *s, film_space space, int tile)
+{
+    hand_out h = {.width = (int)s->render.width, .limit = INT64_MAX};
+    diagnostic why = {0};
+    render_settings settings = s->render;
+    settings.tile = tile;
+    settings.pieces = 0;
+    schedule_start(&h.tiles, &settings);
+    h.order = malloc((size_t)h.tiles.tile_count * sizeof *h.order);
+    h.variance = calloc(3 * (size_t)(s->render.width * s->render.height), sizeof *h.variance);
+    assert_true(h.order && h.variance);
+    for (int64_t i = 0; i < h.tiles.tile_count; i++) { /* Fisher and Yates, inside out */
+        const int64_t k = random_at(7, (uint32_t)i, 0, 0, 0).word[0] % (i + 1);
+        h.order[i] = h.order[k];
+        h.order[k] = i;
+    }
+    worked(film_create((int)s->render.width, (int)s->render.height, 1, space, &h.whole, &why), &why);
+    pthread_mutex_init(&h.lock, NULL);
+    return h;
+}
+
+static void release(hand_out *h)
+{
+    pthread_mutex_destroy(&h->lock);
+    film_destroy(h->whole);
+    free(h->variance);
+    free(h->order);
+}
+
+static void expect_the_whole_frame(const char *path, const char *assignments, int tile)
+{
+    scene *s = NULL;
+    diagnostic why = {0};
+    worked(scene_read(path, &s, &why), &why);
+    set_all(s, assignments);
+    worked(scene_load(s, &why), &why);
+    render_result *expected = render(s);
+    hand_out h = hand_out_of(s, expected->img->space, tile);
+    const piece_source source = {.side = tile, .next = next, .done = done, .context = &h};
+    render_result *result = render_at(s, isa_best(), &(render_options){.source = &source});
+    assert_null(result->img);
+    assert_int_equal(h.taken, h.tiles.tile_count);
+    if (film_hash(h.whole) != film_hash(expected->img))
+        fail_msg("%s %s: the film of pieces of %d x %d pixels differs", path, assignments, tile, tile);
+    if (memcmp(&result->counters, &expected->counters, sizeof result->counters) != 0)
+        fail_msg("%s %s: the counts of pieces of %d x %d pixels differ", path, assignments, tile, tile);
+    if (expected->variance)
+        assert_memory_equal(h.variance, expected->variance,
+                            3 * (size_t)(s->render.width * s->render.height) * sizeof(double));
+    release(&h);
+    render_result_destroy(result);
+    render_result_destroy(expected);
+    scene_destroy(s);
+}
+
+#define SMALL "render.width=83 render.height=61 render.threads=3 "
+
+static void pieces_of_all_integrators_are_the_whole_frame(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file, *assignments;
+    } cases[] = {
+        {"rod", ""},
+        {"rod", "render.samples=4 render.depth=3"},
+        {"rod", "render.spectrum=spectral render.wavelengths=8"},
+        {"rod", "render.polarisation=on"},
+        {"rod", "render.integrator=path render.paths=16"},
+        {"rod", "render.integrator=path render.paths=16 render.sampler=philox render.spectrum=spectral"},
+        {"rod", "render.integrator=aov"},
+        {"rod", "render.integrator=raycast"},
+        {"rod", "render.integrator=zbuffer"},
+        {"models", ""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char path[64], assignments[256];
+        snprintf(path, sizeof path, "experiments/scenes/%s.yaml", cases[i].file);
+        snprintf(assignments, sizeof assignments, SMALL "%s", cases[i].assignments);
+        static const int tiles[] = {1, 7, 16, 64, 200};
+        for (size_t k = 0; k < sizeof tiles / sizeof tiles[0]; k++)
+            expect_the_whole_frame(path, assignments, tiles[k]);
+    }
+}
+
+/* A row of the widest image is a piece, so is a column of the highest one. */
+static void places_in_a_piece_are_exact_in_the_largest_images(void **state)
+{
+    (void)state;
+    static const struct {
+        int width, x0, y0, x1, y1;
+    } pieces[] = {{65536, 65472, 4032, 65536, 4096}, {65536, 0, 0, 65536, 1}, {1, 0, 0, 1, 65536},
+                  {7680, 7664, 4304, 7680, 4320},    {3, 1, 100, 3, 30000},   {65535, 65534, 0, 65535, 4096}};
+    for (size_t i = 0; i < sizeof pieces / sizeof pieces[0]; i++) {
+        const int x0 = pieces[i].x0, y0 = pieces[i].y0, x1 = pieces[i].x1, y1 = pieces[i].y1;
+        film *f = NULL;
+        diagnostic why = {0};
+        worked(film_create(x1 - x0, y1 - y0, 1, FILM_RGB, &f, &why), &why);
+        film_begin_piece(f, pieces[i].width, x0, y0, x1, y1, 1);
+        int64_t place = 0;
+        for (int y = y0; y < y1; y++)
+            for (int x = x0; x < x1; x++)
+                assert_int_equal(film_place(f, (int64_t)y * pieces[i].width + x), place++);
+        film_destroy(f);
+    }
+}
+
+static void a_frame_ends_when_the_source_takes_no_more(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=64 render.height=48 render.threads=1");
+    hand_out h = hand_out_of(s, FILM_RGB, 16);
+    h.limit = 5;
+    const piece_source source = {.side = 16, .next = next, .done = done, .context = &h};
+    render_result *result = render_at(s, isa_best(), &(render_options){.source = &source});
+    assert_int_equal(h.taken, 5);
+    assert_int_equal(result->workers[0].tiles, 5);
+    assert_int_equal(result->counters.camera, CUVETTE_COUNTERS ? 5 * 16 * 16 : 0);
+    release(&h);
+    render_result_destroy(result);
+    scene_destroy(s);
+}
+
+/* Memory is that of the pieces, not of the image. */
+static void the_film_of_a_source_is_as_small_as_its_pieces(void **state)
+{
+    (void)state;
+    scene *s = rod_scene("render.width=16384 render.height=16384 render.threads=2");
+    const piece_source source = {.side = 32};
+    assert_int_equal(renderer_result_bytes(s, &(render_options){.source = &source}), 2 * 32 * 32 * 24);
+    assert_true(renderer_result_bytes(s, NULL) >= UINT64_C(16384) * 16384 * 24);
+    scene_destroy(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pieces_of_all_integrators_are_the_whole_frame),
+        cmocka_unit_test(places_in_a_piece_are_exact_in_the_largest_images),
+        cmocka_unit_test(a_frame_ends_when_the_source_takes_no_more),
+        cmocka_unit_test(the_film_of_a_source_is_as_small_as_its_pieces),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
