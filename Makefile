@@ -87,14 +87,16 @@ isas_flags = $(foreach i,$(isas),$(isa_flags_$(i)))
 
 sources := $(wildcard src/*.c src/*/*.c src/*/*/*.c src/*/*/*/*.c)
 kernels := $(filter %_kernel.c,$(sources))
-library := $(filter-out src/cli/% src/import/% src/web/% $(kernels),$(sources))
+library := $(filter-out src/cli/% src/import/% src/web/% src/mpi/% $(kernels),$(sources))
 program := $(wildcard src/cli/*.c)
+mpi := $(filter src/mpi/%,$(sources))
 web := $(filter src/web/%,$(sources))
 page := $(sort $(wildcard $(addprefix src/web/page/*.,html css js svg)))
 importer := $(wildcard src/import/*.c) $(addprefix src/base/,status.c number.c below.c float_environment.c grow.c large_pages.c os_process.c)
 kernel_objects := $(foreach i,$(isas),$(kernels:src/%.c=$(build)/obj/%.$(i).o))
 library_objects := $(library:src/%.c=$(build)/obj/%.o) $(kernel_objects)
 program_objects := $(program:src/%.c=$(build)/obj/%.o)
+mpi_objects := $(mpi:src/%.c=$(build)/obj/%.o)
 web_objects := $(web:src/%.c=$(build)/obj/%.o) $(build)/web/page_files.o
 importer_objects := $(importer:src/%.c=$(build)/plain/%.o)
 tests := $(wildcard tests/test_*.c)
@@ -123,6 +125,19 @@ $(build)/web/page_files.c: src/web/embed.sh src/web/page $(page)
 $(build)/web/page_files.o: $(build)/web/page_files.c $(build)/flags
 	$(call say,$(CC) $<)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -MMD -MP -c -o $@ $<
+
+# The same program on the ranks of an MPI job (src/mpi); nothing else needs MPI. MPI_PACKAGE: its name for pkg-config.
+MPI_PACKAGE ?= ompi-c
+mpi_cflags = $(eval mpi_cflags := $$(shell pkg-config --cflags $(MPI_PACKAGE)))$(mpi_cflags)
+mpi_libs = $(eval mpi_libs := $$(shell pkg-config --libs $(MPI_PACKAGE)))$(mpi_libs)
+.PHONY: mpi setup-mpi
+mpi: $(build)/cuvette-mpi $(build)/cuvette-import ## build build/cuvette-mpi, for the ranks of an MPI job
+setup-mpi: | $(filter setup,$(MAKECMDGOALS)) ## install what make mpi requires: OpenMPI
+	@.ci/setup-mpi
+$(build)/cuvette-mpi: $(mpi_objects) $(filter-out %/cli/main.o,$(program_objects)) $(build)/libweb.a $(build)/libcuvette.a
+	$(call say,link $@)
+	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(mpi_libs) $(all_libs)
+$(build)/obj/mpi/%.o: private own_cflags = $(mpi_cflags)
 
 # The mesh importer, the only program linked to assimp. Built without sanitizers, which need more address space than the limit that it
 # sets itself.
@@ -204,7 +219,7 @@ $(benches) $(build)/tests/recheck: $(build)/tests/%: tests/%.c $(build)/libcuvet
 # also waits for setup when both are requested.
 .PHONY: always
 flags_text = $(subst ','\'',$(filter-out -Werror,$(CC) $(all_cflags) $(isas_flags) $(embree_cflags)))
-$(build)/flags: always | $(filter setup setup-peers setup-doc,$(MAKECMDGOALS))
+$(build)/flags: always | $(filter setup setup-peers setup-doc setup-mpi,$(MAKECMDGOALS))
 	@mkdir -p $(@D)
 	@echo '$(flags_text)' | cmp -s - $@ || echo '$(flags_text)' >$@
 
@@ -224,7 +239,7 @@ $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)
 	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(embree_libs) $(all_libs)
 
 -include $(build)/peers/embree.d
--include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
+-include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(mpi_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
 
 .PHONY: setup
 setup: ## install the required packages (Debian 12); does nothing if they are installed

@@ -106,10 +106,18 @@ status scene_input_isa(isa *level, diagnostic *why)
     return locate_failure(why, "environment", isa_choose(level, why));
 }
 
+static const job_sharing *shared_with; /* of the program; NULL: it renders alone */
+
+void scene_input_share(const job_sharing *sharing)
+{
+    shared_with = sharing;
+}
+
 status scene_input_job(bool measured, job **out, diagnostic *why)
 {
     isa level = ISA_BASE;
-    const job_settings settings = {.level = &level, .measured = measured, .stop = terminal_stop_requested};
+    const job_settings settings = {
+        .level = &level, .measured = measured, .stop = terminal_stop_requested, .sharing = shared_with};
     TRY(scene_input_isa(&level, why));
     return job_create(&settings, out, why);
 }

@@ -91,5 +91,7 @@ status scene_input_lint(const scene *s, isa level, diagnostic *why);
 /* isa_choose, with located errors. */
 status scene_input_isa(isa *level, diagnostic *why);
 
-/* Creates a job that ends at SIGINT and SIGTERM. measured: as in job_settings. */
+/* Creates a job that ends at SIGINT and SIGTERM. measured: as in job_settings. Its frames are shared with other
+ * processes after scene_input_share, which a program calls once, first. */
+void scene_input_share(const job_sharing *sharing);
 status scene_input_job(bool measured, job **out, diagnostic *why);

@@ -168,11 +168,28 @@ static status prepare(job *j, const scene *s, const render_options *requested, d
     return renderer_prepare(j->renderer, s, why);
 }
 
+/* The part of this process; then the others' parts are added. */
+static status render_shared(work *w, const scene *s, render_options *options, render_result **out, diagnostic *why)
+{
+    const job_sharing *sharing = w->of->settings.sharing;
+    const frame_watch watch = {go_on, w};
+    shared_part own;
+    TRY(sharing->begin(sharing->of, s, options, &watch, &own, why));
+    options->source = own.pieces;
+    options->progress = own.goes_on;
+    options->context = own.context;
+    const status traced = renderer_render(w->of->renderer, s, options, out, why);
+    return sharing->end(sharing->of, traced, *out, why);
+}
+
 /* Renders one frame, with or without the maps. */
 static status trace(work *w, const scene *s, bool maps, render_result **out, diagnostic *why)
 {
-    render_options options = {
-        .usage = w->requested->usage, .progress = go_on, .progress_s = w->requested->progress_s, .context = w};
+    render_options options = {.usage = w->requested->usage,
+                              .progress = go_on,
+                              .progress_s = w->requested->progress_s,
+                              .context = w,
+                              .source = w->requested->source};
     if (w->requested->piece_done)
         options.piece_done = pass_on_piece;
     if (maps) {
@@ -184,7 +201,8 @@ static status trace(work *w, const scene *s, bool maps, render_result **out, dia
     w->begun_s = clock_wall_s();
     w->timed_out = false;
     *out = NULL;
-    const status code = renderer_render(w->of->renderer, s, &options, out, why);
+    const status code = w->of->settings.sharing ? render_shared(w, s, &options, out, why)
+                                                : renderer_render(w->of->renderer, s, &options, out, why);
     if (code != STATUS_INTERRUPTED)
         return code;
     if (!w->timed_out)

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "job/account.h"
+#include "job/sharing.h"
 
 typedef struct job job;
 
@@ -26,8 +27,9 @@ typedef struct job_settings {
     /* Called before and during a frame and while a scene is loaded; return true to stop. May be NULL. */
     bool (*stop)(void *context);
     void *context;
-    double time_s;         /* time limit of a frame; 0: none */
-    uint64_t memory_bytes; /* limit for a frame's film and maps; 0: none */
+    const job_sharing *sharing; /* with other processes; NULL: none */
+    double time_s;              /* time limit of a frame; 0: none */
+    uint64_t memory_bytes;      /* limit for a frame's film and maps; 0: none */
 } job_settings;
 
 status job_create(const job_settings *settings, job **out, diagnostic *why);

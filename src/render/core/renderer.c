@@ -327,6 +327,17 @@ static film_space space_of(const scene *s)
     return s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
 }
 
+status renderer_film(const scene *s, film **img, double **variance, diagnostic *why)
+{
+    *variance = NULL;
+    TRY(film_create((int)s->render.width, (int)s->render.height, 1, space_of(s), img, why));
+    if (shares_of(s) == 1 || (*variance = make_map(3 * (size_t)s->render.width * (size_t)s->render.height)))
+        return STATUS_OK;
+    film_destroy(*img);
+    *img = NULL;
+    return out_of_memory(why);
+}
+
 static status make_result(const scene *s, const render_options *options, render_result **out, diagnostic *why)
 {
     const size_t pixels = (size_t)s->render.width * (size_t)s->render.height;

@@ -1,0 +1,283 @@
+/* A shared frame on rank 0: the order to the others, the messenger's thread, and the sum of all parts. */
+#include "mpi/lead.h"
+
+#include "measure/clock.h"
+#include "mpi/broadcast.h"
+#include "mpi/scene_wire.h"
+#include "mpi/tracing.h"
+#include "scene/model/scene.h"
+#include <math.h>
+#include <mpi.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WATCH_S 0.1
+
+/* What the other ranks report, all of their workers one after another. */
+typedef struct others {
+    ray_counters counters;
+    double cpu_s;
+    worker_report *workers;
+    int count;
+    status code; /* the first that is not STATUS_OK */
+    diagnostic why;
+} others;
+
+struct lead {
+    int ranks;
+    int64_t frame;
+    job_sharing facing_job;
+    /* of the current frame */
+    pthread_t thread;
+    handout *tiles;
+    schedule places;
+    team *own;
+    frame_sink sink;
+    frame_watch watch;
+    double begun_s, complete_s, watched_s;
+    film *img;
+    double *variance;
+    others rest;
+    traffic moved;
+    atomic_bool stops; /* a stop request, or an error of this rank */
+};
+
+/* --- what the messenger brings --- */
+
+static void put_variance(const lead *l, const span *at, const int64_t *values)
+{
+    const size_t length = 3 * (size_t)(at->x1 - at->x0);
+    for (int y = at->y0; y < at->y1; y++, values += length)
+        memcpy(&l->variance[3 * ((size_t)y * (size_t)l->img->width + (size_t)at->x0)], values,
+               length * sizeof *l->variance);
+}
+
+static void put_piece(void *of, piece_message *piece)
+{
+    lead *l = of;
+    span at;
+    schedule_tile(&l->places, piece->head.value, &at);
+    film_put_piece(l->img, at.x0, at.y0, at.x1, at.y1, piece->values);
+    if (l->variance)
+        put_variance(l, &at, piece->values + 3 * (at.x1 - at.x0) * (at.y1 - at.y0));
+    free(piece);
+    if (handout_is_complete(l->tiles))
+        l->complete_s = clock_wall_s();
+}
+
+/* The times of a rank's workers start at its own beginning of the frame. */
+static bool take_workers(others *o, int rank, const worker_report *workers, int count)
+{
+    worker_report *grown = realloc(o->workers, (size_t)(o->count + count) * sizeof *grown);
+    if (!grown)
+        return false;
+    o->workers = grown;
+    for (int i = 0; i < count; i++) {
+        grown[o->count] = workers[i];
+        grown[o->count++].process = rank;
+    }
+    return true;
+}
+
+static bool take_report(void *of, int rank, const rank_report *report, const worker_report *workers)
+{
+    lead *l = of;
+    others *o = &l->rest;
+    ray_counters_add(&o->counters, &report->counters);
+    o->cpu_s += report->cpu_s;
+    status code = (status)report->code;
+    diagnostic why = report->why;
+    if (!take_workers(o, rank, workers, (int)report->workers))
+        code = out_of_memory(&why);
+    if (code == STATUS_OK && handout_held(l->tiles, rank) > 0)
+        code = diagnose(&why, STATUS_FAILURE, "report this as a bug, with the scene", "tiles are not traced");
+    if (o->code == STATUS_OK && code != STATUS_OK && code != STATUS_INTERRUPTED) {
+        o->code = code;
+        o->why = why;
+        diagnose(&o->why, code, why.remedy, "rank %d: %.400s", rank, why.what);
+    }
+    return o->code == STATUS_OK;
+}
+
+static bool goes_on(void *of, double share_done)
+{
+    lead *l = of;
+    const double now_s = clock_wall_s();
+    if (now_s - l->watched_s >= WATCH_S) {
+        l->watched_s = now_s;
+        if (!l->watch.goes_on(l->watch.context, share_done))
+            atomic_store(&l->stops, true);
+    }
+    return !atomic_load(&l->stops);
+}
+
+static void *serve(void *of)
+{
+    lead *l = of;
+    messenger_serve(l->frame, l->ranks, l->tiles, team_tracing(l->own), &l->sink, &l->moved);
+    return NULL;
+}
+
+/* --- the frame --- */
+
+static status refuse(const scene *s, const render_options *o, diagnostic *why)
+{
+    if (s->render.error > 0.0 && s->render.integrator == INTEGRATOR_PATH)
+        return diagnose(why, STATUS_BAD_INPUT, "set render.error to 0, or use one process",
+                        "render.error needs the noise of the whole image, which no rank has");
+    if (o->pixel_rays || o->pixel_time || o->layers || o->timeline)
+        return diagnose(why, STATUS_BAD_INPUT, "leave it out, or use one process",
+                        "maps, layers and the timeline are not sent between ranks");
+    return STATUS_OK;
+}
+
+static void release_frame(lead *l)
+{
+    film_destroy(l->img);
+    free(l->variance);
+    free(l->rest.workers);
+    handout_destroy(l->tiles);
+    team_destroy(l->own);
+    l->img = NULL;
+    l->variance = NULL;
+    l->rest = (others){.code = STATUS_OK};
+    l->tiles = NULL;
+    l->own = NULL;
+}
+
+/* Tiles of which each worker of all ranks can have as many as render.pieces asks for. */
+static int tile_side(const scene *s, int ranks)
+{
+    render_settings all = s->render;
+    schedule tiles;
+    all.threads = (int64_t)scene_threads(&s->render) * ranks;
+    schedule_start(&tiles, &all);
+    return tiles.tile;
+}
+
+static status prepare(lead *l, const scene *s, diagnostic *why)
+{
+    const render_settings settings = tiles_settings(&s->render, tile_side(s, l->ranks));
+    schedule_start(&l->places, &settings);
+    TRY(handout_create(l->places.tile_count, l->ranks, &l->tiles, why));
+    TRY(team_create(&l->places, scene_threads(&s->render), &l->own, why));
+    return renderer_film(s, &l->img, &l->variance, why);
+}
+
+/* Sends the scene to the others, which answer when they are ready. */
+static void send_orders(const lead *l, bool usage, char *bytes, size_t size)
+{
+    const frame_order order = {.head.frame = l->frame, .scene_bytes = size, .tile = l->places.tile, .usage = usage};
+    for (int rank = 1; rank < l->ranks; rank++)
+        MPI_Send(&order, sizeof order, MPI_BYTE, rank, TAG_FRAME, MPI_COMM_WORLD);
+    broadcast(bytes, size);
+}
+
+static bool own_goes_on(void *context, double own_share)
+{
+    const lead *l = context;
+    (void)own_share;
+    return !team_is_stopped(l->own);
+}
+
+static status begin(void *of, const scene *s, const render_options *requested, const frame_watch *watch,
+                    shared_part *own, diagnostic *why)
+{
+    lead *l = of;
+    char *bytes = NULL;
+    size_t size = 0;
+    TRY(refuse(s, requested, why));
+    status code = prepare(l, s, why);
+    THEN(code, scene_wire_pack(s, &bytes, &size, why));
+    if (code == STATUS_OK) {
+        l->frame++;
+        l->sink = (frame_sink){l, put_piece, take_report, goes_on};
+        l->watch = *watch;
+        l->moved = (traffic){0};
+        atomic_store(&l->stops, false);
+        send_orders(l, requested->usage, bytes, size);
+        l->begun_s = l->watched_s = clock_wall_s();
+        l->complete_s = NAN;
+        if (pthread_create(&l->thread, NULL, serve, l) != 0)
+            MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the others are under way */
+    } else {
+        release_frame(l);
+    }
+    free(bytes);
+    *own = (shared_part){l->own ? team_source(l->own) : NULL, own_goes_on, l};
+    return code;
+}
+
+/* Adds the others' parts to this rank's. */
+static status add_others(lead *l, render_result *result, diagnostic *why)
+{
+    others *o = &l->rest;
+    const double wall_s = (isfinite(l->complete_s) ? l->complete_s : clock_wall_s()) - l->begun_s;
+    worker_report *all = realloc(result->workers, (size_t)(result->worker_count + o->count) * sizeof *all);
+    if (!all)
+        return out_of_memory(why);
+    result->workers = all;
+    memcpy(all + result->worker_count, o->workers ? o->workers : all, (size_t)o->count * sizeof *all);
+    result->worker_count += o->count;
+    for (int i = 0; i < result->worker_count; i++)
+        all[i].waiting_s = wall_s - all[i].busy_s;
+    ray_counters_add(&result->counters, &o->counters);
+    result->cpu_s += o->cpu_s;
+    result->wall_s = wall_s;
+    result->img = l->img;
+    result->variance = l->variance;
+    l->img = NULL;
+    l->variance = NULL;
+    return STATUS_OK;
+}
+
+static status end(void *of, status traced, render_result *result, diagnostic *why)
+{
+    lead *l = of;
+    if (traced != STATUS_OK)
+        atomic_store(&l->stops, true);
+    team_left(l->own);
+    pthread_join(l->thread, NULL);
+    status code = traced == STATUS_OK && atomic_load(&l->stops) ? STATUS_INTERRUPTED : traced;
+    if (l->rest.code != STATUS_OK) {
+        code = l->rest.code;
+        *why = l->rest.why;
+    }
+    if (result) {
+        const status added = add_others(l, result, why);
+        code = added == STATUS_OK ? code : added;
+    }
+    release_frame(l);
+    return code;
+}
+
+/* --- */
+
+status lead_create(int ranks, lead **out, diagnostic *why)
+{
+    lead *l = aligned_alloc(64, (sizeof *l + 63) / 64 * 64); /* a schedule is aligned to cache lines */
+    if (!l)
+        return out_of_memory(why);
+    memset(l, 0, sizeof *l);
+    l->ranks = ranks;
+    l->facing_job = (job_sharing){begin, end, l};
+    *out = l;
+    return STATUS_OK;
+}
+
+void lead_destroy(lead *l)
+{
+    if (!l)
+        return;
+    const wire_head head = {.frame = l->frame + 1};
+    for (int rank = 1; rank < l->ranks; rank++)
+        MPI_Send(&head, sizeof head, MPI_BYTE, rank, TAG_QUIT, MPI_COMM_WORLD);
+    free(l);
+}
+
+const job_sharing *lead_sharing(const lead *l)
+{
+    return &l->facing_job;
+}

@@ -1,0 +1,268 @@
+/* The loops of rank 0 and of the other ranks during a frame. */
+#include "mpi/messenger.h"
+
+#include <mpi.h>
+#include <stdlib.h>
+
+/* Memory for a message; without it the frame cannot be completed. */
+static void *message_memory(size_t bytes)
+{
+    void *memory = malloc(bytes);
+    if (!memory)
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
+    return memory;
+}
+
+/* --- rank 0 --- */
+
+typedef struct serving {
+    int64_t frame;
+    int ranks, reports, idle;
+    handout *tiles;
+    const tracing *own;
+    const frame_sink *sink;
+    traffic *moved;
+    bool *ended; /* by rank: it was told that no tile is left */
+    bool all_told, given_up;
+} serving;
+
+static void tell(serving *s, int rank, int tag)
+{
+    const wire_head head = {.frame = s->frame};
+    MPI_Send(&head, sizeof head, MPI_BYTE, rank, tag, MPI_COMM_WORLD);
+    s->moved->messages++;
+}
+
+static void give_up(serving *s)
+{
+    if (s->given_up)
+        return;
+    s->given_up = true;
+    s->own->stop(s->own->of);
+    for (int rank = 1; rank < s->ranks; rank++)
+        tell(s, rank, TAG_STOP);
+}
+
+/* Gives the rank what it should hold, and tells it once when there is no more. */
+static void give(serving *s, int rank)
+{
+    struct {
+        wire_head head;
+        int32_t tiles[HANDOUT_MOST];
+    } message = {.head.frame = s->frame};
+    if (s->given_up)
+        return;
+    const int count = handout_give(s->tiles, rank, message.tiles);
+    if (count > 0 && rank == 0)
+        s->own->give(s->own->of, message.tiles, count);
+    if (count > 0 && rank != 0) {
+        const size_t bytes = sizeof message.head + (size_t)count * sizeof message.tiles[0];
+        MPI_Send(&message, (int)bytes, MPI_BYTE, rank, TAG_TILES, MPI_COMM_WORLD);
+        s->moved->messages++;
+    }
+    if (handout_is_empty(s->tiles) && !s->ended[rank]) {
+        s->ended[rank] = true;
+        if (rank == 0)
+            s->own->end(s->own->of);
+        else
+            tell(s, rank, TAG_END);
+    }
+}
+
+/* Every rank that waits is told at the end, not only the one that took the last tile. */
+static void tell_end(serving *s)
+{
+    if (s->all_told || !handout_is_empty(s->tiles))
+        return;
+    s->all_told = true;
+    for (int rank = 0; rank < s->ranks; rank++)
+        give(s, rank);
+}
+
+static void take_piece(serving *s, int rank, piece_message *piece)
+{
+    if (!handout_return(s->tiles, rank, piece->head.value, MPI_Wtime()))
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
+    s->moved->pieces += rank != 0;
+    s->moved->piece_bytes += rank != 0 ? piece->bytes : 0;
+    s->sink->piece(s->sink->of, piece);
+    give(s, rank);
+}
+
+static void take_report(serving *s, int rank, const void *bytes)
+{
+    const rank_report *report = bytes;
+    const worker_report *workers = (const worker_report *)(report + 1);
+    s->reports++;
+    if (!s->sink->report(s->sink->of, rank, report, workers))
+        give_up(s);
+}
+
+/* Receives one message that has arrived. */
+static void receive(serving *s, const MPI_Status *arrived)
+{
+    int bytes = 0;
+    MPI_Get_count(arrived, MPI_BYTE, &bytes);
+    const size_t size = (size_t)bytes;
+    piece_message *piece = message_memory(sizeof *piece + size);
+    piece->bytes = size;
+    piece->next = NULL;
+    MPI_Recv(&piece->head, bytes, MPI_BYTE, arrived->MPI_SOURCE, arrived->MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    s->moved->messages++;
+    if (piece->head.frame == s->frame && arrived->MPI_TAG == TAG_PIECE) {
+        take_piece(s, arrived->MPI_SOURCE, piece);
+        return;
+    }
+    if (piece->head.frame == s->frame && arrived->MPI_TAG == TAG_READY) {
+        handout_join(s->tiles, arrived->MPI_SOURCE, (int)((const ready_note *)(const void *)&piece->head)->threads,
+                     MPI_Wtime());
+        give(s, arrived->MPI_SOURCE);
+    } else if (piece->head.frame == s->frame && arrived->MPI_TAG == TAG_REPORT) {
+        take_report(s, arrived->MPI_SOURCE, &piece->head);
+    }
+    free(piece);
+}
+
+/* Takes everything that has arrived or is finished; false if there was nothing. */
+static bool serve_once(serving *s)
+{
+    bool any = false;
+    for (;;) {
+        MPI_Status arrived;
+        int there = 0;
+        MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &arrived);
+        if (!there)
+            break;
+        receive(s, &arrived);
+        any = true;
+    }
+    for (piece_message *piece; (piece = s->own->take(s->own->of)); any = true)
+        take_piece(s, 0, piece);
+    return any;
+}
+
+static bool is_complete(const serving *s)
+{
+    return s->reports == s->ranks - 1 && s->own->over(s->own->of) && (s->given_up || handout_is_complete(s->tiles));
+}
+
+void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *own, const frame_sink *sink,
+                     traffic *moved)
+{
+    serving s = {.frame = frame, .ranks = ranks, .tiles = tiles, .own = own, .sink = sink, .moved = moved};
+    s.ended = message_memory((size_t)ranks * sizeof *s.ended);
+    for (int rank = 0; rank < ranks; rank++)
+        s.ended[rank] = false;
+    if (own->threads > 0) {
+        handout_join(tiles, 0, own->threads, MPI_Wtime());
+        give(&s, 0);
+    }
+    while (!is_complete(&s)) {
+        if (serve_once(&s)) {
+            s.idle = 0;
+            tell_end(&s);
+        } else {
+            own->wait(own->of, s.idle++);
+        }
+        if (!sink->goes_on(sink->of, handout_share(tiles)))
+            give_up(&s);
+    }
+    free(s.ended);
+}
+
+/* --- the other ranks --- */
+
+/* Pieces on their way, a ring. */
+enum { SENDING_MOST = 64 };
+
+typedef struct working {
+    int64_t frame;
+    const tracing *own;
+    traffic *moved;
+    piece_message *sending[SENDING_MOST];
+    MPI_Request request[SENDING_MOST];
+    int oldest, count;
+    bool given_up;
+} working;
+
+/* Releases the oldest pieces that have left; waits until at most `most` are on their way. */
+static void finish_sending(working *w, int most)
+{
+    while (w->count > 0) {
+        int sent = 0;
+        if (w->count > most)
+            MPI_Wait(&w->request[w->oldest], MPI_STATUS_IGNORE);
+        else
+            MPI_Test(&w->request[w->oldest], &sent, MPI_STATUS_IGNORE);
+        if (w->count <= most && !sent)
+            return;
+        free(w->sending[w->oldest]);
+        w->oldest = (w->oldest + 1) % SENDING_MOST;
+        w->count--;
+    }
+}
+
+static void send_piece(working *w, piece_message *piece)
+{
+    finish_sending(w, SENDING_MOST - 1);
+    const int at = (w->oldest + w->count++) % SENDING_MOST;
+    piece->head.frame = w->frame;
+    w->sending[at] = piece;
+    MPI_Isend(&piece->head, (int)piece->bytes, MPI_BYTE, 0, TAG_PIECE, MPI_COMM_WORLD, &w->request[at]);
+    w->moved->pieces++;
+    w->moved->piece_bytes += piece->bytes;
+    w->moved->messages++;
+}
+
+static void obey(working *w, const MPI_Status *arrived)
+{
+    struct {
+        wire_head head;
+        int32_t tiles[HANDOUT_MOST];
+    } message;
+    int bytes = 0;
+    MPI_Get_count(arrived, MPI_BYTE, &bytes);
+    MPI_Recv(&message, sizeof message, MPI_BYTE, 0, arrived->MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    if (message.head.frame != w->frame)
+        return;
+    const int count = (int)(((size_t)bytes - sizeof message.head) / sizeof message.tiles[0]);
+    if (arrived->MPI_TAG == TAG_TILES)
+        w->own->give(w->own->of, message.tiles, count);
+    if (arrived->MPI_TAG == TAG_END)
+        w->own->end(w->own->of);
+    if (arrived->MPI_TAG == TAG_STOP) {
+        w->own->stop(w->own->of);
+        w->given_up = true;
+    }
+}
+
+static bool work_once(working *w)
+{
+    bool any = false;
+    for (piece_message *piece; (piece = w->own->take(w->own->of)); any = true)
+        if (w->given_up)
+            free(piece);
+        else
+            send_piece(w, piece);
+    MPI_Status arrived;
+    int there = 0;
+    MPI_Iprobe(0, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &arrived);
+    if (there)
+        obey(w, &arrived);
+    finish_sending(w, SENDING_MOST);
+    return any || there;
+}
+
+bool messenger_work(int64_t frame, const tracing *own, traffic *moved)
+{
+    working w = {.frame = frame, .own = own, .moved = moved};
+    const ready_note ready = {.head.frame = frame, .threads = own->threads};
+    MPI_Send(&ready, sizeof ready, MPI_BYTE, 0, TAG_READY, MPI_COMM_WORLD);
+    for (int idle = 0; !own->over(own->of);)
+        if (work_once(&w))
+            idle = 0;
+        else
+            own->wait(own->of, idle++);
+    finish_sending(&w, 0);
+    return w.given_up;
+}

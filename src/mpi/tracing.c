@@ -1,0 +1,215 @@
+/* Queues between the messenger and the tracing threads of a rank. */
+#include "mpi/tracing.h"
+
+#include "base/grow.h"
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+struct team {
+    pthread_mutex_t lock;
+    pthread_cond_t has_tile, has_piece;
+    schedule tiles;
+    int32_t *queue; /* waiting tiles, a list that starts at first */
+    size_t first, count, capacity;
+    piece_message *oldest, **newest;
+    bool ended, left, stopped;
+    atomic_bool failed; /* out of memory: the frame cannot be completed */
+    tracing facing_messenger;
+    piece_source facing_renderer;
+};
+
+/* --- the messenger's side --- */
+
+static void give(void *of, const int32_t *tiles, int count)
+{
+    team *t = of;
+    pthread_mutex_lock(&t->lock);
+    if (t->first > 0 && t->first == t->count)
+        t->first = t->count = 0;
+    if (GROW(t->queue, t->capacity, t->count + (size_t)count)) {
+        memcpy(t->queue + t->count, tiles, (size_t)count * sizeof *tiles);
+        t->count += (size_t)count;
+    } else {
+        t->stopped = true;
+        atomic_store(&t->failed, true);
+    }
+    pthread_cond_broadcast(&t->has_tile);
+    pthread_mutex_unlock(&t->lock);
+}
+
+static piece_message *take(void *of)
+{
+    team *t = of;
+    pthread_mutex_lock(&t->lock);
+    piece_message *piece = t->oldest;
+    if (piece && !(t->oldest = piece->next))
+        t->newest = &t->oldest;
+    pthread_mutex_unlock(&t->lock);
+    return piece;
+}
+
+static void end(void *of)
+{
+    team *t = of;
+    pthread_mutex_lock(&t->lock);
+    t->ended = true;
+    pthread_cond_broadcast(&t->has_tile);
+    pthread_mutex_unlock(&t->lock);
+}
+
+static void stop(void *of)
+{
+    team *t = of;
+    pthread_mutex_lock(&t->lock);
+    t->stopped = true;
+    pthread_cond_broadcast(&t->has_tile);
+    pthread_mutex_unlock(&t->lock);
+}
+
+static bool over(void *of)
+{
+    team *t = of;
+    pthread_mutex_lock(&t->lock);
+    const bool is_over = t->left && !t->oldest;
+    pthread_mutex_unlock(&t->lock);
+    return is_over;
+}
+
+/* Messages can only be looked for. So the wait is short after something happened, and grows to 1 ms. */
+static void wait_for_event(void *of, int idle)
+{
+    team *t = of;
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    until.tv_nsec += idle < 8 ? 50000 : idle < 40 ? 200000 : 1000000;
+    if (until.tv_nsec >= 1000000000)
+        until.tv_nsec -= 1000000000, until.tv_sec++;
+    pthread_mutex_lock(&t->lock);
+    if (!t->oldest)
+        pthread_cond_timedwait(&t->has_piece, &t->lock, &until);
+    pthread_mutex_unlock(&t->lock);
+}
+
+/* --- the renderer's side --- */
+
+static bool next(void *context, int worker, span *out)
+{
+    team *t = context;
+    (void)worker;
+    pthread_mutex_lock(&t->lock);
+    while (t->first == t->count && !t->ended && !t->stopped)
+        pthread_cond_wait(&t->has_tile, &t->lock);
+    const bool any = t->first < t->count && !t->stopped;
+    if (any)
+        schedule_tile(&t->tiles, t->queue[t->first++], out);
+    pthread_mutex_unlock(&t->lock);
+    return any;
+}
+
+static int64_t number_of(const schedule *s, const span *piece)
+{
+    return piece->y0 / s->tile * s->tiles_across + piece->x0 / s->tile;
+}
+
+static bool done(void *context, const span *piece, const film *traced, const double *variance)
+{
+    team *t = context;
+    const size_t values = 3 * (size_t)(piece->x1 - piece->x0) * (size_t)(piece->y1 - piece->y0);
+    const size_t bytes = values * sizeof(int64_t) * (variance ? 2 : 1);
+    piece_message *message = malloc(sizeof *message + bytes);
+    if (!message) {
+        atomic_store(&t->failed, true);
+        stop(t);
+        return false;
+    }
+    message->next = NULL;
+    message->bytes = sizeof message->head + bytes;
+    message->head = (wire_head){.value = number_of(&t->tiles, piece)};
+    memcpy(message->values, traced->sum, values * sizeof(int64_t));
+    if (variance)
+        memcpy(message->values + values, variance, values * sizeof *variance);
+    pthread_mutex_lock(&t->lock);
+    *t->newest = message;
+    t->newest = &message->next;
+    const bool goes_on = !t->stopped;
+    pthread_cond_signal(&t->has_piece);
+    pthread_mutex_unlock(&t->lock);
+    return goes_on;
+}
+
+/* --- */
+
+status team_create(const schedule *tiles, int threads, team **out, diagnostic *why)
+{
+    team *t = aligned_alloc(64, (sizeof *t + 63) / 64 * 64); /* a schedule is aligned to cache lines */
+    if (!t)
+        return out_of_memory(why);
+    memset(t, 0, sizeof *t);
+    pthread_condattr_t monotonic;
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_mutex_init(&t->lock, NULL);
+    pthread_cond_init(&t->has_tile, NULL);
+    pthread_cond_init(&t->has_piece, &monotonic);
+    pthread_condattr_destroy(&monotonic);
+    t->tiles = *tiles;
+    t->newest = &t->oldest;
+    t->facing_messenger = (tracing){threads, t, give, take, end, stop, over, wait_for_event};
+    t->facing_renderer = (piece_source){.side = tiles->tile, .next = next, .done = done, .context = t};
+    *out = t;
+    return STATUS_OK;
+}
+
+void team_destroy(team *t)
+{
+    if (!t)
+        return;
+    for (piece_message *piece = t->oldest, *following; piece; piece = following) {
+        following = piece->next;
+        free(piece);
+    }
+    pthread_cond_destroy(&t->has_piece);
+    pthread_cond_destroy(&t->has_tile);
+    pthread_mutex_destroy(&t->lock);
+    free(t->queue);
+    free(t);
+}
+
+const tracing *team_tracing(const team *t)
+{
+    return &t->facing_messenger;
+}
+
+const piece_source *team_source(const team *t)
+{
+    return &t->facing_renderer;
+}
+
+void team_left(team *t)
+{
+    pthread_mutex_lock(&t->lock);
+    t->left = true;
+    pthread_cond_signal(&t->has_piece);
+    pthread_mutex_unlock(&t->lock);
+}
+
+bool team_is_stopped(team *t)
+{
+    pthread_mutex_lock(&t->lock);
+    const bool stopped = t->stopped;
+    pthread_mutex_unlock(&t->lock);
+    return stopped;
+}
+
+render_settings tiles_settings(const render_settings *r, int side)
+{
+    render_settings settings = *r;
+    settings.schedule = SCHEDULE_DYNAMIC;
+    settings.tile = side;
+    settings.pieces = 0;
+    settings.threads = 1;
+    return settings;
+}

@@ -1,0 +1,25 @@
+/* The threads that trace the tiles of one rank, behind the interface of its messenger (mpi/messenger.h): two queues, of
+ * tiles to trace and of traced pieces. The renderer takes the tiles as its source (render/core/renderer.h). Ownership:
+ * team_create allocates, team_destroy releases, after the messenger and the renderer have ended. */
+#pragma once
+
+#include "mpi/messenger.h"
+#include "scene/model/render_settings.h"
+
+typedef struct team team;
+
+/* tiles: the frame's tiles, as schedule_start makes them; copied. */
+status team_create(const schedule *tiles, int threads, team **out, diagnostic *why);
+void team_destroy(team *t); /* NULL is allowed */
+
+/* For the messenger, and for the renderer; borrowed from the team. */
+const tracing *team_tracing(const team *t);
+const piece_source *team_source(const team *t);
+
+/* The renderer has ended: its threads take no more tiles. */
+void team_left(team *t);
+/* Whether the frame was given up. Any thread may ask. */
+bool team_is_stopped(team *t);
+
+/* The settings with which all ranks have the same tiles: of that side, whatever their threads. */
+render_settings tiles_settings(const render_settings *r, int side);
