@@ -1,7 +1,7 @@
 /* The hand-out of a frame's tiles to the ranks of an MPI job: which tiles a rank is given, and when. Tiles are given in
  * order, on demand. A rank holds as many tiles as it has threads, and a few more, so that it need not wait for the next
- * ones: as many as it traces in HANDOUT_AHEAD_S. Near the end it gets none in advance, unless they take less time than a
- * message: the last tiles are then not queued at one rank while others idle. Pure: no messages, no clock, no threads.
+ * ones: as many as it traces in HANDOUT_AHEAD_S. Near the end it gets none in advance, unless they take less time than
+ * a message: the last tiles are then not queued at one rank while others idle. Pure: no messages, no clock, no threads.
  * Ownership: handout_create allocates, handout_destroy releases. Errors: a tile that is returned by a rank that does
  * not hold it. */
 #pragma once
