@@ -38,6 +38,7 @@ struct cuvette_query {
     isa level;
     pthread_mutex_t tracing; /* held while the probe traces */
     probe *inspector;        /* made by the first tree */
+    bool one_wavelength;     /* absorption too is that at render.lambda_nm */
     atomic_int owners;       /* the handle, and the trees and fans, whose names are the scene's */
 };
 

@@ -2,6 +2,7 @@
 #include "engine/query_private.h"
 
 #include "base/file.h"
+#include "render/inspect/beams.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"
 #include <math.h>
@@ -76,6 +77,76 @@ void cuvette_tree_destroy(cuvette_tree *tree)
     ray_tree_release(&tree->traced);
     cuvette_query_destroy(tree->of);
     free(tree);
+}
+
+typedef struct beam_call {
+    cuvette_query *of;
+    bool (*visit)(void *context, const cuvette_beam_ray *ray, cuvette_tree *tree);
+    void *context;
+    float_environment *host; /* the caller's, for the callback */
+    bool stopped;
+} beam_call;
+
+static status copy_tree(const ray_tree *from, ray_tree *out, diagnostic *why)
+{
+    *out = *from;
+    out->node = malloc((from->count + 1) * sizeof *out->node);
+    out->capacity = from->count + 1;
+    if (!out->node) {
+        *out = (ray_tree){0};
+        return out_of_memory(why);
+    }
+    memcpy(out->node, from->node, from->count * sizeof *out->node);
+    return STATUS_OK;
+}
+
+/* Names come from the query's own probe: that of the beam does not outlive the visit. */
+static status give_nodes(cuvette_query *query, cuvette_tree *tree, diagnostic *why)
+{
+    cuvette_query *q = NULL;
+    TRY(query_begin_trace(query, &q, why));
+    tree->nodes = tree_nodes_make(q, tree->traced.node, tree->traced.count);
+    query_end_trace(q);
+    return tree->nodes ? STATUS_OK : out_of_memory(why);
+}
+
+static status pass_beam_ray(void *context, const beam_ray *ray, const ray_tree *grown, const probe *p, diagnostic *why)
+{
+    beam_call *c = context;
+    (void)p;
+    cuvette_tree *tree = calloc(1, sizeof *tree);
+    if (!tree)
+        return out_of_memory(why);
+    tree->of = query_share(c->of);
+    status code = copy_tree(grown, &tree->traced, why);
+    THEN(code, give_nodes(c->of, tree, why));
+    if (code != STATUS_OK) {
+        cuvette_tree_destroy(tree);
+        return code;
+    }
+    const cuvette_beam_ray one = {.beam_name = c->of->model->beams[ray->beam].name,
+                                  .beam = ray->beam,
+                                  .number = ray->number,
+                                  .rays = ray->rays,
+                                  .lambda_nm = ray->lambda_nm,
+                                  .power = ray->power};
+    float_environment_leave(c->host);
+    c->stopped = !c->visit(c->context, &one, tree);
+    float_environment_enter(c->host);
+    return c->stopped ? STATUS_INTERRUPTED : STATUS_OK;
+}
+
+cuvette_status cuvette_query_each_beam_ray(const cuvette_query *query,
+                                           bool (*visit)(void *context, const cuvette_beam_ray *ray,
+                                                         cuvette_tree *tree),
+                                           void *context, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(query);
+    ENGINE_NEED_NAMED(visit, "visit");
+    cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
+    beam_call call = {q, visit, context, &host, false};
+    const status code = beams_each_ray(q->model, q->level, 0, pass_beam_ray, &call, &inner);
+    return engine_report(call.stopped ? STATUS_OK : code, &inner, why);
 }
 
 /* What a tree starts with: a pixel, or a ray. */
