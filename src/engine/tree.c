@@ -2,7 +2,6 @@
 #include "engine/query_private.h"
 
 #include "base/file.h"
-#include "render/inspect/beams.h"
 #include "report/trace_writers.h"
 #include "scene/model/scene.h"
 #include <math.h>
@@ -79,14 +78,6 @@ void cuvette_tree_destroy(cuvette_tree *tree)
     free(tree);
 }
 
-typedef struct beam_call {
-    cuvette_query *of;
-    bool (*visit)(void *context, const cuvette_beam_ray *ray, cuvette_tree *tree);
-    void *context;
-    float_environment *host; /* the caller's, for the callback */
-    bool stopped;
-} beam_call;
-
 static status copy_tree(const ray_tree *from, ray_tree *out, diagnostic *why)
 {
     *out = *from;
@@ -110,43 +101,20 @@ static status give_nodes(cuvette_query *query, cuvette_tree *tree, diagnostic *w
     return tree->nodes ? STATUS_OK : out_of_memory(why);
 }
 
-static status pass_beam_ray(void *context, const beam_ray *ray, const ray_tree *grown, const probe *p, diagnostic *why)
+status tree_copy(cuvette_query *query, const ray_tree *from, cuvette_tree **out, diagnostic *why)
 {
-    beam_call *c = context;
-    (void)p;
+    *out = NULL;
     cuvette_tree *tree = calloc(1, sizeof *tree);
     if (!tree)
         return out_of_memory(why);
-    tree->of = query_share(c->of);
-    status code = copy_tree(grown, &tree->traced, why);
-    THEN(code, give_nodes(c->of, tree, why));
-    if (code != STATUS_OK) {
+    tree->of = query_share(query);
+    status code = copy_tree(from, &tree->traced, why);
+    THEN(code, give_nodes(query, tree, why));
+    if (code == STATUS_OK)
+        *out = tree;
+    else
         cuvette_tree_destroy(tree);
-        return code;
-    }
-    const cuvette_beam_ray one = {.beam_name = c->of->model->beams[ray->beam].name,
-                                  .beam = ray->beam,
-                                  .number = ray->number,
-                                  .rays = ray->rays,
-                                  .lambda_nm = ray->lambda_nm,
-                                  .power = ray->power};
-    float_environment_leave(c->host);
-    c->stopped = !c->visit(c->context, &one, tree);
-    float_environment_enter(c->host);
-    return c->stopped ? STATUS_INTERRUPTED : STATUS_OK;
-}
-
-cuvette_status cuvette_query_each_beam_ray(const cuvette_query *query,
-                                           bool (*visit)(void *context, const cuvette_beam_ray *ray,
-                                                         cuvette_tree *tree),
-                                           void *context, cuvette_diagnostic *why)
-{
-    ENGINE_CALL(query);
-    ENGINE_NEED_NAMED(visit, "visit");
-    cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
-    beam_call call = {q, visit, context, &host, false};
-    const status code = beams_each_ray(q->model, q->level, 0, pass_beam_ray, &call, &inner);
-    return engine_report(call.stopped ? STATUS_OK : code, &inner, why);
+    return code;
 }
 
 /* What a tree starts with: a pixel, or a ray. */
