@@ -561,9 +561,9 @@ typedef struct cuvette_beam_ray {
     double power; /* at its start: the beam's power divided by its rays and wavelengths */
 } cuvette_beam_ray;
 
-/* Traces the rays of the scene's visible beams as `cuvette trace --beams` does: without shadow rays, each with the depth
- * and the wavelengths of its beam. visit owns the tree, and returns false to stop. CUVETTE_BAD_INPUT beyond a million
- * rays. */
+/* Traces the rays of the scene's visible beams as `cuvette trace --beams` does: without shadow rays, each with the
+ * depth and the wavelengths of its beam. visit owns the tree, and returns false to stop. CUVETTE_BAD_INPUT beyond a
+ * million rays. */
 CUVETTE_API cuvette_status cuvette_query_each_beam_ray(const cuvette_query *query,
                                                        bool (*visit)(void *context, const cuvette_beam_ray *ray,
                                                                      cuvette_tree *tree),
@@ -813,9 +813,9 @@ CUVETTE_API cuvette_status cuvette_study_run(const cuvette_study *study, const c
 /* The number of processes that divide the repetitions; 1: no others. */
 CUVETTE_API long cuvette_study_processes(const cuvette_study *study);
 
-/* The rows, as CSV with two more columns: environment, the key of the row's, and left_out, why the summary does not take
- * the row: warm-up, marked, excluded; else empty. Damaged rows are not in it, nor those of cells that the study does not
- * have. study may be NULL: results is then the folder of the rows, RESULTS/NAME, and all its cells are taken.
+/* The rows, as CSV with two more columns: environment, the key of the row's, and left_out, why the summary does not
+ * take the row: warm-up, marked, excluded; else empty. Damaged rows are not in it, nor those of cells that the study
+ * does not have. study may be NULL: results is then the folder of the rows, RESULTS/NAME, and all its cells are taken.
  * environment: a key; "main": that with most rows; "all"; NULL: if there are several, CUVETTE_BAD_INPUT names them.
  * *fault as in the summary. */
 CUVETTE_API cuvette_status cuvette_study_rows(const cuvette_study *study, const char *results, const char *environment,

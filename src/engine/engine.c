@@ -195,8 +195,8 @@ static status render(stage *now, const scene *s, cuvette_frame *frame, diagnosti
     return code;
 }
 
-/* What an image file of the frame tells about its scene (scene/file/shared.h). The text has a few bytes of each solid at
- * least, so a scene with more is not copied. */
+/* What an image file of the frame tells about its scene (scene/file/shared.h). The text has a few bytes of each solid
+ * at least, so a scene with more is not copied. */
 static status keep_scene(const cuvette_scene *s, cuvette_frame *frame, diagnostic *why)
 {
     if (s->grabbed || s->model->solid_count > SHARED_TEXT_MAX / 16 || shared_scene_check(s->model, NULL) != STATUS_OK)

@@ -1,5 +1,5 @@
-/* Internals of a query, shared by query.c (creation), query_rays.c (ray queries), tree.c, beams.c and fan.c (ray trees):
- * the query, the scratch memory of a call, and the nodes of a tree. */
+/* Internals of a query, shared by query.c (creation), query_rays.c (ray queries), tree.c, beams.c and fan.c (ray
+ * trees): the query, the scratch memory of a call, and the nodes of a tree. */
 #pragma once
 
 #include "engine/engine_private.h"
