@@ -116,6 +116,12 @@ CUVETTE_API cuvette_status cuvette_scene_write(const cuvette_scene *scene, const
 CUVETTE_API cuvette_status cuvette_scene_write_text(const cuvette_scene *scene, char *text, size_t size, size_t *length,
                                                     cuvette_diagnostic *why);
 
+/* Reads the files that the scene names, and simulates its slimes until their time_s, which otherwise its first render,
+ * query or measurement does. progress, which may be NULL, gets the share of the simulation about ten times a second and
+ * returns false to stop: CUVETTE_CANCELLED. */
+CUVETTE_API cuvette_status cuvette_scene_load(const cuvette_scene *scene, bool (*progress)(void *context, double share),
+                                              void *context, cuvette_diagnostic *why);
+
 /* Calls note with one line of text, "PLACE: WHAT; REMEDY", for everything that is valid but looks like a mistake: a
  * black solid, no light, a setting without effect. The text is valid during the call. PLACE is a parameter's path or an
  * object's name. */
@@ -301,8 +307,8 @@ typedef struct cuvette_request {
     /* 2..64: render first an image of 1/preview of the width and height, shown with one square per pixel; 0: none.
      * Costs 1/preview^2 of the frame, which the frame's counts and times do not include */
     int preview;
-    /* finished share of the frame, 0..1, never decreasing: once 0 before the first ray, about ten times a second, and 1
-     * at the end; return false to cancel. May be NULL */
+    /* finished share of the frame, 0..1, never decreasing, about ten times a second: 0 before the first ray and while
+     * slimes are simulated, 1 at the end; return false to cancel. May be NULL */
     bool (*progress)(void *context, double share);
     /* finished pieces of the buffers: one for a preview, then each tile of the image once (render.schedule,
      * render.tile), about ten times a second. Without it the buffers are filled at the end. May be NULL */
@@ -347,7 +353,9 @@ CUVETTE_API cuvette_status cuvette_frame_rgb(const cuvette_frame *frame, int x0,
 CUVETTE_API cuvette_status cuvette_frame_srgb(const cuvette_frame *frame, int x0, int y0, int x1, int y1,
                                               unsigned char *srgb, size_t stride, cuvette_diagnostic *why);
 /* Writes the image in the format of the path's ending: .png (bits: 8 or 16 per channel), .jpg, .pfm (linear floats);
- * "-" is a PNG on standard output. The file is written completely or not at all. */
+ * "-" is a PNG on standard output. The file is written completely or not at all. A PNG carries the scene as it was
+ * rendered, so that cuvette_scene_read and the program open it, unless the scene names files, is too large
+ * (cuvette-scene(5)) or has slimes that hands grabbed. */
 CUVETTE_API cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path, int bits,
                                                cuvette_diagnostic *why);
 
@@ -407,6 +415,11 @@ typedef struct cuvette_query cuvette_query;
 /* Prepares a snapshot of the scene for ray queries. instructions as in cuvette_engine_create. */
 CUVETTE_API cuvette_status cuvette_query_create(const cuvette_scene *scene, const char *instructions,
                                                 cuvette_query **out, cuvette_diagnostic *why);
+/* The same at one wavelength, in nm, as `cuvette trace --lambda`: it replaces render.lambda_nm, and trees and fans have
+ * the absorption of media at it in all channels. */
+CUVETTE_API cuvette_status cuvette_query_wavelength_create(const cuvette_scene *scene, double lambda_nm,
+                                                           const char *instructions, cuvette_query **out,
+                                                           cuvette_diagnostic *why);
 CUVETTE_API void cuvette_query_destroy(cuvette_query *query);
 
 enum { CUVETTE_OUTSIDE = -1 }; /* in place of a solid's index: no solid */
@@ -539,6 +552,23 @@ CUVETTE_API cuvette_status cuvette_tree_radiance(const cuvette_tree *tree, doubl
 /* Writes what `cuvette trace` writes, in the format of the path's ending: .txt, .json, .svg. */
 CUVETTE_API cuvette_status cuvette_tree_write(const cuvette_tree *tree, const char *path, cuvette_diagnostic *why);
 
+/* A ray of one of the scene's beams; beam_name is valid until its tree is destroyed. */
+typedef struct cuvette_beam_ray {
+    const char *beam_name;
+    int32_t beam;         /* index of the beam in the scene */
+    int32_t number, rays; /* of this ray in its beam, from 0, and their count; for each wavelength the same */
+    double lambda_nm;
+    double power; /* at its start: the beam's power divided by its rays and wavelengths */
+} cuvette_beam_ray;
+
+/* Traces the rays of the scene's visible beams as `cuvette trace --beams` does: without shadow rays, each with the
+ * depth and the wavelengths of its beam. visit owns the tree, and returns false to stop. CUVETTE_BAD_INPUT beyond a
+ * million rays. */
+CUVETTE_API cuvette_status cuvette_query_each_beam_ray(const cuvette_query *query,
+                                                       bool (*visit)(void *context, const cuvette_beam_ray *ray,
+                                                                     cuvette_tree *tree),
+                                                       void *context, cuvette_diagnostic *why);
+
 /* The rays of a fan. Begin with zeros and set size; later versions add fields at the end. */
 typedef struct cuvette_fan_rule {
     size_t size;           /* sizeof(cuvette_fan_rule) */
@@ -668,6 +698,11 @@ CUVETTE_API void cuvette_motion_destroy(cuvette_motion *motion);
 /* Advances to time_s, 0 to 86400, rounded for each slime to the nearest whole number of its steps; not backwards.
  * CUVETTE_BAD_INPUT also when a slime becomes unstable, or a hand of its script grabs nothing. */
 CUVETTE_API cuvette_status cuvette_motion_advance(cuvette_motion *motion, double time_s, cuvette_diagnostic *why);
+/* The same with a progress function as that of cuvette_scene_load. After CUVETTE_CANCELLED the scene still shows the
+ * time before, and a later advance, to a time not before that of the bodies (cuvette_motion_state), continues. */
+CUVETTE_API cuvette_status cuvette_motion_advance_watched(cuvette_motion *motion, double time_s,
+                                                          bool (*progress)(void *context, double share), void *context,
+                                                          cuvette_diagnostic *why);
 
 /* The number of slimes, and the names of their meshes; a name is valid until the scene is changed. 0 and NULL for a
  * slime that does not exist. */
@@ -777,6 +812,14 @@ CUVETTE_API cuvette_status cuvette_study_run(const cuvette_study *study, const c
                                              cuvette_diagnostic *why);
 /* The number of processes that divide the repetitions; 1: no others. */
 CUVETTE_API long cuvette_study_processes(const cuvette_study *study);
+
+/* The rows, as CSV with two more columns: environment, the key of the row's, and left_out, why the summary does not
+ * take the row: warm-up, marked, excluded; else empty. Damaged rows are not in it, nor those of cells that the study
+ * does not have. study may be NULL: results is then the folder of the rows, RESULTS/NAME, and all its cells are taken.
+ * environment: a key; "main": that with most rows; "all"; NULL: if there are several, CUVETTE_BAD_INPUT names them.
+ * *fault as in the summary. */
+CUVETTE_API cuvette_status cuvette_study_rows(const cuvette_study *study, const char *results, const char *environment,
+                                              char **out, char **fault, cuvette_diagnostic *why);
 
 /* The summary of `cuvette study summary`, as a table with tabs: medians and 95 % intervals, a line for each cell and
  * environment. environment: a key; "main": that with most rows; NULL: all. *fault, which may be NULL, is set to the

@@ -353,6 +353,36 @@ static void the_film_equals_the_programs_film(void **state)
     cuvette_engine_destroy(engine);
 }
 
+/* The frame keeps the scene as it was: later changes are not in the file. */
+static void an_image_file_carries_its_scene(void **state)
+{
+    (void)state;
+    static const float white[3] = {1, 1, 1};
+    char path[] = "/tmp/cuvette-image-XXXXXX.png";
+    close(mkstemps(path, 4));
+    cuvette_diagnostic why;
+    cuvette_engine *engine = make_engine();
+    cuvette_scene *s = rod(40, 4, 2), *again;
+    cuvette_frame *frame;
+    fine(cuvette_engine_render(engine, s, NULL, &frame, &why), &why);
+    turn(s, "liquid.ior", "1.9");
+    fine(cuvette_frame_write(frame, path, 8, &why), &why);
+    fine(cuvette_scene_read(path, &again, &why), &why);
+    assert_true(hash_of(engine, again) == cuvette_frame_hash(frame));
+    assert_true(hash_of(engine, s) != cuvette_frame_hash(frame));
+    cuvette_frame_destroy(frame);
+    cuvette_scene_destroy(again);
+    fine(cuvette_scene_add_pixels(s, "from-memory", 1, 1, white, &why), &why);
+    fine(cuvette_engine_render(engine, s, NULL, &frame, &why), &why);
+    fine(cuvette_frame_write(frame, path, 16, &why), &why);
+    assert_int_equal(cuvette_scene_read(path, &again, &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.what, "holds no scene"));
+    cuvette_frame_destroy(frame);
+    cuvette_scene_destroy(s);
+    cuvette_engine_destroy(engine);
+    unlink(path);
+}
+
 static void counters_and_pixels_equal_the_renderers(void **state)
 {
     (void)state;
@@ -716,6 +746,7 @@ int main(void)
         cmocka_unit_test(objects_are_added_moved_turned_and_removed),
         cmocka_unit_test(a_texture_from_memory_is_visible),
         cmocka_unit_test(the_film_equals_the_programs_film),
+        cmocka_unit_test(an_image_file_carries_its_scene),
         cmocka_unit_test(counters_and_pixels_equal_the_renderers),
         cmocka_unit_test(a_shorter_struct_is_filled_up_to_its_size),
         cmocka_unit_test(each_piece_is_reported_once_and_final),

@@ -564,6 +564,90 @@ static void two_motions_do_not_affect_each_other(void **state)
         assert_true(hashes[0][i] == hashes[1][i] && hashes[0][i] == film_afresh(0.05 * (i + 1), NULL));
 }
 
+/* Stops at the call of that number, from 1, and tries a clone, which a lock held by the caller must allow. */
+typedef struct patience {
+    const cuvette_scene *of;
+    int calls, most;
+    double share;
+} patience;
+
+static bool be_patient(void *context, double share)
+{
+    patience *p = context;
+    cuvette_scene *clone;
+    cuvette_diagnostic why;
+    fine(cuvette_scene_clone(p->of, &clone, &why), &why);
+    cuvette_scene_destroy(clone);
+    assert_true(share >= p->share && share <= 1);
+    p->share = share;
+    return ++p->calls < p->most;
+}
+
+static void loading_stops_and_continues(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_scene *s = scene_of(toys);
+    cuvette_engine *engine;
+    cuvette_frame *frame = NULL;
+    fine(cuvette_scene_set(s, "toy.time_s", "2000", &why), &why);
+    patience p = {.of = s, .most = 2};
+    assert_int_equal(cuvette_scene_load(s, be_patient, &p, &why), CUVETTE_CANCELLED);
+    assert_int_equal(p.calls, 2);
+    cuvette_request request = CUVETTE_REQUEST;
+    p = (patience){.of = s, .most = 3};
+    request.progress = be_patient, request.context = &p;
+    fine(cuvette_engine_create(NULL, &engine, &why), &why);
+    assert_int_equal(cuvette_engine_render(engine, s, &request, &frame, &why), CUVETTE_CANCELLED);
+    assert_true(p.calls == 3 && p.share == 0 && !frame);
+    cuvette_engine_destroy(engine);
+    turn(s, "toy.time_s", "0.4");
+    fine(cuvette_scene_load(s, NULL, NULL, &why), &why);
+    turn(s, "drop.time_s", "0.4");
+    assert_true(film_of(s) == film_afresh(0.4, NULL));
+    cuvette_scene_destroy(s);
+}
+
+static void an_advance_stops_and_continues(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_scene *s = scene_of(toys);
+    cuvette_motion *m = begin(s);
+    const uint64_t at_rest = film_of(s);
+    patience p = {.of = s, .most = 1};
+    assert_int_equal(cuvette_motion_advance_watched(m, 2000, be_patient, &p, &why), CUVETTE_CANCELLED);
+    const double reached_s = state_of(m, "toy").time_s;
+    assert_true(reached_s > 0 && reached_s < 100 && state_of(m, "drop").time_s == 0);
+    assert_true(film_of(s) == at_rest);
+    assert_int_equal(cuvette_motion_advance(m, 0, &why), CUVETTE_BAD_INPUT);
+    advance(m, reached_s + 0.1);
+    assert_true(film_of(s) == film_afresh(reached_s + 0.1, NULL));
+    cuvette_motion_destroy(m);
+    cuvette_scene_destroy(s);
+}
+
+/* A hand that is stopped on its way stays there, and goes on from there. */
+static void a_hand_stops_on_its_way(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_scene *s = scene_of(toys);
+    cuvette_motion *m = begin(s);
+    const cuvette_ray down = {.origin = {-0.6, 9, 0}, .direction = {0, -1, 0}};
+    const int hand = grab(m, "toy", down, 0.2);
+    const double from = state_of(m, "toy").high;
+    fine(cuvette_motion_move(m, hand, (const double[]){0, 0.5, 0}, &why), &why);
+    patience p = {.of = s, .most = 1};
+    assert_int_equal(cuvette_motion_advance_watched(m, 60, be_patient, &p, &why), CUVETTE_CANCELLED);
+    const cuvette_slime between = state_of(m, "toy");
+    assert_true(between.time_s > 0 && between.time_s < 30 && between.high < from + 0.3);
+    advance(m, between.time_s + 0.5);
+    assert_true(fabs(state_of(m, "toy").high - (from + 0.5)) < 0.05);
+    cuvette_motion_destroy(m);
+    cuvette_scene_destroy(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -580,6 +664,9 @@ int main(void)
         cmocka_unit_test(a_motion_ends_when_a_slime_is_unstable),
         cmocka_unit_test(objects_in_use_return_busy),
         cmocka_unit_test(two_motions_do_not_affect_each_other),
+        cmocka_unit_test(loading_stops_and_continues),
+        cmocka_unit_test(an_advance_stops_and_continues),
+        cmocka_unit_test(a_hand_stops_on_its_way),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,6 +109,77 @@ static void test_a_tree_outlives_its_query(void **state)
 }
 
 /* The paraxial focus of a ball of radius 1 in air: n / (2 (n - 1)) behind its centre. */
+/* Of a medium that absorbs by wavelength, the three channels are equal then, and follow Beer and Lambert. */
+static void test_one_wavelength(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "camera: {position: [0, 0, -6], target: [0, 0, 0]}\n"
+        "solids:\n"
+        "  ball: {shape: sphere, position: [0, 0, 0], radius: 1, transparency: 1, medium: water,\n"
+        "         absorb_spectrum: [400, 0.1, 700, 0.7]}\n";
+    const cuvette_ray axis = {.origin = {0, 0, -6}, .direction = {0, 0, 1}};
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    cuvette_query *q;
+    cuvette_tree *tree;
+    fine(cuvette_scene_read_text("ball", text, sizeof text - 1, &s, &why), &why);
+    fine(cuvette_query_wavelength_create(s, 500, NULL, &q, &why), &why);
+    fine(cuvette_query_trace(q, &axis, &tree, &why), &why);
+    const cuvette_node *node = cuvette_tree_nodes(tree, NULL);
+    const cuvette_node *inside = node;
+    while (inside->medium != 0)
+        inside++;
+    assert_true(fabs(node->n_after - 1.3374) < 1e-3);
+    for (int k = 0; k < 3; k++)
+        assert_true(fabs(inside->transmittance[k] - exp(-0.3 * 2)) < 1e-12);
+    cuvette_tree_destroy(tree);
+    cuvette_query_destroy(q);
+    assert_int_equal(cuvette_query_wavelength_create(s, 10, NULL, &q, &why), CUVETTE_BAD_INPUT);
+    assert_null(q);
+    cuvette_scene_destroy(s);
+}
+
+typedef struct beam_tally {
+    int rays, stop_after;
+    cuvette_tree *first; /* kept */
+    double power;
+} beam_tally;
+
+static bool take_beam_ray(void *context, const cuvette_beam_ray *ray, cuvette_tree *tree)
+{
+    beam_tally *t = context;
+    assert_string_equal(ray->beam_name, "sun");
+    assert_true(ray->number < ray->rays && ray->beam == 0);
+    t->power += ray->power;
+    if (t->rays++ == 0)
+        t->first = tree;
+    else
+        cuvette_tree_destroy(tree);
+    return t->rays != t->stop_after;
+}
+
+static void test_beams(void **state)
+{
+    (void)state;
+    cuvette_diagnostic why;
+    cuvette_scene *s;
+    size_t count;
+    beam_tally all = {0}, two = {.stop_after = 2};
+    fine(cuvette_scene_read("experiments/scenes/lens.yaml", &s, &why), &why);
+    cuvette_query *q = query_of(s);
+    fine(cuvette_query_each_beam_ray(q, take_beam_ray, &all, &why), &why);
+    fine(cuvette_query_each_beam_ray(q, take_beam_ray, &two, &why), &why);
+    cuvette_query_destroy(q);
+    assert_true(all.rays > 2 && two.rays == 2 && fabs(all.power - 1) < 1e-12);
+    const cuvette_node *node = cuvette_tree_nodes(all.first, &count);
+    assert_string_equal(node->medium_name, "air");
+    assert_string_equal(node->solid_name, "vessel");
+    assert_true(count > 1);
+    cuvette_tree_destroy(all.first);
+    cuvette_tree_destroy(two.first);
+}
+
 static void test_focus_of_a_ball(void **state)
 {
     (void)state;
@@ -294,6 +365,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_radiance_of_a_tree_is_the_film),
         cmocka_unit_test(test_a_tree_outlives_its_query),
+        cmocka_unit_test(test_one_wavelength),
+        cmocka_unit_test(test_beams),
         cmocka_unit_test(test_focus_of_a_ball),
         cmocka_unit_test(test_wrong_rays_and_fans),
         cmocka_unit_test(test_optics),

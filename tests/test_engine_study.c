@@ -150,6 +150,40 @@ static void test_what_the_rows_say(void **state)
     assert_int_equal(cuvette_study_plot(s, &plot, path, "png", &why), CUVETTE_BAD_INPUT);
 }
 
+static int count_of(const char *text, const char *part)
+{
+    int count = 0;
+    for (const char *at = text; (at = strstr(at, part)); at += strlen(part))
+        count++;
+    return count;
+}
+
+static void test_rows(void **state)
+{
+    const cuvette_study *s = *state;
+    cuvette_diagnostic why;
+    cuvette_study_progress done = {.size = sizeof done};
+    char *text = NULL, *alone = NULL, *fault = NULL, place[192];
+    fine(cuvette_study_state(s, results, &done, &why), &why);
+    fine(cuvette_study_rows(s, results, NULL, &text, &fault, &why), &why);
+    assert_null(fault);
+    assert_true(strncmp(text, "study,", 6) == 0 && count_of(text, ",environment,left_out\n") == 1);
+    assert_int_equal(count_of(text, "\n"), 1 + done.rows + done.warmups);
+    assert_int_equal(count_of(text, ",warm-up\n"), done.warmups);
+    assert_int_equal(count_of(text, done.environment), done.rows + done.warmups);
+    snprintf(place, sizeof place, "%s/tiny/", results);
+    fine(cuvette_study_rows(NULL, place, "main", &alone, NULL, &why), &why);
+    assert_string_equal(text, alone);
+    cuvette_text_destroy(alone);
+    cuvette_text_destroy(text);
+    assert_int_equal(cuvette_study_rows(s, results, "00000000", &text, NULL, &why), CUVETTE_BAD_INPUT);
+    assert_non_null(strstr(why.remedy, done.environment));
+    assert_int_equal(cuvette_study_rows(s, folder, NULL, &text, NULL, &why), CUVETTE_BAD_INPUT);
+    assert_string_equal(why.what, "there are no rows");
+    assert_int_equal(cuvette_study_rows(NULL, NULL, NULL, &text, NULL, &why), CUVETTE_BAD_INPUT);
+    assert_null(text);
+}
+
 static bool take_column(void *context, const cuvette_column *one)
 {
     int *seen = context;
@@ -186,9 +220,13 @@ static void test_wrong_arguments(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cells),   cmocka_unit_test(test_values),
-        cmocka_unit_test(test_run),     cmocka_unit_test(test_what_the_rows_say),
-        cmocka_unit_test(test_columns), cmocka_unit_test(test_wrong_arguments),
+        cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_run),
+        cmocka_unit_test(test_what_the_rows_say),
+        cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_columns),
+        cmocka_unit_test(test_wrong_arguments),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

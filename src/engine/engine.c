@@ -3,6 +3,7 @@
 #include "engine/engine_private.h"
 
 #include "measure/clock.h"
+#include "scene/file/shared.h"
 #include "scene/model/scene.h"
 #include <stdlib.h>
 #include <string.h>
@@ -53,7 +54,8 @@ typedef struct stage {
     const cuvette_request *request;
     float_environment *host; /* the caller's, for callbacks */
     canvas buffers;
-    double share; /* largest share reported so far */
+    double share;        /* largest share reported so far */
+    double load_asked_s; /* when the caller was asked last while slimes were simulated */
     bool is_preview;
     status noted; /* of passing pieces to the callback */
 } stage;
@@ -81,6 +83,18 @@ static bool watch(void *context, double share)
     if (now->request->piece && now->noted == STATUS_OK)
         now->noted = canvas_hand_out(&now->buffers, NULL);
     return report_share(now, now->is_preview ? 0.0 : share);
+}
+
+/* Slimes are simulated before the first ray. */
+static bool watch_loading(void *context, double share)
+{
+    static const double ask_every_s = 0.1;
+    stage *now = context;
+    (void)share;
+    if (clock_wall_s() < now->load_asked_s + ask_every_s)
+        return !job_must_stop(now->engine->workers);
+    now->load_asked_s = clock_wall_s();
+    return report_share(now, 0.0);
 }
 
 static void take_piece(void *context, const film *img, int x0, int y0, int x1, int y1)
@@ -181,6 +195,16 @@ static status render(stage *now, const scene *s, cuvette_frame *frame, diagnosti
     return code;
 }
 
+/* What an image file of the frame tells about its scene (scene/file/shared.h). The text has a few bytes of each solid
+ * at least, so a scene with more is not copied. */
+static status keep_scene(const cuvette_scene *s, cuvette_frame *frame, diagnostic *why)
+{
+    if (s->grabbed || s->model->solid_count > SHARED_TEXT_MAX / 16 || shared_scene_check(s->model, NULL) != STATUS_OK)
+        return STATUS_OK;
+    frame->of = scene_clone(s->model);
+    return frame->of ? STATUS_OK : out_of_memory(why);
+}
+
 /* The caller holds the engine and the scene; `given` is the caller's request. */
 static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvette_request *given,
                           float_environment *host, cuvette_frame *frame, diagnostic *why)
@@ -188,8 +212,9 @@ static status render_held(cuvette_engine *engine, cuvette_scene *s, const cuvett
     cuvette_request request;
     stage now = {.engine = engine, .request = &request, .host = host};
     status code = engine_check(s, why);
-    THEN(code, engine_load(s, why));
     THEN(code, read_request(given, s->model, &request, why));
+    THEN(code, engine_load(s, &(load_watch){watch_loading, &now}, why));
+    THEN(code, keep_scene(s, frame, why));
     THEN(code, canvas_open(&request, host, &now.buffers, why));
     if (code != STATUS_OK)
         return code;

@@ -20,6 +20,7 @@ struct cuvette_scene {
      * model */
     atomic_int owners;
     uint64_t slimes_changed; /* number of changes that invalidate a motion: of its slimes, their number, their motion */
+    bool grabbed;            /* hands moved its slimes: its text does not give their shapes */
 };
 
 struct cuvette_engine {
@@ -31,6 +32,7 @@ struct cuvette_frame {
     job_account account;
     size_t solid_count;
     double preview_s;
+    scene *of; /* as it was rendered, for image files; NULL if it cannot be shared */
 };
 
 /* Converts the library's status and diagnostic to the caller's; why is written only when code is not STATUS_OK. */
@@ -65,8 +67,18 @@ void engine_release_scene(cuvette_scene *s);
 /* scene_check while other threads may load the scene. */
 status engine_check(const cuvette_scene *s, diagnostic *why);
 
-/* Loads the files that the scene names, once. */
-status engine_load(cuvette_scene *s, diagnostic *why);
+/* Loads the files that the scene names, and its slimes, once; watch as for scene_load_until. */
+status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why);
+
+/* The caller's progress function, asked about ten times a second with a share that never decreases. ask may be NULL. */
+typedef struct host_progress {
+    bool (*ask)(void *context, double share);
+    void *context;
+    float_environment *host; /* the caller's, for the callback */
+    double share, next_s;
+} host_progress;
+/* context: a host_progress. As the go_on of a load_watch. */
+bool engine_goes_on(void *context, double share);
 
 /* Copies content, of `known` bytes, into the caller's struct of an older or a newer version, up to the caller's size;
  * the size field with which both begin is not changed. */

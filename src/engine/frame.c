@@ -11,6 +11,7 @@ void cuvette_frame_destroy(cuvette_frame *frame)
     if (!frame)
         return;
     job_account_release(&frame->account);
+    scene_destroy(frame->of);
     free(frame);
 }
 
@@ -73,7 +74,7 @@ cuvette_status cuvette_frame_write(const cuvette_frame *frame, const char *path,
     status code = bits == 8 || bits == 16
                       ? STATUS_OK
                       : diagnose(&inner, STATUS_BAD_INPUT, "give 8 or 16", "unsupported bit depth %d", bits);
-    THEN(code, record_image(frame->account.result->img, NULL, path, bits, &inner));
+    THEN(code, record_image(frame->account.result->img, frame->of, path, bits, &inner));
     return engine_report(code, &inner, why);
 }
 

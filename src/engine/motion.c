@@ -6,6 +6,7 @@
 #include "scene/model/params_path.h"
 #include "scene/model/slime.h"
 #include "scene/model/scene.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,6 +25,7 @@ void cuvette_motion_destroy(cuvette_motion *motion)
 /* The caller holds the scene. */
 static status begin(cuvette_motion *m, diagnostic *why)
 {
+    m->of->grabbed = false;
     m->of->slimes_changed++; /* invalidates the previous motion of these slimes */
     m->slimes_changed = m->of->slimes_changed;
     pthread_mutex_lock(&m->of->loading);
@@ -94,28 +96,45 @@ static status check_time(const cuvette_motion *m, double time_s, diagnostic *why
     return code;
 }
 
-static status advance(cuvette_motion *m, double time_s, diagnostic *why)
+/* The time of the body that is furthest. */
+static double reached_s(const cuvette_motion *m)
+{
+    double most = m->time_s;
+    for (size_t i = 0; i < scene_motion_count(m->bodies); i++)
+        most = fmax(most, softbody_measure(scene_motion_body(m->bodies, i)).time_s);
+    return most;
+}
+
+static status advance(cuvette_motion *m, double time_s, const load_watch *watch, diagnostic *why)
 {
     status code = STATUS_OK;
     pthread_mutex_lock(&m->of->loading);
     for (size_t i = 0; i < scene_motion_count(m->bodies) && code == STATUS_OK; i++)
-        code = scene_motion_step_held(m->bodies, i, &m->hands[i * SOFTBODY_HANDS_MAX], time_s, why);
-    THEN(code, scene_motion_advance(m->bodies, time_s, true, why));
+        code = scene_motion_step_held(m->bodies, i, &m->hands[i * SOFTBODY_HANDS_MAX], time_s, watch, why);
+    THEN(code, scene_motion_advance_until(m->bodies, time_s, true, watch, why));
     pthread_mutex_unlock(&m->of->loading);
-    m->failed = code != STATUS_OK;
-    m->time_s = time_s;
+    m->failed = code != STATUS_OK && code != STATUS_INTERRUPTED;
+    m->time_s = code == STATUS_INTERRUPTED ? reached_s(m) : time_s;
     return code;
+}
+
+cuvette_status cuvette_motion_advance_watched(cuvette_motion *motion, double time_s,
+                                              bool (*progress)(void *context, double share), void *context,
+                                              cuvette_diagnostic *why)
+{
+    ENGINE_CALL(motion);
+    host_progress asked = {.ask = progress, .context = context, .host = &host};
+    ENGINE_TRY(engine_begin_advance(motion->of, why));
+    status code = check_alive(motion, &inner);
+    THEN(code, check_time(motion, time_s, &inner));
+    THEN(code, advance(motion, time_s, &(load_watch){engine_goes_on, &asked}, &inner));
+    engine_end_advance(motion->of);
+    return engine_report(code, &inner, why);
 }
 
 cuvette_status cuvette_motion_advance(cuvette_motion *motion, double time_s, cuvette_diagnostic *why)
 {
-    ENGINE_CALL(motion);
-    ENGINE_TRY(engine_begin_advance(motion->of, why));
-    status code = check_alive(motion, &inner);
-    THEN(code, check_time(motion, time_s, &inner));
-    THEN(code, advance(motion, time_s, &inner));
-    engine_end_advance(motion->of);
-    return engine_report(code, &inner, why);
+    return cuvette_motion_advance_watched(motion, time_s, NULL, NULL, why);
 }
 
 size_t cuvette_motion_count(const cuvette_motion *motion)

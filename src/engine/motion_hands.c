@@ -56,6 +56,7 @@ cuvette_status cuvette_motion_grab(cuvette_motion *motion, const char *name, con
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     report_point(&found, where);
+    motion->of->grabbed |= number >= 0;
     *hand = number < 0 ? CUVETTE_NO_HAND : (int)slime * SOFTBODY_HANDS_MAX + number;
     return CUVETTE_OK;
 }

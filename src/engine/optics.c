@@ -10,7 +10,7 @@
 static status prepare(const cuvette_scene *s, isa *level, diagnostic *why)
 {
     status code = engine_check(s, why);
-    THEN(code, engine_load((cuvette_scene *)(uintptr_t)s, why)); /* handles are never const objects */
+    THEN(code, engine_load((cuvette_scene *)(uintptr_t)s, NULL, why)); /* handles are never const objects */
     THEN(code, isa_choose(level, why));
     return code;
 }

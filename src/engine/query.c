@@ -2,6 +2,8 @@
  * taken from a free list and returned to it, so that any number of threads may query, and a single ray costs no
  * allocation. */
 #include "engine/query_private.h"
+#include "base/number.h"
+#include "scene/model/params.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
@@ -25,7 +27,9 @@ void cuvette_query_destroy(cuvette_query *query)
     free(query);
 }
 
-static status prepare(cuvette_query *q, const scene *s, const char *instructions, diagnostic *why)
+/* lambda_nm: text of the only wavelength, or NULL. */
+static status prepare(cuvette_query *q, const scene *s, const char *lambda_nm, const char *instructions,
+                      diagnostic *why)
 {
     static const geometry_kernels *const kernels[ISA_COUNT] = ISA_ARRAY(geometry_kernels);
     isa level = ISA_BASE;
@@ -39,7 +43,11 @@ static status prepare(cuvette_query *q, const scene *s, const char *instructions
     q->level = level;
     q->kernels = kernels[level];
     q->model = scene_clone(&traced);
-    return q->model ? plan_build(q->model, &q->ready, why) : out_of_memory(why);
+    code = q->model ? STATUS_OK : out_of_memory(why);
+    if (code == STATUS_OK && lambda_nm)
+        code = scene_set(q->model, "render.lambda_nm", lambda_nm, why);
+    q->one_wavelength = lambda_nm != NULL;
+    return code == STATUS_OK ? plan_build(q->model, &q->ready, why) : code;
 }
 
 static cuvette_query *new_query(void)
@@ -68,7 +76,10 @@ status query_begin_trace(const cuvette_query *query, cuvette_query **out, diagno
 {
     cuvette_query *q = (cuvette_query *)(uintptr_t)query; /* handles are never const objects */
     pthread_mutex_lock(&q->tracing);
-    const status code = q->inspector ? STATUS_OK : probe_create(q->model, q->level, &q->inspector, why);
+    const bool is_new = !q->inspector;
+    const status code = is_new ? probe_create(q->model, q->level, &q->inspector, why) : STATUS_OK;
+    if (code == STATUS_OK && is_new && q->one_wavelength)
+        probe_one_wavelength(q->inspector);
     if (code != STATUS_OK)
         pthread_mutex_unlock(&q->tracing);
     *out = q;
@@ -80,23 +91,40 @@ void query_end_trace(cuvette_query *query)
     pthread_mutex_unlock(&query->tracing);
 }
 
-cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instructions, cuvette_query **out,
-                                    cuvette_diagnostic *why)
+static cuvette_status create(const cuvette_scene *s, const char *lambda_nm, const char *instructions,
+                             cuvette_query **out, cuvette_diagnostic *why)
 {
-    ENGINE_CALL(out);
-    *out = NULL;
-    ENGINE_NEED(s);
+    diagnostic inner = {.line = 0};
     cuvette_query *q = new_query();
     if (!q)
         return engine_report(out_of_memory(&inner), &inner, why);
-    status code = engine_load((cuvette_scene *)(uintptr_t)s, &inner); /* handles are never const objects */
-    THEN(code, prepare(q, s->model, instructions, &inner));
+    status code = engine_load((cuvette_scene *)(uintptr_t)s, NULL, &inner); /* handles are never const objects */
+    THEN(code, prepare(q, s->model, lambda_nm, instructions, &inner));
     if (code != STATUS_OK) {
         cuvette_query_destroy(q);
         return engine_report(code, &inner, why);
     }
     *out = q;
     return CUVETTE_OK;
+}
+
+cuvette_status cuvette_query_create(const cuvette_scene *s, const char *instructions, cuvette_query **out,
+                                    cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    ENGINE_NEED(s);
+    return create(s, NULL, instructions, out, why);
+}
+
+cuvette_status cuvette_query_wavelength_create(const cuvette_scene *s, double lambda_nm, const char *instructions,
+                                               cuvette_query **out, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    ENGINE_NEED(s);
+    char text[NUMBER_TEXT_MAX];
+    return create(s, number_format(lambda_nm, text), instructions, out, why);
 }
 
 bench *query_take_bench(const cuvette_query *query)

@@ -1,5 +1,5 @@
-/* Internals of a query, shared by query.c (creation), query_rays.c (ray queries), tree.c and fan.c (ray trees): the
- * query, the scratch memory of a call, and the nodes of a tree. */
+/* Internals of a query, shared by query.c (creation), query_rays.c (ray queries), tree.c, beams.c and fan.c (ray
+ * trees): the query, the scratch memory of a call, and the nodes of a tree. */
 #pragma once
 
 #include "engine/engine_private.h"
@@ -38,6 +38,7 @@ struct cuvette_query {
     isa level;
     pthread_mutex_t tracing; /* held while the probe traces */
     probe *inspector;        /* made by the first tree */
+    bool one_wavelength;     /* absorption too is that at render.lambda_nm */
     atomic_int owners;       /* the handle, and the trees and fans, whose names are the scene's */
 };
 
@@ -49,6 +50,9 @@ cuvette_query *query_share(cuvette_query *query);
 
 /* The nodes of a tree for the caller, newly allocated; NULL when out of memory. */
 cuvette_node *tree_nodes_make(const cuvette_query *query, const ray_node *nodes, size_t count);
+
+/* A tree that another probe of the query's scene traced, as the caller's own. */
+status tree_copy(cuvette_query *query, const ray_tree *from, cuvette_tree **out, diagnostic *why);
 
 /* Writes a text file with one of the writers of a traced result, by the path's ending; remedy: names the endings. */
 typedef struct ray_writer {

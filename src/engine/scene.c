@@ -1,16 +1,29 @@
 /* Scene handles: creating, reading, cloning, checking, writing. */
 #include "engine/engine_private.h"
 
+#include "measure/clock.h"
 #include "scene/model/hints.h"
 #include "scene/file/write.h"
 #include <stdlib.h>
 #include <string.h>
 
+/* Recursive: a progress function that is called while the scene is loaded may clone or write it. */
+static bool init_loading(pthread_mutex_t *lock)
+{
+    pthread_mutexattr_t kind;
+    if (pthread_mutexattr_init(&kind) != 0)
+        return false;
+    const bool made =
+        pthread_mutexattr_settype(&kind, PTHREAD_MUTEX_RECURSIVE) == 0 && pthread_mutex_init(lock, &kind) == 0;
+    pthread_mutexattr_destroy(&kind);
+    return made;
+}
+
 cuvette_status engine_own_scene(scene *model, cuvette_scene **out, cuvette_diagnostic *why)
 {
     diagnostic inner = {.line = 0};
     cuvette_scene *s = model ? calloc(1, sizeof *s) : NULL;
-    if (!s || pthread_mutex_init(&s->loading, NULL) != 0) {
+    if (!s || !init_loading(&s->loading)) {
         free(s);
         scene_destroy(model);
         return engine_report(out_of_memory(&inner), &inner, why);
@@ -65,8 +78,11 @@ cuvette_status cuvette_scene_clone(const cuvette_scene *s, cuvette_scene **out, 
     ENGINE_NEED(s);
     cuvette_scene *source = hold(s);
     scene *model = scene_clone(source->model);
+    const bool grabbed = source->grabbed;
     pthread_mutex_unlock(&source->loading);
-    return engine_own_scene(model, out, why);
+    ENGINE_TRY(engine_own_scene(model, out, why));
+    (*out)->grabbed = grabbed;
+    return CUVETTE_OK;
 }
 
 void engine_release_scene(cuvette_scene *s)
@@ -142,12 +158,40 @@ void engine_end_advance(cuvette_scene *s)
     atomic_store(&s->advancing, false);
 }
 
-status engine_load(cuvette_scene *s, diagnostic *why)
+status engine_load(cuvette_scene *s, const load_watch *watch, diagnostic *why)
 {
     pthread_mutex_lock(&s->loading);
-    const status code = scene_load(s->model, why);
+    const status code = scene_load_until(s->model, watch, why);
     pthread_mutex_unlock(&s->loading);
     return code;
+}
+
+bool engine_goes_on(void *context, double share)
+{
+    static const double ask_every_s = 0.1;
+    host_progress *p = context;
+    if (share > p->share)
+        p->share = share;
+    if (!p->ask || clock_wall_s() < p->next_s)
+        return true;
+    p->next_s = clock_wall_s() + ask_every_s;
+    float_environment_leave(p->host);
+    const bool goes_on = p->ask(p->context, p->share);
+    float_environment_enter(p->host);
+    return goes_on;
+}
+
+cuvette_status cuvette_scene_load(const cuvette_scene *s, bool (*progress)(void *context, double share), void *context,
+                                  cuvette_diagnostic *why)
+{
+    ENGINE_CALL(s);
+    cuvette_scene *held = (cuvette_scene *)(uintptr_t)s; /* handles are never const objects */
+    host_progress asked = {.ask = progress, .context = context, .host = &host};
+    ENGINE_TRY(engine_begin_render(held, why)); /* the callback must not change the scene */
+    status code = engine_check(held, &inner);
+    THEN(code, engine_load(held, &(load_watch){engine_goes_on, &asked}, &inner));
+    engine_end_render(held);
+    return engine_report(code, &inner, why);
 }
 
 status engine_check(const cuvette_scene *s, diagnostic *why)

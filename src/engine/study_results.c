@@ -7,6 +7,7 @@
 #include "report/json.h"
 #include "study/contrast_json.h"
 #include "study/plot.h"
+#include "study/row_list.h"
 #include "study/summary.h"
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +38,26 @@ cuvette_status cuvette_study_summary(const cuvette_study *s, const char *results
     if (code != STATUS_OK)
         return engine_report(code, &inner, why);
     code = study_summary_of(s->of, engine_results(results), &options, writer.stream, &verdict, &inner);
+    code = text_writer_end(&writer, code, out, NULL, &inner);
+    THEN(code, put_fault(&verdict, fault, &inner));
+    return engine_report(code, &inner, why);
+}
+
+cuvette_status cuvette_study_rows(const cuvette_study *s, const char *results, const char *environment, char **out,
+                                  char **fault, cuvette_diagnostic *why)
+{
+    ENGINE_CALL(out);
+    *out = NULL;
+    if (fault)
+        *fault = NULL;
+    if (!s)
+        ENGINE_NEED(results);
+    diagnostic verdict = {.what = ""};
+    text_writer writer;
+    status code = text_writer_open(&writer, &inner);
+    if (code != STATUS_OK)
+        return engine_report(code, &inner, why);
+    code = row_list_write(s ? s->of : NULL, engine_results(results), environment, writer.stream, &verdict, &inner);
     code = text_writer_end(&writer, code, out, NULL, &inner);
     THEN(code, put_fault(&verdict, fault, &inner));
     return engine_report(code, &inner, why);

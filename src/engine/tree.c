@@ -78,6 +78,45 @@ void cuvette_tree_destroy(cuvette_tree *tree)
     free(tree);
 }
 
+static status copy_tree(const ray_tree *from, ray_tree *out, diagnostic *why)
+{
+    *out = *from;
+    out->node = malloc((from->count + 1) * sizeof *out->node);
+    out->capacity = from->count + 1;
+    if (!out->node) {
+        *out = (ray_tree){0};
+        return out_of_memory(why);
+    }
+    memcpy(out->node, from->node, from->count * sizeof *out->node);
+    return STATUS_OK;
+}
+
+/* Names come from the query's own probe: that of the beam does not outlive the visit. */
+static status give_nodes(cuvette_query *query, cuvette_tree *tree, diagnostic *why)
+{
+    cuvette_query *q = NULL;
+    TRY(query_begin_trace(query, &q, why));
+    tree->nodes = tree_nodes_make(q, tree->traced.node, tree->traced.count);
+    query_end_trace(q);
+    return tree->nodes ? STATUS_OK : out_of_memory(why);
+}
+
+status tree_copy(cuvette_query *query, const ray_tree *from, cuvette_tree **out, diagnostic *why)
+{
+    *out = NULL;
+    cuvette_tree *tree = calloc(1, sizeof *tree);
+    if (!tree)
+        return out_of_memory(why);
+    tree->of = query_share(query);
+    status code = copy_tree(from, &tree->traced, why);
+    THEN(code, give_nodes(query, tree, why));
+    if (code == STATUS_OK)
+        *out = tree;
+    else
+        cuvette_tree_destroy(tree);
+    return code;
+}
+
 /* What a tree starts with: a pixel, or a ray. */
 typedef struct tree_root {
     const cuvette_ray *ray; /* NULL: the pixel */

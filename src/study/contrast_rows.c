@@ -2,6 +2,7 @@
 #include "study/contrast_rows.h"
 #include "study/excluded.h"
 #include "study/row_environments.h"
+#include "study/row_list.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,8 +92,7 @@ static status collect(const study *s, const study_side *side, const char *column
         const row_ref *ref = &r->files->rows[i];
         const double value = row_field_real(ref, column);
         r->left_out += !ref->warmup && strcmp(row_environment(ref), r->environment) != 0;
-        if (ref->warmup || !(value > 0) || isinf(value) || !is_wanted(side, r, ref) ||
-            strcmp(row_field(ref, "marked"), "0") != 0 || excluded_has(without, ref))
+        if (!(value > 0) || isinf(value) || !is_wanted(side, r, ref) || row_use_of(without, ref) != ROW_COUNTS)
             continue;
         process = process_of(r, ref, process);
         note_time(&r->processes[process], row_field(ref, "time_utc"));

@@ -19,8 +19,8 @@ static int compare_cells(const void *a, const void *b)
 
 status row_cells_create(const study *s, row_kind kind, row_cells *out, diagnostic *why)
 {
-    *out = (row_cells){.count = study_cell_count(s)};
-    out->sorted = malloc(out->count * sizeof *out->sorted);
+    *out = (row_cells){.any = !s->identity, .count = s->identity ? study_cell_count(s) : 0};
+    out->sorted = malloc((out->count + 1) * sizeof *out->sorted);
     if (!out->sorted)
         return out_of_memory(why);
     for (size_t i = 0; i < out->count; i++)
@@ -38,6 +38,10 @@ void row_cells_free(row_cells *c)
 
 static bool find_cell(const row_cells *c, uint64_t identity, size_t *cell)
 {
+    if (c->any)
+        *cell = (size_t)identity;
+    if (c->any)
+        return true;
     const struct row_cell wanted = {identity, 0};
     const struct row_cell *found = bsearch(&wanted, c->sorted, c->count, sizeof wanted, compare_cells);
     if (found)
@@ -171,6 +175,9 @@ static status read_old(table_state *st, size_t row, row_ref *ref, uint64_t *iden
     if (!row_types_fit(&st->types, fields, &column))
         return row_files_add_issue(st->r->into, ROW_DAMAGED, st->path, (long)row + 2, "%s is '%.60s'",
                                    st->table->header[column], fields[column]);
+    if (st->r->cells.any)
+        return diagnose_at(why, st->path, STATUS_BAD_INPUT, "write them in the present form: cuvette study upgrade",
+                           "the rows are of an early version");
     if (!accepted_identity(st->r->known, csv_field(st->table, row, st->at.definition), (size_t)cell,
                            st->r->kind == COMPARE_ROWS, identity))
         return another_definition(st, row, accepted_why_not(st->r->known), why);

@@ -4,8 +4,10 @@
 #include "study/accepted.h"
 #include "study/row_files.h"
 
-/* From the identities of a study's cells to their numbers. row_cells_free releases. */
+/* From the identities of a study's cells to their numbers. Without a known grid (study.identity is NULL) every identity
+ * is a cell, and its own number. row_cells_free releases. */
 typedef struct row_cells {
+    bool any;
     struct row_cell {
         uint64_t identity;
         size_t cell;

@@ -6,6 +6,7 @@
 #include "study/level_rows.h"
 #include "study/row_environments.h"
 #include "study/row_files.h"
+#include "study/row_list.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -136,7 +137,7 @@ static status put_all(const study *s, const row_files *files, const column_list 
     for (size_t i = 0; i < files->row_count; i++) {
         const row_ref *ref = &files->rows[i];
         const bool wanted = !environment[0] || strcmp(row_environment(ref), environment) == 0;
-        if (wanted && !ref->warmup && strcmp(row_field(ref, "marked"), "0") == 0 && !excluded_has(without, ref))
+        if (wanted && row_use_of(without, ref) == ROW_COUNTS)
             rows[count++] = ref;
     }
     qsort(rows, count, sizeof *rows, by_cell_and_environment);

@@ -7,6 +7,7 @@
 #include "study/grid.h"
 #include "study/level_rows.h"
 #include "study/row_environments.h"
+#include "study/row_list.h"
 #include "study/row_noise.h"
 #include "study/rows.h"
 #include "scene/model/open.h"
@@ -184,7 +185,7 @@ static void collect(cell_rows *cell, row_ref *const *rows, size_t count)
         const bool is_excluded = excluded_has(cell->without, rows[i]);
         cell->marked += marked;
         cell->excluded += is_excluded;
-        if (!marked && !is_excluded && !rows[i]->warmup)
+        if (row_use_of(cell->without, rows[i]) == ROW_COUNTS)
             cell->rows[cell->count++] = rows[i];
     }
     row_noise_columns at = {.table = NULL};

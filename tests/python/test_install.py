@@ -35,6 +35,7 @@ print(cuvette.read({ROD!r}).render(width=16, height=12).hash)
     printed = subprocess.run(
         [sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=tmp_path, env=environment
     ).stdout.split()
+    assert (prefix / printed[0]).with_name("py.typed").exists()  # without it type checkers ignore the annotations
     assert printed[0].startswith(str(prefix)) and printed[1].startswith(str(prefix)) and len(printed[2]) == 16
     make("uninstall", f"PREFIX={prefix}")
     left = [str(one) for one in prefix.rglob("*") if one.is_file() or one.is_symlink()]

@@ -1,4 +1,10 @@
-"""Slimes: in slices as in one go, grabbed by hands."""
+"""Slimes: stopped and continued as in one go, grabbed by hands."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
 
 import cuvette
 import pytest
@@ -22,6 +28,96 @@ def test_advance_equals_a_scene_at_that_time(scene):
     assert scene.render().hash == at_rest.render().hash
     with pytest.raises(cuvette.InputError):
         motion.advance(0.01)
+
+
+def test_an_advance_is_stopped_and_continues(scene):
+    motion, shares = scene.motion(), []
+    before = scene.render().hash
+
+    def stop(share):
+        shares.append(share)
+        return len(shares) < 2
+
+    with pytest.raises(cuvette.Cancelled):
+        motion.advance(3, progress=stop)
+    reached = motion.time_s
+    assert 0 < reached < 3 and len(shares) == 2 and scene.render().hash == before
+    motion.advance(reached + 0.05)
+    other = cuvette.read(SLIME).set(width=40, height=30)
+    other.motion().advance(reached + 0.05)
+    assert scene.render().hash == other.render().hash != before
+
+
+CALLS = {
+    "render": "scene.render()",
+    "trace": "scene.trace((1, 1))",
+    "load": "scene.load()",
+    "realism": "scene.realism()",
+    "motion": "motion.advance(3000)",
+}
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_ctrl_c_stops_a_slime(call):
+    code = f"""
+import cuvette, os, time
+scene = cuvette.read({SLIME!r}).set(width=8, height=6)
+if {call!r} == "motion":
+    motion = scene.motion()
+else:
+    scene[f"{{scene.meshes[0]}}.time_s"] = 3000
+print("begins", flush=True)
+try:
+    {CALLS[call]}
+except KeyboardInterrupt:
+    print("stopped", time.monotonic(), flush=True)
+"""
+    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "begins\n"
+    time.sleep(0.5)
+    began = time.monotonic()
+    child.send_signal(signal.SIGINT)
+    word, at = child.stdout.read().split()
+    assert word == "stopped" and child.wait() == 0 and float(at) - began < 1
+
+
+def test_stopped_slimes_leave_no_memory(scene):
+    scene["toy.time_s"] = 3000
+
+    def resident_kib() -> int:
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGESIZE") // 1024
+
+    def stops(count: int) -> None:
+        for _ in range(count):
+            try:
+                scene.load(progress=lambda share: False)
+            except cuvette.Cancelled:
+                continue
+            raise AssertionError("not stopped")
+
+    stops(20)
+    before = resident_kib()
+    stops(100)
+    assert resident_kib() - before < 1024
+
+
+def test_a_grabbed_slime_is_not_written_into_the_image(tmp_path):
+    scene = cuvette.Scene().set(width=40, height=30)
+    scene.add_light("lamp", position=(3, 5, -5))
+    scene.add_mesh("toy", generate="slime", level=2)
+    scene.add_solid("body", "mesh", mesh="toy", position=(0, 0, 0))
+    path, motion = tmp_path / "slime.png", scene.motion()
+    motion.advance(0.05)
+    image = scene.render()
+    image.save(path)
+    assert cuvette.read(path).render().hash == image.hash
+    with motion.grab("body", origin=(0, 50, 0), direction=(0, -1, 0), reach=0.3) as hand:
+        hand.move((0, 0.1, 0))
+        motion.advance(0.1)
+        scene.copy().render().save(path)
+    with pytest.raises(cuvette.InputError, match="holds no scene"):
+        cuvette.read(path)
 
 
 def test_a_hand(scene):

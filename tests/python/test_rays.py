@@ -8,14 +8,14 @@ import threading
 import cuvette
 import numpy
 import pytest
-from conftest import ROD
+from conftest import ROD, ROOT
 
 
 def test_a_trees_radiance_is_the_pixels(rod):
     image = rod.render(depth=5)
     query = rod.query(depth=5)
     for x, y in ((40, 30), (20, 45), (60, 10), (39, 27)):
-        tree = query.trace_pixel(x, y)
+        tree = query.trace((x, y))
         assert numpy.array_equal(numpy.float32(tree.radiance), image.array[y, x])
         assert tree.radiance == pytest.approx(tuple(sum(n.added[k] for n in tree) for k in range(3)), abs=1e-12)
 
@@ -69,6 +69,58 @@ def test_tree_equals_the_programs(rod, program, tmp_path):
     assert rod.trace((40, 30))._repr_svg_().startswith("<svg")
     with pytest.raises(cuvette.InputError, match="use .txt, .json or .svg"):
         rod.trace((40, 30)).save(tmp_path / "tree.png")
+
+
+def same_tree(tree, text, tmp_path):
+    tree.save(tmp_path / "own.json")
+    own, other = json.loads((tmp_path / "own.json").read_text()), json.loads(text)
+    return own["radiance"] == other["radiance"] and own["root"] == other["root"] and own["lambda_nm"]
+
+
+def test_one_wavelength_equals_the_programs(program, tmp_path):
+    """Of a ball that absorbs by wavelength, in which the three channels differ otherwise."""
+    text = """
+    render: {width: 40, height: 30}
+    camera: {position: [0, 0, -6], target: [0, 0, 0]}
+    lights: {lamp: {position: [3, 5, -5]}}
+    solids:
+      ball: {shape: sphere, position: [0, 0, 0], radius: 1, transparency: 1, medium: water,
+             absorb_spectrum: [400, 0.1, 700, 0.7]}
+    """
+    path = tmp_path / "ball.yaml"
+    path.write_text(text)
+    scene = cuvette.read(path)
+    tree = scene.trace((20, 15), wavelength_nm=650)
+    assert same_tree(tree, program("trace", str(path), "--pixel", "20,15", "--lambda", "650", "--json"), tmp_path)
+    inside = [n.hit.transmittance for n in tree if n.hit and n.medium_name != "air"]
+    assert inside and all(len(set(one)) == 1 for one in inside)
+    otherwise = [n.hit.transmittance for n in scene.trace((20, 15)) if n.hit and n.medium_name != "air"]
+    assert all(len(set(one)) == 3 for one in otherwise)
+    query = scene.query(wavelength_nm=450)
+    assert query.trace((20, 15))[0].hit.n_after > tree[0].hit.n_after  # normal dispersion
+    assert str(query.trace((20, 15))) == program("trace", str(path), "--pixel", "20,15", "--lambda", "450")
+    program("fan", str(path), *"--from 0,0,-6 --to 0,0,0 --lambda 450 -o".split(), str(tmp_path / "fan.csv"))
+    query.fan((0, 0, -6), (0, 0, 0)).save(tmp_path / "own.csv")
+    assert (tmp_path / "own.csv").read_text() == (tmp_path / "fan.csv").read_text()
+    with pytest.raises(cuvette.InputError, match="render.lambda_nm"):
+        scene.query(wavelength_nm=10)
+    with pytest.raises(cuvette.InputError, match="scene.query"):
+        query.trace((20, 15), depth=2)
+
+
+def test_beams_equal_the_programs(program):
+    path = str(ROOT / "experiments/scenes/lens.yaml")
+    rays = cuvette.read(path).beams(sun__white=True)
+    beams = json.loads(program("trace", path, "--beams", "--json", "--set", "sun.white=on"))["beams"]
+    other = [(one["name"], ray) for one in beams for ray in one["rays"]]
+    assert len(rays) == len(other) > 1 and len({ray.lambda_nm for ray in rays}) > 1
+    for own, (name, ray) in zip(rays, other):
+        assert (own.beam, own.lambda_nm, own.power) == (name, ray["lambda_nm"], ray["power"])
+        assert (own.number, list(own.tree[0].hit.point)) == (ray["number"], ray["root"]["hit"]["point"])
+        assert own.tree[0].hit.R == ray["root"]["hit"]["R"] and own.tree[1].n == ray["root"]["children"][0]["n"]
+    del rays[1:]
+    assert rays[0].tree[0].kind == "camera" and rays[0].tree[0].medium_name == "air"  # its query is gone
+    assert cuvette.Scene().beams() == []
 
 
 def test_wrong_rays(rod):
@@ -145,9 +197,9 @@ def test_queries_of_many_rays():
 
 def test_trees_of_one_query_in_several_threads(rod):
     query, found = rod.query(depth=4), []
-    expected = query.trace_pixel(40, 30).radiance
+    expected = query.trace((40, 30)).radiance
     threads = [
-        threading.Thread(target=lambda: found.extend(query.trace_pixel(40, 30).radiance for _ in range(20)))
+        threading.Thread(target=lambda: found.extend(query.trace((40, 30)).radiance for _ in range(20)))
         for _ in range(4)
     ]
     for one in threads:

@@ -31,6 +31,22 @@ def test_film_equals_the_programs(rod, program, tmp_path):
     assert "identical" in program("compare", str(tmp_path / "rod.png"), str(tmp_path / "own.png"))
 
 
+def test_a_png_carries_its_scene(rod, program, tmp_path):
+    path = str(tmp_path / "rod.png")
+    image = rod.render({"liquid.ior": 1.4}, depth=5, threads=2)
+    rod["liquid.ior"] = 1.9  # the file has the scene as it was rendered
+    image.save(path)
+    again = cuvette.read(path)
+    assert again["liquid.ior"] == 1.4 and again["render.threads"] == 1 and again.render().hash == image.hash
+    assert json.loads(program("render", path, "--json"))["film_hash"] == image.hash
+    image.save(tmp_path / "deep.png", bits=16)
+    assert cuvette.read(tmp_path / "deep.png").render().hash == image.hash
+    rod.add_pixels("pattern", numpy.ones((2, 2, 3)))
+    rod.render().save(path)
+    with pytest.raises(cuvette.InputError, match="holds no scene"):
+        cuvette.read(path)
+
+
 def test_values_have_their_types(rod):
     rod["liquid.ior"] = 1.4
     rod["rod.visible"] = False

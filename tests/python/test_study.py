@@ -78,23 +78,26 @@ def test_compare_and_plot(study, tmp_path):
         study.plot(tmp_path / "tiny.jpeg", results=results)
 
 
-def test_rows_of_unlike_environments_are_not_pooled_in_silence(study, tmp_path):
+def add_environment(study, results, monkeypatch) -> str:
+    """The study's rows once more, as of another machine; its key."""
+    monkeypatch.setenv("CUVETTE_MACHINE", "another")
+    study.run(results)
+    return study.state(results)["environment"]
+
+
+def test_rows_of_unlike_environments_are_not_pooled_in_silence(study, tmp_path, monkeypatch, program):
     results = tmp_path / "results"
     study.run(results)
-    other = json.loads((results / "tiny/runs.json").read_text())
-    run = other["runs"][0]
-    text = (results / "tiny/rows.csv").read_text()
-    (results / "tiny/rows.shard-1-of-2.csv").write_text(text.replace(run["id"], "0123456789abcdef"))
-    run["id"], run["environment"]["key"] = "0123456789abcdef", "89abcdef"
-    (results / "tiny/runs.shard-1-of-2.json").write_text(json.dumps(other))
+    key = add_environment(study, results, monkeypatch)
     with pytest.raises(cuvette.InputError, match="2 environments .*18 rows.* must not be pooled"):
         cuvette.rows(results / "tiny")
     both = cuvette.rows(results / "tiny", "all")
     assert len(both) == 36 and both.groupby("environment").size().tolist() == [18, 18]
-    assert len(cuvette.rows(results / "tiny", "89abcdef")) == 18
+    assert len(cuvette.rows(results / "tiny", key)) == 18
     assert len(cuvette.rows(results / "tiny", "main")) == 18
     with pytest.raises(cuvette.InputError, match="no rows of the environment 'abc'"):
         cuvette.rows(results / "tiny", "abc")
+    as_the_summary(study, both, results, program)
 
 
 def test_excluded_and_damaged_rows(study, tmp_path, program):
@@ -115,9 +118,47 @@ def test_excluded_and_damaged_rows(study, tmp_path, program):
     rows = study.rows(results)
     assert len(rows) == 17 and rows.attrs["left_out"]["excluded"] == 1 and len(study.rows(results, raw=True)) > 17
     path = results / "tiny/rows.csv"
-    path.write_text(path.read_text().replace(str(first["wall_s"]), "1e-9"))
+    path.write_text(path.read_text().replace(str(rows.iloc[3]["wall_s"]), "1e-9"))
     with pytest.warns(UserWarning, match="verify"):
-        study.rows(results)
+        rows = study.rows(results)
+    assert len(rows) == 16
+    as_the_summary(study, rows, results, program)
+
+
+def as_the_summary(study, rows, results, program):
+    """The command's summary has the number and the median of just these rows."""
+    try:
+        text = program("study", "summary", "--results", str(results), study.path)
+    except subprocess.CalledProcessError as failed:  # of damaged rows, which it reports
+        text = failed.stdout
+    lines = [dict(zip(text.splitlines()[0].split("\t"), line.split("\t"))) for line in text.splitlines()[1:]]
+    assert sum(int(line["n"]) for line in lines) == len(rows)
+    for line in lines:
+        mine = rows[(rows["cell"] == int(line["cell"])) & (rows["environment"] == line["environment"])]
+        assert len(mine) == int(line["n"]) and mine["wall_s"].median() == pytest.approx(float(line["wall_s_median"]))
+        assert mine["cpu_s"].max() == pytest.approx(float(line["cpu_s_max"]))
+
+
+@pytest.mark.parametrize("name", ["depth", "threads", "slime-frame", "triangles", "crowding"])
+def test_rows_are_those_of_the_summary(name, program):
+    study = cuvette.study(ROOT / f"experiments/{name}.study")
+    rows = study.rows(ROOT / "results/reference", "all")
+    as_the_summary(study, rows, ROOT / "results/reference", program)
+    alone = cuvette.rows(ROOT / f"results/reference/{name}", "all")
+    assert alone.equals(rows) and alone.attrs["left_out"] == rows.attrs["left_out"]
+
+
+def test_the_main_environment_is_that_of_the_library(study, tmp_path, monkeypatch):
+    """Of environments with equal numbers of rows the last; rows of a grid that has shrunk are not the study's."""
+    results = tmp_path / "results"
+    study.run(results)
+    key = add_environment(study, results, monkeypatch)
+    main = study.rows(results, "main")
+    assert set(main["environment"]) == {key} == set(study.summary(results, "main")["environment"])
+    (tmp_path / "tiny.study").write_text(TEXT.replace("[0, 2, 4]", "[4, 0]"))
+    smaller = cuvette.study(tmp_path / "tiny.study")
+    assert set(smaller.rows(results, "main")["render.depth"]) == {0, 4} and len(smaller.rows(results, "main")) == 12
+    assert len(cuvette.rows(results / "tiny", "main")) == 18
 
 
 def test_the_committed_run():

@@ -18,7 +18,7 @@ name: int = image.hash
 """
     (tmp_path / "user.py").write_text(code)
     folder = pathlib.Path(cuvette.__file__).parents[1]
-    flags = ["--ignore-missing-imports", "--cache-dir", str(tmp_path / "cache")]
+    flags = ["--strict", "--ignore-missing-imports", "--cache-dir", str(tmp_path / "cache")]
     run = subprocess.run(["mypy", *flags, "-p", "cuvette"], capture_output=True, text=True, cwd=folder)
     assert run.returncode == 0, run.stdout
     run = subprocess.run(["mypy", *flags, tmp_path / "user.py"], capture_output=True, text=True, cwd=folder)

@@ -5,7 +5,7 @@ import os
 import pathlib
 import textwrap
 import threading
-from typing import Any, Callable, Iterator, Optional, TypeVar
+from typing import Any, Callable, Iterator, List, Optional, TypeVar
 
 from . import _declarations
 from ._documents import FUNCTIONS
@@ -37,7 +37,7 @@ def _load() -> Any:
 
 lib = _load()
 NULL = ffi.NULL
-Kind = TypeVar("Kind", bound=Callable)
+Kind = TypeVar("Kind", bound=Callable[..., Any])
 
 
 class Error(Exception):
@@ -76,7 +76,7 @@ _KINDS = {
 
 
 def text_of(chars: Any) -> str:
-    return ffi.string(chars).decode("utf-8", "replace")
+    return str(ffi.string(chars), "utf-8", "replace")
 
 
 def error_of(status: int, why: Any) -> Error:
@@ -92,7 +92,7 @@ def encoded(text: Any) -> bytes:
     return data
 
 
-def call(function: Callable, *arguments: Any) -> None:
+def call(function: Callable[..., Any], *arguments: Any) -> None:
     """Calls a function that returns a cuvette_status and takes `why` last; raises its error."""
     why = ffi.new("cuvette_diagnostic *")
     status = function(*arguments, why)
@@ -100,14 +100,14 @@ def call(function: Callable, *arguments: Any) -> None:
         raise error_of(status, why)
 
 
-def made(kind: str, function: Callable, destroy: Callable, *arguments: Any) -> Any:
+def made(kind: str, function: Callable[..., Any], destroy: Callable[..., Any], *arguments: Any) -> Any:
     """The handle that a function creates; it is released with the Python object."""
     out = ffi.new(f"cuvette_{kind} **")
     call(function, *arguments, out)
     return ffi.gc(out[0], destroy)
 
 
-def read_text(function: Callable, *arguments: Any) -> str:
+def read_text(function: Callable[..., Any], *arguments: Any) -> str:
     """The text that a function like cuvette_scene_get copies into memory of a known size."""
     size, length = 256, ffi.new("size_t *")
     while True:
@@ -124,9 +124,9 @@ class Visit:
     """A callback and its context; `also` is a second callback with the same context. An exception of the Python
     function ends the C call, if the callback returns bool; it is raised by `finish`."""
 
-    def __init__(self, function: Callable) -> None:
-        self.function, self.error = function, None  # type: Callable, Optional[BaseException]
-        self.also: Optional[Callable] = None
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.function, self.error = function, None  # type: Callable[..., Any], Optional[BaseException]
+        self.also: Optional[Callable[..., Any]] = None
         self.context = ffi.new_handle(self)
 
     def guard(self, function: Any, *arguments: Any) -> bool:
@@ -167,6 +167,7 @@ on_metric = callback("bool", "const cuvette_metric *")
 on_curve = callback("bool", "const cuvette_curve *")
 on_value = callback("bool", "const char *", "const char *")
 on_column = callback("bool", "const cuvette_column *")
+on_beam_ray = callback("bool", "const cuvette_beam_ray *", "cuvette_tree *")
 on_run = callback("bool", "double", "double")
 
 
@@ -178,7 +179,7 @@ def _pass_news(context: Any, text: Any) -> None:
 on_news = ffi.callback("void(void *, const char *)", _pass_news, onerror=_keep_error)
 
 
-def visited(function: Callable, callback: Any, take: Callable, *arguments: Any) -> None:
+def visited(function: Callable[..., Any], callback: Any, take: Callable[..., Any], *arguments: Any) -> None:
     """Calls a function of the kind f(arguments, callback, context, why)."""
     visit = Visit(take)
     call(function, *arguments, callback, visit.context)
@@ -201,7 +202,7 @@ class Engines:
     """Engines with their threads, kept for the next render: one for each render at the same time."""
 
     def __init__(self) -> None:
-        self.free: list = []
+        self.free: List[Any] = []
         self.lock = threading.Lock()
         os.register_at_fork(after_in_child=self.forget)
 
@@ -249,5 +250,5 @@ def version() -> str:
     return text_of(lib.cuvette_version())
 
 
-def names_of(count: int, name: Callable) -> Iterator[str]:
+def names_of(count: int, name: Callable[[int], Any]) -> Iterator[str]:
     return (text_of(name(i)) for i in range(count))

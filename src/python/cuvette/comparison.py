@@ -5,16 +5,17 @@ from dataclasses import dataclass
 from typing import Any, Optional, Tuple, Union
 
 import numpy
+from numpy.typing import NDArray
 
 from ._library import InputError, borrowed, call, described, encoded, ffi, lib, made, sized
 from .image import Image, Path
 from .records import html_table
 
-Pixels = Union[Image, Path, numpy.ndarray]
+Pixels = Union[Image, Path, NDArray[Any]]
 
 
 @described("cuvette_image_read")
-def read_image(path: Path) -> numpy.ndarray:
+def read_image(path: Path) -> NDArray[numpy.float32]:
     """Linear RGB: float32 of height x width x 3, a view of the library's own memory."""
     handle = made("image", lib.cuvette_image_read, lib.cuvette_image_destroy, encoded(path))
     size = ffi.new("int[2]")
@@ -36,14 +37,14 @@ class Comparison:
     largest: float
     differing_share: float
     largest_at: Tuple[int, int]
-    map: Optional[numpy.ndarray]  #: FLIP error of each pixel in false colour, linear RGB
+    map: Optional[NDArray[numpy.float32]]  #: FLIP error of each pixel in false colour, linear RGB
 
     def _repr_html_(self) -> str:
         names = [name for name in self.__dataclass_fields__ if name != "map"]
         return html_table(("", ""), [(name, getattr(self, name)) for name in names])
 
 
-def _pixels(image: Pixels) -> numpy.ndarray:
+def _pixels(image: Pixels) -> NDArray[numpy.float32]:
     if isinstance(image, (str, os.PathLike)):
         return read_image(image)
     array = numpy.ascontiguousarray(image.array if isinstance(image, Image) else image, numpy.float32)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Optional, Tuple, Union
 
 import numpy
+from numpy.typing import NDArray
 
 from ._library import borrowed, call, described, encoded, ffi, lib, sized
 
@@ -46,8 +47,8 @@ class Image:
 
     def __init__(self, frame: Any, solids: Tuple[str, ...]) -> None:
         self._frame, self._solids = frame, solids
-        self._array: Optional[numpy.ndarray] = None
-        self._srgb: Optional[numpy.ndarray] = None
+        self._array: Optional[NDArray[numpy.float32]] = None
+        self._srgb: Optional[NDArray[numpy.uint8]] = None
 
     @property
     def width(self) -> int:
@@ -64,7 +65,7 @@ class Image:
         return f"{lib.cuvette_frame_hash(self._frame):016x}"
 
     @property
-    def array(self) -> numpy.ndarray:
+    def array(self) -> NDArray[numpy.float32]:
         """Linear RGB, 1.0 is white: float32 of height x width x 3, row by row from the top. The library writes it into
         the array's own memory, once; the array is read-only, so that it remains the image of the hash."""
         if self._array is None:
@@ -76,7 +77,7 @@ class Image:
         return self._array
 
     @property
-    def srgb(self) -> numpy.ndarray:
+    def srgb(self) -> NDArray[numpy.uint8]:
         """The same encoded as sRGB: uint8 of height x width x 3, what a display needs."""
         if self._srgb is None:
             out = numpy.empty((self.height, self.width, 3), numpy.uint8)
@@ -87,7 +88,7 @@ class Image:
         return self._srgb
 
     @described("cuvette_frame_layer")
-    def layer(self, name: str) -> numpy.ndarray:
+    def layer(self, name: str) -> NDArray[numpy.float32]:
         """float32 of height x width x channels, or of height x width for one channel; a view of the library's own
         memory. The image was rendered with layers=True."""
         values, channels = ffi.new("float **"), ffi.new("int *")
@@ -99,13 +100,13 @@ class Image:
         return out.reshape((self.height, self.width, 3) if channels[0] == 3 else (self.height, self.width))
 
     @described("cuvette_frame_map")
-    def map(self, name: str) -> numpy.ndarray:
+    def map(self, name: str) -> NDArray[numpy.float64]:
         """float64 of height x width. The image was rendered with maps=True for "rays" and "time"."""
         out = numpy.empty((self.height, self.width), numpy.float64)
         call(lib.cuvette_frame_map, self._frame, encoded(name), ffi.from_buffer("double[]", out))
         return out
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> numpy.ndarray:
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
         return self.array if dtype is None else self.array.astype(dtype)
 
     @property

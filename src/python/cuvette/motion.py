@@ -4,12 +4,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple
 
 from . import progress as bars
-from ._library import Cancelled, InputError, call, described, encoded, ffi, lib, made, names_of, sized
+from ._library import InputError, call, described, encoded, ffi, lib, made, names_of, on_progress, sized
 
 if TYPE_CHECKING:
     from .scene import Scene
-
-SLICES = 50  # of an advance: between two, Ctrl-C and the progress bar have their turn
 
 
 @dataclass(frozen=True)
@@ -43,7 +41,6 @@ class Hand:
     @described("cuvette_motion_move")
     def move(self, by: Sequence[float]) -> None:
         call(lib.cuvette_motion_move, self._motion._motion, self._number, ffi.new("double[3]", list(by)))
-        self._motion._moves = True
 
     @described("cuvette_motion_release")
     def release(self) -> None:
@@ -61,25 +58,20 @@ class Motion:
 
     @described("cuvette_motion_create")
     def __init__(self, scene: "Scene") -> None:
-        self.scene, self.time_s, self._moves = scene, 0.0, False
+        self.scene = scene
         self._motion: Any = made("motion", lib.cuvette_motion_create, lib.cuvette_motion_destroy, scene._scene)
 
+    @described("cuvette_motion_advance_watched")
     @described("cuvette_motion_advance")
     def advance(self, time_s: float, progress: bars.Progress = None) -> None:
-        """In slices, which change nothing of the result; in one go after a hand was moved, since it moves in a straight
-        line during one advance."""
-        begin, count = self.time_s, 1 if self._moves else SLICES
-        bar = bars.bar_of(progress, "motion")
-        try:
-            for i in range(1, count + 1):
-                at = time_s if i == count else begin + (time_s - begin) * i / count
-                call(lib.cuvette_motion_advance, self._motion, at)
-                self.time_s = at
-                if bar and bar(i / count) is False:
-                    raise Cancelled(f"stopped at {at:.4g} s")
-        finally:
-            bars.end(bar)
-        self._moves = False
+        """progress as of Scene.render. Ctrl-C stops."""
+        with bars.watched(progress, "motion") as visit:
+            call(lib.cuvette_motion_advance_watched, self._motion, time_s, on_progress, visit.context)
+
+    @property
+    def time_s(self) -> float:
+        """The time of the bodies."""
+        return max((self.state(name).time_s for name in self.names), default=0.0)
 
     @property
     def names(self) -> Tuple[str, ...]:

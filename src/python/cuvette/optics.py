@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy
+from numpy.typing import NDArray
 
 from .records import Records
 
@@ -37,9 +38,9 @@ class Curve:
     name: str
     x_label: str
     y_label: str
-    x: numpy.ndarray
-    measured: numpy.ndarray
-    theory: numpy.ndarray
+    x: NDArray[numpy.float64]
+    measured: NDArray[numpy.float64]
+    theory: NDArray[numpy.float64]
 
     def plot(self, axes: Any = None) -> Any:
         """Draws the curve with matplotlib; returns the axes."""

@@ -1,9 +1,12 @@
 """The progress bar of a render or a study: on a terminal or in a notebook only, and only for what takes a while."""
 
+import contextlib
 import html
 import sys
 import time
-from typing import Any, Callable, Optional, Union
+from typing import Any, Callable, Iterator, Optional, Union
+
+from ._library import Cancelled, Visit
 
 Progress = Union[None, bool, Callable[[float], object]]
 
@@ -71,3 +74,19 @@ def bar_of(progress: Progress, what: str) -> Optional[Callable[..., object]]:
 def end(bar: Optional[Callable[..., object]]) -> None:
     if isinstance(bar, Bar):
         bar.end()
+
+
+@contextlib.contextmanager
+def watched(progress: Progress, what: str) -> Iterator[Visit]:
+    """A bar for a call with on_progress and the context of the Visit. What its function raised is raised again, Ctrl-C
+    too; Cancelled if it returned False."""
+    bar = bar_of(progress, what)
+    visit = Visit(bar or (lambda share: True))
+    try:
+        yield visit
+    except Cancelled:
+        if visit.error is None:
+            raise
+    finally:
+        end(bar)
+    visit.finish()

@@ -5,8 +5,23 @@ import tempfile
 from typing import Any, Iterator, List, Optional, Sequence, Tuple
 
 import numpy
+from numpy.typing import NDArray
 
-from ._library import InputError, NULL, borrowed, call, described, encoded, ffi, lib, made, sized, text_of
+from ._library import (
+    NULL,
+    InputError,
+    borrowed,
+    call,
+    described,
+    encoded,
+    ffi,
+    lib,
+    made,
+    on_beam_ray,
+    sized,
+    text_of,
+    visited,
+)
 from .image import Path
 from .records import html_table, svg_of
 
@@ -39,7 +54,7 @@ _HIT = (
 )
 
 
-def dtype_of(kind: str) -> numpy.dtype:
+def dtype_of(kind: str) -> "numpy.dtype[Any]":
     """The NumPy type of a struct, with its layout; texts are addresses."""
     fields: Any = {"names": [], "formats": [], "offsets": [], "itemsize": ffi.sizeof(kind)}
     for name, field in ffi.typeof(kind).fields:
@@ -63,7 +78,7 @@ def dtype_of(kind: str) -> numpy.dtype:
     return numpy.dtype(fields)
 
 
-def _array(kind: str, pointer: Any, count: int, owner: Any) -> numpy.ndarray:
+def _array(kind: str, pointer: Any, count: int, owner: Any) -> NDArray[Any]:
     """The library's own memory as an array."""
     if count == 0:
         return numpy.empty(0, dtype_of(kind))
@@ -188,7 +203,7 @@ class _Nodes:
         return (self[i] for i in range(self._count))
 
     @property
-    def array(self) -> numpy.ndarray:
+    def array(self) -> NDArray[Any]:
         """All nodes as a structured array without a copy: `tree.array["R_s"]`. Kinds and ends are numbers, indices of
         cuvette.rays.KINDS and ENDS."""
         return _array("cuvette_node", self._pointer, self._count, self._handle)
@@ -209,7 +224,7 @@ class Tree(_Nodes):
     def __init__(self, handle: Any) -> None:
         count = ffi.new("size_t *")
         self._handle, self._pointer = handle, lib.cuvette_tree_nodes(handle, count)
-        self._count = count[0]
+        self._count = int(count[0])
 
     @property
     @described("cuvette_tree_radiance")
@@ -267,7 +282,7 @@ class Fan:
     def __init__(self, handle: Any) -> None:
         count = ffi.new("size_t *")
         self._handle, self._rays = handle, lib.cuvette_fan_rays(handle, count)
-        self._count = count[0]
+        self._count = int(count[0])
         self.nodes = _Nodes()
         self.nodes._handle, self.nodes._pointer = handle, lib.cuvette_fan_nodes(handle, count)
         self.nodes._count = count[0]
@@ -281,12 +296,12 @@ class Fan:
         return FanRay(self._rays[index % self._count], self)
 
     @property
-    def array(self) -> numpy.ndarray:
+    def array(self) -> NDArray[Any]:
         """All rays as a structured array without a copy: `fan.array["deviation_deg"]`."""
         return _array("cuvette_fan_ray", self._rays, self._count, self._handle)
 
     @property
-    def caustic(self) -> numpy.ndarray:
+    def caustic(self) -> NDArray[Any]:
         """The crossings of neighbouring rays, n x 3."""
         count = ffi.new("size_t *")
         pointer = lib.cuvette_fan_crossings(self._handle, count)
@@ -326,20 +341,40 @@ class Fan:
         return f"<cuvette.Fan of {len(self)} rays, {at}>"
 
 
-class Query:
-    """A snapshot of a scene for rays of your own. Any number of threads may use it."""
+class BeamRay:
+    """A ray of one of the scene's beams: its beam's name, number, wavelength and power, and its tree."""
 
-    def __init__(self, handle: Any, lights: Tuple[str, ...], solids: Tuple[str, ...]) -> None:
-        self._query, self.lights, self.solids = handle, lights, solids
+    def __init__(self, ray: Any, tree: Tree) -> None:
+        self.beam, self.number, self.rays = text_of(ray.beam_name), int(ray.number), int(ray.rays)
+        self.lambda_nm, self.power, self.tree = float(ray.lambda_nm), float(ray.power), tree
 
-    @described("cuvette_query_trace")
-    def trace(self, origin: Sequence[float], direction: Sequence[float]) -> Tree:
-        ray = ffi.new("cuvette_ray *", {"origin": list(origin), "direction": list(direction)})
-        return Tree(made("tree", lib.cuvette_query_trace, lib.cuvette_tree_destroy, self._query, ray))
+    def __repr__(self) -> str:
+        return f"<BeamRay {self.beam} {self.number + 1} of {self.rays}, {self.lambda_nm:.6g} nm>"
 
-    @described("cuvette_query_trace_pixel")
-    def trace_pixel(self, x: int, y: int) -> Tree:
-        return Tree(made("tree", lib.cuvette_query_trace_pixel, lib.cuvette_tree_destroy, self._query, x, y))
+
+class Tracer:
+    """What traces trees and fans: a scene, as it is at the call, or a query."""
+
+    def query(self, wavelength_nm: Optional[float] = None, **short: Any) -> "Query":
+        raise NotImplementedError
+
+    def trace(
+        self,
+        pixel: Optional[Sequence[int]] = None,
+        origin: Optional[Sequence[float]] = None,
+        direction: Optional[Sequence[float]] = None,
+        wavelength_nm: Optional[float] = None,
+        **short: Any,
+    ) -> Tree:
+        """The ray tree of a pixel, `scene.trace((400, 300))`, or of a ray, `scene.trace(origin=..., direction=...)`; at
+        one wavelength, as `cuvette trace --lambda`, with wavelength_nm=580."""
+        query = self.query(wavelength_nm, **short)._query
+        if pixel is not None and origin is None and direction is None:
+            return Tree(made("tree", lib.cuvette_query_trace_pixel, lib.cuvette_tree_destroy, query, *pixel))
+        if pixel is None and origin is not None and direction is not None:
+            ray = ffi.new("cuvette_ray *", {"origin": list(origin), "direction": list(direction)})
+            return Tree(made("tree", lib.cuvette_query_trace, lib.cuvette_tree_destroy, query, ray))
+        raise InputError("a tree starts with a pixel or a ray", "give pixel, or origin and direction")
 
     @described("cuvette_query_fan")
     def fan(
@@ -350,19 +385,48 @@ class Query:
         width: float = 1.0,
         spread_deg: float = 0,
         plane: Sequence[float] = (0, 0, 0),
+        wavelength_nm: Optional[float] = None,
+        **short: Any,
     ) -> Fan:
+        """Rays around the axis from `start` through `to`, parallel over `width`, or spread from one point; plane is the
+        normal of their plane."""
         rule = sized("fan_rule")
         rule.to, rule.normal, rule.rays, rule.width, rule.spread_deg = list(to), list(plane), rays, width, spread_deg
         setattr(rule, "from", list(start))
-        return Fan(made("fan", lib.cuvette_query_fan, lib.cuvette_fan_destroy, self._query, rule))
+        query = self.query(wavelength_nm, **short)._query
+        return Fan(made("fan", lib.cuvette_query_fan, lib.cuvette_fan_destroy, query, rule))
 
-    def camera_ray(self, x: float, y: float) -> Tuple[numpy.ndarray, numpy.ndarray]:
+    @described("cuvette_query_each_beam_ray")
+    def beams(self, **short: Any) -> List[BeamRay]:
+        """The rays of the scene's beams, by beam, wavelength and number."""
+        found: List[BeamRay] = []
+
+        def take(ray: Any, tree: Any) -> None:
+            found.append(BeamRay(ray, Tree(ffi.gc(tree, lib.cuvette_tree_destroy))))
+
+        visited(lib.cuvette_query_each_beam_ray, on_beam_ray, take, self.query(**short)._query)
+        return found
+
+
+class Query(Tracer):
+    """A snapshot of a scene for many rays. Any number of threads may use it."""
+
+    def __init__(self, handle: Any, lights: Tuple[str, ...], solids: Tuple[str, ...]) -> None:
+        self._query, self.lights, self.solids = handle, lights, solids
+
+    def query(self, wavelength_nm: Optional[float] = None, **short: Any) -> "Query":
+        """Itself: its settings are those of the scene when it was made."""
+        if wavelength_nm is not None or short:
+            raise InputError("a query cannot be changed", "give the settings to scene.query")
+        return self
+
+    def camera_ray(self, x: float, y: float) -> Tuple[NDArray[Any], NDArray[Any]]:
         """Origin and direction of the camera ray through a point of the image; 0.5, 0.5 is the first pixel's centre."""
         ray = ffi.new("cuvette_ray *")
         call(lib.cuvette_query_camera_ray, self._query, x, y, ray)
         return numpy.array(list(ray.origin)), numpy.array(list(ray.direction))
 
-    def _rays(self, origins: Any, directions: Any, reach: Any) -> numpy.ndarray:
+    def _rays(self, origins: Any, directions: Any, reach: Any) -> NDArray[Any]:
         starts, headings = numpy.atleast_2d(origins), numpy.atleast_2d(directions)
         try:
             starts, headings = numpy.broadcast_arrays(starts, headings)
@@ -375,7 +439,7 @@ class Query:
         return rays
 
     @described("cuvette_query_nearest")
-    def nearest(self, origins: Any, directions: Any, reach: Any = 0.0) -> numpy.ndarray:
+    def nearest(self, origins: Any, directions: Any, reach: Any = 0.0) -> NDArray[Any]:
         """Of n rays, origins and directions n x 3 (or one for all): a structured array, `hits["distance"]`."""
         rays = self._rays(origins, directions, reach)
         hits = numpy.empty(len(rays), dtype_of("cuvette_hit"))
@@ -389,7 +453,7 @@ class Query:
         return hits
 
     @described("cuvette_query_occluded")
-    def occluded(self, origins: Any, directions: Any, reach: Any = 0.0) -> numpy.ndarray:
+    def occluded(self, origins: Any, directions: Any, reach: Any = 0.0) -> NDArray[Any]:
         """An array of bool."""
         rays = self._rays(origins, directions, reach)
         blocked = numpy.empty(len(rays), numpy.uint8)

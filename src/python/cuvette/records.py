@@ -37,10 +37,10 @@ class Records(List[Item]):
         return self[names.index(key)]
 
     def _rows(self) -> List[List[Any]]:
-        return [[getattr(one, field.name) for field in dataclasses.fields(one)] for one in self]  # type: ignore
+        return [[getattr(one, field.name) for field in dataclasses.fields(one)] for one in self]
 
     def _titles(self) -> List[str]:
-        return [field.name for field in dataclasses.fields(self[0])] if self else []  # type: ignore
+        return [field.name for field in dataclasses.fields(self[0])] if self else []
 
     def _repr_html_(self) -> str:
         return html_table(self._titles(), self._rows())

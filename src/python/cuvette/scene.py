@@ -36,7 +36,7 @@ from ._library import (
 from .image import Image, Path
 from .motion import Motion
 from .optics import Curve, Metric, Metrics
-from .rays import Fan, Query, Tree
+from .rays import Query, Tracer
 from .records import Records
 
 Value = Union[bool, int, float, str, Tuple[float, ...]]
@@ -77,7 +77,7 @@ def _path_of(name: str) -> str:
     return name.replace("__", ".") if "__" in name else f"render.{name}"
 
 
-class Scene:
+class Scene(Tracer):
     """A scene. `scene["liquid.ior"] = 1.4` sets a parameter, `scene["liquid.ior"]` is its value, `scene.parameters`
     lists all. Objects are added by name: `scene.add_solid("ball", "sphere")`."""
 
@@ -99,9 +99,9 @@ class Scene:
         whole, real, count = ffi.new("int64_t *"), ffi.new("double *"), ffi.new("size_t *")
         several = ffi.new("double[64]")
         if text != "auto" and lib.cuvette_scene_get_int(self._scene, name, whole, NULL) == lib.CUVETTE_OK:
-            return whole[0]
+            return int(whole[0])
         if lib.cuvette_scene_get_double(self._scene, name, real, NULL) == lib.CUVETTE_OK:
-            return real[0]
+            return float(real[0])
         if lib.cuvette_scene_get_vector(self._scene, name, several, 64, count, NULL) == lib.CUVETTE_OK:
             return tuple(several[0 : count[0]])
         return text
@@ -158,7 +158,7 @@ class Scene:
         """What the tab key offers after `scene["`."""
         return list(self.keys())
 
-    def __reduce__(self) -> Tuple:
+    def __reduce__(self) -> Tuple[Any, ...]:
         """For other processes, as the text of its file: without meshes and textures that were given as arrays."""
         return read_text_scene, (str(self), "scene of another process")
 
@@ -289,7 +289,7 @@ class Scene:
 
     __copy__ = copy
 
-    def __deepcopy__(self, memo: Dict) -> "Scene":
+    def __deepcopy__(self, memo: Dict[int, Any]) -> "Scene":
         return self.copy()
 
     @described("cuvette_scene_check")
@@ -320,41 +320,24 @@ class Scene:
 
     # --- rays and optics
 
+    @described("cuvette_scene_load")
+    def load(self, progress: bars.Progress = None) -> "Scene":
+        """Ctrl-C stops. Whatever needs the files and slimes loads them by itself. Returns the scene."""
+        with bars.watched(progress, "slimes") as visit:
+            call(lib.cuvette_scene_load, self._scene, on_progress, visit.context)
+        return self
+
+    @described("cuvette_query_wavelength_create")
     @described("cuvette_query_create")
-    def query(self, **short: Any) -> Query:
+    def query(self, wavelength_nm: Optional[float] = None, **short: Any) -> Query:
         """The scene as it is now, with these settings, for rays of your own."""
-        scene = self.copy().set(**short) if short else self
-        handle = made("query", lib.cuvette_query_create, lib.cuvette_query_destroy, scene._scene, NULL)
+        scene = (self.copy().set(**short) if short else self).load()
+        if wavelength_nm is None:
+            handle = made("query", lib.cuvette_query_create, lib.cuvette_query_destroy, scene._scene, NULL)
+        else:
+            create = lib.cuvette_query_wavelength_create
+            handle = made("query", create, lib.cuvette_query_destroy, scene._scene, wavelength_nm, NULL)
         return Query(handle, scene.lights, scene.solids)
-
-    def trace(
-        self,
-        pixel: Optional[Sequence[int]] = None,
-        origin: Optional[Sequence[float]] = None,
-        direction: Optional[Sequence[float]] = None,
-        **short: Any,
-    ) -> Tree:
-        """The ray tree of a pixel, `scene.trace((400, 300))`, or of a ray, `scene.trace(origin=..., direction=...)`."""
-        query = self.query(**short)
-        if pixel is not None and origin is None and direction is None:
-            return query.trace_pixel(*pixel)
-        if pixel is None and origin is not None and direction is not None:
-            return query.trace(origin, direction)
-        raise InputError("a tree starts with a pixel or a ray", "give pixel, or origin and direction")
-
-    def fan(
-        self,
-        start: Sequence[float],
-        to: Sequence[float],
-        rays: int = 21,
-        width: float = 1.0,
-        spread_deg: float = 0,
-        plane: Sequence[float] = (0, 0, 0),
-        **short: Any,
-    ) -> Fan:
-        """Rays around the axis from `start` through `to`, parallel over `width`, or spread from one point; plane is the
-        normal of their plane."""
-        return self.query(**short).fan(start, to, rays, width, spread_deg, plane)
 
     @described("cuvette_scene_each_metric")
     def realism(self) -> Metrics:
@@ -367,7 +350,7 @@ class Scene:
                 Metric(text_of(one.name), text_of(one.verdict), *numbers, text_of(one.unit), text_of(one.meaning))
             )
 
-        visited(lib.cuvette_scene_each_metric, on_metric, take, self._scene)
+        visited(lib.cuvette_scene_each_metric, on_metric, take, self.load()._scene)
         return found
 
     @property
@@ -389,7 +372,7 @@ class Scene:
         """A curve of measured and theoretical values."""
         points, count = numpy.empty((1024, 3)), ffi.new("size_t *")
         memory = ffi.cast("double (*)[3]", ffi.from_buffer("double[]", points))
-        call(lib.cuvette_scene_curve, self._scene, encoded(name), memory, len(points), count)
+        call(lib.cuvette_scene_curve, self.load()._scene, encoded(name), memory, len(points), count)
         x, measured, theory = points[: count[0]].T
         return Curve(name, *self._curves().get(name, ("x", "y")), x, measured, theory)
 

@@ -1,14 +1,14 @@
 """Studies: running, and their rows as pandas tables with units and environments."""
 
-import csv
 import io
 import json
 import os
+import pathlib
 import signal
 import subprocess
 import sys
 import warnings
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Optional, Sequence, Tuple
 
 from . import progress as bars
 from ._library import (
@@ -50,7 +50,7 @@ TEXTS = (
     "run",
     "check",
 )
-ALL = "all"
+REASONS = {"warm-up": "warm-ups", "marked": "marked", "excluded": "excluded"}
 
 
 def columns() -> Dict[str, Tuple[str, str]]:
@@ -72,98 +72,56 @@ def _described(name: str, known: Dict[str, Tuple[str, str]], units: Dict[str, st
     return units.get(name, ""), "parameter of the study's grid"
 
 
-def _environments(folder: str) -> Tuple[Dict[str, str], Dict[str, Dict[str, str]]]:
-    """The environment of each run, and the facts of each environment, from runs.json and those of shards."""
-    of_run: Dict[str, str] = {}
+def _facts(folder: str) -> Dict[str, Dict[str, str]]:
+    """The facts of each environment, by its key, from runs.json and those of shards."""
     facts: Dict[str, Dict[str, str]] = {}
-    for name in sorted(os.listdir(folder)):
-        if not (name.startswith("runs.") and name.endswith(".json")):
-            continue
-        with open(os.path.join(folder, name), encoding="utf-8") as file:
-            for run in json.load(file)["runs"]:
-                environment = dict(run["environment"])
-                key = of_run[run["id"]] = environment.pop("key")
-                facts[key] = environment
-    return of_run, facts
+    for path in sorted(pathlib.Path(folder).glob("runs.*json")):
+        for run in json.loads(path.read_text(encoding="utf-8"))["runs"]:
+            environment = dict(run["environment"])
+            facts[environment.pop("key")] = environment
+    return facts
 
 
-def _excluded(folder: str) -> List[str]:
-    """The checks of the rows that a person excluded."""
-    path = os.path.join(folder, "excluded.csv")
-    if not os.path.exists(path):
-        return []
-    with open(path, encoding="utf-8", newline="") as file:
-        return [one["check"] for one in csv.DictReader(file)]
+def _table(text: Optional[str], separator: str = ",") -> "pandas.DataFrame":
+    import pandas
+
+    kinds = {name: str for name in (*TEXTS, "environment", "left_out")}
+    return pandas.read_csv(io.StringIO(text or ""), sep=separator, dtype=kinds, na_values=["NA"], keep_default_na=False)
 
 
-def _chosen(table: "pandas.DataFrame", folder: str, environment: Optional[str]) -> "pandas.DataFrame":
-    counts = table["environment"].value_counts()
-    if environment == ALL or (environment is None and len(counts) < 2):
-        return table
-    if environment == "main":
-        environment = counts.index[0]
-    listed = ", ".join(f"{key}: {count} rows" for key, count in counts.items())
-    if environment is None:
-        raise InputError(
-            f"the rows are of {len(counts)} environments ({listed}), whose times must not be pooled",
-            'choose one with environment=KEY or "main", or "all" and group by the column environment',
-            folder,
-        )
-    if environment not in counts.index:
-        raise InputError(f"there are no rows of the environment '{environment}'", f"choose one of {listed}", folder)
-    return table[table["environment"] == environment].reset_index(drop=True)
-
-
-def rows(
-    folder: Path, environment: Optional[str] = None, raw: bool = False, units: Optional[Dict[str, str]] = None
+def _rows(
+    handle: Any, folder: str, results: str, environment: Optional[str], raw: bool, units: Dict[str, str]
 ) -> "pandas.DataFrame":
+    out, fault = ffi.new("char **"), ffi.new("char **")
+    call(lib.cuvette_study_rows, handle, encoded(results), _or_null(environment), out, fault)
+    table, found = _table(taken(out[0])), taken(fault[0])
+    if found:
+        warnings.warn(f"{folder}: {found}; see cuvette study verify", stacklevel=3)
+    reason = table.pop("left_out")
+    left_out = {} if raw else {REASONS[word]: int((reason == word).sum()) for word in REASONS}
+    if not raw:
+        table = table[reason == ""].reset_index(drop=True)
+    known = columns()
+    described_columns = {name: _described(name, known, units) for name in table.columns if name != "environment"}
+    table.attrs = {
+        "units": {name: one[0] for name, one in described_columns.items()},
+        "meanings": {name: one[1] for name, one in described_columns.items()},
+        "environments": _facts(folder),
+        "left_out": left_out,
+    }
+    return table
+
+
+@described("cuvette_study_rows")
+def rows(folder: Path, environment: Optional[str] = None, raw: bool = False) -> "pandas.DataFrame":
     """The rows of a study, `cuvette.rows("results/depth")`: one per repetition, without warm-ups, marked rows and those
     excluded by hand (raw=True: with them). The column environment has the key of the row's environment; rows of several
     environments need a choice: a key, "main" (that with most rows), or "all".
 
     attrs of the table: "units" and "meanings" by column, "environments" with the facts of each key, "left_out" with the
     number of rows by reason."""
-    import pandas
-
     place = os.fspath(folder)
-    files = (
-        [n for n in sorted(os.listdir(place)) if n == "rows.csv" or n.startswith("rows.shard")]
-        if os.path.isdir(place)
-        else []
-    )
-    if not files:
-        raise InputError("there are no rows", "give the folder of a study's results, such as results/depth", place)
-    kinds = {name: str for name in TEXTS}
-    parts = [
-        pandas.read_csv(os.path.join(place, name), dtype=kinds, na_values=["NA"], keep_default_na=False)
-        for name in files
-    ]
-    table = pandas.concat(parts, ignore_index=True).drop_duplicates(ignore_index=True)
-    if "run" not in table:
-        raise InputError(
-            "the rows are of an early version", "write them in the present form: cuvette study upgrade", place
-        )
-    of_run, facts = _environments(place)
-    table["environment"] = table["run"].map(of_run).fillna("unknown")
-    left_out: Dict[str, int] = {}
-    reasons = {
-        "warm-ups": table["warmup"] == 1,
-        "marked": table["marked"] == 1,
-        "excluded": table["check"].isin(_excluded(place)),
-    }
-    if not raw:
-        left_out = {reason: int(mask.sum()) for reason, mask in reasons.items()}
-        table = table[~(reasons["warm-ups"] | reasons["marked"] | reasons["excluded"])].reset_index(drop=True)
-    table = _chosen(table, place, environment)
-    known, given = columns(), units or {}
-    described_columns = {name: _described(name, known, given) for name in table.columns if name != "environment"}
-    table.attrs = {
-        "units": {name: one[0] for name, one in described_columns.items()},
-        "meanings": {name: one[1] for name, one in described_columns.items()},
-        "environments": facts,
-        "left_out": left_out,
-    }
-    return table
+    return _rows(NULL, place, place, environment, raw, {})
 
 
 class Figure:
@@ -300,23 +258,17 @@ class Study:
     ) -> "pandas.DataFrame":
         """The rows of the study, as of cuvette.rows, with the units of the grid's parameters; warns of rows that fail
         a check."""
-        fault = self.state(results)["fault"]
-        if fault:
-            warnings.warn(f"{self._folder(results)}: {fault}; see cuvette study verify", stacklevel=2)
         units = {p.path: p.unit for p in self.scene(0).parameters}
-        return rows(self._folder(results), environment, raw, units)
+        return _rows(self._study, self._folder(results), os.fspath(results), environment, raw, units)
 
     @described("cuvette_study_summary")
     def summary(self, results: Path = "results", environment: Optional[str] = None) -> "pandas.DataFrame":
         """One line per cell and environment, as a DataFrame."""
-        import pandas
-
         out, fault = ffi.new("char **"), ffi.new("char **")
         call(lib.cuvette_study_summary, self._study, encoded(results), _or_null(environment), out, fault)
         text = taken(out[0])
         self._warn(fault, results)
-        kinds = {name: str for name in (*TEXTS, "environment")}
-        return pandas.read_csv(io.StringIO(text), sep="\t", dtype=kinds, na_values=["NA"], keep_default_na=False)
+        return _table(text, "\t")
 
     @described("cuvette_study_compare")
     def compare(self, a: str, b: str, column: Optional[str] = None, results: Path = "results") -> "pandas.DataFrame":

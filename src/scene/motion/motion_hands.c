@@ -1,5 +1,6 @@
 #include "scene/motion/motion_hands.h"
 #include "scene/motion/motion_private.h"
+#include "measure/clock.h"
 #include "scene/model/scene.h"
 
 #include <math.h>
@@ -140,19 +141,32 @@ static bool is_moving(const motion_hand *h)
     return h->holds && (h->from.x != h->to.x || h->from.y != h->to.y || h->from.z != h->to.z);
 }
 
-/* Targets of the hands at the end of a step, interpolated along their displacement, with the same arithmetic as for
- * scripts. */
-static void put_hands(softbody *body, const motion_hand *hands, double share)
+/* With the same arithmetic as for scripts. */
+static vec3 offset_at(const motion_hand *h, double share)
 {
-    for (int i = 0; i < SOFTBODY_HANDS_MAX; i++) {
-        const motion_hand *h = &hands[i];
-        const vec3 offset = share >= 1.0 ? h->to : vec3_add(h->from, vec3_scale(vec3_sub(h->to, h->from), share));
-        if (is_moving(h))
-            softbody_hold(body, i, vec3_add(h->where, offset));
-    }
+    return share >= 1.0 ? h->to : vec3_add(h->from, vec3_scale(vec3_sub(h->to, h->from), share));
 }
 
-status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, double time_s, diagnostic *why)
+/* Targets of the hands at the end of a step, interpolated along their displacement. */
+static void put_hands(softbody *body, const motion_hand *hands, double share)
+{
+    for (int i = 0; i < SOFTBODY_HANDS_MAX; i++)
+        if (is_moving(&hands[i]))
+            softbody_hold(body, i, vec3_add(hands[i].where, offset_at(&hands[i], share)));
+}
+
+/* Asks about every 10 ms; *asked_s is kept between the calls. */
+static bool goes_on(const load_watch *watch, double share, double *asked_s)
+{
+    const double ask_s = 0.01, now_s = watch ? clock_wall_s() : 0.0;
+    if (!watch || now_s - *asked_s < ask_s)
+        return true;
+    *asked_s = now_s;
+    return watch->go_on(watch->context, share);
+}
+
+status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, double time_s, const load_watch *watch,
+                              diagnostic *why)
 {
     softbody *body = m->slimes[i].x.body;
     const mesh_entry *entry = motion_entry(m, &m->slimes[i]);
@@ -162,12 +176,16 @@ status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, dou
         any |= is_moving(&hands[k]);
     diagnostic bad = {.line = 0};
     status code = STATUS_OK;
+    double share = any ? 0.0 : 1.0, asked_s = clock_wall_s();
     for (uint64_t step = begin; any && step < end && code == STATUS_OK; step++) {
-        put_hands(body, hands, (double)(step + 1 - begin) / (double)(end - begin));
+        share = (double)(step + 1 - begin) / (double)(end - begin);
+        put_hands(body, hands, share);
         code = softbody_step(body, &bad);
+        if (code == STATUS_OK && step + 1 < end && !goes_on(watch, share, &asked_s))
+            code = diagnose(&bad, STATUS_INTERRUPTED, "", "interrupted before %.6g s of simulated time", time_s);
     }
     for (int k = 0; k < SOFTBODY_HANDS_MAX && begin < end; k++)
-        hands[k].from = hands[k].to;
+        hands[k].from = offset_at(&hands[k], share);
     if (code == STATUS_OK)
         return code;
     diagnostic_locate(why, bad.file, bad.line, bad.column);

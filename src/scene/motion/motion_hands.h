@@ -40,5 +40,7 @@ void scene_motion_release(scene_motion *m, size_t i, motion_hand *hands, int num
 vec3 motion_hand_offset(const motion_hand *h, vec3 by);
 
 /* All steps of the slime until time_s, with its hands moving linearly from their current positions; none if no hand
- * moves. Surfaces and the scene's account are left to scene_motion_advance. */
-status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, double time_s, diagnostic *why);
+ * moves. Surfaces and the scene's account are left to scene_motion_advance. watch as for scene_motion_advance_until:
+ * after a stop the hands are where they were then. */
+status scene_motion_step_held(scene_motion *m, size_t i, motion_hand *hands, double time_s, const load_watch *watch,
+                              diagnostic *why);

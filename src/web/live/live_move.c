@@ -57,7 +57,7 @@ static void move_hands(live *l, double share)
 static status step_to(live *l, double time_s, diagnostic *why)
 {
     for (size_t i = 0; i < scene_motion_count(l->motion); i++)
-        TRY(scene_motion_step_held(l->motion, i, &l->hands[i * SOFTBODY_HANDS_MAX], time_s, why));
+        TRY(scene_motion_step_held(l->motion, i, &l->hands[i * SOFTBODY_HANDS_MAX], time_s, NULL, why));
     return scene_motion_advance(l->motion, time_s, false, why);
 }
 
