@@ -49,11 +49,11 @@ static void send_report(follower *f)
         MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
     f->report.head.frame = f->order.head.frame;
     f->report.workers = (int64_t)workers;
-    f->report.peak_rss_bytes = (uint64_t)usage_now().peak_rss_bytes;
+    f->report.account.peak_rss_bytes = (uint64_t)usage_now().peak_rss_bytes;
     if (result) {
         f->report.counters = result->counters;
-        f->report.wall_s = result->wall_s;
-        f->report.cpu_s = result->cpu_s;
+        f->report.account.wall_s = result->wall_s;
+        f->report.account.cpu_s = result->cpu_s;
         memcpy(message + sizeof f->report, result->workers, workers * sizeof *result->workers);
     }
     memcpy(message, &f->report, sizeof f->report);
@@ -77,6 +77,8 @@ static status trace_part(follower *f, diagnostic *why)
         return diagnose(why, STATUS_FAILURE, "use fewer threads", "a thread cannot be started");
     messenger_work(f->order.head.frame, team_tracing(f->own), &moved);
     pthread_join(thread, NULL);
+    f->report.account.pieces = moved.pieces;
+    f->report.account.piece_bytes = moved.piece_bytes;
     return STATUS_OK;
 }
 

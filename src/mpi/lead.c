@@ -2,6 +2,7 @@
 #include "mpi/lead.h"
 
 #include "measure/clock.h"
+#include "measure/usage.h"
 #include "mpi/broadcast.h"
 #include "mpi/scene_wire.h"
 #include "mpi/tracing.h"
@@ -18,7 +19,7 @@
 /* What the other ranks report, all of their workers one after another. */
 typedef struct others {
     ray_counters counters;
-    double cpu_s;
+    rank_account *ranks; /* by rank, all of the frame */
     worker_report *workers;
     int count;
     status code; /* the first that is not STATUS_OK */
@@ -41,6 +42,7 @@ struct lead {
     double *variance;
     others rest;
     traffic moved;
+    uint64_t scene_bytes;
     atomic_bool stops; /* a stop request, or an error of this rank */
 };
 
@@ -76,7 +78,7 @@ static bool take_workers(others *o, int rank, const worker_report *workers, int 
     o->workers = grown;
     for (int i = 0; i < count; i++) {
         grown[o->count] = workers[i];
-        grown[o->count++].process = rank;
+        grown[o->count++].rank = rank;
     }
     return true;
 }
@@ -86,7 +88,7 @@ static bool take_report(void *of, int rank, const rank_report *report, const wor
     lead *l = of;
     others *o = &l->rest;
     ray_counters_add(&o->counters, &report->counters);
-    o->cpu_s += report->cpu_s;
+    o->ranks[rank] = report->account;
     status code = (status)report->code;
     diagnostic why = report->why;
     if (!take_workers(o, rank, workers, (int)report->workers))
@@ -138,6 +140,7 @@ static void release_frame(lead *l)
     film_destroy(l->img);
     free(l->variance);
     free(l->rest.workers);
+    free(l->rest.ranks);
     handout_destroy(l->tiles);
     team_destroy(l->own);
     l->img = NULL;
@@ -163,13 +166,15 @@ static status prepare(lead *l, const scene *s, diagnostic *why)
     schedule_start(&l->places, &settings);
     TRY(handout_create(l->places.tile_count, l->ranks, &l->tiles, why));
     TRY(team_create(&l->places, scene_threads(&s->render), &l->own, why));
+    if (!(l->rest.ranks = calloc((size_t)l->ranks, sizeof *l->rest.ranks)))
+        return out_of_memory(why);
     return renderer_film(s, &l->img, &l->variance, why);
 }
 
 /* Sends the scene to the others, which answer when they are ready. */
-static void send_orders(const lead *l, bool usage, char *bytes, size_t size)
+static void send_orders(const lead *l, bool measured, char *bytes, size_t size)
 {
-    const frame_order order = {.head.frame = l->frame, .scene_bytes = size, .tile = l->places.tile, .usage = usage};
+    const frame_order order = {.head.frame = l->frame, .scene_bytes = size, .tile = l->places.tile, .usage = measured};
     for (int rank = 1; rank < l->ranks; rank++)
         MPI_Send(&order, sizeof order, MPI_BYTE, rank, TAG_FRAME, MPI_COMM_WORLD);
     broadcast(bytes, size);
@@ -195,6 +200,7 @@ static status begin(void *of, const scene *s, const render_options *requested, c
         l->frame++;
         l->sink = (frame_sink){l, put_piece, take_report, goes_on};
         l->watch = *watch;
+        l->scene_bytes = size;
         l->moved = (traffic){0};
         atomic_store(&l->stops, false);
         send_orders(l, requested->usage, bytes, size);
@@ -210,27 +216,49 @@ static status begin(void *of, const scene *s, const render_options *requested, c
     return code;
 }
 
-/* Adds the others' parts to this rank's. */
-static status add_others(lead *l, render_result *result, diagnostic *why)
+/* The account of each rank; this one's is the first. */
+static void add_ranks(lead *l, render_result *result)
 {
-    others *o = &l->rest;
-    const double wall_s = (isfinite(l->complete_s) ? l->complete_s : clock_wall_s()) - l->begun_s;
+    rank_account *ranks = l->rest.ranks;
+    ranks[0] = (rank_account){
+        .wall_s = result->wall_s, .cpu_s = result->cpu_s, .peak_rss_bytes = (uint64_t)usage_now().peak_rss_bytes};
+    for (int rank = 1; rank < l->ranks; rank++)
+        result->cpu_s += ranks[rank].cpu_s;
+    result->ranks = ranks;
+    result->rank_count = l->ranks;
+    result->tile = l->places.tile;
+    result->scene_bytes = l->scene_bytes;
+    l->rest.ranks = NULL;
+}
+
+/* Workers of all ranks; waiting is the rest of the whole frame's time. */
+static status add_workers(const lead *l, render_result *result, double wall_s, diagnostic *why)
+{
+    const others *o = &l->rest;
     worker_report *all = realloc(result->workers, (size_t)(result->worker_count + o->count) * sizeof *all);
     if (!all)
         return out_of_memory(why);
+    if (o->count > 0)
+        memcpy(all + result->worker_count, o->workers, (size_t)o->count * sizeof *all);
     result->workers = all;
-    memcpy(all + result->worker_count, o->workers ? o->workers : all, (size_t)o->count * sizeof *all);
     result->worker_count += o->count;
     for (int i = 0; i < result->worker_count; i++)
         all[i].waiting_s = wall_s - all[i].busy_s;
-    ray_counters_add(&result->counters, &o->counters);
-    result->cpu_s += o->cpu_s;
+    return STATUS_OK;
+}
+
+/* Adds the others' parts to this rank's. */
+static status add_others(lead *l, render_result *result, diagnostic *why)
+{
+    const double wall_s = (isfinite(l->complete_s) ? l->complete_s : clock_wall_s()) - l->begun_s;
+    ray_counters_add(&result->counters, &l->rest.counters);
+    add_ranks(l, result);
     result->wall_s = wall_s;
     result->img = l->img;
     result->variance = l->variance;
     l->img = NULL;
     l->variance = NULL;
-    return STATUS_OK;
+    return add_workers(l, result, wall_s, why);
 }
 
 static status end(void *of, status traced, render_result *result, diagnostic *why)

@@ -7,15 +7,25 @@
 #include "cli/terminal.h"
 #include "mpi/follow.h"
 #include "mpi/lead.h"
+#include "mpi/shards.h"
 #include <argp.h>
 #include <mpi.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* All ranks run shards before any command is chosen: see run. */
+static status command_shards(int argc, char **argv, diagnostic *why)
+{
+    (void)argc, (void)argv;
+    return diagnose_at(why, "cuvette-mpi study", STATUS_BAD_INPUT, "use 'cuvette study' for the others",
+                       "the only command of studies here is 'study run'");
+}
+
 static const command commands[] = {
     {"render", "render one frame on all ranks; write the image, counts and times", command_render},
     {"animate", "render an animation, each frame on all ranks", command_animate},
+    {"study", "run a study, one shard on each rank, and merge the rows", command_shards},
 };
 
 static const char about[] = "Cuvette on many machines: the ranks of an MPI job share each frame. For example:\n"
@@ -67,6 +77,8 @@ static status check_builds(int rank, int ranks, diagnostic *why)
 static status run(int argc, char **argv, int rank, int ranks, diagnostic *why)
 {
     TRY(check_builds(rank, ranks, why));
+    if (argc > 3 && strcmp(argv[1], "study") == 0 && strcmp(argv[2], "run") == 0)
+        return shards_run(argc, argv, rank, ranks, why);
     if (rank > 0) {
         signal(SIGINT, SIG_IGN); /* rank 0 ends the frame */
         signal(SIGTERM, SIG_IGN);
@@ -96,7 +108,7 @@ int main(int argc, char **argv)
         argv[0] = program;
         code = run(argc, argv, rank, ranks, &why);
     }
-    if (code != STATUS_OK && (rank == 0 || why.what[0]))
+    if (code != STATUS_OK && why.what[0])
         terminal_error(&why);
     return (int)code;
 }

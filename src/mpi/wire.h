@@ -41,8 +41,7 @@ typedef struct rank_report {
     int64_t code; /* status; of any other than STATUS_OK, why */
     diagnostic why;
     ray_counters counters;
-    double wall_s, cpu_s;
-    uint64_t peak_rss_bytes, film_bytes;
+    rank_account account;
     int64_t workers;
 } rank_report;
 

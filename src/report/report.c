@@ -173,6 +173,20 @@ static json_t *workers(const job_account *a)
     return list;
 }
 
+/* The processes that share the frame. */
+static json_t *ranks(const render_result *r)
+{
+    json_t *list = json_array();
+    for (int i = 0; list && i < r->rank_count; i++) {
+        const rank_account *k = &r->ranks[i];
+        json_array_append_new(list, json_pack("{s:o, s:o, s:I, s:I, s:I}", "wall_s", json_of_real(k->wall_s), "cpu_s",
+                                              json_of_real(k->cpu_s), "peak_rss_bytes", (json_int_t)k->peak_rss_bytes,
+                                              "tiles_sent", (json_int_t)k->pieces, "bytes_sent",
+                                              (json_int_t)k->piece_bytes));
+    }
+    return list;
+}
+
 /* The 95% interval of the median; nulls for fewer than 6 values. */
 static int put_interval(json_t *o, const char *key, const double *values, size_t count)
 {
@@ -199,6 +213,11 @@ json_t *report_create(const job_account *a, bool repeated)
         bad |= put_interval(o, "cpu_s_interval", a->cpu_s, a->count);
     }
     bad |= json_object_set_new(o, "threads", workers(a));
+    if (a->result->ranks) {
+        bad |= json_object_set_new(o, "ranks", ranks(a->result));
+        bad |= json_object_set_new(o, "tile", json_integer(a->result->tile));
+        bad |= json_object_set_new(o, "scene_bytes", json_integer((json_int_t)a->result->scene_bytes));
+    }
     bad |= json_object_set_new(o, "version", json_string(CUVETTE_VERSION));
     bad |= json_object_set_new(o, "scene", json_of_text(a->of->path ? a->of->path : ""));
     bad |= json_object_set_new(o, "params", report_params(a->of));

@@ -26,5 +26,6 @@ void render_result_destroy(render_result *result)
     free(result->variance);
     layers_destroy(result->layers);
     free(result->events);
+    free(result->ranks);
     free(result);
 }

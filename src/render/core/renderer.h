@@ -34,7 +34,7 @@ typedef struct worker_report {
     /* part of busy_s spent in visibility queries (nearest hits and shadows); NaN for scenes without meshes */
     double visibility_s;
     double waiting_s;                          /* the frame's wall time less busy_s */
-    int process;                               /* of the processes that share the frame; 0: the only one */
+    int rank;                                  /* of the processes that share the frame; 0: the only one */
     uint64_t tiles;                            /* tiles that it rendered */
     uint64_t camera, reflect, refract, shadow; /* rays that it traced */
     int pu;                                    /* processing unit at the end; -1: unknown */
@@ -80,6 +80,13 @@ typedef struct render_options {
     const piece_source *source;
 } render_options;
 
+/* One of the processes that share a frame; its workers are those with its number. */
+typedef struct rank_account {
+    double wall_s, cpu_s;         /* as those of the result, of its own part */
+    uint64_t peak_rss_bytes;      /* of the process so far */
+    uint64_t pieces, piece_bytes; /* that it sent to rank 0 */
+} rank_account;
+
 typedef struct render_result {
     film *img;             /* NULL if the pieces came from a source */
     ray_counters counters; /* sums over all workers */
@@ -102,6 +109,10 @@ typedef struct render_result {
     size_t event_count;
     mesh_report meshes;
     layer_set *layers; /* NULL unless requested and supported */
+    /* of a frame that several processes share: by rank; NULL: of one process */
+    rank_account *ranks;
+    int rank_count, tile; /* the side of their pieces */
+    uint64_t scene_bytes; /* sent to each rank */
 } render_result;
 
 /* Root of the mean variance over pixels and channels: the typical random error of a film value. NaN without random
