@@ -22,6 +22,7 @@ from ._library import (
     ffi,
     lib,
     made,
+    needed,
     on_column,
     on_news,
     on_run,
@@ -123,7 +124,7 @@ def rows(
 
     attrs of the table: "units" and "meanings" by column, "environments" with the facts of each key, "left_out" with the
     number of rows by reason."""
-    import pandas
+    pandas = needed("pandas")
 
     place = os.fspath(folder)
     files = (
@@ -309,7 +310,7 @@ class Study:
     @described("cuvette_study_summary")
     def summary(self, results: Path = "results", environment: Optional[str] = None) -> "pandas.DataFrame":
         """One line per cell and environment, as a DataFrame."""
-        import pandas
+        pandas = needed("pandas")
 
         out, fault = ffi.new("char **"), ffi.new("char **")
         call(lib.cuvette_study_summary, self._study, encoded(results), _or_null(environment), out, fault)
@@ -321,7 +322,7 @@ class Study:
     @described("cuvette_study_compare")
     def compare(self, a: str, b: str, column: Optional[str] = None, results: Path = "results") -> "pandas.DataFrame":
         """One line per pair of cells, and one over all (cell is NA); attrs has the environments of both sides."""
-        import pandas
+        pandas = needed("pandas")
 
         out, fault = ffi.new("char **"), ffi.new("char **")
         call(
