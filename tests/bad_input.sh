@@ -66,7 +66,7 @@ printf 'study: own\nscene: scenes/rod.yaml\n' >own.study
 refused "installed scene in a study" "own.study:2:8: .*; use /[^ ]*/experiments/scenes/rod.yaml" study run own.study
 refused "study without its ending" "; did you mean 'own.study'\?" study run own
 mkdir experiments
-refused "installed scene, beside a copy" "; use /[^ ]*/experiments/scenes/rod.yaml$" render experiments/scenes/rod.yaml --json
+refused "installed scene, next to a copy" "; use /[^ ]*/experiments/scenes/rod.yaml$" render experiments/scenes/rod.yaml --json
 rmdir experiments
 refused "scene is a folder" "folder" render . --json
 refused "image to standard output" "-o -" render "$scene" -o -

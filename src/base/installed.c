@@ -74,13 +74,13 @@ void installed_suggest(const char *path, const char *below, const char *ending, 
 {
     if (!why || !*path || exists(path))
         return;
-    char *beside = with_ending(NULL, path, ending), *there = with_ending(below, path, ending);
+    char *near = with_ending(NULL, path, ending), *there = with_ending(below, path, ending);
     char *installed = there ? installed_folder(there) : NULL;
-    if (beside && exists(beside))
-        snprintf(why->remedy, sizeof why->remedy, "did you mean '%s'?", beside);
+    if (near && exists(near))
+        snprintf(why->remedy, sizeof why->remedy, "did you mean '%s'?", near);
     else if (installed)
         suggest_installed(installed, why);
     free(installed);
     free(there);
-    free(beside);
+    free(near);
 }
