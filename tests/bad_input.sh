@@ -12,12 +12,12 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 unset CUVETTE_ISA
 
-passed=0 failed=0
+passed=0 failed=0 as=()
 located='^cuvette: [^:]+(:[0-9]+(:[0-9]+)?)?: [^;]+(; .+)?$'
 refused() { # WHAT PATTERN ARGUMENT...: the line must also match PATTERN
     local what=$1 pattern=$2 wrong=
     shift 2
-    timeout 60 "$program" "$@" >out 2>err </dev/null
+    timeout 60 "${as[@]}" "$program" "$@" >out 2>err </dev/null
     local code=$?
     ((code == 2)) || wrong+=" exit $code;"
     [[ -s out ]] && wrong+=" something on standard output;"
@@ -46,18 +46,41 @@ refused "unknown option of the program" "unknown option '--bogus'" --bogus
 refused "no scene" "no scene" render
 refused "no output" "no output is given; add -o FILE" render "$scene"
 refused "two scenes" "unexpected argument" render "$scene" "$scene" --json
+refused "an image without -o" "use -o FILE" render "$scene" x.png
+refused "a second scene of a command without outputs" "scene; use --set PATH=VALUE" realism "$scene" x.yaml
+refused "a scene without a command" "cuvette render rod.yaml -o image.png" rod.yaml
 refused "misspelt option" "did you mean '--output'" render "$scene" --outptu x.png
 refused "unknown short option" "unknown option '-z'" render "$scene" -z
 refused "ambiguous option" "'--ti' is ambiguous" render "$scene" --ti x.png
 refused "option without its value" "requires a value" render "$scene" -o
 refused "value for an option that takes none" "takes no value" render "$scene" --json=yes
-refused "missing scene" "nowhere.yaml" render nowhere.yaml --json
+refused "missing scene" "nowhere.yaml: cannot open: [^;]*; check the path$" render nowhere.yaml --json
+for name in experiments/scenes/rod.yaml scenes/rod.yaml rod.yaml rod.yml rod; do
+    refused "installed scene, as $name" "; use /[^ ]*/experiments/scenes/rod.yaml, or copy all: cp -r /[^ ]*/experiments \.$" \
+        render $name --json
+done
+refused "installed scene in the laboratory" "; use /[^ ]*/scenes/rod.yaml, or copy" lab scenes/rod.yaml --no-browser
+refused "installed study" "; use /[^ ]*/experiments/depth.study, or copy all" study run experiments/depth.study
+refused "installed study by its name" "; use /[^ ]*/experiments/depth.study, or copy all" study summary depth
+printf 'study: own\nscene: scenes/rod.yaml\n' >own.study
+refused "installed scene in a study" "own.study:2:8: .*; use /[^ ]*/experiments/scenes/rod.yaml" study run own.study
+refused "study without its ending" "; did you mean 'own.study'\?" study run own
+mkdir experiments
+refused "installed scene, next to a copy" "; use /[^ ]*/experiments/scenes/rod.yaml$" render experiments/scenes/rod.yaml --json
+rmdir experiments
 refused "scene is a folder" "folder" render . --json
 refused "image to standard output" "-o -" render "$scene" -o -
 refused "unknown ending" "x.gif" render "$scene" -o x.gif
 refused "no ending" "x: " render "$scene" -o x
 refused "empty name of an image" "-o" render "$scene" -o ""
 refused "missing folder" "folder does not exist" render "$scene" -o nowhere/x.png
+mkdir -m 555 closed
+chmod 755 .
+((EUID)) || as=(setpriv --reuid=65534 --clear-groups) # root may write anywhere
+if "${as[@]}" test -x "$program" -a ! -w closed 2>/dev/null; then
+    refused "closed folder" "may not write in the folder; give" render "$scene" -o closed/x.png
+fi
+as=()
 mkdir folder.png
 refused "image is a folder" "is a folder" render "$scene" -o folder.png
 refused "JPEG with 16 bits" "only PNG" render "$scene" -o x.jpg --bits 16

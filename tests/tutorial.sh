@@ -39,11 +39,16 @@ ln -s "$root/experiments" "$work/lab/experiments"
 export PATH=$work/bin:$PATH LC_ALL=C
 cd "$work/lab" || exit 1
 
-expected=() command='' shown='' printed=''
+# The commands start in a locale with a decimal comma, if it can be made.
+mkdir "$work/locales"
+localedef -i de_DE -f UTF-8 "$work/locales/de_DE.UTF-8" 2>/dev/null
+export LOCPATH=$work/locales
+expected=() command='' shown='' printed='' exports=''
 finish() { # runs the command and compares its output with the lines below it
     [[ -n $command ]] || return
     local output
-    output=$(bash -o pipefail -c "$command" 2>&1 </dev/null)
+    [[ $command != export* ]] || exports+="$command;"
+    output=$(LC_ALL=de_DE.UTF-8 bash -o pipefail -c "$exports$command" 2>&1 </dev/null)
     verdict $? "$command" "$output"
     [[ $output == "${shown%$'\n'}" ]]
     verdict $? "$command prints the output on the page" "$(diff <(echo "${shown%$'\n'}") <(echo "$output"))"

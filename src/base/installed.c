@@ -1,11 +1,15 @@
 /* The places of files that come with the program. */
 #include "base/installed.h"
 
+#include "base/file.h"
 #include "base/os_process.h"
 #include "base/text.h"
 #include <dlfcn.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char here;
 
@@ -40,4 +44,43 @@ char *installed_folder(const char *below)
 {
     static const char *const places[] = {"/../share/cuvette", "/../../share/cuvette", "/..", "/../.."};
     return installed_find(places, sizeof places / sizeof *places, below);
+}
+
+static bool exists(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
+static char *with_ending(const char *folder, const char *path, const char *ending)
+{
+    const char *name = file_name_of(path), *dot = strrchr(name, '.');
+    const int length = (int)(dot && dot > name ? dot - path : (long)strlen(path));
+    return folder ? text_format("%s/%.*s%s", folder, length - (int)(name - path), name, ending)
+                  : text_format("%.*s%s", length, path, ending);
+}
+
+/* Examples are printed as experiments/..., the folder that an installation keeps in share/cuvette. A copy is not offered
+ * where it would write over one that the user may have changed. */
+static void suggest_installed(const char *file, diagnostic *why)
+{
+    char *all = exists("experiments") ? NULL : installed_folder("experiments");
+    const int length = snprintf(why->remedy, sizeof why->remedy, "use %s", file);
+    if (all && length > 0 && (size_t)length < sizeof why->remedy)
+        snprintf(why->remedy + length, sizeof why->remedy - (size_t)length, ", or copy all: cp -r %s .", all);
+    free(all);
+}
+
+void installed_suggest(const char *path, const char *below, const char *ending, diagnostic *why)
+{
+    if (!why || !*path || exists(path))
+        return;
+    char *near = with_ending(NULL, path, ending), *there = with_ending(below, path, ending);
+    char *installed = there ? installed_folder(there) : NULL;
+    if (near && exists(near))
+        snprintf(why->remedy, sizeof why->remedy, "did you mean '%s'?", near);
+    else if (installed)
+        suggest_installed(installed, why);
+    free(installed);
+    free(there);
+    free(near);
 }

@@ -132,7 +132,7 @@ static const scene_command animate_command = {
     .name = "animate",
     .form = {.options = options,
              .synopsis = "SCENE",
-             SCENE_WORD("animate"),
+             SCENE_WORD("animate", "-o FILE for an output, "),
              .about =
                  "Render an animation of the scene file SCENE, whose slimes move.\vFrame k shows the time START + k / "
                  "FPS; there are DURATION times FPS frames, rounded, at least one. Existing frames are not rendered "

@@ -1,6 +1,7 @@
 /* The dispatcher of commands: help text, selection by name, unknown names. */
 #include "cli/cli.h"
 #include "cli/options.h"
+#include "cli/outputs.h"
 #include "base/text.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,6 +33,8 @@ static status unknown_command(const command *table, size_t count, const char *pr
     for (; named < count && named < COMMANDS_MAX; named++)
         names[named] = table[named].name;
     options_unknown_word("command", word, names, named, why);
+    if (outputs_ends_with(word, ".yaml") && why)
+        snprintf(why->remedy, sizeof why->remedy, "for an image: %s render %.256s -o image.png", program, word);
     options_locate(why, program);
     return STATUS_BAD_INPUT;
 }

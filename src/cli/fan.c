@@ -132,7 +132,7 @@ static const scene_command fan_command = {
     .name = "fan",
     .form = {.options = options,
              .synopsis = "SCENE --from X,Y,Z --to X,Y,Z -o FILE",
-             SCENE_WORD("fan"),
+             SCENE_WORD("fan", "-o FILE for an output, "),
              .about =
                  "Trace a fan of rays in one plane, parallel or from one point, along their refracted paths; find "
                  "the crossings of adjacent rays (the caustic) and the mean focus.\vWithout --plane, the plane is "

@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "cli/scene_input.h"
 #include "cli/terminal.h"
+#include "base/installed.h"
 #include "base/text.h"
 #include "measure/topology.h"
 #include "web/lab.h"
@@ -107,6 +108,8 @@ static status run_lab(const lab_request *request, const char *folder, const char
         settings.threads = topology_pu_count(machine);
     topology_destroy(machine);
     THEN(code, lab_start(&settings, &l, why));
+    if (code == STATUS_BAD_INPUT && request->scene)
+        installed_suggest(request->scene, "experiments/scenes", ".yaml", why);
     if (code == STATUS_OK) {
         printf("%s\n", lab_address(l));
         code = terminal_flush(why);

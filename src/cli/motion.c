@@ -119,7 +119,7 @@ static const scene_command motion_command = {
     .name = "motion",
     .form = {.options = options,
              .synopsis = "SCENE",
-             SCENE_WORD("motion"),
+             SCENE_WORD("motion", ""),
              .about =
                  "Compare the motion of each slime of the scene file SCENE, with its stiffness, integrator and time "
                  "step, with closed-form mechanics: oscillation of a spring, fall, bounce, quantities that a free "

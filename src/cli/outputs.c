@@ -9,6 +9,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct named_file {
     const char *option, *path;
@@ -57,6 +58,13 @@ static bool same_file(const char *a, const char *b)
     return same;
 }
 
+/* A device, a pipe or a link: the folder of its name need not be writable. */
+static bool is_special(const char *path)
+{
+    struct stat about;
+    return lstat(path, &about) == 0 && !S_ISREG(about.st_mode);
+}
+
 static status check_folder(const named_file *file, diagnostic *why)
 {
     struct stat about;
@@ -65,9 +73,13 @@ static status check_folder(const named_file *file, diagnostic *why)
     char *folder = outputs_folder_of(file->path);
     if (!folder)
         return out_of_memory(why);
-    bool there = stat(folder, &about) == 0 && S_ISDIR(about.st_mode);
+    const bool there = stat(folder, &about) == 0 && S_ISDIR(about.st_mode);
+    const bool open = there && (is_special(file->path) || euidaccess(folder, W_OK) == 0);
     free(folder);
-    return there ? STATUS_OK : wrong(file, why, "create it first, or give another", "the folder does not exist");
+    if (!there)
+        return wrong(file, why, "create it first, or give another", "the folder does not exist");
+    return open ? STATUS_OK
+                : wrong(file, why, "give a file in a folder of your own", "you may not write in the folder");
 }
 
 typedef struct search {

@@ -130,7 +130,7 @@ static const scene_command realism_command = {
     .name = "realism",
     .form = {.options = options,
              .synopsis = "SCENE",
-             SCENE_WORD("realism"),
+             SCENE_WORD("realism", ""),
              .about = "Compare the traced optics of the scene file SCENE with closed-form theory. The scene holds a "
                       "vessel (a cup), a liquid in it (a cylinder) and a rod (a box); or a prism, a drop, or two "
                       "plates. The exit status is 0 whether or not the metrics pass. On a terminal the lines "

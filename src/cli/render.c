@@ -227,7 +227,7 @@ static const scene_command render_command = {
     .name = "render",
     .form = {.options = options,
              .synopsis = "SCENE",
-             SCENE_WORD("render"),
+             SCENE_WORD("render", "-o FILE for an output, "),
              .about = "Render SCENE, print its ray count and time, and write the image with -o.\vFor example:\n"
                       "  cuvette render experiments/scenes/rod.yaml -o rod.png --set render.depth=4\n"
                       "'cuvette params SCENE' lists the parameters that --set accepts."},

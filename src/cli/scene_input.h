@@ -47,9 +47,9 @@ status option_change(const command_option *o, void *request, const char *value, 
 status scene_input_probe(const scene_input *input, const scene *s, isa level, probe **out, diagnostic *why);
 
 /* The one argument of these commands, SCENE. */
-#define SCENE_WORD(command)                                                           \
-    .arguments_at = offsetof(scene_input, path), .argument_limit = 1,                 \
-    .excess_remedy = command " takes one scene; use --set PATH=VALUE for parameters", \
+#define SCENE_WORD(command, others)                                                             \
+    .arguments_at = offsetof(scene_input, path), .argument_limit = 1,                           \
+    .excess_remedy = command " takes one scene; use " others "--set PATH=VALUE for parameters", \
     .excess = "unexpected argument '%.128s'"
 
 /* A command on a scene. It parses the command line into the request, reads the scene, loads its files unless `unloaded`

@@ -160,7 +160,7 @@ static const scene_command trace_command = {
     .form =
         {.options = options,
          .synopsis = "SCENE (--pixel X,Y | --ray OX,OY,OZ,DX,DY,DZ | --beams)",
-         SCENE_WORD("trace"),
+         SCENE_WORD("trace", "-o FILE for an output, "),
          .about =
              "Trace one ray and print its ray tree: media, angles, reflectances, and the contribution of each ray to "
              "the pixel. The radiance of a pixel's tree equals the image, bit for bit.\vFor example:\n"

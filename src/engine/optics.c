@@ -3,6 +3,7 @@
 
 #include "realism/realism.h"
 #include "report/realism_rows.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,8 +70,12 @@ static status curve_named(const char *name, realism_curve *out, diagnostic *why)
             *out = (realism_curve)i;
             return STATUS_OK;
         }
-    return diagnose(why, STATUS_BAD_INPUT, "cuvette_scene_each_curve lists those of the scene",
-                    "there is no curve '%.64s'", name);
+    char remedy[256] = "give one of:";
+    for (int i = 0; i < REALISM_CURVE_COUNT; i++) {
+        const size_t used = strlen(remedy);
+        snprintf(remedy + used, sizeof remedy - used, "%s %s", i ? "," : "", realism_curve_name((realism_curve)i));
+    }
+    return diagnose(why, STATUS_BAD_INPUT, remedy, "there is no curve '%.64s'", name);
 }
 
 cuvette_status cuvette_scene_curve(const cuvette_scene *s, const char *name, double (*points)[3], size_t room,

@@ -18,6 +18,7 @@
  *
  * Every path and value is tried on the scene here, so that a study that was read can be run. */
 #include "base/file.h"
+#include "base/installed.h"
 #include "base/number.h"
 #include "base/text.h"
 #include "scene/file/document.h"
@@ -264,9 +265,13 @@ static status read_scene(study *s, const document *d, const node *root, const st
         return allowed;
     }
     struct stat found;
-    if (stat(s->scene_path, &found) != 0 || !S_ISREG(found.st_mode) || access(s->scene_path, R_OK) != 0)
-        return node_error(d, n, why, "give an existing scene file, relative to this file", "scene %s cannot be read",
-                          s->scene_path);
+    if (stat(s->scene_path, &found) != 0 || !S_ISREG(found.st_mode) || access(s->scene_path, R_OK) != 0) {
+        node_error(d, n, why, "give an existing scene file, relative to this file", "scene %s cannot be read",
+                   s->scene_path);
+        if (!guard)
+            installed_suggest(s->scene_path, "experiments/scenes", ".yaml", why);
+        return STATUS_BAD_INPUT;
+    }
     size_t size;
     const char *below = guard ? guard->root : NULL;
     TRY(file_read_below(s->scene_path, below, FILE_BYTES_MAX, &s->scene_text, &size, why));
@@ -361,8 +366,13 @@ status study_read_guarded(const char *path, const study_guard *guard, study **ou
     char *text;
     size_t size;
     *out = NULL;
-    TRY(file_read_below(path, guard ? guard->root : NULL, FILE_BYTES_MAX, &text, &size, why));
-    status code = read_text(path, text, size, guard, out, why);
+    status code = file_read_below(path, guard ? guard->root : NULL, FILE_BYTES_MAX, &text, &size, why);
+    if (code != STATUS_OK) {
+        if (!guard)
+            installed_suggest(path, "experiments", ".study", why);
+        return code;
+    }
+    code = read_text(path, text, size, guard, out, why);
     free(text);
     return code;
 }

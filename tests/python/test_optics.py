@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 
 import cuvette
 import numpy
@@ -35,7 +36,7 @@ def test_curves(program):
     root = numpy.sqrt(1.5**2 - 1 + cos_in**2)
     assert numpy.allclose(curve.measured, ((cos_in - root) / (cos_in + root)) ** 2, atol=1e-12)
     assert "angle" in curve.x_label and "rainbow" not in scene.curves
-    with pytest.raises(cuvette.InputError, match="no curve 'snell'"):
+    with pytest.raises(cuvette.InputError, match="no curve 'snell'; give one of: .*fresnel-s"):
         scene.curve("snell")
     with pytest.raises(cuvette.InputError):
         scene.curve("rainbow")
@@ -102,3 +103,22 @@ def test_maps(rod):
     noisy = rod.render(integrator="path", paths=16)
     assert noisy.map("noise").mean() > 0
     assert math.sqrt((noisy.map("noise") ** 2).mean()) == pytest.approx(noisy.noise_rms)
+
+
+@pytest.mark.parametrize(
+    "use, package",
+    [("scene.curve('fresnel').plot()", "matplotlib"), ("scene.realism().table()", "pandas")],
+)
+def test_a_missing_package_is_named(use, package, monkeypatch):
+    monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.delitem(sys.modules, "matplotlib.pyplot", raising=False)
+    scene = cuvette.read(ROD)  # named in use
+    with pytest.raises(ModuleNotFoundError, match=f"sudo apt install python3-{package}$"):
+        eval(use, {"scene": scene})
+
+
+def test_errors_have_the_name_to_catch():
+    with pytest.raises(cuvette.InputError) as caught:
+        cuvette.read("rod.yaml")
+    assert f"{caught.type.__module__}.{caught.type.__qualname__}" == "cuvette.InputError"
+    assert caught.value.remedy.startswith("use /") and "experiments/scenes/rod.yaml" in caught.value.remedy

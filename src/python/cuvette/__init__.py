@@ -18,6 +18,9 @@ from .rays import Fan, FanRay, Hit, Node, Query, Tree
 from .scene import Parameter, Parameters, Scene, read, read_text_scene as parse
 from .study import Figure, Study, columns, rows, study
 
+for _kind in (BusyError, Cancelled, Error, InputError, SystemFailure):
+    _kind.__module__ = __name__  # the name in tracebacks is the one to catch
+
 __version__ = version()
 __all__ = [
     "BusyError",

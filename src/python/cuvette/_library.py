@@ -1,5 +1,6 @@
 """The shared library: where it is, its errors as exceptions, and what the other modules need to call it."""
 
+import importlib
 import inspect
 import os
 import pathlib
@@ -38,6 +39,15 @@ def _load() -> Any:
 lib = _load()
 NULL = ffi.NULL
 Kind = TypeVar("Kind", bound=Callable[..., Any])
+
+
+def needed(module: str) -> Any:
+    """A module that only some functions need."""
+    try:
+        return importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        package = module.partition(".")[0]
+        raise ModuleNotFoundError(f"{error}; on Debian: sudo apt install python3-{package}", name=error.name) from None
 
 
 class Error(Exception):

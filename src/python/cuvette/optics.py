@@ -6,6 +6,7 @@ from typing import Any
 import numpy
 from numpy.typing import NDArray
 
+from ._library import needed
 from .records import Records
 
 
@@ -45,9 +46,7 @@ class Curve:
     def plot(self, axes: Any = None) -> Any:
         """Draws the curve with matplotlib; returns the axes."""
         if axes is None:
-            from matplotlib import pyplot
-
-            axes = pyplot.figure().add_subplot()
+            axes = needed("matplotlib.pyplot").figure().add_subplot()
         axes.plot(self.x, self.theory, "-", color="0.6", label="theory")
         axes.plot(self.x, self.measured, ".", markersize=4, label="traced")
         axes.set(xlabel=self.x_label, ylabel=self.y_label, title=self.name)

@@ -5,6 +5,8 @@ import difflib
 import html
 from typing import Any, List, Sequence, TypeVar
 
+from ._library import needed
+
 Item = TypeVar("Item")
 
 
@@ -47,6 +49,6 @@ class Records(List[Item]):
 
     def table(self) -> Any:
         """A pandas DataFrame."""
-        import pandas
+        pandas = needed("pandas")
 
         return pandas.DataFrame(self._rows(), columns=self._titles())

@@ -22,6 +22,7 @@ from ._library import (
     ffi,
     lib,
     made,
+    needed,
     on_column,
     on_news,
     on_run,
@@ -83,8 +84,7 @@ def _facts(folder: str) -> Dict[str, Dict[str, str]]:
 
 
 def _table(text: Optional[str], separator: str = ",") -> "pandas.DataFrame":
-    import pandas
-
+    pandas = needed("pandas")
     kinds = {name: str for name in (*TEXTS, "environment", "left_out")}
     return pandas.read_csv(io.StringIO(text or ""), sep=separator, dtype=kinds, na_values=["NA"], keep_default_na=False)
 
@@ -273,7 +273,7 @@ class Study:
     @described("cuvette_study_compare")
     def compare(self, a: str, b: str, column: Optional[str] = None, results: Path = "results") -> "pandas.DataFrame":
         """One line per pair of cells, and one over all (cell is NA); attrs has the environments of both sides."""
-        import pandas
+        pandas = needed("pandas")
 
         out, fault = ffi.new("char **"), ffi.new("char **")
         call(

@@ -16,6 +16,7 @@
  * (scene/model/params.h); a solid also takes those of a material, for itself alone. Vectors and colours are lists:
  * [0, 1, 2]. The file's order is kept. Sections and objects may be empty. */
 #include "base/file.h"
+#include "base/installed.h"
 #include "scene/file/shared.h"
 #include "scene/model/check.h"
 #include "scene/model/edit/edit.h"
@@ -145,7 +146,12 @@ static status read_file(const char *path, const char *root, scene **out, diagnos
 {
     char *text;
     size_t size;
-    TRY(file_read_below(path, root, FILE_LIMIT, &text, &size, why));
+    const status read = file_read_below(path, root, FILE_LIMIT, &text, &size, why);
+    if (read != STATUS_OK) {
+        if (!root)
+            installed_suggest(path, "experiments/scenes", ".yaml", why);
+        return read;
+    }
     const status code = shared_is_file(text, size) ? shared_read_file(path, text, size, out, why)
                                                    : scene_read_text(path, text, size, out, why);
     free(text);
