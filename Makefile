@@ -130,14 +130,17 @@ $(build)/web/page_files.o: $(build)/web/page_files.c $(build)/flags
 MPI_PACKAGE ?= ompi-c
 mpi_cflags = $(eval mpi_cflags := $$(shell pkg-config --cflags $(MPI_PACKAGE)))$(mpi_cflags)
 mpi_libs = $(eval mpi_libs := $$(shell pkg-config --libs $(MPI_PACKAGE)))$(mpi_libs)
-.PHONY: mpi setup-mpi
+.PHONY: mpi setup-mpi test-mpi
+test-mpi: mpi $(build)/cuvette | $(filter test experiments bench,$(MAKECMDGOALS)) ## test cuvette-mpi with ranks on this machine
+	@CUVETTE='$(abspath $(build)/cuvette)' tests/run tests/mpi.sh
 mpi: $(build)/cuvette-mpi $(build)/cuvette-import ## build build/cuvette-mpi, for the ranks of an MPI job
-setup-mpi: | $(filter setup,$(MAKECMDGOALS)) ## install what make mpi requires: OpenMPI
+setup-mpi: | $(filter setup setup-python,$(MAKECMDGOALS)) ## install what make mpi requires: OpenMPI
 	@.ci/setup-mpi
 $(build)/cuvette-mpi: $(mpi_objects) $(filter-out %/cli/main.o,$(program_objects)) $(build)/libweb.a $(build)/libcuvette.a
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(mpi_libs) $(all_libs)
 $(build)/obj/mpi/%.o: private own_cflags = $(mpi_cflags)
+$(build)/obj/mpi/handout.o: private own_cflags =
 
 # The mesh importer, the only program linked to assimp. Built without sanitizers, which need more address space than the limit that it
 # sets itself.
@@ -202,6 +205,8 @@ $(build)/tests/test_%: tests/test_%.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) -Werror $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(test_web) $(build)/libcuvette.a $(LDFLAGS) $(all_libs) -lcmocka
+$(build)/tests/test_handout: $(build)/obj/mpi/handout.o
+$(build)/tests/test_handout: private test_web = $(build)/obj/mpi/handout.o
 $(web_tests): $(build)/libweb.a
 $(web_tests): private test_web = $(build)/libweb.a
 
@@ -274,7 +279,7 @@ test-doc: $(build)/cuvette | doc-tools ## check the documentation: complete, eve
 # Checks of the sources, run in one configuration only.
 source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
   tests/compile_commands.sh tests/words.sh tests/doc.sh
-scripts := $(filter-out $(source_checks) tests/arch.sh,$(wildcard tests/*.sh))
+scripts := $(filter-out $(source_checks) tests/arch.sh tests/mpi.sh,$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
 endif
@@ -308,9 +313,9 @@ dictionary: $(build)/tests/test_quantities $(build)/cuvette ## renew the tables 
 # The page in a real browser: only=NAME for tests/web/NAME.test.mjs alone, screenshots=FOLDER for images of every view. Runs after everything
 # that installs or measures.
 .PHONY: test-web setup-web
-setup-web: | $(filter setup setup-peers setup-python,$(MAKECMDGOALS))
+setup-web: | $(filter setup setup-peers setup-python setup-mpi,$(MAKECMDGOALS))
 	@.ci/setup-web $(build)/web-tests
-test-web: $(build)/cuvette | setup-web $(filter test experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file
+test-web: $(build)/cuvette | setup-web $(filter test test-mpi experiments bench,$(MAKECMDGOALS)) ## test the laboratory's page in Chromium, installed with node if missing; only=NAME for one file
 	@tests/format.sh --check $(build)/web-tests
 	@node tests/web/run.mjs --program '$(abspath $(build)/cuvette)' --modules '$(abspath $(build)/web-tests)' \
 	  $(if $(screenshots),--screenshots '$(abspath $(screenshots))') $(only)
@@ -334,7 +339,7 @@ $(module)/_declarations.py: src/python/declare.py src/cuvette.h $(module_sources
 	$(quiet)$(PYTHON) src/python/declare.py src/cuvette.h $(build)/python/params.json $(@D)
 .PHONY: python test-python
 python: $(module)/_declarations.py all ## build the Python module; try it with PYTHONPATH=build/python
-test-python: python | $(filter test test-web experiments bench,$(MAKECMDGOALS)) ## test the Python module with pytest; only=NAME for tests/python/test_NAME.py alone
+test-python: python | $(filter test test-mpi test-web experiments bench,$(MAKECMDGOALS)) ## test the Python module with pytest; only=NAME for tests/python/test_NAME.py alone
 	@MALLOC_PERTURB_=165 PYTHONPATH='$(abspath $(build)/python)' CUVETTE='$(abspath $(build)/cuvette)' CC='$(CC)' \
 	  $(PYTHON) -m pytest -q -p no:cacheprovider $(if $(only),$(only:%=tests/python/test_%.py),tests/python)
 
@@ -489,6 +494,7 @@ pages := $(patsubst src/manual/%,%,$(wildcard src/manual/man?/*))
 list := $(share)/cuvette/installed-files
 define files
   echo '755 $(build)/cuvette $(PREFIX)/bin/cuvette'; \
+  $(if $(wildcard $(build)/cuvette-mpi)$(filter mpi,$(MAKECMDGOALS)),echo '755 $(build)/cuvette-mpi $(PREFIX)/bin/cuvette-mpi';) \
   echo '755 $(build)/cuvette-import $(PREFIX)/libexec/cuvette/cuvette-import'; \
   echo '644 src/cuvette.h $(PREFIX)/include/cuvette.h'; \
   echo '644 $(build)/engine/libcuvette.a $(LIBDIR)/libcuvette.a'; \
@@ -502,7 +508,7 @@ define files
   find experiments plots -type f ! -path '*/__pycache__/*' | while read -r file; do \
     test -x "$$file" && mode=755 || mode=644; echo "$$mode $$file $(share)/cuvette/$$file"; done
 endef
-install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a ## install under PREFIX (/usr/local), below DESTDIR
+install: $(build)/cuvette $(build)/cuvette-import $(build)/$(soname) $(build)/engine/libcuvette.a | $(filter mpi,$(MAKECMDGOALS)) ## install under PREFIX (/usr/local), below DESTDIR; with cuvette-mpi where make mpi has built it
 	@sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(version)|; s|@LIBRARIES@|$(strip $(all_libs))|' src/cuvette.pc.in >$(build)/cuvette.pc
 	@{ $(files); } | DESTDIR='$(DESTDIR)' .ci/install '$(list)'
 	@.ci/install-notes '$(DESTDIR)' '$(PREFIX)' '$(LIBDIR)'

@@ -1,8 +1,14 @@
 /* Starting another program. */
 #include "base/spawn.h"
+
+#include "base/os_process.h"
+#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
 
 extern char **environ;
 
@@ -37,4 +43,30 @@ int spawn_program(pid_t *pid, const char *program, char *const *arguments, int o
     }
     posix_spawn_file_actions_destroy(&actions);
     return error;
+}
+
+/* The process that started this one, if it is to end with it. */
+#define PARENT "CUVETTE_PARENT"
+
+int spawn_bound(pid_t *pid, const char *program, char *const *arguments, int out, int err)
+{
+    char own[32];
+    snprintf(own, sizeof own, "%ld", (long)getpid());
+    if (setenv(PARENT, own, 1) != 0)
+        return ENOMEM;
+    const int error = spawn_program(pid, program, arguments, out, err, false);
+    unsetenv(PARENT);
+    return error;
+}
+
+void spawn_follow_parent(void)
+{
+    const char *parent = getenv(PARENT);
+    if (!parent)
+        return;
+    const long id = strtol(parent, NULL, 10);
+    unsetenv(PARENT);
+    os_die_with_parent();
+    if (getppid() != (pid_t)id) /* it has ended already */
+        _exit(1);
 }

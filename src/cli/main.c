@@ -1,6 +1,7 @@
 /* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
 #include "base/float_environment.h"
 #include "base/build_id.h"
+#include "base/spawn.h"
 #include "cli/cli.h"
 #include "cli/terminal.h"
 #include <argp.h>
@@ -63,6 +64,7 @@ static void print_version(FILE *stream, struct argp_state *state)
 
 int main(int argc, char **argv)
 {
+    spawn_follow_parent();
     float_environment_set(); /* the start-up code of a library may have changed it */
     terminal_prepare();
     argp_err_exit_status = STATUS_BAD_INPUT;

@@ -76,7 +76,7 @@ static status run_process(const study *s, const study_request *request, const ch
     pid_t pid = 0;
     char *copies[ARGUMENTS_MAX] = {NULL};
     memcpy(copies, arguments, sizeof copies);
-    const int error = spawn_program(&pid, program, copies, STDOUT_FILENO, STDERR_FILENO, false);
+    const int error = spawn_bound(&pid, program, copies, STDOUT_FILENO, STDERR_FILENO);
     if (error)
         return options_wrong("--against", program, why, "give the path of a cuvette program", "cannot start it: %s",
                              strerrordesc_np(error));

@@ -64,7 +64,7 @@ static status run_cuvette(char **arguments, bool loud, diagnostic *why)
     char *program = program_path();
     const int out = loud ? STDOUT_FILENO : open("/dev/null", O_WRONLY | O_CLOEXEC);
     pid_t pid = 0;
-    const int error = program ? spawn_program(&pid, program, arguments, out, STDERR_FILENO, false) : ENOMEM;
+    const int error = program ? spawn_bound(&pid, program, arguments, out, STDERR_FILENO) : ENOMEM;
     if (!loud)
         close(out);
     if (error)
