@@ -43,6 +43,18 @@ static bool allocate(texture *t, int width, int height)
     return t->block;
 }
 
+texture *texture_allocate(int width, int height, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter)
+{
+    texture *t = malloc(sizeof *t);
+    if (t)
+        *t = (texture){.wrap_u = wrap_u, .wrap_v = wrap_v, .filter = filter, .owners = 1};
+    if (t && !allocate(t, width, height)) {
+        free(t);
+        return NULL;
+    }
+    return t;
+}
+
 /* The encoded value of a linear value; bytes is filled if coded_bits is 8. */
 static float restore(const codec_bytes *bytes, int coded_bits, float linear)
 {
@@ -74,18 +86,10 @@ status texture_create(const image *img, texture_space space, texture_wrap wrap_u
 {
     *out = NULL;
     TRY(check(img, why));
-    texture *t = calloc(1, sizeof *t);
-    if (t) {
-        t->wrap_u = wrap_u;
-        t->wrap_v = wrap_v;
-        t->filter = filter;
-        t->owners = 1;
-    }
-    if (!t || !allocate(t, img->width, img->height)) {
-        free(t);
+    texture *t = texture_allocate(img->width, img->height, wrap_u, wrap_v, filter);
+    if (!t)
         return diagnose(why, STATUS_FAILURE, NULL, "out of memory for a texture of %d x %d texels", img->width,
                         img->height);
-    }
     copy_pixels(t, img, space == TEXTURE_LINEAR ? img->coded_bits : 0);
     texture_build_pyramid(t);
     *out = t;

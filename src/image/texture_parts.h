@@ -25,5 +25,8 @@ struct texture {
     size_t owners; /* modified atomically */
 };
 
+/* A texture with memory for its texels, which are not set; NULL if memory runs out. Sides are at least 1. */
+texture *texture_allocate(int width, int height, texture_wrap wrap_u, texture_wrap wrap_v, texture_filter filter);
+
 /* Computes level 1 and above from level 0; sizes and memory are set. Cannot fail. */
 void texture_build_pyramid(texture *t);

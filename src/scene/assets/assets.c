@@ -74,8 +74,7 @@ char *scene_file_path(const scene *s, const char *path)
     return file_beside(s->path, path);
 }
 
-/* Radiance must not be negative, and must fit the film. */
-static status check_sky(const image *sky, const char *path, diagnostic *bad)
+status sky_check(const image *sky, const char *path, diagnostic *bad)
 {
     for (int y = 0; y < sky->height; y++) {
         for (int x = 0; x < sky->width; x++) {
@@ -101,7 +100,7 @@ static status load_sky(scene *s, diagnostic *why)
         return out_of_memory(why);
     diagnostic bad = {.what = ""};
     status code = image_read_below(path, s->limits.root, &sky->img, NULL, &bad);
-    if (code == STATUS_OK && (code = check_sky(sky->img, path, &bad)) != STATUS_OK) {
+    if (code == STATUS_OK && (code = sky_check(sky->img, path, &bad)) != STATUS_OK) {
         image_destroy(sky->img);
         sky->img = NULL;
     }

@@ -79,14 +79,22 @@ static face_material look_of(const imported_material *m)
     return mat;
 }
 
+/* NULL: out of memory. */
+static face_materials *allocate(int count)
+{
+    face_materials *l = calloc(1, sizeof *l + (size_t)count * sizeof l->mat[0]);
+    if (!l)
+        return NULL;
+    atomic_init(&l->owners, 1);
+    l->count = count;
+    return l;
+}
+
 status face_materials_create(const mesh_import *imported, const char *root, const face_materials **out, diagnostic *why)
 {
-    face_materials *shading_materials =
-        calloc(1, sizeof *shading_materials + (size_t)imported->material_count * sizeof shading_materials->mat[0]);
+    face_materials *shading_materials = allocate(imported->material_count);
     if (!shading_materials)
         return out_of_memory(why);
-    atomic_init(&shading_materials->owners, 1);
-    shading_materials->count = imported->material_count;
     for (int i = 0; i < shading_materials->count; i++) {
         shading_materials->mat[i] = look_of(&imported->materials[i]);
         const status code =
@@ -98,6 +106,18 @@ status face_materials_create(const mesh_import *imported, const char *root, cons
     }
     *out = shading_materials;
     return STATUS_OK;
+}
+
+status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why)
+{
+    face_materials *l = allocate(count);
+    for (int i = 0; i < count; i++)
+        if (l)
+            l->mat[i] = list[i];
+        else
+            texture_release(list[i].img);
+    *out = l;
+    return l ? STATUS_OK : out_of_memory(why);
 }
 
 void face_materials_retain(const face_materials *l)

@@ -20,6 +20,8 @@ typedef struct face_material {
  * path of the image file. */
 status face_materials_create(const mesh_import *imported, const char *root, const face_materials **out,
                              diagnostic *why);
+/* Of a list of materials; takes over its references to images, also after an error. STATUS_FAILURE without memory. */
+status face_materials_of(const face_material *list, int count, const face_materials **out, diagnostic *why);
 void face_materials_retain(const face_materials *l); /* NULL is allowed here and in the functions below */
 void face_materials_release(const face_materials *l);
 

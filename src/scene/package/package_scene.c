@@ -1,0 +1,207 @@
+/* The contents of a package: the scene's text, path and limits, and what is loaded. */
+#include "image/image_pack.h"
+#include "geometry/mesh_pack.h"
+#include "scene/assets/assets.h"
+#include "scene/model/scene.h"
+#include "scene/package/package_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* How an entry's data are given. */
+enum { DATA_NONE, DATA_FOLLOWS, DATA_SHARED }; /* from DATA_SHARED on: those of entry number (value - DATA_SHARED) */
+
+typedef struct scene_record {
+    uint64_t triangles; /* of its limits */
+    int64_t image_line, image_column, image, textures, meshes;
+} scene_record;
+
+typedef struct texture_record {
+    int64_t line, column, data;
+} texture_record;
+
+typedef struct mesh_record {
+    int64_t path_line, path_column, script_line, script_column, data;
+    softbody_account account;
+    double motion_s;
+} mesh_record;
+_Static_assert(sizeof(softbody_account) == 22 * 8 && sizeof(mesh_record) == 28 * 8, "no padding");
+
+static int64_t data_of_texture(const scene *s, size_t index)
+{
+    const texture *data = s->textures[index].data;
+    for (size_t i = 0; data && i < index; i++)
+        if (s->textures[i].data == data)
+            return (int64_t)i + DATA_SHARED;
+    return data ? DATA_FOLLOWS : DATA_NONE;
+}
+
+static int64_t data_of_mesh(const scene *s, size_t index)
+{
+    const mesh *data = s->meshes[index].data;
+    for (size_t i = 0; data && i < index; i++)
+        if (s->meshes[i].data == data)
+            return (int64_t)i + DATA_SHARED;
+    return data ? DATA_FOLLOWS : DATA_NONE;
+}
+
+static status put_texture(pack_writer *to, const scene *s, size_t index, diagnostic *why)
+{
+    const texture_entry *t = &s->textures[index];
+    const texture_record record = {t->path_line, t->path_column, data_of_texture(s, index)};
+    TRY(pack_put(to, &record, sizeof record, why));
+    return record.data == DATA_FOLLOWS ? texture_pack(t->data, to, why) : STATUS_OK;
+}
+
+static status put_mesh(pack_writer *to, const scene *s, size_t index, diagnostic *why)
+{
+    const mesh_entry *m = &s->meshes[index];
+    const mesh_record record = {.path_line = m->path_line,
+                                .path_column = m->path_column,
+                                .script_line = m->script_line,
+                                .script_column = m->script_column,
+                                .data = data_of_mesh(s, index),
+                                .account = m->account,
+                                .motion_s = m->motion_s};
+    TRY(pack_put(to, &record, sizeof record, why));
+    if (record.data != DATA_FOLLOWS)
+        return STATUS_OK;
+    TRY(mesh_pack(m->data, to, why));
+    return package_put_face_materials(to, m->shading_materials, why);
+}
+
+status package_put_scene(pack_writer *to, const scene *s, const char *text, diagnostic *why)
+{
+    const background *sky = &s->background;
+    const scene_record record = {.triangles = s->limits.triangles,
+                                 .image_line = sky->image_line,
+                                 .image_column = sky->image_column,
+                                 .image = sky->img ? DATA_FOLLOWS : DATA_NONE,
+                                 .textures = (int64_t)s->texture_count,
+                                 .meshes = (int64_t)s->mesh_count};
+    TRY(pack_put_text(to, s->path, why));
+    TRY(pack_put_text(to, s->limits.root, why));
+    TRY(pack_put_text(to, text, why));
+    TRY(pack_put(to, &record, sizeof record, why));
+    if (sky->img)
+        TRY(image_pack(sky->img, to, why));
+    for (size_t i = 0; i < s->texture_count; i++)
+        TRY(put_texture(to, s, i, why));
+    for (size_t i = 0; i < s->mesh_count; i++)
+        TRY(put_mesh(to, s, i, why));
+    return STATUS_OK;
+}
+
+static status get_sky(pack_reader *from, background *sky, diagnostic *why)
+{
+    image *img;
+    TRY(image_unpack(from, &img, why));
+    if (sky_check(img, "", NULL) != STATUS_OK) {
+        image_destroy(img);
+        return pack_damaged(why, "the radiance of the sky");
+    }
+    sky->img = img;
+    return STATUS_OK;
+}
+
+/* Whether data are none, follow, or belong to one of the entries before that have any. */
+static bool is_known(int64_t data, size_t index)
+{
+    return data >= DATA_NONE && (data <= DATA_FOLLOWS || (uint64_t)(data - DATA_SHARED) < index);
+}
+
+static status get_texture(pack_reader *from, scene *s, size_t index, diagnostic *why)
+{
+    texture_entry *t = &s->textures[index];
+    texture_record record;
+    TRY(pack_get(from, &record, sizeof record, why));
+    if (!is_known(record.data, index))
+        return pack_damaged(why, "the number of a texture");
+    t->path_line = record.line;
+    t->path_column = record.column;
+    if (record.data == DATA_FOLLOWS)
+        return texture_unpack(from, &t->data, why);
+    if (record.data >= DATA_SHARED && (t->data = s->textures[record.data - DATA_SHARED].data))
+        texture_retain(t->data);
+    return STATUS_OK;
+}
+
+static void share_mesh(mesh_entry *m, const mesh_entry *other)
+{
+    if (!other->data)
+        return;
+    m->data = other->data;
+    m->shading_materials = other->shading_materials;
+    mesh_retain(m->data);
+    face_materials_retain(m->shading_materials);
+}
+
+static status get_face_materials(pack_reader *from, mesh_entry *m, diagnostic *why)
+{
+    TRY(package_get_face_materials(from, &m->shading_materials, why));
+    const bool fit = !m->shading_materials || face_materials_count(m->shading_materials) == m->data->slot_count;
+    return fit ? STATUS_OK : pack_damaged(why, "the number of a mesh's materials");
+}
+
+static status get_mesh(pack_reader *from, scene *s, size_t index, diagnostic *why)
+{
+    mesh_entry *m = &s->meshes[index];
+    mesh_record record;
+    TRY(pack_get(from, &record, sizeof record, why));
+    if (!is_known(record.data, index))
+        return pack_damaged(why, "the number of a mesh");
+    m->path_line = record.path_line;
+    m->path_column = record.path_column;
+    m->script_line = record.script_line;
+    m->script_column = record.script_column;
+    m->account = record.account;
+    m->motion_s = record.motion_s;
+    if (record.data >= DATA_SHARED)
+        share_mesh(m, &s->meshes[record.data - DATA_SHARED]);
+    if (record.data != DATA_FOLLOWS)
+        return STATUS_OK;
+    TRY(mesh_unpack(from, &m->data, why));
+    return get_face_materials(from, m, why);
+}
+
+/* The scene of the text, with nothing loaded. */
+static status get_text(pack_reader *from, scene **out, diagnostic *why)
+{
+    char *path = NULL, *root = NULL, *text = NULL;
+    status code = pack_get_text(from, &path, why);
+    THEN(code, pack_get_text(from, &root, why));
+    THEN(code, pack_get_text(from, &text, why));
+    if (code == STATUS_OK && (!path || !text))
+        code = pack_damaged(why, "it has no text");
+    THEN(code, scene_read_text(path, text, strlen(text), out, why));
+    THEN(code, scene_limit(*out, root, 0, why));
+    free(path);
+    free(root);
+    free(text);
+    return code;
+}
+
+static status get_contents(pack_reader *from, scene *s, diagnostic *why)
+{
+    scene_record record;
+    TRY(pack_get(from, &record, sizeof record, why));
+    if (record.image < DATA_NONE || record.image > DATA_FOLLOWS || record.textures != (int64_t)s->texture_count ||
+        record.meshes != (int64_t)s->mesh_count)
+        return pack_damaged(why, "the number of its objects");
+    s->limits.triangles = record.triangles;
+    s->background.image_line = record.image_line;
+    s->background.image_column = record.image_column;
+    if (record.image == DATA_FOLLOWS)
+        TRY(get_sky(from, &s->background, why));
+    for (size_t i = 0; i < s->texture_count; i++)
+        TRY(get_texture(from, s, i, why));
+    for (size_t i = 0; i < s->mesh_count; i++)
+        TRY(get_mesh(from, s, i, why));
+    return STATUS_OK;
+}
+
+status package_get_scene(pack_reader *from, scene **out, diagnostic *why)
+{
+    TRY(get_text(from, out, why));
+    return get_contents(from, *out, why);
+}
