@@ -56,7 +56,8 @@ refused "option without its value" "requires a value" render "$scene" -o
 refused "value for an option that takes none" "takes no value" render "$scene" --json=yes
 refused "missing scene" "nowhere.yaml: cannot open: [^;]*; check the path$" render nowhere.yaml --json
 for name in experiments/scenes/rod.yaml scenes/rod.yaml rod.yaml rod.yml rod; do
-    refused "installed scene, as $name" "; use /[^ ]*/experiments/scenes/rod.yaml, or copy all: cp -r /[^ ]*/experiments \.$" \
+    refused "installed scene, as $name" \
+        "; use /[^ ]*/experiments/scenes/rod.yaml, or copy all: cp -r /[^ ]*/experiments \.$" \
         render $name --json
 done
 refused "installed scene in the laboratory" "; use /[^ ]*/scenes/rod.yaml, or copy" lab scenes/rod.yaml --no-browser
@@ -66,7 +67,8 @@ printf 'study: own\nscene: scenes/rod.yaml\n' >own.study
 refused "installed scene in a study" "own.study:2:8: .*; use /[^ ]*/experiments/scenes/rod.yaml" study run own.study
 refused "study without its ending" "; did you mean 'own.study'\?" study run own
 mkdir experiments
-refused "installed scene, next to a copy" "; use /[^ ]*/experiments/scenes/rod.yaml$" render experiments/scenes/rod.yaml --json
+refused "installed scene, next to a copy" "; use /[^ ]*/experiments/scenes/rod.yaml$" \
+    render experiments/scenes/rod.yaml --json
 rmdir experiments
 refused "scene is a folder" "folder" render . --json
 refused "image to standard output" "-o -" render "$scene" -o -

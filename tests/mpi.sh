@@ -57,7 +57,7 @@ if sent and not 16 * 7 * 24 <= ranks[1]["bytes_sent"] / sent <= 16 * 16 * 24 + 1
     print("bytes of a tile", ranks[1]["bytes_sent"] / sent)
 PYTHON
 )
-empty 'the account tells what each rank and each thread did' "$wrong"
+empty 'the account has the work of each rank and each thread' "$wrong"
 
 bad=()
 refused() { # TEXT ARGUMENT...: exit 2, one line with that text, no file
@@ -65,8 +65,8 @@ refused() { # TEXT ARGUMENT...: exit 2, one line with that text, no file
     shift
     on_ranks 2 "$@" >"$work/out" 2>"$work/errors"
     code=$?
-    [[ $code == 2 && $(grep '^cuvette' "$work/errors" | grep -vc ': note:') == 1 ]] && grep -q -- "$text" "$work/errors" ||
-        bad+=("$*: $code $(grep '^cuvette' "$work/errors")")
+    [[ $code == 2 && $(grep '^cuvette' "$work/errors" | grep -vc ': note:') == 1 ]] &&
+        grep -q -- "$text" "$work/errors" || bad+=("$*: $code $(grep '^cuvette' "$work/errors")")
 }
 refused 'cannot open' render "$work/no.yaml" -o "$work/no.png"
 refused 'did you mean' render experiments/scenes/rod.yaml -o "$work/no.png" --set render.dept=3

@@ -3,7 +3,6 @@
 
 #include "job/job.h"
 #include "measure/usage.h"
-#include "mpi/broadcast.h"
 #include "mpi/scene_wire.h"
 #include "mpi/tracing.h"
 #include "scene/model/scene.h"
@@ -82,22 +81,13 @@ static status trace_part(follower *f, diagnostic *why)
     return STATUS_OK;
 }
 
-static status receive_scene(follower *f, diagnostic *why)
-{
-    char *bytes = malloc(f->order.scene_bytes + 1);
-    if (!bytes)
-        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the others are in the broadcast */
-    broadcast(bytes, f->order.scene_bytes);
-    bytes[f->order.scene_bytes] = '\0';
-    const status code = scene_wire_unpack(bytes, f->order.scene_bytes, &f->s, why);
-    free(bytes);
-    return code;
-}
-
 static void run_frame(job *with, const frame_order *order)
 {
     follower f = {.with = with, .order = *order};
-    status code = receive_scene(&f, &f.report.why);
+    bool given_up = false;
+    status code = scene_wire_receive(&f.s, &given_up, &f.report.why);
+    if (given_up)
+        return;
     THEN(code, trace_part(&f, &f.report.why));
     if (code != STATUS_OK)
         f.report.code = code;

@@ -3,10 +3,10 @@
 
 #include "measure/clock.h"
 #include "measure/usage.h"
-#include "mpi/broadcast.h"
 #include "mpi/scene_wire.h"
 #include "mpi/tracing.h"
 #include "scene/model/scene.h"
+#include "scene/package/package.h"
 #include <math.h>
 #include <mpi.h>
 #include <pthread.h>
@@ -150,7 +150,7 @@ static void release_frame(lead *l)
     l->own = NULL;
 }
 
-/* Tiles of which each worker of all ranks can have as many as render.pieces asks for. */
+/* Tiles of which each worker of all ranks can have as many as render.pieces requires. */
 static int tile_side(const scene *s, int ranks)
 {
     render_settings all = s->render;
@@ -172,12 +172,13 @@ static status prepare(lead *l, const scene *s, diagnostic *why)
 }
 
 /* Sends the scene to the others, which answer when they are ready. */
-static void send_orders(const lead *l, bool measured, char *bytes, size_t size)
+static status send_orders(lead *l, const scene *s, bool measured, diagnostic *why)
 {
-    const frame_order order = {.head.frame = l->frame, .scene_bytes = size, .tile = l->places.tile, .usage = measured};
+    const frame_order order = {.head.frame = ++l->frame, .tile = l->places.tile, .usage = measured};
     for (int rank = 1; rank < l->ranks; rank++)
         MPI_Send(&order, sizeof order, MPI_BYTE, rank, TAG_FRAME, MPI_COMM_WORLD);
-    broadcast(bytes, size);
+    l->scene_bytes = 0;
+    return l->ranks > 1 ? scene_wire_send(s, &l->scene_bytes, why) : STATUS_OK;
 }
 
 static bool own_goes_on(void *context, double own_share)
@@ -191,29 +192,24 @@ static status begin(void *of, const scene *s, const render_options *requested, c
                     shared_part *own, diagnostic *why)
 {
     lead *l = of;
-    char *bytes = NULL;
-    size_t size = 0;
     TRY(refuse(s, requested, why));
     status code = prepare(l, s, why);
-    THEN(code, scene_wire_pack(s, &bytes, &size, why));
-    if (code == STATUS_OK) {
-        l->frame++;
-        l->sink = (frame_sink){l, put_piece, take_report, goes_on};
-        l->watch = *watch;
-        l->scene_bytes = size;
-        l->moved = (traffic){0};
-        atomic_store(&l->stops, false);
-        send_orders(l, requested->usage, bytes, size);
-        l->begun_s = l->watched_s = clock_wall_s();
-        l->complete_s = NAN;
-        if (pthread_create(&l->thread, NULL, serve, l) != 0)
-            MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the others are under way */
-    } else {
+    THEN(code, scene_build_hierarchies(s, why)); /* before the others wait for the scene */
+    THEN(code, send_orders(l, s, requested->usage, why));
+    if (code != STATUS_OK) {
         release_frame(l);
+        return code;
     }
-    free(bytes);
-    *own = (shared_part){l->own ? team_source(l->own) : NULL, own_goes_on, l};
-    return code;
+    l->sink = (frame_sink){l, put_piece, take_report, goes_on};
+    l->watch = *watch;
+    l->moved = (traffic){0};
+    atomic_store(&l->stops, false);
+    l->begun_s = l->watched_s = clock_wall_s();
+    l->complete_s = NAN;
+    *own = (shared_part){team_source(l->own), own_goes_on, l};
+    if (pthread_create(&l->thread, NULL, serve, l) != 0)
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the others are under way */
+    return STATUS_OK;
 }
 
 /* The account of each rank; this one's is the first. */

@@ -69,7 +69,7 @@ static void give(serving *s, int rank)
     }
 }
 
-/* Every rank that waits is told at the end, not only the one that took the last tile. */
+/* The end goes to every rank that waits, not only to the one that took the last tile. */
 static void tell_end(serving *s)
 {
     if (s->all_told || !handout_is_empty(s->tiles))

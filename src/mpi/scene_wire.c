@@ -1,34 +1,107 @@
-/* The scene's text and path; each rank loads the files itself. */
+/* Parts of a package, between ranks. */
 #include "mpi/scene_wire.h"
 
-#include "scene/file/write.h"
+#include "scene/package/package.h"
+#include <mpi.h>
 #include <stdlib.h>
 #include <string.h>
 
-status scene_wire_pack(const scene *s, char **bytes, size_t *size, diagnostic *why)
+enum { PART = 4 << 20, LENGTH_END = 0, LENGTH_GIVEN_UP = -1 };
+
+typedef struct part {
+    char *bytes;
+    int64_t length, at; /* filled or received; of that, read */
+    uint64_t all;
+    bool ended, given_up;
+} part;
+
+static void send_length(int64_t length)
 {
-    char *text = NULL;
-    const char *path = scene_path(s);
-    TRY(scene_write_text(s, path, true, &text, why));
-    const size_t name = strlen(path) + 1, length = strlen(text);
-    *bytes = malloc(name + length + 1);
-    if (*bytes) {
-        memcpy(*bytes, path, name);
-        memcpy(*bytes + name, text, length + 1);
-        *size = name + length;
-    }
-    free(text);
-    return *bytes ? STATUS_OK : out_of_memory(why);
+    MPI_Bcast(&length, 1, MPI_INT64_T, 0, MPI_COMM_WORLD);
 }
 
-status scene_wire_unpack(const char *bytes, size_t size, scene **out, diagnostic *why)
+static void send_part(part *p)
 {
-    const size_t name = strlen(bytes) + 1;
-    TRY(scene_read_text(bytes, bytes + name, size - name, out, why));
-    const status code = scene_load(*out, why);
-    if (code != STATUS_OK) {
+    if (p->length == 0)
+        return;
+    send_length(p->length);
+    MPI_Bcast(p->bytes, (int)p->length, MPI_BYTE, 0, MPI_COMM_WORLD);
+    p->all += (uint64_t)p->length;
+    p->length = 0;
+}
+
+static status put(void *context, const void *bytes, size_t size, diagnostic *why)
+{
+    part *p = context;
+    (void)why;
+    for (const char *from = bytes; size > 0;) {
+        const size_t room = (size_t)(PART - p->length), count = size < room ? size : room;
+        memcpy(p->bytes + p->length, from, count);
+        p->length += (int64_t)count;
+        from += count;
+        size -= count;
+        if (p->length == PART)
+            send_part(p);
+    }
+    return STATUS_OK;
+}
+
+status scene_wire_send(const scene *s, uint64_t *sent, diagnostic *why)
+{
+    part p = {.bytes = malloc(PART)};
+    status code = p.bytes ? STATUS_OK : out_of_memory(why);
+    THEN(code, scene_pack_to(s, put, &p, why));
+    if (code == STATUS_OK)
+        send_part(&p);
+    send_length(code == STATUS_OK ? LENGTH_END : LENGTH_GIVEN_UP);
+    *sent = p.all;
+    free(p.bytes);
+    return code;
+}
+
+static void receive_part(part *p)
+{
+    MPI_Bcast(&p->length, 1, MPI_INT64_T, 0, MPI_COMM_WORLD);
+    p->at = 0;
+    p->ended = p->length <= 0;
+    p->given_up = p->length == LENGTH_GIVEN_UP;
+    if (p->ended)
+        p->length = 0;
+    else
+        MPI_Bcast(p->bytes, (int)p->length, MPI_BYTE, 0, MPI_COMM_WORLD);
+}
+
+static status get(void *context, void *bytes, size_t size, diagnostic *why)
+{
+    part *p = context;
+    for (char *to = bytes; size > 0;) {
+        if (p->at == p->length && !p->ended)
+            receive_part(p);
+        if (p->ended)
+            return diagnose(why, STATUS_BAD_INPUT, "report this as a bug, with the scene", "the scene ends early");
+        const size_t rest = (size_t)(p->length - p->at), count = size < rest ? size : rest;
+        memcpy(to, p->bytes + p->at, count);
+        p->at += (int64_t)count;
+        to += count;
+        size -= count;
+    }
+    return STATUS_OK;
+}
+
+status scene_wire_receive(scene **out, bool *given_up, diagnostic *why)
+{
+    part p = {.bytes = malloc(PART)};
+    if (!p.bytes)
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE); /* the others are in the broadcast */
+    *out = NULL;
+    status code = scene_unpack_from(get, &p, out, why);
+    while (!p.ended)
+        receive_part(&p);
+    *given_up = p.given_up;
+    if (code == STATUS_OK && p.given_up) {
         scene_destroy(*out);
         *out = NULL;
     }
+    free(p.bytes);
     return code;
 }

@@ -25,7 +25,6 @@ typedef struct wire_head {
 
 typedef struct frame_order {
     wire_head head;
-    uint64_t scene_bytes;
     int32_t tile; /* side of the tiles */
     int32_t usage;
 } frame_order;
