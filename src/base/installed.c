@@ -59,8 +59,8 @@ static char *with_ending(const char *folder, const char *path, const char *endin
                   : text_format("%.*s%s", length, path, ending);
 }
 
-/* Examples are printed as experiments/..., the folder that an installation keeps in share/cuvette. A copy is not offered
- * where it would write over one that the user may have changed. */
+/* Examples are printed as experiments/..., the folder that an installation keeps in share/cuvette. A copy is not
+ * offered where it would write over one that the user may have changed. */
 static void suggest_installed(const char *file, diagnostic *why)
 {
     char *all = exists("experiments") ? NULL : installed_folder("experiments");

@@ -10,8 +10,8 @@
  * or an errno. */
 int spawn_program(pid_t *pid, const char *program, char *const *arguments, int out, int err, bool own_group);
 
-/* The same for another `cuvette`, which the kernel ends when this thread has ended, however it did: it must not go on to
- * measure for nobody, or together with its successor. One thread at a time calls it. */
+/* The same for another `cuvette`, which the kernel ends when this thread has ended, however it did: it must not go on
+ * to measure for nobody, or together with its successor. One thread at a time calls it. */
 int spawn_bound(pid_t *pid, const char *program, char *const *arguments, int out, int err);
 /* The other end: the program calls it first. */
 void spawn_follow_parent(void);

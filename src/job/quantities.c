@@ -204,8 +204,8 @@ static size_t solids_of(const job_account *a)
 /* k: the worker's report. */
 #define WORKER_QUANTITIES(Q) \
  Q(worker, "", COUNT, SAME, ROW, "worker", NULL, "number of the worker, counted from 0", worker) \
- Q(rank, "", COUNT, LAST, OUT, "rank", NULL, "rank of the worker's process, of those that share the frame (cuvette-mpi)", \
-   k->rank) \
+ Q(rank, "", COUNT, LAST, OUT, "rank", NULL, \
+   "rank of the worker's process, of those that share the frame (cuvette-mpi)", k->rank) \
  Q(pu, "", NUMBER, LAST, ROW, "pu", NULL, "processing unit at the end of the frame (OS index)", k->pu) \
  Q(tiles, "", COUNT, LAST, ROW, "tiles", NULL, "pieces of the image (tiles) rendered", k->tiles) \
  Q(rays_total, "rays", COUNT, LAST, ROW, "rays.total", NULL, "rays of all kinds traced by this worker", \
