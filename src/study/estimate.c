@@ -15,9 +15,9 @@ enum { SMALL_PIXELS = 4800, LARGE_PIXELS = 19200 };
 typedef struct trials {
     run *r;
     double deadline_s;
-    double *tried_s; /* by cell, the time of one frame by its trial; NaN: not tried */
-    double *cell_s;  /* by cell, that of its rows, or of its trial; NaN: unknown */
-    double *once_s;  /* by cell, the further time of loading it for the first time: a slime is simulated */
+    double *tried_s;              /* by cell, the time of one frame by its trial; NaN: not tried */
+    double *cell_s;               /* by cell, that of its rows, or of its trial; NaN: unknown */
+    double *once_s;               /* by cell, the further time of loading it for the first time: a slime is simulated */
     double other_s, other_once_s; /* the means of the trials, for the cells that were not tried; NaN: none was */
     bool cut;
 } trials;
