@@ -1,8 +1,8 @@
 #!/bin/bash
-# Studies on a real Slurm: tests/slurm.sh [PROGRAM], for `make test-slurm`. In a temporary folder it starts munged, slurmctld
-# and four nodes, all on this machine, and submits a study of 200 cells in 40 parts. While they run, it kills 20 tasks,
-# requeues one, and takes a node away; the second submission reaches its time limit; the third completes. Then no row may
-# be missing, double or changed. It stops all that it started.
+# Studies on a real Slurm: tests/slurm.sh [PROGRAM], for `make test-slurm`. In a temporary folder it starts munged,
+# slurmctld and four nodes, all on this machine, and submits a study of 200 cells in 40 parts. While they run, it kills
+# 20 tasks, requeues one, and takes a node away; a task of the second submission reaches its time limit; the third
+# completes. Then no row may be missing, double or changed. It stops all that it started.
 set -uo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -58,7 +58,8 @@ MpiDefault=none
 JobAcctGatherType=jobacct_gather/none
 AccountingStorageType=accounting_storage/none
 SwitchType=switch/none
-NodeName=n[1-4] NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 4))] CPUs=2 RealMemory=4000 State=UNKNOWN
+NodeName=DEFAULT CPUs=2 RealMemory=4000 State=UNKNOWN
+NodeName=n[1-4] NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 4))]
 PartitionName=main Nodes=n[1-4] Default=YES MaxTime=INFINITE State=UP
 END
     munged --force --key-file="$work/munge.key" --socket="$work/munge.sock" --pid-file="$work/munged.pid" \
@@ -107,7 +108,8 @@ warmups: 1
 END
 submit() { "$program" study submit --slurm "$work/many.study" --results "$results" --tasks $parts "$@" >out 2>err; }
 process_ids() { pgrep -f -- "study run --results $results --shard $1/$parts " 2>/dev/null; } # PART
-rows_of() { # PART...: its rows; text after the last newline is an incomplete one
+# PART...: its rows; text after the last newline is an incomplete one
+rows_of() {
     local part file
     for part in "$@"; do
         file=$results/many/rows.shard-$part-of-$parts.csv
@@ -116,14 +118,17 @@ rows_of() { # PART...: its rows; text after the last newline is an incomplete on
     done
 }
 cells() { awk -F, 'NR > 1 && !$5 { print $3, $8, $9, $10 }' "$1" | sort -u; } # cell, film and values
-running() { squeue --noheader --states=RUNNING --format='%A %K %N'; } # job, part, node
+running() { squeue --noheader --states=RUNNING --format='%A %K %N'; }         # job, part, node
 
 # --- 1: killed tasks, a requeued one, a lost node
 
 began=$SECONDS
 start_cluster
 verdict $? "munged, slurmctld and four nodes run" "$(tail -n 5 ./*.log)"
-((failed == 0)) || { conclude; exit; }
+((failed == 0)) || {
+    conclude
+    exit
+}
 submit --partition nope
 [[ $(cat err) == *"sbatch: invalid partition specified: nope; nothing is submitted" ]]
 verdict $? "an unknown partition: Slurm's own message" "$(cat out err)"
@@ -179,7 +184,8 @@ for part in "${lost[@]}"; do again=$((again + ($(starts "$part") >= 2))); done
 ((again == ${#lost[@]}))
 verdict $? "the tasks of the lost node went on on others" "$again of ${#lost[*]}"
 rows_of $(seq 0 $((parts - 1))) >>before
-echo "# $((SECONDS - began)) s: ${#killed[@]} tasks killed, part $requeued requeued, parts ${lost[*]} on the lost node; $(sort -u before | wc -l) rows"
+echo "# $((SECONDS - began)) s: ${#killed[@]} tasks killed, part $requeued requeued, parts ${lost[*]} on the lost" \
+    "node; $(sort -u before | wc -l) rows"
 
 # --- 2: a time limit
 
@@ -187,7 +193,7 @@ slurmd -N n4
 wait_until 60 all_nodes_idle
 verdict $? "the node comes back"
 submit --time 1
-missing=$(sed -n 's/.*: \([0-9]*\) of .* parts are missing.*/\1/p' out)
+missing=$(sed -n 's/.*: \([0-9]*\) of .* parts to run.*/\1/p' out)
 ((missing > 0 && missing <= kills))
 verdict $? "only killed tasks are submitted again" "$(cat out err)"
 stopped=
@@ -197,14 +203,15 @@ while [[ -z $stopped ]] && ! empty_queue; do # a task that stands still is as go
 done
 wait_until 400 empty_queue
 verdict $? "the queue ends" "$(squeue)"
-grep -q 'DUE TO TIME LIMIT' "$results/many/slurm/part-$stopped.log" &&
-    grep -q 'interrupted; its .* new rows are kept' "$results/many/slurm/part-$stopped.log"
-verdict $? "at its time limit, part $stopped keeps its rows and says so" "$(cat "$results/many/slurm/part-$stopped.log")"
+log=$results/many/slurm/part-$stopped.log
+grep -q 'DUE TO TIME LIMIT' "$log" &&
+    grep -q 'interrupted; its .* new rows are kept' "$log"
+verdict $? "at its time limit, part $stopped keeps its rows and says so" "$(<"$log")"
 
 # --- 3: the rest
 
 submit
-missing=$(sed -n 's/.*: \([0-9]*\) of .* parts are missing.*/\1/p' out)
+missing=$(sed -n 's/.*: \([0-9]*\) of .* parts to run.*/\1/p' out)
 verdict $? "the rest is submitted" "$(cat out err)"
 echo "# $((SECONDS - began)) s: ${missing:-0} parts are left after the time limit"
 wait_until 300 empty_queue
@@ -223,7 +230,8 @@ sed 1d "$results/many/rows.csv" | sort >after
 empty "no row is lost, on disk when a task was killed or later" "$(comm -23 <(sort -u before) after)"
 empty "no row is double" "$(awk -F, 'NR > 1 && seen[$3, $4]++ { print $3, $4 }' "$results/many/rows.csv")"
 empty "each of the 200 cells has $repetitions repetitions" "$(awk -F, -v n=$repetitions 'NR > 1 && !$5 { count[$3]++ }
-    END { for (cell = 0; cell < 200; cell++) if (count[cell] != n) print cell, count[cell] + 0 }' "$results/many/rows.csv")"
+    END { for (cell = 0; cell < 200; cell++) if (count[cell] != n) print cell, count[cell] + 0 }' \
+    "$results/many/rows.csv")"
 sed 's/^repetitions: .*/repetitions: 1/' many.study >once.study
 "$program" study run --quiet once.study --results whole
 empty "cells and films are those of a run on one machine" \

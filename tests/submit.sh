@@ -72,7 +72,8 @@ same() { # WHAT FILE LINE...
 # --- dry run
 PATH=$work/none "$program" study submit --slurm --dry-run small.study --partition long --tasks 3 --time 90 \
     --sbatch=--exclusive --node-type "the thin ones" >out 2>err
-same "a dry run prints what it would submit, without Slurm" <(head -3 out) "small: 3 of 3 parts are missing, with 10 rows" \
+same "a dry run prints what it would submit, without Slurm" <(head -3 out) \
+    "small: 3 of 3 parts to run, 10 rows to measure" \
     "sbatch --exclusive --parsable --array=0-2 results/small/slurm/study.slurm" \
     "sbatch --exclusive --parsable --dependency=afterany:JOB --output=merge.log results/small/slurm/study.slurm merge"
 same "the script has what was asked" <(grep -E '^#SBATCH --(job|part|cons|cpus|mem|time)|^[a-z]*=|NODE_TYPE' out) \
@@ -86,25 +87,27 @@ verdict $? "a dry run writes nothing"
 
 # --- submission, resubmission
 echo 1 >lost
-submit --slurm small.study --results "a folder/rows" --tasks 3
-same "all parts are submitted, then the job that merges" calls "--parsable --array=0-2 a folder/rows/small/slurm/study.slurm" \
+rows="a folder/rows"
+submit --slurm small.study --results "$rows" --tasks 3
+same "all parts are submitted, then the job that merges" calls \
+    "--parsable --array=0-2 a folder/rows/small/slurm/study.slurm" \
     "--parsable --dependency=afterany:11 --output=merge.log a folder/rows/small/slurm/study.slurm merge"
-same "the jobs are named" out "small: 3 of 3 parts are missing, with 10 rows" \
-    "$(sed -n 2p out | grep -E '^small: time limit 00:10:00 for each: 3 times the estimate of the longest, .* s, at least')" \
-    "small: job 11 measures, then job 12 merges and verifies the rows; script and logs are in a folder/rows/small/slurm" \
+same "the jobs are named" out "small: 3 of 3 parts to run, 10 rows to measure" \
+    "$(grep -E '^small: time limit 00:10:00 for each: 3 times the estimate of the longest, .* s, at least' out)" \
+    "small: job 11 measures, then job 12 merges and verifies the rows; script and logs are in $rows/small/slurm" \
     "small: give the same command again when they have ended: it submits what is then missing"
 grep -q "^small: 3 of 5 cells done" merge.out
 verdict $? "the rows of the parts that ran are merged" "$(<merge.out)"
 rm lost
-submit --slurm small.study --results "a folder/rows" --tasks 3
+submit --slurm small.study --results "$rows" --tasks 3
 same "only the part that is missing is submitted again" <(head -1 calls) \
     "--parsable --array=1 a folder/rows/small/slurm/study.slurm"
 grep -q "^small: 10 rows, 0 faults" merge.out && grep -q "^small: 5 of 5 cells done" merge.out
 verdict $? "all rows are merged and verified" "$(<merge.out)"
-submit --slurm small.study --results "a folder/rows" --tasks 3
+submit --slurm small.study --results "$rows" --tasks 3
 [[ $code == 0 && ! -e calls ]] && grep -q '^small: complete, nothing to submit' out
 verdict $? "a complete study submits nothing" "$(cat out err)"
-submit --slurm small.study --results "a folder/rows" --tasks 3 --partition other
+submit --slurm small.study --results "$rows" --tasks 3 --partition other
 same "nodes of another type measure all" <(head -1 calls) "--parsable --array=0-2 a folder/rows/small/slurm/study.slurm"
 submit --slurm small.study --results by --by repetition
 same "repetitions can be divided" <(head -1 calls) "--parsable --array=0-1 by/small/slurm/study.slurm"
@@ -138,7 +141,8 @@ fails "a bad study is located" "bad.study:5:6: "
 printf '#!/bin/bash\n#SBATCH --time=@tiem@\n' >own.slurm
 submit --slurm small.study --template own.slurm
 fails "a bad template is located" "own.slurm:2:16: unknown word @tiem@; use one of name, partition"
-sed 's/^set: .*/set: {render.integrator: path, render.paths: 65536, render.width: 9000, render.height: 9000}/' small.study >slow.study
+slow='{render.integrator: path, render.paths: 1048576, render.width: 800, render.height: 600}'
+sed "s/^set: .*/set: $slow/" small.study >slow.study
 submit --slurm slow.study
 fails "an unknown time" "slow.study: the time of a part is unknown"
 

@@ -242,7 +242,7 @@ static void say_parts(const submission *job)
     size_t rows = 0;
     for (size_t i = 0; i < job->part_count; i++)
         rows += job->parts[i].rows_most;
-    printf("%s: %zu of %zu parts are missing, with %zu rows\n", job->s->name, missing_parts(job), job->part_count,
+    printf("%s: %zu of %zu parts to run, %zu rows to measure\n", job->s->name, missing_parts(job), job->part_count,
            rows);
     if (!job->asked->time)
         printf("%s: time limit %s for each: %ld times the estimate of the longest, %.2g s, at least %d minutes\n",

@@ -1,4 +1,4 @@
-/* A study as an array job of Slurm: what `cuvette study submit --slurm` asks for, and its script. Pure, except for the
+/* A study as an array job of Slurm: what `cuvette study submit --slurm` requests, and its script. Pure, except for the
  * functions that read rows. Ownership: texts are allocated, for free; other values are borrowed. */
 #pragma once
 
@@ -34,7 +34,7 @@ typedef struct slurm_needs {
 } slurm_needs;
 status slurm_needs_of(const study *s, slurm_needs *out, diagnostic *why);
 
-/* The key of the environment with most rows among those of nodes of the type, measured by this build; "none", which is no
- * key, without rows. unlike: how another such environment differs from it; "" if there is none. */
+/* The key of the environment with most rows among those of nodes of the type, measured by this build; "none", which is
+ * no key, without rows. unlike: how another such environment differs from it; "" if there is none. */
 status slurm_environment(const study *s, const char *results, const char *node_type, char key[ENVIRONMENT_KEY],
                          char *unlike, size_t size, diagnostic *why);
