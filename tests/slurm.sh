@@ -19,7 +19,7 @@ cd "$work" || exit 1
 unset CUVETTE_ISA CUVETTE_NODE_TYPE CUVETTE_MACHINE
 export SLURM_CONF=$work/slurm.conf
 results=$work/results
-parts=40 repetitions=120 kills=20
+parts=40 repetitions=60 kills=20
 
 # shellcheck source=tests/shell/verdict.sh
 source "$root/tests/shell/verdict.sh"
@@ -73,7 +73,7 @@ stop() { # PIDFILE
     local pid
     pid=$(cat "$1" 2>/dev/null) && kill "$pid" 2>/dev/null && wait_until 20 gone "$pid"
 }
-gone() { ! kill -0 "$1" 2>/dev/null; }
+gone() { ! ps -o stat= -p "$1" | grep -q "^[^Z]"; }
 stop_all() {
     local node
     scancel --me --signal=KILL --full >/dev/null 2>&1
@@ -99,7 +99,7 @@ empty_queue() { [[ -z $(squeue --noheader) ]]; }
 cat >many.study <<END
 study: many
 scene: $root/experiments/scenes/rod.yaml
-set: {render.width: 80, render.height: 60, render.threads: 1}
+set: {render.width: 160, render.height: 120, render.threads: 1}
 grid:
   - {render.depth: [0, 1, 2, 3, 4]}
   - {liquid.ior: [$(seq -s ', ' 1.01 0.01 1.40)]}
@@ -125,9 +125,9 @@ running() { squeue --noheader --states=RUNNING --format='%A %K %N'; }         # 
 began=$SECONDS
 start_cluster
 verdict $? "munged, slurmctld and four nodes run" "$(tail -n 5 ./*.log)"
-((failed == 0)) || {
+[[ $(sinfo --noheader 2>/dev/null) ]] || {
     conclude
-    exit
+    exit 1
 }
 submit --partition nope
 [[ $(cat err) == *"sbatch: invalid partition specified: nope; nothing is submitted" ]]
@@ -161,7 +161,7 @@ is_disturbed() { [[ " ${killed[*]} ${lost[*]} $requeued " == *" $1 "* ]]; }
 : >before
 while ((${#killed[@]} < kills)) && ! empty_queue; do
     while ((${#killed[@]} < kills)) && read -r job part node; do
-        [[ $part =~ ^[0-9]+$ ]] && ! is_disturbed "$part" || continue
+        if [[ ! $part =~ ^[0-9]+$ ]] || is_disturbed "$part"; then continue; fi
         rows_of "$part" >here
         (($(wc -l <here) > 3)) || continue
         cat here >>before
@@ -199,7 +199,7 @@ verdict $? "only killed tasks are submitted again" "$(cat out err)"
 stopped=
 while [[ -z $stopped ]] && ! empty_queue; do # a task that stands still is as good as a slow one
     part=$(running | awk '$2 ~ /^[0-9]+$/ { print $2; exit }')
-    pid=$(process_ids "${part:-none}") && kill -STOP $pid && stopped=$part
+    pid=$(process_ids "${part:-none}") && kill -STOP "$pid" && stopped=$part
 done
 wait_until 400 empty_queue
 verdict $? "the queue ends" "$(squeue)"

@@ -147,7 +147,7 @@ static status find_parts(submission *job, diagnostic *why)
     TRY(slurm_environment(job->s, asked->results, job->node_type, key, unlike, sizeof unlike, why));
     snprintf(
         text, sizeof text,
-        "%s: nodes of type '%.100s' are unlike: %s; rows of unlike nodes are not pooled: choose by --constraint, and "
+        "%s: nodes of type '%.100s' are unlike: %s; rows of unlike nodes are not pooled: choose with --constraint, and "
         "keep --threads and --memory",
         job->s->name, job->node_type, unlike);
     if (unlike[0])
