@@ -19,7 +19,7 @@ cd "$work" || exit 1
 unset CUVETTE_ISA CUVETTE_NODE_TYPE CUVETTE_MACHINE
 export SLURM_CONF=$work/slurm.conf
 results=$work/results
-parts=40 repetitions=60 kills=20
+parts=40 repetitions=30 kills=20
 
 # shellcheck source=tests/shell/verdict.sh
 source "$root/tests/shell/verdict.sh"
@@ -99,7 +99,7 @@ empty_queue() { [[ -z $(squeue --noheader) ]]; }
 cat >many.study <<END
 study: many
 scene: $root/experiments/scenes/rod.yaml
-set: {render.width: 160, render.height: 120, render.threads: 1}
+set: {render.width: 320, render.height: 240, render.threads: 1}
 grid:
   - {render.depth: [0, 1, 2, 3, 4]}
   - {liquid.ior: [$(seq -s ', ' 1.01 0.01 1.40)]}
