@@ -189,6 +189,7 @@ $(build)/obj/%.o: src/%.c $(build)/flags
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) $(own_cflags) -MMD -MP -c -o $@ $<
 $(build)/obj/study/plot_style.o: plots/style.gp
+$(build)/obj/study/slurm_script.o: experiments/cluster/study.slurm
 $(build)/obj/geometry/hierarchy_embree.o: private own_cflags = $(embree_cflags)
 web_cflags = $(eval web_cflags := $$(shell pkg-config --cflags libmicrohttpd))$(web_cflags)
 $(build)/obj/web/%.o: private own_cflags = $(web_cflags)
@@ -279,7 +280,7 @@ test-doc: $(build)/cuvette | doc-tools ## check the documentation: complete, eve
 # Checks of the sources, run in one configuration only.
 source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
   tests/compile_commands.sh tests/words.sh tests/doc.sh
-scripts := $(filter-out $(source_checks) tests/arch.sh tests/mpi.sh,$(wildcard tests/*.sh))
+scripts := $(filter-out $(source_checks) tests/arch.sh tests/mpi.sh tests/slurm.sh,$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
 endif
@@ -326,6 +327,13 @@ setup-arch: | $(filter setup,$(MAKECMDGOALS)) ## install what test-arch requires
 	@.ci/setup-arch $(build)/arch $(arch)
 test-arch: $(build)/cuvette $(build)/cuvette-import | $(filter setup-arch,$(MAKECMDGOALS)) ## build for arm64, s390x and riscv64; compare films, files and rows with this machine's
 	@CUVETTE='$(abspath $(build)/cuvette)' MAKE='$(MAKE)' tests/arch.sh $(build)/arch $(arch)
+
+# A cluster of four nodes on this machine.
+.PHONY: test-slurm setup-slurm
+setup-slurm: | $(filter setup,$(MAKECMDGOALS)) ## install what test-slurm requires: Slurm's daemons and commands, munge
+	@.ci/setup-slurm
+test-slurm: $(build)/cuvette | $(filter setup-slurm,$(MAKECMDGOALS)) ## run a study on a real Slurm, five minutes: killed tasks, a lost node, a time limit
+	@CUVETTE='$(abspath $(build)/cuvette)' tests/slurm.sh
 
 # The Python module (src/python): Python text only, which loads the shared library of this build or installation.
 PYTHON ?= $(firstword $(wildcard /usr/bin/python3) python3)

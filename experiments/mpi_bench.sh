@@ -1,6 +1,6 @@
 #!/bin/bash
-# experiments/mpi_bench.sh [ROUNDS]: the speed of cuvette-mpi on this machine: two ranks with one thread each against one
-# process with two threads, measured in turn; and what a rank holds. Medians; needs two units and a quiet machine.
+# experiments/mpi_bench.sh [ROUNDS]: the speed of cuvette-mpi on this machine: two ranks with one thread each against
+# one process with two threads, measured in turn; and what a rank holds. Medians; needs two units and a quiet machine.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 rounds=${1:-7} build=${BUILD:-build}
@@ -24,7 +24,8 @@ for scene in 'rod --set render.width=1600 --set render.height=1200 --set render.
     words[0]=experiments/scenes/${words[0]}.yaml
     rm -f "$work"/*
     for ((i = 0; i < rounds; i++)); do
-        "$build/cuvette" render "${words[@]}" --set render.threads=2 --json 2>/dev/null | value 'o["wall_s"]' >>"$work/threads"
+        "$build/cuvette" render "${words[@]}" --set render.threads=2 --json 2>/dev/null | value 'o["wall_s"]' \
+            >>"$work/threads"
         on_ranks 2 "${words[@]}" | value 'o["wall_s"]' >>"$work/ranks"
     done
     awk -v s="$scene" -v t="$(median "$work/threads")" -v r="$(median "$work/ranks")" \
@@ -34,8 +35,11 @@ done
 printf '\nframe\tfilm_mb\trank_0_peak_mb\trank_1_peak_mb\tscene_bytes\tbytes_of_a_tile\n'
 for size in 400x300 1600x1200 6400x4800; do
     on_ranks 2 experiments/scenes/rod.yaml --set render.width="${size%x*}" --set render.height="${size#*x}" |
-        value "'$size\t%.1f\t%.1f\t%.1f\t%d\t%.0f' % (${size%x*} * ${size#*x} * 24 / 1e6, o['ranks'][0]['peak_rss_bytes'] / 1e6,
-            o['ranks'][1]['peak_rss_bytes'] / 1e6, o['scene_bytes'],
-            o['ranks'][1]['bytes_sent'] / max(1, o['ranks'][1]['tiles_sent']))" | tr -d '\n'
-    echo
+        python3 -c '
+import json, sys
+o = json.load(sys.stdin)
+zero, one = o["ranks"]
+film = 24 * o["params"]["render.width"] * o["params"]["render.height"]
+print(sys.argv[1], *("%.1f" % (v / 1e6) for v in (film, zero["peak_rss_bytes"], one["peak_rss_bytes"])),
+      o["scene_bytes"], round(one["bytes_sent"] / max(1, one["tiles_sent"])), sep="\t")' "$size"
 done

@@ -33,6 +33,7 @@ check() { # NAME COMMAND...
 mkdir "$work/later"
 cp -r Makefile src plots .ci "$work/later"
 mkdir -p "$work/later/tests" "$work/later/experiments"
+cp -r experiments/cluster "$work/later/experiments"
 cd "$work/later" || exit 1
 change() { # FILE OLD NEW: the first OLD becomes NEW
     local text

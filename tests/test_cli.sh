@@ -53,7 +53,7 @@ for command in render animate scene trace fan params media mesh study compare re
 done
 for command in render animate scene trace fan params media mesh study compare realism motion lab machine "study run" \
     "study new" "study list" "study status" "study merge" "study verify" "study upgrade" \
-    "study summary" "study exclude" "study compare" "study plot"; do
+    "study summary" "study exclude" "study compare" "study plot" "study submit"; do
     # shellcheck disable=SC2086
     run help $command
     check "help $command" matches "$(head -1 out)" "^Usage: cuvette $command"

@@ -77,6 +77,54 @@ static void existing_rows_are_the_basis(void **state)
     study_destroy(s);
 }
 
+static void estimate_parts(const fixture *f, const study *s, study_options options, bool tries, study_estimate *out)
+{
+    diagnostic why = {0};
+    options.results = f->results;
+    if (study_estimate_parts(s, &options, tries, out, &why) != STATUS_OK)
+        fail_msg("%s", why.what);
+}
+
+/* As the parts themselves would say it, each with its own trials. */
+static void parts_lack_what_their_shards_lack(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid:\n  - {render.depth: [0, 1, 2]}\n"
+                                "  - {ball.ior: [1.3, 1.5]}\nrepetitions: 4\nwarmups: 1\n");
+    study_estimate parts[4];
+    estimate_parts(f, s, (study_options){.shards = 4}, true, parts);
+    for (long i = 0; i < 4; i++) { /* 6 cells over 4 parts: 2, 2, 1, 1 */
+        assert_true(parts[i].cells == (i < 2 ? 2 : 1) && parts[i].cells_lacking == parts[i].cells);
+        assert_true(parts[i].rows_most == 4 * parts[i].cells && parts[i].most_s > 0 && !parts[i].cut);
+    }
+    size_t ran = 0;
+    assert_int_equal(study_run(s, &(study_options){.results = f->results, .shard = 2, .shards = 4}, &ran, NULL),
+                     STATUS_OK);
+    estimate_parts(f, s, (study_options){.shards = 4}, false, parts);
+    for (long i = 0; i < 4; i++)
+        assert_true(i == 2 ? parts[i].cells_lacking == 0 && parts[i].most_s == 0 : isnan(parts[i].most_s));
+    estimate_parts(f, s, (study_options){.shards = 4, .environment = "another"}, false, parts);
+    assert_int_equal(parts[2].cells_lacking, 1);
+    study_destroy(s);
+}
+
+/* Each of two parts of the repetitions measures two of every cell; the rows of one show the time of the other. */
+static void parts_of_the_repetitions(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\n"
+                                "repetitions: 4\nwarmups: 0\n");
+    study_estimate parts[2];
+    study_options half = {.results = f->results, .shard = 1, .shards = 2, .by_repetition = true};
+    size_t ran = 0;
+    assert_int_equal(study_run(s, &half, &ran, NULL), STATUS_OK);
+    assert_int_equal(ran, 6);
+    estimate_parts(f, s, half, false, parts);
+    assert_true(parts[0].cells_lacking == 3 && parts[0].rows_most == 6 && parts[0].most_s > 0);
+    assert_true(parts[1].cells_lacking == 0 && parts[1].most_s == 0);
+    study_destroy(s);
+}
+
 /* Trial frames have fewer pixels; the estimate is for all of them. The bounds are wide: other processes may run. */
 static void trial_frames_predict_the_time_of_large_ones(void **state)
 {
@@ -128,6 +176,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         CASE(a_new_study_is_tried_and_nothing_is_written),
+        CASE(parts_lack_what_their_shards_lack),
+        CASE(parts_of_the_repetitions),
         CASE(existing_rows_are_the_basis),
         CASE(trial_frames_predict_the_time_of_large_ones),
         CASE(a_cell_that_takes_too_long_is_unknown),

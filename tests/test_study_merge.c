@@ -11,15 +11,19 @@ static const char study_text[] = "study: test\n"
                                  "warmups: 0\n"
                                  "keep: {workers: on, image: on}\n";
 
-static size_t run_shard(const fixture *f, const study *s, long shard, long shards)
+static size_t run_part(const study *s, study_options options)
 {
     char message[DIAGNOSTIC_TEXT_MAX];
     diagnostic why = {0};
     size_t ran = 0;
-    study_options options = {.results = f->results, .shard = shard, .shards = shards};
     if (study_run(s, &options, &ran, &why) != STATUS_OK)
         fail_msg("%s", diagnostic_text(&why, message, sizeof message));
     return ran;
+}
+
+static size_t run_shard(const fixture *f, const study *s, long shard, long shards)
+{
+    return run_part(s, (study_options){.results = f->results, .shard = shard, .shards = shards});
 }
 
 static size_t merge(const fixture *f, const study *s)
@@ -97,6 +101,20 @@ static void a_run_without_shards_counts_the_rows_of_shards(void **state)
     assert_int_equal(run_shard(f, s, 0, 1), 12);
     assert_int_equal(merge(f, s), 18);
     assert_int_equal(merge(f, s), 18);
+    study_destroy(s);
+}
+
+/* Merged rows are twice on disk, and still those of their shard. */
+static void merged_repetitions_are_not_measured_again(void **state)
+{
+    const fixture *f = *state;
+    study *s = fixture_study(f, study_text);
+    study_options part = {.results = f->results, .shards = 2, .by_repetition = true};
+    for (part.shard = 0; part.shard < 2; part.shard++)
+        assert_int_equal(run_part(s, part), 9);
+    assert_int_equal(merge(f, s), 18);
+    for (part.shard = 0; part.shard < 2; part.shard++)
+        assert_int_equal(run_part(s, part), 0);
     study_destroy(s);
 }
 
@@ -210,6 +228,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(merging_keeps_every_row, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(a_run_without_shards_counts_the_rows_of_shards, fixture_setup,
                                         fixture_teardown),
+        cmocka_unit_test_setup_teardown(merged_repetitions_are_not_measured_again, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(incomplete_rows_of_shards_are_dropped, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(contradictory_rows_are_errors, fixture_setup, fixture_teardown),
         cmocka_unit_test_setup_teardown(duplicate_rows_in_a_file_are_faults, fixture_setup, fixture_teardown),

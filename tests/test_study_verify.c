@@ -295,6 +295,29 @@ static void every_fact_is_part_of_the_key(void **state)
     assert_string_equal(read_system(f, ISA_BASE).fact[1], "Board 5");
 }
 
+/* Nodes that are declared alike count as one machine, unless another fact tells them apart. */
+static void nodes_of_a_type_are_one_machine(void **state)
+{
+    const fixture *f = *state;
+    char type[ENVIRONMENT_FACT_MAX];
+    write_system(f, "root/etc/machine-id", "aaaa\n");
+    write_system(f, "root/proc/cpuinfo", "model name\t: One\n");
+    const run_environment alone = read_system(f, ISA_BASE);
+    assert_int_equal(setenv("CUVETTE_NODE_TYPE", "thin", 1), 0);
+    const run_environment first = read_system(f, ISA_BASE);
+    write_system(f, "root/etc/machine-id", "bbbb\n");
+    assert_string_equal(read_system(f, ISA_BASE).key, first.key);
+    assert_string_not_equal(first.key, alone.key);
+    environment_of_node_type("thin", type, sizeof type);
+    assert_string_equal(first.fact[0], type);
+    write_system(f, "root/proc/cpuinfo", "model name\t: Two\n");
+    assert_string_not_equal(read_system(f, ISA_BASE).key, first.key);
+    write_system(f, "root/proc/cpuinfo", "model name\t: One\n");
+    assert_int_equal(setenv("CUVETTE_NODE_TYPE", "fat", 1), 0);
+    assert_string_not_equal(read_system(f, ISA_BASE).key, first.key);
+    unsetenv("CUVETTE_NODE_TYPE");
+}
+
 static size_t count_environments(const fixture *f, const study *s)
 {
     row_files *files;
@@ -372,7 +395,7 @@ int main(void)
         CASE(all_damage_is_detected),          CASE(edited_rows_are_left_out),
         CASE(torn_lines_are_no_fault),         cmocka_unit_test(checks_depend_on_names_and_values_only),
         CASE(every_fact_is_part_of_the_key),   CASE(unlike_environments_are_never_pooled),
-        CASE(edited_environments_are_noticed),
+        CASE(nodes_of_a_type_are_one_machine), CASE(edited_environments_are_noticed),
     };
     return cmocka_run_group_tests_name("study_verify", tests, NULL, NULL);
 }

@@ -61,6 +61,10 @@ _cuvette_value() # OPTION: completes its value; false for a flag
     --log) _cuvette_words x y xy none ;;
     --y) _cuvette_words wall_s cpu_s rays_total busy_s_mean imbalance peak_rss_bytes build_s error_rms flip ;;
     --x | --by | -w | --where) _cuvette_axes "$1" ;;
+    -p | --partition) _cuvette_words "$(sinfo --noheader --format=%R 2>/dev/null)" ;;
+    -C | --constraint) _cuvette_words "$(sinfo --noheader --format=%f 2>/dev/null | tr ',' '\n' | sort -u)" ;;
+    --tasks | --node-type | --memory | --factor | --sbatch) COMPREPLY=() ;;
+    --template) _cuvette_files 'slurm|sh' ;;
     --published) _cuvette_files 'csv' ;;
     --curve) _cuvette_words fresnel-s fresnel-p fresnel deviation depth absorption edges ;;
     -o | --output | --diff)
@@ -77,7 +81,7 @@ _cuvette_value() # OPTION: completes its value; false for a flag
         esac
         ;;
     --rays | --time | --noise)
-        [[ ${COMP_WORDS[1]-} == fan ]] || _cuvette_files 'png|pfm'
+        [[ ${COMP_WORDS[1]-} == @(fan|study) ]] || _cuvette_files 'png|pfm'
         ;;
     --timeline) _cuvette_files 'json' ;;
     --script) _cuvette_files 'yaml|yml' ;;
@@ -107,7 +111,9 @@ _cuvette_value() # OPTION: completes its value; false for a flag
 _cuvette_study() # VERB
 {
     local -A options=([new]='--axis --set --name --repetitions --warmups --output --force'
-        [run]='--results --shard --by --any-environment --processes --against --dry-run --quiet' [status]=--results [merge]=--results
+        [run]='--results --shard --by --any-environment --processes --against --dry-run --quiet'
+        [submit]='--slurm --partition --constraint --node-type --tasks --by --threads --memory --time --factor --sbatch --template --results --dry-run'
+        [status]=--results [merge]=--results
         [verify]=--results [upgrade]='--results --to' [summary]='--results --environment --interval' [list]=''
         [exclude]='--row --reason --results'
         [compare]='--results --column --detect --fail-if-slower --tsv --json'
@@ -127,7 +133,7 @@ _cuvette_study() # VERB
 _cuvette()
 {
     local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
-    local command=${COMP_WORDS[1]-} verbs='new run list status merge verify upgrade summary compare exclude plot'
+    local command=${COMP_WORDS[1]-} verbs='new run submit list status merge verify upgrade summary compare exclude plot'
     COMPREPLY=()
     if ((COMP_CWORD == 1)); then
         _cuvette_words render animate scene trace fan params media mesh study compare realism motion lesson lab machine help --help --usage --version

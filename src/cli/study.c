@@ -335,6 +335,7 @@ static status command_summary(int argc, char **argv, diagnostic *why)
 static const command commands[] = {
     {"new", "write a study file for a scene and the parameters to vary", study_new},
     {"run", "run studies, or resume them: measure the missing rows", command_run},
+    {"submit", "submit the missing parts of a study to a Slurm cluster", study_submit},
     {"list", "list the studies and scenes in a folder", study_list},
     {"status", "print the progress of studies", command_status},
     {"merge", "merge the rows of a study that was run in shards", command_merge},

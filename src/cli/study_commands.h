@@ -10,6 +10,8 @@ status study_new(int argc, char **argv, diagnostic *why);
 
 /* `study list`: the studies of a folder, and the scenes of its folder scenes. */
 status study_list(int argc, char **argv, diagnostic *why);
+/* `study submit`: the missing parts of a study as an array job of a cluster. */
+status study_submit(int argc, char **argv, diagnostic *why);
 /* `study exclude`: excludes a row from summaries. */
 status study_exclude(int argc, char **argv, diagnostic *why);
 /* `study compare`: the ratio of two sides of a study, with a verdict. */

@@ -43,7 +43,7 @@ static uint64_t hash_text(uint64_t hash, const char *text)
 }
 
 /* The id itself must not be published: machine-id(5) recommends a keyed hash. */
-static void read_machine(const char *root, char *text, size_t size)
+void environment_read_machine(const char *root, char *text, size_t size)
 {
     char id[ENVIRONMENT_FACT_MAX];
     const char *own = getenv("CUVETTE_MACHINE");
@@ -56,6 +56,18 @@ static void read_machine(const char *root, char *text, size_t size)
     }
     uint64_t hash = hash_text(hash_text(HASH_START, "cuvette machine"), known ? id : "");
     snprintf(text, size, "%016" PRIx64, hash_finish(named ? hash_text(hash, own) : hash));
+}
+
+void environment_of_node_type(const char *type, char *text, size_t size)
+{
+    const uint64_t hash = hash_text(hash_text(HASH_START, "cuvette node type"), type);
+    snprintf(text, size, "%016" PRIx64, hash_finish(hash));
+}
+
+const char *environment_node_type(void)
+{
+    const char *type = getenv("CUVETTE_NODE_TYPE");
+    return type && type[0] ? type : NULL;
 }
 
 /* The path of the process' control group (version 2), "" if there is none: cgroups(7). */
@@ -102,7 +114,10 @@ void environment_close(run_environment *e)
 void environment_read(const char *root, isa level, run_environment *out)
 {
     *out = (run_environment){.key = ""};
-    read_machine(root, out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
+    if (environment_node_type())
+        environment_of_node_type(environment_node_type(), out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
+    else
+        environment_read_machine(root, out->fact[MACHINE], ENVIRONMENT_FACT_MAX);
     if (!read_line(root, "/proc/cpuinfo", "model name", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX)) /* ARM has none */
         read_line(root, "/proc/device-tree/model", "", out->fact[CPU_MODEL], ENVIRONMENT_FACT_MAX);
     read_line(root, "/proc/cpuinfo", "microcode", out->fact[MICROCODE], ENVIRONMENT_FACT_MAX);

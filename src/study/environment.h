@@ -19,8 +19,13 @@ typedef struct run_environment {
 extern const char *const environment_names[ENVIRONMENT_FACTS];
 
 /* Reads the files of the system below root, "" for this machine. CUVETTE_MACHINE, if set, is part of the machine's
- * identity: it distinguishes machines that were cloned with one id. */
+ * identity: it distinguishes machines that were cloned with one id. CUVETTE_NODE_TYPE, if set, takes the place of the
+ * machine: nodes of a cluster that are declared alike. The other facts still tell unlike ones apart. */
 void environment_read(const char *root, isa level, run_environment *out);
+/* The fact machine of this machine itself, and of all nodes of a type; the type that is set, or NULL. */
+void environment_read_machine(const char *root, char *text, size_t size);
+void environment_of_node_type(const char *type, char *text, size_t size);
+const char *environment_node_type(void);
 /* Computes the key from the facts. */
 void environment_close(run_environment *e);
 /* "build 1c…, there 2d…; isa …": the differing facts, at most size - 1 bytes. False if there are none. */

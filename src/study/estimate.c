@@ -15,8 +15,11 @@ enum { SMALL_PIXELS = 4800, LARGE_PIXELS = 19200 };
 typedef struct trials {
     run *r;
     double deadline_s;
-    double *cell_s; /* by cell, the time of one frame; NaN: unknown */
-    double *once_s; /* by cell, the further time of loading it for the first time: a slime is simulated */
+    double *tried_s;              /* by cell, the time of one frame by its trial; NaN: not tried */
+    double *cell_s;               /* by cell, that of its rows, or of its trial; NaN: unknown */
+    double *once_s;               /* by cell, the further time of loading it for the first time: a slime is simulated */
+    double other_s, other_once_s; /* the means of the trials, for the cells that were not tried; NaN: none was */
+    bool cut;
 } trials;
 
 static bool must_stop(void *context)
@@ -71,7 +74,7 @@ static status load(const trials *t, size_t cell, scene **out, double *took_s, di
 static status try_cell(const trials *t, size_t cell, diagnostic *why)
 {
     scene *first = NULL, *second = NULL;
-    double first_s = 0, load_s = 0, small_s = NAN, large_s = NAN, *frame_s = &t->cell_s[cell];
+    double first_s = 0, load_s = 0, small_s = NAN, large_s = NAN, *frame_s = &t->tried_s[cell];
     status code = load(t, cell, &first, &first_s, why);
     const double width = code == STATUS_OK ? (double)first->render.width : 1.0;
     const double height = code == STATUS_OK ? (double)first->render.height : 1.0;
@@ -108,8 +111,19 @@ static bool lacks_files(const run *r, size_t cell)
     return keep_missing(r->s, r->folder, cell) || (r->s->reference.count && !r->compared[cell]);
 }
 
+/* A part of the repetitions that has no rows of a cell takes the time that those of other parts show. */
+static void take_rows_as_trials(const trials *t)
+{
+    const run *r = t->r;
+    for (size_t cell = 0; cell < r->done->cell_count; cell++) {
+        const progress_index_cell *at = &r->done->cells[cell];
+        if (at->counted)
+            t->tried_s[cell] = mean(at->wall_s, at->counted);
+    }
+}
+
 /* Tries the cells without rows in a random order, so that those that are tried represent the others. */
-static status try_cells(trials *t, study_estimate *out, diagnostic *why)
+static status try_cells(trials *t, diagnostic *why)
 {
     run *r = t->r;
     const study_options *o = r->options;
@@ -118,21 +132,33 @@ static status try_cells(trials *t, study_estimate *out, diagnostic *why)
     order_shuffle(r->s->seed, 0, r->order, r->cell_count);
     for (size_t i = 0; i < r->cell_count; i++) {
         const size_t cell = r->cells[r->order[i]];
-        if (!isnan(t->cell_s[cell]) || !(lacks_rows(r, cell) || lacks_files(r, cell)))
+        if (r->done->cells[cell].counted || !(lacks_rows(r, cell) || lacks_files(r, cell)))
             continue;
         if (clock_wall_s() > t->deadline_s)
             return STATUS_OK;
         diagnostic error = {.what = ""};
         status code = try_cell(t, cell, &error);
-        out->cut = code == STATUS_INTERRUPTED;
-        if (out->cut && !(o->stop && o->stop(o->context)))
+        t->cut = code == STATUS_INTERRUPTED;
+        if (t->cut && !(o->stop && o->stop(o->context)))
             code = STATUS_OK; /* the deadline */
         else if (code != STATUS_OK && why)
             *why = error;
         TRY(code);
-        out->from_trials += isnan(t->cell_s[cell]) ? 0 : 1;
     }
     return STATUS_OK;
+}
+
+/* The mean of the values of the cells that were tried; NaN if none was. */
+static double mean_trial(const trials *t, const double *values)
+{
+    double sum = 0;
+    size_t tried = 0;
+    for (size_t cell = 0; cell < study_cell_count(t->r->s); cell++)
+        if (!isnan(t->tried_s[cell])) {
+            sum += values[cell];
+            tried++;
+        }
+    return tried ? sum / (double)tried : NAN;
 }
 
 /* Each of the processes to come warms the cell up. */
@@ -152,7 +178,7 @@ static void count(const trials *t, study_estimate *out)
         const size_t cell = r->cells[i];
         const progress_index_cell *at = &r->done->cells[cell];
         const bool lacks = lacks_rows(r, cell), keeps = lacks_files(r, cell);
-        t->cell_s[cell] = at->counted ? mean(at->wall_s, at->counted) : NAN;
+        t->cell_s[cell] = at->counted ? mean(at->wall_s, at->counted) : t->tried_s[cell];
         if (lacks) {
             const size_t least = (size_t)progress_index_least(r->done), most = (size_t)progress_index_most(r->done);
             out->cells_lacking++;
@@ -164,28 +190,13 @@ static void count(const trials *t, study_estimate *out)
         out->files += keep_missing_count(r->s, r->folder, cell);
         out->comparisons += r->s->reference.count && !r->compared[cell] ? 1 : 0;
         out->from_rows += (lacks || keeps) && at->counted ? 1 : 0;
+        out->from_trials += (lacks || keeps) && !at->counted && !isnan(t->cell_s[cell]) ? 1 : 0;
     }
-}
-
-/* The mean over the cells that were tried, for those that were not; NaN if none was. */
-static double mean_trial(const trials *t, const double *values)
-{
-    double sum = 0;
-    size_t tried = 0;
-    for (size_t i = 0; i < t->r->cell_count; i++) {
-        const size_t cell = t->r->cells[i];
-        if (!t->r->done->cells[cell].counted && !isnan(t->cell_s[cell])) {
-            sum += values[cell];
-            tried++;
-        }
-    }
-    return tried ? sum / (double)tried : NAN;
 }
 
 static void add_times(const trials *t, study_estimate *out)
 {
     const run *r = t->r;
-    const double other_s = mean_trial(t, t->cell_s), other_once_s = mean_trial(t, t->once_s);
     for (size_t i = 0; i < r->cell_count; i++) {
         const size_t cell = r->cells[i], counted = r->done->cells[cell].counted;
         const bool lacks = lacks_rows(r, cell), keeps = lacks_files(r, cell);
@@ -194,40 +205,100 @@ static void add_times(const trials *t, study_estimate *out)
         const size_t least = (size_t)progress_index_least(r->done), most = (size_t)progress_index_most(r->done);
         const size_t more = (lacks ? warmups_of(r, cell) : 0) + (keeps ? 1 : 0);
         const bool tried = !isnan(t->cell_s[cell]);
-        const double frame_s = tried ? t->cell_s[cell] : other_s, once_s = tried ? t->once_s[cell] : other_once_s;
-        out->from_others += !tried && !isnan(other_s) ? 1 : 0;
+        const double frame_s = tried ? t->cell_s[cell] : t->other_s;
+        const double once_s = tried ? t->once_s[cell] : t->other_once_s;
+        out->from_others += !tried && !isnan(t->other_s) ? 1 : 0;
         out->least_s += once_s + frame_s * (double)(more + (!lacks ? 0 : counted < least ? least - counted : 1));
         out->most_s += once_s + frame_s * (double)(more + (lacks ? most - counted : 0));
     }
 }
 
+/* Reads what exists, and tries the cells whose time it does not show. */
+static status survey(trials *t, diagnostic *why)
+{
+    run *r = t->r;
+    TRY(run_read_rows(r, why));
+    TRY(run_find_compared(r, why));
+    run_choose_cells(r);
+    if (!isinf(t->deadline_s))
+        TRY(try_cells(t, why));
+    t->other_s = mean_trial(t, t->tried_s);
+    t->other_once_s = mean_trial(t, t->once_s);
+    return STATUS_OK;
+}
+
+static void sum_up(const trials *t, study_estimate *out)
+{
+    *out = (study_estimate){.cut = t->cut};
+    count(t, out);
+    add_times(t, out);
+}
+
+static status open(trials *t, const study_options *options, diagnostic *why)
+{
+    run *r = t->r;
+    const size_t total = study_cell_count(r->s);
+    const job_settings settings = {.keeps_meshes = true, .stop = must_stop, .context = t};
+    r->folder = study_folder(r->s, options->results);
+    r->cells = calloc(total, sizeof *r->cells);
+    r->order = calloc(total, sizeof *r->order);
+    r->compared = calloc(total, sizeof *r->compared);
+    t->tried_s = malloc(total * sizeof *t->tried_s);
+    t->cell_s = malloc(total * sizeof *t->cell_s);
+    t->once_s = calloc(total, sizeof *t->once_s);
+    if (!r->folder || !r->cells || !r->order || !r->compared || !t->tried_s || !t->cell_s || !t->once_s)
+        return out_of_memory(why);
+    for (size_t i = 0; i < total; i++)
+        t->tried_s[i] = NAN;
+    TRY(job_create(&settings, &r->with, why));
+    environment_read("", job_isa(r->with), &r->here);
+    if (options->environment)
+        snprintf(r->here.key, sizeof r->here.key, "%s", options->environment);
+    return STATUS_OK;
+}
+
+static void release(trials *t)
+{
+    free(t->once_s);
+    free(t->cell_s);
+    free(t->tried_s);
+    run_release(t->r);
+}
+
 status study_estimate_run(const study *s, const study_options *options, study_estimate *out, diagnostic *why)
 {
-    const size_t total = study_cell_count(s);
+    run r = {.s = s, .options = options};
+    trials t = {.r = &r, .deadline_s = clock_wall_s() + STUDY_ESTIMATE_TRIALS_S};
     *out = (study_estimate){.least_s = 0};
-    run r = {.s = s,
-             .options = options,
-             .folder = study_folder(s, options->results),
-             .cells = calloc(total, sizeof *r.cells),
-             .order = calloc(total, sizeof *r.order),
-             .compared = calloc(total, sizeof *r.compared)};
-    trials t = {&r, clock_wall_s() + STUDY_ESTIMATE_TRIALS_S, calloc(total, sizeof *t.cell_s),
-                calloc(total, sizeof *t.once_s)};
-    const job_settings settings = {.keeps_meshes = true, .stop = must_stop, .context = &t};
-    status code = r.folder && r.cells && r.order && r.compared && t.cell_s && t.once_s ? STATUS_OK : out_of_memory(why);
-    THEN(code, job_create(&settings, &r.with, why));
+    status code = open(&t, options, why);
+    THEN(code, survey(&t, why));
     if (code == STATUS_OK)
-        environment_read("", job_isa(r.with), &r.here);
-    THEN(code, run_read_rows(&r, why));
-    THEN(code, run_find_compared(&r, why));
-    if (code == STATUS_OK) {
+        sum_up(&t, out);
+    release(&t);
+    return code;
+}
+
+status study_estimate_parts(const study *s, const study_options *options, bool tries, study_estimate *parts,
+                            diagnostic *why)
+{
+    study_options of = *options;
+    of.shard = 0;
+    of.shards = 1;
+    run r = {.s = s, .options = &of};
+    trials t = {.r = &r, .deadline_s = tries ? clock_wall_s() + STUDY_ESTIMATE_TRIALS_S : INFINITY};
+    status code = open(&t, options, why);
+    THEN(code, survey(&t, why));
+    if (code == STATUS_OK)
+        take_rows_as_trials(&t);
+    of.shards = options->shards;
+    for (of.shard = 0; code == STATUS_OK && of.shard < of.shards; of.shard++) {
+        if (of.by_repetition)
+            code = run_read_rows(&r, why);
+        r.cell_count = 0;
         run_choose_cells(&r);
-        count(&t, out);
-        code = try_cells(&t, out, why);
-        add_times(&t, out);
+        if (code == STATUS_OK)
+            sum_up(&t, &parts[of.shard]);
     }
-    free(t.once_s);
-    free(t.cell_s);
-    run_release(&r);
+    release(&t);
     return code;
 }

@@ -25,5 +25,10 @@ typedef struct study_estimate {
  * request; otherwise the errors of reading the rows and of loading the files of a cell. */
 status study_estimate_run(const study *s, const study_options *options, study_estimate *out, diagnostic *why);
 
+/* The same for each of the options->shards parts of a study, from the same trial frames; shard is not used. tries:
+ * false makes none, so that only the times of cells with rows are known. */
+status study_estimate_parts(const study *s, const study_options *options, bool tries, study_estimate *parts,
+                            diagnostic *why);
+
 /* The lines of `cuvette study run --dry-run`. results: the results folder. */
 void study_estimate_write(FILE *out, const study *s, const char *results, const study_estimate *e);

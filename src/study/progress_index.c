@@ -1,6 +1,5 @@
 #include "study/progress_index.h"
 #include "base/build_id.h"
-#include "base/file.h"
 #include "base/grow.h"
 #include "base/hash.h"
 #include "base/isa.h"
@@ -79,20 +78,16 @@ status progress_index_add(progress_index *l, const progress_index_entry *entry, 
 typedef struct index_columns {
     const csv *table;
     int film_hash, wall_s;
-    bool of_other_shard;
 } index_columns;
 
-/* Whether only the rows of one shard count, and the table is not its file. */
-static bool is_of_other_shard(const progress_index *l, const row_files *files, const csv *table)
+/* Whether only the rows of one shard count, and the row is not of its runs. A merged row is in rows.csv, too. */
+static bool is_of_other_shard(const progress_index *l, const row_files *files, const row_ref *ref)
 {
-    char name[64];
     if (l->shards <= 1)
         return false;
-    snprintf(name, sizeof name, "rows.shard-%ld-of-%ld.csv", l->shard, l->shards);
-    for (size_t i = 0; i < files->count; i++)
-        if (files->tables[i] == table)
-            return strcmp(file_name_of(files->paths[i]), name) != 0;
-    return true;
+    const json_t *facts = ref->run >= 0 ? files->runs->entry[ref->run].facts : NULL;
+    return json_integer_value(json_object_get(facts, "shard")) != l->shard ||
+           json_integer_value(json_object_get(facts, "shards")) != l->shards;
 }
 
 static status add_rows(progress_index *l, const row_files *files, diagnostic *why)
@@ -104,8 +99,7 @@ static status add_rows(progress_index *l, const row_files *files, diagnostic *wh
     for (size_t i = 0; i < files->row_count; i++) {
         const row_ref *ref = &files->rows[i];
         if (ref->table != at.table)
-            at = (index_columns){ref->table, csv_column(ref->table, "film_hash"), csv_column(ref->table, "wall_s"),
-                                 is_of_other_shard(l, files, ref->table)};
+            at = (index_columns){ref->table, csv_column(ref->table, "film_hash"), csv_column(ref->table, "wall_s")};
         if (ref->run < 0)
             build = hash_text(ref->environment);
         else if (ref->run != last_run)
@@ -121,7 +115,7 @@ static status add_rows(progress_index *l, const row_files *files, diagnostic *wh
                                     .build = build,
                                     .wall_s = csv_field_real(ref->table, ref->row, at.wall_s),
                                     .environment = ref->environment,
-                                    .of_other_shard = at.of_other_shard},
+                                    .of_other_shard = is_of_other_shard(l, files, ref)},
             why));
     }
     return STATUS_OK;

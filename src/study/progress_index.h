@@ -48,7 +48,7 @@ typedef struct progress_index_entry {
 /* The rows that count. */
 typedef struct progress_index_filter {
     const char *environment; /* the key of that whose rows count, or "" for all */
-    long shard, shards;      /* shards > 1: only those of the shard's file, and its part of the repetitions */
+    long shard, shards;      /* shards > 1: only those of the shard's runs, and its part of the repetitions */
 } progress_index_filter;
 status progress_index_read(const study *s, const char *results, const progress_index_filter *filter,
                            progress_index **out, diagnostic *why);

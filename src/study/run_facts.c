@@ -137,6 +137,16 @@ static json_t *environment_facts(const run_environment *e)
     return facts;
 }
 
+/* The machine among the nodes of its type; null if the environment names it already. */
+static json_t *node(void)
+{
+    char machine[ENVIRONMENT_FACT_MAX];
+    if (!environment_node_type())
+        return json_null();
+    environment_read_machine("", machine, sizeof machine);
+    return borrowed(machine);
+}
+
 json_t *run_facts(const study *s, const topology *machine, const run_environment *here, const char *id, long shard,
                   long shards)
 {
@@ -147,10 +157,11 @@ json_t *run_facts(const study *s, const topology *machine, const run_environment
     json_t *disturbances = json_array();
     usage_disturbances(load_sample_s, add_disturbance, disturbances);
     json_t *is_dirty = commit ? json_boolean(dirty) : json_null();
-    json_t *run = json_pack("{s:s, s:o, s:o, s:n, s:i, s:i, s:o, s:o, s:o, s:o}", "id", id, "environment",
-                            environment_facts(here), "started_utc", run_time(), "ended_utc", "shard", (int)shard,
-                            "shards", (int)(shards > 1 ? shards : 1), "processor", processor_facts(), "topology",
-                            taken(topology_summary(machine)), "load", load_average(), "steal_share", steal_share());
+    json_t *run =
+        json_pack("{s:s, s:o, s:o, s:o, s:n, s:i, s:i, s:o, s:o, s:o, s:o}", "id", id, "environment",
+                  environment_facts(here), "node", node(), "started_utc", run_time(), "ended_utc", "shard", (int)shard,
+                  "shards", (int)(shards > 1 ? shards : 1), "processor", processor_facts(), "topology",
+                  taken(topology_summary(machine)), "load", load_average(), "steal_share", steal_share());
     json_t *program = json_pack(
         "{s:s, s:o, s:s, s:s, s:s#, s:o, s:o, s:o, s:o}", "version", CUVETTE_VERSION, "build_commit",
         borrowed(build_commit()), "compiler", COMPILER, "flags", CUVETTE_COMPILER_FLAGS, "config",

@@ -124,6 +124,7 @@ typedef struct study_options {
     long process; /* from 1: this is one of study_processes, and measures only its part of the repetitions; 0: this
                              process measures all */
     bool any_environment;        /* rows of every environment count, not only those of the present one */
+    const char *environment;     /* of an estimate: the key of that whose rows count instead, or NULL */
     FILE *progress;              /* a terminal for the progress line with ETA, or NULL */
     bool (*stop)(void *context); /* polled; true ends the run with STATUS_INTERRUPTED, rows kept. May be NULL */
     void (*progressed)(
