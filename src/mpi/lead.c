@@ -150,6 +150,8 @@ static void release_frame(lead *l)
     l->own = NULL;
 }
 
+enum { SIDE_MOST = 4096 }; /* a message of a tile has fewer bytes than MPI can count */
+
 /* Tiles of which each worker of all ranks can have as many as render.pieces requires. */
 static int tile_side(const scene *s, int ranks)
 {
@@ -157,7 +159,7 @@ static int tile_side(const scene *s, int ranks)
     schedule tiles;
     all.threads = (int64_t)scene_threads(&s->render) * ranks;
     schedule_start(&tiles, &all);
-    return tiles.tile;
+    return tiles.tile < SIDE_MOST ? tiles.tile : SIDE_MOST;
 }
 
 static status prepare(lead *l, const scene *s, diagnostic *why)
