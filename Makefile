@@ -128,8 +128,8 @@ $(build)/web/page_files.o: $(build)/web/page_files.c $(build)/flags
 
 # The same program on the ranks of an MPI job (src/mpi); nothing else needs MPI. MPI_PACKAGE: its name for pkg-config.
 MPI_PACKAGE ?= ompi-c
-mpi_cflags = $(eval mpi_cflags := $$(shell pkg-config --cflags $(MPI_PACKAGE)))$(mpi_cflags)
-mpi_libs = $(eval mpi_libs := $$(shell pkg-config --libs $(MPI_PACKAGE)))$(mpi_libs)
+mpi_cflags = $(eval mpi_cflags := $$(shell pkg-config --cflags $(MPI_PACKAGE) 2>/dev/null))$(mpi_cflags)
+mpi_libs = $(eval mpi_libs := $$(shell pkg-config --libs $(MPI_PACKAGE) 2>/dev/null))$(mpi_libs)
 .PHONY: mpi setup-mpi test-mpi
 test-mpi: mpi $(build)/cuvette | $(filter test experiments bench,$(MAKECMDGOALS)) ## test cuvette-mpi with ranks on this machine
 	@CUVETTE='$(abspath $(build)/cuvette)' tests/run tests/mpi.sh
@@ -141,6 +141,10 @@ $(build)/cuvette-mpi: $(mpi_objects) $(filter-out %/cli/main.o,$(program_objects
 	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(mpi_libs) $(all_libs)
 $(build)/obj/mpi/%.o: private own_cflags = $(mpi_cflags)
 $(build)/obj/mpi/handout.o: private own_cflags =
+$(filter-out %/handout.o,$(mpi_objects)): | mpi-tools
+.PHONY: mpi-tools
+mpi-tools: | $(filter setup-mpi,$(MAKECMDGOALS))
+	@pkg-config --exists $(MPI_PACKAGE) || { echo 'mpi: OpenMPI ($(MPI_PACKAGE)) is not installed; run: make setup-mpi' >&2; exit 1; }
 
 # The mesh importer, the only program linked to assimp. Built without sanitizers, which need more address space than the limit that it
 # sets itself.
@@ -539,7 +543,7 @@ test-deb: ## install the packages of make deb in a fresh Debian 12, use and remo
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
 by_scripts := tests/fail_allocation.c tests/json_get.c $(wildcard experiments/engine/*.c)
-compiled: all peers $(test_programs) $(benches) $(build)/tests/recheck $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
+compiled: all peers $(mpi_objects) $(test_programs) $(benches) $(build)/tests/recheck $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
 $(build)/by-scripts/%.o: %.c $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
