@@ -27,7 +27,7 @@ if ! command -v smpirun >/dev/null || [[ ! -x $SIMULATED ]]; then
 fi
 
 # --- every tile once, whatever the ranks
-path=(map=$folder/maps/path.pgm width=1920 height=1080 paths=1024 pixel_bytes=48)
+path=("map=$folder/maps/path.pgm" width=1920 height=1080 paths=1024 pixel_bytes=48)
 declare -A check
 for ranks in 4 64; do
     simulate switch-100g "$ranks" "${path[@]}"

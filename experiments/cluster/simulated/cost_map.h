@@ -1,4 +1,5 @@
-/* The measured cost of each pixel of a frame, from a grey image in text (PGM, P2; measure.sh writes it) with the comments
+/* The measured cost of each pixel of a frame, from a grey image in text (PGM, P2; measure.sh writes it) with the
+ * comments
  *   # unit NS     nanoseconds of the value 1
  *   # paths N     paths a pixel of the measured frame (1 without random paths)
  * scaled to a frame of any size: a pixel costs what the pixel at its place in the map costs. */

@@ -5,8 +5,8 @@
 # The scene is rendered with FACTOR (4) times the width and the height by one thread, REPEAT (15) times. Each of its
 # pixels has the least of its times: a pixel's clock runs on while other programs have the processor. A pixel of the map
 # has the mean of its FACTOR x FACTOR pixels. Of several frames by one process, whose number varies, so that it is not
-# interrupted at the same pixels each time, the last one counts: the first one's time contains its memory's. All are scaled so that their sum is the median processor time of as many
-# renders without the pixels' clock.
+# interrupted at the same pixels each time, the last one counts: the first one's time contains its memory's. All are
+# scaled so that their sum is the median processor time of as many renders without the pixels' clock.
 set -euo pipefail
 export LC_ALL=C.UTF-8
 
@@ -23,7 +23,8 @@ values() {
     tail -c $((4 * across * down)) "$1" | od -An -v -tf4 -w$((4 * across)) | tac | tr -s ' ' '\n' | sed '/^$/d'
 }
 for ((i = 0; i < repeat; i++)); do
-    "$cuvette" render "$@" "${settings[@]}" --repeat $((2 + i % 4)) --time "$scratch/$i.pfm" -o "$scratch/image.png" >/dev/null 2>&1
+    "$cuvette" render "$@" "${settings[@]}" --repeat $((2 + i % 4)) --time "$scratch/$i.pfm" \
+        -o "$scratch/image.png" >/dev/null 2>&1
     values "$scratch/$i.pfm" >"$scratch/$i.values"
 done
 cpu_s=$("$cuvette" render "$@" "${settings[@]}" --json --repeat "$repeat" 2>/dev/null |

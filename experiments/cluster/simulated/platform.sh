@@ -33,7 +33,8 @@ awk -v name="$name" -v hosts="$hosts" -v bandwidth="$bandwidth" -v latency="$lat
         if (name == "stragglers-100g" && i % 64 == 32) speed = 0.5
         core = name == "two-cores" ? cores : 1
         printf "<host id=\"h%d\" speed=\"%.6fGf\" core=\"%d\"/>\n", i, speed, core
-        printf "<link id=\"l%d\" bandwidth=\"%gBps\" latency=\"%gs\" sharing_policy=\"SPLITDUPLEX\"/>\n", i, bandwidth, latency / 2
+        printf "<link id=\"l%d\" bandwidth=\"%gBps\" latency=\"%gs\" sharing_policy=\"SPLITDUPLEX\"/>\n",
+            i, bandwidth, latency / 2
         printf "<host_link id=\"h%d\" up=\"l%d_UP\" down=\"l%d_DOWN\"/>\n", i, i, i
     }
     print "</zone>\n</platform>"

@@ -13,14 +13,20 @@ trap 'rm -rf "$scratch"' EXIT
 
 if [[ $platform == two-cores ]]; then # all ranks on one host
     "$here/platform.sh" "$platform" 1 >"$scratch/platform.xml"
-    hosts=$(yes h0 | head -n $((ranks + 1)))
+    hosts=$(seq 0 "$ranks" | sed 's/.*/h0/')
     speed=$((ranks < ${CORES:-2} ? ranks : ${CORES:-2}))
 else # the serving rank is on the host of the first one that traces
     "$here/platform.sh" "$platform" "$ranks" >"$scratch/platform.xml"
     hosts=$(echo h0 && seq -f 'h%.0f' 0 $((ranks - 1)))
-    speed=$(sed -n 's/.* speed="\([0-9.]*\)Gf".*/\1/p' "$scratch/platform.xml" | awk '{ s += $1 } END { printf "%.6f", s }')
+    speed=$(sed -n 's/.* speed="\([0-9.]*\)Gf".*/\1/p' "$scratch/platform.xml" |
+        awk '{ s += $1 } END { printf "%.6f", s }')
 fi
 echo "$hosts" >"$scratch/hosts"
+
+# Bytes of a message that travel before it is received: OpenMPI's limit for TCP; over a faster network, a longer message
+# waits for its receiver. So pieces come one after another there, each with the latency.
+eager=4096
+[[ $platform != ethernet-10g ]] || eager=65536
 
 # Link and host are as the platform says: no factors fitted to other machines, no time for the program's own code, no
 # time for a look for messages (the ranks wait for the time of the next look themselves).
@@ -29,5 +35,5 @@ smpirun -np $((ranks + 1)) -platform "$scratch/platform.xml" -hostfile "$scratch
     --cfg=smpi/grow-injected-times:no --cfg=network/model:CM02 --cfg=network/bandwidth-factor:0.95 \
     --cfg=network/latency-factor:1 --cfg=network/weight-S:0 --cfg=network/TCP-gamma:0 \
     --cfg=network/loopback-bw:1e10 --cfg=network/loopback-lat:1e-6 --cfg=contexts/stack-size:256 \
-    ${EAGER:+--cfg=smpi/async-small-thresh:$EAGER --cfg=smpi/send-is-detached-thresh:$EAGER} --log=root.thres:warning \
+    --cfg=smpi/async-small-thresh:$eager --cfg=smpi/send-is-detached-thresh:$eager --log=root.thres:warning \
     "$program" "speed=$speed" "$@"

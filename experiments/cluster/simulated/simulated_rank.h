@@ -1,4 +1,4 @@
-/* What stands for the tracing threads of a rank in a simulated cluster: a queue of tiles, each of which takes its
+/* A rank of a simulated cluster, without its tracing threads: a queue of tiles, each of which takes its
  * measured cost of the simulated processor. Rank 0 has none (threads 0): it only waits for messages. Under mpirun,
  * tiles cost nothing: what remains is the time of the messages themselves. Ownership: the creator's. */
 #pragma once

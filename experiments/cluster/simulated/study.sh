@@ -8,7 +8,8 @@ export LC_ALL=C.UTF-8
 
 here=$(cd "$(dirname "$0")" && pwd)
 table=${TABLE:-$here/../../../results/cluster.csv} jobs=${JOBS:-1} most=${RANKS_MOST:-4096}
-columns=study,platform,variant,ranks,width,height,paths,tile,tiles,wrong,check,work_s,tile_most_s,ideal_s,time_s,efficiency,messages,piece_bytes,serving_s,idle_s
+columns=study,platform,variant,ranks,width,height,paths,tile,tiles,wrong,check,work_s,tile_most_s,ideal_s,time_s
+columns=$columns,efficiency,messages,piece_bytes,serving_s,idle_s
 counts=(1 4 16 64 256 1024 4096)
 
 # Processor time of rank 0 for a piece, measured with build/cluster/messages (README.md).
@@ -53,21 +54,21 @@ weak_path() { # 120 x 68 pixels for each rank
     done
 }
 tile() {
-    for n in 256 1024 4096; do
+    for n in 1024 4096; do
         for side in 64 32 16 8; do
             row tile switch-100g "tile-$side" "$n" "${path[@]}" "${frame[@]}" "${serving[@]}" "tile=$side" pieces=0
         done
     done
 }
 stragglers() {
-    for n in 64 256 1024 4096; do
+    for n in 64 1024 4096; do
         for platform in spread-100g stragglers-100g; do
             row stragglers "$platform" tile-32 "$n" "${path[@]}" "${frame[@]}" "${serving[@]}"
         done
     done
 }
-# What could be gained at rank 0: by a two-level hand-out at best (messages cost nothing, bytes as before), or by a cheaper
-# transport.
+# What could be gained at rank 0: by a two-level hand-out at best (messages cost nothing, bytes as before), or by a
+# cheaper transport.
 serving() {
     for n in 1024 4096; do
         row serving switch-100g two-level-bound "$n" "${path[@]}" "${frame[@]}" message_ns=0 byte_ns=0.43
