@@ -233,6 +233,27 @@ $(build)/flags: always | $(filter setup setup-peers setup-doc setup-mpi,$(MAKECM
 	@mkdir -p $(@D)
 	@echo '$(flags_text)' | cmp -s - $@ || echo '$(flags_text)' >$@
 
+# cuvette-mpi's loops on simulated clusters (experiments/cluster/simulated): src/mpi/messenger.c and handout.c as they are, by
+# SimGrid's compiler; and by OpenMPI's the same without tracing, whose time is that of the messages. All are built at once.
+.PHONY: simulated setup-simgrid simulate-mpi test-simgrid
+simulated_folder := experiments/cluster/simulated
+simulated_sources := $(wildcard $(simulated_folder)/*.c) src/mpi/handout.c src/render/core/schedule.c src/base/status.c
+simulated_flags = -std=gnu17 -O2 -g $(filter -W%,$(all_cflags)) -Isrc -I$(simulated_folder)
+simulated: $(build)/cluster/simulated
+setup-simgrid: | $(filter setup setup-mpi,$(MAKECMDGOALS)) ## install what make simulate-mpi requires: SimGrid
+	@.ci/setup-simgrid
+$(build)/cluster/simulated: private compiler = smpicc -DSIMULATED
+$(build)/cluster/messages: private compiler = mpicc
+$(build)/cluster/simulated $(build)/cluster/messages: $(simulated_sources) $(wildcard $(simulated_folder)/*.h) src/mpi/messenger.c $(wildcard src/mpi/*.h) $(build)/flags | $(filter setup-simgrid setup-mpi,$(MAKECMDGOALS))
+	$(call say,$(firstword $(compiler)) $(simulated_folder))
+	@mkdir -p $(@D)
+	$(quiet)$(compiler) $(simulated_flags) -DMESSAGES_ARE_KEPT -include simulated_mpi.h -c -o $@-messenger.o src/mpi/messenger.c
+	$(quiet)$(compiler) $(simulated_flags) -o $@ $(filter-out %/messenger.c,$(filter %.c,$^)) $@-messenger.o -lm
+simulate-mpi: simulated ## simulate cuvette-mpi on clusters of 1 to 4096 ranks (half an hour); the table is results/cluster.csv
+	TABLE='$(abspath $(RESULTS))/cluster.csv' $(simulated_folder)/study.sh
+test-simgrid: simulated | $(filter test experiments bench,$(MAKECMDGOALS)) ## test the simulation of a cluster, with 4 and 64 ranks
+	@SIMULATED='$(abspath $(build)/cluster/simulated)' tests/run tests/simgrid.sh
+
 # The programs that the benchmarks compare with: the report's algorithm, which needs only a compiler, and Embree if installed.
 # The program that calls Embree is compiled for the machine that it runs on.
 report_sources := $(wildcard experiments/peers/report/*.[ch])
@@ -284,7 +305,7 @@ test-doc: $(build)/cuvette | doc-tools ## check the documentation: complete, eve
 # Checks of the sources, run in one configuration only.
 source_checks := tests/layers.sh tests/headers.sh tests/vectorise.sh tests/targets.sh tests/format.sh tests/fault_texts.sh \
   tests/compile_commands.sh tests/words.sh tests/doc.sh
-scripts := $(filter-out $(source_checks) tests/arch.sh tests/mpi.sh tests/slurm.sh,$(wildcard tests/*.sh))
+scripts := $(filter-out $(source_checks) tests/arch.sh tests/mpi.sh tests/slurm.sh tests/simgrid.sh,$(wildcard tests/*.sh))
 ifeq ($(config)$(clang)$(RUNNER),release)
 scripts += $(wildcard $(source_checks))
 endif

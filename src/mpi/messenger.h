@@ -1,8 +1,8 @@
 /* The messengers of a frame: the loops that exchange tiles for traced pieces, one for rank 0 and one for the others.
  * They know nothing of scenes. What traces is behind an interface, so that the same loops run with threads that trace
- * (mpi/tracing.h) and in a simulated cluster with measured costs (mpi/simulated.c). Each rank runs its messenger on one
- * thread; no other thread of the rank calls MPI meanwhile. Errors of MPI end the program: OpenMPI then ends all
- * ranks. */
+ * (mpi/tracing.h) and in a simulated cluster with measured costs (experiments/cluster/simulated). Each rank runs its
+ * messenger on one thread; no other thread of the rank calls MPI meanwhile. Errors of MPI end the program: OpenMPI then
+ * ends all ranks. */
 #pragma once
 
 #include "mpi/handout.h"

@@ -1,0 +1,35 @@
+# Efficiency on simulated clusters by ranks: strong and weak scaling of random paths, and Whitted's method.
+# needs: cluster.csv
+width = 1000; height = 430
+load "plots/style.gp"
+
+set datafile separator ","
+file = results."/cluster.csv"
+rows_of(study, platform, variant) = sprintf( \
+    "< awk -F, '$1 == \"%s\" && $2 == \"%s\" && $3 == \"%s\"' %s | sort -t, -n -k4,4", study, platform, variant, file)
+set multiplot layout 1,2 margins 0.07,0.98,0.14,0.92 spacing 0.09,0
+set logscale x 4
+set xrange [0.8:5200]
+set xtics (1, 4, 16, 64, 256, 1024, 4096)
+set yrange [0:1.05]
+set xlabel "ranks"
+set ylabel "efficiency"
+set key bottom left
+set title "random paths, 1024 a pixel"
+plot 0.9 lt 8 title "0.9", \
+     rows_of("strong-path", "switch-100g", "tile-32") using 4:16 with linespoints lt 1 title "8k frame, 100 Gbit/s", \
+     rows_of("strong-path", "ethernet-10g", "tile-32") using 4:16 with linespoints lt 2 title "8k frame, 10 Gbit/s", \
+     rows_of("weak-path", "switch-100g", "tile-32") using 4:16 with linespoints lt 3 \
+         title "120 × 68 pixels a rank, 100 Gbit/s"
+set title "Whitted's method, 8k frame"
+set ylabel "frames per second"
+set logscale y
+set yrange [0.1:40]
+set key bottom right
+set format y "%g"
+plot rows_of("strong-whitted", "switch-100g", "tile-32") using 4:(1/$14) with lines lt 8 title "ideal", \
+     rows_of("strong-whitted", "switch-100g", "link-only") using 4:(1/$15) with linespoints lt 3 \
+         title "100 Gbit/s, 1 µs a piece at rank 0", \
+     rows_of("strong-whitted", "switch-100g", "tile-32") using 4:(1/$15) with linespoints lt 1 title "100 Gbit/s", \
+     rows_of("strong-whitted", "ethernet-10g", "tile-32") using 4:(1/$15) with linespoints lt 2 title "10 Gbit/s"
+unset multiplot
