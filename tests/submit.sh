@@ -109,6 +109,11 @@ submit --slurm small.study --results "$rows" --tasks 3
 verdict $? "a complete study submits nothing" "$(cat out err)"
 submit --slurm small.study --results "$rows" --tasks 3 --partition other
 same "nodes of another type measure all" <(head -1 calls) "--parsable --array=0-2 a folder/rows/small/slurm/study.slurm"
+grep -q "note: small: 10 rows of other machines or builds do not count for nodes of type 'other'" err
+verdict $? "and a note says that the rows of the first type do not count" "$(cat out err)"
+submit --slurm small.study --results "$rows" --tasks 3 --partition other
+[[ ! -s err ]]
+verdict $? "once they have rows, no note" "$(cat out err)"
 submit --slurm small.study --results by --by repetition
 same "repetitions can be divided" <(head -1 calls) "--parsable --array=0-1 by/small/slurm/study.slurm"
 submit --slurm small.study --results by --by repetition

@@ -123,29 +123,33 @@ static void the_environment_is_that_of_the_node_type(void **state)
 {
     const fixture *f = *state;
     char key[ENVIRONMENT_KEY], again[ENVIRONMENT_KEY], unlike[300];
+    size_t others;
     study *s = fixture_study(f, "study: test\nscene: scene.yaml\ngrid: [{render.depth: [0, 1, 2]}]\n"
                                 "repetitions: 2\nwarmups: 0\n");
     fixture_run(f, s); /* of this machine */
-    assert_int_equal(slurm_environment(s, f->results, "thin", key, unlike, sizeof unlike, NULL), STATUS_OK);
+    assert_int_equal(slurm_environment(s, f->results, "thin", key, unlike, sizeof unlike, &others, NULL), STATUS_OK);
     assert_string_equal(key, "none");
+    assert_int_equal(others, 6);
     setenv("CUVETTE_NODE_TYPE", "thin", 1);
     setenv("CUVETTE_ISA", isa_name(ISA_BASE), 1);
     const study_options part = {.results = f->results, .shard = 0, .shards = 2}; /* two of three cells */
     assert_int_equal(study_run(s, &part, NULL, NULL), STATUS_OK);
-    assert_int_equal(slurm_environment(s, f->results, "thin", key, unlike, sizeof unlike, NULL), STATUS_OK);
+    assert_int_equal(slurm_environment(s, f->results, "thin", key, unlike, sizeof unlike, &others, NULL), STATUS_OK);
     assert_int_equal(strlen(key), 8);
+    assert_int_equal(others, 6);
     assert_string_equal(unlike, "");
     if (isa_best() > ISA_BASE) {
         unsetenv("CUVETTE_ISA");
-        const study_options others = {.results = f->results, .shard = 1, .shards = 2};
-        assert_int_equal(study_run(s, &others, NULL, NULL), STATUS_OK);
-        assert_int_equal(slurm_environment(s, f->results, "thin", again, unlike, sizeof unlike, NULL), STATUS_OK);
+        const study_options rest = {.results = f->results, .shard = 1, .shards = 2};
+        assert_int_equal(study_run(s, &rest, NULL, NULL), STATUS_OK);
+        assert_int_equal(slurm_environment(s, f->results, "thin", again, unlike, sizeof unlike, &others, NULL),
+                         STATUS_OK);
         assert_string_equal(again, key);
         assert_non_null(strstr(unlike, "isa "));
     }
     unsetenv("CUVETTE_NODE_TYPE");
     unsetenv("CUVETTE_ISA");
-    assert_int_equal(slurm_environment(s, f->results, "fat", key, unlike, sizeof unlike, NULL), STATUS_OK);
+    assert_int_equal(slurm_environment(s, f->results, "fat", key, unlike, sizeof unlike, &others, NULL), STATUS_OK);
     assert_string_equal(key, "none");
     study_destroy(s);
 }

@@ -111,7 +111,7 @@ typedef struct submission {
     const study *s;
     char *node_type, *array, *logs, *path, *script; /* logs: an absolute folder; path: of the script */
     study_estimate *parts;
-    size_t part_count;
+    size_t part_count, rows_apart; /* rows_apart: of other environments, while these nodes have none */
     double longest_s;
     long threads;
     char memory[32], time[SLURM_TIME];
@@ -133,18 +133,11 @@ static char *node_type_of(const submit_request *asked)
                        asked->constraint ? asked->constraint : "");
 }
 
-/* Which parts lack something, in the environment of the nodes that have measured most. */
-static status find_parts(submission *job, diagnostic *why)
+static status find_environment(submission *job, char key[ENVIRONMENT_KEY], diagnostic *why)
 {
-    const submit_request *asked = job->asked;
-    char key[ENVIRONMENT_KEY], unlike[300], text[700];
-    const size_t most = asked->by_repetition ? (size_t)job->s->repetitions_min : study_cell_count(job->s);
-    job->part_count = asked->tasks ? (size_t)asked->tasks : TASKS < most ? TASKS : most;
-    job->node_type = node_type_of(asked);
-    job->parts = calloc(job->part_count, sizeof *job->parts);
-    if (!job->node_type || !job->parts)
-        return out_of_memory(why);
-    TRY(slurm_environment(job->s, asked->results, job->node_type, key, unlike, sizeof unlike, why));
+    char unlike[300], text[700];
+    size_t others;
+    TRY(slurm_environment(job->s, job->asked->results, job->node_type, key, unlike, sizeof unlike, &others, why));
     snprintf(
         text, sizeof text,
         "%s: nodes of type '%.100s' are unlike: %s; rows of unlike nodes are not pooled: choose with --constraint, and "
@@ -152,6 +145,22 @@ static status find_parts(submission *job, diagnostic *why)
         job->s->name, job->node_type, unlike);
     if (unlike[0])
         terminal_note(text);
+    job->rows_apart = strcmp(key, "none") == 0 ? others : 0;
+    return STATUS_OK;
+}
+
+/* Which parts lack something, in the environment of the nodes that have measured most. */
+static status find_parts(submission *job, diagnostic *why)
+{
+    const submit_request *asked = job->asked;
+    char key[ENVIRONMENT_KEY];
+    const size_t most = asked->by_repetition ? (size_t)job->s->repetitions_min : study_cell_count(job->s);
+    job->part_count = asked->tasks ? (size_t)asked->tasks : TASKS < most ? TASKS : most;
+    job->node_type = node_type_of(asked);
+    job->parts = calloc(job->part_count, sizeof *job->parts);
+    if (!job->node_type || !job->parts)
+        return out_of_memory(why);
+    TRY(find_environment(job, key, why));
     const study_options as = {.results = asked->results,
                               .shards = (long)job->part_count,
                               .by_repetition = asked->by_repetition,
@@ -237,9 +246,23 @@ static status write_script(submission *job, diagnostic *why)
 
 /* --- what is said --- */
 
+static void note_rows_apart(const submission *job)
+{
+    char text[500];
+    if (!job->rows_apart)
+        return;
+    snprintf(
+        text, sizeof text,
+        "%s: %zu rows of other machines or builds do not count for nodes of type '%.100s', which measure all anew; "
+        "to complete those rows give their --partition, --constraint or --node-type, and the same build",
+        job->s->name, job->rows_apart, job->node_type);
+    terminal_note(text);
+}
+
 static void say_parts(const submission *job)
 {
     size_t rows = 0;
+    note_rows_apart(job);
     for (size_t i = 0; i < job->part_count; i++)
         rows += job->parts[i].rows_most;
     printf("%s: %zu of %zu parts to run, %zu rows to measure\n", job->s->name, missing_parts(job), job->part_count,

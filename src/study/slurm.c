@@ -79,7 +79,7 @@ static bool is_of(const row_environment_count *e, const char *machine)
 }
 
 status slurm_environment(const study *s, const char *results, const char *node_type, char key[ENVIRONMENT_KEY],
-                         char *unlike, size_t size, diagnostic *why)
+                         char *unlike, size_t size, size_t *others, diagnostic *why)
 {
     char machine[ENVIRONMENT_FACT_MAX];
     row_files *files;
@@ -88,10 +88,13 @@ status slurm_environment(const study *s, const char *results, const char *node_t
     environment_of_node_type(node_type, machine, sizeof machine);
     snprintf(key, ENVIRONMENT_KEY, "none");
     unlike[0] = 0;
+    *others = 0;
     TRY(row_files_read(s, results, ROWS, &files, why));
     const status code = row_environments_find(files, &all, &count, why);
     for (size_t i = 0; i < count; i++)
-        if (is_of(&all[i], machine) && (!most || all[i].rows > most->rows))
+        if (!is_of(&all[i], machine))
+            *others += all[i].rows;
+        else if (!most || all[i].rows > most->rows)
             most = &all[i];
     for (size_t i = 0; most && i < count && !unlike[0]; i++)
         if (&all[i] != most && is_of(&all[i], machine))

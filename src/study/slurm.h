@@ -35,6 +35,7 @@ typedef struct slurm_needs {
 status slurm_needs_of(const study *s, slurm_needs *out, diagnostic *why);
 
 /* The key of the environment with most rows among those of nodes of the type, measured by this build; "none", which is
- * no key, without rows. unlike: how another such environment differs from it; "" if there is none. */
+ * no key, without rows. unlike: how another such environment differs from it; "" if there is none. others: the rows of
+ * other types and builds. */
 status slurm_environment(const study *s, const char *results, const char *node_type, char key[ENVIRONMENT_KEY],
-                         char *unlike, size_t size, diagnostic *why);
+                         char *unlike, size_t size, size_t *others, diagnostic *why);
