@@ -190,6 +190,13 @@ static void a_glb_with_wrong_lengths_is_refused(void **state)
     }
 }
 
+static void a_gltf_file_under_the_other_ending_is_refused(void **state)
+{
+    (void)state;
+    refuse_bytes("binary.gltf", tetrahedron_glb("{\"mesh\":0}"), "this is a binary glTF file");
+    refuse_within("json.glb", &limits, "begins with 'glTF'");
+}
+
 static bytes repeat(const char *before, const char *unit, const char *between, size_t count, const char *after)
 {
     bytes b = {0};
@@ -420,6 +427,7 @@ int main(void)
         cmocka_unit_test(an_stl_with_a_wrong_facet_count_is_refused),
         cmocka_unit_test(a_ply_with_invalid_lists_is_refused),
         cmocka_unit_test(a_glb_with_wrong_lengths_is_refused),
+        cmocka_unit_test(a_gltf_file_under_the_other_ending_is_refused),
         cmocka_unit_test(deep_nesting_is_refused),
         cmocka_unit_test(exponentially_shared_nodes_are_refused),
         cmocka_unit_test(counts_above_the_limits_are_refused),

@@ -246,9 +246,10 @@ static void paths_that_leave_the_root_are_refused(void **state)
         "GET /hello%cx HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nConnection: close\r\nAuthorization: Bearer %s\r\n\r\n", 0,
         http_port(*state), http_token(*state));
     char *reply = client_raw(http_port(*state), nul, (size_t)size);
-    /* libmicrohttpd ends the request line there, and so do the server's checks. */
-    assert_true(reply_code(reply) == 400 || strstr(reply_body(reply), "\"path\":\"/hello\""));
+    /* libmicrohttpd 0.9 ends the request line there, and so do the server's checks; 1.0 closes the connection. */
+    assert_true(!*reply || reply_code(reply) == 400 || strstr(reply_body(reply), "\"path\":\"/hello\""));
     free(reply);
+    expect(*state, 200, "GET", "/hello", "", NULL);
 }
 
 static void routes_receive_decoded_values(void **state)

@@ -48,7 +48,7 @@ status files_check(const request *req, diagnostic *why);
 
 /* ---- whole.c ---- */
 
-/* Checks that a PLY or STL file has the length that its header implies. */
+/* Checks that a PLY or STL file has the length that its header implies, and a glTF file the form of its ending. */
 status check_whole(const request *req, diagnostic *why);
 
 /* ---- read.c ---- */

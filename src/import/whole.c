@@ -1,7 +1,8 @@
 /* The check that a PLY or STL file has the length that its header implies: assimp fills missing data with zeros or
  * uninitialised memory, reads headers without an end for minutes, and allocates memory by counts that no file can hold.
- * OBJ has no counts and no end; assimp checks the lengths of glTF itself. PLY: Greg Turk, "The PLY Polygon File
- * Format", 1994. STL: 80 bytes, a count, 50 bytes a facet; or a text from solid to endsolid. */
+ * OBJ has no counts and no end; assimp checks the lengths of glTF itself, but assimp 5.4 reads text and binary glTF
+ * files under either ending, which 5.2 refuses. PLY: Greg Turk, "The PLY Polygon File Format", 1994. STL: 80 bytes, a
+ * count, 50 bytes a facet; or a text from solid to endsolid. */
 #include "import/import.h"
 
 #include "base/below.h"
@@ -237,9 +238,31 @@ static status check_stl(const char *bytes, size_t size, diagnostic *why)
     return size > needed ? STATUS_OK : truncated(why, "facet", (size - 84) / 50, count);
 }
 
+static status check_gltf(const char *bytes, size_t size, bool binary, diagnostic *why)
+{
+    if ((size >= 4 && memcmp(bytes, "glTF", 4) == 0) == binary)
+        return STATUS_OK;
+    return diagnose(why, STATUS_BAD_INPUT, "a .gltf file is JSON; binary glTF files end in .glb",
+                    binary ? "a binary glTF file begins with 'glTF'" : "this is a binary glTF file");
+}
+
+static status check_bytes(file_kind kind, const char *bytes, size_t size, diagnostic *why)
+{
+    ply p = {.at = bytes, .end = bytes + size, .why = why};
+    switch (kind) {
+    case FILE_PLY: return check_ply(&p);
+    case FILE_STL: return check_stl(bytes, size, why);
+    case FILE_GLTF:
+    case FILE_GLB: return check_gltf(bytes, size, kind == FILE_GLB, why);
+    case FILE_OBJ:
+    case FILE_UNKNOWN: break;
+    }
+    return STATUS_OK;
+}
+
 status check_whole(const request *req, diagnostic *why)
 {
-    if (req->kind != FILE_PLY && req->kind != FILE_STL)
+    if (req->kind == FILE_OBJ)
         return STATUS_OK;
     struct stat about;
     int fd = below_open(req->path, req->root);
@@ -249,9 +272,8 @@ status check_whole(const request *req, diagnostic *why)
         close(fd);
     if (bytes == MAP_FAILED)
         return no_memory_for(req, why);
-    ply p = {.at = bytes, .end = (const char *)bytes + about.st_size, .why = why};
     diagnostic_locate(why, req->path, 0, 0);
-    status code = req->kind == FILE_PLY ? check_ply(&p) : check_stl(bytes, (size_t)about.st_size, why);
+    status code = check_bytes(req->kind, bytes, (size_t)about.st_size, why);
     munmap(bytes, (size_t)about.st_size);
     return code;
 }

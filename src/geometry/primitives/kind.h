@@ -47,9 +47,10 @@ ALWAYS_INLINE void store_interval(double near, double far, int64_t hit, int64_t 
     *out = blend(inside, blend(hit, greater(far, 0.0), 0.0), outside_out);
 }
 
+/* By the sign: gcc 14 makes a _Bool of any other test of a bit, and then does not vectorise the loop. */
 ALWAYS_INLINE int64_t inside_mask(uint64_t set, int shift)
 {
-    return -(int64_t)((set & (uint64_t)1 << shift) != 0);
+    return mask_of((int64_t)(set << (63 - shift)) < 0);
 }
 
 /* The one interval of a ray's line in a convex primitive; own: the ray starts on the primitive. */
