@@ -150,16 +150,22 @@ static void release_frame(lead *l)
     l->own = NULL;
 }
 
-enum { SIDE_MOST = 4096 }; /* a message of a tile has fewer bytes than MPI can count */
+/* SIDE_MOST: a message of a tile has fewer bytes than MPI can count. */
+enum { SIDE_MOST = 4096, SIDE_GROWN = 128, TILES_ENOUGH = 64 };
 
-/* Tiles of which each worker of all ranks can have as many as render.pieces requires. */
+/* As a process alone, for the workers of all ranks. Where each would still have TILES_ENOUGH, the tiles are larger: a
+ * tile's last rays do not fill batches (renderer.h, piece_source), which costs the less, the larger it is. */
 static int tile_side(const scene *s, int ranks)
 {
     render_settings all = s->render;
     schedule tiles;
     all.threads = (int64_t)scene_threads(&s->render) * ranks;
     schedule_start(&tiles, &all);
-    return tiles.tile < SIDE_MOST ? tiles.tile : SIDE_MOST;
+    int side = tiles.tile < SIDE_MOST ? tiles.tile : SIDE_MOST;
+    while (2 * side <= SIDE_GROWN &&
+           s->render.width * s->render.height / (4 * side * side) >= TILES_ENOUGH * all.threads)
+        side *= 2;
+    return side;
 }
 
 static status prepare(lead *l, const scene *s, diagnostic *why)

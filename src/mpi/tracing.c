@@ -78,16 +78,19 @@ static bool over(void *of)
     return is_over;
 }
 
-/* Messages can only be looked for. So the wait is short after something happened, and grows to 1 ms. */
+/* Messages can only be looked for, which takes time from the threads that trace. Within HANDOUT_AHEAD_S these have
+ * tiles enough, so that a look per millisecond will do; only a rank that waits for tiles looks more often, at first. */
 static void wait_for_event(void *of, int idle)
 {
+    enum { SHORT_NS = 50000, LONG_NS = 1000000, SHORT_TIMES = 40 };
     team *t = of;
     struct timespec until;
     clock_gettime(CLOCK_MONOTONIC, &until);
-    until.tv_nsec += idle < 8 ? 50000 : idle < 40 ? 200000 : 1000000;
+    pthread_mutex_lock(&t->lock);
+    const bool hungry = t->first == t->count && !t->ended && idle < SHORT_TIMES;
+    until.tv_nsec += hungry ? SHORT_NS : LONG_NS;
     if (until.tv_nsec >= 1000000000)
         until.tv_nsec -= 1000000000, until.tv_sec++;
-    pthread_mutex_lock(&t->lock);
     if (!t->oldest)
         pthread_cond_timedwait(&t->has_piece, &t->lock, &until);
     pthread_mutex_unlock(&t->lock);
