@@ -59,14 +59,13 @@ int spawn_bound(pid_t *pid, const char *program, char *const *arguments, int out
     return error;
 }
 
-void spawn_follow_parent(void)
+bool spawn_follow_parent(void)
 {
     const char *parent = getenv(PARENT);
     if (!parent)
-        return;
+        return true;
     const long id = strtol(parent, NULL, 10);
     unsetenv(PARENT);
     os_die_with_parent();
-    if (getppid() != (pid_t)id) /* it has ended already */
-        _exit(1);
+    return getppid() == (pid_t)id;
 }

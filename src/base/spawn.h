@@ -13,5 +13,5 @@ int spawn_program(pid_t *pid, const char *program, char *const *arguments, int o
 /* The same for another `cuvette`, which the kernel ends when this thread has ended, however it did: it must not go on
  * to measure for nobody, or together with its successor. One thread at a time calls it. */
 int spawn_bound(pid_t *pid, const char *program, char *const *arguments, int out, int err);
-/* The other end: the program calls it first. */
-void spawn_follow_parent(void);
+/* The other end: the program calls it first, and ends at once if it returns false: the parent has ended already. */
+bool spawn_follow_parent(void);

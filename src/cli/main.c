@@ -64,7 +64,8 @@ static void print_version(FILE *stream, struct argp_state *state)
 
 int main(int argc, char **argv)
 {
-    spawn_follow_parent();
+    if (!spawn_follow_parent())
+        return STATUS_FAILURE;
     float_environment_set(); /* the start-up code of a library may have changed it */
     terminal_prepare();
     argp_err_exit_status = STATUS_BAD_INPUT;
