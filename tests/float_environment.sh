@@ -73,7 +73,10 @@ verdict $? "the preloaded library sets the environment"
 
 # Covers functions added to the engine later. One that only calls another leaves it to that.
 bare=$(awk '/^cuvette_status cuvette_/ {name = $2; sub(/\(.*/, "", name); n++}
-            name && open {if ($0 !~ /^ *(ENGINE_(ENTER|CALL|CHANGE)|return cuvette_[a-z_]*)\(.*\);$/) print name; name = ""}
+            name && open {
+                if ($0 !~ /^ *(ENGINE_(ENTER|CALL|CHANGE)|return cuvette_[a-z_]*)\(.*\);$/) print name
+                name = ""
+            }
             {open = /^{$/} END {if (n < 50) print "only", n, "functions"}' "$root"/src/engine/*.c)
 [[ -z $bare ]]
 verdict $? "every function of cuvette.h that can fail sets the default environment${bare:+, except }$bare"
