@@ -109,7 +109,7 @@ check "there is one record per worker" is "$(json 'threads[].worker')" "$(lines 
 check "the workers' rays add up" is "$(json 'threads[].rays.total' | sum)" "$total"
 check "the workers' shadow rays add up" is "$(json 'threads[].rays.shadow' | sum)" "$(json rays.shadow)"
 check "keys of a worker" is "$(json 'threads[0]@keys' | sort | tr '\n' ' ')" \
-    "$(lines blocked_s busy_s cpu_s involuntary_switches pu rays runnable_s running_s start_s tiles visibility_s \
+    "$(lines blocked_s busy_s cpu_s involuntary_switches pu rank rays runnable_s running_s start_s tiles visibility_s \
         voluntary_switches waiting_s wall_s worker | tr '\n' ' ')"
 check "times and process" holds "$(json wall_s) > 0 && $(json cpu_s) > 0 && $(json peak_rss_bytes) > 0"
 check "context switches and the share of other processes" json voluntary_switches involuntary_switches others_share
