@@ -82,9 +82,13 @@ empty 'bad input gets one line, whatever the number of ranks' "${bad[*]:-}"
 verdict $? 'help is printed once'
 
 # A rank that dies: OpenMPI ends the others. The child that is not rank 0.
-kill_a_rank() { # after SECONDS
-    sleep "$1"
-    local pid
+kill_a_rank() { # once there are at least COUNT lines in the output of COMMAND...
+    local count=$1 pid
+    shift
+    for ((i = 0; i < 600; i++)); do
+        (($("$@" 2>/dev/null | wc -l) >= count)) && break
+        sleep 0.05
+    done
     for pid in $(pgrep -f "^$mpi"); do
         if tr '\0' '\n' <"/proc/$pid/environ" 2>/dev/null | grep -q '^OMPI_COMM_WORLD_RANK=1$'; then
             kill -KILL "$pid"
@@ -95,7 +99,7 @@ kill_a_rank() { # after SECONDS
 }
 
 echo old >"$work/long.pfm"
-kill_a_rank 3 &
+kill_a_rank 3 pgrep -f "^$mpi" & # all have started
 on_ranks 3 render experiments/scenes/rod.yaml --set render.integrator=path --set render.paths=4096 -o "$work/long.pfm" \
     >"$work/out" 2>"$work/errors"
 code=$?
@@ -105,7 +109,7 @@ verdict $? 'a killed rank ends the frame with an error; no file is half-written'
 
 film=(animate experiments/scenes/slime.yaml --duration 1 --fps 20 --set render.width=240 --set render.height=180)
 "$cuvette" "${film[@]}" -o "$work/one/%03d.png" >/dev/null 2>&1
-kill_a_rank 4 &
+kill_a_rank 3 find "$work/many" -name '*.png' &
 on_ranks 3 "${film[@]}" -o "$work/many/%03d.png" >/dev/null 2>"$work/errors"
 code=$?
 wait
@@ -124,18 +128,19 @@ rm -f "$work/kills"
 cat >"$work/many.study" <<STUDY
 study: many
 scene: $PWD/experiments/scenes/rod.yaml
-set: {render.width: 400, render.height: 300}
+set: {render.width: 800, render.height: 600}
 grid:
   - {render.depth: [1, 2, 3, 4, 5, 6, 7, 8]}
   - {render.tile: [8, 16, 32, 64]}
 repetitions: 6
 warmups: 0
 STUDY
-kill_a_rank 3 &
+all_rows() { cat "$work"/results/many/rows*.csv; }
+kill_a_rank 40 all_rows &
 on_ranks 3 study run --results "$work/results" "$work/many.study" >/dev/null 2>"$work/errors"
 code=$?
 wait
-rows=$(cat "$work"/results/many/rows*.csv | grep -vc '^study')
+rows=$(all_rows | grep -vc '^study')
 on_ranks 2 study run --results "$work/results" "$work/many.study" >"$work/out" 2>&1
 again=$?
 checked=$("$cuvette" study verify --results "$work/results" "$work/many.study" 2>&1)
