@@ -41,7 +41,6 @@ struct lead {
     film *img;
     double *variance;
     others rest;
-    traffic moved;
     uint64_t scene_bytes;
     atomic_bool stops; /* a stop request, or an error of this rank */
 };
@@ -118,7 +117,8 @@ static bool goes_on(void *of, double share_done)
 static void *serve(void *of)
 {
     lead *l = of;
-    messenger_serve(l->frame, l->ranks, l->tiles, team_tracing(l->own), &l->sink, &l->moved);
+    traffic moved = {0}; /* the ranks report their own */
+    messenger_serve(l->frame, l->ranks, l->tiles, team_tracing(l->own), &l->sink, &moved);
     return NULL;
 }
 
@@ -210,7 +210,6 @@ static status begin(void *of, const scene *s, const render_options *requested, c
     }
     l->sink = (frame_sink){l, put_piece, take_report, goes_on};
     l->watch = *watch;
-    l->moved = (traffic){0};
     atomic_store(&l->stops, false);
     l->begun_s = l->watched_s = clock_wall_s();
     l->complete_s = NAN;
