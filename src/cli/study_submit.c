@@ -53,7 +53,7 @@ static status take_sbatch(const command_option *o, void *request, const char *va
 
 static const command_option options[] = {
     {"slurm", 0, NULL, "submit to Slurm, by sbatch", OPTION_FILLS(option_flag, submit_request, slurm)},
-    TEXT("partition", 'p', "NAME", "partition of the cluster (default: the cluster's)", partition),
+    TEXT("partition", 'p', "NAME", "partition of the cluster (default: Slurm's own)", partition),
     TEXT("constraint", 'C', "FEATURES", "features that nodes must have, so that all are of one type", constraint),
     TEXT("node-type", 0, "NAME", "name of the type of node (default: partition and constraint)", node_type),
     {"tasks", 0, "N", "parts of the study, a task of the array each (default: 16, or one per cell)",

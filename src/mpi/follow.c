@@ -33,7 +33,8 @@ static bool own_goes_on(void *context, double own_share)
 static void *trace(void *context)
 {
     follower *f = context;
-    f->report.code = job_render(f->with, f->s, f->options, &f->account, &f->report.why);
+    const status traced = job_render(f->with, f->s, f->options, &f->account, &f->report.why);
+    f->report.code = team_status(f->own, traced, &f->report.why);
     team_left(f->own);
     return NULL;
 }

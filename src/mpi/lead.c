@@ -267,6 +267,7 @@ static status add_others(lead *l, render_result *result, diagnostic *why)
 static status end(void *of, status traced, render_result *result, diagnostic *why)
 {
     lead *l = of;
+    traced = team_status(l->own, traced, why);
     if (traced != STATUS_OK)
         atomic_store(&l->stops, true);
     team_left(l->own);

@@ -253,7 +253,7 @@ static bool work_once(working *w)
     return any || there;
 }
 
-bool messenger_work(int64_t frame, const tracing *own, traffic *moved)
+void messenger_work(int64_t frame, const tracing *own, traffic *moved)
 {
     working w = {.frame = frame, .own = own, .moved = moved};
     const ready_note ready = {.head.frame = frame, .threads = own->threads};
@@ -264,5 +264,4 @@ bool messenger_work(int64_t frame, const tracing *own, traffic *moved)
         else
             own->wait(own->of, idle++);
     finish_sending(&w, 0);
-    return w.given_up;
 }

@@ -42,5 +42,5 @@ typedef struct traffic {
 void messenger_serve(int64_t frame, int ranks, handout *tiles, const tracing *own, const frame_sink *sink,
                      traffic *moved);
 
-/* Another rank: passes tiles and pieces until its tracing is over. True if the frame was given up. */
-bool messenger_work(int64_t frame, const tracing *own, traffic *moved);
+/* Another rank: passes tiles and pieces until its tracing is over. */
+void messenger_work(int64_t frame, const tracing *own, traffic *moved);

@@ -51,22 +51,25 @@ static piece_message *take(void *of)
     return piece;
 }
 
+/* Sets a flag of the team that its threads wait for. */
+static void announce(team *t, bool *flag)
+{
+    pthread_mutex_lock(&t->lock);
+    *flag = true;
+    pthread_cond_broadcast(&t->has_tile);
+    pthread_mutex_unlock(&t->lock);
+}
+
 static void end(void *of)
 {
     team *t = of;
-    pthread_mutex_lock(&t->lock);
-    t->ended = true;
-    pthread_cond_broadcast(&t->has_tile);
-    pthread_mutex_unlock(&t->lock);
+    announce(t, &t->ended);
 }
 
 static void stop(void *of)
 {
     team *t = of;
-    pthread_mutex_lock(&t->lock);
-    t->stopped = true;
-    pthread_cond_broadcast(&t->has_tile);
-    pthread_mutex_unlock(&t->lock);
+    announce(t, &t->stopped);
 }
 
 static bool over(void *of)
@@ -205,6 +208,11 @@ bool team_is_stopped(team *t)
     const bool stopped = t->stopped;
     pthread_mutex_unlock(&t->lock);
     return stopped;
+}
+
+status team_status(const team *t, status traced, diagnostic *why)
+{
+    return atomic_load(&t->failed) ? out_of_memory(why) : traced;
 }
 
 render_settings tiles_settings(const render_settings *r, int side)
