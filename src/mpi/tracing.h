@@ -20,7 +20,8 @@ const piece_source *team_source(const team *t);
 void team_left(team *t);
 /* Whether the frame was given up. Any thread may ask. */
 bool team_is_stopped(team *t);
-/* The renderer's status, or that the team ran out of memory for tiles or pieces: the renderer then only sees its end. */
+/* The renderer's status, or that the team ran out of memory for tiles or pieces: the renderer then only sees its
+ * end. */
 status team_status(const team *t, status traced, diagnostic *why);
 
 /* The settings with which all ranks have the same tiles: of that side, whatever their threads. */
