@@ -131,7 +131,7 @@ MPI_PACKAGE ?= ompi-c
 mpi_cflags = $(eval mpi_cflags := $$(shell pkg-config --cflags $(MPI_PACKAGE) 2>/dev/null))$(mpi_cflags)
 mpi_libs = $(eval mpi_libs := $$(shell pkg-config --libs $(MPI_PACKAGE) 2>/dev/null))$(mpi_libs)
 .PHONY: mpi setup-mpi test-mpi
-test-mpi: mpi $(build)/cuvette | $(filter test experiments bench,$(MAKECMDGOALS)) ## test cuvette-mpi with ranks on this machine
+test-mpi: mpi $(build)/cuvette $(build)/cluster/messages | $(filter test experiments bench,$(MAKECMDGOALS)) ## test cuvette-mpi with ranks on this machine
 	@CUVETTE='$(abspath $(build)/cuvette)' tests/run tests/mpi.sh
 mpi: $(build)/cuvette-mpi $(build)/cuvette-import ## build build/cuvette-mpi, for the ranks of an MPI job
 setup-mpi: | $(filter setup setup-python,$(MAKECMDGOALS)) ## install what make mpi requires: OpenMPI

@@ -4,7 +4,6 @@
  *
  * Arguments are NAME=VALUE: map, width, height, paths, tile, pieces, pixel_bytes, message_ns, byte_ns, scene_bytes,
  * speed (sum of all hosts' speeds, processors of 1 Gf), label (the first cells of the row). */
-#include "mpi/broadcast.h"
 #include "simulated_rank.h"
 #include <math.h>
 #include <mpi.h>
@@ -114,7 +113,7 @@ static bool take_report(void *of, int rank, const rank_report *report, const wor
     gathered *g = of;
     (void)rank;
     (void)workers;
-    g->idle_s += report->wall_s - report->cpu_s;
+    g->idle_s += report->account.wall_s - report->account.cpu_s;
     return true;
 }
 
@@ -143,57 +142,67 @@ static void print_row(const gathered *g, int ranks, const traffic *moved)
            (unsigned long long)moved->piece_bytes, g->serving_s, g->idle_s);
 }
 
+/* As mpi/scene_wire.c: the length of the one part, the part, and a length of 0. */
+static void broadcast_scene(const arguments *with)
+{
+    int64_t length = (int64_t)with->scene_bytes;
+    char *bytes = calloc((size_t)length + 1, 1);
+    if (!bytes)
+        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
+    MPI_Bcast(&length, 1, MPI_INT64_T, 0, MPI_COMM_WORLD);
+    MPI_Bcast(bytes, (int)length, MPI_BYTE, 0, MPI_COMM_WORLD);
+    free(bytes);
+    length = 0;
+    MPI_Bcast(&length, 1, MPI_INT64_T, 0, MPI_COMM_WORLD);
+}
+
 /* As mpi/lead.c: the order to each rank, the scene by broadcast, then the messenger. */
 static void lead(const arguments *with, const frame_costs *frame, int ranks)
 {
     gathered g = {.with = with, .frame = frame};
     const frame_sink sink = {&g, put_piece, take_report, goes_on};
-    const frame_order order = {.head.frame = 1, .scene_bytes = (uint64_t)with->scene_bytes};
-    const size_t scene = (size_t)with->scene_bytes, film = frame_tile_bytes(frame, 0);
-    char *bytes = calloc(scene + 1, 1);
+    const frame_order order = {.head.frame = 1};
+    const size_t tile_bytes = frame_tile_bytes(frame, 0);
     handout *tiles = NULL;
     traffic moved = {0};
     simulated_rank nothing;
     const tracing own = simulated_tracing(&nothing, frame, 0);
     g.seen = calloc((size_t)frame->tiles->tile_count, 1);
 #ifndef SIMULATED
-    if ((g.film = malloc((size_t)frame->tiles->tile_count * film)))
-        memset(g.film, 1, (size_t)frame->tiles->tile_count * film); /* its pages exist before the frame */
+    if ((g.film = malloc((size_t)frame->tiles->tile_count * tile_bytes)))
+        memset(g.film, 1, (size_t)frame->tiles->tile_count * tile_bytes); /* its pages exist before the frame */
 #endif
-    (void)film;
-    if (!bytes || !g.seen || handout_create(frame->tiles->tile_count, ranks, &tiles, NULL) != STATUS_OK)
+    (void)tile_bytes;
+    if (!g.seen || handout_create(frame->tiles->tile_count, ranks, &tiles, NULL) != STATUS_OK)
         MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
     g.begun_s = MPI_Wtime();
     g.begun_busy_s = busy_s();
     for (int rank = 1; rank < ranks; rank++)
         MPI_Send(&order, sizeof order, MPI_BYTE, rank, TAG_FRAME, MPI_COMM_WORLD);
-    broadcast(bytes, scene);
+    broadcast_scene(with);
     messenger_serve(1, ranks, tiles, &own, &sink, &moved);
     print_row(&g, ranks, &moved);
     handout_destroy(tiles);
     free(g.film);
     free(g.seen);
-    free(bytes);
 }
 
-static void follow(const frame_costs *frame)
+static void follow(const arguments *with, const frame_costs *frame)
 {
     frame_order order;
     traffic moved = {0};
     simulated_rank own;
     const tracing facing = simulated_tracing(&own, frame, 1);
     MPI_Recv(&order, sizeof order, MPI_BYTE, 0, TAG_FRAME, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    char *bytes = malloc(order.scene_bytes + 1);
-    if (!bytes)
-        MPI_Abort(MPI_COMM_WORLD, STATUS_FAILURE);
-    broadcast(bytes, order.scene_bytes);
-    free(bytes);
+    broadcast_scene(with);
     const double begun_s = MPI_Wtime();
     messenger_work(1, &facing, &moved);
     struct {
         rank_report rank;
         worker_report worker;
-    } report = {.rank = {.head.frame = 1, .wall_s = MPI_Wtime() - begun_s, .cpu_s = own.busy_s, .workers = 1}};
+    } report = {.rank = {.head.frame = 1,
+                         .account = {.wall_s = MPI_Wtime() - begun_s, .cpu_s = own.busy_s},
+                         .workers = 1}};
     MPI_Send(&report, sizeof report, MPI_BYTE, 0, TAG_REPORT, MPI_COMM_WORLD);
 }
 
@@ -217,7 +226,7 @@ static status run(int argc, char **argv, int rank, int ranks, diagnostic *why)
     if (rank == 0)
         lead(&with, &frame, ranks);
     else
-        follow(&frame);
+        follow(&with, &frame);
     return STATUS_OK;
 }
 

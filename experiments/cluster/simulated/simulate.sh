@@ -1,6 +1,7 @@
 #!/bin/bash
 # Simulate one frame of cuvette-mpi, and print its row of CSV (README.md lists the columns).
 #   simulate.sh PLATFORM RANKS NAME=VALUE...      PLATFORM: one of platform.sh; NAME=VALUE: of main.c
+# EAGER (4096): bytes of a message that travel before it is received.
 set -euo pipefail
 export LC_ALL=C
 
@@ -23,10 +24,9 @@ else # the serving rank is on the host of the first one that traces
 fi
 echo "$hosts" >"$scratch/hosts"
 
-# Bytes of a message that travel before it is received: OpenMPI's limit for TCP; over a faster network, a longer message
-# waits for its receiver. So pieces come one after another there, each with the latency.
-eager=4096
-[[ $platform != ethernet-10g ]] || eager=65536
+# Bytes of a message that travel before it is received; a longer one waits for its receiver, so that pieces come one
+# after another, each with the latency. The same on all platforms, so that these differ by their cables alone.
+eager=${EAGER:-4096}
 
 # Link and host are as the platform says: no factors fitted to other machines, no time for the program's own code, no
 # time for a look for messages (the ranks wait for the time of the next look themselves).
