@@ -1,7 +1,7 @@
 #!/bin/bash
 # Simulate one frame of cuvette-mpi, and print its row of CSV (README.md lists the columns).
 #   simulate.sh PLATFORM RANKS NAME=VALUE...      PLATFORM: one of platform.sh; NAME=VALUE: of main.c
-# EAGER (4096): bytes of a message that travel before it is received.
+# eager=BYTES (4096): of a message that travel before it is received; a longer one waits for its receiver.
 set -euo pipefail
 export LC_ALL=C
 
@@ -24,9 +24,11 @@ else # the serving rank is on the host of the first one that traces
 fi
 echo "$hosts" >"$scratch/hosts"
 
-# Bytes of a message that travel before it is received; a longer one waits for its receiver, so that pieces come one
-# after another, each with the latency. The same on all platforms, so that these differ by their cables alone.
-eager=${EAGER:-4096}
+# The same on all platforms, so that these differ by their cables alone.
+eager=4096 arguments=()
+for argument; do
+    if [[ $argument == eager=* ]]; then eager=${argument#*=}; else arguments+=("$argument"); fi
+done
 
 # Link and host are as the platform says: no factors fitted to other machines, no time for the program's own code, no
 # time for a look for messages (the ranks wait for the time of the next look themselves).
@@ -36,4 +38,4 @@ smpirun -np $((ranks + 1)) -platform "$scratch/platform.xml" -hostfile "$scratch
     --cfg=network/latency-factor:1 --cfg=network/weight-S:0 --cfg=network/TCP-gamma:0 \
     --cfg=network/loopback-bw:1e10 --cfg=network/loopback-lat:1e-6 --cfg=contexts/stack-size:256 \
     --cfg=smpi/async-small-thresh:$eager --cfg=smpi/send-is-detached-thresh:$eager --log=root.thres:warning \
-    "$program" "speed=$speed" "$@"
+    "$program" "speed=$speed" "${arguments[@]}"

@@ -12,8 +12,8 @@ columns=study,platform,variant,ranks,width,height,paths,tile,tiles,wrong,check,w
 columns=$columns,efficiency,messages,piece_bytes,serving_s,idle_s
 counts=(1 4 16 64 256 1024 4096)
 
-# Processor time of rank 0 for a piece, measured with build/cluster/messages (README.md).
-serving=(message_ns=10000 byte_ns=0.43)
+# Processor time of rank 0 for a piece, measured with build/cluster/messages on 16 processors (README.md).
+serving=(message_ns=2400 byte_ns=0.30)
 frame=(width=7680 height=4320 scene_bytes=3500)
 path=("map=$here/maps/path.pgm" paths=1024 pixel_bytes=48)
 whitted=("map=$here/maps/whitted.pgm" paths=1 pixel_bytes=24)
@@ -42,6 +42,8 @@ strong_whitted() {
         for platform in switch-100g ethernet-10g; do
             row strong-whitted "$platform" tile-32 "$n" "${whitted[@]}" "${frame[@]}" "${serving[@]}"
         done
+        # OpenMPI's own limit for TCP, with which a piece leaves without waiting for rank 0
+        row strong-whitted ethernet-10g eager-64k "$n" "${whitted[@]}" "${frame[@]}" "${serving[@]}" eager=65536
         row strong-whitted switch-100g link-only "$n" "${whitted[@]}" "${frame[@]}" message_ns=1000 byte_ns=0.01
     done
 }
@@ -71,8 +73,8 @@ stragglers() {
 # cheaper transport.
 serving() {
     for n in 1024 4096; do
-        row serving switch-100g two-level-bound "$n" "${path[@]}" "${frame[@]}" message_ns=0 byte_ns=0.43
-        row serving switch-100g half-cost "$n" "${path[@]}" "${frame[@]}" message_ns=5000 byte_ns=0.215
+        row serving switch-100g two-level-bound "$n" "${path[@]}" "${frame[@]}" message_ns=0 byte_ns=0.30
+        row serving switch-100g half-cost "$n" "${path[@]}" "${frame[@]}" message_ns=1200 byte_ns=0.15
         row serving switch-100g no-cost "$n" "${path[@]}" "${frame[@]}" message_ns=0 byte_ns=0
     done
 }
