@@ -140,8 +140,9 @@ $(build)/cuvette-mpi: $(mpi_objects) $(filter-out %/cli/main.o,$(program_objects
 	$(call say,link $@)
 	$(quiet)$(CC) $(all_cflags) -o $@ $^ $(LDFLAGS) $(mpi_libs) $(all_libs)
 $(build)/obj/mpi/%.o: private own_cflags = $(mpi_cflags)
-$(build)/obj/mpi/handout.o: private own_cflags =
-$(filter-out %/handout.o,$(mpi_objects)): | mpi-tools
+mpi_pure := $(patsubst %,$(build)/obj/mpi/%.o,handout tracing)
+$(mpi_pure): private own_cflags =
+$(filter-out $(mpi_pure),$(mpi_objects)): | mpi-tools
 .PHONY: mpi-tools
 mpi-tools: | $(filter setup-mpi,$(MAKECMDGOALS))
 	@pkg-config --exists $(MPI_PACKAGE) || { echo 'mpi: OpenMPI ($(MPI_PACKAGE)) is not installed; run: make setup-mpi' >&2; exit 1; }
@@ -210,8 +211,8 @@ $(build)/tests/test_%: tests/test_%.c $(build)/libcuvette.a $(build)/flags
 	$(call say,$(CC) $<)
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) -Werror $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(test_web) $(build)/libcuvette.a $(LDFLAGS) $(all_libs) -lcmocka
-$(build)/tests/test_handout: $(build)/obj/mpi/handout.o
-$(build)/tests/test_handout: private test_web = $(build)/obj/mpi/handout.o
+$(build)/tests/test_handout $(build)/tests/test_tracing: $(build)/tests/test_%: $(build)/obj/mpi/%.o
+$(build)/tests/test_handout $(build)/tests/test_tracing: private test_web = $(build)/obj/mpi/$(@F:test_%=%).o
 $(web_tests): $(build)/libweb.a
 $(web_tests): private test_web = $(build)/libweb.a
 

@@ -39,6 +39,10 @@ for scene in rod models 'rod --set render.integrator=path --set render.paths=16'
     empty "1, 2, 3 and 8 ranks: film, counts and noise of $scene" "$wrong"
 done
 
+notes=$(timeout 60 mpirun --oversubscribe -n 2 "$cuvette" render experiments/scenes/rod.yaml "${small[@]}" 2>&1 >/dev/null)
+[[ $(grep -c 'cuvette-mpi shares' <<<"$notes") == 1 ]]
+verdict $? 'cuvette itself under mpirun says once that each process does the whole work' "$notes"
+
 on_ranks 2 render experiments/scenes/rod.yaml "${small[@]}" --set render.threads=2 --set render.tile=16 \
     >"$work/account.json" 2>"$work/errors"
 wrong=$(

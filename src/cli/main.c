@@ -6,6 +6,7 @@
 #include "cli/terminal.h"
 #include <argp.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static status command_help(int argc, char **argv, diagnostic *why);
@@ -62,6 +63,16 @@ static void print_version(FILE *stream, struct argp_state *state)
     fprintf(stream, "cuvette %s (build %s%s%s)\n", CUVETTE_VERSION, build_id(), commit[0] ? ", commit " : "", commit);
 }
 
+/* Under mpirun, every process of `cuvette` does the whole work: most likely cuvette-mpi was meant. Environment of
+ * OpenMPI. */
+static void note_whole_work(int argc, char **argv)
+{
+    const char *rank = getenv("OMPI_COMM_WORLD_RANK"), *ranks = getenv("OMPI_COMM_WORLD_SIZE");
+    const bool is_frame = argc > 1 && (strcmp(argv[1], "render") == 0 || strcmp(argv[1], "animate") == 0);
+    if (is_frame && rank && ranks && strcmp(rank, "0") == 0 && strcmp(ranks, "1") != 0)
+        terminal_note("each process of this MPI job does the whole work; cuvette-mpi shares it among them");
+}
+
 int main(int argc, char **argv)
 {
     if (!spawn_follow_parent())
@@ -75,6 +86,7 @@ int main(int argc, char **argv)
     if (argc < 1)
         argc = 1, argv = alone;
     argv[0] = program;
+    note_whole_work(argc, argv);
     diagnostic why = {0};
     status result = dispatch(argc, argv, &why);
     diagnostic unwritten = {0};

@@ -1,0 +1,113 @@
+/* Tests of the queues between a rank's messenger and its tracing threads: tiles and pieces pass in order, and a rank
+ * that lacks memory for a piece gives the frame up and says why. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "mpi/tracing.h"
+#include <string.h>
+
+static team *begin(void)
+{
+    const render_settings settings = {.width = 64, .height = 48, .threads = 1};
+    const render_settings tiled = tiles_settings(&settings, 16);
+    team *t = NULL;
+    schedule tiles;
+    schedule_start(&tiles, &tiled);
+    assert_int_equal(team_create(&tiles, 1, &t, NULL), STATUS_OK);
+    return t;
+}
+
+static void tiles_come_out_as_spans_in_order(void **state)
+{
+    (void)state;
+    team *t = begin();
+    const tracing *messenger = team_tracing(t);
+    const piece_source *source = team_source(t);
+    span at;
+    messenger->give(messenger->of, (const int32_t[]){0, 5, 11}, 3);
+    messenger->end(messenger->of);
+    assert_true(source->next(source->context, 0, &at));
+    assert_true(at.x0 == 0 && at.y0 == 0 && at.x1 == 16 && at.y1 == 16);
+    assert_true(source->next(source->context, 0, &at));
+    assert_true(at.x0 == 16 && at.y0 == 16);
+    assert_true(source->next(source->context, 0, &at));
+    assert_true(at.x0 == 48 && at.y0 == 32 && at.x1 == 64 && at.y1 == 48);
+    assert_false(source->next(source->context, 0, &at));
+    team_destroy(t);
+}
+
+static void a_piece_arrives_with_its_sums_and_variances(void **state)
+{
+    (void)state;
+    team *t = begin();
+    const tracing *messenger = team_tracing(t);
+    const piece_source *source = team_source(t);
+    int64_t sums[6] = {1, 2, 3, 4, 5, 6};
+    const double variance[6] = {0.5, 1.5, 2.5, 3.5, 4.5, 5.5};
+    const film traced = {.sum = sums};
+    assert_null(messenger->take(messenger->of));
+    assert_true(source->done(source->context, &(span){.x0 = 32, .x1 = 34, .y0 = 16, .y1 = 17}, &traced, variance));
+    piece_message *piece = messenger->take(messenger->of);
+    assert_non_null(piece);
+    assert_int_equal(piece->head.value, 6);
+    assert_int_equal(piece->bytes, sizeof piece->head + sizeof sums + sizeof variance);
+    assert_memory_equal(piece->values, sums, sizeof sums);
+    assert_memory_equal(piece->values + 6, variance, sizeof variance);
+    assert_null(messenger->take(messenger->of));
+    assert_false(messenger->over(messenger->of)); /* the renderer may go on */
+    team_left(t);
+    assert_true(messenger->over(messenger->of));
+    free(piece);
+    team_destroy(t);
+}
+
+/* More bytes than any machine has: malloc itself refuses. */
+static void a_piece_without_memory_gives_the_frame_up(void **state)
+{
+    (void)state;
+    team *t = begin();
+    const tracing *messenger = team_tracing(t);
+    const piece_source *source = team_source(t);
+    const film nothing = {0};
+    diagnostic why = {0};
+    span at;
+    messenger->give(messenger->of, (const int32_t[]){0, 1}, 2);
+    assert_int_equal(team_status(t, STATUS_OK, &why), STATUS_OK);
+    assert_false(source->done(source->context, &(span){.x1 = 1 << 30, .y1 = 1 << 28}, &nothing, NULL));
+    assert_true(team_is_stopped(t));
+    assert_false(source->next(source->context, 0, &at)); /* though tiles wait */
+    assert_null(messenger->take(messenger->of));
+    assert_int_equal(team_status(t, STATUS_OK, &why), STATUS_FAILURE);
+    assert_non_null(strstr(why.what, "memory"));
+    team_destroy(t);
+}
+
+static void a_frame_that_is_given_up_refuses_further_pieces(void **state)
+{
+    (void)state;
+    team *t = begin();
+    const tracing *messenger = team_tracing(t);
+    const piece_source *source = team_source(t);
+    int64_t sums[3] = {0};
+    const film traced = {.sum = sums};
+    diagnostic why = {0};
+    messenger->stop(messenger->of);
+    assert_false(source->done(source->context, &(span){.x1 = 1, .y1 = 1}, &traced, NULL));
+    assert_int_equal(team_status(t, STATUS_INTERRUPTED, &why), STATUS_INTERRUPTED);
+    team_destroy(t);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(tiles_come_out_as_spans_in_order),
+        cmocka_unit_test(a_piece_arrives_with_its_sums_and_variances),
+        cmocka_unit_test(a_piece_without_memory_gives_the_frame_up),
+        cmocka_unit_test(a_frame_that_is_given_up_refuses_further_pieces),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
