@@ -37,14 +37,16 @@ strong_path() {
         done
     done
 }
-strong_whitted() {
-    for n in "${counts[@]}"; do
+strong_whitted() { # its limits are reached with 16 to 64 ranks
+    local n
+    for n in 1 4 16 64 256 1024; do
         for platform in switch-100g ethernet-10g; do
             row strong-whitted "$platform" tile-32 "$n" "${whitted[@]}" "${frame[@]}" "${serving[@]}"
         done
-        # OpenMPI's own limit for TCP, with which a piece leaves without waiting for rank 0
-        row strong-whitted ethernet-10g eager-64k "$n" "${whitted[@]}" "${frame[@]}" "${serving[@]}" eager=65536
         row strong-whitted switch-100g link-only "$n" "${whitted[@]}" "${frame[@]}" message_ns=1000 byte_ns=0.01
+    done
+    for n in 1 4 16 64 256; do # OpenMPI's own limit for TCP, with which a piece leaves without waiting for rank 0
+        row strong-whitted ethernet-10g eager-64k "$n" "${whitted[@]}" "${frame[@]}" "${serving[@]}" eager=65536
     done
 }
 weak_path() { # 120 x 68 pixels for each rank

@@ -1,0 +1,119 @@
+"""Run the mutants of a built copy (instrument.py): run.py TREE [SECONDS].
+
+First every test program runs once without a mutant, which says how long it takes and which mutants it reaches. Then
+each mutant runs in the tests that reach it, quickest first, until one fails: it is killed. A test that takes six times
+as long as before has failed too. TREE/results.tsv has a row for each mutant: number, killed or survived or unreached,
+the test that killed it. Rows that it has are kept, so that the same command goes on where it stopped, after SECONDS at
+the latest. The outputs of tests that ran with mutants are not kept."""
+
+import concurrent.futures
+import glob
+import os
+import resource
+import subprocess
+import sys
+import time
+
+EXCLUDED = ("test_lab", "test_http", "test_bad_meshes", "test_study_estimate")  # need a server or quiet processors
+
+
+def environment(**more):
+    here = os.getcwd()
+    return {**os.environ, "LAWS_SCENES": "500", "CUVETTE": f"{here}/build/cuvette",
+            "CUVETTE_IMPORT": f"{here}/build/cuvette-import", **more}
+
+
+def limits():
+    resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def passes(test, limit_s, **more):
+    begun = time.monotonic()
+    process = subprocess.Popen([f"build/tests/{test}"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL, env=environment(**more), preexec_fn=limits,
+                               start_new_session=True)
+    try:
+        code = process.wait(limit_s)
+    except subprocess.TimeoutExpired:
+        code = 1
+    try:
+        os.killpg(process.pid, 9)
+    except ProcessLookupError:
+        pass
+    process.wait()
+    return code == 0, time.monotonic() - begun
+
+
+def measure():
+    """Rows of test, seconds, reached mutants; kept in reached.tsv."""
+    if not os.path.exists("reached.tsv"):
+        rows = []
+        for path in sorted(glob.glob("build/tests/test_*")):
+            test = os.path.basename(path)
+            if "." in test or test.startswith(EXCLUDED):
+                continue
+            if os.path.exists("reached.txt"):
+                os.unlink("reached.txt")
+            passed, seconds = passes(test, 900, MUTANT_REACHED=os.path.abspath("reached.txt"))
+            reached = set()
+            if os.path.exists("reached.txt"):
+                with open("reached.txt") as file:
+                    reached = {line.strip() for line in file}
+            print(f"{test}: {seconds:.1f} s, reaches {len(reached)}{'' if passed else ', fails without a mutant: left out'}",
+                  flush=True)
+            if passed:
+                rows.append(f"{test}\t{seconds:.3f}\t{','.join(sorted(reached, key=int))}\n")
+        with open("reached.tsv", "w") as file:
+            file.writelines(rows)
+    with open("reached.tsv") as file:
+        rows = [line.rstrip("\n").split("\t") for line in file]
+    return sorted((float(seconds), test, set(map(int, filter(None, reached.split(","))))) for test, seconds, reached in rows)
+
+
+def judge(number, tests, end):
+    reached = False
+    for seconds, test, reaches in tests:
+        if number not in reaches:
+            continue
+        reached = True
+        if time.monotonic() > end:
+            return None
+        if not passes(test, 6 * seconds + 10, MUTANT=str(number))[0]:
+            return f"{number}\tkilled\t{test}\n"
+    return f"{number}\t{'survived' if reached else 'unreached'}\t\n"
+
+
+def main():
+    os.chdir(sys.argv[1])
+    end = time.monotonic() + (float(sys.argv[2]) if len(sys.argv) > 2 else 1e9)
+    tests = measure()
+    done = set()
+    if os.path.exists("results.tsv"):
+        with open("results.tsv") as file:
+            done = {int(line.split("\t")[0]) for line in file}
+    with open("mutants.tsv") as file:
+        left = [number for number in (int(line.split("\t")[0]) for line in file) if number not in done]
+    with open("results.tsv", "a") as file, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for row in pool.map(lambda number: judge(number, tests, end), left):
+            if row:
+                file.write(row)
+                file.flush()
+    report()
+
+
+def report():
+    with open("mutants.tsv") as file:
+        mutants = {line.split("\t")[0]: line.rstrip("\n").split("\t") for line in file}
+    with open("results.tsv") as file:
+        rows = [line.rstrip("\n").split("\t") for line in file]
+    counts = {verdict: sum(row[1] == verdict for row in rows) for verdict in ("killed", "survived", "unreached")}
+    print(f"{len(mutants)} mutants: " + ", ".join(f"{n} {verdict}" for verdict, n in counts.items()) +
+          f", {len(mutants) - len(rows)} not run yet")
+    for number, verdict, _ in rows:
+        if verdict != "killed":
+            _, path, line, kind, old, new = (*mutants[number], "")[:6]
+            print(f"{verdict} {number}: {path}:{line}: {kind}: {old}  ->  {new or '(left out)'}")
+
+
+main()
