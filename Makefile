@@ -420,6 +420,13 @@ run_coverage:
 	  gcovr --gcov-executable '$(GCOV)' --root . --filter src/ --exclude-throw-branches --html-details $(build)/report/index.html \
 	    --print-summary $(build) && echo 'report: $(build)/report/index.html' && exit $$code
 
+# Small errors in the sources, one at a time, that a test must detect; everything that checks, within an hour.
+.PHONY: mutants check-all
+mutants: $(build)/cuvette ## insert 600 small errors into physics and statistics: a unit test must detect each (hours; goes on)
+	@BUILD='$(build)' tests/mutants/mutants.sh
+check-all: $(build)/cuvette ## run every kind of check, long ones in rotation, within an hour: build/check/page.md
+	@BUILD='$(build)' CC='$(CC)' tests/check/all.sh
+
 .PHONY: fuzz run_fuzzers
 fuzz: ## feed the readers with libFuzzer (clang), FUZZ_SECONDS=60 each
 	@$(MAKE) config=fuzz CC=clang build=$(build)/fuzz run_fuzzers

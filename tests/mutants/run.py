@@ -1,10 +1,10 @@
-"""Run the mutants of a built copy (instrument.py): run.py TREE [SECONDS].
+"""Run the mutants of a built copy (instrument.py): run.py TREE EQUIVALENT SECONDS.
 
 First every test program runs once without a mutant, which says how long it takes and which mutants it reaches. Then
 each mutant runs in the tests that reach it, quickest first, until one fails: it is killed. A test that takes six times
 as long as before has failed too. TREE/results.tsv has a row for each mutant: number, killed or survived or unreached,
 the test that killed it. Rows that it has are kept, so that the same command goes on where it stopped, after SECONDS at
-the latest. The outputs of tests that ran with mutants are not kept."""
+the latest. EQUIVALENT lists mutants that change nothing that can be seen: file, text, changed text, why."""
 
 import concurrent.futures
 import glob
@@ -85,8 +85,10 @@ def judge(number, tests, end):
 
 
 def main():
+    with open(sys.argv[2]) as file:
+        equivalent = {tuple(line.split("\t")[:3]) for line in file}
     os.chdir(sys.argv[1])
-    end = time.monotonic() + (float(sys.argv[2]) if len(sys.argv) > 2 else 1e9)
+    end = time.monotonic() + float(sys.argv[3])
     tests = measure()
     done = set()
     if os.path.exists("results.tsv"):
@@ -99,21 +101,25 @@ def main():
             if row:
                 file.write(row)
                 file.flush()
-    report()
+    return report(equivalent)
 
 
-def report():
+def report(equivalent):
     with open("mutants.tsv") as file:
         mutants = {line.split("\t")[0]: line.rstrip("\n").split("\t") for line in file}
     with open("results.tsv") as file:
         rows = [line.rstrip("\n").split("\t") for line in file]
-    counts = {verdict: sum(row[1] == verdict for row in rows) for verdict in ("killed", "survived", "unreached")}
+    counts = dict.fromkeys(("killed", "equivalent", "survived", "unreached"), 0)
+    for number, verdict, _ in rows:
+        _, path, line, kind, old, new = mutants[number]
+        if verdict != "killed" and (path, old, new) in equivalent:
+            verdict = "equivalent"
+        counts[verdict] += 1
+        if verdict in ("survived", "unreached"):
+            print(f"{verdict} {number}: {path}:{line}: {kind}: {old}  ->  {new or '(left out)'}")
     print(f"{len(mutants)} mutants: " + ", ".join(f"{n} {verdict}" for verdict, n in counts.items()) +
           f", {len(mutants) - len(rows)} not run yet")
-    for number, verdict, _ in rows:
-        if verdict != "killed":
-            _, path, line, kind, old, new = (*mutants[number], "")[:6]
-            print(f"{verdict} {number}: {path}:{line}: {kind}: {old}  ->  {new or '(left out)'}")
+    return counts["survived"] + counts["unreached"] > 0
 
 
-main()
+sys.exit(main())
