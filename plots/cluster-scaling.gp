@@ -24,12 +24,15 @@ plot 0.9 lt 8 title "0.9", \
 set title "Whitted's method, 8k frame"
 set ylabel "frames per second"
 set logscale y
-set yrange [0.1:40]
+set xrange [0.8:1300]
+set yrange [0.02:40]
 set key bottom right
 set format y "%g"
 plot rows_of("strong-whitted", "switch-100g", "tile-32") using 4:(1/$14) with lines lt 8 title "ideal", \
      rows_of("strong-whitted", "switch-100g", "link-only") using 4:(1/$15) with linespoints lt 3 \
          title "100 Gbit/s, 1 µs a piece at rank 0", \
      rows_of("strong-whitted", "switch-100g", "tile-32") using 4:(1/$15) with linespoints lt 1 title "100 Gbit/s", \
+     rows_of("strong-whitted", "ethernet-10g", "eager-64k") using 4:(1/$15) with linespoints lt 4 \
+         title "10 Gbit/s, pieces sent at once", \
      rows_of("strong-whitted", "ethernet-10g", "tile-32") using 4:(1/$15) with linespoints lt 2 title "10 Gbit/s"
 unset multiplot

@@ -45,7 +45,7 @@ strong_whitted() { # its limits are reached with 16 to 64 ranks
         done
         row strong-whitted switch-100g link-only "$n" "${whitted[@]}" "${frame[@]}" message_ns=1000 byte_ns=0.01
     done
-    for n in 1 4 16 64 256; do # OpenMPI's own limit for TCP, with which a piece leaves without waiting for rank 0
+    for n in 1 4 16 64 256 1024; do # OpenMPI's own limit for TCP, with which a piece leaves without waiting for rank 0
         row strong-whitted ethernet-10g eager-64k "$n" "${whitted[@]}" "${frame[@]}" "${serving[@]}" eager=65536
     done
 }
