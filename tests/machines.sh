@@ -1,6 +1,6 @@
 #!/bin/bash
-# One film everywhere: the rows of other machines (results/machines) have the film hashes and ray counts of the reference
-# run, cell for cell.
+# One film everywhere: the rows of other machines (results/machines) have the film hashes and ray counts of the
+# reference run, cell for cell.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 # shellcheck source=tests/shell/verdict.sh

@@ -39,7 +39,8 @@ for scene in rod models 'rod --set render.integrator=path --set render.paths=16'
     empty "1, 2, 3 and 8 ranks: film, counts and noise of $scene" "$wrong"
 done
 
-notes=$(timeout 60 mpirun --oversubscribe -n 2 "$cuvette" render experiments/scenes/rod.yaml "${small[@]}" 2>&1 >/dev/null)
+notes=$(timeout 60 mpirun --oversubscribe -n 2 "$cuvette" render experiments/scenes/rod.yaml "${small[@]}" \
+    2>&1 >/dev/null)
 [[ $(grep -c 'cuvette-mpi shares' <<<"$notes") == 1 ]]
 verdict $? 'cuvette itself under mpirun says once that each process does the whole work' "$notes"
 

@@ -1,7 +1,8 @@
 #!/bin/bash
 # tests/check/rotate.sh STATE SECONDS COMMAND NAME...: runs COMMAND for the names that ran longest ago, one after
-# another, until SECONDS have passed; none is started after that. The command finds the name in the variable `only`. STATE is the file that remembers when each ran; a run
-# that fails is tried first the next time. The status is 1 if any fails. The last line says how many of how many ran.
+# another, until SECONDS have passed; none is started after that. The command finds the name in the variable only.
+# STATE is the file that remembers when each ran; a run that fails is tried first the next time. The status is 1 if
+# any fails. The last line says how many of how many ran.
 set -uo pipefail
 state=${1:?} seconds=${2:?} command=${3:?}
 shift 3
