@@ -1,5 +1,6 @@
 /* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
 #include "base/float_environment.h"
+#include "base/os_process.h"
 #include "base/build_id.h"
 #include "base/spawn.h"
 #include "cli/cli.h"
@@ -62,6 +63,27 @@ static void print_version(FILE *stream, struct argp_state *state)
     fprintf(stream, "cuvette %s (build %s%s%s)\n", CUVETTE_VERSION, build_id(), commit[0] ? ", commit " : "", commit);
 }
 
+typedef struct command_line {
+    int argc;
+    char **argv;
+} command_line;
+
+static int run(void *context)
+{
+    const command_line *given = context;
+    diagnostic why = {0};
+    status result = dispatch(given->argc, given->argv, &why);
+    diagnostic unwritten = {0};
+    status flushed = terminal_flush(&unwritten);
+    if (result == STATUS_OK && flushed != STATUS_OK) {
+        why = unwritten;
+        result = flushed;
+    }
+    if (result != STATUS_OK)
+        terminal_error(&why);
+    return (int)result;
+}
+
 int main(int argc, char **argv)
 {
     if (!spawn_follow_parent())
@@ -75,15 +97,5 @@ int main(int argc, char **argv)
     if (argc < 1)
         argc = 1, argv = alone;
     argv[0] = program;
-    diagnostic why = {0};
-    status result = dispatch(argc, argv, &why);
-    diagnostic unwritten = {0};
-    status flushed = terminal_flush(&unwritten);
-    if (result == STATUS_OK && flushed != STATUS_OK) {
-        why = unwritten;
-        result = flushed;
-    }
-    if (result != STATUS_OK)
-        terminal_error(&why);
-    return (int)result;
+    return os_call_with_stack(run, &(command_line){argc, argv});
 }

@@ -101,8 +101,8 @@ static status rename_in(const char *images, const char *name, char *other, diagn
     char *from = text_format("%s/%s", images, name), *to = other ? text_format("%s/%s", images, other) : NULL;
     status code = from && to ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && rename(from, to) != 0)
-        code = diagnose_at(why, from, STATUS_FAILURE, "make the folder writable", "renaming to %s failed: %s", other,
-                           strerror(errno));
+        code = diagnose_at(why, from, STATUS_FAILURE, file_remedy(errno), "renaming to %s failed: %s", other,
+                           strerrordesc_np(errno));
     free(other);
     free(from);
     free(to);

@@ -4,6 +4,7 @@
 #include "study/csv_layout.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -19,11 +20,10 @@ struct table {
 
 static status failed(const char *path, const char *doing, int error, diagnostic *why)
 {
-    diagnostic_locate(why, path, 0, 0);
-    const char *remedy = error == ENOSPC || error == EDQUOT || error == EFBIG
-                             ? "free disk space and run the command again to resume"
-                             : "make the folder writable and run the command again to resume";
-    return diagnose(why, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerror(error));
+    const char *first = file_remedy(error);
+    char remedy[160];
+    snprintf(remedy, sizeof remedy, "%s%srun the command again to resume", first ? first : "", first ? ", then " : "");
+    return diagnose_at(why, path, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerrordesc_np(error));
 }
 
 /* Appends all bytes and flushes; on failure the file is truncated to its old size and errno is set. */
@@ -162,9 +162,9 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
     THEN(code, table_set_aside(t, end, why));
     if (code == STATUS_OK && end == 0) {
         code = append(t, header, strlen(header), why);
-        file_flush_folder(path);
         t->settled = true;
     }
+    file_flush_folder(path); /* also of an old file: the process that made it may have been killed before that */
     if (code != STATUS_OK) {
         table_close(t);
         return code;
