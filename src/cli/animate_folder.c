@@ -114,8 +114,10 @@ status animate_folder_clear(const animate_names *names, diagnostic *why)
         refuse(names, entry->d_name, file_remedy(error), what, why);
         result = STATUS_FAILURE;
     }
-    if (folder)
+    if (folder) {
+        fsync(dirfd(folder)); /* before a new index: it must never have the frames of another animation */
         closedir(folder);
+    }
     return result;
 }
 

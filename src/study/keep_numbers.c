@@ -55,10 +55,14 @@ static status read_numbering(const char *images, const char *root, numbering *ou
     return out->identity ? STATUS_OK : out_of_memory(why);
 }
 
+/* The names that do not depend on a numbering must be on disk before it: after a power cut, a file with an old number
+ * would be that of another cell. */
 static status write_numbering(const study *s, const char *images, diagnostic *why)
 {
     file_writer writer;
     char *path = cells_path(images);
+    if (path)
+        file_flush_folder(path);
     status code = path ? file_writer_open(&writer, path, why) : out_of_memory(why);
     free(path);
     if (code != STATUS_OK)
