@@ -226,6 +226,17 @@ $(benches) $(build)/tests/recheck: $(build)/tests/%: tests/%.c $(build)/libcuvet
 	@mkdir -p $(@D)
 	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -Itests -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
 
+# Power cuts (tests/power): a library that records what the program does to files, and a reader of rows.
+power_tools := $(build)/tests/power/reader $(build)/tests/power/record.so
+$(build)/tests/power/reader: tests/power/reader.c $(build)/libcuvette.a $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(all_cflags) $(pkg_cflags) -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(all_libs)
+$(build)/tests/power/record.so: tests/power/record.c $(build)/flags
+	$(call say,$(CC) $<)
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(plain_cflags) -fvisibility=default -shared -o $@ $< -ldl
+
 # Rebuilds everything when the compiler or its flags change. Everything that is compiled depends on it, so that it
 # also waits for setup when both are requested.
 .PHONY: always
@@ -271,7 +282,7 @@ $(build)/peers/embree: experiments/peers/embree.c $(build)/libcuvette.a $(build)
 	$(quiet)$(CC) $(all_cflags) -march=native -MMD -MP -o $@ $< $(build)/libcuvette.a $(LDFLAGS) $(embree_libs) $(all_libs)
 
 -include $(build)/peers/embree.d
--include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(mpi_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d)
+-include $(library_objects:.o=.d) $(program_objects:.o=.d) $(web_objects:.o=.d) $(mpi_objects:.o=.d) $(importer_objects:.o=.d) $(test_programs:=.d) $(fuzzers:=.d) $(benches:=.d) $(build)/tests/power/reader.d
 
 .PHONY: setup
 setup: ## install the required packages (Debian 12); does nothing if they are installed
@@ -321,7 +332,7 @@ test_scenes := $(if $(LAWS_SCENES),$(LAWS_SCENES),$(if $(RUNNER)$(filter coverag
 
 .PHONY: test
 # Programs that test scripts run.
-tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh $(build)/tests/recheck peers
+tested = $(build)/cuvette $(build)/$(soname) $(build)/engine/libcuvette.a $(build)/tests/bench_mesh $(build)/tests/recheck peers $(power_tools)
 test: $(selected) $(build)/cuvette-import $(if $(only),,$(tested)) ## build and run every test; only=NAME for tests/test_NAME.c alone
 	@LAWS_SCENES='$(test_scenes)' CC='$(CC)' BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' CUVETTE_IMPORT='$(abspath $(build)/cuvette-import)' $(kernel_environment) \
 	  tests/run $(selected) $(selected_scripts)
@@ -395,6 +406,11 @@ valgrind: ## run the test programs under valgrind
 	  TEST_LIMIT_S=3600 selected_scripts= test
 clang: ## build and test with clang
 	@$(MAKE) STRICT=1 CC=clang build=$(build)/clang test
+
+.PHONY: power-cuts
+power-cuts: $(build)/cuvette $(power_tools) ## judge every state that a power cut can leave of studies, animations, images (10 minutes)
+	@BUILD='$(build)' CONFIG='$(config)' CUVETTE='$(abspath $(build)/cuvette)' POWER_STATES=$${POWER_STATES:-1000000} \
+	  POWER_STATES_PER_CUT=$${POWER_STATES_PER_CUT:-20000} POWER_RESUMED=$${POWER_RESUMED:-30} bash tests/power_cuts.sh
 
 # Random scenes in runs of 10 000, one run per processing unit at a time; LAWS_SCENES in total for each law, starting with LAWS_SEED.
 .PHONY: laws law-faults
@@ -571,7 +587,7 @@ test-deb: ## install the packages of make deb in a fresh Debian 12, use and remo
 
 # For clangd and other tools that parse C: all C files, with the flags of this configuration.
 .PHONY: compiled compile_commands.json
-by_scripts := tests/fail_allocation.c tests/json_get.c $(wildcard experiments/engine/*.c)
+by_scripts := tests/fail_allocation.c tests/json_get.c $(wildcard tests/power/*.c) $(wildcard experiments/engine/*.c)
 compiled: all peers $(mpi_objects) $(test_programs) $(benches) $(build)/tests/recheck $(fuzzers) $(by_scripts:%.c=$(build)/by-scripts/%.o)
 $(build)/by-scripts/%.o: %.c $(build)/flags
 	$(call say,$(CC) $<)

@@ -6,11 +6,13 @@
 #include <cmocka.h>
 
 #include "base/file.h"
+#include "base/os_process.h"
 #include "base/grow.h"
 #include "base/hash.h"
 #include "base/large_pages.h"
 #include "base/number.h"
 #include "base/status.h"
+#include "base/temporary.h"
 #include "base/text.h"
 #include "base/text_writer.h"
 #include <dirent.h>
@@ -19,7 +21,6 @@
 #include <float.h>
 #include <locale.h>
 #include <math.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -605,7 +606,7 @@ static void a_full_disk_keeps_the_old_file(void **state)
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     small = before;
     small.rlim_cur = 5000;
-    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    os_signals_as_errors();
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
     file_writer writer;
     diagnostic why = {0};
@@ -616,7 +617,6 @@ static void a_full_disk_keeps_the_old_file(void **state)
         committed = file_writer_commit(&writer, &why);
     }
     setrlimit(RLIMIT_FSIZE, &before);
-    signal(SIGXFSZ, handler);
     assert_int_equal(opened, STATUS_OK);
     assert_int_equal(committed, STATUS_FAILURE);
     assert_string_equal(why.file, path);
@@ -635,7 +635,7 @@ static void an_early_write_error_is_reported_at_the_commit(void **state)
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     small = before;
     small.rlim_cur = 100;
-    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    os_signals_as_errors();
     file_writer writer;
     diagnostic why = {0};
     assert_int_equal(file_writer_open(&writer, path, NULL), STATUS_OK);
@@ -644,12 +644,67 @@ static void an_early_write_error_is_reported_at_the_commit(void **state)
     char block[300] = {0};
     size_t written = fwrite(block, 1, sizeof block, writer.stream);
     setrlimit(RLIMIT_FSIZE, &before);
-    signal(SIGXFSZ, handler);
     assert_true(written < sizeof block);
     assert_int_equal(file_writer_commit(&writer, &why), STATUS_FAILURE);
     assert_string_equal(why.file, path);
     assert_int_equal(entries_in(folder), 0);
     free(path);
+}
+
+/* The name that a temporary file has for an instant when it replaces another: a folder cannot be replaced. */
+static char *named_temporary(int *fd)
+{
+    char *full = in_folder("full"), *inside = in_folder("full/x"), *name = NULL;
+    assert_int_equal(mkdir(full, 0777), 0);
+    put(inside, "");
+    *fd = temporary_open(full, &name);
+    assert_true(*fd >= 0);
+    assert_int_equal(temporary_move(*fd, &name, full), -1);
+    assert_non_null(name);
+    assert_int_equal(access(name, F_OK), 0);
+    free(inside);
+    free(full);
+    return name;
+}
+
+static void the_file_of_a_killed_writer_is_removed_by_the_next(void **state)
+{
+    (void)state;
+    int fd;
+    char *a = in_folder("a"), *b = in_folder("b"), *left = named_temporary(&fd);
+    put(a, "1");
+    put(a, "2"); /* needs a name, and leaves that of the living writer alone */
+    assert_int_equal(access(left, F_OK), 0);
+    close(fd);   /* as the kernel does for a killed process */
+    put(b, "1"); /* a new file needs no other name */
+    assert_int_equal(access(left, F_OK), 0);
+    put(a, "3");
+    assert_int_equal(access(left, F_OK), -1);
+    check_content(a, "3");
+    assert_int_equal(entries_in(folder), 3); /* a, b and the folder */
+    free(left);
+    free(b);
+    free(a);
+}
+
+static void an_unfinished_file_has_no_name(void **state)
+{
+    (void)state;
+    char *path = in_folder("a");
+    file_writer writer;
+    assert_int_equal(file_writer_open(&writer, path, NULL), STATUS_OK);
+    assert_int_equal(entries_in(folder), writer.temporary ? 1 : 0); /* named on old file systems */
+    file_writer_abandon(&writer);
+    assert_int_equal(entries_in(folder), 0);
+    free(path);
+}
+
+static void the_remedy_fits_the_error(void **state)
+{
+    (void)state;
+    assert_non_null(strstr(file_remedy(EACCES), "permissions"));
+    assert_non_null(strstr(file_remedy(EIO), "check the disk"));
+    assert_null(file_remedy(EINVAL));
 }
 
 static void unwritable_paths_are_refused(void **state)
@@ -823,6 +878,9 @@ int main(void)
         file_test(devices_are_written_directly),
         file_test(a_full_disk_keeps_the_old_file),
         file_test(an_early_write_error_is_reported_at_the_commit),
+        file_test(the_file_of_a_killed_writer_is_removed_by_the_next),
+        file_test(an_unfinished_file_has_no_name),
+        cmocka_unit_test(the_remedy_fits_the_error),
         file_test(unwritable_paths_are_refused),
         file_test(a_path_of_minus_is_standard_output),
         file_test(folders_are_created_with_their_parents),

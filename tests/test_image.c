@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "base/file.h"
+#include "base/os_process.h"
 #include "base/text.h"
 #include "image/codec.h"
 #include "image/image.h"
@@ -13,7 +14,6 @@
 #include <math.h>
 #include <png.h>
 #include <jpeglib.h>
-#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -907,7 +907,7 @@ static void a_full_disk_keeps_the_old_image(void **state)
     image *small = make_image(5, 5), *large = make_image(200, 150);
     struct rlimit before, limit;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
-    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    os_signals_as_errors();
     for (int i = 0; i < 3; i++) {
         char *path = in_folder(names[i]);
         diagnostic why = {0};
@@ -929,7 +929,6 @@ static void a_full_disk_keeps_the_old_image(void **state)
         assert_int_equal(empty_folder(), 1);
         free(path);
     }
-    signal(SIGXFSZ, handler);
     image_destroy(small);
     image_destroy(large);
 }

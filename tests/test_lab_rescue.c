@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "lab_study_fixture.h"
+#include "base/os_process.h"
 #include "web/session/kept_scenes.h"
 #include <dirent.h>
 #include <fcntl.h>
@@ -368,7 +369,7 @@ static void a_full_disk_is_reported_until_it_has_room(void **state)
     const place *p = *state;
     struct rlimit own;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &own), 0);
-    signal(SIGXFSZ, SIG_IGN);
+    os_signals_as_errors();
     lab_room room;
     begin(&room, p, "scene.yaml");
     set(&room, "\"ball.ior\": 1.6");

@@ -1,5 +1,6 @@
 /* Tests of study runs: repetitions, interruption and resumption, kept files, locks and full disks. */
 #include "study_fixture.h"
+#include "base/os_process.h"
 #include "base/hash.h"
 #include "image/image.h"
 #include "rows_fixture.h"
@@ -569,11 +570,10 @@ static void a_full_disk_leaves_only_complete_rows(void **state)
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     small = before;
     small.rlim_cur = (strlen(earlier) > strlen(manifest) + 2000 ? strlen(earlier) : strlen(manifest) + 2000) + 1234;
-    signal(SIGXFSZ, SIG_IGN);
+    os_signals_as_errors();
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
     status code = study_run(s, &options, &ran, &why);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
-    signal(SIGXFSZ, SIG_DFL);
     assert_int_equal(code, STATUS_FAILURE);
     assert_true(ran >= 1);
     assert_non_null(strstr(why.what, "File too large"));

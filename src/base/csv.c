@@ -201,6 +201,15 @@ status csv_read(const char *path, csv **out, diagnostic *why)
     return csv_read_below(path, NULL, out, why);
 }
 
+size_t csv_whole(const char *text, size_t size)
+{
+    const char *newline = size ? memrchr(text, '\n', size) : NULL;
+    if (!newline)
+        return 0;
+    const char *before = memrchr(text, '\n', (size_t)(newline - text)), *start = before ? before + 1 : text;
+    return (size_t)((memchr(start, 0, (size_t)(newline - start)) ? start : newline + 1) - text);
+}
+
 static status read_table(const char *path, const char *root, bool strict, csv **out, diagnostic *why)
 {
     *out = NULL;
@@ -211,8 +220,7 @@ static status read_table(const char *path, const char *root, bool strict, csv **
         return out_of_memory(why);
     status code = file_read_below(path, root, CSV_BYTES_MAX, &table->raw, &table->size, why);
     if (code == STATUS_OK) {
-        const char *newline = table->size ? memrchr(table->raw, '\n', table->size) : NULL;
-        table->whole = newline ? (size_t)(newline - table->raw) + 1 : 0;
+        table->whole = csv_whole(table->raw, table->size);
         code = split_all(table, path, strict, why);
     }
     if (code != STATUS_OK) {

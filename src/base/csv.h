@@ -24,10 +24,14 @@ void csv_hash(csv_line *line, uint64_t value); /* 16 hex digits */
 void csv_end(csv_line *line);
 void csv_line_free(csv_line *line);
 
-/* The complete lines of a file. An incomplete line after the last newline is ignored. */
+/* The offset after the last complete line of a text. A line is complete if its newline is there and no byte is 0: after
+ * a power cut, a part of the last line may never have been written, and reads as zeros. */
+size_t csv_whole(const char *text, size_t size);
+
+/* The complete lines of a file. An incomplete line at the end is ignored. */
 typedef struct csv {
     char *raw;
-    size_t size; /* the file's bytes; whole is the offset after the last newline */
+    size_t size; /* the file's bytes; whole is csv_whole of them */
     size_t whole;
     char *split; /* the same bytes split into fields; owned */
     size_t column_count;

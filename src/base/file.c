@@ -2,6 +2,7 @@
 #include "base/file.h"
 
 #include "base/below.h"
+#include "base/temporary.h"
 #include "base/text.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -19,24 +20,29 @@ static status no_room(diagnostic *why, const char *path)
     return out_of_memory(why);
 }
 
+const char *file_remedy(int error)
+{
+    switch (error) {
+    case ENOSPC:
+    case EDQUOT: return "free some space or choose another disk";
+    case EFBIG: return "raise the limit on file size";
+    case EIO: return "check the disk or choose another";
+    case EACCES:
+    case EPERM:
+    case EROFS: return "change the permissions or choose another folder";
+    case ENOENT: return "check the path";
+    default: return NULL;
+    }
+}
+
 /* Fills *why with a system error about path. The reason is a text of its own, because strerror is not thread-safe and
  * depends on the locale. */
 static status system_error(diagnostic *why, status code, const char *path, const char *doing, int error)
 {
-    const char *reason = strerrordesc_np(error), *remedy = NULL;
+    const char *reason = strerrordesc_np(error);
     if (error == ENOMEM)
         return no_room(why, path);
-    switch (error) {
-    case ENOSPC:
-    case EDQUOT: remedy = "free some space or choose another disk"; break;
-    case EFBIG: remedy = "raise the limit on file size"; break;
-    case EACCES:
-    case EPERM:
-    case EROFS: remedy = "change the permissions or choose another folder"; break;
-    case ENOENT: remedy = "check the path"; break;
-    default: break;
-    }
-    return diagnose_at(why, path, code, remedy, "%s: %s", doing, reason ? reason : "unknown error");
+    return diagnose_at(why, path, code, file_remedy(error), "%s: %s", doing, reason ? reason : "unknown error");
 }
 
 /* Reads to the end of the file regardless of the size from fstat: files of /proc report 0. */
@@ -141,24 +147,10 @@ static char *resolve(const char *path)
     return NULL;
 }
 
-/* Creates a new file in the folder of writer->path. open() applies the umask, which could only be read by changing it
- * for every thread; the name is short, because the target's may be as long as the file system allows. */
-static int open_temporary(file_writer *writer)
+static void remove_temporary(const file_writer *writer)
 {
-    for (unsigned n = 0; n < 10000; n++) {
-        char name[64];
-        snprintf(name, sizeof name, ".cuvette-%ld-%u.part", (long)getpid(), n);
-        free(writer->temporary);
-        writer->temporary = file_beside(writer->path, name);
-        if (!writer->temporary) {
-            errno = ENOMEM;
-            return -1;
-        }
-        int fd = open(writer->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0 || errno != EEXIST)
-            return fd;
-    }
-    return -1;
+    if (writer->temporary)
+        unlink(writer->temporary);
 }
 
 static int open_target(file_writer *writer)
@@ -180,11 +172,12 @@ static int open_target(file_writer *writer)
         return open(resolved, O_WRONLY | O_CLOEXEC | O_NOCTTY); /* a device or pipe is written directly */
     if (exists && euidaccess(resolved, W_OK) != 0)
         return -1;
-    int fd = open_temporary(writer);
+    writer->whole = true;
+    int fd = temporary_open(resolved, &writer->temporary);
     if (fd >= 0 && exists && fchmod(fd, about.st_mode & 0777) != 0 && errno != EPERM && errno != EOPNOTSUPP) {
         int error = errno;
         close(fd);
-        unlink(writer->temporary);
+        remove_temporary(writer);
         errno = error;
         return -1;
     }
@@ -215,8 +208,7 @@ status file_writer_open(file_writer *writer, const char *path, diagnostic *why)
     int error = errno;
     if (fd >= 0) {
         close(fd);
-        if (writer->temporary)
-            unlink(writer->temporary);
+        remove_temporary(writer);
     }
     release(writer);
     return system_error(why, STATUS_FAILURE, path, "cannot write", error);
@@ -233,44 +225,53 @@ void file_flush_folder(const char *path)
     free(folder);
 }
 
+/* The reason of a write that failed before, which the stream has lost: the next one fails likewise. The file is thrown
+ * away. */
+static int lost_reason(const file_writer *writer)
+{
+    return writer->whole && write(fileno(writer->stream), "", 1) < 0 ? errno : 0;
+}
+
+/* A whole file gets its name while it is open, and so locked; after fsync, closing has no errors to report. */
+static int finish(file_writer *writer)
+{
+    const int fd = fileno(writer->stream);
+    if (ferror(writer->stream))
+        return lost_reason(writer);
+    if (fflush(writer->stream) != 0)
+        return errno;
+    if (writer->whole && (fsync(fd) != 0 || temporary_move(fd, &writer->temporary, writer->path) != 0))
+        return errno;
+    return 0;
+}
+
 status file_writer_commit(file_writer *writer, diagnostic *why)
 {
-    bool failed = ferror(writer->stream) != 0;
-    int error = 0;
-    if (fflush(writer->stream) != 0 || (writer->temporary && !failed && fsync(fileno(writer->stream)) != 0)) {
-        failed = true;
-        error = errno;
-    }
-    if (fclose(writer->stream) != 0 && !failed) {
-        failed = true;
-        error = errno;
-    }
-    if (!failed && writer->temporary && rename(writer->temporary, writer->path) != 0) {
+    int error = finish(writer);
+    bool failed = error != 0 || ferror(writer->stream) != 0;
+    if (failed)
+        remove_temporary(writer);
+    if (fclose(writer->stream) != 0 && !failed && !writer->whole) {
         failed = true;
         error = errno;
     }
     status code = STATUS_OK;
-    if (failed) {
-        if (writer->temporary)
-            unlink(writer->temporary);
-        if (error)
-            code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error);
-        else
-            code = diagnose_at(why, writer->path, STATUS_FAILURE, "check the free space on the disk",
-                               "cannot write: a write failed");
-    } else if (writer->temporary) {
+    if (failed && error)
+        code = system_error(why, STATUS_FAILURE, writer->path, "cannot write", error);
+    else if (failed)
+        code = diagnose_at(why, writer->path, STATUS_FAILURE, "check the free space on the disk",
+                           "cannot write: a write failed");
+    else if (writer->whole)
         file_flush_folder(writer->path);
-    }
     release(writer);
     return code;
 }
 
 void file_writer_abandon(file_writer *writer)
 {
+    remove_temporary(writer);
     if (writer->stream)
         fclose(writer->stream);
-    if (writer->temporary)
-        unlink(writer->temporary);
     release(writer);
 }
 
@@ -290,15 +291,21 @@ status file_write(const char *path, const char *text, diagnostic *why)
     return file_writer_commit(&writer, why);
 }
 
-static int make_one_directory(const char *path)
+/* A new folder lasts only once its entry in the folder above is on disk. The last folder is flushed even if it exists:
+ * the process that made it may have been killed before that. */
+static int make_one_directory(const char *path, bool last)
 {
     struct stat about;
-    if (mkdir(path, 0777) == 0)
+    if (mkdir(path, 0777) == 0) {
+        file_flush_folder(path);
         return 0;
+    }
     int error = errno;
-    if (stat(path, &about) == 0)
-        return S_ISDIR(about.st_mode) ? 0 : ENOTDIR;
-    return error;
+    if (stat(path, &about) != 0)
+        return error;
+    if (last)
+        file_flush_folder(path);
+    return S_ISDIR(about.st_mode) ? 0 : ENOTDIR;
 }
 
 status file_make_directory(const char *path, diagnostic *why)
@@ -306,16 +313,19 @@ status file_make_directory(const char *path, diagnostic *why)
     char *part = strdup(path);
     if (!part)
         return no_room(why, path);
+    size_t length = strlen(part);
+    while (length > 1 && part[length - 1] == '/')
+        part[--length] = 0;
     int error = *path ? 0 : ENOENT;
     for (char *c = part; *c && !error; c++) {
         if (*c == '/' && c > part && c[-1] != '/') {
             *c = 0;
-            error = make_one_directory(part);
+            error = make_one_directory(part, false);
             *c = '/';
         }
     }
     if (!error)
-        error = make_one_directory(part);
+        error = make_one_directory(part, true);
     free(part);
     return error ? system_error(why, STATUS_FAILURE, path, "cannot make the folder", error) : STATUS_OK;
 }

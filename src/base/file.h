@@ -1,10 +1,14 @@
-/* Reading and writing of whole files. A written file appears complete or not at all: it is written to a temporary file
- * in the same folder, flushed to disk and renamed over the target. Ownership: the caller owns the text that was read;
- * free it with free. */
+/* Reading and writing of whole files. A written file appears complete or not at all, after a power cut too: it is
+ * written to a temporary file in the same folder (base/temporary.h), flushed to disk, moved over the target, and the
+ * folder is flushed. Ownership: the caller owns the text that was read; free it with free. */
 #pragma once
 
 #include "base/status.h"
+#include <stdbool.h>
 #include <stdio.h>
+
+/* What to do about a system error (errno) in reading or writing a file; NULL if there is no useful advice. */
+const char *file_remedy(int error);
 
 /* Reads a regular file of at most limit bytes; *text is its bytes and a final 0, which *size does not count. */
 status file_read(const char *path, size_t limit, char **text, size_t *size, diagnostic *why);
@@ -15,7 +19,8 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
  * Nothing is visible at path before the commit. The commit reports the errors of all writes. */
 typedef struct file_writer {
     FILE *stream;
-    char *path, *temporary;
+    char *path, *temporary; /* temporary: NULL without a name */
+    bool whole;             /* false: a device, a pipe or standard output, which is written directly */
 } file_writer;
 
 status file_writer_open(file_writer *writer, const char *path, diagnostic *why);
@@ -36,5 +41,5 @@ const char *file_name_of(const char *path);
 /* The path of `name` relative to the folder of path; newly allocated, or NULL. */
 char *file_beside(const char *path, const char *name);
 
-/* Makes a folder and its parents; no error if it exists. */
+/* Makes a folder and its parents, and flushes their entries to disk; no error if it exists. */
 status file_make_directory(const char *path, diagnostic *why);

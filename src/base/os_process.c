@@ -1,9 +1,11 @@
 /* What a process knows of itself and of its parent: proc(5), sched_setaffinity(2), prctl(2). */
 #include "base/os_process.h"
 
+#include <pthread.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 bool os_program_path(char path[PATH_MAX])
@@ -23,6 +25,45 @@ int os_usable_units(void)
     const int count = set && sched_getaffinity(0, size, set) == 0 ? CPU_COUNT_S(size, set) : 0;
     CPU_FREE(set);
     return count;
+}
+
+void os_signals_as_errors(void)
+{
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+typedef struct large_call {
+    int (*task)(void *context);
+    void *context;
+    int result;
+} large_call;
+
+static void *call(void *of)
+{
+    large_call *c = of;
+    c->result = c->task(c->context);
+    return NULL;
+}
+
+/* glibc takes the size of a thread's stack from the limit at the start of the process. */
+int os_call_with_stack(int (*task)(void *context), void *context)
+{
+    enum { ENOUGH_BYTES = 1 << 20, STACK_BYTES = 8 << 20 };
+    large_call c = {task, context, 1};
+    struct rlimit limit;
+    pthread_attr_t attributes;
+    pthread_t thread;
+    if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= ENOUGH_BYTES || pthread_attr_init(&attributes) != 0)
+        return task(context);
+    pthread_attr_setstacksize(&attributes, STACK_BYTES);
+    pthread_setattr_default_np(&attributes);
+    const bool started = pthread_create(&thread, &attributes, call, &c) == 0;
+    pthread_attr_destroy(&attributes);
+    if (!started)
+        return task(context);
+    pthread_join(thread, NULL);
+    return c.result;
 }
 
 void os_die_with_parent(void)

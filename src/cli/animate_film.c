@@ -41,7 +41,7 @@ static status report_interrupted(const animation_job *f, diagnostic *why)
 {
     const char *remedy = f->names ? "run the same command again to resume" : "";
     return diagnose_at(why, f->request->output, STATUS_INTERRUPTED, remedy, "interrupted at %s%s", f->label,
-                       f->stream.temporary ? "; nothing is written" : "");
+                       f->stream.whole ? "; nothing is written" : "");
 }
 
 /* Returns whether the frame's image exists, and its row where a table is written. */

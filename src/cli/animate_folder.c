@@ -109,12 +109,15 @@ status animate_folder_clear(const animate_names *names, diagnostic *why)
         if (animate_name_frame(names, entry->d_name) < 0 || unlinkat(dirfd(folder), entry->d_name, 0) == 0)
             continue;
         char what[96];
-        snprintf(what, sizeof what, "cannot be removed: %s", strerrordesc_np(errno));
-        refuse(names, entry->d_name, "make the folder writable", what, why);
+        const int error = errno;
+        snprintf(what, sizeof what, "cannot be removed: %s", strerrordesc_np(error));
+        refuse(names, entry->d_name, file_remedy(error), what, why);
         result = STATUS_FAILURE;
     }
-    if (folder)
+    if (folder) {
+        fsync(dirfd(folder)); /* before a new index: it must never have the frames of another animation */
         closedir(folder);
+    }
     return result;
 }
 

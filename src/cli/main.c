@@ -1,5 +1,6 @@
 /* The entry point of `cuvette`: the table of commands, --version, and the exit code. */
 #include "base/float_environment.h"
+#include "base/os_process.h"
 #include "base/build_id.h"
 #include "base/spawn.h"
 #include "cli/cli.h"
@@ -73,6 +74,27 @@ static void note_whole_work(int argc, char **argv)
         terminal_note("each process of this MPI job does the whole work; cuvette-mpi shares it among them");
 }
 
+typedef struct command_line {
+    int argc;
+    char **argv;
+} command_line;
+
+static int run(void *context)
+{
+    const command_line *given = context;
+    diagnostic why = {0};
+    status result = dispatch(given->argc, given->argv, &why);
+    diagnostic unwritten = {0};
+    status flushed = terminal_flush(&unwritten);
+    if (result == STATUS_OK && flushed != STATUS_OK) {
+        why = unwritten;
+        result = flushed;
+    }
+    if (result != STATUS_OK)
+        terminal_error(&why);
+    return (int)result;
+}
+
 int main(int argc, char **argv)
 {
     if (!spawn_follow_parent())
@@ -87,15 +109,5 @@ int main(int argc, char **argv)
         argc = 1, argv = alone;
     argv[0] = program;
     note_whole_work(argc, argv);
-    diagnostic why = {0};
-    status result = dispatch(argc, argv, &why);
-    diagnostic unwritten = {0};
-    status flushed = terminal_flush(&unwritten);
-    if (result == STATUS_OK && flushed != STATUS_OK) {
-        why = unwritten;
-        result = flushed;
-    }
-    if (result != STATUS_OK)
-        terminal_error(&why);
-    return (int)result;
+    return os_call_with_stack(run, &(command_line){argc, argv});
 }

@@ -1,6 +1,7 @@
 /* Terminal and signals of the program: stop request, checked standard output, colour, progress line. */
 #include "cli/terminal.h"
 #include "base/number.h"
+#include "base/os_process.h"
 #include "measure/clock.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -80,7 +81,10 @@ void terminal_prepare(void)
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    signal(SIGPIPE, SIG_IGN);
+    struct sigaction before;
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* nohup(1) ignores it */
+        sigaction(SIGHUP, &action, NULL);
+    os_signals_as_errors();
     atexit(check_stdout_at_exit);
 }
 

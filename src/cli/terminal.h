@@ -1,15 +1,16 @@
-/* Terminal and signals: the progress line, colour, the stop request of SIGINT and SIGTERM, and checked standard output.
- * The stop flag and the exit handler are the program's only global state. */
+/* Terminal and signals: the progress line, colour, the stop request of SIGINT, SIGTERM and SIGHUP, and checked standard
+ * output. The stop flag and the exit handler are the program's only global state. */
 #pragma once
 
 #include "base/status.h"
 #include <stdbool.h>
 
-/* Opens closed descriptors among 0 to 2, ignores SIGPIPE, turns SIGINT and SIGTERM into a stop request (a second signal
- * kills), and makes exit() check that standard output was written. Must be called first. */
+/* The place of all signals. Opens closed descriptors among 0 to 2, turns SIGPIPE and SIGXFSZ into errors of the write,
+ * SIGINT, SIGTERM and SIGHUP (unless ignored, by nohup) into a stop request (a second signal kills), and makes exit()
+ * check that standard output was written. Must be called first. */
 void terminal_prepare(void);
 
-/* Returns whether SIGINT or SIGTERM has arrived. unused: lets the function serve as a callback. */
+/* Returns whether SIGINT, SIGTERM or SIGHUP has arrived. unused: lets the function serve as a callback. */
 bool terminal_stop_requested(void *unused);
 
 /* Whether that was SIGINT: Ctrl-C, not the end of the session or the machine. */

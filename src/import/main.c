@@ -109,6 +109,17 @@ static status convert(const request *req, diagnostic *why)
     return write_mesh(req, scene, &flat, stdout, why);
 }
 
+static int work(void *context)
+{
+    diagnostic why = {0};
+    const status code = convert(context, &why);
+    if (code != STATUS_OK) {
+        char text[DIAGNOSTIC_TEXT_MAX];
+        fprintf(stderr, "cuvette-import: %s\n", diagnostic_text(&why, text, sizeof text));
+    }
+    return (int)code;
+}
+
 int main(int count, char **arguments)
 {
     static const struct argp parser = {
@@ -125,11 +136,5 @@ int main(int count, char **arguments)
     argp_parse(&parser, count, arguments, 0, NULL, &req);
     req.kind = kind_of(req.path);
     limit_all(&req);
-    diagnostic why = {0};
-    status code = convert(&req, &why);
-    if (code != STATUS_OK) {
-        char text[DIAGNOSTIC_TEXT_MAX];
-        fprintf(stderr, "cuvette-import: %s\n", diagnostic_text(&why, text, sizeof text));
-    }
-    _exit((int)code); /* without destructors: the scene may be damaged */
+    _exit(os_call_with_stack(work, &req)); /* without destructors: the scene may be damaged */
 }

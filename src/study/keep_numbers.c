@@ -55,10 +55,14 @@ static status read_numbering(const char *images, const char *root, numbering *ou
     return out->identity ? STATUS_OK : out_of_memory(why);
 }
 
+/* The names that do not depend on a numbering must be on disk before it: after a power cut, a file with an old number
+ * would be that of another cell. */
 static status write_numbering(const study *s, const char *images, diagnostic *why)
 {
     file_writer writer;
     char *path = cells_path(images);
+    if (path)
+        file_flush_folder(path);
     status code = path ? file_writer_open(&writer, path, why) : out_of_memory(why);
     free(path);
     if (code != STATUS_OK)
@@ -101,8 +105,8 @@ static status rename_in(const char *images, const char *name, char *other, diagn
     char *from = text_format("%s/%s", images, name), *to = other ? text_format("%s/%s", images, other) : NULL;
     status code = from && to ? STATUS_OK : out_of_memory(why);
     if (code == STATUS_OK && rename(from, to) != 0)
-        code = diagnose_at(why, from, STATUS_FAILURE, "make the folder writable", "renaming to %s failed: %s", other,
-                           strerror(errno));
+        code = diagnose_at(why, from, STATUS_FAILURE, file_remedy(errno), "renaming to %s failed: %s", other,
+                           strerrordesc_np(errno));
     free(other);
     free(from);
     free(to);

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "study/plot_parts.h"
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,6 +92,19 @@ static status run_gnuplot(const drawing *d, diagnostic *why)
     return code;
 }
 
+/* Complete or absent, after a power cut too. */
+static bool move_figure(const char *made, const char *target)
+{
+    const int fd = open(made, O_RDONLY | O_CLOEXEC);
+    const bool flushed = fd >= 0 && fsync(fd) == 0;
+    if (fd >= 0)
+        close(fd);
+    if (!flushed || rename(made, target) != 0)
+        return false;
+    file_flush_folder(target);
+    return true;
+}
+
 status study_plot_draw(const char *base, const char *format, double limit_s, const atomic_bool *stop, diagnostic *why)
 {
     const char *name = file_name_of(base);
@@ -99,7 +113,7 @@ status study_plot_draw(const char *base, const char *format, double limit_s, con
     char *script = text_format("%s.gp", base);
     status code = scratch && made && target && script ? STATUS_OK : out_of_memory(why);
     THEN(code, run_gnuplot(&(drawing){script, scratch, format, limit_s, stop}, why));
-    if (code == STATUS_OK && rename(made, target) != 0)
+    if (code == STATUS_OK && !move_figure(made, target))
         code = diagnose_at(why, target, STATUS_FAILURE, "", "the figure cannot be written");
     if (code != STATUS_OK && made)
         unlink(made);

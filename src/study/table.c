@@ -1,9 +1,11 @@
 #include "study/table.h"
+#include "base/csv.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "study/csv_layout.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -19,11 +21,10 @@ struct table {
 
 static status failed(const char *path, const char *doing, int error, diagnostic *why)
 {
-    diagnostic_locate(why, path, 0, 0);
-    const char *remedy = error == ENOSPC || error == EDQUOT || error == EFBIG
-                             ? "free disk space and run the command again to resume"
-                             : "make the folder writable and run the command again to resume";
-    return diagnose(why, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerror(error));
+    const char *first = file_remedy(error);
+    char remedy[160];
+    snprintf(remedy, sizeof remedy, "%s%srun the command again to resume", first ? first : "", first ? ", then " : "");
+    return diagnose_at(why, path, STATUS_FAILURE, remedy, "%s failed: %s", doing, strerrordesc_np(error));
 }
 
 /* Appends all bytes and flushes; on failure the file is truncated to its old size and errno is set. */
@@ -96,25 +97,31 @@ status table_set_aside(table *t, size_t offset, diagnostic *why)
     return code;
 }
 
-/* Offset after the last complete line. */
+/* Offset after the last complete line (csv_whole), from as much of the file's end as holds two newlines. */
 static status whole_lines(table *t, size_t *end, diagnostic *why)
 {
+    enum { BLOCK_BYTES = 4096 };
     struct stat now;
     if (fstat(t->fd, &now) != 0)
         return failed(t->path, "examining the file", errno, why);
-    char block[4096];
-    off_t from = now.st_size;
+    const size_t size = now.st_size > 0 ? (size_t)now.st_size : 0;
+    status code = STATUS_OK;
+    bool enough = false;
     *end = 0;
-    while (from > 0 && *end == 0) {
-        size_t size = from < (off_t)sizeof block ? (size_t)from : sizeof block;
-        from -= (off_t)size;
-        if (pread(t->fd, block, size, from) != (ssize_t)size)
-            return failed(t->path, "reading", errno, why);
-        const char *newline = memrchr(block, '\n', size);
-        if (newline)
-            *end = (size_t)from + (size_t)(newline - block) + 1;
+    for (size_t block = BLOCK_BYTES; code == STATUS_OK && !enough; block *= 2) {
+        const size_t part = block < size ? block : size, from = size - part;
+        char *text = malloc(part + 1);
+        if (!text)
+            code = failed(t->path, "reading", ENOMEM, why);
+        else if (pread(t->fd, text, part, (off_t)from) != (ssize_t)part)
+            code = failed(t->path, "reading", errno, why);
+        const char *last = code == STATUS_OK ? memrchr(text, '\n', part) : NULL;
+        enough = part == size || (last && memrchr(text, '\n', (size_t)(last - text)));
+        if (code == STATUS_OK && enough)
+            *end = from + csv_whole(text, part);
+        free(text);
     }
-    return STATUS_OK;
+    return code;
 }
 
 /* Opens and locks the file. A merge may replace it, so the name must still refer to the locked file. */
@@ -162,9 +169,9 @@ status table_open(const char *path, const char *header, table **out, diagnostic 
     THEN(code, table_set_aside(t, end, why));
     if (code == STATUS_OK && end == 0) {
         code = append(t, header, strlen(header), why);
-        file_flush_folder(path);
         t->settled = true;
     }
+    file_flush_folder(path); /* also of an old file: the process that made it may have been killed before that */
     if (code != STATUS_OK) {
         table_close(t);
         return code;

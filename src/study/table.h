@@ -1,9 +1,9 @@
 /* An append-only file of rows: one write() per block of complete lines, flushed to disk before the call returns, and
- * one process at a time (flock). An incomplete line of a killed process is moved aside when the file is opened again:
- * the incomplete end of x.csv is appended to x.torn.csv, on disk, before x.csv is truncated to its last complete line.
- * Nothing else is ever removed or changed; a file with other columns gets the missing ones before the first new row
- * (study/csv_layout.h). Ownership: table_open gives, table_close releases. Errors name the file and do not damage it.
- * */
+ * one process at a time (flock). The incomplete line (base/csv.h) that a killed process or a power cut left is moved
+ * aside when the file is opened again: it is appended to x.torn.csv, on disk, before x.csv is truncated to its last
+ * complete line. Nothing else is ever removed or changed; a file with other columns gets the missing ones before the
+ * first new row (study/csv_layout.h). Ownership: table_open gives, table_close releases. Errors name the file and do
+ * not damage it. */
 #pragma once
 
 #include "base/status.h"
