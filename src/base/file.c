@@ -2,6 +2,7 @@
 #include "base/file.h"
 
 #include "base/below.h"
+#include "base/cancel.h"
 #include "base/text.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -43,10 +44,16 @@ static status system_error(diagnostic *why, status code, const char *path, const
 static status read_descriptor(int fd, const char *path, size_t limit, size_t expected, char **text, size_t *size,
                               diagnostic *why)
 {
+    enum { AT_ONCE = 1 << 24 }; /* some 10 ms, between two questions whether to stop */
     size_t capacity = expected < limit ? expected + 1 : limit + 1, used = 0;
     char *buffer = malloc(capacity + 1);
     while (buffer) {
-        ssize_t got = read(fd, buffer + used, capacity - used);
+        if (cancel_asked()) {
+            free(buffer);
+            return cancel_check(why);
+        }
+        const size_t left = capacity - used;
+        ssize_t got = read(fd, buffer + used, left < AT_ONCE ? left : AT_ONCE);
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0) {
@@ -235,6 +242,11 @@ void file_flush_folder(const char *path)
 
 status file_writer_commit(file_writer *writer, diagnostic *why)
 {
+    const status cancelled = cancel_check(why); /* its writer may have left early */
+    if (cancelled != STATUS_OK) {
+        file_writer_abandon(writer);
+        return cancelled;
+    }
     bool failed = ferror(writer->stream) != 0;
     int error = 0;
     if (fflush(writer->stream) != 0 || (writer->temporary && !failed && fsync(fileno(writer->stream)) != 0)) {

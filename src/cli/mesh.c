@@ -1,5 +1,6 @@
 /* `cuvette mesh`: describes a mesh of a file or of a generator, or writes its triangles for other programs. The options
  * of the generators are parameters of a scene's mesh, set through the parameter table. */
+#include "base/cancel.h"
 #include "cli/cli.h"
 #include "report/json.h"
 #include "report/mesh_rows.h"
@@ -134,7 +135,7 @@ static status write_to(const void *content, FILE *stream, diagnostic *why)
         return json_put(stream, mesh_rows_json(m), why);
     else
         mesh_rows_text(stream, m);
-    return STATUS_OK;
+    return cancel_check(why);
 }
 
 status command_mesh(int argc, char **argv, diagnostic *why)

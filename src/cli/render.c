@@ -1,4 +1,5 @@
 /* `cuvette render`: renders a scene, writes image, maps and timeline, prints the account. */
+#include "base/cancel.h"
 #include "cli/cli.h"
 #include "report/json.h"
 #include "cli/options.h"
@@ -150,7 +151,7 @@ static status draw_beams(const render_request *request, const job_account *f, jo
     return result;
 }
 
-static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
+static status write_files(const render_request *request, const job_account *f, job *with, diagnostic *why)
 {
     const outputs *files = &request->files;
     TRY(outputs_write(files, f->of, f->result, why));
@@ -158,10 +159,25 @@ static status write_results(const render_request *request, const job_account *f,
         TRY(render_page_write(&request->input, f, job_isa(with), files->img, files->bits == 16 ? 16 : 8, why));
     if (request->beams && f->count > 0)
         TRY(draw_beams(request, f, with, why));
-    if (request->json)
-        return json_print(report_create(f, request->repeat > 0), why);
-    print_summary(f, files);
     return STATUS_OK;
+}
+
+/* Ctrl-C while files are written does not lose what was rendered: they are written again, with less effort, without
+ * page and beams. STATUS_INTERRUPTED then. */
+static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
+{
+    const status first = write_files(request, f, with, why);
+    status code = first;
+    cancel_token shield;
+    cancel_shield(&shield);
+    if (first == STATUS_INTERRUPTED)
+        code = outputs_write(&request->files, f->of, f->result, why);
+    if (code == STATUS_OK && request->json)
+        code = json_print(report_create(f, request->repeat > 0), why);
+    else if (code == STATUS_OK)
+        print_summary(f, &request->files);
+    cancel_end(&shield);
+    return code == STATUS_OK ? first : code;
 }
 
 static status report_interrupted(const render_request *request, const job_account *f, diagnostic *why)

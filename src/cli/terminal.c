@@ -1,5 +1,6 @@
 /* Terminal and signals of the program: stop request, checked standard output, colour, progress line. */
 #include "cli/terminal.h"
+#include "base/cancel.h"
 #include "base/number.h"
 #include "measure/clock.h"
 #include <errno.h>
@@ -14,10 +15,12 @@
 #include <unistd.h>
 
 static volatile sig_atomic_t stop_requested;
+static cancel_token token; /* of the main thread's work */
 
 static void request_stop(int signal_number)
 {
     stop_requested = signal_number;
+    cancel_set(&token);
 }
 
 bool terminal_stop_requested(void *unused)
@@ -82,6 +85,7 @@ void terminal_prepare(void)
     sigaction(SIGTERM, &action, NULL);
     signal(SIGPIPE, SIG_IGN);
     atexit(check_stdout_at_exit);
+    cancel_begin(&token);
 }
 
 bool terminal_is_smart(int fd)

@@ -5,8 +5,9 @@
 #include "base/status.h"
 #include <stdbool.h>
 
-/* Opens closed descriptors among 0 to 2, ignores SIGPIPE, turns SIGINT and SIGTERM into a stop request (a second signal
- * kills), and makes exit() check that standard output was written. Must be called first. */
+/* Opens closed descriptors among 0 to 2, ignores SIGPIPE, turns SIGINT and SIGTERM into a stop request, which also
+ * cancels the work of the calling thread (base/cancel.h; a second signal kills), and makes exit() check that standard
+ * output was written. Must be called first. */
 void terminal_prepare(void);
 
 /* Returns whether SIGINT or SIGTERM has arrived. unused: lets the function serve as a callback. */

@@ -1,6 +1,7 @@
 /* Building, sharing and updating of hierarchies, for all kinds. */
 #include "geometry/hierarchy_private.h"
 
+#include "base/cancel.h"
 #include "geometry/mesh_share.h"
 #include <stdlib.h>
 #include <time.h>
@@ -22,6 +23,10 @@ static status build_none(hierarchy *h, diagnostic *why)
         for (size_t i = 0; i < count; i++)
             order[i] = (uint32_t)i;
         hierarchy_fill_blocks(h, order, count, 0);
+        if (cancel_asked()) {
+            free(order);
+            return cancel_check(why);
+        }
         h->report.bytes = h->block_count * (h->single ? sizeof(block_single) : sizeof(block_double));
         h->report.leaves = 1;
     }

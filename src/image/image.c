@@ -1,6 +1,7 @@
 /* Images: memory, and reading and writing files in the format of each codec. */
 #include "image/image.h"
 
+#include "base/cancel.h"
 #include "base/file.h"
 #include "base/text_writer.h"
 #include "image/codec.h"
@@ -104,7 +105,7 @@ image_rows image_rows_of(const image *img)
 static status write_as(const image_rows *rows, image_format format, FILE *stream, int bits, bool fast, diagnostic *why)
 {
     switch (format) {
-    case IMAGE_PNG: return codec_png_write(rows, stream, bits, fast, why);
+    case IMAGE_PNG: return codec_png_write(rows, stream, bits, fast || cancel_hurries(), why);
     case IMAGE_JPEG: return codec_jpeg_write(rows, stream, fast, why);
     case IMAGE_PFM: return codec_pfm_write(rows, stream, why);
     case IMAGE_BMP:

@@ -1,5 +1,6 @@
 /* Reading PNG through libpng. Everything that must survive a longjmp is in a job, which belongs to a function that does
  * not call setjmp; the function that does has no modified local variables. */
+#include "base/cancel.h"
 #include "image/codec.h"
 #include "image/png_library.h"
 
@@ -75,6 +76,10 @@ static bool read_rows(png_job *job)
     for (int pass = 0; pass < passes; pass++) {
         for (int y = 0; y < job->img->height; y++) {
             unsigned char *row = job->raw + (passes > 1 ? (size_t)y * row_bytes : 0);
+            if (cancel_asked()) {
+                job->code = cancel_check(job->why);
+                return false;
+            }
             png_read_row(job->of.png, row, NULL);
             if (pass == passes - 1)
                 store_row(job, row, y, channels);

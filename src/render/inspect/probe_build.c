@@ -1,5 +1,6 @@
 /* Building a ray tree: each ray is traced alone, and the tracer's hits, gathered group, branches and queues are read
  * back. */
+#include "base/cancel.h"
 #include "base/grow.h"
 #include "render/inspect/probe_private.h"
 
@@ -78,6 +79,7 @@ static void run_one(probe *p, int depth, double brought[3])
 static status add_node(probe *p, ray_tree *tree, const ray_record *r, ray_kind kind, int parent, size_t *at,
                        diagnostic *why)
 {
+    TRY(cancel_check(why));
     if (tree->count >= PROBE_NODES_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "lower render.depth, or set render.min_weight",
                         "the tree has more than %d rays", (int)PROBE_NODES_MAX);

@@ -1,4 +1,5 @@
 /* Loads the files of a scene: meshes, textures and the background image. */
+#include "base/cancel.h"
 #include "base/file.h"
 #include "geometry/shapes/shape.h"
 #include "scene/assets/assets.h"
@@ -77,6 +78,7 @@ char *scene_file_path(const scene *s, const char *path)
 status sky_check(const image *sky, const char *path, diagnostic *bad)
 {
     for (int y = 0; y < sky->height; y++) {
+        TRY(cancel_check(bad));
         for (int x = 0; x < sky->width; x++) {
             const float *pixel = &sky->pixel[((size_t)y * (size_t)sky->width + (size_t)x) * 3];
             for (int channel = 0; channel < 3; channel++) {

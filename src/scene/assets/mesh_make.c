@@ -1,5 +1,6 @@
 #include "scene/assets/mesh_make.h"
 
+#include "base/cancel.h"
 #include "base/random.h"
 #include "geometry/mesh_generators.h"
 #include "scene/model/face_materials.h"
@@ -31,7 +32,7 @@ static status make_terrain(const mesh_entry *m, mesh **out, diagnostic *why)
     double *heights = malloc((size_t)columns * (size_t)rows * sizeof *heights);
     if (!heights)
         return out_of_memory(why);
-    for (int row = 0; row < rows; row++) {
+    for (int row = 0; row < rows && !cancel_asked(); row++) {
         for (int column = 0; column < columns; column++) {
             double sum = 0.0, weight = 0.5, fine = CELLS;
             for (uint32_t k = 0; k < OCTAVES; k++, weight *= 0.5, fine *= 2.0)
@@ -39,7 +40,8 @@ static status make_terrain(const mesh_entry *m, mesh **out, diagnostic *why)
             heights[(size_t)row * (size_t)columns + (size_t)column] = m->size.y * sum;
         }
     }
-    const status code = generate_height_field(heights, columns, rows, m->size.x, m->size.z, m->depth, out, why);
+    status code = cancel_check(why);
+    THEN(code, generate_height_field(heights, columns, rows, m->size.x, m->size.z, m->depth, out, why));
     free(heights);
     return code;
 }
