@@ -73,13 +73,16 @@ w_texture() {
 w_sky() {
     line=(render sky.yaml -o t.png --set render.integrator=path) files=t.png longest=0.5
     picture big.png 6000 4000
-    printf 'background: {kind: image, picture: big.png}\nsolids: {s: {shape: sphere, radius: 1}}\n' >sky.yaml
+    printf 'background: {kind: picture, picture: big.png}\nsolids: {s: {shape: sphere, radius: 1}}\n' >sky.yaml
 }
 w_compare() {
     line=(compare small.png other.png --diff diff.png) files=diff.png longest=2
     picture small.png 2400 1800 && cp small.png other.png
 }
-w_render() { line=(render "$scenes/rod.yaml" -o r.png --set render.width=4000 --set render.height=3000) kept=r.png longest=2; }
+w_render() {
+    line=(render "$scenes/rod.yaml" -o r.png --set render.width=1600 --set render.height=1200 --set render.samples=16)
+    kept=r.png longest=3
+}
 w_paths() {
     line=(render "$scenes/rod.yaml" -o r.png --set render.integrator=path --set render.samples=256 --set render.depth=16)
     kept=r.png longest=3
@@ -95,7 +98,7 @@ w_encode_jpeg() {
 }
 w_layers() {
     line=(render "$scenes/rod.yaml" --layers l --set render.integrator=aov --set render.width=4000)
-    line+=(--set render.height=3000) longest=2
+    line+=(--set render.height=3000) longest=4
 }
 w_animate() { line=(animate "$scenes/slime.yaml" -o frame-%03d.png --duration 3) longest=3; }
 w_study() {
@@ -124,7 +127,7 @@ wrongs() {
     [[ -z $(find . -name '.cuvette-*') ]] || echo "a temporary file is left"
     for name in $kept; do
         if [[ -e $name && $name == *.png ]]; then
-            printf 'background: {kind: image, picture: %s}\n' "$name" >decoded.yaml
+            printf 'background: {kind: picture, picture: %s}\n' "$name" >decoded.yaml
             "$program" scene decoded.yaml --check >made 2>&1 || echo "$name is damaged: $(head -1 made)"
         elif [[ -e $name && $name == *rows.csv ]]; then
             "$program" study verify "${line[2]}" -o results >made 2>&1 || echo "rows are damaged: $(head -1 made)"
@@ -141,6 +144,7 @@ interrupt() { # WORKLOAD SIGNAL
     after=$(awk -v r=$RANDOM -v most="$longest" 'BEGIN {printf "%.3f", 0.03 + most * r / 32768}')
     read -r ms cpu code rest < <(./moment "$(kill -l "$2")" "$after" "$program" "${line[@]}" 2>err)
     [[ $ms == - ]] && return # it had ended: a fast machine
+    [[ $code == -* && ! -s err ]] && awk -v cpu="$rest" 'BEGIN {exit !(cpu + 0 < 1)}' && return # main had not begun
     [[ -z ${LATENCY:-} ]] || echo "$1 $2 $after $ms $cpu $code" >>"$LATENCY"
     wrongs "$code" "$ms" | sed "s/^/$2 at $after s: /"
 }

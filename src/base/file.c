@@ -1,4 +1,5 @@
 /* Reading and atomic writing of whole files, and folders. */
+#include "base/memory_budget.h"
 #include "base/file.h"
 
 #include "base/below.h"
@@ -111,7 +112,9 @@ status file_read_below(const char *path, const char *root, size_t limit, char **
         if (limit > SIZE_MAX / 4)
             limit = SIZE_MAX / 4;
         size_t expected = about.st_size > 0 ? (size_t)about.st_size : 4096;
-        code = read_descriptor(fd, path, limit, expected, text, size, why);
+        diagnostic_locate(why, path, 0, 0);
+        code = memory_budget_check(expected < limit ? expected : limit, "use a smaller file", why, "the file");
+        THEN(code, read_descriptor(fd, path, limit, expected, text, size, why));
     }
     close(fd);
     return code;

@@ -66,6 +66,7 @@ static const command_option options[] = {
      .take = take_format},
     {"output", 'o', "FILE", "write to FILE instead of standard output",
      OPTION_FILLS(option_text, mesh_request, output)},
+    OPTION_MEMORY,
     {"json", 0, NULL, "print the description as JSON", OPTION_FILLS(option_flag, mesh_request, json)},
     {0},
 };

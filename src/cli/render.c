@@ -42,6 +42,7 @@ static const command_option options[] = {
     {"output", 'o', "FILE", "write the image: .png, .jpg or .pfm (linear floats); .html: a page with the rays",
      OPTION_FILLS(option_text, render_request, files.img)},
     OPTION_SET("'render.depth=8' or 'lamp.position.x=2'"),
+    OPTION_MEMORY,
     {"json", 0, NULL, "print one JSON object: hash, times, counts, parameters",
      OPTION_FILLS(option_flag, render_request, json)},
     {"beams", 0, NULL, "draw the scene's beams into the image of -o; the film and its hash stay the same",
@@ -162,16 +163,19 @@ static status write_files(const render_request *request, const job_account *f, j
     return STATUS_OK;
 }
 
-/* Ctrl-C while files are written does not lose what was rendered: they are written again, with less effort, without
- * page and beams. STATUS_INTERRUPTED then. */
+/* Ctrl-C does not lose what was rendered, before or while files are written: they are written, or written again, with
+ * less effort, but no page, beams and layers, which take long. STATUS_INTERRUPTED then. */
 static status write_results(const render_request *request, const job_account *f, job *with, diagnostic *why)
 {
     const status first = write_files(request, f, with, why);
     status code = first;
     cancel_token shield;
     cancel_shield(&shield);
-    if (first == STATUS_INTERRUPTED)
-        code = outputs_write(&request->files, f->of, f->result, why);
+    if (first == STATUS_INTERRUPTED) {
+        outputs soon = request->files;
+        soon.layers = NULL;
+        code = outputs_write(&soon, f->of, f->result, why);
+    }
     if (code == STATUS_OK && request->json)
         code = json_print(report_create(f, request->repeat > 0), why);
     else if (code == STATUS_OK)

@@ -54,6 +54,20 @@ static void sort(half_edge *edges, size_t count)
     }
 }
 
+/* Takes the pages of new memory in order, which a cancellation ends: a loop that then writes at random places does not
+ * wait for hundreds of new pages before it asks. False if cancelled. */
+static bool take_pages(void *memory, size_t bytes)
+{
+    enum { PAGE = 4096 };
+    volatile char *first = memory;
+    for (size_t at = 0; at < bytes; at += PAGE) {
+        if (at % LARGE_PAGE == 0 && cancel_asked())
+            return false;
+        first[at] = 0;
+    }
+    return true;
+}
+
 static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
 {
     TRY(mesh_weld(m, &lists->same, why));
@@ -62,6 +76,8 @@ static status edge_lists_make(const mesh *m, edge_lists *lists, diagnostic *why)
     half_edge *edges = lists->edges = large_pages(malloc(all), all);
     if (!start || !edges)
         return diagnose(why, STATUS_FAILURE, "use fewer triangles", "out of memory for the edges of a mesh");
+    if (!take_pages(start, (m->vertex_count + 2) * sizeof *start) || !take_pages(edges, all))
+        return cancel_check(why);
     /* two passes over the half-edges: count them two entries ahead, then place each at the end of the list before */
     for (int writing = 0; writing < 2; writing++) {
         for (size_t t = 0; t < m->triangle_count && !cancel_asked_at(t); t++) {

@@ -1,4 +1,5 @@
 /* Images: memory, and reading and writing files in the format of each codec. */
+#include "base/memory_budget.h"
 #include "image/image.h"
 
 #include "base/cancel.h"
@@ -20,6 +21,8 @@ status image_create(int width, int height, image **out, diagnostic *why)
     if (width < 1 || height < 1 || width > IMAGE_SIDE_MAX || height > IMAGE_SIDE_MAX)
         return diagnose(why, STATUS_BAD_INPUT, "use a width and height of 1 to 65536",
                         "an image cannot have %d x %d pixels", width, height);
+    TRY(memory_budget_check((uint64_t)width * (uint64_t)height * 3 * sizeof(float), "use a smaller one", why,
+                            "an image of %d x %d pixels", width, height));
     image *img = malloc(sizeof *img);
     float *pixel = calloc((size_t)width * (size_t)height * 3, sizeof *pixel);
     if (!img || !pixel) {

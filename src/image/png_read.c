@@ -1,5 +1,6 @@
 /* Reading PNG through libpng. Everything that must survive a longjmp is in a job, which belongs to a function that does
  * not call setjmp; the function that does has no modified local variables. */
+#include "base/memory_budget.h"
 #include "base/cancel.h"
 #include "image/codec.h"
 #include "image/png_library.h"
@@ -50,6 +51,11 @@ static bool allocate(png_job *job, long long width, long long height, bool inter
 {
     job->code =
         codec_begin(width, height, job->of.size, job->bits == 8 ? 255 : 65535, &job->img, &job->linear, job->why);
+    if (job->code != STATUS_OK)
+        return false;
+    if (interlaced)
+        job->code = memory_budget_check((uint64_t)height * png_get_rowbytes(job->of.png, job->of.info),
+                                        "save it without interlacing", job->why, "the interlaced image");
     if (job->code != STATUS_OK)
         return false;
     /* Zeroed, because an interlaced image is read by combining with the previous contents. */

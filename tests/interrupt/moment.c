@@ -1,9 +1,10 @@
 /* moment SIGNAL AFTER_S COMMAND...: runs a command in a process group of its own, sends the group a signal AFTER_S
  * seconds later, as a terminal does, and waits for the command's end. Prints one line: milliseconds from the signal to
  * the end (- if it ended before), milliseconds of CPU time that the command itself used in between (all threads; on a
- * busy machine the better measure of how soon it reacts), the exit code (128 + number for a signal), seconds that it
+ * busy machine the better measure of how soon it reacts), the exit code (-number if
+ * the signal itself ended it), seconds that it
  * ran, and its peak memory in KiB. SIGNAL 0 sends none: how long does the command take? A command that does not end
- * within 60 s is killed (code 137). Its standard output goes to the file "out". */
+ * within 60 s is killed (code -9). Its standard output goes to the file "out". */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <poll.h>
@@ -78,7 +79,7 @@ int main(int argc, char **argv)
         if (errno != EINTR)
             return 1;
     const double ended_s = now_s();
-    const int code = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+    const int code = WIFEXITED(state) ? WEXITSTATUS(state) : -WTERMSIG(state);
     if (early || !number)
         printf("- - %d %.3f %ld\n", code, ended_s - began_s, used.ru_maxrss);
     else

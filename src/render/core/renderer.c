@@ -337,6 +337,11 @@ uint64_t renderer_result_bytes(const scene *s, const render_options *options)
            (named + 3 * sizeof(int64_t) * shares + (shares > 1 ? 3 * sizeof(double) : 0) + maps * sizeof(double));
 }
 
+uint64_t renderer_tracing_bytes(const scene *s)
+{
+    return (uint64_t)scene_threads(&s->render) * tracer_bytes((int)s->render.depth);
+}
+
 static film_space space_of(const scene *s)
 {
     return s->render.spectrum == SPECTRUM_SPECTRAL ? FILM_XYZ : FILM_RGB;
