@@ -1,7 +1,7 @@
 #!/bin/bash
 # Ctrl-C at random moments of commands that take seconds: the command ends with exit code 130 and one line that says so,
-# leaves no temporary file, no part of a file, and keeps what the manual promises. tests/interrupt.sh [WORKLOAD...]: all
-# by default. MOMENTS is the number for each (1), SIGNALS the signals in turn ("INT TERM"), SEED that of the moments.
+# leaves no temporary file, no part of a file, and keeps what the manual promises. tests/interrupt.sh [WORKLOAD... | all]:
+# some of them by default. MOMENTS is the number for each (1), SIGNALS the signals in turn ("INT TERM"), SEED that of the moments.
 # LATENCY=FILE appends a line for each moment: workload, signal, seconds into the command, milliseconds until its end,
 # milliseconds of its CPU time meanwhile, exit code; `make interrupts` makes a table of them. No time is asserted. Needs
 # the compiler (CC) for tests/interrupt/moment.c.
@@ -144,12 +144,17 @@ interrupt() { # WORKLOAD SIGNAL
     after=$(awk -v r=$RANDOM -v most="$longest" 'BEGIN {printf "%.3f", 0.03 + most * r / 32768}')
     read -r ms cpu code rest < <(./moment "$(kill -l "$2")" "$after" "$program" "${line[@]}" 2>err)
     [[ $ms == - ]] && return # it had ended: a fast machine
-    [[ $code == -* && ! -s err ]] && awk -v cpu="$rest" 'BEGIN {exit !(cpu + 0 < 1)}' && return # main had not begun
+    [[ $code == -* && ! -s err ]] && awk -v ran="$rest" 'BEGIN {exit !(ran + 0 < 1)}' && return # main had not begun
     [[ -z ${LATENCY:-} ]] || echo "$1 $2 $after $ms $cpu $code" >>"$LATENCY"
     wrongs "$code" "$ms" | sed "s/^/$2 at $after s: /"
 }
 
-(($#)) || set -- $(declare -F | sed -n 's/^declare -f w_//p')
+if (($# == 0)); then # the others take longer, or differ little
+    set -- fan trace motion check terrain mesh_obj import texture compare render animate study
+elif [[ $1 == all ]]; then
+    mapfile -t every < <(declare -F | sed -n 's/^declare -f w_//p')
+    set -- "${every[@]}"
+fi
 for workload; do
     seed=$RANDOM # a subshell would begin with one of its own
     bad=$(RANDOM=$seed; for ((i = 0; i < moments; i++)); do
